@@ -37,6 +37,7 @@ class PlayedStation:
         self._picture = picture
         self._answers = answers
         self._sockets: list[WebSocketRoute] = []
+        self._replays: list[WebSocketRoute] = []
         self._page = page
         self._hangs = False
         page.route("**/*", self._answer)
@@ -83,8 +84,9 @@ class PlayedStation:
         self._hangs = True
 
     def end_logins(self) -> None:
-        for socket in self._sockets:
+        for socket in (*self._replays, *self._sockets):
             socket.close(code=NOT_LOGGED_IN)
+        self._replays.clear()
         self._sockets.clear()
 
     def restart(self) -> None:
@@ -109,9 +111,9 @@ class PlayedStation:
         socket.on_message(lambda _: self._show(socket))
         self._show(socket)
 
-    @staticmethod
-    def _replay(socket: WebSocketRoute) -> None:
+    def _replay(self, socket: WebSocketRoute) -> None:
         """Beside what is live: a bad minute, again and again."""
+        self._replays.append(socket)
 
         def show(_: object = None) -> None:
             socket.send(msgspec.json.encode(scenes.past()).decode())

@@ -1,4 +1,4 @@
-"""A login that ends: what was being written waits for the same person, and for nobody else."""
+"""A login that ends: what was being done waits for the same person, and for nobody else."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import re
 from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e import scenes
+from tests.e2e.console_page import menu
 from tests.e2e.looks import flaws
+from tests.e2e.played_station import PlayedStation
 from tests.e2e.stage import ANSWERS, Stage
 
 CHIEF = {"username": "chief", "role": "administrator"}
@@ -95,6 +97,61 @@ def test_a_pin_that_was_being_set_is_there_after_the_login(stage: Stage) -> None
     expect(panel.get_by_label("Note")).to_have_value("by the lift")
     expect(panel.get_by_label("North, m")).to_have_value(north)
     expect(panel.get_by_label("Note")).to_be_focused()
+
+
+def replay_an_incident(stage: Stage, username: str = "chief") -> tuple[Page, PlayedStation]:
+    """With a dialog over it; then the login ends."""
+    page, station = stage.open(scenes.quiet(), answers=answers(username))
+    menu(page, "Incidents").get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
+    bar = page.get_by_role("region", name="Replay")
+    expect(bar.get_by_role("button", name="Pause")).to_be_visible()
+    page.locator(".par-clock").click()
+    expect(page.get_by_role("dialog", name="Roll call")).to_be_visible()
+    station.end_logins()
+    expect(page.get_by_role("status")).to_contain_text(ENDED)
+    expect(bar).to_be_hidden()
+    return page, station
+
+
+def test_a_replay_goes_on_where_it_was_after_the_login(stage: Stage) -> None:
+    page, station = replay_an_incident(stage)
+    with page.expect_request("**/api/v1/replays/r2") as asked:
+        log_in(page)
+    at = scenes.past().replay
+    assert at is not None
+    wanted = {"at_ms": at.at_ms, "speed": at.speed, "playing": at.playing}
+    assert asked.value.post_data_json == wanted
+    expect(page.get_by_role("dialog", name="Roll call")).to_be_visible()
+    expect(page.get_by_role("region", name="Replay")).to_contain_text("This is the past")
+    expect(page.locator(".console")).to_have_class(re.compile("replay"))
+    expect(page.locator(".console")).not_to_have_class(re.compile("not-now"))
+    station.expect_changes("/replays", "/login", "/replays/r2")
+
+
+def test_a_replay_that_the_station_has_ended_meanwhile_is_begun_again(stage: Stage) -> None:
+    """Nobody looked at it for a minute."""
+    page, station = replay_an_incident(stage)
+    gone = {"detail": "There is no such replay; it may have ended."}
+    page.route("**/api/v1/replays/r2", lambda route: route.fulfill(status=404, json=gone))
+    anew = scenes.replay("r3", begun_by="chief")
+    page.route("**/api/v1/replays", lambda route: route.fulfill(json=anew))
+    log_in(page)
+    expect(page.locator(".console")).to_have_class(re.compile("replay"))
+    expect(page.locator(".console")).not_to_have_class(re.compile("not-now"))
+    expect(page.get_by_role("dialog", name="Roll call")).to_be_visible()
+    station.expect_changes("/replays", "/login", "/replays/r3")
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Back to live").click()
+    station.expect_changes("/replays", "/login", "/replays/r3", "/replays/r3")
+    expect(page.locator(".console")).to_have_class(re.compile("live"))
+
+
+def test_nobody_else_gets_the_replay_that_somebody_looked_at(stage: Stage) -> None:
+    page, station = replay_an_incident(stage, "deputy")
+    log_in(page, "deputy")
+    expect(page.get_by_role("region", name="Replay")).to_have_count(0)
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    station.expect_changes("/replays", "/login")
 
 
 def test_nobody_else_gets_what_somebody_was_writing(stage: Stage) -> None:

@@ -3,6 +3,7 @@ import { batch, computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
 import { ApiError, UNREACHABLE } from "./call";
 import { arrivedSilent, ticketOf, withoutTicket } from "./live/arrival";
+import { NOT_LOGGED_IN } from "./live/connection";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
 import { notice, reset } from "./view";
@@ -62,6 +63,7 @@ export function begin(me: api.Me): void {
     if (live.value === null) live.value = new Session(api.LIVE_PATH, loginEnded);
     else live.value.open();
   });
+  if (replay.value !== null && besideLive.value) void replayOn(replay.value);
   if (live.value === null) return;
   const stops = [watchOver(live.value, (url) => location.assign(url)), keepBaseMap()];
   stopWatching = () => stops.forEach((stop) => stop());
@@ -86,7 +88,9 @@ export async function watchReplay(incident: api.Incident): Promise<void> {
   const started = await attempt(api.startReplay(incident.incident_id));
   if (started === null) return;
   stopReplay();
-  const session = new Session(api.replayPath(started.replay_id), replayEnded);
+  const session = new Session(api.replayPath(started.replay_id), (code) =>
+    code === NOT_LOGGED_IN ? loginEnded() : replayEnded(),
+  );
   replay.value = { id: started.replay_id, session, incident };
   reset();
 }
@@ -98,6 +102,34 @@ export function stopReplay(): void {
   replay.value = null;
   reset();
   void api.endReplay(watched.id).catch(() => undefined); // it ends by itself with its last viewer
+}
+
+/** Where it was when the login ended; the station has ended it by now if that was a while ago. */
+async function replayOn(before: Replay): Promise<void> {
+  const id = await attempt(replayAt(before));
+  if (replay.peek() !== before) return;
+  if (id === null) {
+    replay.value = null;
+    return;
+  }
+  before.session.open(api.replayPath(id));
+  replay.value = { ...before, id };
+}
+
+/** The id of a replay of the same incident that goes on from the place that is on the screen. */
+async function replayAt({ id, session, incident }: Replay): Promise<string> {
+  const shown = session.picture.replay.peek();
+  const place =
+    shown === null ? {} : { at_ms: shown.at_ms, speed: shown.speed, playing: shown.playing };
+  try {
+    await api.changeReplay(id, place);
+    return id;
+  } catch (error) {
+    if (!(error instanceof ApiError && error.status === 404)) throw error;
+  }
+  const { replay_id } = await api.startReplay(incident.incident_id);
+  await api.changeReplay(replay_id, place);
+  return replay_id;
 }
 
 /** The result, or null with the reason shown to the person. */
@@ -113,8 +145,8 @@ export async function attempt<T>(work: Promise<T>): Promise<T | null> {
 
 /** Behind the login form, until the same person is back: the station knows nobody here any more. */
 function wait(): void {
-  stopReplay();
   stopWatching();
+  replay.peek()?.session.close();
   live.peek()?.close();
   waiting.value = user.peek() !== null;
 }

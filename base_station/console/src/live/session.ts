@@ -19,15 +19,17 @@ export class Session {
 
   /** `onRefused`: the station does not want to show this picture (any more). */
   constructor(
-    private readonly path: string,
+    private path: string,
     private readonly onRefused: (code: number) => void,
   ) {
     this.open();
   }
 
-  /** Also again, once it was closed: until the station is heard, nothing of the picture is now. */
-  open(): void {
+  /** Also again, once it was closed, or where the picture is to be had now: until the station is
+   * heard, nothing of it is now. */
+  open(path = this.path): void {
     this.close();
+    this.path = path;
     this.picture.link.value = { kind: "connecting" };
     this.connection = new Connection(socketUrl(this.path), {
       message: (text) => this.hear(JSON.parse(text) as Message),
