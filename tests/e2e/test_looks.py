@@ -47,6 +47,21 @@ def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], S
     assert on_every_screen(page, flaws) == {}
 
 
+def test_a_long_crew_and_role_take_two_lines_of_a_card_until_it_is_chosen(stage: Stage) -> None:
+    page, _ = stage.open(scenes.one_word())
+    card = page.locator(f"[data-unit='{scenes.unit_id(1)}']")
+    told = card.locator(".under-name .quiet")
+    lines = "one => one.clientHeight / parseFloat(getComputedStyle(one).lineHeight)"
+    for width, height in SCREENS.values():
+        page.set_viewport_size({"width": width, "height": height})
+        assert told.evaluate(lines) <= 2.1
+    page.set_viewport_size({"width": 1280, "height": 800})
+    expect(told).to_have_attribute("title", f"{'W' * 80} · {'W' * 80}")
+    card.get_by_role("button").first.click()
+    assert told.evaluate("one => one.scrollHeight <= one.clientHeight + 1")
+    assert told.evaluate(lines) > 3
+
+
 @pytest.mark.parametrize(
     "scene",
     [

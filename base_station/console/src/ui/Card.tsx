@@ -47,7 +47,9 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
         <span class="names">
           <span class="name">{name}</span>
           <span class="under-name">
-            <span class="quiet">{crewAndRole(unit)}</span>
+            <span class="quiet" title={crewAndRole(unit)}>
+              {crewAndRole(unit)}
+            </span>
             <ParMark unit={unit} picture={picture} />
           </span>
           <Activity unit={unit} picture={picture} />
