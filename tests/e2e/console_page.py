@@ -28,6 +28,10 @@ def command(page: Page, name: str) -> Locator:
     return dialog
 
 
+def strip(page: Page) -> Locator:
+    return page.get_by_role("region", name="Open alarms")
+
+
 def close(dialog: Locator) -> None:
     dialog.get_by_role("button", name="Close", exact=True).click()
 

@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Page, expect
 
 from base_station.views.wire import Snapshot
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers, close, menu
+from tests.e2e.console_page import barriers, close, menu, strip
 from tests.e2e.looks import flaws
 from tests.e2e.stage import ANSWERS, PAST, SCREENS, Stage
-
-
-def strip(page: Page) -> Locator:
-    return page.get_by_role("region", name="Open alarms")
 
 
 def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, list[str]]:

@@ -1,0 +1,66 @@
+"""Alarms and commands are not done by a slip, and nothing hides what cannot wait."""
+
+from __future__ import annotations
+
+import re
+from datetime import UTC, datetime, timedelta
+from urllib.parse import quote
+
+import msgspec
+from playwright.sync_api import expect
+
+from tests.e2e import scenes
+from tests.e2e.console_page import confirm, menu, press, strip
+from tests.e2e.stage import Stage
+
+
+def test_two_presses_in_haste_resolve_nothing(stage: Stage) -> None:
+    """The button to acknowledge is followed at its place by the one to resolve."""
+    page, station = stage.open(scenes.bad_minute())
+    fall = scenes.bad_minute().alarms[0]
+    press(strip(page).get_by_role("button", name=f"Acknowledge: {fall.text}"))
+    station.change(alarms=(scenes.taken(fall),))
+    row = strip(page).get_by_role("listitem").filter(has_text=fall.text)
+    page.clock.pause_at(datetime.now(UTC) + timedelta(seconds=1))  # no haste is as slow as a test
+    row.get_by_role("button", name="Resolve").dblclick()
+    page.clock.run_for(400)
+    row.get_by_role("button", name="Yes, resolve").click()
+    station.expect_changes(f"/alarms/{quote(fall.alarm_id)}/acknowledge")
+    page.clock.resume()
+    row.get_by_role("button", name="No").click()
+    expect(row.get_by_role("button", name="Resolve")).to_be_focused()
+    with page.expect_request(re.compile("/resolve$")):
+        confirm(row, "Resolve")
+
+
+def test_an_evacuation_takes_two_presses_at_two_places(stage: Stage) -> None:
+    for screen in ("laptop", "phone"):
+        page, station = stage.open(scenes.bad_minute(), screen)
+        first = page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate")
+        first.dblclick(force=True)
+        station.expect_changes()
+        page.get_by_role("button", name="Evacuate now").click()
+        station.expect_changes("/commands")
+
+
+def test_a_dialog_does_not_hide_what_cannot_wait(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute())
+    dialog = menu(page, "Units")
+    dialog.get_by_role("alert").get_by_role("button", name="Jonas Bergman may have fallen").click()
+    expect(dialog).to_have_count(0)
+    expect(page.locator(".card.chosen")).to_contain_text("Jonas Bergman")
+
+
+def test_who_took_an_alarm_leaves_room_for_what_it_is_about(stage: Stage) -> None:
+    """However long the name, the row is as with a short one; it says all to who points at it."""
+    shown = scenes.bad_minute()
+    rows_px = []
+    for by in ("mia", "W" * 64):
+        one = msgspec.structs.replace(shown.alarms[0], state="acknowledged", by=by)
+        page, _ = stage.open(msgspec.structs.replace(shown, alarms=(one, *shown.alarms[1:])))
+        row = strip(page).get_by_role("listitem").filter(has_text="may have fallen")
+        expect(row.locator(".state")).to_have_attribute("title", f"acknowledged by {by}")
+        box = row.bounding_box()
+        assert box is not None
+        rows_px.append(box["height"])
+    assert rows_px[0] == rows_px[1]

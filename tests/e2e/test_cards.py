@@ -1,0 +1,159 @@
+"""Cards: who is in danger comes first, and what each says of its person."""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+from playwright.sync_api import expect
+
+from tests.e2e import scenes
+from tests.e2e.console_page import menu, painted, strip
+from tests.e2e.looks import flaws
+from tests.e2e.stage import Stage
+
+
+def test_who_is_in_danger_is_first_and_whole_among_forty(stage: Stage) -> None:
+    page, _ = stage.open(scenes.crowd())
+    cards = page.locator(".card")
+    expect(cards).to_have_count(42)
+    expect(cards.first).to_contain_text("Jonas Bergman")
+    expect(cards.first).to_contain_text("Fall")
+    expect(cards.first.get_by_text("Battery")).to_be_visible()
+    calm = page.locator(".card.normal", has_text="Astrid Lindqvist 2")
+    expect(calm).to_have_class(re.compile("brief"))
+    calm.get_by_role("button").click()
+    expect(calm).not_to_have_class(re.compile("brief"))  # who is chosen is shown whole
+
+
+def test_what_somebody_silent_did_last_says_how_old_it_is(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute())
+    silent = page.locator(".card", has_text="Tomas Novak").locator(".activity")
+    expect(silent).to_contain_text("1 min old")
+    heard = page.locator(".card", has_text="Mira Okafor").locator(".activity")
+    expect(heard).to_have_text("Walking")
+
+
+def test_a_figure_and_the_word_behind_it_are_two_words_to_who_listens(stage: Stage) -> None:
+    shown = scenes.bad_minute()
+    low = scenes.alarm(1, "battery", 2, "The battery of Jonas Bergman's unit is at 7 %", 5)
+    units = (shown.units[0], scenes.with_alarms(shown.units[1], low), *shown.units[2:])
+    alarms = (*shown.alarms, low)
+    page, _ = stage.open(msgspec.structs.replace(shown, units=units, alarms=alarms))
+    hot = page.locator(".card", has_text="Mira Okafor").get_by_role("definition")
+    expect(hot.filter(has_text="186")).to_have_text("186 °C warning")
+    flat = page.locator(".card", has_text="Jonas Bergman").get_by_role("definition")
+    expect(flat.filter(has_text="%")).to_have_text("7 % low")
+
+
+def test_a_unit_that_was_switched_off_in_order_is_calm(stage: Stage) -> None:
+    """Its wearer is looked for by nobody: no hatching, no doubt, no place above those at work."""
+    page, _ = stage.open(scenes.switched_off())
+    cards = page.locator(".card")
+    expect(cards.locator(".name").first).to_have_text("Astrid Lindqvist")  # by name
+    for name in ("Astrid Lindqvist", "Jonas Bergman"):
+        card = cards.filter(has_text=name)
+        expect(card).to_have_class(re.compile(r"\bnormal\b"))
+        expect(card).not_to_have_class(re.compile("unheard"))
+        assert card.evaluate("card => getComputedStyle(card).backgroundImage") == "none"
+        expect(card).to_contain_text("Switched off")
+        expect(card).to_contain_text("10 min old")
+        expect(card).not_to_contain_text("trust")
+    page.get_by_role("button", name="Floors: All").click()
+    page.wait_for_timeout(600)  # the plan has come to rest
+    assert painted(page, "--quiet") < 4000, "the plan is not hatched for them"
+
+
+def test_whoever_is_chosen_is_in_sight_with_all_that_can_be_done(stage: Stage) -> None:
+    page, _ = stage.open(scenes.crowd())
+    lost = scenes.crowd().alarms[3]
+    page.locator(".card").last.scroll_into_view_if_needed()
+    strip(page).get_by_role("button", name=lost.text).first.click()
+    actions = page.get_by_role("group", name="For Tomas Novak")
+    expect(actions).to_be_in_viewport(ratio=1)
+    expect(page.locator(".card.chosen .name")).to_be_in_viewport(ratio=1)
+    page.locator(".card.normal").nth(5).get_by_role("button").first.click()  # at the lower edge
+    expect(page.locator(".card-actions")).to_be_in_viewport(ratio=1)
+
+
+def test_what_can_be_done_stays_in_sight_however_low_the_screen(stage: Stage) -> None:
+    """And however long the card grows while it is looked at."""
+    page, station = stage.open(scenes.crowd(), "large at 200 %")
+    page.locator(".card", has_text="Tomas Novak").get_by_role("button").first.click()
+    actions = page.get_by_role("group", name="For Tomas Novak")
+    expect(actions).to_be_in_viewport(ratio=1)
+    lost = station.picture.units[3]
+    fault = scenes.alarm(3, "unit-fault", 2, f"Tomas Novak's unit: {scenes.FAULTS[1]}", 1)
+    station.change(alarms=(fault,), units=(scenes.with_alarms(lost, fault),))
+    expect(page.locator(".card.chosen")).to_contain_text(scenes.FAULTS[1])
+    expect(actions).to_be_in_viewport(ratio=1)
+    expect(actions.get_by_role("button", name="Message")).to_be_in_viewport(ratio=1)
+
+
+def test_who_is_overdue_is_said_to_be_so_once(stage: Stage) -> None:
+    page, station = stage.open(scenes.overdue())
+    card = page.locator(".card", has_text=scenes.NAMES[0])
+    expect(card).to_contain_text(re.compile(r"PAR \d+:\d+ over"))
+    expect(card.get_by_label("Open alarms of this person")).to_have_count(0)
+    heard = scenes.unit(0).duty
+    late = station.picture.units[0]
+    station.change(units=(msgspec.structs.replace(late, duty=heard),))
+    open_alarms = card.get_by_label("Open alarms of this person")
+    expect(open_alarms.get_by_role("listitem")).to_have_text(["Missed check-in"])
+
+
+def test_each_fault_of_a_unit_says_which_it_is(stage: Stage) -> None:
+    page, _ = stage.open(scenes.two_faults())
+    card = page.locator(".card", has_text="Mira Okafor")
+    faults = card.get_by_label("Open alarms of this person").get_by_role("listitem")
+    expect(faults).to_have_text([f"Unit fault: {fault}" for fault in scenes.FAULTS])
+    for fault in scenes.FAULTS:
+        expect(strip(page)).to_contain_text(f"Mira Okafor's unit: {fault}")
+    assert flaws(page) == []
+
+
+def test_a_card_tells_what_befell_who_wore_the_unit_before(stage: Stage) -> None:
+    """Bo is well; nobody is to look for him because of what was never resolved."""
+    shown = scenes.bad_minute()
+    wears_now = msgspec.structs.replace(shown.units[1], person=scenes.person(7))
+    page, _ = stage.open(
+        msgspec.structs.replace(shown, units=(shown.units[0], wears_now, *shown.units[2:]))
+    )
+    alarms = page.locator(".card", has_text="Li Na").get_by_label("Open alarms of this person")
+    expect(alarms.get_by_role("listitem")).to_have_text(
+        ["Fall (who wore it before)", "No motion (who wore it before)"], use_inner_text=True
+    )
+
+
+def test_of_who_switched_off_it_says_how_long_they_were_inside(stage: Stage) -> None:
+    page, station = stage.open(scenes.switched_off())
+    card = page.locator(".card", has_text="Jonas Bergman")
+    expect(card).to_contain_text("Was inside4 min")
+    station.change(now_ms=scenes.NOW_MS + 20 * scenes.MINUTE_MS)
+    expect(card).to_contain_text("30 min ago")
+    expect(card).to_contain_text("Was inside4 min")
+
+
+def test_who_is_given_a_unit_is_told_to_wear_another(stage: Stage) -> None:
+    """Chosen by a slip, they would be looked for where that unit is."""
+    page, _ = stage.open(scenes.quiet())
+    worn_by = menu(page, "Units").get_by_label("Who wears FF-01")
+    worn_by.focus()
+    options = worn_by.get_by_role("option")
+    expect(options.filter(has_text="Jonas Bergman")).to_have_text(
+        "Jonas Bergman (Engine 2), wears FF-02"
+    )
+    expect(options.filter(has_text="Astrid Lindqvist")).to_have_text("Astrid Lindqvist (Engine 1)")
+
+
+def test_a_phone_shows_the_list_or_the_plan(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute(), "phone")
+    people, plan = page.get_by_role("region", name="People"), page.locator(".map")
+    expect(people).to_be_visible()
+    expect(plan).to_be_hidden()
+    strip(page).get_by_role("button", name="Jonas Bergman may have fallen", exact=True).click()
+    expect(plan).to_be_visible()
+    expect(people).to_be_hidden()
+    page.get_by_role("button", name="Menu").click()
+    page.get_by_role("navigation").get_by_role("button", name="Units").click()
+    expect(page.get_by_role("dialog")).to_be_visible()

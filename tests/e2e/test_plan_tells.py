@@ -1,0 +1,73 @@
+"""The plan: whom it names, which floor it shows, and what its tools take no more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import msgspec
+import pytest
+from playwright.sync_api import expect
+
+from base_station.views.wire import Snapshot
+from tests.e2e import scenes
+from tests.e2e.console_page import painted_at_edges
+from tests.e2e.stage import Stage
+
+
+@pytest.mark.parametrize("screen", ["laptop", "tablet", "phone"])
+@pytest.mark.parametrize("scene", [scenes.at_the_edges, scenes.pins_at_the_edges])
+def test_a_name_at_the_edge_of_the_plan_is_whole(
+    stage: Stage, scene: Callable[[], Snapshot], screen: str
+) -> None:
+    page, _ = stage.open(scene(), screen)
+    if screen == "phone":
+        page.get_by_role("button", name="Plan").first.click()
+    page.wait_for_timeout(1500)  # the plan has come to rest
+    edges = painted_at_edges(page, "--text")
+    assert edges == {"left": 0, "right": 0, "top": 0, "bottom": 0}
+
+
+def test_a_floor_says_how_many_of_those_on_it_are_in_danger(stage: Stage) -> None:
+    page, _ = stage.open(scenes.crowd())
+    floors = page.get_by_role("group", name="Floor shown").get_by_role("button")
+    expect(floors.nth(0)).to_have_accessible_name("Floor 1 , 1 in danger, of 20 people")
+    expect(floors.nth(1)).to_have_accessible_name("Floor G , 20 people")
+
+
+def test_what_is_looked_at_by_keys_stays_until_somebody_asks_for_all(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    scale = page.locator(".ol-scale-line-inner")
+    expect(scale).to_have_text("10 m")
+    page.get_by_role("application", name="Plan of the site").focus()
+    for _ in range(3):
+        page.keyboard.press("+")
+        page.wait_for_timeout(400)
+    close_up = scale.inner_text()
+    station.change(now_ms=scenes.NOW_MS + 1000)
+    page.wait_for_timeout(1500)
+    assert scale.inner_text() == close_up != "10 m"
+    page.get_by_role("button", name="Fit").click()
+    expect(scale).to_have_text("10 m")
+
+
+def test_what_can_no_more_be_done_on_the_plan_takes_no_clicks(stage: Stage) -> None:
+    page, station = stage.open(scenes.bad_minute())
+    page.get_by_role("button", name="Pins 2").click()
+    page.get_by_role("button", name="Astrid Lindqvist here").click()
+    expect(page.locator(".map.placing")).to_have_count(1)
+    station.change(pins=())  # somebody else has removed it
+    expect(page.get_by_role("form")).to_have_count(0)
+    expect(page.locator(".map.placing")).to_have_count(0)
+
+
+def test_a_pin_that_is_looked_at_stays_on_its_floor(stage: Stage) -> None:
+    """Whichever floor is shown, and where nobody is on its own."""
+    pins = tuple(
+        msgspec.structs.replace(scenes.pin(str(index), index, "used", 3.0, ""), floor=floor)
+        for index, floor in enumerate((None, 4))
+    )
+    page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), pins=pins))
+    for name, floor in (("Astrid Lindqvist", ""), ("Jonas Bergman", "4")):
+        page.get_by_role("button", name="Pins 2").click()
+        page.get_by_role("button", name=f"{name} here").click()
+        expect(page.get_by_role("combobox", name="Floor")).to_have_value(floor)

@@ -1,0 +1,95 @@
+"""A replay: nobody takes the past for the present, nor misses what is live beside it."""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+from playwright.sync_api import Locator, Page, expect
+
+from tests.e2e import scenes
+from tests.e2e.console_page import menu, strip
+from tests.e2e.looks import flaws
+from tests.e2e.stage import Stage
+
+
+def begin_replay(page: Page) -> Locator:
+    """Beside what is live."""
+    menu(page, "Incidents").get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
+    banner = page.get_by_role("region", name="Replay")
+    expect(banner).to_contain_text("This is the past")
+    return banner
+
+
+def test_on_a_phone_what_is_live_leaves_a_replay_its_name(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute(), "phone")
+    page.get_by_role("button", name="Menu").click()
+    banner = begin_replay(page)
+    expect(banner).to_contain_text("Live now: 4 open alarms")
+    what = banner.get_by_text("This is the past.")
+    expect(what).to_contain_text(scenes.INCIDENT.name)
+    box = what.bounding_box()
+    assert box is not None
+    assert box["height"] < 50, "two lines, and no column of words"
+
+
+def test_what_cannot_wait_is_said_over_a_replay_as_live_and_leads_there(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    banner = begin_replay(page)
+    dialog = menu(page, "Account")
+    expect(dialog).not_to_contain_text("Jonas Bergman may have fallen")  # that was then
+    mayday = scenes.alarm(0, "mayday", 1, "MAYDAY of Astrid Lindqvist", 2)
+    station.change(alarms=(mayday,), units=(scenes.with_alarms(scenes.unit(0), mayday),))
+    now = dialog.get_by_role("alert").get_by_role("button")
+    expect(now).to_have_text("Live now: MAYDAY of Astrid Lindqvist")
+    now.click()
+    expect(banner).to_have_count(0)
+    expect(page.locator(".card.chosen .name")).to_have_text("Astrid Lindqvist")
+    expect(page.locator(".card.chosen")).to_contain_text("Mayday")
+
+
+def test_a_station_that_replays_says_no_alarm_of_the_past_as_one_that_cannot_wait(
+    stage: Stage,
+) -> None:
+    page, _ = stage.open(scenes.past())
+    expect(strip(page)).to_contain_text("Jonas Bergman may have fallen")
+    expect(menu(page, "Account").get_by_role("button", name="may have fallen")).to_have_count(0)
+
+
+def test_a_replay_does_not_say_that_the_station_is_well(stage: Stage) -> None:
+    """What was measured of the machine is no part of the past; what is wrong now is said beside."""
+    health = msgspec.structs.replace(scenes.HEALTH, problems=("only 700 MB are free", "b"))
+    page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), health=health))
+    light = page.get_by_role("button", name="Station health")
+    expect(light).to_be_visible()
+    banner = begin_replay(page)
+    expect(light).to_have_count(0)
+    expect(banner).to_contain_text("Station: only 700 MB are free +1")
+    assert flaws(page) == []
+    banner.get_by_role("button", name="Back to live").click()
+    expect(light).to_be_visible()
+
+
+def test_the_past_is_gone_through_from_alarm_to_alarm(stage: Stage) -> None:
+    page, _ = stage.open(scenes.past())
+    bar = page.get_by_role("region", name="Replay")
+    with page.expect_request(re.compile("/replays/r1$")) as sent:
+        bar.get_by_role("button", name="Alarm before").click()
+    last_ms = max(alarm["raised_ms"] for alarm in scenes.PAST_ALARMS)
+    assert sent.value.post_data_json == {"at_ms": last_ms - 5000}
+    with page.expect_request(re.compile("/replays/r1$")) as sent:
+        bar.get_by_label("Go to an alarm").select_option(index=1)
+    first_ms = min(alarm["raised_ms"] for alarm in scenes.PAST_ALARMS)
+    assert sent.value.post_data_json == {"at_ms": first_ms - 5000}, "as they were raised"
+    expect(bar.get_by_role("button", name="Next alarm")).to_be_disabled()
+    expect(page.get_by_role("button", name="Evacuate")).to_have_count(0)
+
+
+def test_a_jump_in_the_past_begins_the_list_anew(stage: Stage) -> None:
+    """Live, whoever gets better keeps the place for a while."""
+    page, station = stage.open(scenes.past())
+    expect(page.locator(".card").first).to_contain_text("Jonas Bergman")
+    well = tuple(scenes.unit(index) for index in range(5))
+    station.change(units=well, alarms=(), now_ms=scenes.NOW_MS - 20 * scenes.MINUTE_MS)
+    jonas = page.locator(".card", has_text="Jonas Bergman")
+    expect(jonas).to_have_class(re.compile("normal"), timeout=2000)

@@ -1,0 +1,46 @@
+"""The roll call: nobody who is in danger is ticked off without a word."""
+
+from __future__ import annotations
+
+import re
+
+from playwright.sync_api import expect
+
+from tests.e2e import scenes
+from tests.e2e.console_page import press
+from tests.e2e.looks import flaws
+from tests.e2e.stage import Stage
+
+
+def test_nobody_ticks_off_who_is_down_without_a_word(stage: Stage) -> None:
+    """One press for a crew or for all is for those who answered."""
+    page, station = stage.open(scenes.bad_minute())
+    page.locator(".par-clock").click()
+    dialog = page.get_by_role("dialog", name="Roll call (PAR)")
+    down = dialog.get_by_role("listitem").filter(has_text="Jonas Bergman")
+    expect(down).to_contain_text("Fall, No motion")
+    assert flaws(page) == []
+    dialog.get_by_role("button", name="All heard", exact=True).click()
+    expect(
+        dialog.get_by_role("group", name="Has everybody answered, Jonas Bergman too?")
+    ).to_be_visible()
+    station.expect_changes()
+
+
+def test_a_crew_with_somebody_down_is_ticked_off_on_a_second_word(stage: Stage) -> None:
+    shown = scenes.bad_minute(7)  # two of each crew
+    page, station = stage.open(shown)
+    page.locator(".par-clock").click()
+    crews = page.get_by_role("dialog").get_by_role("region")
+    calm = crews.filter(has_text="Engine 1").get_by_role("button", name="all heard")
+    press(calm)
+    station.expect_changes("/check-ins")
+    confirm_crew = crews.filter(has_text="Jonas Bergman")
+    ticks = crews.get_by_text(re.compile("all heard", re.IGNORECASE))  # beside that for everybody
+    assert {"Engine 1: all heard", "Engine 2: all heard"} <= set(ticks.all_inner_texts())
+    confirm_crew.get_by_role("button", name="Engine 2: all heard").click()
+    expect(confirm_crew).to_contain_text("Have all answered, Jonas Bergman too?")
+    station.expect_changes("/check-ins")
+    page.wait_for_timeout(600)
+    confirm_crew.get_by_role("button", name="Yes, all heard").click()
+    station.expect_changes("/check-ins", "/check-ins")

@@ -1,0 +1,76 @@
+"""The site: a place or a plan that is there is replaced only by who has said so."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from playwright.sync_api import expect
+
+from base_station.views.wire import AnchorView
+from tests.e2e import scenes
+from tests.e2e.console_page import confirm, menu
+from tests.e2e.looks import flaws
+from tests.e2e.stage import Stage
+
+
+def test_the_place_of_a_plan_that_has_one_is_replaced_on_a_second_word(stage: Stage) -> None:
+    """Whoever satellites have placed moves by it: it says by how far, and of another place anew."""
+    anchor = AnchorView(57.7, 11.97, 0.0, 0.0)
+    page, station = stage.open(msgspec.structs.replace(scenes.quiet(), anchor=anchor))
+    site = menu(page, "Site")
+    expect(site).to_contain_text("origin lies at 57.70000°, 11.97000°")
+    latitude, asks = site.get_by_label("Latitude"), site.get_by_role("button", name="Set place")
+    latitude.fill("57.701")
+    latitude.press("Enter")
+    question = site.get_by_role("group", name="Replace the place for everybody?")
+    expect(question).to_contain_text("whoever satellites have placed moves by 111 m")
+    expect(question.get_by_role("button", name="No")).to_be_focused()
+    assert flaws(page) == []
+    page.keyboard.press("Enter")
+    expect(question).to_have_count(0)
+    expect(asks).to_be_focused()
+    asks.click()
+    latitude.fill("57.702")
+    expect(question).to_have_count(0)
+    station.expect_changes()
+    asks.click()
+    expect(question).to_contain_text("moves by 223 m")
+    page.wait_for_timeout(600)
+    question.get_by_role("button", name="Yes, replace place").click()
+    expect(site).to_have_count(0)
+    station.expect_changes("/site/anchor")
+
+
+def test_a_place_is_set_at_once_where_the_plan_has_none(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    site = menu(page, "Site")
+    expect(site).to_contain_text("Nobody has said where the plan lies")
+    for name in ("Latitude", "Longitude"):
+        site.get_by_label(name).fill("11.5")
+    site.get_by_role("button", name="Set place").click()
+    expect(site).to_have_count(0)
+    station.expect_changes("/site/anchor")
+
+
+def test_a_plan_is_replaced_by_who_has_said_so(stage: Stage, tmp_path: Path) -> None:
+    page, station = stage.open(scenes.bad_minute())
+    site = menu(page, "Site")
+    file = site.get_by_label("New plan")
+    (tmp_path / "notes.json").write_text("notes")
+    file.set_input_files(tmp_path / "notes.json")
+    notice = site.get_by_role("alert").filter(has_text="This file is no GeoJSON")
+    notice.get_by_role("button", name="OK").click()
+    (tmp_path / "yard.json").write_text(
+        '{"type": "FeatureCollection", "features": [],'
+        ' "muster": {"frame": "site-m", "name": "Yard", "floors": [{"floor": 0, "down_m": 0}]}}'
+    )
+    file.set_input_files(tmp_path / "yard.json")
+    expect(site).to_contain_text("The file has Yard: 1 floor, 0 rooms")
+    site.get_by_role("button", name="Replace plan").click()
+    site.get_by_role("button", name="No").click()
+    station.expect_changes()
+    assert flaws(page) == []
+    confirm(site, "Replace plan")
+    expect(site).to_have_count(0)
+    station.expect_changes("/site/plan")

@@ -1,0 +1,66 @@
+"""What is heard of alarms, and when the browser keeps it silent."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.e2e import scenes
+from tests.e2e.stage import Stage
+
+
+def test_alarms_are_heard_unless_switched_off(stage: Stage) -> None:
+    page, station = stage.open(scenes.quiet())
+    page.evaluate(
+        """() => {
+          window.tones = 0;
+          const silent = { frequency: {}, connect() {}, start() {}, stop() {} };
+          window.AudioContext = class {
+            state = "running";
+            constructor() { window.tones += 1; }
+            createOscillator() { return { ...silent }; }
+            close() {}
+          };
+        }"""
+    )
+    expect(page.get_by_role("button", name="No sound yet")).to_be_visible()
+    page.keyboard.press("Shift")
+    fall = scenes.bad_minute().alarms[0]
+    station.change(alarms=(fall,))
+    page.wait_for_function("window.tones === 1")
+    page.get_by_role("button", name="Sound on").click()
+    expect(page.get_by_role("button", name="Sound off")).to_be_visible()
+    station.change(alarms=(scenes.bad_minute().alarms[1],))
+    page.wait_for_timeout(700)
+    assert page.evaluate("window.tones") == 1
+
+
+@pytest.mark.parametrize("key", [None, "Enter", "Space"])
+def test_the_button_that_says_no_sound_yet_switches_it_on(stage: Stage, key: str | None) -> None:
+    """It is the first press on the page, which alone lets the browser play."""
+    page, _ = stage.open(scenes.quiet())
+    button = page.get_by_role("button", name="No sound yet")
+    if key is None:
+        button.click()
+    else:
+        button.press(key)
+    expect(page.get_by_role("button", name="Sound on")).to_be_visible()
+    page.get_by_role("button", name="Sound on").click()
+    expect(page.get_by_role("button", name="Sound off")).to_be_visible()
+
+
+def test_sound_that_the_browser_keeps_silent_is_not_said_to_be_on(stage: Stage) -> None:
+    page, _ = stage.open(scenes.quiet())
+    page.evaluate(
+        """() => {
+          const silent = { frequency: {}, connect() {}, start() {}, stop() {} };
+          window.AudioContext = class {
+            state = "suspended";
+            createOscillator() { return { ...silent }; }
+            close() {}
+          };
+        }"""
+    )
+    page.get_by_role("button", name="No sound yet").click()
+    expect(page.get_by_role("button", name="Sound on")).to_be_visible()
+    expect(page.get_by_role("button", name="No sound yet")).to_be_visible()
