@@ -24,9 +24,10 @@ from base_station.db.models import (
 from base_station.forgetting.erasure import FOREVER_NS, PLACE_ACTIONS, Erasure, Wearing
 from base_station.forgetting.redaction import is_the_programs, name_pattern, what_is_left
 from base_station.live_state import FORGOTTEN
-from shared.messages.station import DoneApart, ResolveAlarm
+from shared.messages.station import Assign, DoneApart, ResolveAlarm
 
-_APART, _RESOLVED = DoneApart.__name__, ResolveAlarm.__name__
+_APART, _RESOLVED, _ASSIGNED = (one.__name__ for one in (DoneApart, ResolveAlarm, Assign))
+_NOBODY = {"person_name": FORGOTTEN, "crew": "", "role": ""}
 
 
 def forget_in(session: Session, erasure: Erasure) -> None:
@@ -39,9 +40,8 @@ def forget_in(session: Session, erasure: Erasure) -> None:
     _alarms(session, erasure)
     _audit(session, erasure)
     if erasure.person_id:
-        nobody = {"person_name": FORGOTTEN, "crew": "", "role": ""}
         of_person = Assignment.person_id == erasure.person_id
-        session.execute(update(Assignment).where(of_person).values(nobody))
+        session.execute(update(Assignment).where(of_person).values(_NOBODY))
         session.execute(delete(Person).where(Person.person_id == erasure.person_id))
     else:
         _cut_out(session, erasure)
@@ -102,6 +102,8 @@ def _audit(session: Session, erasure: Erasure) -> None:
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
         entry.detail = _without_names(entry.detail, names)
+        if entry.action == _ASSIGNED:
+            entry.detail = _nobodys(entry.detail, erasure)
         about = units.search(entry.detail) if entry.action in PLACE_ACTIONS else None
         if about is not None:
             entry.detail = FORGOTTEN
@@ -139,6 +141,17 @@ def _renamed(value: Any, names: re.Pattern[str]) -> Any:
             }
         case _:
             return value
+
+
+def _nobodys(detail: str, erasure: Erasure) -> str:
+    """Of who was given a unit: in a small station crew and role are as good as a name."""
+    try:
+        worn = msgspec.json.decode(detail, type=Assign)
+    except msgspec.DecodeError:  # nothing is left of it
+        return detail
+    if erasure.person_id not in ("", worn.person_id):
+        return detail
+    return msgspec.json.encode(msgspec.structs.replace(worn, **_NOBODY)).decode()
 
 
 def _is_about(entry: AuditEntry, erasure: Erasure) -> bool:

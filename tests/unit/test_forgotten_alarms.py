@@ -115,17 +115,20 @@ def test_the_audit_says_nothing_of_where_somebody_was_by_what_was_done_apart(
     }
 
 
-OF_JO = Assign("FF-01", "p", 'Jo "Mac" Neil', "E 1", "")
+OF_JO = Assign("FF-01", "p", 'Jo "Mac" Neil', "E 1", "Nozzle")
 OF_MAX = Assign("Max", "p", "Max", "E 1", "")
+OF_EVE = Assign("FF-02", "p-eve", "Eve", "E 1", "Nozzle")
+NOBODY = {"person_name": FORGOTTEN, "crew": "", "role": ""}
 
 
 @pytest.mark.parametrize(
     ("name", "done", "left"),
     [
-        ('Jo "Mac" Neil', OF_JO, replace(OF_JO, person_name=FORGOTTEN)),
+        ('Jo "Mac" Neil', OF_JO, replace(OF_JO, **NOBODY)),
         ("Neil\\Jo", ResolveAlarm("a", "met neil\\jo"), ResolveAlarm("a", f"met {FORGOTTEN}")),
         ("Note", ResolveAlarm("a", "Note is well"), ResolveAlarm("a", f"{FORGOTTEN} is well")),
-        ("Max", OF_MAX, replace(OF_MAX, person_name=FORGOTTEN)),
+        ("Max", OF_MAX, replace(OF_MAX, **NOBODY)),
+        ("Max", OF_EVE, OF_EVE),
     ],
 )
 def test_a_name_goes_out_of_the_audit_however_it_is_written_there_and_nothing_else(
@@ -143,3 +146,23 @@ def test_a_name_goes_out_of_the_audit_however_it_is_written_there_and_nothing_el
         with store.read() as session:
             said = session.query(AuditEntry).one().detail
     assert msgspec.json.decode(said, type=type(left)) == left
+
+
+def test_of_an_incident_the_audit_keeps_no_crew_and_role_of_who_was_given_a_unit(
+    tmp_path: Path,
+) -> None:
+    ana = Erasure((), ("Ana",), incident_id="i1", from_ns=15, until_ns=25)
+    worn = Assign("FF-01", "p-ana", "Ana", "E 1", "Nozzle")
+    detail = msgspec.json.encode(worn).decode()
+    with Store(tmp_path / "station.sqlite") as store:
+        with store.write() as session:
+            session.add_all(
+                AuditEntry(entry_id=str(t), t_ns=t, by="eve", action="Assign", detail=detail)
+                for t in (10, 20, 30)
+            )
+        with store.write() as session:
+            forget_in(session, ana)
+        with store.read() as session:
+            said = {one.t_ns: one.detail for one in session.query(AuditEntry)}
+    gone = msgspec.json.encode(replace(worn, **NOBODY)).decode()
+    assert said == {10: detail, 20: gone, 30: detail}
