@@ -171,6 +171,29 @@ def test_renew_and_revoke(data: Path, tmp_path: Path) -> None:
     assert "revoked" in run("show", "--data", data)
 
 
+def test_who_is_enrolled_is_shown_whole_however_narrow_the_window(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A name or a date that is cut is none: a revoked unit's row is the longest."""
+    monkeypatch.setenv("COLUMNS", "60")
+    name = "engine-12-spare-unit"
+    for number in ("1", "2"):
+        run("enroll", name, "--data", data, "--out", tmp_path / number)
+        if number == "1":
+            run("revoke", name, "--data", data)
+    shown = run("show", "--data", data)
+    assert "…" not in shown
+    revoked, valid = (
+        one for one in PkiFolder(data).registry().entries if one.holder is Holder.UNIT
+    )
+    (row,) = (line for line in shown.splitlines() if revoked.serial[:8] in line)
+    assert name in row
+    assert f"{revoked.valid_to:%Y-%m-%d}" in row
+    assert f"revoked {revoked.revoked:%Y-%m-%d}" in row
+    (row,) = (line for line in shown.splitlines() if valid.serial[:8] in line)
+    assert f"{valid.valid_to:%Y-%m-%d}" in row
+
+
 def test_an_operator_is_told_apart(data: Path, tmp_path: Path) -> None:
     said = run("enroll", "chief", "--operator", "--data", data, "--out", tmp_path / "1")
     assert "operator chief" in said
