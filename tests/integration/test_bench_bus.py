@@ -32,10 +32,10 @@ def test_a_shown_position_is_that_of_the_nearest_sensor_time() -> None:
 
 def test_many_consoles_and_slow_ones_cost_nobody_a_message() -> None:
     with Progress(disable=True) as progress:
-        report = measure(Load(3, 7.0, 3.0, consoles=1, onlookers=30, slow=4), progress)
+        report = measure(Load(3, 7.0, 3.0, consoles=1, onlookers=200, slow=5), progress)
     assert (report.lost, report.stepped) == (0, report.sent)
     assert report.console_gaps == 0
-    assert (report.onlookers.onlookers, report.slow.onlookers) == (30, 4)
+    assert (report.onlookers.onlookers, report.slow.onlookers) == (200, 5)
     assert report.onlookers.cut_off == 0
-    assert report.onlookers.snapshots == 30  # nobody who reads was set back to a new one
+    assert report.onlookers.snapshots == 200  # nobody who reads was set back to a new one
     assert report.onlookers.least_messages > report.slow.least_messages
