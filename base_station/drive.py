@@ -83,6 +83,7 @@ class StationDrive:
         self._inbox: deque[tuple[str, Action, str, Future[ActionDone]]] = deque()
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._stopping = threading.Event()
+        self._unlinked: frozenset[str] = frozenset()  # as was told last
         self._thread = threading.Thread(target=self._run, name="station-drive")
         now_ns = ports.clock.monotonic_ns()
         self._due = _Due(now_ns, now_ns, now_ns + CHECKPOINT_NS)
@@ -174,7 +175,9 @@ class StationDrive:
         if not follows:  # of half a log nobody can tell what an action does
             self._take_actions()
         now_ns = clock.monotonic_ns()
-        if now_ns >= due.tick_ns:
+        unlinked = self._ports.unlinked()
+        if now_ns >= due.tick_ns or unlinked - self._unlinked:  # whose link is gone is told at once
+            self._unlinked = unlinked
             due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)
             if not follows:  # else time passes by the other station's ticks
                 self._tick()
@@ -251,7 +254,8 @@ class StationDrive:
     def _tick(self) -> None:
         header = self._stamper.header()
         t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns, self._not_before_ns)
-        self._write_ahead.keep_and_step(t_ns, TICK.key(STATION_ID), encode(Tick(header, t_ns)))
+        tick = Tick(header, t_ns, tuple(sorted(self._unlinked & self._pipeline.state.units.keys())))
+        self._write_ahead.keep_and_step(t_ns, TICK.key(STATION_ID), encode(tick))
         self._report_problems()
         is_behind = self._ports.log.is_behind  # and what is reported perhaps in memory only
         if not (is_behind and self._ports.log.refuses):  # else what is fetched would be lost

@@ -111,7 +111,7 @@ class StationPipeline:
             if channel.direction is Direction.UP:
                 return self._hear(event, channel)
             if isinstance(message, Tick):
-                return self._tick()
+                return self._tick(message)
             if isinstance(message, OperatorAction):
                 return self._act(message)
             if isinstance(message, Command):
@@ -128,9 +128,10 @@ class StationPipeline:
             return []
         assert_never(event)
 
-    def _tick(self) -> list[Output]:
+    def _tick(self, tick: Tick) -> list[Output]:
         outputs: list[Output] = []
         for unit in self.state.units.values():
+            unit.is_unlinked = unit.unit_id in tick.unlinked
             link = unit.link_at(self.state.t_ns)
             if link != unit.link or link in {"stale", "lost"}:  # an old position looks older
                 unit.link = link

@@ -15,6 +15,7 @@ from base_station.feed import LiveFeed, LogFeed
 from base_station.fusion import FUSERS
 from base_station.journals.backfill import Report
 from base_station.live.drive_ports import DrivePorts, Feed, Log
+from base_station.live.linked_units import LinkedUnits
 from base_station.live.sinks import ActionDone, Projection, Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import Archive
@@ -76,6 +77,7 @@ def ports_of(feed: Feed, log: Log, screen: Screen, folder: Path, clock: Clock) -
         photo_urls=lambda _: None,
         facts=StationFacts,
         report=lambda *_: None,
+        unlinked=frozenset,
         say=lambda _: None,
         clock=clock,
         boot_id=1,
@@ -97,6 +99,7 @@ class LiveStation:
         self.router = MemoryRouter()
         self.bus = self.router.attach_station()
         self._subscription = self.bus.subscribe("muster/v1/**", self.feed.offer)
+        self._links = LinkedUnits(self.bus)
         stamper = Stamper(STATION_ID, clock.utc_ns(), clock)
         self.downlink = Downlink(self.bus, stamper, clock)
         saved = self.archive().latest()
@@ -112,6 +115,7 @@ class LiveStation:
                 photo_urls=lambda person_id: f"/photos/{person_id}",
                 facts=StationFacts,
                 report=self._note_report,
+                unlinked=lambda: self._links.unlinked,
                 say=self.downlink.report,
                 clock=clock,
                 boot_id=clock.utc_ns(),
@@ -138,6 +142,7 @@ class LiveStation:
 
     def close(self) -> None:
         self._subscription.close()
+        self._links.close()
         self.recorder.close()
 
     def act(self, action: Action, by: str = "chief", action_id: str = "") -> ActionDone:

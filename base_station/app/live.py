@@ -36,6 +36,7 @@ from base_station.journals.backfill import Backfill, Report
 from base_station.journals.on_disk import ReportsOnDisk
 from base_station.live.drive_ports import DrivePorts
 from base_station.live.fair_share import FairShare
+from base_station.live.linked_units import LinkedUnits
 from base_station.live.recovering import Watch, recovering
 from base_station.live.sinks import ActionDone
 from base_station.live_state import StationState
@@ -125,6 +126,8 @@ class _LiveStation:
         self._side = self._new_side()
         self._share = FairShare(self._side.feed.offer, steady)
         hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
+        self._links = LinkedUnits(bus)
+        closing.callback(self._links.close)
         clock_server = ClockServer(steady, self._leads)
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
         self._reports = ReportsOnDisk(resources.recorder)
@@ -200,6 +203,7 @@ class _LiveStation:
             clock=self._disk.clock,
             boot_id=secrets.randbits(63),
             report=self._report,
+            unlinked=lambda: self._links.unlinked,
             say=lambda orders: self._downlink.report(orders if self._side.leads else ()),
         )
 

@@ -34,6 +34,7 @@ class Sender(msgspec.Struct):
     stopped_ns: int | None = None  # said goodbye in an orderly way
     duplicates: int = 0
     starts_ns: list[int] = msgspec.field(default_factory=list)  # of the last runs that came live
+    is_unlinked: bool = False  # its link is gone, and nothing was heard since
 
     def link_at(self, t_ns: int) -> Link:
         if self.heard_ns is None:
@@ -41,7 +42,7 @@ class Sender(msgspec.Struct):
         silent_s = (t_ns - self.heard_ns) / NS_PER_S
         if silent_s >= LOST_AFTER_S:
             return "lost"
-        return "stale" if silent_s >= STALE_AFTER_S else "live"
+        return "stale" if self.is_unlinked or silent_s >= STALE_AFTER_S else "live"
 
     def accept(self, channel: Channel, header: Header, t_ns: int) -> News:
         """Note that a message came, and say what it is worth."""
@@ -49,7 +50,7 @@ class Sender(msgspec.Struct):
         if not boot.seen.add(header.seq):
             self.duplicates += 1
             return "repeat"
-        self.heard_ns = t_ns
+        self.heard_ns, self.is_unlinked = t_ns, False
         if channel is not GPS:  # a receiver may be wrong about when its fix was valid
             running, is_first = self.boots[-1], not boot.is_placed  # its journal came before it
             if boot.note(t_ns, header) and boot is not running:

@@ -24,13 +24,16 @@ class Tick(msgspec.Struct, frozen=True):
 
     header: Header
     t_ns: int  # station time
+    unlinked: tuple[str, ...] = ()  # units whose link was there and is gone
 
     def to_wire(self) -> station_pb2.Tick:
-        return station_pb2.Tick(header=self.header.to_wire(), t_ns=self.t_ns)
+        return station_pb2.Tick(
+            header=self.header.to_wire(), t_ns=self.t_ns, unlinked=self.unlinked
+        )
 
     @staticmethod
     def from_wire(wire: station_pb2.Tick) -> Tick:
-        return Tick(header=Header.from_wire(wire.header), t_ns=wire.t_ns)
+        return Tick(Header.from_wire(wire.header), wire.t_ns, tuple(wire.unlinked))
 
 
 class AcknowledgeAlarm(msgspec.Struct, frozen=True):

@@ -157,3 +157,12 @@ def test_two_runs_that_were_there_together_for_five_seconds_are_two_machines(
             header = said(6 + round(10 * second), 100.0 + second, boot_id=boot_id)
             sender.accept(STATUS, header, NOW_NS + round(second * NS_PER_S))
         assert (sender.twin is not None) == is_twin
+
+
+def test_who_has_lost_the_link_is_stale_at_once_until_heard_again(sender: Sender) -> None:
+    assert sender.link_at(NOW_NS + NS_PER_S) == "live"
+    sender.is_unlinked = True
+    assert sender.link_at(NOW_NS + NS_PER_S) == "stale"
+    assert sender.link_at(NOW_NS + 30 * NS_PER_S) == "lost"
+    sender.accept(STATUS, said(6, 101.0), NOW_NS + 2 * NS_PER_S)
+    assert sender.link_at(NOW_NS + 3 * NS_PER_S) == "live"

@@ -75,6 +75,7 @@ class CompressedStation:
                 photo_urls=lambda _: None,
                 facts=StationFacts,
                 report=lambda *_: None,
+                unlinked=frozenset,
                 say=lambda _: None,
                 clock=clock,
                 boot_id=clock.utc_ns(),
