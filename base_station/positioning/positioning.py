@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 
+from base_station.fusion.fixes.screening import FURTHEST_M
 from base_station.fusion.fixes.sky import Sky
 from base_station.fusion.learnt.building import LearntBuilding
 from base_station.fusion.path.history import PathHistory
@@ -25,7 +26,7 @@ from base_station.pins.pinning import numbered_again
 from base_station.positioning.anchor_correction import move_fixes, place_again
 from base_station.positioning.clocks import station_ns
 from base_station.positioning.fixes import place_fix, without_sky
-from base_station.positioning.frame import reframe
+from base_station.positioning.frame import moved_to, reframe
 from base_station.positioning.fused_message import fused_message
 from base_station.positioning.inside import is_outside, note_inside
 from base_station.positioning.lost_contact import LostContact
@@ -210,18 +211,18 @@ class Positioning:
 
     def set_anchor(self, state: StationState, anchor: Anchor) -> None:
         """Say where the incident frame lies.  What was placed by hand stays where it is on the
-        plan; what the first satellite fix had placed moves with the new anchor.
+        plan; what the first satellite fix had placed moves with the new anchor, unless that fix was
+        of nowhere near.
         """
         old = state.anchor
         if old is not None and old != anchor:
-            shift = anchor.to_incident_m(old.lat_deg, old.lon_deg, old.height_m)
-            turn_rad = old.rotation_rad - anchor.rotation_rad
-            if state.anchor_by_gps:
+            move = moved_to(anchor, old)
+            if state.anchor_by_gps and math.hypot(move.north_m, move.east_m) <= FURTHEST_M:
                 for fuser in (*self._fusers.values(), *self._pinned.all()):
-                    fuser.reframe(turn_rad, *shift)
-                reframe(state, turn_rad, shift)
+                    fuser.reframe(move.turn_rad, move.north_m, move.east_m, move.down_m)
+                reframe(state, move)
             else:
-                move_fixes(state, turn_rad, *shift[:2])
+                move_fixes(state, move.turn_rad, move.north_m, move.east_m)
         state.anchor, state.anchor_by_gps, state.sky = anchor, False, Sky()
         self.consider(state.laid_plan)
 

@@ -7,6 +7,7 @@ from bisect import bisect_left
 import msgspec
 import numpy as np
 
+from base_station.fusion.fixes.screening import FURTHEST_M
 from base_station.fusion.path.frame_shift import FrameShift
 from base_station.fusion.path.packed_rows import CHUNK, Packed, Records
 from base_station.fusion.path.points import FIX_ROW, fix_row
@@ -57,8 +58,12 @@ class PathFixes(msgspec.Struct, array_like=True):
         )
 
     def rows(self, frame: FrameShift) -> Records:
-        """By time, none close to another: what came late may lie beside packed ones."""
+        """By time, none close to another: what came late may lie beside packed ones.  Of those that
+        an anchor puts where nobody can be, none; another anchor may put them right.
+        """
         rows = np.concatenate((frame.of(self.packed.rows(FIX_ROW), *_SEEN), self._loose()))
+        off_m = np.hypot(*(rows[axis] / 100.0 for axis in _SEEN))
+        rows = rows[off_m <= FURTHEST_M]
         rows = rows[np.argsort(rows["t_ms"], kind="stable")]
         kept, last_ms = [], -APART_MS
         for row, t_ms in enumerate(rows["t_ms"].tolist()):
