@@ -1,15 +1,24 @@
-"""A real station and a real unit over a bad radio link: nothing is lost and nothing comes twice."""
+"""A real station and a real unit over a bad radio link: nothing is lost and nothing comes twice,
+and a link that is gone is told, as is one that is back.
+"""
 
 from __future__ import annotations
+
+from contextlib import ExitStack
 
 import pytest
 
 from base_station.bench.faults.command import suffer
-from base_station.bench.faults.site import Site
+from base_station.bench.faults.site import UNIT, Site
 from base_station.bench.faults.troubles import FAULTS, BadLink
+from base_station.bench.rig.console import Console
 from base_station.bench.rig.journal import MessageOfUnit
+from base_station.bench.rig.lossy_link import CLEAN, DARK
+from tests.waiting import until
 
 PATIENCE_S = 90.0
+TOLD_S = 3.0  # that the link is gone, by the lease, and that the unit is heard again
+BUSY_S = 2.0  # that a busy machine may take besides; silence alone tells after ten seconds
 # The others are for `muster bench faults`.
 SHORT = [fault for fault in FAULTS if isinstance(fault, BadLink) and not fault.is_long]
 
@@ -33,3 +42,20 @@ def assert_alerts_come_first(running: Site, before: set[MessageOfUnit]) -> None:
     assert len(fetched) > 20
     alerts = [number for number, one in enumerate(fetched) if one.alert]
     assert not alerts or alerts[0] < len(fetched) / 10
+
+
+def test_a_console_shows_within_seconds_that_nothing_comes_any_more_and_that_it_comes_again(
+    troubled: Site,
+) -> None:
+    """Nobody says goodbye: packets just end."""
+    with ExitStack() as closing:
+        console = troubled.link.station.call(lambda: Console(troubled.station.api, closing))
+        wait_shown(console, "live", PATIENCE_S)
+        troubled.link.set(DARK)
+        wait_shown(console, "stale", TOLD_S + BUSY_S)
+        troubled.link.set(CLEAN)
+        wait_shown(console, "live", TOLD_S + BUSY_S)
+
+
+def wait_shown(console: Console, link: str, patience_s: float) -> None:
+    until(lambda: console.links.get(UNIT) == link, f"{UNIT} is shown as {link}", patience_s)

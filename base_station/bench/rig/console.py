@@ -23,6 +23,7 @@ class _PositionSeen(msgspec.Struct):
 
 class _UnitSeen(msgspec.Struct):
     unit_id: str
+    link: str = ""
     position: _PositionSeen | None = None
 
 
@@ -78,6 +79,7 @@ class Console:
     def __init__(self, api: Api, closing: ExitStack) -> None:
         """Closed by ``closing``, or before by ``close``."""
         self.shown: dict[str, dict[int, int]] = {}  # unit -> t_ms of a position -> first seen, ns
+        self.links: dict[str, str] = {}  # as shown last
         self.messages_stepped = 0
         self.problems: tuple[str, ...] = ()
         self.bytes_received = 0
@@ -126,6 +128,7 @@ class Console:
             self.gaps += 1
         self._seq = message.seq
         for unit in message.units:
+            self.links[unit.unit_id] = unit.link
             if unit.position is not None:
                 self.shown.setdefault(unit.unit_id, {}).setdefault(unit.position.t_ms, seen_ns)
         if message.health is not None:
