@@ -21,6 +21,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from base_station.api.networks import network_of
 from base_station.program import interpreter
 from base_station.program.recurring_trouble import RecurringTrouble
+from base_station.program.said_seldom import SaidSeldom
+from shared.clock import SystemClock
 from shared.errors import ConfigError
 
 _GRACE_S = 5
@@ -34,6 +36,7 @@ _GO_ON_WITHIN_S = 60.0  # with a body, for a radio that loses much
 
 
 _log = logging.getLogger(__name__)
+_SERVER_LOG = logging.getLogger("uvicorn.error")  # all that it says of requests
 
 
 class _Server(uvicorn.Server):
@@ -169,12 +172,15 @@ class ConsoleServer:
                 f"used: {error}"
             ) from error
         self._server = _Server(config)
+        self._seldom = SaidSeldom(SystemClock())
 
     async def serve(self) -> None:
         """Until ``stop``."""
+        _SERVER_LOG.addFilter(self._seldom)
         try:
             await self._server.serve(sockets=[self._socket])
         finally:
+            _SERVER_LOG.removeFilter(self._seldom)
             self._socket.close()
 
     async def wait_started(self) -> None:

@@ -20,7 +20,8 @@ class Troubled(Protocol):
 def facts_of(
     resources: Resources, clock: SteadyClock, side: Side, others: Sequence[Troubled]
 ) -> StationFacts:
-    parts: tuple[Troubled, ...] = (clock, resources.expiry, resources.renewal, side, *others)
+    certificates = resources.expiry, resources.console_expiry, resources.renewal
+    parts: tuple[Troubled, ...] = (clock, *certificates, side, *others)
     problems = [
         *resources.config.standing_problems(),
         *(problem for part in parts for problem in part.problems()),

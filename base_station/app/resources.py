@@ -12,7 +12,7 @@ from base_station.app.disk import Disk, open_disk
 from base_station.app.parts import Announce
 from base_station.config import StationConfig, host_and_port
 from base_station.feed import LiveFeed
-from base_station.pki.expiry import ExpiryWatch
+from base_station.pki.expiry import ConsoleExpiry, ExpiryWatch
 from base_station.pki.folder import PkiFolder
 from base_station.pki.renewal import Renewal
 from base_station.recordings.desk import RecordingDesk
@@ -42,6 +42,7 @@ class Resources:
     bus: Bus
     pki: PkiFolder
     expiry: ExpiryWatch
+    console_expiry: ConsoleExpiry
     renewal: Renewal
     recordings: RecordingDesk
 
@@ -78,6 +79,7 @@ def open_station(config: StationConfig, announce: Announce, closing: ExitStack) 
         bus=bus,
         pki=pki,
         expiry=ExpiryWatch(pki, clock),
+        console_expiry=ConsoleExpiry(config.http.certificate, pki, clock),
         renewal=Renewal(pki, joining.tls, clock),
         recordings=recordings,
     )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 
 from base_station.pki.folder import STATION_NAME, PkiFolder
 from base_station.pki.registry import Entry, Registry
 from shared.clock import NS_PER_S, Clock
 from shared.enrolment import Holder
 from shared.errors import ConfigError
+from shared.tls import parse_certificate
 
 EXPIRY_WARNING = timedelta(days=30)
 _READ_AGAIN_NS = 60 * NS_PER_S
@@ -34,7 +37,7 @@ class ExpiryWatch:
     def _read(self) -> tuple[str, ...]:
         if not self._pki.path.exists():
             return ()
-        now = datetime.fromtimestamp(self._clock.utc_ns() / NS_PER_S, UTC)
+        now = _now(self._clock)
         try:
             registry = self._pki.registry()
         except ConfigError as error:
@@ -42,6 +45,30 @@ class ExpiryWatch:
         here = self._pki.own_common_name()
         ending = about_to_expire(registry, now, EXPIRY_WARNING, here)
         return (*not_yet_valid(registry, now), *ending)
+
+
+class ConsoleExpiry:
+    """Of a certificate that another authority made for the console: no registry knows its end.
+    What is served is what was in the file when the station began.
+    """
+
+    def __init__(self, certificate: Path | None, pki: PkiFolder, clock: Clock) -> None:
+        """One that cannot be read is nobody's concern here: no console is served with it."""
+        self._clock = clock
+        self._file = certificate
+        self._ends: datetime | None = None
+        if certificate is not None:
+            with suppress(OSError, ConfigError):
+                served = parse_certificate(certificate.read_bytes(), "console's certificate")
+                is_own = pki.exists() and pki.registry().knows(served)
+                self._ends = None if is_own else served.not_valid_after_utc
+
+    def problems(self) -> tuple[str, ...]:
+        now = _now(self._clock)
+        if self._ends is None or self._ends > now + EXPIRY_WARNING:
+            return ()
+        command = f"put another one into {self._file}, with its key, and start the station again"
+        return (_ending("the console", self._ends, now, command),)
 
 
 def not_yet_valid(registry: Registry, now: datetime) -> tuple[str, ...]:
@@ -84,8 +111,16 @@ def _expiry_sentence(entry: Entry, now: datetime, here: str | None) -> str:
         who, command = f"{entry.name}'s tracking agent", f"muster pki renew --tracker {entry.name}"
     else:
         who, command = f"unit {entry.name}", f"muster pki renew {entry.name}"
-    if entry.valid_to <= now:
-        return f"The certificate of {who} expired on {entry.valid_to:%Y-%m-%d}: {command}"
-    days = (entry.valid_to - now).days
+    return _ending(who, entry.valid_to, now, command)
+
+
+def _ending(who: str, ends: datetime, now: datetime, command: str) -> str:
+    if ends <= now:
+        return f"The certificate of {who} expired on {ends:%Y-%m-%d}: {command}"
+    days = (ends - now).days
     left = "in less than a day" if days < 1 else f"in {days} day{'s' if days > 1 else ''}"
     return f"The certificate of {who} expires {left}: {command}"
+
+
+def _now(clock: Clock) -> datetime:
+    return datetime.fromtimestamp(clock.utc_ns() / NS_PER_S, UTC)

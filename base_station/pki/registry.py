@@ -33,7 +33,7 @@ class Entry(msgspec.Struct, frozen=True):
             holder,
             name,
             common_name,
-            f"{certificate.serial_number:x}",
+            _serial(certificate),
             certificate.not_valid_before_utc,
             certificate.not_valid_after_utc,
         )
@@ -56,6 +56,11 @@ class Registry(msgspec.Struct, frozen=True):
             if (entry.holder, entry.name, entry.revoked) == (holder, name, None):
                 return entry
         return None
+
+    def knows(self, certificate: Certificate) -> bool:
+        """Whether it was issued here, at whatever time."""
+        serial = _serial(certificate)
+        return any(serial in (entry.serial, *entry.earlier) for entry in self.entries)
 
     def with_entry(self, entry: Entry) -> Registry:
         """Add ``entry``, or put it in the place of the one with its common name."""
@@ -103,6 +108,10 @@ class Registry(msgspec.Struct, frozen=True):
                 plain = name
         before = sum((e.holder, e.name) == (holder, name) for e in self.entries)
         return plain if before == 0 else f"{plain}#{before + 1}"
+
+
+def _serial(certificate: Certificate) -> str:
+    return f"{certificate.serial_number:x}"
 
 
 def _behind(entry: Entry, *others: Entry) -> Entry:

@@ -22,3 +22,27 @@ async def test_stopped_as_it_begins_it_ends_in_order(after_s: float | None) -> N
     async with asyncio.timeout(20.0):
         await serve_until_stopped(server, said.append)
     assert said in ([], [f"ready {server.address}"])
+
+
+async def test_nonsense_is_refused_and_does_not_fill_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    server = ConsoleServer(Starlette(), bind("127.0.0.1", 0))
+    host, port = server.address.removeprefix("http://").split(":")
+    serving = asyncio.create_task(server.serve())
+    nonsense = b"\x00 nonsense\r\n\r\n"
+    async with asyncio.timeout(20.0):
+        await server.wait_started()
+        answers = [await _answer_to(nonsense, host, int(port)) for _ in range(20)]
+        server.stop()
+        await serving
+    assert all(one.startswith(b"HTTP/1.1 400 ") for one in answers)
+    assert [one.getMessage() for one in caplog.records] == ["Invalid HTTP request received."]
+
+
+async def _answer_to(asked: bytes, host: str, port: int) -> bytes:
+    reader, writer = await asyncio.open_connection(host, port)
+    writer.write(asked)
+    answer = await reader.read()
+    writer.close()
+    return answer

@@ -15,7 +15,12 @@ from cryptography import x509
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from base_station.pki.certificates import make_authority
-from base_station.pki.expiry import ExpiryWatch, about_to_expire, not_yet_valid
+from base_station.pki.expiry import (
+    ConsoleExpiry,
+    ExpiryWatch,
+    about_to_expire,
+    not_yet_valid,
+)
 from base_station.pki.folder import CERTIFICATE_VALID, PkiFolder
 from base_station.pki.renewal import Renewal
 from base_station.storage.private_files import locked
@@ -416,6 +421,29 @@ def test_the_station_reads_what_expires_now_and_then(pki: PkiFolder, tmp_path: P
     clock.advance(61.0)
     assert "damaged" in watch.problems()[0]
     assert ExpiryWatch(PkiFolder(tmp_path / "plain"), clock).problems() == ()
+
+
+def test_the_end_of_another_authority_s_certificate_for_the_console_is_said(
+    pki: PkiFolder, tmp_path: Path
+) -> None:
+    clock = ManualClock(utc_ns=int(datetime(2027, 2, 20, tzinfo=UTC).timestamp()) * NS_PER_S)
+    served = tmp_path / "console.pem"
+    served.write_bytes((pki.path / "station.pem").read_bytes())
+    assert ConsoleExpiry(served, pki, clock).problems() == ()  # the registry tells of this one
+    elsewhere = PkiFolder(tmp_path / "plain")
+    (said,) = ConsoleExpiry(served, elsewhere, clock).problems()
+    assert said.startswith("The certificate of the console expires in 9 days: put another one into")
+    assert str(served) in said
+    clock.advance(-30 * 86_400.0)
+    assert ConsoleExpiry(served, elsewhere, clock).problems() == ()
+    clock.advance(60 * 86_400.0)
+    assert (
+        "of the console expired on 2027-03-"
+        in ConsoleExpiry(served, elsewhere, clock).problems()[0]
+    )
+    assert ConsoleExpiry(None, elsewhere, clock).problems() == ()
+    served.write_bytes(b"rubbish")
+    assert ConsoleExpiry(served, elsewhere, clock).problems() == ()
 
 
 def test_a_renewed_certificate_is_taken_up_when_nobody_is_in_action_or_the_old_one_ends(
