@@ -10,6 +10,7 @@ from pathlib import Path
 from base_station.app.parts import past_pipeline, project_whole_log
 from base_station.assessment.wearers import wearers
 from base_station.db.accounts import Accounts
+from base_station.db.forgetting import ids_of
 from base_station.db.models import Incident
 from base_station.db.records import Records
 from base_station.db.roster import Roster
@@ -97,7 +98,8 @@ def forget(
             )
             incident = records.incident(what)
             if incident is None:
-                kind, subject_id, about = "person", _person_called(what, roster), f"person {what}"
+                kind, about = "person", f"person {what}"
+                subject_id = _person_called(what, roster, store)
             else:
                 kind, subject_id, about = "incident", what, f"incident {incident.name!r} of {what}"
             _require_nobody_in_action(records)
@@ -109,11 +111,14 @@ def forget(
         lock.close()
 
 
-def _person_called(what: str, roster: Roster) -> str:
-    """The id; UserError where that is not one person, or the person wears a unit."""
-    named = [one.person_id for one in roster.people() if what in (one.name, one.person_id)]
+def _person_called(what: str, roster: Roster, store: Store) -> str:
+    """The id, whether or not the person is on the roster still; UserError where that is not one
+    person, or the person wears a unit.
+    """
+    with store.read() as session:
+        named = sorted(ids_of(session, what))
     if len(named) > 1:
-        raise UserError(f"{len(named)} people are called {what}: give one of {named}")
+        raise UserError(f"{len(named)} people are or were called {what}: give one of {named}")
     person_id = named[0] if named else what
     if worn := roster.worn_by(person_id):
         raise UserError(f"{what} wears {', '.join(worn)}; unassign that first")

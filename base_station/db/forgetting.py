@@ -27,6 +27,7 @@ from base_station.live_state import FORGOTTEN
 from shared.messages.station import Assign, DoneApart, ResolveAlarm
 
 _APART, _RESOLVED, _ASSIGNED = (one.__name__ for one in (DoneApart, ResolveAlarm, Assign))
+_NAMED = AuditEntry.action.in_(("AddedPerson", "ChangedPerson"))  # "ID NAME" is their detail
 _NOBODY = {"person_name": FORGOTTEN, "crew": "", "role": ""}
 
 
@@ -64,11 +65,20 @@ def known_names(session: Session, person_id: str) -> set[str]:
     names |= set(
         session.scalars(select(Assignment.person_name).where(Assignment.person_id == person_id))
     )
-    about = AuditEntry.action.in_(("AddedPerson", "ChangedPerson"))
     mine = AuditEntry.detail.startswith(f"{person_id} ", autoescape=True)
-    details = session.scalars(select(AuditEntry.detail).where(about, mine))
+    details = session.scalars(select(AuditEntry.detail).where(_NAMED, mine))
     names |= {detail.removeprefix(f"{person_id} ") for detail in details}
     return names - {FORGOTTEN, ""}
+
+
+def ids_of(session: Session, name: str) -> set[str]:
+    """Who is called so, or was, whether or not they are on the roster still."""
+    ids = set(session.scalars(select(Person.person_id).where(Person.name == name)))
+    worn = Assignment.person_name == name
+    ids |= set(session.scalars(select(Assignment.person_id).where(worn)))
+    theirs = AuditEntry.detail.endswith(f" {name}", autoescape=True)
+    details = session.scalars(select(AuditEntry.detail).where(_NAMED, theirs))
+    return ids | {one.partition(" ")[0] for one in details if one.partition(" ")[2] == name}
 
 
 def _within(

@@ -207,6 +207,23 @@ def test_who_wears_a_unit_is_refused(story: Story) -> None:
         forget(story, ANA)
 
 
+def test_who_was_removed_is_forgotten_by_the_name(story: Story) -> None:
+    with Store(story.folder / "station.sqlite") as store:
+        assert Roster(store, SystemClock()).remove_person("p-77")
+    forget(story, ANA)
+    assert names_in(story.stored(), ANA) == []
+
+
+def test_a_name_that_two_people_have_had_is_refused(story: Story) -> None:
+    with Store(story.folder / "station.sqlite") as store:
+        roster, records = Roster(store, SystemClock()), Records(store, SystemClock())
+        other = roster.add_person(ANA, "", "")
+        records.audit("chief", "AddedPerson", f"{other.person_id} {ANA}")
+        assert roster.remove_person(other.person_id)
+    with pytest.raises(UserError, match=rf"2 people are or were called .*{other.person_id}"):
+        forget(story, ANA)
+
+
 @pytest.mark.parametrize("what", ["p-77", "i1"])
 def test_what_a_command_left_half_done_the_station_goes_on_with(
     story: Story, monkeypatch: pytest.MonkeyPatch, what: str
