@@ -33,6 +33,7 @@ logger = logging.getLogger(__name__)
 
 _SETTLE_S = 0.05
 _BATCH = 1000  # events
+_MOST_LETTERS = 2000  # a note has 500
 
 
 class PartServer(Answers):
@@ -170,10 +171,11 @@ def _persons_action(payload: bytes) -> OperatorAction | None:
 
 
 def _in_words(done: OperatorAction) -> str:
-    """What was given with it, and short."""
+    """What was given with it: a note whole, of a drawing its beginning."""
     action = done.action
     words = (_in_word(name, getattr(action, name)) for name in action.__struct_fields__)
-    return f"{type(action).__name__} {', '.join(filter(None, words))}"[:300]
+    said = f"{type(action).__name__} {', '.join(filter(None, words))}"
+    return said if len(said) <= _MOST_LETTERS else f"{said[:_MOST_LETTERS]}…"
 
 
 def _in_word(name: str, value: object) -> str:

@@ -25,7 +25,14 @@ from shared.codec import encode
 from shared.errors import StoreError
 from shared.messages import STATION_ID, CommandKind, Header, OperatorAction, Tick
 from shared.messages.pins import StartTogether
-from shared.messages.station import Action, CloseIncident, DoneApart, ReportProblem, SendCommand
+from shared.messages.station import (
+    Action,
+    CloseIncident,
+    DoneApart,
+    ReportProblem,
+    ResolveAlarm,
+    SendCommand,
+)
 from tests.waiting import until
 
 T0 = 1_700_000_000_000_000_000
@@ -147,6 +154,7 @@ def test_what_a_person_did_is_written_down_and_not_done(leading: Leading) -> Non
             SendCommand("c1", CommandKind.TEXT, "", "red", False, "come out", 0.0, 60.0),
             "SendCommand c1, text, red, not everyone, come out, 0.0, 60.0",
         ),
+        (ResolveAlarm("a1", "n" * 500), f"ResolveAlarm a1, {'n' * 500}"),
     ],
 )
 def test_what_a_person_did_is_told_in_words(tmp_path: Path, action: Action, what: str) -> None:
