@@ -154,7 +154,7 @@ def test_what_a_person_did_is_written_down_and_not_done(leading: Leading) -> Non
             SendCommand("c1", CommandKind.TEXT, "", "red", False, "come out", 0.0, 60.0),
             "SendCommand c1, text, red, not everyone, come out, 0.0, 60.0",
         ),
-        (ResolveAlarm("a1", "n" * 500), f"ResolveAlarm a1, {'n' * 500}"),
+        (ResolveAlarm("a1", "n" * 500), f"ResolveAlarm a1, {'n' * 500}, 0"),
     ],
 )
 def test_what_a_person_did_is_told_in_words(tmp_path: Path, action: Action, what: str) -> None:
