@@ -41,6 +41,7 @@ from shared.messages import STATION_ID, OperatorAction, Tick
 from shared.messages.station import Action, ForgetWearers, ReportProblem, SendCommand
 
 TICK_NS = NS_PER_S
+SOONER_TICK_NS = TICK_NS // 4  # at most, where links come and go all the time
 DELTA_NS = NS_PER_S // 10  # twice as often as units say where they are
 URGENT_SOONER_NS = DELTA_NS // 2  # alarms and commands wait for half of that
 DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
@@ -62,6 +63,7 @@ class _Due:
     """Monotonic times at which something is to be done next."""
 
     tick_ns: int
+    sooner_tick_ns: int  # where there is something to tell
     delta_ns: int
     checkpoint_ns: int
 
@@ -86,7 +88,7 @@ class StationDrive:
         self._unlinked: frozenset[str] = frozenset()  # as was told last
         self._thread = threading.Thread(target=self._run, name="station-drive")
         now_ns = ports.clock.monotonic_ns()
-        self._due = _Due(now_ns, now_ns, now_ns + CHECKPOINT_NS)
+        self._due = _Due(now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
         # What waited while somebody acted is news to that person, and so it is later by the log.
@@ -175,13 +177,7 @@ class StationDrive:
         if not follows:  # of half a log nobody can tell what an action does
             self._take_actions()
         now_ns = clock.monotonic_ns()
-        unlinked = self._ports.unlinked()
-        if now_ns >= due.tick_ns or unlinked - self._unlinked:  # whose link is gone is told at once
-            self._unlinked = unlinked
-            due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)
-            if not follows:  # else time passes by the other station's ticks
-                self._tick()
-            self._look_around()
+        self._let_time_pass(now_ns, follows=follows)
         if now_ns >= due.checkpoint_ns and not self._saving.is_under_way:
             self._save_checkpoint()
             spent_ns = clock.monotonic_ns() - now_ns
@@ -198,6 +194,20 @@ class StationDrive:
             whole = self._picture.whole()  # where it cannot be made, who asked goes on waiting
             self._asked.popleft()(*whole)
         return bool(records)
+
+    def _let_time_pass(self, now_ns: int, *, follows: bool) -> None:
+        """Once a second, and sooner to tell whose link is gone."""
+        due, unlinked = self._due, self._ports.unlinked()
+        is_due = now_ns >= due.tick_ns
+        if is_due:
+            due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)
+        if is_due or (unlinked - self._unlinked and now_ns >= due.sooner_tick_ns):
+            self._unlinked = unlinked
+            due.sooner_tick_ns = now_ns + SOONER_TICK_NS
+            if not follows:  # else time passes by the other station's ticks
+                self._tick()
+        if is_due:
+            self._look_around()
 
     def _hear(self, t_ns: int, key: str, payload: bytes) -> None:
         """A record from the bus."""
@@ -305,7 +315,8 @@ class StationDrive:
             self._do(STATION_ID, report)
 
     def _held(self) -> Report:
-        state = self._pipeline.state
+        """Of units whose token is there, and of those that are heard."""
+        state, linked = self._pipeline.state, self._ports.linked()
         return {
             sender.unit_id: tuple(
                 Held(boot.boot_id, tuple(boot.seen.runs())) for boot in sender.boots
@@ -313,7 +324,8 @@ class StationDrive:
             for unit in state.units.values()
             if unit.registered
             for sender in (unit, unit.tracker)
-            if sender is not None and sender.link_at(state.t_ns) == "live"
+            if sender is not None
+            if sender.unit_id in linked or sender.link_at(state.t_ns) == "live"
         }
 
     def _finish(self) -> None:

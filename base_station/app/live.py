@@ -203,6 +203,7 @@ class _LiveStation:
             clock=self._disk.clock,
             boot_id=secrets.randbits(63),
             report=self._report,
+            linked=lambda: self._links.linked,
             unlinked=lambda: self._links.unlinked,
             say=lambda orders: self._downlink.report(orders if self._side.leads else ()),
         )

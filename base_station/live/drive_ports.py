@@ -80,7 +80,8 @@ class DrivePorts:
     facts: Callable[[], StationFacts]  # asked once a second; messages a second are filled in
     # Hears once a second what is there of each linked unit, and whether it may not be on the disk.
     report: Callable[[Report, bool], None]
-    unlinked: Callable[[], frozenset[str]]  # units whose link was there and is gone
+    linked: Callable[[], frozenset[str]]  # units whose link is there
+    unlinked: Callable[[], frozenset[str]]  # whose link was there and is gone
     say: Callable[[Sequence[Order]], None]  # hears what no unit has answered
     clock: Clock
     boot_id: int

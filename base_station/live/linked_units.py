@@ -1,4 +1,4 @@
-"""Whose link was there and is gone, by liveliness tokens: sooner than silence tells it."""
+"""Whose link is there and whose is gone, by liveliness tokens: sooner than silence tells it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,17 @@ class LinkedUnits:
     """From its making until it is closed; any thread asks."""
 
     def __init__(self, bus: Bus) -> None:
+        self._linked: frozenset[str] = frozenset()
         self._unlinked: frozenset[str] = frozenset()
         self._watch = bus.watch_alive(alive_key("*"), self._note)
 
     @property
+    def linked(self) -> frozenset[str]:
+        return self._linked
+
+    @property
     def unlinked(self) -> frozenset[str]:
+        """Were there before."""
         return self._unlinked
 
     def close(self) -> None:
@@ -25,4 +31,6 @@ class LinkedUnits:
     def _note(self, key: str, there: bool) -> None:
         """Called by one thread of the bus."""
         unit_ids = {key.removeprefix(_BEFORE).removesuffix(_BEHIND)}
-        self._unlinked = self._unlinked - unit_ids if there else self._unlinked | unit_ids
+        linked, unlinked = self._linked, self._unlinked
+        self._linked = linked | unit_ids if there else linked - unit_ids
+        self._unlinked = unlinked - unit_ids if there else unlinked | unit_ids

@@ -11,9 +11,9 @@ import pytest
 from base_station.drive import MANY_STEPPED, REBUILT_NS, StationDrive
 from base_station.past.playback import compare
 from base_station.storage.recorder import Recorder
-from shared.channels import EVENT, FUSED, OPERATOR, TICK, Qos, alive_key, backfilled_key
+from shared.channels import EVENT, FUSED, OPERATOR, Qos, backfilled_key
 from shared.clock import NS_PER_S, ManualClock
-from shared.codec import decode, encode
+from shared.codec import encode
 from shared.errors import StoreError
 from shared.mcap_log import LogRecord, read_log
 from shared.messages import (
@@ -34,7 +34,6 @@ from shared.messages.station import (
     RegisterUnit,
     ResolveAlarm,
     SetPlan,
-    Tick,
 )
 from tests.live_station import LiveStation, Screen, make_pipeline, ports_of
 from tests.station_script import Script
@@ -66,30 +65,6 @@ def test_a_message_becomes_a_log_record_a_row_and_a_card(
         keys = [key for _, key, _ in station.log.records()]
     assert "muster/v1/FF-01/up/position" in keys
     assert FUSED.key(STATION_ID) in keys
-
-
-def test_a_link_that_is_gone_is_shown_and_logged_long_before_silence_tells_it(
-    tmp_path: Path, make_position: MakePosition
-) -> None:
-    """Its clock stands: it is not silence that is told."""
-
-    def link() -> str:
-        (unit,) = station.snapshot().units
-        return unit.link
-
-    with LiveStation(tmp_path) as station:
-        station.act(RegisterUnit(U, "one"))
-        station.say(make_position())
-        token = station.router.attach_unit().declare_alive(alive_key(U))
-        station.router.pump()
-        until(lambda: link() == "live")
-        token.close()
-        station.router.pump()
-        until(lambda: link() == "stale")
-        told = [decode(TICK, said) for _, key, said in station.log.records() if "tick" in key]
-        assert [tick.unlinked for tick in told if isinstance(tick, Tick)][-1] == (U,)
-        station.say(make_position(header=Header(U, 7, 9, 2 * NS_PER_S)))
-        until(lambda: link() == "live")
 
 
 def test_who_asked_for_a_picture_that_could_not_be_made_gets_the_next(

@@ -75,6 +75,7 @@ class CompressedStation:
                 photo_urls=lambda _: None,
                 facts=StationFacts,
                 report=lambda *_: None,
+                linked=frozenset,
                 unlinked=frozenset,
                 say=lambda _: None,
                 clock=clock,

@@ -1,0 +1,103 @@
+"""What the live drive makes of links that come and go, by the tokens that units hold."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from shared.bus import Subscription
+from shared.channels import TICK, alive_key
+from shared.clock import NS_PER_S
+from shared.codec import decode
+from shared.messages import STATION_ID, Header, Position
+from shared.messages.station import RegisterUnit, Tick
+from tests.live_station import LiveStation
+from tests.waiting import until
+
+MakePosition = Callable[..., Position]
+U = "FF-01"
+
+
+def link_up(station: LiveStation, unit_id: str = U) -> Subscription:
+    return station.router.attach_unit().declare_alive(alive_key(unit_id))
+
+
+def ticks(station: LiveStation) -> list[Tick]:
+    key = TICK.key(STATION_ID)
+    told = [decode(TICK, said) for _, its, said in station.log.records() if its == key]
+    return [tick for tick in told if isinstance(tick, Tick)]
+
+
+def unlinked(station: LiveStation) -> tuple[str, ...]:
+    """As told last."""
+    return next((tick.unlinked for tick in reversed(ticks(station))), ())
+
+
+def shown_link(station: LiveStation) -> str:
+    return next(unit.link for unit in station.snapshot().units if unit.unit_id == U)
+
+
+def test_a_link_that_is_gone_is_shown_and_logged_long_before_silence_tells_it(
+    tmp_path: Path, make_position: MakePosition
+) -> None:
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        station.say(make_position())
+        token = link_up(station)
+        until(lambda: shown_link(station) == "live")
+        token.close()
+        until(lambda: shown_link(station) == "stale")
+        assert unlinked(station) == (U,)
+        station.say(make_position(header=Header(U, 7, 9, 2 * NS_PER_S)))
+        until(lambda: shown_link(station) == "live")
+
+
+def test_links_that_go_one_after_the_other_do_not_stop_the_time_of_the_station(
+    tmp_path: Path,
+) -> None:
+    """Each is told by a tick that comes early; the next one comes when it would have come."""
+    with LiveStation(tmp_path) as station:
+        for number in range(8):
+            station.act(RegisterUnit(f"FF-{number}", "one"))
+            link_up(station, f"FF-{number}").close()
+            until(lambda: len(unlinked(station)) > number)  # noqa: B023  # called in this turn
+        before = len(ticks(station))
+        until(lambda: len(ticks(station)) > before, "time goes on", 3.0)
+
+
+def test_links_that_come_and_go_all_the_time_make_few_ticks(
+    tmp_path: Path, make_position: MakePosition
+) -> None:
+    """Each is stepped and written, and costs what a second of all units does."""
+    seconds = 2.0
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(U, "one"))
+        end_s, seq = time.monotonic() + seconds, 0
+        while time.monotonic() < end_s:
+            seq += 1
+            link_up(station, f"FF-{seq}").close()
+            station.say(make_position(header=Header(U, 7, seq, seq)))  # the drive has a turn
+            time.sleep(0.01)
+        station.recorder.flush()
+        assert len(ticks(station)) < seconds * 8
+
+
+def test_a_unit_that_holds_its_link_and_says_nothing_is_asked_for_its_journal(
+    tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Over a link that live data does not get through, say: it is not waited for."""
+    monkeypatch.setattr("base_station.units.sender.STALE_AFTER_S", 0.1)
+    with LiveStation(tmp_path) as station:
+        for unit_id in (U, "FF-02", "FF-03"):
+            station.act(RegisterUnit(unit_id, unit_id))
+        station.say(make_position())
+        token, unheard = link_up(station), link_up(station, "FF-02")
+        until(lambda: station.reported.keys() == {U, "FF-02"})
+        assert shown_link(station) == "stale"
+        assert [held.boot_id for held in station.reported[U]] == [make_position().header.boot_id]
+        token.close()
+        until(lambda: station.reported.keys() == {"FF-02"})
+        unheard.close()
