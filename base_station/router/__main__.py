@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import sys
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from threading import Event, Thread
 
@@ -31,9 +31,9 @@ def run_router(data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ())
     try:
         router = Router(data, listen, links)
     except MusterError as error:
-        print(f"{FAILED}{error}", flush=True)
+        _tell_parent(f"{FAILED}{error}")
         return 2
-    print(READY, flush=True)
+    _tell_parent(READY)
     with closing(router):
         try:
             while not stop.wait(_LOOK_EVERY_S):
@@ -42,6 +42,13 @@ def run_router(data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ())
             logger.error("%s", error)
             return 2
     return 0
+
+
+def _tell_parent(line: str) -> None:
+    """One that was killed meanwhile is told nothing, and has ended the input too."""
+    with suppress(BrokenPipeError):
+        # Not print: what it could not say it would try to say again as the program ends.
+        os.write(sys.stdout.fileno(), f"{line}\n".encode())
 
 
 def _stop_at_end_of_input(stop: Event) -> None:

@@ -22,7 +22,7 @@ from shared.bus_zenoh import ClientEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import POSITION, Qos
 from shared.enrolment import Enrolment
 from shared.errors import BusError, ConfigError
-from tests.waiting import until
+from tests.waiting import PATIENCE_S, until
 
 KEY = POSITION.key("anna")
 
@@ -112,6 +112,27 @@ def test_it_ends_when_its_parent_is_killed(
         assert psutil.pid_exists(router_pid)
         parent.kill()
         until(lambda: not psutil.pid_exists(router_pid), "the router's end")
+
+
+@pytest.mark.parametrize("endpoint", ["tcp/127.0.0.1:{port}", "tcp/no such host:{port}"])
+def test_it_ends_without_a_word_where_its_parent_was_killed_before_it_was_open(
+    tmp_path: Path, endpoint: str
+) -> None:
+    said = tmp_path / "said.txt"
+    reading, writing = os.pipe()
+    command = [sys.executable, "-m", "base_station.router", str(tmp_path)]
+    with said.open("wb") as errors:
+        router = subprocess.Popen(
+            [*command, endpoint.format(port=free_port())],
+            stdin=subprocess.DEVNULL,
+            stdout=writing,
+            stderr=errors,
+        )
+    os.close(reading)
+    os.close(writing)
+    router.wait(PATIENCE_S)
+    assert "Traceback" not in said.read_text()
+    assert "Broken" not in said.read_text()
 
 
 def test_what_keeps_it_from_opening_is_said(tmp_path: Path, listen: tuple[str, ...]) -> None:
