@@ -17,7 +17,7 @@ from base_station.pins.book import BEFORE_NS
 from base_station.pins.pin import Beacon, Pin
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import FloorSaid
-from base_station.site.storeys import storey_of
+from base_station.site.storeys import FLOOR_STD_M, storey_of
 from shared.clock import NS_PER_S
 
 NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
@@ -110,6 +110,7 @@ def place_of(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen |
         east_m=at.east_m,
         std_m=max(math.hypot(pin.std_m, beacon.std_m if beacon is not None else 0.0), SUREST_M),
         down_m=None if storey is None else storey.down_m,
+        down_std_m=math.hypot(FLOOR_STD_M, 0.0 if storey is None else storey.std_m),
         heading_rad=pin.heading_rad,
         heading_std_rad=pin.heading_std_rad,
     )
@@ -142,4 +143,6 @@ def evidence_of_one(
     history = state.paths[unit_id]
     stays = unit_id == state.barometers.reference_id
     start = history.start if stays else history.start_in_path
-    return UnitEvidence(history.arrays(), start, history.start_ns, places, grid)
+    return UnitEvidence(
+        history.arrays(), start, history.start_ns, places, grid, history.height_assumed
+    )

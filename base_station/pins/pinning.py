@@ -106,7 +106,8 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
         results[unit_id] = Repinned(None, [])
         if solution is not None and history is not None:
             for pin_id, verdict in solution.verdicts.items():
-                verdicts.setdefault(pin_id, {})[unit_id] = _judged(state, verdict)
+                judged = _judged(state, pin_id, verdict)
+                verdicts.setdefault(pin_id, {})[unit_id] = judged
             if any(verdict.used for verdict in solution.verdicts.values()):
                 path = solution.paths[unit_id]
                 trail = trail_of(state, history.arrays(), path.places_m)
@@ -231,16 +232,37 @@ def _await(history: PathHistory, pins: Sequence[Pin]) -> None:
     history.awaited_ns = min(times, default=None)
 
 
-def _judged(state: StationState, verdict: Verdict) -> PinVerdict:
+def _judged(state: StationState, pin_id: str, verdict: Verdict) -> PinVerdict:
     if verdict.used:
         return PinVerdict("used", verdict.residual_m, verdict.sigmas)
     other = state.pins.get(verdict.against)
-    if other is None:
-        against = "the path walked and the satellite fixes"
-    else:
-        against = f"the pin {other.note or other.pin_id!r} and the path walked"
-    text = (
-        f"{verdict.residual_m:.0f} m from where {against} lead: {verdict.sigmas:.0f} times what is "
-        "to be expected; kept, and not used"
-    )
+    against = "the path walked and the satellite fixes"
+    if other is not None:
+        against = f"{_words_of(other, state.pins[pin_id])} and the path walked"
+    away, end = f"{verdict.residual_m:.0f} m from", "kept, and not used"
+    if verdict.above_m:
+        away = f"{verdict.residual_m:.0f} m {'above' if verdict.above_m > 0.0 else 'below'}"
+        end = "kept, and not used unless another pin says so too"
+    text = f"{away} where {against} lead: {verdict.sigmas:.0f} times what is to be expected; {end}"
     return PinVerdict("conflict", verdict.residual_m, verdict.sigmas, text)
+
+
+def _words_of(pin: Pin, of: Pin) -> str:
+    """A pin that another contradicts, as people know it: by its note, else by when it was; one of
+    where the path begins has no time.
+    """
+    if pin.kind == "meeting":
+        name = f"the meeting with {pin.unit_id if pin.unit_id != of.unit_id else pin.other_id}"
+    elif pin.other_id:
+        name = f"{pin.kind} {pin.other_id}"
+    elif pin.note:
+        return f"the pin {pin.note!r}"
+    elif pin.t_ns == 0:
+        return "the pin at the start"
+    else:
+        name = "the pin"
+    if pin.t_ns == 0 or of.t_ns == 0:
+        return name
+    apart_s = round(abs(of.t_ns - pin.t_ns) / NS_PER_S)
+    apart = f"{apart_s} s" if apart_s < 60 else f"{round(apart_s / 60)} min"
+    return f"{name} of {apart} {'before' if pin.t_ns <= of.t_ns else 'after'}"

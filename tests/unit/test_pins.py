@@ -402,7 +402,11 @@ def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
     assert "FF-01" not in state.paths
 
 
-def test_a_pin_on_a_floor_brings_the_height(walk: Walk) -> None:
+def test_a_pin_on_a_floor_brings_the_height() -> None:
+    """Of somebody of whom it was only said roughly how high they began."""
+    walk = Walk("FF-01")
+    walk.script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 3.0, 0.05))
+    walk.go(300)
     walk.script.act(SetPlan(PLAN))
     north_m, east_m = truth(300.0)
     walk.script.act(SetPin("p", "FF-01", walk.script.t_ns, north_m, east_m, 1.0, 1, None, 0.0, ""))

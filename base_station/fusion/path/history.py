@@ -69,6 +69,7 @@ class PathHistory(msgspec.Struct):
     filled_ns: int = 0  # where the path had come to when a position came late last
     since_gps_s: float | None = None  # as last estimated without any pin
     floor: int | None = None
+    height_assumed: bool = False  # nothing has told how high the path begins
 
     @property
     def begin_ns(self) -> int | None:
@@ -152,12 +153,14 @@ class PathHistory(msgspec.Struct):
     def show(self, estimate: Estimate, floor: int | None) -> None:
         """What is estimated at the newest point without any pin."""
         self.since_gps_s, self.floor = estimate.since_gps_s, floor
+        self.height_assumed = estimate.height_assumed
         if self.points:
             _show(self.points[-1], estimate, floor)
 
     def begin_with(self, start: Start) -> None:
         """A person said where the own frame of the running boot begins."""
         self.start, self.start_ns, self.is_start_over = start, self.boot_begin_ns, False
+        self.height_assumed = False
 
     @property
     def start_in_path(self) -> Start | None:

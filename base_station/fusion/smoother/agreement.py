@@ -1,7 +1,8 @@
 """Which of several places can be true together: what contradicts is left out, not averaged.
 
 What is expected of all places without any of them is one normal distribution, so that every
-question about a subset is a small linear problem.
+question about a subset is a small linear problem.  It is asked of places on the plan, and again of
+how high they are.
 """
 
 from __future__ import annotations
@@ -14,21 +15,29 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-GATE2 = 16.0  # squared distance, chi-square of two degrees: 99.97 %
+GATE2 = 16.0  # squared distance, chi-square of two degrees: 99.97 %; of one: 99.99 %
 OTHER_BEGINNINGS = 10
 
 
 @dataclass(frozen=True)
 class Expected:
-    """Of ``n`` places, each north and east: what is expected, and what is seen."""
+    """Of ``n`` places, each along ``a`` axes: what is expected, and what is seen."""
 
-    mean_m: Floats  # (2 n,)
-    covariance_m2: Floats  # (2 n, 2 n)
-    seen_m: Floats  # (2 n,)
+    mean_m: Floats  # (a n,)
+    covariance_m2: Floats  # (a n, a n)
+    seen_m: Floats  # (a n,)
     noise_m2: Floats  # (n,)
 
     def __len__(self) -> int:
         return len(self.noise_m2)
+
+    @property
+    def axes(self) -> int:
+        return len(self.mean_m) // len(self)
+
+    def of(self, one: int) -> slice:
+        """The rows of a place."""
+        return slice(self.axes * one, self.axes * (one + 1))
 
 
 class Given:
@@ -40,7 +49,7 @@ class Given:
 
     def __init__(self, expected: Expected, used: Sequence[int] = ()) -> None:
         self._expected = expected
-        size = 2 * len(expected)
+        size = len(expected.mean_m)
         self._known = np.empty((size, size))  # by row what was taken, against all; whitened
         self._told = np.empty(size)  # its innovations, whitened
         self._rows = 0
@@ -48,13 +57,13 @@ class Given:
             self.take(one)
 
     def of(self, one: int) -> tuple[Floats, Floats]:
-        """Innovation (2,) of a place that is not taken, and its covariance (2, 2)."""
-        expected, pair = self._expected, _pair(one)
-        crossed = self._known[: self._rows, pair]
-        noise = expected.noise_m2[one] * np.eye(2)
-        innovation = expected.seen_m[pair] - expected.mean_m[pair]
+        """Innovation (a,) of a place that is not taken, and its covariance (a, a)."""
+        expected, its = self._expected, self._expected.of(one)
+        crossed = self._known[: self._rows, its]
+        noise = expected.noise_m2[one] * np.eye(expected.axes)
+        innovation = expected.seen_m[its] - expected.mean_m[its]
         innovation = innovation - crossed.T @ self._told[: self._rows]
-        return innovation, expected.covariance_m2[pair, pair] + noise - crossed.T @ crossed
+        return innovation, expected.covariance_m2[its, its] + noise - crossed.T @ crossed
 
     def distance2(self, one: int) -> float:
         innovation, covariance = self.of(one)
@@ -62,12 +71,13 @@ class Given:
 
     def take(self, one: int) -> None:
         innovation, covariance = self.of(one)
-        known, rows = self._known[: self._rows], slice(self._rows, self._rows + 2)
-        left = self._expected.covariance_m2[_pair(one)] - known[:, _pair(one)].T @ known
+        its, end = self._expected.of(one), self._rows + self._expected.axes
+        known, rows = self._known[: self._rows], slice(self._rows, end)
+        left = self._expected.covariance_m2[its] - known[:, its].T @ known
         root = np.linalg.cholesky(covariance)
         self._known[rows] = np.linalg.solve(root, left)
         self._told[rows] = np.linalg.solve(root, innovation)
-        self._rows += 2
+        self._rows = end
 
 
 def agreeing(expected: Expected) -> list[int]:
@@ -90,10 +100,10 @@ def most_against(expected: Expected, used: Sequence[int], of: int) -> int | None
     if alone.distance2(of) > GATE2 or not used:
         return None
     innovation, covariance = alone.of(of)
-    rows = 2 * np.asarray(used)[:, None] + [0, 1]  # (k, 2)
+    rows = expected.axes * np.asarray(used)[:, None] + np.arange(expected.axes)  # (k, a)
     spreads = expected.covariance_m2[rows[:, :, None], rows[:, None, :]]
-    spreads = spreads + expected.noise_m2[used][:, None, None] * np.eye(2)
-    crossed = expected.covariance_m2[rows, _pair(of)]  # (k, 2, 2)
+    spreads = spreads + expected.noise_m2[used][:, None, None] * np.eye(expected.axes)
+    crossed = expected.covariance_m2[rows, expected.of(of)]  # (k, a, a)
     gain = np.linalg.solve(spreads, crossed).transpose(0, 2, 1)
     off_m = (expected.seen_m - expected.mean_m)[rows]
     left_m = innovation - np.einsum("kij,kj->ki", gain, off_m)
@@ -109,7 +119,3 @@ def _taken(expected: Expected, order: Sequence[int]) -> list[int]:
             given.take(one)
             taken.append(one)
     return taken
-
-
-def _pair(one: int) -> slice:
-    return slice(2 * one, 2 * one + 2)

@@ -1,50 +1,155 @@
 """The height of one unit's trail: as it was estimated then, shifted by what places say of it.
 
-The shift wanders as fast as the estimate's own uncertainty grew; a tridiagonal problem.
+The shift wanders as paths err in height, and where the estimate itself was in doubt; a tridiagonal
+problem.  A storey that was recognised on the way does not hold it: it may have been the wrong one.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
 from base_station.fusion.path.points import PathArrays
-from base_station.fusion.smoother.port import PlaceSeen
+from base_station.fusion.smoother.agreement import GATE2, Expected, agreeing
+from base_station.fusion.smoother.port import PlaceSeen, UnitEvidence
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
-PLACE_DOWN_STD_M = 0.4  # of somebody on a floor that is known
-WANDER_M_PER_SQRT_S = 0.02
+WANDER_M_PER_SQRT_S = 0.01
+CLIMB_M_PER_SQRT_CLIMB_M = 0.12
+CLIMB_M_PER_SQRT_M = 0.01
+BELIEVED = 2  # so many, against the path
+DOUBT_M = 0.5  # less than that is stated anew at every storey: it is no doubt that comes to it
+ANY_FLOOR_M = 100.0  # standard deviation of where somebody was switched on: up a tower, perhaps
 
 
-def solve_heights(
-    path: PathArrays, places: Sequence[PlaceSeen]
-) -> tuple[Floats, Floats, tuple[float, float | None]]:
-    """Down and its standard deviation of every point, and the shift at the last one with its
-    standard deviation, None where no place says anything.
-    """
-    told = [place for place in places if place.down_m is not None]
-    std = np.maximum(path.down_std_m, 0.1)
-    if not told:
-        return path.down_m, std, (0.0, None)
-    rows = np.searchsorted(path.t_ns, [place.t_ns for place in told]).clip(0, len(path) - 1)
-    seconds = np.diff(path.t_ns) * 1e-9
-    grown = np.maximum(np.diff(std**2), 0.0) + WANDER_M_PER_SQRT_S**2 * seconds + 1e-6
-    diagonal, right = np.zeros(len(path)), np.zeros(len(path))
-    diagonal[0] += 1.0 / std[0] ** 2
-    diagonal[:-1] += 1.0 / grown
-    diagonal[1:] += 1.0 / grown
-    for row, place in zip(rows, told, strict=True):
+@dataclass(frozen=True)
+class Solved:
+    """A row a point."""
+
+    down_m: Floats
+    std_m: Floats
+    shift: tuple[float, float | None]  # at the last one, and its std; None: no place says anything
+
+
+@dataclass(frozen=True)
+class Heights:
+    """As they were estimated along a path, and by how much those err."""
+
+    path: PathArrays
+    assumed: bool  # nothing has told how high it began
+    begin_m2: float  # variance of the shift at the first point
+    grown_m2: Floats  # (n - 1,) of what comes to it until the next
+
+    @staticmethod
+    def of(evidence: UnitEvidence) -> Heights:
+        path = evidence.path
+        stated_m = _stated_m(path)
+        begin_m2 = ANY_FLOOR_M**2 if evidence.height_assumed else float(stated_m[0]) ** 2
+        walked_m = np.hypot(*np.diff(path.own_m, axis=0).T)
+        grown = np.maximum(np.diff(np.maximum(stated_m, DOUBT_M) ** 2), 0.0) + 1e-6
+        grown += CLIMB_M_PER_SQRT_CLIMB_M**2 * np.abs(np.diff(path.down_m))
+        grown += CLIMB_M_PER_SQRT_M**2 * walked_m
+        grown += WANDER_M_PER_SQRT_S**2 * np.diff(path.t_ns) * 1e-9
+        return Heights(path, evidence.height_assumed, begin_m2, grown)
+
+    def expected(self, places: Sequence[PlaceSeen]) -> Expected:
+        """Of places that tell a height, without any of them."""
+        rows = self._rows(places)
+        variances = self.begin_m2 + np.concatenate(([0.0], np.cumsum(self.grown_m2)))
+        return Expected(
+            mean_m=self.path.down_m[rows],
+            covariance_m2=variances[np.minimum.outer(rows, rows)],
+            seen_m=np.array([place.down_m for place in places]),
+            noise_m2=np.array([place.down_std_m for place in places]) ** 2,
+        )
+
+    def agreeing(self, places: Sequence[PlaceSeen]) -> list[int]:
+        """Which of these, all of which tell a height, can be true together.
+
+        Those to which the path leads as it was stated.  One wrong floor moves nobody; but a path
+        may have missed a flight of stairs, and that is believed once two say so and none between
+        them says otherwise.
+        """
+        if self.assumed:
+            return agreeing(self.expected(places))
+        as_stated = [row for row, one in enumerate(places) if self.off(one)[1] ** 2 <= GATE2]
+        others = [row for row in range(len(places)) if row not in as_stated]
+        if len(others) < BELIEVED:
+            return as_stated
+        missed = replace(self, begin_m2=ANY_FLOOR_M**2).expected([places[row] for row in others])
+        same = [others[row] for row in agreeing(missed)]
+        times = [places[row].t_ns for row in same]
+        is_denied = any(min(times) <= places[row].t_ns <= max(times) for row in as_stated)
+        return as_stated if len(same) < BELIEVED or is_denied else sorted(as_stated + same)
+
+    def off(self, place: PlaceSeen) -> tuple[float, float]:
+        """How far below the path as it was estimated a place is; the same in standard deviations
+        of what was stated then.
+        """
         assert place.down_m is not None
-        diagonal[row] += 1.0 / PLACE_DOWN_STD_M**2
-        right[row] += (place.down_m - path.down_m[row]) / PLACE_DOWN_STD_M**2
-    banded = np.vstack((np.concatenate(([0.0], -1.0 / grown)), diagonal))
-    shift = solveh_banded(banded[-len(path) :], right)  # a single point has nothing beside it
-    variance = _variances(diagonal, -1.0 / grown)
-    return path.down_m + shift, np.sqrt(variance), (float(shift[-1]), float(np.sqrt(variance[-1])))
+        (row,) = self._rows([place])
+        below_m = place.down_m - float(self.path.down_m[row])
+        stated_m = math.sqrt(self.begin_m2) if self.assumed else float(_stated_m(self.path)[row])
+        return below_m, abs(below_m) / math.hypot(stated_m, place.down_std_m)
+
+    def solve(self, places: Sequence[PlaceSeen]) -> Solved:
+        """By all places that tell one."""
+        path, told = self.path, telling(places)
+        if not told:
+            return Solved(path.down_m, _stated_m(path), (0.0, None))
+        begin_m2, grown_m2 = self._doubted(told)
+        diagonal, right = np.zeros(len(path)), np.zeros(len(path))
+        diagonal[0] += 1.0 / begin_m2
+        diagonal[:-1] += 1.0 / grown_m2
+        diagonal[1:] += 1.0 / grown_m2
+        for row, place in zip(self._rows(told), told, strict=True):
+            assert place.down_m is not None
+            diagonal[row] += 1.0 / place.down_std_m**2
+            right[row] += (place.down_m - path.down_m[row]) / place.down_std_m**2
+        banded = np.vstack((np.concatenate(([0.0], -1.0 / grown_m2)), diagonal))
+        shift = solveh_banded(banded[-len(path) :], right)  # a single point has nothing beside it
+        std = np.sqrt(_variances(diagonal, -1.0 / grown_m2))
+        return Solved(path.down_m + shift, std, (float(shift[-1]), float(std[-1])))
+
+    def _doubted(self, places: Sequence[PlaceSeen]) -> tuple[float, Floats]:
+        """By how much the beginning and each step may be wrong, where these places are believed:
+        between two that do not follow from each other something was missed.
+        """
+        begin_m2, grown_m2 = self.begin_m2, self.grown_m2.copy()
+        before, off_m, known_m2 = 0, 0.0, begin_m2
+        in_time = sorted(places, key=lambda place: place.t_ns)
+        for place, row in zip(in_time, self._rows(in_time).tolist(), strict=True):
+            below_m, _ = self.off(place)
+            var_m2 = place.down_std_m**2
+            since_m2 = float(grown_m2[before:row].sum())
+            missed_m2 = (below_m - off_m) ** 2
+            if missed_m2 > GATE2 * (known_m2 + since_m2 + var_m2):
+                if row > before:
+                    grown_m2[before:row] *= missed_m2 / since_m2
+                else:
+                    begin_m2 = max(begin_m2, missed_m2)
+            before, off_m, known_m2 = row, below_m, var_m2
+        return begin_m2, grown_m2
+
+    def _rows(self, places: Sequence[PlaceSeen]) -> Ints:
+        last = len(self.path) - 1
+        return np.searchsorted(self.path.t_ns, [place.t_ns for place in places]).clip(0, last)
+
+
+def telling(places: Sequence[PlaceSeen]) -> list[PlaceSeen]:
+    """Those that say how high it was."""
+    return [place for place in places if place.down_m is not None]
+
+
+def _stated_m(path: PathArrays) -> Floats:
+    return np.maximum(path.down_std_m, 0.1)
 
 
 def _variances(diagonal: Floats, beside: Floats) -> Floats:

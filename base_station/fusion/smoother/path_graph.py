@@ -7,7 +7,7 @@ then are live estimates and walls heeded, which may have held somebody in the wr
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from base_station.fusion.smoother.agreement import (
 )
 from base_station.fusion.smoother.chain import WALKED, Chain, WalkNoise
 from base_station.fusion.smoother.graph import Graph
+from base_station.fusion.smoother.heights import Heights, telling
 from base_station.fusion.smoother.landmarks import Landmark
 from base_station.fusion.smoother.live_estimates import choose_shown, shown_floor_m
 from base_station.fusion.smoother.port import (
@@ -96,12 +97,36 @@ class _Solving:
             expected = self._graph.expected(unit_id, evidence.places)
             used = agreeing(expected)
             given = Given(expected, used)
-            self._graph.places[unit_id] = [evidence.places[one] for one in used]
             for one, place in enumerate(evidence.places):
                 if one not in used:
                     self._verdicts[place.name] = _refused(
                         expected, given, evidence.places, used, one
                     )
+            agreed = [evidence.places[one] for one in used]
+            self._graph.places[unit_id] = self._at_their_heights(evidence, agreed)
+
+    def _at_their_heights(
+        self, evidence: UnitEvidence, places: Sequence[PlaceSeen]
+    ) -> list[PlaceSeen]:
+        """Without those of a floor that the path and the others do not lead to: half way between
+        two floors nobody is.
+        """
+        told = telling(places)
+        if not told:
+            return list(places)
+        heights = Heights.of(evidence)
+        expected, used = heights.expected(told), heights.agreeing(told)
+        given = Given(expected, used)
+        for one in sorted(set(range(len(told))) - set(used)):
+            below_m, sigmas = heights.off(told[one])
+            refused = _refused(expected, given, told, used, one)
+            self._verdicts[told[one].name] = replace(
+                refused,
+                residual_m=abs(below_m),
+                sigmas=max(sigmas, refused.sigmas),
+                above_m=-below_m,
+            )
+        return [place for place in places if place.name not in self._verdicts]
 
     def _drop_misfits(self) -> None:
         """Scale and drift come in with the later steps only: what then does not fit goes too."""
@@ -187,7 +212,8 @@ class _Solving:
         if unit_id in graph.words:
             now[:2] += graph.common.plan_m
             known = on_plan[-1, :WALKED, :WALKED]
-        return trail_of(chain, belief, spreads, least_m, graph.places[unit_id], (now, known))
+        heights = Heights.of(self._units[unit_id]).solve(graph.places[unit_id])
+        return trail_of(chain, belief, spreads, least_m, heights, (now, known))
 
 
 def _refused(

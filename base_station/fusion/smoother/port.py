@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from base_station.fusion.path.points import PathArrays
 from base_station.fusion.port import Present, Start
 from base_station.site.floor_grid import FloorGrid
+from base_station.site.storeys import FLOOR_STD_M
 
 Floats = NDArray[np.float64]
 
@@ -30,6 +31,7 @@ class PlaceSeen:
     east_m: float
     std_m: float  # each axis
     down_m: float | None = None
+    down_std_m: float = FLOOR_STD_M
     heading_rad: float | None = None  # of travel, in the incident frame
     heading_std_rad: float = 0.0
 
@@ -54,6 +56,7 @@ class UnitEvidence:
     start_ns: int = 0
     places: Sequence[PlaceSeen] = ()  # in the order in which they came to be known
     grid: FloorGrid | None = None  # walls of the plan
+    height_assumed: bool = False  # nothing has told how high the own frame begins
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ class Verdict:
     residual_m: float  # between it and the trail
     sigmas: float  # the same in standard deviations of what was expected without it
     against: str = ""  # the one it contradicts most; empty: the path and the fixes
+    above_m: float = 0.0  # so far above the trail it is, where that is what contradicts
 
 
 @dataclass(frozen=True)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.port import Present
 from base_station.fusion.smoother.chain import Belief, Chain, place_of
-from base_station.fusion.smoother.heights import solve_heights
-from base_station.fusion.smoother.port import PlaceSeen, SmoothedPath
+from base_station.fusion.smoother.heights import Solved
+from base_station.fusion.smoother.port import SmoothedPath
 
 Floats = NDArray[np.float64]
 
@@ -20,11 +18,11 @@ def trail_of(
     belief: Belief,
     spreads: Floats,
     least_m: Floats,
-    places: Sequence[PlaceSeen],
+    heights: Solved,
     now: tuple[Floats, Floats],
 ) -> SmoothedPath:
     """``spreads`` (k, 5, 5) of the knots; ``least_m`` (n,): no point is known better, each axis;
-    ``places`` tell heights; ``now``: the last knot as a fuser takes it over, and its covariance.
+    ``now``: the last knot as a fuser takes it over, and its covariance.
     """
     path = chain.path
     place, turn = _between_knots(chain, belief.x)
@@ -34,18 +32,17 @@ def trail_of(
     std_east = np.sqrt(covariance[:, 1, 1])
     correlation = (covariance[:, 0, 1] / (std_north * std_east))[knot]
     known = (std_north[knot] >= least_m) & (std_east[knot] >= least_m)
-    down, down_std, shift = solve_heights(path, places)
     return SmoothedPath(
         t_ns=path.t_ns,
         north_m=place[:, 0],
         east_m=place[:, 1],
-        down_m=down,
+        down_m=heights.down_m,
         std_north_m=np.maximum(std_north[knot], least_m),
         std_east_m=np.maximum(std_east[knot], least_m),
         correlation_ne=correlation * known,
-        std_down_m=down_std,
+        std_down_m=heights.std_m,
         turn_rad=np.arctan2(turn[:, 1], turn[:, 0]),
-        present=Present(now[0].tolist(), now[1].tolist(), *shift),
+        present=Present(now[0].tolist(), now[1].tolist(), *heights.shift),
     )
 
 

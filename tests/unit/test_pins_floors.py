@@ -1,0 +1,170 @@
+"""What pins say of floors: how high somebody was, and what is not believed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+import pytest
+
+from base_station.pins.pin import PinVerdict
+from shared.messages import FusedPosition
+from shared.messages.pins import RemovePin, SetPin, StartTogether
+from shared.messages.station import SetPlan, SetStart
+from tests.round_walk import PLAN
+from tests.station_script import Script
+
+STOREY_M = 3.2
+STAIRS_S = 20
+
+
+def tower(storeys: int) -> bytes:
+    floors = [{"floor": floor, "down_m": -STOREY_M * floor} for floor in range(storeys)]
+    plan = json.loads(PLAN)
+    plan["muster"]["floors"] = floors
+    return json.dumps(plan).encode()
+
+
+class Wearer:
+    """One who walks on the level at 1 m/s, and climbs when told to."""
+
+    def __init__(self, storeys: int = 2) -> None:
+        self.script = Script()
+        self.script.register("FF-01")
+        self.script.act(SetPlan(tower(storeys)))
+        self.walked_m = self.down_m = 0.0
+
+    def go(self, seconds: int, climbed_m: float = 0.0) -> None:
+        for _ in range(seconds):
+            self.script.now_s += 1.0
+            self.walked_m += 1.0
+            self.down_m -= climbed_m / seconds
+            self.script.position("FF-01", *self.place, down_m=self.down_m, distance_m=self.walked_m)
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """To and fro along a corridor."""
+        along = self.walked_m % 40.0
+        return 5.0 + min(along, 40.0 - along), 10.0
+
+    def start(self) -> None:
+        self.script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.3, 0.05))
+
+    def pin(self, pin_id: str, floor: int | None, note: str = "") -> PinVerdict:
+        place = self.place
+        self.script.act(
+            SetPin(pin_id, "FF-01", self.script.t_ns, *place, 0.5, floor, None, 0.0, note)
+        )
+        return self.verdict(pin_id)
+
+    def verdict(self, pin_id: str) -> PinVerdict:
+        return self.script.pipeline.state.pin_verdicts[pin_id]
+
+    @property
+    def fused(self) -> FusedPosition:
+        fused = self.script.pipeline.state.units["FF-01"].fused
+        assert fused is not None
+        return fused
+
+
+def test_a_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
+    """Somebody clicked while another floor was shown: nobody hangs between two floors for that."""
+    wearer = Wearer()
+    wearer.start()
+    wearer.go(60)
+    before = wearer.fused
+    verdict = wearer.pin("p", 1)
+    after = wearer.fused
+    assert verdict.state == "conflict"
+    assert "3 m above" in verdict.text
+    assert (after.floor, after.down_m) == (0, before.down_m)
+    assert after.floor_probability == before.floor_probability
+    assert (after.north_m, after.east_m) == (before.north_m, before.east_m)
+
+
+@pytest.mark.parametrize(
+    ("said", "words"),
+    [
+        (lambda wearer: wearer.pin("p", 0, "lift"), "the pin 'lift'"),
+        (lambda wearer: wearer.pin("p", 0), "the pin of 2 min before"),
+        (
+            lambda wearer: wearer.script.act(
+                StartTogether("p", ("FF-01",), 0, 5.0, 10.0, 0.5, 0, None, 0.3, "")
+            ),
+            "the pin at the start",
+        ),
+    ],
+)
+def test_two_floors_of_somebody_who_did_not_climb_are_not_averaged(
+    said: Callable[[Wearer], object], words: str
+) -> None:
+    """Nothing but these two tells how high the unit began."""
+    wearer = Wearer()
+    wearer.go(10)
+    said(wearer)
+    wearer.go(120)
+    verdict = wearer.pin("q", 1)
+    assert verdict.state == "conflict"
+    assert words in verdict.text
+    assert wearer.fused.floor == 0
+    assert wearer.fused.down_m == pytest.approx(0.0, abs=0.1)
+
+
+def test_of_two_floors_the_other_holds_once_one_is_removed() -> None:
+    wearer = Wearer()
+    wearer.go(10)
+    wearer.pin("wrong", 0)
+    wearer.go(30)
+    assert wearer.pin("right", 1).state == "conflict"
+    wearer.script.act(RemovePin("wrong"))
+    assert wearer.verdict("right").state == "used"
+    assert wearer.fused.floor == 1
+    assert wearer.fused.down_m == pytest.approx(-STOREY_M, abs=0.2)
+
+
+@pytest.mark.parametrize("floor", [1, 3, 9])
+def test_who_was_switched_on_upstairs_is_on_the_floor_that_is_said(floor: int) -> None:
+    """As far up as it may be: that nobody had said a floor is no evidence of the ground floor."""
+    wearer = Wearer(storeys=10)
+    wearer.go(60)
+    assert wearer.pin("p", floor).state == "used"
+    assert wearer.fused.floor == floor
+    assert wearer.fused.down_m == pytest.approx(-STOREY_M * floor, abs=0.2)
+
+
+def test_who_has_climbed_may_be_pinned_on_either_floor() -> None:
+    wearer = Wearer()
+    wearer.start()
+    wearer.go(30)
+    below = wearer.pin("below", 0)
+    wearer.go(STAIRS_S, climbed_m=STOREY_M)
+    wearer.go(30)
+    above = wearer.pin("above", 1)
+    assert (below.state, above.state) == ("used", "used")
+    assert (wearer.fused.floor, wearer.verdict("below").state) == (1, "used")
+
+
+def test_a_floor_that_is_said_twice_is_believed() -> None:
+    """The path has missed a flight of stairs."""
+    wearer = Wearer()
+    wearer.start()
+    wearer.go(60)
+    assert wearer.pin("once", 1).state == "conflict"
+    wearer.go(20)
+    assert wearer.pin("twice", 1).state == "used"
+    assert wearer.verdict("once").state == "used"
+    wearer.go(10)
+    assert wearer.fused.floor == 1
+    assert wearer.fused.down_m == pytest.approx(-STOREY_M, abs=0.5)
+
+
+def test_one_wrong_floor_is_not_believed_after_a_long_time_either() -> None:
+    """The station is as sure of the floor as it says, however long ago anybody said one."""
+    wearer = Wearer()
+    wearer.start()
+    wearer.go(1200)
+    before = wearer.fused
+    assert before.floor_probability is not None
+    assert before.floor_probability > 0.99
+    assert wearer.pin("p", 1).state == "conflict"
+    assert (wearer.fused.floor, wearer.fused.down_m) == (0, before.down_m)
