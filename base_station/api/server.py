@@ -144,9 +144,15 @@ class ConsoleServer:
         listening: socket.socket,
         certificate: Path | None = None,
         private_key: Path | None = None,
+        *,
+        on_stop: Callable[[], None] = lambda: None,
     ) -> None:
-        """Raises ConfigError where the certificate or its key cannot be used."""
+        """``on_stop`` is called when it is told to stop, and again when it is told again.
+
+        Raises ConfigError where the certificate or its key cannot be used.
+        """
         self._socket = listening
+        self._on_stop = on_stop
         host, port = listening.getsockname()[:2]
         scheme = "http" if certificate is None else "https"
         # As a browser on this machine writes it.
@@ -190,6 +196,7 @@ class ConsoleServer:
     def stop(self) -> None:
         """From the loop's thread."""
         self._server.should_exit = True
+        self._on_stop()
 
 
 async def serve_until_stopped(

@@ -45,6 +45,7 @@ from base_station.past.hindsight import Hindsight
 from base_station.past.looking_back import LookingBack
 from base_station.pki.members import EnrolledUnits
 from base_station.program import interpreter
+from base_station.program.end_in_time import EndInTime
 from base_station.program.ended_threads import EndedThreads
 from base_station.standby.places import Place
 from base_station.standby.side import OneOfTwo, OnlyStation, Parts, Side
@@ -92,9 +93,9 @@ def run_station(config: StationConfig, announce: Announce) -> None:
 def _run_once(
     config: StationConfig, thresholds: Thresholds, announce: Announce, manager: ServiceManager
 ) -> _Again | None:
-    with ExitStack() as closing:
+    with EndInTime() as end, ExitStack() as closing:
         resources = open_station(config, announce, closing)
-        return _LiveStation(resources, thresholds, announce, manager, closing).run()
+        return _LiveStation(resources, thresholds, announce, manager, end, closing).run()
 
 
 class _LiveStation:
@@ -110,11 +111,12 @@ class _LiveStation:
         thresholds: Thresholds,
         announce: Announce,
         manager: ServiceManager,
+        end: EndInTime,
         closing: ExitStack,
     ) -> None:
         """Begins to hear and to step; ``closing`` ends everything in its order."""
         self._resources, self._disk = resources, resources.disk
-        self._announce, self._manager = announce, manager
+        self._announce, self._manager, self._end = announce, manager, end
         self._again: _Again | None = None
         bus, steady = resources.bus, self._disk.clock
         self._stale_picture = StalePicture()
@@ -243,7 +245,13 @@ class _LiveStation:
     def _new_server(self) -> ConsoleServer:
         hub, http = self._resources.hub, self._resources.config.http
         app = create_app(self._services, started=lambda loop: hub.connect(loop, self._drive))
-        return ConsoleServer(app, self._resources.listening, http.certificate, http.private_key)
+        return ConsoleServer(
+            app,
+            self._resources.listening,
+            http.certificate,
+            http.private_key,
+            on_stop=self._ends,
+        )
 
     def _housekeeping(self) -> Callable[[], None]:
         resources, records = self._resources, self._disk.records
@@ -295,6 +303,10 @@ class _LiveStation:
     def _start_again(self, cut: Place | None) -> None:
         self._again = self._again or _Again(cut, self._stale_picture.is_so)
         self._server.stop()
+
+    def _ends(self) -> None:
+        resources = self._resources
+        self._end.begin(lambda: resources.recorder.not_kept, resources.router.close)
 
     def _step_again(self, end_ns: int) -> None:
         self._stale_picture.note_mended(end_ns)

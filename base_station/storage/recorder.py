@@ -197,6 +197,19 @@ class Recorder:
         return self._turn_ns > _HANGS_NS and not self._failure
 
     @property
+    def not_kept(self) -> str:
+        """What would be missing if the station ended now, as a sentence for a person; empty: the
+        disk answers, and has everything soon.
+        """
+        if not self.hangs:
+            return ""
+        return (
+            f"{self._written - self._on_disk} records are not safely in the log {self.folder}, "
+            f"which has not been written for {self._turn_ns / NS_PER_S:.0f} s; what units said "
+            "comes again from their journals, what people did meanwhile may be lost"
+        )
+
+    @property
     def refuses(self) -> bool:
         """Whether memory is full of what the disk does not take.  For alerts, and for what people
         do, of which nobody else has a copy, there is some room left then.

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -10,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import psutil
 import pytest
 from websockets.exceptions import ConnectionClosed
 
@@ -24,6 +27,9 @@ from tests.station_command import Browser, Command, Unit
 from tests.waiting import PATIENCE_S, until
 
 HANGS = "does not answer"
+NOT_KEPT = "records are not safely in the log"
+ENDING_S = 10.0  # of the 30 s after which its service kills it
+BUSY_S = 5.0  # that a busy machine may take
 
 
 @pytest.fixture
@@ -136,3 +142,37 @@ def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
     there = logged(data / "log")
     assert len(there) == len(set(there))
     assert walk.said <= set(there)
+
+
+def test_a_station_whose_disk_hangs_ends_when_it_is_told_to_and_says_what_is_not_kept(
+    disk: Path, tmp_path: Path, make_position: MakePosition
+) -> None:
+    """Its service would kill it in the end, and nobody would hear what the log lacks."""
+    data, port = disk / "station", free_port()
+    flags = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
+    with ExitStack() as closing:
+        station = Command(tmp_path / "output.txt", "serve", "--data", str(data), *flags)
+        closing.callback(station.kill)
+        browser = closing.enter_context(Browser(station.wait_ready(), data))
+        unit = Unit(port, "FF-01")
+        closing.callback(unit.close)
+        prepare(browser)
+        greet(browser, unit, make_position)
+        (router,) = psutil.Process(station.pid).children()
+        with ExitStack() as walking:
+            walk = Walk(browser, unit, walking)
+            until(lambda: walk.shown > 5)
+            with frozen(disk):
+                until(lambda: any(HANGS in one for one in walk.problems), "it is told")
+                os.kill(station.pid, signal.SIGTERM)
+                until(lambda: NOT_KEPT in station.said(), "what is not kept", ENDING_S)
+                until(lambda: not router.is_running(), "the end of the bus", BUSY_S)
+                with pytest.raises(httpx.ConnectError):
+                    httpx.get(browser.address, timeout=PATIENCE_S)
+        assert station.wait() == 1  # in the kernel it ends when the disk answers
+        with Command(tmp_path / "again.txt", "serve", "--data", str(data), *flags) as again:
+            again.wait_ready()
+            assert again.stop() == 0
+    there = logged(data / "log")
+    assert len(there) > 0
+    assert len(there) == len(set(there))
