@@ -5,7 +5,7 @@ hang on somebody else's past.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from base_station.fusion.path.points import PathArrays
 from base_station.fusion.smoother.port import PlaceSeen, Tie, UnitEvidence
 from base_station.live_state import StationState
 from base_station.pins.book import BEFORE_NS
-from base_station.pins.pin import Beacon, Pin
+from base_station.pins.pin import WAITING, Beacon, Pin
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import FloorSaid
 from base_station.site.storeys import FLOOR_STD_M, storey_of
@@ -49,9 +49,10 @@ def ties_of(state: StationState) -> list[Tie]:
     return ties
 
 
-def floors_said(state: StationState) -> list[FloorSaid]:
+def floors_said(state: StationState, judged_anew: Collection[str] = ()) -> list[FloorSaid]:
     """On which floors people and beacons say that somebody was, with the heights as they were
-    estimated without any pin.
+    estimated without any pin.  What contradicts tells nothing, unless it is of a unit whose pins
+    are judged anew.
     """
     said = []
     unpacked: dict[str, PathArrays] = {}
@@ -59,6 +60,9 @@ def floors_said(state: StationState) -> list[FloorSaid]:
         history = state.paths.get(pin.unit_id)
         floor = at_of(state, pin).floor
         if floor is None or history is None or history.begin_ns is None:
+            continue
+        verdict = state.pin_verdicts.get(pin.pin_id, WAITING)
+        if verdict.state == "conflict" and pin.unit_id not in judged_anew:
             continue
         t_ns = time_of(history, pin)
         if not isinstance(t_ns, str):

@@ -7,7 +7,7 @@ the live state.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 
 from base_station.fusion.fixes.screening import FURTHEST_M
 from base_station.fusion.fixes.sky import Sky
@@ -103,20 +103,24 @@ class Positioning:
             self._land(state, unit, t_ns, outside)
         return history.is_awaited or (begins and has_pins(state, unit.unit_id))
 
-    def solve_pins(self, state: StationState, unit_ids: Iterable[str]) -> dict[str, bool]:
+    def solve_pins(self, state: StationState, unit_ids: Collection[str]) -> dict[str, bool]:
         """Pins of these units changed; gives whose present hangs on that, and whether the trail
-        is another now.  A floor that is said numbers the storeys of everybody in that building.
+        is another now.  A floor that is said numbers the storeys of everybody in that building,
+        and that of a pin which turns out to contradict does not.
         """
-        numbers = state.learnt_floors.numbers
-        renumbered = state.learnt_floors.say(floors_said(state))
-        if state.learnt_floors.numbers != numbers:
-            self.renumber(state)
+        floors = state.learnt_floors
+        numbers, storeys = floors.numbers, floors.storeys
+        floors.say(floors_said(state, unit_ids))
         past = self._pinned.past()
         units = [state.units[one] for one in unit_ids if one in state.units]
         again = [one for one in units if place_again(state, one, self._fuser(one), past)]
         solved = self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
+        if floors.say(floors_said(state)):
+            solved |= self._pinned.solve(state, unit_ids, lambda one: self._fuser(state.units[one]))
         solved |= {unit.unit_id: True for unit in again}
-        if renumbered:
+        if floors.numbers != numbers:
+            self.renumber(state)
+        if floors.storeys != storeys:
             shown = [one for one, unit in state.units.items() if unit.fused is not None]
             for unit_id in shown:
                 if unit_id not in solved:

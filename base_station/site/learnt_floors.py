@@ -164,16 +164,21 @@ class LearntFloors(msgspec.Struct):
         """Of each building's storeys, lowest first."""
         return [[storey.floor for storey in building.storeys] for building in self.buildings]
 
+    @property
+    def storeys(self) -> list[tuple[Storey, ...]]:
+        """Of each building."""
+        return [building.storeys for building in self.buildings]
+
     def say(self, said: Sequence[FloorSaid]) -> bool:
         """What people say of floors, in the place of what they said before; whether storeys are
         others by it.
         """
         if self.said == tuple(said):
             return False
-        before = [building.storeys for building in self.buildings]
+        before = self.storeys
         self.said = tuple(said)
         self._learn_all()
-        return before != [building.storeys for building in self.buildings]
+        return before != self.storeys
 
     def forget(self, unit_id: str) -> None:
         self.walks.pop(unit_id, None)

@@ -153,6 +153,14 @@ def test_what_a_person_says_of_a_floor_numbers_it_until_the_pin_is_removed(
     assert people.floor("FF-01") == 3
 
 
+def test_a_pin_that_contradicts_where_somebody_was_numbers_no_floors(people: People) -> None:
+    script = people.script
+    script.act(SetPin("p1", "FF-01", script.t_ns, 0.0, 500.0, 1.0, 2, None, 0.0, ""))
+    assert script.pipeline.state.pin_verdicts["p1"].state == "conflict"
+    people.walk("FF-01", 1)
+    assert people.floor("FF-01") == 3
+
+
 def test_no_building_has_that_floor(people: People) -> None:
     pin = SetPin("p1", "FF-01", people.script.t_ns, 0.0, 0.0, 1.0, 1000, None, 0.0, "")
     (refused,) = people.script.act(pin)

@@ -197,7 +197,7 @@ def test_a_path_is_unpacked_once_for_all_floors_that_are_said_along_it(
         return arrays(history)
 
     monkeypatch.setattr(PathHistory, "arrays", counting)
-    assert len(floors_said(walk.script.pipeline.state)) == 4
+    assert len(floors_said(walk.script.pipeline.state, ["FF-01"])) == 4
     assert len(unpacked) == 1
 
 
