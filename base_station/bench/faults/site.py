@@ -11,6 +11,8 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+import psutil
+
 from base_station.bench.rig.journal import MessageOfUnit, said_by
 from base_station.bench.rig.lossy_link import LossyLink
 from base_station.bench.rig.station import StationProcess, station_process
@@ -110,6 +112,19 @@ class Site:
 
     def kill_station(self) -> None:
         self._running.close()
+
+    @contextmanager
+    def suspended_station(self) -> Iterator[None]:
+        """With its router, as where the machine lets nobody run; the network goes on."""
+        station = psutil.Process(self.station.pid)
+        stopped = [station, *station.children()]
+        for one in stopped:
+            one.suspend()
+        try:
+            yield
+        finally:
+            for one in stopped:
+                one.resume()
 
     def set_station_disk_full(self, *, full: bool) -> None:
         _set_disk_full(self.station.pid, full=full)

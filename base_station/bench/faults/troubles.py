@@ -134,6 +134,20 @@ class ClockJump:
 
 
 @dataclass(frozen=True, slots=True)
+class Suspended:
+    """The station and its router stand still, and go on where they were."""
+
+    name: str
+    seconds: float
+    is_long: bool = False
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        with site.suspended_station():
+            time.sleep(self.seconds)
+
+
+@dataclass(frozen=True, slots=True)
 class FullDisk:
     name: str
     agent: bool
@@ -158,13 +172,15 @@ class FullDisk:
 FAULTS: tuple[Fault, ...] = (
     BadLink("40 % loss, 300 ms jitter", Conditions(loss=0.4, jitter_s=0.3), 20.0),
     BadLink("outage of 1 s", DARK, 1.0),
-    BadLink("outage of 30 s", DARK, 30.0, is_long=True),
+    BadLink("outage of 30 s", DARK, 30.0),
     BadLink("20 kbit/s", THIN, 10.0, after=THIN),
     BadLink("outage of 10 s at 20 kbit/s", DARK, 10.0, after=THIN),
     BadLink("outage of 30 s at 20 kbit/s", DARK, 30.0, after=THIN, is_long=True),
     BadLink("outage of 600 s", DARK, 600.0, is_long=True),
     FullDisk("disk full at the unit", agent=True, station=False),
     FullDisk("disk full at the station", agent=False, station=True),
+    Suspended("station stands still for 10 s", 10.0),
+    Suspended("station stands still for 45 s", 45.0, is_long=True),
     Clone(),
     ClockJump("clock a day ahead", 1, is_long=True),
     ClockJump("clock a day back", -1, is_long=True),
