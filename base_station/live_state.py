@@ -346,6 +346,7 @@ class StationState(msgspec.Struct):
     plan: Plan | None = None
     anchor: Anchor | None = None
     anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
+    fixes_anchor: Anchor | None = None  # as it was when a fix was taken last
     far_fixes: int = 0  # in a row, too far from there to be of this site
     sky: Sky = msgspec.field(default_factory=Sky)
     barometers: Barometers = msgspec.field(default_factory=Barometers)

@@ -32,6 +32,14 @@ def moved_to(anchor: Anchor, old: Anchor) -> FrameShift:
     return FrameShift(turn_rad, north_m, east_m, anchor.height_m - old.height_m)
 
 
+def moved_by(anchor: Anchor, old: Anchor, taken_by: Anchor | None) -> FrameShift:
+    """The same of what was taken when the anchor was ``taken_by``: led round by wrong ones that are
+    far away, north would come back turned.
+    """
+    taken_by = taken_by or old
+    return moved_to(old, taken_by).undone().and_then(moved_to(anchor, taken_by))
+
+
 def reframe(state: StationState, move: FrameShift) -> None:
     """Paths, trails, pins and what was learnt; the fusers move by themselves."""
     shift_m = (move.north_m, move.east_m)

@@ -26,7 +26,7 @@ from base_station.pins.pinning import numbered_again
 from base_station.positioning.anchor_correction import move_fixes, place_again
 from base_station.positioning.clocks import station_ns
 from base_station.positioning.fixes import place_fix, without_sky
-from base_station.positioning.frame import moved_to, reframe
+from base_station.positioning.frame import moved_by, reframe
 from base_station.positioning.fused_message import fused_message
 from base_station.positioning.inside import is_outside, note_inside
 from base_station.positioning.lost_contact import LostContact
@@ -220,7 +220,7 @@ class Positioning:
         """
         old = state.anchor
         if old is not None and old != anchor:
-            move = moved_to(anchor, old)
+            move = moved_by(anchor, old, state.fixes_anchor)
             if state.anchor_by_gps and math.hypot(move.north_m, move.east_m) <= FURTHEST_M:
                 for fuser in (*self._fusers.values(), *self._pinned.all()):
                     fuser.reframe(move.turn_rad, move.north_m, move.east_m, move.down_m)
@@ -320,6 +320,7 @@ class Positioning:
         own = without_sky(state, unit, place)
         verdict, *pinned = [fuser.correct(own) for fuser in self._told(unit)]
         if verdict.accepted:
+            state.fixes_anchor = state.anchor
             t_ns = station_ns(state, unit, place.t_mono_ns)
             _history(state, unit).fix(place, t_ns)
             contradicts_pins = not all(one.accepted for one in pinned)

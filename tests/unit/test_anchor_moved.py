@@ -73,6 +73,25 @@ def test_a_person_s_anchor_that_is_put_right_leaves_nothing_of_the_wrong_one(wro
     assert max(math.dist((0.0, 0.0), (step.north_m, step.east_m)) for step in trail) < 60.0
 
 
+@pytest.mark.parametrize("inside_s", [0, 10])
+def test_several_wrong_anchors_one_after_the_other_leave_nothing_either(inside_s: int) -> None:
+    """Round a triangle on the Earth north comes back turned: that turns nobody on the plan."""
+    script, right = anchored(), anchored()
+    for one in (script, right):
+        set_anchor(one, SITE)
+        walk(one, range(100))
+    for wrong in (Anchor(0.0, 0.0, 0.0), Anchor(-52.0, 4.0, 0.0), Anchor(4.0, 52.0, 0.0)):
+        set_anchor(script, wrong)
+        if inside_s:
+            walk(script, range(round(script.now_s) + 1, round(script.now_s) + inside_s), by=None)
+    walk(right, range(100, round(script.now_s) + 1), by=None)
+    set_anchor(script, SITE)
+    begin = round(script.now_s) + 1
+    for one in (script, right):
+        walk(one, range(begin, begin + 10), by=None)
+    assert math.dist(shown_m(script), shown_m(right)) < 0.5
+
+
 def test_who_was_anchored_by_a_receiver_on_the_other_hemisphere_is_placed_by_the_next_fixes() -> (
     None
 ):
