@@ -55,7 +55,8 @@ class Stations:
             self._children.run("pki", ("pki", "join", file, "--data", str(other.data)))
 
     def start(self) -> tuple[str, str]:
-        """Name and password of the first login."""
+        """Name and password of the first login.  They are noted before the station knows them."""
+        is_new = not any(_note(site).exists() for site in self.sites)
         for site in self.sites:
             settings = self._folder / f"{site.name}.toml"
             settings.write_text(self._settings(site), encoding="utf-8")
@@ -64,7 +65,10 @@ class Stations:
             )
         for site in self.sites:
             self._children.wait_for_line(self._running[site.name], "ready", _PATIENCE_S)
-        text = (self.leading().data / "first-login.txt").read_text(encoding="utf-8")
+        leading = self.leading()
+        if is_new:
+            self._children.wait_for_line(self._running[leading.name], "first login", _PATIENCE_S)
+        text = _note(leading).read_text(encoding="utf-8")
         login = dict(line.split(": ", 1) for line in text.splitlines())
         return login["username"], login["password"]
 
@@ -98,6 +102,10 @@ class Stations:
                 f"preferred = {json.dumps(site is self.sites[0])}\n"
             )
         return settings
+
+
+def _note(site: Site) -> Path:
+    return site.data / "first-login.txt"
 
 
 def _leads(site: Site) -> bool:

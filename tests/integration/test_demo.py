@@ -47,6 +47,15 @@ def test_in_a_script_it_hears_five_units_and_leaves_nothing_running(tmp_path):
     assert processes_of(tmp_path) == []
 
 
+def test_with_a_second_station_it_hears_them_too(tmp_path):
+    """The one that leads has its first login only once it leads."""
+    demo = start_demo(tmp_path, "--standby", "--for", "3")
+    output, _ = demo.communicate(timeout=240)
+    assert demo.returncode == 0, output
+    assert "of 5 units, 0 of them not understood" in output
+    assert processes_of(tmp_path) == []
+
+
 def test_ctrl_c_ends_everything(tmp_path):
     demo = start_demo(tmp_path)
     assert demo.stdout is not None
