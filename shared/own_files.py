@@ -8,6 +8,8 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
+from shared.durable_names import sync_folder
+
 
 def open_own(path: Path, flags: int, mode: int) -> int:
     """As ``os.open``."""
@@ -29,13 +31,21 @@ def make_folder(folder: Path, mode: int = 0o777) -> None:
 
 
 def make_new_folder(folder: Path, mode: int) -> None:
-    """Raises FileExistsError where there is something of that name."""
+    """It outlives a power cut, as what is kept in it could not without it; or it is not there.
+
+    Raises FileExistsError where there is something of that name.
+    """
     folder.mkdir(mode)
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
     try:
-        give_to_owner(descriptor, folder.parent)
-    finally:
-        os.close(descriptor)
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        try:
+            give_to_owner(descriptor, folder.parent)
+        finally:
+            os.close(descriptor)
+        sync_folder(folder.parent)
+    except OSError:
+        folder.rmdir()
+        raise
 
 
 def give_to_owner(descriptor: int, folder: Path) -> None:

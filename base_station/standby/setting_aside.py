@@ -15,9 +15,9 @@ from pathlib import Path
 
 from base_station.standby.places import BEGINNING, Place, Record, events_behind, is_event
 from base_station.storage.data_folder import DataFolder
+from shared.durable_names import sync_folder
 from shared.errors import LogError
 from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, read_log, segment_paths
-from shared.mcap_log.durable_file import sync_folder
 from shared.own_files import make_folder, open_own
 
 APART = "apart"

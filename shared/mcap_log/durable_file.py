@@ -6,6 +6,7 @@ import os
 from collections import deque
 from pathlib import Path
 
+from shared.durable_names import sync_folder
 from shared.own_files import open_own
 
 
@@ -77,12 +78,3 @@ class DurableFile:
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
-
-
-def sync_folder(folder: Path) -> None:
-    """Make new names in a folder outlive a loss of power."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from shared.durable_names import sync_folder
 from shared.errors import LogError
-from shared.mcap_log.durable_file import sync_folder
 from shared.mcap_log.folder import segment_number, segment_paths
 from shared.mcap_log.reading import SegmentReader
 from shared.mcap_log.rebuilding import RebuiltSegment

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from shared.durable_names import sync_folder
 from shared.errors import LogError
-from shared.mcap_log.durable_file import sync_folder
 from shared.mcap_log.reading import LogRecord, SegmentReader
 from shared.mcap_log.recovery import MAKING, TORN
 from shared.mcap_log.writing import Segment, SegmentPolicy
