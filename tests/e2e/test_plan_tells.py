@@ -60,6 +60,26 @@ def test_what_can_no_more_be_done_on_the_plan_takes_no_clicks(stage: Stage) -> N
     expect(page.locator(".map.placing")).to_have_count(0)
 
 
+def test_the_pins_that_contradict_stand_on_top_and_each_says_its_floor(stage: Stage) -> None:
+    """Two of the same minute are told apart."""
+    pins = tuple(
+        msgspec.structs.replace(
+            scenes.pin(state, 0, state, 3.0, "3 m above" if floor else ""), floor=floor
+        )
+        for state, floor in (("used", 0), ("waiting", None), ("conflict", 1))
+    )
+    page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), pins=pins))
+    page.get_by_role("button", name="Pins 3").click()
+    rows = page.get_by_role("region", name="Pins").get_by_role("listitem")
+    expect(rows).to_have_count(3)
+    expect(rows.nth(0)).to_contain_text("Astrid Lindqvist here, floor 1")
+    expect(rows.nth(0)).to_contain_text("in conflict")
+    expect(rows.nth(1)).to_contain_text("Astrid Lindqvist here, ground floor")
+    expect(rows.nth(2)).to_contain_text("waits")
+    rows.nth(0).get_by_role("button").click()
+    expect(page.get_by_role("form", name="Pin: ")).to_contain_text("3 m above. Set by")
+
+
 def test_a_pin_that_is_looked_at_stays_on_its_floor(stage: Stage) -> None:
     """Whichever floor is shown, and where nobody is on its own."""
     pins = tuple(

@@ -13,7 +13,7 @@ export function PinList({ picture }: { picture: Picture }) {
     <section class="tool-panel pin-list" aria-label="Pins">
       <h3>Pins</h3>
       <ul>
-        {picture.pins.value.map((pin) => (
+        {worstFirst(picture.pins.value).map((pin) => (
           <li key={pin.pin_id} class={pin.state}>
             <Words edit={{ kind: "edit-pin", pinId: pin.pin_id }}>
               {said(pin, picture)}
@@ -51,7 +51,13 @@ const WORDS: Record<string, string> = {
   conflict: "in conflict",
 };
 
-/** "Ana here, 12:40, behind the lift", "Ana met Bo, 12:41", "Ana at beacon 7, at the start". */
+/** What somebody is to see to stands on top; the others in the order in which they were set. */
+function worstFirst(pins: readonly PinView[]): PinView[] {
+  const rank = (pin: PinView) => (pin.state === "conflict" ? 0 : 1);
+  return [...pins].sort((one, other) => rank(one) - rank(other));
+}
+
+/** "Ana here, floor 1, 12:40, behind the lift", "Ana met Bo, 12:41", "Ana at beacon 7, at the start". */
 function said(pin: PinView, picture: Picture): string {
   const name = (unitId: string) => {
     const unit = picture.unit(unitId)?.peek();
@@ -64,5 +70,6 @@ function said(pin: PinView, picture: Picture): string {
         ? `${name(pin.unit_id)} here`
         : `${name(pin.unit_id)} at ${pin.kind} ${pin.other_id}`;
   const when = pin.t_ms === 0 ? "at the start" : clockTime(pin.t_ms).slice(0, 5);
-  return [what, when, pin.note].filter((part) => part !== "").join(", ");
+  const where = pin.floor === null ? "" : floorName(pin.floor);
+  return [what, where, when, pin.note].filter((part) => part !== "").join(", ");
 }

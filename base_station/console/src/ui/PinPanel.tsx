@@ -83,7 +83,8 @@ function Verdict({ pin }: { pin: PinView }) {
         {STATES[pin.state] ?? pin.state}
         {off}.
       </strong>{" "}
-      {pin.text} <span class="quiet">Set by {pin.by} at {clockTime(pin.set_ms)}.</span>
+      {pin.text === "" ? "" : `${pin.text}. `}
+      <span class="quiet">Set by {pin.by} at {clockTime(pin.set_ms)}.</span>
     </p>
   );
 }
