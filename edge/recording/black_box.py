@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import errno
 import logging
+import shutil
 from collections.abc import Callable
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -30,6 +31,9 @@ _DESCRIBE_EVERY_NS = 60 * NS_PER_S  # so that any segment can be replayed by its
 _LOOK_EVERY_S = 0.2
 _WAITING_MAX = 10_000  # batches, some minutes of samples, for a disk that hangs
 _REFUSAL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO)  # of a disk, for now
+_SPARE_BYTES = 64_000_000  # left on the disk for the journal, which is worth more; on a small disk
+_SPARE_SHARE = 0.05  # as much of it
+_LOOK_AT_ROOM_EVERY_NS = NS_PER_S
 _POLICY = SegmentPolicy(segment_s=120.0)  # a station fetches whole segments of a window
 
 Raw = tuple[Message, ...]
@@ -67,6 +71,7 @@ class BlackBox:
         self._problem: str | None = None
         self._writer: SegmentWriter | None = None
         self._try_again_ns = 0
+        self._look_at_room_ns = 0
         self._begin()
         self._thread = Thread(target=self._run, name="black-box", daemon=True)
         self._thread.start()
@@ -108,6 +113,7 @@ class BlackBox:
 
     def _take(self, raw: Raw) -> None:
         """One batch, or none where nothing has come for a while."""
+        self._look_at_room()
         if self._writer is None and raw and self._now_ns() >= self._try_again_ns:
             self._begin()
         if self._writer is None:
@@ -164,6 +170,22 @@ class BlackBox:
     def _now_ns(self) -> int:
         return self._clock.monotonic_ns() + self._utc_offset_ns
 
+    def _look_at_room(self) -> None:
+        """Others may fill the disk, too."""
+        now_ns = self._now_ns()
+        if now_ns >= self._look_at_room_ns:
+            self._look_at_room_ns = now_ns + _LOOK_AT_ROOM_EVERY_NS
+            if self._lacking_bytes() > 0:
+                self._try_to_make_room()
+
+    def _lacking_bytes(self) -> float:
+        """How much more is to be free on the disk."""
+        try:
+            disk = shutil.disk_usage(self._folder)
+        except OSError:  # the folder cannot be made yet, or the disk fails: that is told elsewhere
+            return 0
+        return min(_SPARE_BYTES, _SPARE_SHARE * disk.total) - disk.free
+
     def _try_to_make_room(self) -> None:
         try:
             self._make_room()
@@ -171,7 +193,8 @@ class BlackBox:
             logger.error("old recordings cannot be removed: %s", error)
 
     def _make_room(self) -> None:
-        """Remove the oldest segments beyond the limit, and folders that are left empty.
+        """Remove the oldest segments beyond the limit, or for which the disk has no room, and
+        folders that are left empty.
 
         This boot's are the newest, whatever date a clock that was never set has given them.
         """
@@ -186,7 +209,7 @@ class BlackBox:
         )
         segments = [segment for boot in boots for segment in found[boot]]
         sizes = [segment.stat().st_size for segment in segments]
-        excess_bytes = sum(sizes) - self._limit_bytes
+        excess_bytes = max(sum(sizes) - self._limit_bytes, self._lacking_bytes())
         for segment, size in zip(segments[:-1], sizes, strict=False):
             if excess_bytes <= 0:
                 return

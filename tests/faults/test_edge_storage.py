@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import shutil
 import sqlite3
 import subprocess
 import threading
@@ -23,6 +24,7 @@ from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.channels import EVENT, alive_key, parse_key
 from shared.codec import decode
+from shared.mcap_log import segment_paths
 from shared.messages import EventKind, Heartbeat, Message, Position, UnitEvent
 from tests.hanging_disk import disk_that_can_hang, freeze, frozen, thaw
 from tests.waiting import until
@@ -243,6 +245,30 @@ def test_a_unit_that_is_started_with_a_full_disk_is_heard(disk: Path, knows_the_
     running = Running(disk)
     try:
         assert_told_and_made_good(running, (disk / "filler").unlink)
+    finally:
+        running.end()
+
+
+def test_a_disk_that_is_full_of_old_recordings_takes_what_a_person_is_shown(disk: Path) -> None:
+    """Though the black box may have more than the whole of this disk."""
+    started_before(disk)
+    (recorded,) = (disk / "u1" / "black_box").iterdir()
+    old = [recorded.with_name(f"20200101T00000{number}Z-{number:016x}") for number in range(9)]
+    for one in old:
+        shutil.copytree(recorded, one)
+        (segment,) = segment_paths(one)
+        with segment.open("ab") as file:
+            file.write(bytes(1_000_000))
+    fill(disk)
+    running = Running(disk)
+    try:
+        until(lambda: (disk / "u1" / "journal.sqlite-wal").stat().st_size > 0)
+        spool = running.parts.spool
+        until(lambda: spool.last_seq > 100 and running.parts.journal.fault is None)
+        until(lambda: running.parts.black_box.fault is None)
+        assert running.parts.journal.never_saved == 0
+        kept = [one for one in (recorded, *old) if one.exists()]
+        assert 0 < len(kept) <= len(old)
     finally:
         running.end()
 
