@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 import os
 import sys
-from collections.abc import Mapping
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,6 +18,7 @@ from base_station.recordings.command import fetch_recording
 from shared.out_file import writable
 
 if TYPE_CHECKING:
+    from base_station.app.folder import LookBack
     from base_station.config import StationConfig
 
 app = typer.Typer(help="The base station.", no_args_is_help=True, pretty_exceptions_enable=False)
@@ -79,7 +80,8 @@ def replay(
     with interpreter.held():
         from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
-    run_replay_station(settings, incident, speed, _announce)
+    with _bar("reading the log") as on_progress:
+        run_replay_station(settings, incident, speed, _announce, on_progress)
 
 
 @app.command()
@@ -164,21 +166,16 @@ def smooth(
     data: Path = Path("muster-data"),
 ) -> None:
     """Work out an incident's trails again, from everything that is known afterwards."""
-    from rich.progress import Progress  # noqa: PLC0415
-
     from base_station.app import folder as station  # noqa: PLC0415
 
     with ExitStack() as closing:
-        past = station.look_back(data, incident, closing)
-        with Progress(transient=True) as progress:
-            task = progress.add_task("smoothing", total=1.0)
-            made = past.hindsight.smooth(
-                past.incident, lambda done: progress.update(task, completed=done)
-            )
+        with _bar("reading the log") as on_progress:
+            past = station.look_back(data, incident, closing, _warn, on_progress)
+        with _bar("smoothing") as on_progress:
+            made = past.hindsight.smooth(past.incident, on_progress)
     for unit_id, track in made.tracks.items():
         typer.echo(f"{unit_id}\t{len(track)} points")
-    why = "the incident is open" if past.incident.closed_ns is None else "the disk takes nothing"
-    kept = "kept" if made.is_kept else f"not kept: {why}"
+    kept = "kept" if made.is_kept and past.keeps else f"not kept: {_why_not_kept(past)}"
     typer.echo(f"{len(made.tracks)} trails by {made.smoother}; {kept}")
 
 
@@ -197,7 +194,8 @@ def assess(
     from base_station.assessment.tables import print_report, write_report  # noqa: PLC0415
 
     with ExitStack() as closing:
-        past = station.look_back(data, incident, closing)
+        with _bar("reading the log") as on_progress:
+            past = station.look_back(data, incident, closing, _warn, on_progress)
         live = past.records.tracks_of(past.incident)
         report = with_people(past.hindsight.assess(past.incident, live), past.people)
     print_report(report)
@@ -253,6 +251,36 @@ def _settle(config: Path | None, flags: Mapping[str, object]) -> StationConfig:
     logging.getLogger("alembic").setLevel(logging.WARNING)
     os.umask(0o077)  # people's photos and tracks are nobody else's business
     return settings
+
+
+@contextmanager
+def _bar(what: str) -> Iterator[Callable[[float], None]]:
+    """Shown from when it is first told of until all is done."""
+    from rich.progress import Progress  # noqa: PLC0415
+
+    progress = Progress(transient=True)
+    task = progress.add_task(what, total=1.0)
+
+    def tell(done: float) -> None:
+        progress.start()
+        progress.update(task, completed=done)
+        if done >= 1.0:
+            progress.stop()
+
+    try:
+        yield tell
+    finally:
+        progress.stop()
+
+
+def _why_not_kept(past: LookBack) -> str:
+    if past.incident.closed_ns is None:
+        return "the incident is open"
+    return "the disk takes nothing" if past.keeps else "nothing is written to what was given"
+
+
+def _warn(line: str) -> None:
+    typer.echo(line, err=True)
 
 
 def _announce(line: str) -> None:

@@ -1,4 +1,4 @@
-"""The first administrator: made at the first start, with a password of its own."""
+"""Administrators that the program makes itself: at a station's first start, and for a replay."""
 
 from __future__ import annotations
 
@@ -20,7 +20,20 @@ def ensure_administrator(accounts: Accounts, note: Path) -> str | None:
     """
     if accounts.users():
         return None
-    password = "-".join(secrets.token_hex(2) for _ in range(5))
+    password = _password()
     write_atomically(note, f"username: {USERNAME}\npassword: {password}\n".encode())
     accounts.add_user(USERNAME, password, Role.ADMINISTRATOR)
     return password
+
+
+def add_own_login(accounts: Accounts) -> tuple[str, str]:
+    """Name and password of an administrator more, of a copy of a station's accounts: whoever looks
+    at what was given to them has none there.
+    """
+    username, password = f"replay-{secrets.token_hex(2)}", _password()
+    accounts.add_user(username, password, Role.ADMINISTRATOR)
+    return username, password
+
+
+def _password() -> str:
+    return "-".join(secrets.token_hex(2) for _ in range(5))

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
+from base_station.app.given import open_given
 from base_station.app.parts import past_pipeline, project_whole_log
 from base_station.assessment.wearers import wearers
 from base_station.db.accounts import Accounts
@@ -16,7 +17,6 @@ from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.smoothed import SmoothedTracks
 from base_station.db.store import Store
-from base_station.feed import LogFeed
 from base_station.forgetting.desk import forget_now
 from base_station.forgetting.forgetter import ClosedLog, Forgetter, Forgotten
 from base_station.fusion.smoother import SMOOTHERS
@@ -42,6 +42,7 @@ class LookBack:
     records: Records
     incident: Incident
     people: Mapping[str, Sequence[str]]  # who wore each unit
+    keeps: bool  # what is worked out; else it is gone with the command
 
 
 def rebuild(data: Path, on_progress: Callable[[float], None]) -> int:
@@ -135,18 +136,26 @@ def _ask_nobody(_unit_id: str, _question: str) -> None:
     return None
 
 
-def look_back(data: Path, incident_id: str, closing: ExitStack) -> LookBack:
-    """A past incident, beside a running station or without one."""
-    folder = DataFolder(data)
-    folder.require()
-    store = closing.enter_context(Store(folder.database))
+def look_back(
+    data: Path,
+    incident_id: str,
+    closing: ExitStack,
+    tell: Callable[[str], None],
+    on_progress: Callable[[float], None],
+) -> LookBack:
+    """A past incident, beside a running station or without one; also of what somebody gave.
+
+    ``tell`` hears in words of what of it cannot be read, ``on_progress`` the fraction done where
+    the log must be read first.
+    """
+    given = open_given(data, incident_id, closing, tell, on_progress, in_place=True)
     clock = SystemClock()
-    records = Records(store, clock)
+    records = Records(given.store, clock)
     incident = records.require_incident(incident_id)
-    log = LogFeed(folder.log)
-    archive = Archive(log.records, Checkpoints(folder.checkpoints), past_pipeline, log.watch)
-    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
-    return LookBack(hindsight, records, incident, wearers(Roster(store, clock), incident))
+    archive = Archive(given.log.records, given.checkpoints(), past_pipeline, given.log.watch)
+    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(given.store), clock)
+    people = wearers(Roster(given.store, clock), incident)
+    return LookBack(hindsight, records, incident, people, given.keeps)
 
 
 def open_accounts(data: Path, closing: ExitStack) -> tuple[Accounts, Records]:

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
+from base_station.accounts.first_login import add_own_login
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.api.server import ConsoleServer, bind, serve_until_stopped
 from base_station.api.services import Services
+from base_station.app.given import open_given
 from base_station.app.parts import (
     Announce,
-    announce_first_login,
     past_pipeline,
-    project_whole_log,
     replay_starter,
 )
 from base_station.config import StationConfig, host_and_port
@@ -26,10 +25,7 @@ from base_station.db.base_maps import BaseMaps
 from base_station.db.records import Records
 from base_station.db.roster import Roster
 from base_station.db.smoothed import SmoothedTracks
-from base_station.db.store import Store, copy_database
-from base_station.feed import LogFeed
 from base_station.fusion.smoother import SMOOTHERS
-from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
 from base_station.past.read_only import ReadOnlyGate
@@ -38,29 +34,29 @@ from shared.clock import SystemClock
 
 
 def run_replay_station(
-    config: StationConfig, incident_id: str, speed: float, announce: Announce
+    config: StationConfig,
+    incident_id: str,
+    speed: float,
+    announce: Announce,
+    on_progress: Callable[[float], None],
 ) -> None:
     """A station that shows one past incident, and writes nothing to the folder.
 
-    A live station may be running on it: the database is copied first.
+    A live station may be running on it: the database is copied first.  ``on_progress`` hears the
+    fraction done of reading the log, where that must be.
     """
     clock = SystemClock()
-    folder = DataFolder(config.data)
-    folder.require()
     with ExitStack() as closing:
-        scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-replay-")))
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
-        copy_database(folder.database, scratch / "station.sqlite")
-        store = closing.enter_context(Store(scratch / "station.sqlite"))
+        given = open_given(config.data, incident_id, closing, announce, on_progress, in_place=False)
+        folder, store, log = given.folder, given.store, given.log
         accounts, records = Accounts(store, clock), Records(store, clock)
         roster, hub = Roster(store, clock), Hub()
-        if not records.incidents():
-            announce("the database has no incident; the log is read for this replay")
-            project_whole_log(store, folder.log, lambda _: None)
         incident = records.require_incident(incident_id)
-        announce_first_login(accounts, scratch / "first-login.txt", announce)
+        username, password = add_own_login(accounts)
+        announce(f"login for this replay: {username}  password: {password}")
 
-        archive = _archive(folder, scratch)
+        archive = Archive(log.records, given.checkpoints(), past_pipeline)
         recorded_until_ns = partial(_recorded_until_ns, folder)
         replays = Replays(replay_starter(archive, roster, clock, recorded_until_ns))
         services = Services(
@@ -83,12 +79,6 @@ def run_replay_station(
         )
         server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
         asyncio.run(serve_until_stopped(server, announce))
-
-
-def _archive(folder: DataFolder, scratch: Path) -> Archive:
-    """Begins at what the station saved, where it did; nothing is saved beside it."""
-    saved = folder.checkpoints if folder.checkpoints.is_dir() else scratch / "checkpoints"
-    return Archive(LogFeed(folder.log).records, Checkpoints(saved), past_pipeline)
 
 
 def _recorded_until_ns(folder: DataFolder) -> int:

@@ -4,7 +4,13 @@ read as they are, complete, growing, torn or damaged.  The only package that imp
 
 from __future__ import annotations
 
-from shared.mcap_log.folder import segment_began_ns, segment_paths, segments_within
+from shared.mcap_log.folder import (
+    segment_began_ns,
+    segment_number,
+    segment_path,
+    segment_paths,
+    segments_within,
+)
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.recovery import Recovery, recover_log
 from shared.mcap_log.rewriting import remove_torn, rewrite_segment
@@ -39,6 +45,8 @@ __all__ = [
     "remove_torn",
     "rewrite_segment",
     "segment_began_ns",
+    "segment_number",
+    "segment_path",
     "segment_paths",
     "segments_within",
     "wire_type_of",

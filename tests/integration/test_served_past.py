@@ -120,7 +120,7 @@ def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
         tmp_path / "copied.txt", "replay", incident_id, "--data", str(copy), *flags
     ) as replaying:
         replaying.wait_ready()
-        assert "first login" in replaying.said()
+        assert "login for this replay" in replaying.said()
         assert replaying.stop() == 0
     assert [path.name for path in copy.iterdir()] == ["log"]
     with Command(

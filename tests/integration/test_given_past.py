@@ -1,0 +1,227 @@
+"""An incident as somebody else gave it: of another machine, of its log alone, or not whole."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import ExitStack, closing
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from typer.testing import CliRunner, Result
+
+from base_station.accounts.principals import Role
+from base_station.app import folder as station_app
+from base_station.app.given import open_given
+from base_station.cli import app
+from base_station.db.accounts import Accounts
+from base_station.db.records import Records
+from base_station.db.store import Store
+from shared.clock import SystemClock
+from shared.errors import LogError, UserError
+from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_paths
+from shared.messages.station import CloseIncident, OpenIncident
+from tests.round_walk import Walk
+from tests.station_command import Command
+from tests.station_script import Record, Script
+
+POLICY = SegmentPolicy(segment_s=60.0)
+
+
+def walked() -> list[Record]:
+    """Two units in an incident of five minutes."""
+    walk = Walk("FF-01", "FF-02", turn_rad=0.5)
+    for unit_id in walk.units:
+        walk.start(unit_id)
+    walk.go(300)
+    walk.script.act(CloseIncident("i1"))
+    walk.script.wait(1.0)
+    return walk.script.records
+
+
+def _log(folder: Path, records: list[Record], policy: SegmentPolicy | None = None) -> None:
+    with closing(SegmentWriter(folder / "log", policy or SegmentPolicy())) as log:
+        for record in records:
+            log.write(*record)
+
+
+@pytest.fixture(scope="module")
+def given(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log alone, in several segments."""
+    folder = tmp_path_factory.mktemp("given")
+    _log(folder, walked(), POLICY)
+    assert len(segment_paths(folder / "log")) > 3
+    return folder
+
+
+@pytest.fixture
+def copy(given: Path, tmp_path: Path) -> Path:
+    shutil.copytree(given, tmp_path / "copy")
+    return tmp_path / "copy"
+
+
+def run(command: str, incident_id: str, data: Path) -> Result:
+    return CliRunner().invoke(app, [command, incident_id, "--data", str(data)])
+
+
+def files_of(folder: Path) -> dict[str, int]:
+    return {str(one.relative_to(folder)): one.stat().st_mtime_ns for one in folder.rglob("*")}
+
+
+def test_a_log_without_a_database_is_judged_and_nothing_is_put_beside_it(copy: Path) -> None:
+    before = files_of(copy)
+    judged = run("assess", "i1", copy)
+    assert judged.exit_code == 0, judged.output
+    assert "ISO/IEC 18305" in judged.output
+    assert "FF-02" in judged.output
+    smoothed = run("smooth", "i1", copy)
+    assert smoothed.exit_code == 0, smoothed.output
+    assert "2 trails by path-graph; not kept: " in smoothed.output
+    assert files_of(copy) == before
+
+
+def test_what_never_was_is_not_asked_of_an_empty_database(copy: Path) -> None:
+    result = run("assess", "i9", copy)
+    assert isinstance(result.exception, UserError)
+    assert "i1 (" in str(result.exception)
+
+
+def test_the_log_can_be_given_by_itself_and_its_files_under_any_name(
+    given: Path, tmp_path: Path
+) -> None:
+    assert run("assess", "i1", given / "log").exit_code == 0
+    renamed = tmp_path / "from the drive"
+    renamed.mkdir()
+    for name, path in zip("edcbafghijk", segment_paths(given / "log"), strict=False):
+        shutil.copy(path, renamed / f"mill lane {name}.mcap")
+    judged = run("assess", "i1", renamed)
+    assert judged.exit_code == 0, judged.output
+    assert judged.output == run("assess", "i1", given).output
+
+
+def test_one_file_is_enough_where_all_of_it_is_in_that(tmp_path: Path) -> None:
+    _log(tmp_path, walked())
+    (path,) = segment_paths(tmp_path / "log")
+    path = path.rename(tmp_path / "evidence 7.mcap")
+    judged = run("assess", "i1", path)
+    assert judged.exit_code == 0, judged.output
+    assert "FF-02" in judged.output
+
+
+def test_what_is_no_log_is_said(given: Path, tmp_path: Path) -> None:
+    def refusal(data: Path) -> str:
+        result = run("assess", "i1", data)
+        assert isinstance(result.exception, LogError)
+        return str(result.exception)
+
+    nothing = tmp_path / "nothing.mcap"
+    nothing.write_bytes(b"%PDF-1.7 no log at all" * 1000)
+    assert "nothing in nothing.mcap can be read" in refusal(nothing)
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    assert "there is no station's log" in refusal(empty)
+    assert "there is no station's log" in refusal(tmp_path / "away")
+    twice = tmp_path / "twice"
+    twice.mkdir()
+    first = segment_paths(given / "log")[0]
+    shutil.copy(first, twice / "a.mcap")
+    shutil.copy(first, twice / "b.mcap")
+    assert "a.mcap and b.mcap are of the same time" in refusal(twice)
+
+
+@pytest.fixture
+def told() -> list[str]:
+    return []
+
+
+@pytest.fixture
+def closing_at_end() -> Iterator[ExitStack]:
+    with ExitStack() as stack:
+        yield stack
+
+
+def test_what_a_log_lacks_is_told(copy: Path, told: list[str], closing_at_end: ExitStack) -> None:
+    paths = segment_paths(copy / "log")
+    paths[1].unlink()
+    paths[2].unlink()
+    torn = paths[-1]
+    torn.write_bytes(torn.read_bytes()[:-3000])
+    _open(copy, "i1", told, closing_at_end)
+    missing = [one for one in told if "missing" in one]
+    assert len(missing) == 1
+    assert missing[0].startswith("segments 2 to 3 of the log are missing: what happened from 2023-")
+    assert any(one.startswith(torn.name) for one in told)
+
+
+def test_a_whole_log_has_nothing_to_tell_of(
+    copy: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    station_app.rebuild(copy, lambda _: None)
+    opened = _open(copy, "i1", told, closing_at_end)
+    assert told == []
+    assert opened.keeps
+    segment_paths(copy / "log")[-1].unlink()
+    _open(copy, "i1", told, closing_at_end)
+    assert any("missing" in one for one in told), "only the database knows of it"
+
+
+def test_damage_is_told_when_it_is_come_by_and_once(
+    copy: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    station_app.rebuild(copy, lambda _: None)
+    path = segment_paths(copy / "log")[1]
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 0xFF
+    path.write_bytes(data)
+    opened = _open(copy, "i1", told, closing_at_end)
+    for _ in range(2):
+        assert list(opened.log.records())
+    assert len([one for one in told if path.name in one]) == 1
+
+
+def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
+    tmp_path: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    """As where the log was copied again and the database was not."""
+    script = Script()
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.wait(1.0)
+    script.act(CloseIncident("i1"))
+    half = len(script.records)
+    script.wait(100.0)
+    script.act(OpenIncident("i2", "Church Street"))
+    script.wait(1.0)
+    _log(tmp_path, script.records[:half])
+    station_app.rebuild(tmp_path, lambda _: None)
+    _log(tmp_path, script.records[half:])
+    opened = _open(tmp_path, "i2", told, closing_at_end)
+    assert Records(opened.store, SystemClock()).require_incident("i2").name == "Church Street"
+    assert not opened.keeps
+    assert Records(_open(tmp_path, "i1", told, closing_at_end).store, SystemClock()).incident("i1")
+
+
+def _open(data: Path, incident_id: str, told: list[str], stack: ExitStack) -> Any:
+    return open_given(data, incident_id, stack, told.append, lambda _: None, in_place=True)
+
+
+def test_whoever_was_given_another_stations_folder_can_log_in(copy: Path, tmp_path: Path) -> None:
+    """Nobody here knows its passwords, and they are not to be changed in what was given."""
+    station_app.rebuild(copy, lambda _: None)
+    with Store(copy / "station.sqlite") as store:
+        accounts = Accounts(store, SystemClock())
+        accounts.add_user("replay", "only the others know it", Role.ADMINISTRATOR)
+    flags = ("--data", str(copy), "--http", "127.0.0.1:0")
+    with Command(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
+        address = replaying.wait_ready()
+        (line,) = (one for one in replaying.said().splitlines() if "login" in one)
+        _, username, password = (part.split()[0] for part in line.split(": "))
+        with httpx.Client(base_url=f"{address}/api/v1", headers={"Origin": address}) as client:
+            login = {"username": username, "password": password}
+            assert client.post("/login", json=login).is_success
+            assert client.get("/incidents/i1/alarms").is_success
+        assert replaying.stop() == 0
+    with Store(copy / "station.sqlite") as store:
+        names = [one.username for one in Accounts(store, SystemClock()).users()]
+    assert names == ["replay"]
