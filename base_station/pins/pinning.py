@@ -34,7 +34,7 @@ from base_station.pins.evidence import (
 )
 from base_station.pins.pin import WAITING, Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.storeys import floor_at
+from base_station.site.storeys import FLOOR_STD_M, floor_at
 from base_station.units.trail import TRAIL_POINTS, TrailStep
 from shared.clock import NS_PER_S
 
@@ -119,15 +119,16 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
 
 def _judge(state: StationState, pin_id: str, found: Mapping[str, PinVerdict]) -> None:
     """The worst of what those make of a pin whom it is about.  Of a meeting perhaps only one was
-    solved now: the other's word stands.
+    solved now: the other's word stands.  It may place one of them, and tell nothing of the other.
     """
     of_units = {**dict(state.pin_verdicts.get(pin_id, WAITING).of_units), **found}
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
-    verdict = msgspec.structs.replace(worst, of_units=tuple(of_units.items()))
+    text = worst.text or next((one.text for one in of_units.values() if one.text), "")
+    verdict = msgspec.structs.replace(worst, text=text, of_units=tuple(of_units.items()))
     state.pin_verdicts[pin_id] = verdict
 
 
-_SEVERITY = {"used": 0, "waiting": 1, "conflict": 2}
+_SEVERITY = {"waiting": 0, "used": 1, "conflict": 2}
 
 
 def trail_of(state: StationState, points: PathArrays, places_m: Floats) -> list[TrailStep]:
@@ -220,6 +221,8 @@ def _met(
         north_m=float(path.north_m[row]),
         east_m=float(path.east_m[row]),
         std_m=math.hypot(pin.std_m, spread_m),
+        down_m=float(path.down_m[row]),
+        down_std_m=math.hypot(FLOOR_STD_M, float(path.std_down_m[row])),
     )
 
 

@@ -7,9 +7,11 @@ from collections.abc import Callable
 
 import pytest
 
+from base_station.fusion.smoother import SMOOTHERS
+from base_station.pins.evidence import evidence_of_all, ties_of
 from base_station.pins.pin import PinVerdict
 from shared.messages import FusedPosition
-from shared.messages.pins import RemovePin, SetPin, StartTogether
+from shared.messages.pins import RemovePin, SetMeeting, SetPin, StartTogether
 from shared.messages.station import SetPlan, SetStart
 from tests.round_walk import PLAN
 from tests.station_script import Script
@@ -28,18 +30,25 @@ def tower(storeys: int) -> bytes:
 class Wearer:
     """One who walks on the level at 1 m/s, and climbs when told to."""
 
-    def __init__(self, storeys: int = 2) -> None:
-        self.script = Script()
-        self.script.register("FF-01")
+    def __init__(
+        self, storeys: int = 2, unit_id: str = "FF-01", script: Script | None = None
+    ) -> None:
+        self.script = script or Script()
+        self.unit_id = unit_id
+        self.script.register(unit_id)
         self.script.act(SetPlan(tower(storeys)))
         self.walked_m = self.down_m = 0.0
 
     def go(self, seconds: int, climbed_m: float = 0.0) -> None:
         for _ in range(seconds):
             self.script.now_s += 1.0
-            self.walked_m += 1.0
-            self.down_m -= climbed_m / seconds
-            self.script.position("FF-01", *self.place, down_m=self.down_m, distance_m=self.walked_m)
+            self.step(climbed_m / seconds)
+
+    def step(self, climbed_m: float = 0.0) -> None:
+        self.walked_m += 1.0
+        self.down_m -= climbed_m
+        walked = {"down_m": self.down_m, "distance_m": self.walked_m}
+        self.script.position(self.unit_id, *self.place, **walked)
 
     @property
     def place(self) -> tuple[float, float]:
@@ -48,21 +57,27 @@ class Wearer:
         return 5.0 + min(along, 40.0 - along), 10.0
 
     def start(self) -> None:
-        self.script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.3, 0.05))
+        self.script.act(SetStart(self.unit_id, 0.0, 0.0, 0.0, 0.0, 0.3, 0.05))
 
     def pin(self, pin_id: str, floor: int | None, note: str = "") -> PinVerdict:
         place = self.place
         self.script.act(
-            SetPin(pin_id, "FF-01", self.script.t_ns, *place, 0.5, floor, None, 0.0, note)
+            SetPin(pin_id, self.unit_id, self.script.t_ns, *place, 0.5, floor, None, 0.0, note)
         )
         return self.verdict(pin_id)
 
     def verdict(self, pin_id: str) -> PinVerdict:
         return self.script.pipeline.state.pin_verdicts[pin_id]
 
+    def smoothed(self) -> dict[str, list[float]]:
+        """Heights by unit, as they are known afterwards."""
+        state = self.script.pipeline.state
+        solution = SMOOTHERS[0].smooth(evidence_of_all(state, None), ties_of(state))
+        return {one: path.down_m.tolist() for one, path in solution.paths.items()}
+
     @property
     def fused(self) -> FusedPosition:
-        fused = self.script.pipeline.state.units["FF-01"].fused
+        fused = self.script.pipeline.state.units[self.unit_id].fused
         assert fused is not None
         return fused
 
@@ -168,3 +183,58 @@ def test_one_wrong_floor_is_not_believed_after_a_long_time_either() -> None:
     assert before.floor_probability > 0.99
     assert wearer.pin("p", 1).state == "conflict"
     assert (wearer.fused.floor, wearer.fused.down_m) == (0, before.down_m)
+
+
+def two(seconds: int) -> tuple[Wearer, Wearer]:
+    """They walk together, up a tower."""
+    one = Wearer(storeys=10)
+    other = Wearer(storeys=10, unit_id="FF-02", script=one.script)
+    go_together(one, other, seconds)
+    return one, other
+
+
+def go_together(one: Wearer, other: Wearer, seconds: int) -> None:
+    for _ in range(seconds):
+        one.script.now_s += 1.0
+        one.step()
+        other.step()
+
+
+def meet(one: Wearer, other: Wearer) -> None:
+    t_ns = one.script.t_ns
+    one.script.act(SetMeeting("m", one.unit_id, other.unit_id, t_ns, 1.0, ""))
+
+
+def test_who_met_somebody_is_on_the_same_floor() -> None:
+    """Nothing else tells how high he was switched on: no satellites, and no start."""
+    one, other = two(30)
+    one.pin("p", 7)
+    meet(one, other)
+    assert one.verdict("m").state == "used"
+    assert (one.fused.floor, other.fused.floor) == (7, 7)
+    assert other.fused.down_m == pytest.approx(-7 * STOREY_M, abs=0.5)
+    smoothed = one.smoothed()
+    for unit_id in ("FF-01", "FF-02"):
+        assert smoothed[unit_id][-1] == pytest.approx(-7 * STOREY_M, abs=0.5)
+
+
+def test_nobody_met_somebody_on_another_floor() -> None:
+    one, other = two(30)
+    other.start()
+    one.pin("p", 7)
+    meet(one, other)
+    assert one.verdict("m").state == "conflict"
+    assert (one.fused.floor, other.fused.floor) == (7, 0)
+    smoothed = one.smoothed()
+    assert smoothed["FF-01"][-1] == pytest.approx(-7 * STOREY_M, abs=0.5)
+    assert smoothed["FF-02"][-1] == pytest.approx(0.0, abs=0.5)
+
+
+def test_who_does_not_know_his_floor_tells_nobody_of_it() -> None:
+    """Both were switched on somewhere; that one of them was on the ground would be a guess."""
+    one, other = two(30)
+    meet(one, other)
+    go_together(one, other, 10)
+    assert other.pin("p", 7).state == "used"
+    assert (one.fused.floor, other.fused.floor) == (7, 7)
+    assert one.verdict("m").state == "used"

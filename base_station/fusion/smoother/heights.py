@@ -33,9 +33,15 @@ ANY_FLOOR_M = 100.0  # standard deviation of where somebody was switched on: up 
 class Solved:
     """A row a point."""
 
+    t_ns: Ints
     down_m: Floats
     std_m: Floats
     shift: tuple[float, float | None]  # at the last one, and its std; None: no place says anything
+
+    def at(self, t_ns: int) -> tuple[float, float]:
+        """Down and its standard deviation then."""
+        row = min(int(np.searchsorted(self.t_ns, t_ns)), len(self.t_ns) - 1)
+        return float(self.down_m[row]), float(self.std_m[row])
 
 
 @dataclass(frozen=True)
@@ -103,7 +109,8 @@ class Heights:
         """By all places that tell one."""
         path, told = self.path, telling(places)
         if not told:
-            return Solved(path.down_m, _stated_m(path), (0.0, None))
+            doubt_m = ANY_FLOOR_M if self.assumed else 0.0
+            return Solved(path.t_ns, path.down_m, np.hypot(_stated_m(path), doubt_m), (0.0, None))
         begin_m2, grown_m2 = self._doubted(told)
         diagonal, right = np.zeros(len(path)), np.zeros(len(path))
         diagonal[0] += 1.0 / begin_m2
@@ -116,7 +123,7 @@ class Heights:
         banded = np.vstack((np.concatenate(([0.0], -1.0 / grown_m2)), diagonal))
         shift = solveh_banded(banded[-len(path) :], right)  # a single point has nothing beside it
         std = np.sqrt(_variances(diagonal, -1.0 / grown_m2))
-        return Solved(path.down_m + shift, std, (float(shift[-1]), float(std[-1])))
+        return Solved(path.t_ns, path.down_m + shift, std, (float(shift[-1]), float(std[-1])))
 
     def _doubted(self, places: Sequence[PlaceSeen]) -> tuple[float, Floats]:
         """By how much the beginning and each step may be wrong, where these places are believed:

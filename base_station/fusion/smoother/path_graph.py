@@ -6,6 +6,7 @@ then are live estimates and walls heeded, which may have held somebody in the wr
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -35,6 +36,7 @@ from base_station.fusion.smoother.port import (
 from base_station.fusion.smoother.stairs import find_stairs
 from base_station.fusion.smoother.trail import trail_of
 from base_station.fusion.smoother.walls import Pieces, Words
+from base_station.site.storeys import FLOOR_STD_M
 
 Floats = NDArray[np.float64]
 
@@ -72,6 +74,7 @@ class _Solving:
         self._units = units
         self._ties = [t for t in ties if t.unit_id in units and t.other_id in units]
         self._verdicts: dict[str, Verdict] = {}
+        self._met: dict[str, list[PlaceSeen]] = {unit_id: [] for unit_id in units}  # how high
         chains = {
             unit_id: Chain.of(one, kind.noise, kind.knot_m, kind.knot_s)
             for unit_id, one in units.items()
@@ -193,10 +196,31 @@ class _Solving:
             apart_m = graph.visited.apart_m(meeting)
             sigmas = apart_m / tie.std_m
             self._verdicts[tie.name] = Verdict(sigmas**2 <= GATE2, apart_m, sigmas)
+        self._tell_heights()
         spreads = graph.spreads()
         on_plan = graph.spreads(on_plan=True) if graph.words else spreads
         paths = {one: self._trail(one, spreads[one], on_plan[one]) for one in self._units}
         return Solution(paths, self._verdicts)
+
+    def _tell_heights(self) -> None:
+        """Who met somebody is as high as the other is by all else that is known of that one; two
+        who were on different floors have not met.
+        """
+        places, who = self._graph.places, {one for tie in self._ties for one in _both(tie)}
+        alone = {one: Heights.of(self._units[one]).solve(places[one]) for one in sorted(who)}
+        for tie in self._ties:
+            if not self._verdicts[tie.name].used:
+                continue
+            (down_m, std_m), (other_m, other_std_m) = (
+                alone[one].at(tie.t_ns) for one in _both(tie)
+            )
+            above_m = other_m - down_m
+            sigmas = abs(above_m) / math.hypot(std_m, other_std_m, FLOOR_STD_M)
+            if sigmas**2 > GATE2:
+                self._verdicts[tie.name] = Verdict(False, abs(above_m), sigmas, above_m=above_m)
+                continue
+            self._met[tie.unit_id].append(_beside(tie, other_m, other_std_m))
+            self._met[tie.other_id].append(_beside(tie, down_m, std_m))
 
     def _judge_used(self, unit_id: str, used: Sequence[PlaceSeen]) -> None:
         apart_m = self._graph.residuals_m(unit_id, used)
@@ -212,8 +236,19 @@ class _Solving:
         if unit_id in graph.words:
             now[:2] += graph.common.plan_m
             known = on_plan[-1, :WALKED, :WALKED]
-        heights = Heights.of(self._units[unit_id]).solve(graph.places[unit_id])
+        told = [*graph.places[unit_id], *self._met[unit_id]]
+        heights = Heights.of(self._units[unit_id]).solve(told)
         return trail_of(chain, belief, spreads, least_m, heights, (now, known))
+
+
+def _both(tie: Tie) -> tuple[str, str]:
+    return tie.unit_id, tie.other_id
+
+
+def _beside(tie: Tie, down_m: float, std_m: float) -> PlaceSeen:
+    """What somebody tells of how high the other was; of where, the graph knows already."""
+    down_std_m = math.hypot(std_m, FLOOR_STD_M)
+    return PlaceSeen(tie.name, tie.t_ns, 0.0, 0.0, math.inf, down_m, down_std_m)
 
 
 def _refused(
