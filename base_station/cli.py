@@ -258,19 +258,18 @@ def _bar(what: str) -> Iterator[Callable[[float], None]]:
     """Shown from when it is first told of until all is done."""
     from rich.progress import Progress  # noqa: PLC0415
 
-    progress = Progress(transient=True)
-    task = progress.add_task(what, total=1.0)
+    with ExitStack() as shown:
+        progress = Progress(transient=True)
+        task = progress.add_task(what, total=1.0)
 
-    def tell(done: float) -> None:
-        progress.start()
-        progress.update(task, completed=done)
-        if done >= 1.0:
-            progress.stop()
+        def tell(done: float) -> None:
+            if not progress.live.is_started:
+                shown.enter_context(progress)
+            progress.update(task, completed=done)
+            if done >= 1.0:
+                shown.close()
 
-    try:
         yield tell
-    finally:
-        progress.stop()
 
 
 def _why_not_kept(past: LookBack) -> str:

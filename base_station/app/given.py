@@ -86,11 +86,15 @@ def open_given(
 def _folder_of(path: Path, scratch: Path) -> DataFolder:
     """Files of a log, whatever they are called now, are put in order beside each other."""
     folder = DataFolder(path)
-    if folder.log.is_dir():
+    if segment_paths(folder.log):
         return folder
-    files = [path] if path.is_file() else sorted(path.glob("*.mcap"))
+    among = folder.log if folder.log.is_dir() else path
+    files = [path] if path.is_file() else sorted(among.glob("*.mcap"))
     if not files:
-        folder.require()
+        raise LogError(
+            f"there is no station's log in {path}; give the station's folder, its log/ or .mcap "
+            "files of that with --data"
+        )
     segments = sorted(_readable(files), key=lambda one: one.start_ns)
     if not segments:
         names = ", ".join(file.name for file in files)

@@ -96,6 +96,8 @@ def test_the_log_can_be_given_by_itself_and_its_files_under_any_name(
     renamed.mkdir()
     for name, path in zip("edcbafghijk", segment_paths(given / "log"), strict=False):
         shutil.copy(path, renamed / f"mill lane {name}.mcap")
+    shutil.copytree(renamed, tmp_path / "tidy" / "log")
+    assert run("assess", "i1", tmp_path / "tidy").exit_code == 0
     judged = run("assess", "i1", renamed)
     assert judged.exit_code == 0, judged.output
     assert judged.output == run("assess", "i1", given).output
@@ -121,6 +123,8 @@ def test_what_is_no_log_is_said(given: Path, tmp_path: Path) -> None:
     assert "nothing in nothing.mcap can be read" in refusal(nothing)
     empty = tmp_path / "empty"
     empty.mkdir()
+    assert "there is no station's log" in refusal(empty)
+    (empty / "log").mkdir()
     assert "there is no station's log" in refusal(empty)
     assert "there is no station's log" in refusal(tmp_path / "away")
     twice = tmp_path / "twice"
