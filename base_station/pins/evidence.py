@@ -117,6 +117,7 @@ def place_of(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen |
         down_std_m=math.hypot(FLOOR_STD_M, 0.0 if storey is None else storey.std_m),
         heading_rad=pin.heading_rad,
         heading_std_rad=pin.heading_std_rad,
+        source=pin.other_id,
     )
 
 

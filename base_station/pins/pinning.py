@@ -223,6 +223,7 @@ def _met(
         std_m=math.hypot(pin.std_m, spread_m),
         down_m=float(path.down_m[row]),
         down_std_m=math.hypot(FLOOR_STD_M, float(path.std_down_m[row])),
+        source=other_id,
     )
 
 

@@ -10,8 +10,8 @@ import pytest
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.pins.evidence import evidence_of_all, ties_of
 from base_station.pins.pin import PinVerdict
-from shared.messages import FusedPosition
-from shared.messages.pins import RemovePin, SetMeeting, SetPin, StartTogether
+from shared.messages import FusedPosition, Sighting, SightingKind
+from shared.messages.pins import PlaceBeacon, RemovePin, SetMeeting, SetPin, StartTogether
 from shared.messages.station import SetPlan, SetStart
 from tests.round_walk import PLAN
 from tests.station_script import Script
@@ -238,3 +238,21 @@ def test_who_does_not_know_his_floor_tells_nobody_of_it() -> None:
     assert other.pin("p", 7).state == "used"
     assert (one.fused.floor, other.fused.floor) == (7, 7)
     assert one.verdict("m").state == "used"
+
+
+@pytest.mark.parametrize(("beacons", "floor"), [(("a", "a", "a"), 0), (("a", "b"), 1)])
+def test_a_beacon_on_a_wrong_floor_is_one_that_says_so_however_often_it_is_passed(
+    beacons: tuple[str, ...], floor: int
+) -> None:
+    wearer = Wearer()
+    wearer.start()
+    for beacon_id in sorted(set(beacons)):
+        wearer.script.act(PlaceBeacon(beacon_id, "", *wearer.place, 1, 0.5, 3.0))
+    for beacon_id in beacons:
+        wearer.go(40)
+        header = wearer.script.header("FF-01")
+        wearer.script.say(Sighting(header, SightingKind.BEACON, beacon_id, range_m=1.0))
+    wearer.script.wait(15)
+    states = {one.state for one in wearer.script.pipeline.state.pin_verdicts.values()}
+    assert states == {"used" if floor else "conflict"}
+    assert wearer.fused.floor == floor

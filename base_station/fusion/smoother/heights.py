@@ -80,8 +80,8 @@ class Heights:
         """Which of these, all of which tell a height, can be true together.
 
         Those to which the path leads as it was stated.  One wrong floor moves nobody; but a path
-        may have missed a flight of stairs, and that is believed once two say so and none between
-        them says otherwise.
+        may have missed a flight of stairs, and that is believed once two say so, not one beacon
+        twice, and none between them says otherwise.
         """
         if self.assumed:
             return agreeing(self.expected(places))
@@ -91,9 +91,11 @@ class Heights:
             return as_stated
         missed = replace(self, begin_m2=ANY_FLOOR_M**2).expected([places[row] for row in others])
         same = [others[row] for row in agreeing(missed)]
+        if len({places[row].voice for row in same}) < BELIEVED:
+            return as_stated
         times = [places[row].t_ns for row in same]
         is_denied = any(min(times) <= places[row].t_ns <= max(times) for row in as_stated)
-        return as_stated if len(same) < BELIEVED or is_denied else sorted(as_stated + same)
+        return as_stated if is_denied else sorted(as_stated + same)
 
     def off(self, place: PlaceSeen) -> tuple[float, float]:
         """How far below the path as it was estimated a place is; the same in standard deviations

@@ -34,6 +34,12 @@ class PlaceSeen:
     down_std_m: float = FLOOR_STD_M
     heading_rad: float | None = None  # of travel, in the incident frame
     heading_std_rad: float = 0.0
+    source: str = ""  # what may say it again, and again wrong: a beacon, or somebody who was met
+
+    @property
+    def voice(self) -> str:
+        """Those of one source are one."""
+        return self.source or self.name
 
 
 @dataclass(frozen=True)
