@@ -14,9 +14,10 @@ from shared.out_file import whole
 
 
 def print_report(report: IncidentReport) -> None:
-    Console().print(_errors_table(report))
-    Console().print(_trust_table(report))
-    Console().print(_checks_table(report))
+    console = Console(markup=False, emoji=False, highlight=False)  # names are what people typed
+    console.print(_errors_table(report))
+    console.print(_trust_table(report))
+    console.print(_checks_table(report))
 
 
 def write_report(report: IncidentReport, path: Path) -> None:
@@ -68,7 +69,7 @@ def _checks_table(report: IncidentReport) -> Table:
             _closure(unit),
             ", ".join(f"{one:.1f} m" for one in unit.reentry_jumps_m),
             ", ".join(
-                f"{one.note or one.pin_id}: {one.shown_m:.1f} m"
+                f"{one.note or 'pin'}: {one.shown_m:.1f} m"
                 for one in unit.pin_residuals
                 if one.shown_m is not None
             ),
