@@ -184,3 +184,26 @@ async def test_what_came_since_is_told_until_it_is_worked_out(
         is_newest, again = await newest()
         assert is_newest
         assert again != first
+
+
+async def test_a_file_says_which_trails_it_has(
+    station: DeskStation, clock: ManualClock, make_position
+) -> None:
+    """Saved beside each other, days later they cannot be told apart otherwise."""
+    incident_id = await worked(station, clock, make_position(), closed=True)
+    async with station.client(Role.COMMANDER) as commander:
+        anchor = {"lat_deg": 52.0, "lon_deg": 4.0, "height_m": 0.0, "plan_rotation_rad": 0.0}
+        assert (await commander.put("/site/anchor", json=anchor)).is_success
+        saved = {
+            kind: await commander.get(f"/incidents/{incident_id}/export/gpx", params={"kind": kind})
+            for kind in ("fused", "smoothed", "raw")
+        }
+    names = [answer.headers["content-disposition"] for answer in saved.values()]
+    assert names == [
+        f'attachment; filename="{incident_id}.gpx"',
+        f'attachment; filename="{incident_id}-smoothed.gpx"',
+        f'attachment; filename="{incident_id}-raw.gpx"',
+    ]
+    assert "<name>Mill Lane, as it was shown</name>" in saved["fused"].text
+    assert "<name>Mill Lane, as it is known afterwards</name>" in saved["smoothed"].text
+    assert "<name>Mill Lane, by the units' own paths alone</name>" in saved["raw"].text

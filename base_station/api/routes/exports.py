@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import msgspec
 from fastapi import APIRouter, Response
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
@@ -18,6 +19,12 @@ from base_station.exporters.incident import incident_tracks
 from shared.errors import StoreError
 
 router = APIRouter(tags=["exports"])
+
+_IN_WORDS = {
+    TrailKind.RAW: "by the units' own paths alone",
+    TrailKind.FUSED: "as it was shown",
+    TrailKind.SMOOTHED: "as it is known afterwards",
+}  # in a file that has a name
 
 
 class Format(BaseModel):
@@ -55,13 +62,17 @@ def _export(
         raise Problem(404, f"There is no format {format_name}; formats are {known}.")
     incident = incident_or_404(station, incident_id)
     _, trails = trails_of(station, incident, kind)
-    body = exporter.export(incident_tracks(station.records, station.roster, incident, trails))
+    tracks = incident_tracks(station.records, station.roster, incident, trails)
+    body = exporter.export(
+        msgspec.structs.replace(tracks, name=f"{incident.name}, {_IN_WORDS[kind]}")
+    )
     try:
         station.records.audit(
             who.username, "Exported", f"{incident_id} ({kind.value}) as {format_name}"
         )
     except StoreError as error:
         raise Problem(503, f"Nothing is given out that the audit cannot say: {error}.") from error
-    file_name = f"{incident_id}.{exporter.suffix}"
+    which = "" if kind is TrailKind.FUSED else f"-{kind.value}"
+    file_name = f"{incident_id}{which}.{exporter.suffix}"
     headers = {"Content-Disposition": f'attachment; filename="{file_name}"'}
     return Response(body, media_type=exporter.media_type, headers=headers)
