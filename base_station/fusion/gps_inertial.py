@@ -265,7 +265,9 @@ class GpsInertialFuser:
         memory = self._memory
         known = 0.0 < away_s < math.inf
         back_ns = last_ns + round(away_s * NS_PER_S) - t_ns if known else max(0, last_ns - t_ns)
-        self._horizontal.spread(self._kind.restart_m**2 + (roamed_m(away_s) / RADII_95) ** 2)
+        roamed_std_m = roamed_m(away_s) / RADII_95
+        self._horizontal.spread(self._kind.restart_m**2 + roamed_std_m**2)
+        self._height.lose_sight(self._kind.climb_part * roamed_std_m, away_s)
         self._horizontal.forget_heading()
         memory.path = PathMemory()
         memory.trust.lose_path()

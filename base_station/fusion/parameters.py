@@ -42,6 +42,7 @@ class Parameters:
     fastest_mps: float = 12.0
     unguided_mps: float = 1.5  # how fast a wearer gets away while nothing is heard of the path
     restart_m: float = 5.0  # and how far while the unit starts again
+    climb_part: float = 0.1  # of the way that somebody got unseen, up or down
     stuck_fixes: int = 5
     stuck_m: float = 8.0
     distrust_most: int = 20

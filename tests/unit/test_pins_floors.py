@@ -256,3 +256,21 @@ def test_a_beacon_on_a_wrong_floor_is_one_that_says_so_however_often_it_is_passe
     states = {one.state for one in wearer.script.pipeline.state.pin_verdicts.values()}
     assert states == {"used" if floor else "conflict"}
     assert wearer.fused.floor == floor
+
+
+@pytest.mark.parametrize("away_s", [60.0, 600.0])
+def test_who_was_not_heard_may_have_climbed_until_the_unit_began_anew(away_s: float) -> None:
+    """Nothing tells of the time between: the floor is in doubt, and what a person says holds."""
+    wearer = Wearer()
+    wearer.start()
+    wearer.go(60)
+    assert wearer.fused.floor_probability == pytest.approx(1.0, abs=0.01)
+    wearer.script.now_s += away_s
+    wearer.script.boot_ids["FF-01"] = 8
+    wearer.walked_m = 0.0
+    wearer.go(2)
+    assert wearer.fused.floor_probability is not None
+    assert wearer.fused.floor_probability < 0.9
+    assert wearer.pin("p", 1).state == "used"
+    assert wearer.fused.floor == 1
+    assert wearer.fused.down_m == pytest.approx(-STOREY_M, abs=0.5)

@@ -28,6 +28,7 @@ Floats = NDArray[np.float64]
 
 _GATE_STD = 3.0
 _UNKNOWN_VAR_M2 = 1e4
+_UNSEEN_MOST_S = 86_400.0
 _EITHER = np.array([[1.0, 0.0, -1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 1.0]])
 _OBSERVE_LEVEL = np.array([1.0, 0.0, 0.0])
 
@@ -87,6 +88,13 @@ class HeightFilter:
         """The incident frame was moved."""
         self._mean[0] += down_m
         self._mean[2] -= down_m
+
+    def lose_sight(self, std_m: float, away_s: float) -> None:
+        """Nothing told how it went on, for so long; the next own path begins with no doubt."""
+        self._covariance[0, 0] += std_m**2
+        self._covariance[2, 2] += self._kind.weather_m_per_sqrt_s**2 * min(away_s, _UNSEEN_MOST_S)
+        self._path[kernels.SETTLED_M2] = 0.0
+        self._path[kernels.LEVEL_M] = self._path[kernels.CLIMBED_M] = 0.0
 
     def climb(
         self, down_m: float, walked_m: float, own_std_m: float = 0.0, *, moves: bool = True
