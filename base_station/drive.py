@@ -42,6 +42,8 @@ from shared.messages.station import Action, ForgetWearers, ReportProblem, SendCo
 
 TICK_NS = NS_PER_S
 SOONER_TICK_NS = TICK_NS // 4  # at most, where links come and go all the time
+STOOD_STILL_NS = 5 * NS_PER_S  # between two turns: nobody let the station run
+HEARS_FIRST_NS = 2 * NS_PER_S  # then, until its links are back
 DELTA_NS = NS_PER_S // 10  # twice as often as units say where they are
 URGENT_SOONER_NS = DELTA_NS // 2  # alarms and commands wait for half of that
 DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
@@ -86,8 +88,9 @@ class StationDrive:
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._stopping = threading.Event()
         self._unlinked: frozenset[str] = frozenset()  # as was told last
+        self._hears_first = False
         self._thread = threading.Thread(target=self._run, name="station-drive")
-        now_ns = ports.clock.monotonic_ns()
+        now_ns = self._turned_ns = ports.clock.monotonic_ns()
         self._due = _Due(now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
@@ -155,6 +158,7 @@ class StationDrive:
     # ---- in the thread
 
     def _run(self) -> None:
+        self._turned_ns = self._ports.clock.monotonic_ns()
         while not self._stopping.is_set():
             with self._watch.guarding("drive"):
                 self._turn()
@@ -198,9 +202,15 @@ class StationDrive:
     def _let_time_pass(self, now_ns: int, *, follows: bool) -> None:
         """Once a second, and sooner to tell whose link is gone."""
         due, unlinked = self._due, self._ports.unlinked()
+        turned_ns, self._turned_ns = self._turned_ns, now_ns
+        if now_ns - turned_ns > STOOD_STILL_NS and not self._hears_first:
+            # Else everybody would be lost, of whom nothing could be heard.
+            due.tick_ns = due.sooner_tick_ns = now_ns + HEARS_FIRST_NS
+            self._hears_first = True  # once: time goes on, however slow each turn is
         is_due = now_ns >= due.tick_ns
         if is_due:
             due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)
+            self._hears_first = False
         if is_due or (unlinked - self._unlinked and now_ns >= due.sooner_tick_ns):
             self._unlinked = unlinked
             due.sooner_tick_ns = now_ns + SOONER_TICK_NS
