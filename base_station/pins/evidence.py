@@ -11,13 +11,13 @@ import numpy as np
 
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.points import PathArrays
-from base_station.fusion.smoother.port import PlaceSeen, Tie, UnitEvidence
+from base_station.fusion.smoother.port import ON_FLOOR_STD_M, PlaceSeen, Tie, UnitEvidence
 from base_station.live_state import StationState
 from base_station.pins.book import BEFORE_NS
 from base_station.pins.pin import WAITING, Beacon, Pin
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import FloorSaid
-from base_station.site.storeys import FLOOR_STD_M, storey_of
+from base_station.site.storeys import storey_of
 from shared.clock import NS_PER_S
 
 NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
@@ -114,7 +114,7 @@ def place_of(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen |
         east_m=at.east_m,
         std_m=max(math.hypot(pin.std_m, beacon.std_m if beacon is not None else 0.0), SUREST_M),
         down_m=None if storey is None else storey.down_m,
-        down_std_m=math.hypot(FLOOR_STD_M, 0.0 if storey is None else storey.std_m),
+        down_std_m=math.hypot(ON_FLOOR_STD_M, 0.0 if storey is None else storey.std_m),
         heading_rad=pin.heading_rad,
         heading_std_rad=pin.heading_std_rad,
         source=pin.other_id,

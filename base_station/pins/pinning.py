@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from base_station.fusion.path.history import PathHistory
 from base_station.fusion.path.points import NO_FLOOR, PathArrays
 from base_station.fusion.smoother.port import (
+    ON_FLOOR_STD_M,
     PlaceSeen,
     SmoothedPath,
     Smoother,
@@ -34,7 +35,7 @@ from base_station.pins.evidence import (
 )
 from base_station.pins.pin import WAITING, Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.storeys import FLOOR_STD_M, floor_at
+from base_station.site.storeys import floor_at
 from base_station.units.trail import TRAIL_POINTS, TrailStep
 from shared.clock import NS_PER_S
 
@@ -222,7 +223,7 @@ def _met(
         east_m=float(path.east_m[row]),
         std_m=math.hypot(pin.std_m, spread_m),
         down_m=float(path.down_m[row]),
-        down_std_m=math.hypot(FLOOR_STD_M, float(path.std_down_m[row])),
+        down_std_m=math.hypot(ON_FLOOR_STD_M, float(path.std_down_m[row])),
         source=other_id,
     )
 

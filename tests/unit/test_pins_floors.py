@@ -20,8 +20,8 @@ STOREY_M = 3.2
 STAIRS_S = 20
 
 
-def tower(storeys: int) -> bytes:
-    floors = [{"floor": floor, "down_m": -STOREY_M * floor} for floor in range(storeys)]
+def tower(storeys: int, storey_m: float = STOREY_M) -> bytes:
+    floors = [{"floor": floor, "down_m": -storey_m * floor} for floor in range(storeys)]
     plan = json.loads(PLAN)
     plan["muster"]["floors"] = floors
     return json.dumps(plan).encode()
@@ -123,6 +123,18 @@ def test_two_floors_of_somebody_who_did_not_climb_are_not_averaged(
     assert words in verdict.text
     assert wearer.fused.floor == 0
     assert wearer.fused.down_m == pytest.approx(0.0, abs=0.1)
+
+
+@pytest.mark.parametrize("storey_m", [2.4, 3.2])
+def test_two_floors_at_the_same_time_are_not_averaged_however_low_they_are(storey_m: float) -> None:
+    wearer = Wearer()
+    wearer.script.act(SetPlan(tower(2, storey_m)))
+    wearer.go(10)
+    wearer.pin("p", 1)
+    wearer.go(1)
+    assert wearer.pin("q", 0).state == "conflict"
+    assert wearer.fused.floor == 1
+    assert wearer.fused.down_m == pytest.approx(-storey_m, abs=0.2)
 
 
 def test_of_two_floors_the_other_holds_once_one_is_removed() -> None:

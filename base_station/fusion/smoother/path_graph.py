@@ -26,6 +26,7 @@ from base_station.fusion.smoother.heights import Heights, telling
 from base_station.fusion.smoother.landmarks import Landmark
 from base_station.fusion.smoother.live_estimates import choose_shown, shown_floor_m
 from base_station.fusion.smoother.port import (
+    ON_FLOOR_STD_M,
     PlaceSeen,
     SmoothedPath,
     Solution,
@@ -36,7 +37,6 @@ from base_station.fusion.smoother.port import (
 from base_station.fusion.smoother.stairs import find_stairs
 from base_station.fusion.smoother.trail import trail_of
 from base_station.fusion.smoother.walls import Pieces, Words
-from base_station.site.storeys import FLOOR_STD_M
 
 Floats = NDArray[np.float64]
 
@@ -215,7 +215,7 @@ class _Solving:
                 alone[one].at(tie.t_ns) for one in _both(tie)
             )
             above_m = other_m - down_m
-            sigmas = abs(above_m) / math.hypot(std_m, other_std_m, FLOOR_STD_M)
+            sigmas = abs(above_m) / math.hypot(std_m, other_std_m, ON_FLOOR_STD_M)
             if sigmas**2 > GATE2:
                 self._verdicts[tie.name] = Verdict(False, abs(above_m), sigmas, above_m=above_m)
                 continue
@@ -247,7 +247,7 @@ def _both(tie: Tie) -> tuple[str, str]:
 
 def _beside(tie: Tie, down_m: float, std_m: float) -> PlaceSeen:
     """What somebody tells of how high the other was; of where, the graph knows already."""
-    down_std_m = math.hypot(std_m, FLOOR_STD_M)
+    down_std_m = math.hypot(std_m, ON_FLOOR_STD_M)
     return PlaceSeen(tie.name, tie.t_ns, 0.0, 0.0, math.inf, down_m, down_std_m)
 
 

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from base_station.fusion.path.points import PathArrays
 from base_station.fusion.port import Present, Start
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.storeys import FLOOR_STD_M
 
 Floats = NDArray[np.float64]
+
+ON_FLOOR_STD_M = 0.4  # of the height of somebody on a floor that is known
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class PlaceSeen:
     east_m: float
     std_m: float  # each axis
     down_m: float | None = None
-    down_std_m: float = FLOOR_STD_M
+    down_std_m: float = ON_FLOOR_STD_M
     heading_rad: float | None = None  # of travel, in the incident frame
     heading_std_rad: float = 0.0
     source: str = ""  # what may say it again, and again wrong: a beacon, or somebody who was met
