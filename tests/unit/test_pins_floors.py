@@ -56,8 +56,8 @@ class Wearer:
         along = self.walked_m % 40.0
         return 5.0 + min(along, 40.0 - along), 10.0
 
-    def start(self) -> None:
-        self.script.act(SetStart(self.unit_id, 0.0, 0.0, 0.0, 0.0, 0.3, 0.05))
+    def start(self, std_m: float = 0.3) -> None:
+        self.script.act(SetStart(self.unit_id, 0.0, 0.0, 0.0, 0.0, std_m, 0.05))
 
     def pin(self, pin_id: str, floor: int | None, note: str = "") -> PinVerdict:
         place = self.place
@@ -135,6 +135,18 @@ def test_two_floors_at_the_same_time_are_not_averaged_however_low_they_are(store
     assert wearer.pin("q", 0).state == "conflict"
     assert wearer.fused.floor == 1
     assert wearer.fused.down_m == pytest.approx(-storey_m, abs=0.2)
+
+
+def test_two_floors_are_not_averaged_where_each_by_itself_might_be_true() -> None:
+    """It was only said roughly how high the path begins."""
+    wearer = Wearer()
+    wearer.start(std_m=1.0)
+    wearer.go(4)
+    assert wearer.pin("p", 0).state == "used"
+    assert wearer.pin("q", 1).state == "conflict"
+    assert "the pin of 0 s before" in wearer.verdict("q").text
+    assert wearer.fused.floor == 0
+    assert wearer.fused.down_m == pytest.approx(0.0, abs=0.2)
 
 
 def test_of_two_floors_the_other_holds_once_one_is_removed() -> None:

@@ -86,6 +86,9 @@ class Heights:
         if self.assumed:
             return agreeing(self.expected(places))
         as_stated = [row for row, one in enumerate(places) if self.off(one)[1] ** 2 <= GATE2]
+        if as_stated:
+            together = agreeing(self.expected([places[row] for row in as_stated]))
+            as_stated = [as_stated[row] for row in together]
         others = [row for row in range(len(places)) if row not in as_stated]
         if len(others) < BELIEVED:
             return as_stated
