@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base_station.app.given import open_given
-from base_station.app.parts import past_pipeline, project_whole_log
+from base_station.app.parts import project_whole_log
 from base_station.assessment.wearers import wearers
 from base_station.db.accounts import Accounts
 from base_station.db.forgetting import ids_of
@@ -22,7 +22,6 @@ from base_station.forgetting.forgetter import ClosedLog, Forgetter, Forgotten
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
-from base_station.past.playback import Archive
 from base_station.recordings.desk import RecordingDesk
 from base_station.standby.places import Place
 from base_station.standby.setting_aside import set_aside
@@ -152,8 +151,7 @@ def look_back(
     clock = SystemClock()
     records = Records(given.store, clock)
     incident = records.require_incident(incident_id)
-    archive = Archive(given.log.records, given.checkpoints(), past_pipeline, given.log.watch)
-    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(given.store), clock)
+    hindsight = Hindsight(given.archive(), SMOOTHERS[0], SmoothedTracks(given.store), clock)
     people = wearers(Roster(given.store, clock), incident)
     return LookBack(hindsight, records, incident, people, given.keeps)
 

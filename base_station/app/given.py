@@ -14,11 +14,12 @@ from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from base_station.app.parts import project_whole_log
+from base_station.app.parts import past_pipeline, project_whole_log
 from base_station.db.records import Records
 from base_station.db.store import Store, copy_database, known_segments
 from base_station.feed import LogFeed
 from base_station.past.checkpoints import Checkpoints
+from base_station.past.playback import Archive
 from base_station.storage.data_folder import DataFolder
 from shared.clock import NS_PER_S, SystemClock
 from shared.errors import LogError
@@ -45,10 +46,14 @@ class Given:
     scratch: Path
     log: LogFeed
 
-    def checkpoints(self) -> Checkpoints:
-        """What the station saved, where it did; nothing is saved beside it."""
+    def archive(self) -> Archive:
+        """With what the station saved, where it did, and this program can use it; what is come by
+        is saved elsewhere: to go back is not to step an hour again.
+        """
+        own = Checkpoints(self.scratch / "checkpoints")
         saved = self.folder.checkpoints
-        return Checkpoints(saved if saved.is_dir() else self.scratch / "checkpoints")
+        theirs = Checkpoints(saved) if saved.is_dir() else own
+        return Archive(self.log.records, theirs, past_pipeline, self.log.watch, own)
 
 
 def open_given(

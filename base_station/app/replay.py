@@ -16,7 +16,6 @@ from base_station.api.services import Services
 from base_station.app.given import open_given
 from base_station.app.parts import (
     Announce,
-    past_pipeline,
     replay_starter,
 )
 from base_station.config import StationConfig, host_and_port
@@ -27,7 +26,6 @@ from base_station.db.roster import Roster
 from base_station.db.smoothed import SmoothedTracks
 from base_station.fusion.smoother import SMOOTHERS
 from base_station.past.hindsight import Hindsight
-from base_station.past.playback import Archive
 from base_station.past.read_only import ReadOnlyGate
 from base_station.storage.data_folder import DataFolder
 from shared.clock import SystemClock
@@ -49,14 +47,14 @@ def run_replay_station(
     with ExitStack() as closing:
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
         given = open_given(config.data, incident_id, closing, announce, on_progress, in_place=False)
-        folder, store, log = given.folder, given.store, given.log
+        folder, store = given.folder, given.store
         accounts, records = Accounts(store, clock), Records(store, clock)
         roster, hub = Roster(store, clock), Hub()
         incident = records.require_incident(incident_id)
         username, password = add_own_login(accounts)
         announce(f"login for this replay: {username}  password: {password}")
 
-        archive = Archive(log.records, given.checkpoints(), past_pipeline)
+        archive = given.archive()
         recorded_until_ns = partial(_recorded_until_ns, folder)
         replays = Replays(replay_starter(archive, roster, clock, recorded_until_ns))
         services = Services(

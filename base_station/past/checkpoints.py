@@ -99,6 +99,10 @@ class Checkpoints:
                 self._useless.add(path)  # a seek need not read all of them again
         return None
 
+    def has_any(self, after_ns: int, until_ns: int) -> bool:
+        """Whether one was saved of a time behind ``after_ns``, until ``until_ns``."""
+        return any(after_ns < int(path.stem) <= until_ns for path in self._paths())
+
     def _paths(self) -> list[Path]:
         """By time."""
         return sorted(path for path in self._folder.glob(f"*{SUFFIX}") if path.stem.isdecimal())

@@ -7,6 +7,7 @@ live station had decided, one by one.
 
 from __future__ import annotations
 
+import logging
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from shared.channels import ALARM, FUSED
 from shared.codec import encode
 from shared.messages import STATION_ID, AlarmChange, FusedPosition
 
+_log = logging.getLogger(__name__)
 Record = tuple[int, str, bytes]  # station time, key, payload
 OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the order of writing
 MakePipeline = Callable[[Checkpoint | None], StationPipeline]
@@ -27,6 +29,7 @@ Watch = Callable[[], Callable[[], bool]]  # what it gives tells whether the past
 Decision = FusedPosition | AlarmChange
 
 BURST = 1000  # events
+SAVED_APART = 100_000  # events: some seconds of stepping, which is what going back then takes
 _DECISIONS = frozenset(channel.key(STATION_ID) for channel in (FUSED, ALARM))
 
 
@@ -38,16 +41,24 @@ class Archive:
     checkpoints: Checkpoints
     make_pipeline: MakePipeline
     watch: Watch = lambda: lambda: False
+    own: Checkpoints | None = None  # where a playback saves the states that it comes by
 
     def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
         """The newest state that was saved of this log, as ``Checkpoints.latest``: its place is
         there.  Beside a log that was put back from a backup there may be later ones, or another's.
         """
-        while (saved := self.checkpoints.latest(until_ns, after_ns)) is not None:
+        while (saved := self._saved(until_ns, after_ns)) is not None:
             if self._has(saved):
                 return saved
             until_ns = saved.t_ns - 1
         return None
+
+    def _saved(self, until_ns: int | None, after_ns: int) -> SavedState | None:
+        found = self.checkpoints.latest(until_ns, after_ns)
+        own = None
+        if self.own is not None:
+            own = self.own.latest(until_ns, after_ns if found is None else found.t_ns)
+        return own or found
 
     def _has(self, saved: SavedState) -> bool:
         there = takewhile(lambda record: record[0] == saved.t_ns, self.open_log(saved.t_ns))
@@ -63,6 +74,10 @@ class Playback:
         self._events: Iterator[StationEvent]
         self._next: StationEvent | None
         self._at_ns: int
+        self._place: tuple[int, int]  # of the last event in the log: its time, and which of that
+        self._saved_ns: int  # until there, what can be saved is
+        self._unsaved: int  # events since
+        self._is_full = False
         self._begin(None)
 
     @property
@@ -88,8 +103,12 @@ class Playback:
             if self._next is None or self._next.t_ns > t_ns:
                 break
             outputs += self._pipeline.step(self._next)
-            self._at_ns = self._next.t_ns
+            at_ns = self._at_ns = self._next.t_ns
+            self._place = at_ns, self._place[1] + 1 if self._place[0] == at_ns else 1
+            self._unsaved += 1
             self._next = next(self._events, None)
+        if self._unsaved >= SAVED_APART:
+            self._save()
         return outputs
 
     @property
@@ -99,9 +118,23 @@ class Playback:
     def _begin(self, saved: SavedState | None) -> None:
         """Again, from a checkpoint or from the beginning of the log."""
         self._pipeline = self._archive.make_pipeline(saved.pipeline if saved else None)
-        self._at_ns, skip = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
+        self._place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
+        self._at_ns, skip = self._place
+        self._saved_ns, self._unsaved = self._at_ns, 0
         self._events = _events(self._archive.open_log(self._at_ns), self._at_ns, skip)
         self._next = next(self._events, None)
+
+    def _save(self) -> None:
+        """Where nothing is saved of the stretch that was just gone."""
+        own, since_ns = self._archive.own, self._saved_ns
+        self._saved_ns, self._unsaved = self._at_ns, 0
+        if own is None or self._is_full or own.has_any(since_ns, self._at_ns):
+            return
+        try:
+            own.save(*self._place, self._pipeline.checkpoint())
+        except OSError as error:
+            self._is_full = True
+            _log.warning("to go back in the past takes long: no state can be saved (%s)", error)
 
 
 @dataclass(frozen=True)

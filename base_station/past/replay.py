@@ -165,6 +165,8 @@ class ReplaySession:
         self._looked_ns = now_ns
         if not self._is_changed():
             return
+        if self._archive.own is not None:
+            self._archive.own.clear()  # states of a past that is another now
         self._open()
         with self._lock:
             if self._seek_ns is None:

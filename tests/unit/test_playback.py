@@ -94,3 +94,51 @@ def test_checkpoints_of_another_program_do_not_send_a_seek_back(
         for _ in again.seek(START_NS + second * NS_PER_S):
             pass
     assert opened == [0]
+
+
+def test_what_was_come_by_is_not_stepped_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the station saved nothing that this program can use: to go back is as quick."""
+    monkeypatch.setattr("base_station.past.playback.SAVED_APART", 20)
+    monkeypatch.setattr("base_station.past.playback.BURST", 7)  # ends amid those of one time
+    plain = Playback(archive(walk_with_mayday(), tmp_path / "none"))
+    source, own = archive(walk_with_mayday(), tmp_path / "theirs"), Checkpoints(tmp_path / "own")
+    opened: list[int] = []
+
+    def counting(t_ns: int) -> Iterable[Record]:
+        opened.append(t_ns)
+        return source.open_log(t_ns)
+
+    past = Archive(counting, source.checkpoints, make_pipeline, own=own)
+    playback = Playback(past)
+    saved = 0
+    for second in (100, 80, 40, 100, 79, 110, 60):
+        for one in (plain, playback):
+            for _ in one.seek(START_NS + second * NS_PER_S):
+                pass
+        assert playback.pipeline.checkpoint() == plain.pipeline.checkpoint()
+        if second == 80:
+            assert opened[-1] > START_NS + 60 * NS_PER_S
+            saved = len(list((tmp_path / "own").iterdir()))
+    assert saved > 3
+    assert list((tmp_path / "theirs").iterdir()) == []
+    assert len(list((tmp_path / "own").iterdir())) <= saved + 2  # each stretch has its own
+
+
+def test_a_disk_that_takes_no_state_only_costs_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr("base_station.past.playback.SAVED_APART", 20)
+    source, own = archive(walk_with_mayday(), tmp_path / "theirs"), Checkpoints(tmp_path / "own")
+
+    def refuse(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(own, "save", refuse)
+    playback = Playback(Archive(source.open_log, source.checkpoints, make_pipeline, own=own))
+    for second in (100, 40):
+        for _ in playback.seek(START_NS + second * NS_PER_S):
+            pass
+        assert playback.pipeline.state.t_ns == START_NS + second * NS_PER_S
+    assert caplog.text.count("No space left on device") == 1

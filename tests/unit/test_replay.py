@@ -338,10 +338,13 @@ def test_an_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> Non
 
 
 @pytest.mark.parametrize("playing", [False, True])
+@pytest.mark.parametrize("saving", [False, True])
 def test_who_is_forgotten_meanwhile_is_shown_no_more(
-    tmp_path: Path, screen: Screen, playing: bool
+    tmp_path: Path, screen: Screen, playing: bool, saving: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It stands where it stood, on the log as that is now."""
+    monkeypatch.setattr("base_station.past.playback.SAVED_APART", 10)
+    own = Checkpoints(tmp_path / "own") if saving else None
     log = list(walk_with_mayday())
     changes = count()
     changed = [next(changes)]
@@ -351,9 +354,10 @@ def test_who_is_forgotten_meanwhile_is_shown_no_more(
         return lambda: changed[0] != now
 
     source = Archive(lambda t_ns: (one for one in log if one[0] >= t_ns), Checkpoints(tmp_path),
-                     make_pipeline, watch)  # fmt: skip
+                     make_pipeline, watch, own)  # fmt: skip
     window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     clock = ManualClock()
+    monkeypatch.setattr("base_station.past.playback.BURST", 7)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
     session.seek(START_NS + 100 * NS_PER_S)
     if not playing:
