@@ -35,6 +35,7 @@ from shared.messages.muster.v1 import (
     event_pb2,
     fused_pb2,
     gps_pb2,
+    header_pb2,
     imu_pb2,
     position_pb2,
     sighting_pb2,
@@ -98,7 +99,7 @@ def header_of(payload: bytes) -> Header | None:
     begins with its header.  None: there is none.
     """
     try:
-        wire = station_pb2.Tick.FromString(payload).header  # the least that any message has
+        wire = header_pb2.AnyMessage.FromString(payload).header
     except DecodeError:
         return None
     return Header.from_wire(wire) if wire.schema and wire.unit_id else None

@@ -10,7 +10,7 @@ from shared.codec import decode, encode, header_of
 from shared.envelope import Stamper
 from shared.errors import WireError
 from shared.messages import STATION_ID, Header, OperatorAction, Temperature
-from shared.messages.muster.v1 import station_pb2
+from shared.messages.muster.v1 import header_pb2, station_pb2
 from shared.messages.station import RegisterUnit
 
 
@@ -38,6 +38,17 @@ def test_who_said_it_is_known_where_the_rest_is_not() -> None:
     assert header is not None
     assert (header.unit_id, header.boot_id, header.seq) == ("FF-01", 7, 3)
     assert header_of(payload[:3]) is None
+
+
+@pytest.mark.parametrize("number", range(2, 16))
+def test_who_said_it_is_known_whatever_stands_behind_the_header(number: int) -> None:
+    """No field of one kind of message is taken for that of another."""
+    header = Header("FF-01", 7, 3, 5).to_wire()
+    begins = header_pb2.AnyMessage(header=header).SerializeToString()
+    payload = begins + bytes([number << 3 | 2, 2]) + b"\xff\xfe"
+    found = header_of(payload)
+    assert found is not None
+    assert (found.unit_id, found.boot_id, found.seq) == ("FF-01", 7, 3)
 
 
 def test_what_was_captured_earlier_is_of_that_time(clock: ManualClock, stamper: Stamper) -> None:
