@@ -29,6 +29,8 @@ def test_every_message_is_in_the_log_once(troubled: Site, fault: BadLink) -> Non
     report = suffer(troubled, fault, PATIENCE_S)
     assert (report.lost, report.duplicates) == (0, 0)
     assert report.heard_s is not None
+    if fault.link.dark and fault.after == CLEAN:
+        assert report.heard_s < TOLD_S + BUSY_S
     assert report.complete_s is not None
     assert report.sent > fault.seconds * 5  # positions alone
     assert report.alerts > 0
