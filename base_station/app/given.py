@@ -45,12 +45,13 @@ class Given:
     keeps: bool  # what is worked out; else it is gone with the command
     scratch: Path
     log: LogFeed
+    tell: Tell
 
     def archive(self) -> Archive:
         """With what the station saved, where it did, and this program can use it; what is come by
         is saved elsewhere: to go back is not to step an hour again.
         """
-        own = Checkpoints(self.scratch / "checkpoints")
+        own = Checkpoints(self.scratch / "checkpoints", self.tell)
         saved = self.folder.checkpoints
         theirs = Checkpoints(saved) if saved.is_dir() else own
         return Archive(self.log.records, theirs, past_pipeline, self.log.watch, own)
@@ -78,14 +79,14 @@ def open_given(
     if in_place and _can_be_written(folder):
         store = closing.enter_context(Store(folder.database))
         if not _is_behind(store, folder, incident_id):
-            return Given(folder, store, keeps=True, scratch=scratch, log=log)
+            return Given(folder, store, keeps=True, scratch=scratch, log=log, tell=tell)
     copy = scratch / "station.sqlite"
     copy_database(folder.database, copy)
     store = closing.enter_context(Store(copy))
     if _is_behind(store, folder, incident_id):
         tell("the database does not have this incident; the log is read instead")
         project_whole_log(store, folder.log, on_progress)
-    return Given(folder, store, keeps=False, scratch=scratch, log=log)
+    return Given(folder, store, keeps=False, scratch=scratch, log=log, tell=tell)
 
 
 def _folder_of(path: Path, scratch: Path) -> DataFolder:

@@ -9,7 +9,7 @@ text counts as another version.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from threading import Lock
 
@@ -50,11 +50,14 @@ class _File(msgspec.Struct, frozen=True, array_like=True):
 class Checkpoints:
     """A folder of checkpoints, named by their times; from any thread."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, tell: Callable[[str], None] = lambda _: None) -> None:
+        """``tell`` hears in words when ``save_if_it_can`` cannot."""
         self._folder = folder
+        self._tell = tell
         self._changing = Lock()
         self._program = _program()
         self._useless: set[Path] = set()  # torn, or of another version of the program
+        self.is_refused = False  # the disk does not take more: whoever can do without saves none
         make_folder(folder)
 
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
@@ -76,6 +79,14 @@ class Checkpoints:
                 raise
             self._useless.discard(path)
             self._thin_out()
+
+    def save_if_it_can(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
+        """Where the disk does not take it, it is told and nothing more is to be saved."""
+        try:
+            self.save(t_ns, events_at_t, pipeline)
+        except OSError as error:
+            self.is_refused = True
+            self._tell(f"to go back in the past takes long: no state can be saved ({error})")
 
     def clear(self) -> None:
         """Remove all of them: a restart steps the whole log."""

@@ -7,7 +7,6 @@ live station had decided, one by one.
 
 from __future__ import annotations
 
-import logging
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -21,7 +20,6 @@ from shared.channels import ALARM, FUSED
 from shared.codec import encode
 from shared.messages import STATION_ID, AlarmChange, FusedPosition
 
-_log = logging.getLogger(__name__)
 Record = tuple[int, str, bytes]  # station time, key, payload
 OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the order of writing
 MakePipeline = Callable[[Checkpoint | None], StationPipeline]
@@ -77,7 +75,6 @@ class Playback:
         self._place: tuple[int, int]  # of the last event in the log: its time, and which of that
         self._saved_ns: int  # until there, what can be saved is
         self._unsaved: int  # events since
-        self._is_full = False
         self._begin(None)
 
     @property
@@ -128,13 +125,9 @@ class Playback:
         """Where nothing is saved of the stretch that was just gone."""
         own, since_ns = self._archive.own, self._saved_ns
         self._saved_ns, self._unsaved = self._at_ns, 0
-        if own is None or self._is_full or own.has_any(since_ns, self._at_ns):
+        if own is None or own.is_refused or own.has_any(since_ns, self._at_ns):
             return
-        try:
-            own.save(*self._place, self._pipeline.checkpoint())
-        except OSError as error:
-            self._is_full = True
-            _log.warning("to go back in the past takes long: no state can be saved (%s)", error)
+        own.save_if_it_can(*self._place, self._pipeline.checkpoint())
 
 
 @dataclass(frozen=True)

@@ -145,6 +145,8 @@ class ReplaySession:
         while not self._closed.is_set():
             self._follow_changes()
             self._follow_seek()
+            if self._closed.is_set():
+                return  # amid a seek the picture is not that of where it has got to
             self._move()
             if self._seek_ns is not None:
                 continue  # a picture now would be of another time than asked for

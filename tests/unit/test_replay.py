@@ -261,6 +261,32 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
     assert sought_s == MAYDAY_S
 
 
+def test_one_that_is_closed_on_its_way_just_ends(
+    tmp_path: Path, screen: Screen, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It does not go on from where nobody has been shown yet."""
+    clock = ManualClock()
+    reached, go_on = threading.Event(), threading.Event()
+
+    def waiting(t_ns: int) -> Iterator[Record]:
+        for record in walk_with_mayday():
+            if record[0] > START_NS + 90 * NS_PER_S and not reached.is_set():
+                reached.set()
+                go_on.wait(10.0)
+            clock.advance(0.01)
+            yield record
+
+    window = Window("i1", START_NS + 100 * NS_PER_S, START_NS + DURATION_S * NS_PER_S)
+    source = Archive(waiting, Checkpoints(tmp_path), make_pipeline)
+    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    assert reached.wait(10.0)
+    session._closed.set()  # as ``close``, which would wait for it
+    go_on.set()
+    session.close()
+    assert caplog.text == ""
+    assert screen.resets == []
+
+
 def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
     tmp_path: Path, screen: Screen
 ) -> None:
