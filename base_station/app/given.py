@@ -19,6 +19,7 @@ from base_station.db.records import Records
 from base_station.db.store import Store, copy_database, known_segments
 from base_station.feed import LogFeed
 from base_station.past.checkpoints import Checkpoints
+from base_station.past.differing import shows_otherwise
 from base_station.past.playback import Archive
 from base_station.storage.data_folder import DataFolder
 from shared.clock import NS_PER_S, SystemClock
@@ -73,9 +74,15 @@ def open_given(
     """
     scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-past-")))
     folder = _folder_of(path, scratch)
-    for flaw in _flaws(folder):
+    flaws = list(_flaws(folder))
+    for flaw in flaws:
         tell(flaw)
     log = LogFeed(folder.log, on_damage=_once(tell))
+    if not flaws and shows_otherwise(log.records(), past_pipeline(None)):
+        tell(
+            "this version of Muster decides otherwise than the station did: places and alarms of a "
+            "replay may differ from what was shown then, which is in the log"
+        )
     if in_place and _can_be_written(folder):
         store = closing.enter_context(Store(folder.database))
         if not _is_behind(store, folder, incident_id):

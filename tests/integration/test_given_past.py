@@ -26,6 +26,7 @@ from shared.messages.station import CloseIncident, OpenIncident
 from tests.round_walk import Walk
 from tests.station_command import Command
 from tests.station_script import Record, Script
+from tests.unit.test_differing import logged, north
 
 POLICY = SegmentPolicy(segment_s=60.0)
 
@@ -204,6 +205,15 @@ def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
     assert Records(opened.store, SystemClock()).require_incident("i2").name == "Church Street"
     assert not opened.keeps
     assert Records(_open(tmp_path, "i1", told, closing_at_end).store, SystemClock()).incident("i1")
+
+
+def test_another_program_that_decides_otherwise_is_told(
+    tmp_path: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    """Nobody may take what it shows for what was shown."""
+    _log(tmp_path, list(logged(north(2.0))))
+    _open(tmp_path, "i1", told, closing_at_end)
+    assert any("decides otherwise than the station did" in one for one in told)
 
 
 def _open(data: Path, incident_id: str, told: list[str], stack: ExitStack) -> Any:
