@@ -10,6 +10,7 @@ from rich.table import Table
 
 from base_station.assessment.figures import Figures
 from base_station.assessment.report import IncidentReport, UnitReport
+from base_station.span import span_in_words
 from shared.out_file import whole
 
 
@@ -45,8 +46,8 @@ def _trust_table(report: IncidentReport) -> Table:
         table.add_column(heading, justify="left" if heading in {"unit", "why"} else "right")
     for unit in report.units:
         trust = unit.trust
-        lights = (f"{seconds:.0f} s" for seconds in (trust.green_s, trust.amber_s, trust.red_s))
-        why = ", ".join(f"{cause} {seconds:.0f} s" for cause, seconds in trust.causes)
+        lights = map(span_in_words, (trust.green_s, trust.amber_s, trust.red_s))
+        why = ", ".join(f"{cause} {span_in_words(seconds)}" for cause, seconds in trust.causes)
         table.add_row(_name(unit), *lights, why)
     return table
 

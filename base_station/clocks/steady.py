@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from threading import Lock
 
+from base_station.span import span_in_words
 from shared.clock import NS_PER_S, Clock
 
 _STEP_NS = 5 * NS_PER_S  # nothing is old after that
 _TELL_FROM_NS = 5 * NS_PER_S
-_UNITS = ((86_400.0, "days"), (3_600.0, "hours"), (60.0, "minutes"), (1.0, "seconds"))
 
 
 class SteadyClock:
@@ -62,7 +62,7 @@ class SteadyClock:
         ahead_ns = self.utc_ns() - self._clock.utc_ns()
         if abs(ahead_ns) <= _TELL_FROM_NS:
             return ()
-        span = _in_words(abs(ahead_ns) / NS_PER_S)
+        span = span_in_words(abs(ahead_ns) / NS_PER_S)
         if ahead_ns > 0:
             return (
                 f"This machine's clock is {span} behind what was recorded here last: set it. "
@@ -72,9 +72,3 @@ class SteadyClock:
             f"This machine's clock is {span} ahead of the time that is recorded, which does not "
             "leap at a standby or in an open incident: set it, or close the incident",
         )
-
-
-def _in_words(span_s: float) -> str:
-    """In the largest unit of which there are two: ``25 hours``."""
-    size_s, unit = next((one for one in _UNITS if span_s >= 2.0 * one[0]), _UNITS[-1])
-    return f"{span_s / size_s:,.0f} {unit}"

@@ -13,6 +13,7 @@ import msgspec
 from base_station.live_state import StationState
 from base_station.pins.pin import WAITING, Beacon, Pin, reach_std_m
 from base_station.site.plan import Plan
+from base_station.span import span_in_words
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.geo import rotate
@@ -200,12 +201,12 @@ def _check_unit(state: StationState, unit_id: str) -> None:
 
 def _check_time(state: StationState, unit_id: str, t_ns: int) -> None:
     if t_ns > state.t_ns + FUTURE_NS:
-        ahead_s = (t_ns - state.t_ns) / NS_PER_S
-        raise UserError(f"the pin's time is {ahead_s:.0f} s in the future; say when it was")
+        ahead = span_in_words((t_ns - state.t_ns) / NS_PER_S)
+        raise UserError(f"the pin's time is {ahead} in the future; say when it was")
     if early_s := _early_s(state, unit_id, t_ns):
         raise UserError(
-            f"the pin's time is {early_s:.0f} s before the path of {unit_id} begins; there is "
-            "nothing to pin there"
+            f"the pin's time is {span_in_words(early_s)} before the path of {unit_id} begins; "
+            "there is nothing to pin there"
         )
 
 

@@ -18,6 +18,7 @@ from base_station.pins.pin import WAITING, Beacon, Pin
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import FloorSaid
 from base_station.site.storeys import storey_of
+from base_station.span import span_in_words
 from shared.clock import NS_PER_S
 
 NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
@@ -131,10 +132,10 @@ def time_of(history: PathHistory, pin: Pin) -> int | str:
     if pin.t_ns > end_ns + NEAR_NS:
         return "the unit's path has not come to that time yet"
     if pin.t_ns < begin_ns - BEFORE_NS:
-        early_s = (begin_ns - pin.t_ns) / NS_PER_S
+        early = span_in_words((begin_ns - pin.t_ns) / NS_PER_S)
         return (
-            f"the path that is known begins {early_s:.0f} s later: the unit's journal may still "
-            "bring what was before, else give the pin a later time"
+            f"the path that is known begins {early} later: the unit's journal may still bring "
+            "what was before, else give the pin a later time"
         )
     return min(max(pin.t_ns, begin_ns), end_ns)
 

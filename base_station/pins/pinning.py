@@ -36,12 +36,14 @@ from base_station.pins.evidence import (
 from base_station.pins.pin import WAITING, Pin, PinVerdict
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.storeys import floor_at
+from base_station.span import span_in_words
 from base_station.units.trail import TRAIL_POINTS, TrailStep
 from shared.clock import NS_PER_S
 
 Floats = NDArray[np.float64]
 
 AHEAD_NS = NS_PER_S // 2  # nobody gets far meanwhile
+SAME_TIME_S = 1.0  # as people say it
 MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about another
 
 
@@ -107,7 +109,7 @@ def solve_pins(state: StationState, past: Past, unit_ids: Sequence[str]) -> dict
         results[unit_id] = Repinned(None, [])
         if solution is not None and history is not None:
             for pin_id, verdict in solution.verdicts.items():
-                judged = _judged(state, pin_id, verdict)
+                judged = _judged(state, pin_id, unit_id, verdict)
                 verdicts.setdefault(pin_id, {})[unit_id] = judged
             if any(verdict.used for verdict in solution.verdicts.values()):
                 path = solution.paths[unit_id]
@@ -124,7 +126,8 @@ def _judge(state: StationState, pin_id: str, found: Mapping[str, PinVerdict]) ->
     """
     of_units = {**dict(state.pin_verdicts.get(pin_id, WAITING).of_units), **found}
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
-    text = worst.text or next((one.text for one in of_units.values() if one.text), "")
+    said = [one.text for one in of_units.values() if one.text and one.state == worst.state]
+    text = ". ".join(said) or next((one.text for one in of_units.values() if one.text), "")
     verdict = msgspec.structs.replace(worst, text=text, of_units=tuple(of_units.items()))
     state.pin_verdicts[pin_id] = verdict
 
@@ -203,14 +206,14 @@ def _met(
     """Where the other one was then, by its own evidence."""
     t_ns = time_of(history, pin)
     if isinstance(t_ns, str):
-        return t_ns
+        return f"{unit_id}: {t_ns}"
     other_id = pin.other_id if pin.unit_id == unit_id else pin.unit_id
     other = state.paths.get(other_id)
     if other is None or other.begin_ns is None:
         return f"no position of {other_id} has come yet"
     there_ns = time_of(other, pin)
     if isinstance(there_ns, str):
-        return there_ns
+        return f"{other_id}: {there_ns}"
     path = past.alone(state, other_id, other)
     row = int(np.searchsorted(path.t_ns, there_ns).clip(0, len(path.t_ns) - 1))
     spread_m = max(float(path.std_north_m[row]), float(path.std_east_m[row]))
@@ -237,13 +240,15 @@ def _await(history: PathHistory, pins: Sequence[Pin]) -> None:
     history.awaited_ns = min(times, default=None)
 
 
-def _judged(state: StationState, pin_id: str, verdict: Verdict) -> PinVerdict:
+def _judged(state: StationState, pin_id: str, unit_id: str, verdict: Verdict) -> PinVerdict:
+    """What it is for this unit's trail: of a meeting, the other's may say otherwise."""
     if verdict.used:
         return PinVerdict("used", verdict.residual_m, verdict.sigmas)
-    other = state.pins.get(verdict.against)
-    against = "the path walked and the satellite fixes"
+    pin, other = state.pins[pin_id], state.pins.get(verdict.against)
+    path = f"the path of {unit_id}" if pin.kind == "meeting" else "the path walked"
+    against = f"{path} and the satellite fixes"
     if other is not None:
-        against = f"{_words_of(other, state.pins[pin_id])} and the path walked"
+        against = f"{_words_of(other, pin)} and {path}"
     away, end = f"{verdict.residual_m:.0f} m from", "kept, and not used"
     if verdict.above_m:
         away = f"{verdict.residual_m:.0f} m {'above' if verdict.above_m > 0.0 else 'below'}"
@@ -268,6 +273,7 @@ def _words_of(pin: Pin, of: Pin) -> str:
         name = "the pin"
     if pin.t_ns == 0 or of.t_ns == 0:
         return name
-    apart_s = round(abs(of.t_ns - pin.t_ns) / NS_PER_S)
-    apart = f"{apart_s} s" if apart_s < 60 else f"{round(apart_s / 60)} min"
-    return f"{name} of {apart} {'before' if pin.t_ns <= of.t_ns else 'after'}"
+    apart_s = abs(of.t_ns - pin.t_ns) / NS_PER_S
+    if apart_s < SAME_TIME_S:
+        return f"{name} of the same time"
+    return f"{name} of {span_in_words(apart_s)} {'before' if pin.t_ns < of.t_ns else 'after'}"

@@ -60,8 +60,10 @@ def test_bad_pins_are_refused_with_a_sentence(
     [
         ("FF-01", 0.0, 1.0, "cannot meet itself"),
         ("nobody", 0.0, 1.0, "no registered unit"),
-        ("FF-02", 9.0, 1.0, "is 9 s in the future"),
-        ("FF-02", -31.0, 1.0, "is 12 s before the path of FF-01"),
+        ("FF-02", 9.0, 1.0, "is 9 seconds in the future"),
+        ("FF-02", -31.0, 1.0, "is 12 seconds before the path of FF-01"),
+        ("FF-02", -3.0 * 3600.0, 1.0, "is 3 hours before the path of FF-01"),
+        ("FF-02", -400.0 * 86400.0, 1.0, "is 400 days before the path of FF-01"),
         ("FF-02", 0.0, 0.0, "more than 0"),
     ],
 )
