@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from base_station.fusion.smoother import SMOOTHERS
+from base_station.fusion.smoother.port import Solution
 from base_station.pins.evidence import evidence_of_all, ties_of
 from base_station.pins.pin import PinVerdict
 from shared.messages import FusedPosition, Sighting, SightingKind
@@ -69,11 +70,10 @@ class Wearer:
     def verdict(self, pin_id: str) -> PinVerdict:
         return self.script.pipeline.state.pin_verdicts[pin_id]
 
-    def smoothed(self) -> dict[str, list[float]]:
-        """Heights by unit, as they are known afterwards."""
+    def smoothed(self) -> Solution:
+        """As it is known afterwards."""
         state = self.script.pipeline.state
-        solution = SMOOTHERS[0].smooth(evidence_of_all(state, None), ties_of(state))
-        return {one: path.down_m.tolist() for one, path in solution.paths.items()}
+        return SMOOTHERS[0].smooth(evidence_of_all(state, None), ties_of(state))
 
     @property
     def fused(self) -> FusedPosition:
@@ -101,7 +101,7 @@ def test_a_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
     ("said", "words"),
     [
         (lambda wearer: wearer.pin("p", 0, "lift"), "the pin 'lift'"),
-        (lambda wearer: wearer.pin("p", 0), "the pin of 2 min before"),
+        (lambda wearer: wearer.pin("p", 0), "the pin of 2 minutes before"),
         (
             lambda wearer: wearer.script.act(
                 StartTogether("p", ("FF-01",), 0, 5.0, 10.0, 0.5, 0, None, 0.3, "")
@@ -144,7 +144,7 @@ def test_two_floors_are_not_averaged_where_each_by_itself_might_be_true() -> Non
     wearer.go(4)
     assert wearer.pin("p", 0).state == "used"
     assert wearer.pin("q", 1).state == "conflict"
-    assert "the pin of 0 s before" in wearer.verdict("q").text
+    assert "the pin of the same time" in wearer.verdict("q").text
     assert wearer.fused.floor == 0
     assert wearer.fused.down_m == pytest.approx(0.0, abs=0.2)
 
@@ -237,9 +237,9 @@ def test_who_met_somebody_is_on_the_same_floor() -> None:
     assert one.verdict("m").state == "used"
     assert (one.fused.floor, other.fused.floor) == (7, 7)
     assert other.fused.down_m == pytest.approx(-7 * STOREY_M, abs=0.5)
-    smoothed = one.smoothed()
+    smoothed = one.smoothed().paths
     for unit_id in ("FF-01", "FF-02"):
-        assert smoothed[unit_id][-1] == pytest.approx(-7 * STOREY_M, abs=0.5)
+        assert smoothed[unit_id].down_m[-1] == pytest.approx(-7 * STOREY_M, abs=0.5)
 
 
 def test_nobody_met_somebody_on_another_floor() -> None:
@@ -249,9 +249,41 @@ def test_nobody_met_somebody_on_another_floor() -> None:
     meet(one, other)
     assert one.verdict("m").state == "conflict"
     assert (one.fused.floor, other.fused.floor) == (7, 0)
-    smoothed = one.smoothed()
-    assert smoothed["FF-01"][-1] == pytest.approx(-7 * STOREY_M, abs=0.5)
-    assert smoothed["FF-02"][-1] == pytest.approx(0.0, abs=0.5)
+    smoothed = one.smoothed().paths
+    assert smoothed["FF-01"].down_m[-1] == pytest.approx(-7 * STOREY_M, abs=0.5)
+    assert smoothed["FF-02"].down_m[-1] == pytest.approx(0.0, abs=0.5)
+
+
+def test_a_meeting_on_two_floors_draws_nobody_aside_afterwards_either() -> None:
+    """What is not used for its floor tells no place on the plan."""
+    one, other = two(30)
+    other.script.act(SetStart("FF-02", 3.0, 0.0, 0.0, 0.0, 0.3, 0.05))
+    one.pin("p", 7)
+    meet(one, other)
+    met = one.smoothed()
+    assert not met.verdicts["m"].used
+    assert abs(met.verdicts["m"].above_m) == pytest.approx(7 * STOREY_M, abs=0.5)
+    one.script.act(RemovePin("m"))
+    apart = one.smoothed()
+    for unit_id, path in apart.paths.items():
+        assert met.paths[unit_id].places_m == pytest.approx(path.places_m, abs=1e-6)
+
+
+def test_a_meeting_on_two_floors_says_whose_path_contradicts() -> None:
+    one, other = two(30)
+    other.start()
+    one.pin("p", 7)
+    meet(one, other)
+    text = one.verdict("m").text
+    assert "22 m below where the pin of the same time and the path of FF-01 lead" in text
+    assert "22 m above where the path of FF-02 and the satellite fixes lead" in text
+
+
+def test_a_meeting_that_waits_says_for_whose_path() -> None:
+    one, other = two(30)
+    one.go(60)
+    meet(one, other)
+    assert "FF-02: the unit's path has not come to that time yet" in one.verdict("m").text
 
 
 def test_who_does_not_know_his_floor_tells_nobody_of_it() -> None:

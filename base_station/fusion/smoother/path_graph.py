@@ -1,7 +1,8 @@
 """All trails at once, as the least-squares solution of a graph of knots: what hangs on it when.
 
-Places that contradict each other or the rest are found before they can pull (``agreement``).  Only
-then are live estimates and walls heeded, which may have held somebody in the wrong room.
+Places that contradict each other or the rest are found before they can pull (``agreement``), and so
+are meetings of two who were on different floors.  Only then are live estimates and walls heeded,
+which may have held somebody in the wrong room.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from base_station.fusion.smoother.agreement import (
 )
 from base_station.fusion.smoother.chain import WALKED, Chain, WalkNoise
 from base_station.fusion.smoother.graph import Graph
-from base_station.fusion.smoother.heights import Heights, telling
+from base_station.fusion.smoother.heights import Heights, Solved, telling
 from base_station.fusion.smoother.landmarks import Landmark
 from base_station.fusion.smoother.live_estimates import choose_shown, shown_floor_m
 from base_station.fusion.smoother.port import (
@@ -73,21 +74,27 @@ class _Solving:
         self._noise = kind.noise
         self._units = units
         self._ties = [t for t in ties if t.unit_id in units and t.other_id in units]
-        self._verdicts: dict[str, Verdict] = {}
-        self._met: dict[str, list[PlaceSeen]] = {unit_id: [] for unit_id in units}  # how high
-        chains = {
+        self._chains = {
             unit_id: Chain.of(one, kind.noise, kind.knot_m, kind.knot_s)
             for unit_id, one in units.items()
         }
-        self._graph = Graph(units, chains)
+        self._not_met: dict[str, Verdict] = {}  # by tie: they were on different floors
+        self._begin()
+        while self._part_floors():
+            self._begin()
+        self._heed_live_estimates()
+        self._heed_walls()
+
+    def _begin(self) -> None:
+        """By paths, fixes, meetings and what agrees of the places."""
+        self._verdicts: dict[str, Verdict] = {}
+        self._graph = Graph(self._units, self._chains)
         self._graph.lead_through([self._meeting(tie) for tie in self._ties])
         self._graph.relax(self._noise)
-        if any(one.places for one in units.values()):
+        if any(one.places for one in self._units.values()):
             self._choose_places()
             self._graph.relax(self._noise)
             self._drop_misfits()
-        self._heed_live_estimates()
-        self._heed_walls()
 
     def _meeting(self, tie: Tie) -> Landmark:
         visits = [self._graph.visit(one, tie.t_ns) for one in (tie.unit_id, tie.other_id)]
@@ -123,6 +130,8 @@ class _Solving:
         for one in sorted(set(range(len(told))) - set(used)):
             below_m, sigmas = heights.off(told[one])
             refused = _refused(expected, given, told, used, one)
+            if refused.against:
+                below_m = float(given.of(one)[0][0])
             self._verdicts[told[one].name] = replace(
                 refused,
                 residual_m=abs(below_m),
@@ -196,38 +205,57 @@ class _Solving:
             apart_m = graph.visited.apart_m(meeting)
             sigmas = apart_m / tie.std_m
             self._verdicts[tie.name] = Verdict(sigmas**2 <= GATE2, apart_m, sigmas)
-        self._tell_heights()
         spreads = graph.spreads()
         on_plan = graph.spreads(on_plan=True) if graph.words else spreads
-        paths = {one: self._trail(one, spreads[one], on_plan[one]) for one in self._units}
-        return Solution(paths, self._verdicts)
+        met = self._met()
+        paths = {one: self._trail(one, spreads[one], on_plan[one], met) for one in self._units}
+        return Solution(paths, {**self._verdicts, **self._not_met})
 
-    def _tell_heights(self) -> None:
-        """Who met somebody is as high as the other is by all else that is known of that one; two
-        who were on different floors have not met.
+    def _part_floors(self) -> bool:
+        """Two who were on different floors have not met: such a meeting tells nothing at all.
+        Whether there are any.
         """
-        places, who = self._graph.places, {one for tie in self._ties for one in _both(tie)}
-        alone = {one: Heights.of(self._units[one]).solve(places[one]) for one in sorted(who)}
+        alone, parted = self._heights_alone(), {}
         for tie in self._ties:
-            if not self._verdicts[tie.name].used:
-                continue
             (down_m, std_m), (other_m, other_std_m) = (
                 alone[one].at(tie.t_ns) for one in _both(tie)
             )
             above_m = other_m - down_m
             sigmas = abs(above_m) / math.hypot(std_m, other_std_m, ON_FLOOR_STD_M)
             if sigmas**2 > GATE2:
-                self._verdicts[tie.name] = Verdict(False, abs(above_m), sigmas, above_m=above_m)
-                continue
-            self._met[tie.unit_id].append(_beside(tie, other_m, other_std_m))
-            self._met[tie.other_id].append(_beside(tie, down_m, std_m))
+                parted[tie.name] = Verdict(False, abs(above_m), sigmas, above_m=above_m)
+        self._ties = [tie for tie in self._ties if tie.name not in parted]
+        self._not_met |= parted
+        return bool(parted)
+
+    def _met(self) -> dict[str, list[PlaceSeen]]:
+        """Who met somebody is as high as the other is by all else that is known of that one."""
+        alone = self._heights_alone()
+        met: dict[str, list[PlaceSeen]] = {unit_id: [] for unit_id in self._units}
+        for tie in self._ties:
+            if self._verdicts[tie.name].used:
+                met[tie.unit_id].append(_beside(tie, *alone[tie.other_id].at(tie.t_ns)))
+                met[tie.other_id].append(_beside(tie, *alone[tie.unit_id].at(tie.t_ns)))
+        return met
+
+    def _heights_alone(self) -> dict[str, Solved]:
+        """Of those that met somebody, by all but that."""
+        who = {one for tie in self._ties for one in _both(tie)}
+        places = self._graph.places
+        return {one: Heights.of(self._units[one]).solve(places[one]) for one in sorted(who)}
 
     def _judge_used(self, unit_id: str, used: Sequence[PlaceSeen]) -> None:
         apart_m = self._graph.residuals_m(unit_id, used)
         for place, off_m in zip(used, apart_m.tolist(), strict=True):
             self._verdicts[place.name] = Verdict(True, off_m, off_m / place.std_m)
 
-    def _trail(self, unit_id: str, spreads: Floats, on_plan: Floats) -> SmoothedPath:
+    def _trail(
+        self,
+        unit_id: str,
+        spreads: Floats,
+        on_plan: Floats,
+        met: Mapping[str, Sequence[PlaceSeen]],
+    ) -> SmoothedPath:
         """A fuser knows walls where the plan has them, so it goes on from a place on the plan."""
         graph = self._graph
         chain, belief = graph.chains[unit_id], graph.beliefs[unit_id]
@@ -236,7 +264,7 @@ class _Solving:
         if unit_id in graph.words:
             now[:2] += graph.common.plan_m
             known = on_plan[-1, :WALKED, :WALKED]
-        told = [*graph.places[unit_id], *self._met[unit_id]]
+        told = [*graph.places[unit_id], *met[unit_id]]
         heights = Heights.of(self._units[unit_id]).solve(told)
         return trail_of(chain, belief, spreads, least_m, heights, (now, known))
 
