@@ -7,6 +7,7 @@ was committed survive a power cut.
 from __future__ import annotations
 
 import os
+import shutil
 import sqlite3
 import threading
 from collections.abc import Callable, Iterator
@@ -172,11 +173,28 @@ def copy_database(source: Path, target: Path) -> None:
         ):
             reading.backup(writing)
     except sqlite3.Error as error:
+        if _code_of(error) in _NOT_OURS and not _beside(source, "-shm").exists():
+            _copy_files(source, target)  # nobody has it open, and SQLite could not put that there
+            return
         if _code_of(error) in _NO_ROOM:
             raise StoreError(
                 f"{source} cannot be copied ({error}): see that there is room beside {target}"
             ) from error
         raise StoreError(f"{source} cannot be read as the station's database: {error}") from error
+
+
+def _copy_files(source: Path, target: Path) -> None:
+    """With what a kill left of changes beside it."""
+    try:
+        for suffix in ("", "-wal"):
+            if (path := _beside(source, suffix)).exists():
+                shutil.copyfile(path, _beside(target, suffix))
+    except OSError as error:
+        raise StoreError(f"{source} cannot be copied to {target}: {error.strerror}") from error
+
+
+def _beside(path: Path, suffix: str) -> Path:
+    return path.with_name(path.name + suffix)
 
 
 def _code_of(error: BaseException) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import shutil
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
@@ -177,6 +178,32 @@ def test_a_copy_can_be_taken_while_someone_writes(
         copy_database(path, tmp_path / "copy.sqlite")
     with Store(tmp_path / "copy.sqlite") as copy:
         assert [person.name for person in Roster(copy, clock).people()] == ["Ada"]
+
+
+def test_a_database_that_this_user_may_only_read_is_copied(
+    store: Store, path: Path, tmp_path: Path, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As it lies in a folder of somebody else, with what a kill left beside it: SQLite would put
+    files there.
+    """
+    killed = tmp_path / "killed"
+    killed.mkdir()
+    Roster(store, clock).add_person("Ada", "A", "")
+    for suffix in ("", "-wal"):
+        shutil.copy(f"{path}{suffix}", killed)
+
+    def refuse(_: Path) -> sqlite3.Connection:
+        error = sqlite3.OperationalError("attempt to write a readonly database")
+        error.sqlite_errorcode = sqlite3.SQLITE_READONLY
+        raise error
+
+    monkeypatch.setattr("base_station.db.store._reading", refuse)
+    copy_database(killed / "station.sqlite", tmp_path / "copy.sqlite")
+    with Store(tmp_path / "copy.sqlite") as copy:
+        assert [person.name for person in Roster(copy, clock).people()] == ["Ada"]
+    (killed / "station.sqlite-shm").touch()  # somebody has it open: its files are no whole
+    with pytest.raises(StoreError, match="readonly"):
+        copy_database(killed / "station.sqlite", tmp_path / "no.sqlite")
 
 
 @pytest.mark.parametrize("name", ["site#1", "what?", "100%41", "?mode=memory"])
