@@ -127,7 +127,7 @@ def _judge(state: StationState, pin_id: str, found: Mapping[str, PinVerdict]) ->
     of_units = {**dict(state.pin_verdicts.get(pin_id, WAITING).of_units), **found}
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
     said = [one.text for one in of_units.values() if one.text and one.state == worst.state]
-    text = ". ".join(said) or next((one.text for one in of_units.values() if one.text), "")
+    text = ". ".join(dict.fromkeys(said)) or next((one.text for one in of_units.values() if one.text), "")
     verdict = msgspec.structs.replace(worst, text=text, of_units=tuple(of_units.items()))
     state.pin_verdicts[pin_id] = verdict
 

@@ -283,7 +283,7 @@ def test_a_meeting_that_waits_says_for_whose_path() -> None:
     one, other = two(30)
     one.go(60)
     meet(one, other)
-    assert "FF-02: the unit's path has not come to that time yet" in one.verdict("m").text
+    assert one.verdict("m").text == "FF-02: the unit's path has not come to that time yet"
 
 
 def test_who_does_not_know_his_floor_tells_nobody_of_it() -> None:
