@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from xml.etree import ElementTree as ET
 
-from base_station.exporters.port import Exporter, IncidentTracks, WornTrack, time_of
+from base_station.exporters.port import Exporter, IncidentTracks, WornTrack, in_xml, time_of
 from shared.geo import Anchor
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
@@ -13,7 +13,7 @@ _NAMESPACE = "http://www.topografix.com/GPX/1/1"
 def export_gpx(incident: IncidentTracks) -> bytes:
     anchor = incident.anchor_or_refuse()
     gpx = ET.Element("gpx", version="1.1", creator="Muster", xmlns=_NAMESPACE)
-    ET.SubElement(ET.SubElement(gpx, "metadata"), "name").text = incident.name
+    ET.SubElement(ET.SubElement(gpx, "metadata"), "name").text = in_xml(incident.name)
     for track in incident.tracks:
         _add_track(gpx, track, anchor)
     document: bytes = ET.tostring(gpx, encoding="utf-8", xml_declaration=True)
@@ -22,9 +22,9 @@ def export_gpx(incident: IncidentTracks) -> bytes:
 
 def _add_track(gpx: ET.Element, track: WornTrack, anchor: Anchor) -> None:
     trk = ET.SubElement(gpx, "trk")
-    ET.SubElement(trk, "name").text = track.title
+    ET.SubElement(trk, "name").text = in_xml(track.title)
     if track.crew:
-        ET.SubElement(trk, "type").text = track.crew
+        ET.SubElement(trk, "type").text = in_xml(track.crew)
     segment = ET.SubElement(trk, "trkseg")
     for point in track.points:
         lat_deg, lon_deg, height_m = anchor.to_geodetic(point.north_m, point.east_m, point.down_m)

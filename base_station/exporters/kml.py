@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from xml.etree import ElementTree as ET
 
-from base_station.exporters.port import Exporter, IncidentTracks, WornTrack, time_of
+from base_station.exporters.port import Exporter, IncidentTracks, WornTrack, in_xml, time_of
 from shared.geo import Anchor
 
 _GX = "http://www.google.com/kml/ext/2.2"
@@ -14,7 +14,7 @@ def export_kml(incident: IncidentTracks) -> bytes:
     anchor = incident.anchor_or_refuse()
     kml = ET.Element("kml", {"xmlns": "http://www.opengis.net/kml/2.2", "xmlns:gx": _GX})
     document = ET.SubElement(kml, "Document")
-    ET.SubElement(document, "name").text = incident.name
+    ET.SubElement(document, "name").text = in_xml(incident.name)
     for track in incident.tracks:
         _add_track(document, track, anchor)
     written: bytes = ET.tostring(kml, encoding="utf-8", xml_declaration=True)
@@ -23,9 +23,9 @@ def export_kml(incident: IncidentTracks) -> bytes:
 
 def _add_track(document: ET.Element, worn: WornTrack, anchor: Anchor) -> None:
     placemark = ET.SubElement(document, "Placemark")
-    ET.SubElement(placemark, "name").text = worn.title
+    ET.SubElement(placemark, "name").text = in_xml(worn.title)
     if worn.crew:
-        ET.SubElement(placemark, "description").text = worn.crew
+        ET.SubElement(placemark, "description").text = in_xml(worn.crew)
     track = ET.SubElement(placemark, "gx:Track")
     # Heights are those of the floors, not of the ground below them.
     ET.SubElement(track, "altitudeMode").text = "absolute"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -12,6 +13,8 @@ from base_station.db.records import TrackSample
 from base_station.views.answer import to_ms
 from shared.errors import UserError
 from shared.geo import Anchor
+
+_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 class WornTrack(msgspec.Struct, frozen=True):
@@ -47,6 +50,11 @@ def time_of(point: TrackSample) -> str:
     """ISO 8601 to the millisecond, which is that of the API."""
     at = datetime.fromtimestamp(to_ms(point.t_ns) / 1000, UTC)
     return f"{at:%Y-%m-%dT%H:%M:%S}.{at.microsecond // 1000:03}Z"
+
+
+def in_xml(text: str) -> str:
+    """With a mark for each character that XML has no place for: old logs have names with such."""
+    return _NOT_IN_XML.sub("\ufffd", text)
 
 
 @dataclass(frozen=True, slots=True)

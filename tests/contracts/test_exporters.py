@@ -27,7 +27,7 @@ from shared.geo import Anchor
 GX_NAMESPACE = "http://www.google.com/kml/ext/2.2"
 GPX_NAMESPACE = "http://www.topografix.com/GPX/1/1"
 T0_NS = 1_700_000_000 * NS_PER_S
-HOSTILE = 'Ada "<&>" ;,\n=1+1 \u00e4\U0001f692'
+HOSTILE = 'Ada "<&>" ;,\n=1+1 \u00e4\U0001f692 \x0b\x00\ufffe]]>'  # the last of old logs
 
 anyone = pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda exporter: exporter.name)
 
