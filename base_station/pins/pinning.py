@@ -126,8 +126,9 @@ def _judge(state: StationState, pin_id: str, found: Mapping[str, PinVerdict]) ->
     """
     of_units = {**dict(state.pin_verdicts.get(pin_id, WAITING).of_units), **found}
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
-    said = [one.text for one in of_units.values() if one.text and one.state == worst.state]
-    text = ". ".join(dict.fromkeys(said)) or next((one.text for one in of_units.values() if one.text), "")
+    said = [one for one in of_units.values() if one.text]
+    worst_said = dict.fromkeys(one.text for one in said if one.state == worst.state)
+    text = ". ".join(worst_said) or next((one.text for one in said), "")
     verdict = msgspec.structs.replace(worst, text=text, of_units=tuple(of_units.items()))
     state.pin_verdicts[pin_id] = verdict
 
