@@ -194,7 +194,11 @@ def compose_agent(
                 reader=SourceReader(source, clock, speed, beside, _timekeeper(source)),
                 raw=raw,
                 pipeline=pipeline,
-                desk=CommandDesk(stamper, pipeline.set_position_rate, answers_before(spool)),
+                desk=CommandDesk(
+                    stamper,
+                    pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
+                    answers_before(spool),
+                ),
                 stamper=stamper,
                 clock=clock,
                 black_box=black_box,

@@ -17,6 +17,7 @@ logger = logging.getLogger(__name__)
 POSITION_RATE_HZ = (0.1, 50.0)
 REMEMBERED = 1000
 _RATE_SET = "positions at {:g} Hz"
+_NO_POSITIONS = "this unit sends no positions: an agent at the station tracks for it"
 _SAYS_RATE = re.compile(r"positions at (\d+(?:\.\d+)?) Hz")
 
 
@@ -29,13 +30,14 @@ def position_rate_of(reply: CommandReply) -> float | None:
 class CommandDesk:
     """Applies commands and answers them; a repeat gets the newest answer again, and no more.
 
-    ``given``: answers from before the program was started, oldest first.
+    ``set_position_rate``: None where the unit does not track, and sends no positions.  ``given``:
+    answers from before the program was started, oldest first.
     """
 
     def __init__(
         self,
         stamper: Stamper,
-        set_position_rate: Callable[[float], None],
+        set_position_rate: Callable[[float], None] | None,
         given: Iterable[CommandReply] = (),
     ) -> None:
         self._stamper = stamper
@@ -79,6 +81,8 @@ class CommandDesk:
             case CommandKind.UNKNOWN:
                 return CommandState.REFUSED, "this unit does not know this kind of command"
             case CommandKind.SET_POSITION_RATE:
+                if self._set_position_rate is None:
+                    return CommandState.REFUSED, _NO_POSITIONS
                 least_hz, most_hz = POSITION_RATE_HZ
                 if not least_hz <= command.position_rate_hz <= most_hz:
                     return (

@@ -25,6 +25,7 @@ from shared.messages import (
     JournalIndex,
     Message,
     Position,
+    RawImu,
     UnitEvent,
 )
 from tests.station_command import Agent
@@ -154,6 +155,20 @@ def test_a_command_is_answered_and_done_and_a_kill_does_not_undo_it(station, sta
     station.messages.clear()
     start()
     until(lambda: closest_positions_ns(station) <= 60_000_000)
+
+
+def test_a_unit_that_does_not_track_sets_no_rate_of_positions_and_says_so(station, start):
+    """Its agent at the station sends them, over no radio."""
+    start(WALK, "--tracker", "none")
+    until(lambda: station.of(RawImu))
+    header = Stamper("station", 1, SystemClock()).header()
+    command = Command(header, "c1", CommandKind.SET_POSITION_RATE, "anna", 0, position_rate_hz=1.0)
+    station.bus.publish(COMMAND.key("u1"), encode(command), Qos.ALERT)
+    until(lambda: station.of(CommandReply))
+    (reply,) = station.of(CommandReply)
+    assert isinstance(reply, CommandReply)
+    assert reply.state is CommandState.REFUSED
+    assert "sends no positions" in reply.detail
 
 
 def test_a_wearer_acknowledges_once_and_a_kill_forgets_nothing(station, start):
