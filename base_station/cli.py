@@ -15,6 +15,7 @@ import typer
 from base_station.accounts.cli import users
 from base_station.program import interpreter
 from base_station.recordings.command import fetch_recording
+from shared.end_signals import sigterm_as_ctrl_c
 from shared.out_file import writable
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def replay(
     with interpreter.held():
         from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
-    with _bar("reading the log") as on_progress:
+    with sigterm_as_ctrl_c(), _bar("reading the log") as on_progress:
         run_replay_station(settings, incident, speed, _announce, on_progress)
 
 
@@ -168,7 +169,7 @@ def smooth(
     """Work out an incident's trails again, from everything that is known afterwards."""
     from base_station.app import folder as station  # noqa: PLC0415
 
-    with ExitStack() as closing:
+    with sigterm_as_ctrl_c(), ExitStack() as closing:
         with _bar("reading the log") as on_progress:
             past = station.look_back(data, incident, closing, _warn, on_progress)
         with _bar("smoothing") as on_progress:
@@ -193,7 +194,7 @@ def assess(
     from base_station.assessment.report import with_people  # noqa: PLC0415
     from base_station.assessment.tables import print_report, write_report  # noqa: PLC0415
 
-    with ExitStack() as closing:
+    with sigterm_as_ctrl_c(), ExitStack() as closing:
         with _bar("reading the log") as on_progress:
             past = station.look_back(data, incident, closing, _warn, on_progress)
         live = past.records.tracks_of(past.incident)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from queue import SimpleQueue
 from threading import Event, Thread
 
@@ -18,6 +20,18 @@ def told_to_end() -> Event:
         signal.signal(number, lambda number, _: told.put(number))
     Thread(target=_pass_on, args=(told, stop), name="told-to-end", daemon=True).start()
     return stop
+
+
+@contextmanager
+def sigterm_as_ctrl_c() -> Iterator[None]:
+    """SIGTERM raises KeyboardInterrupt in the main thread, which enters this: what was made for a
+    while is removed then, too.
+    """
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _pass_on(told: SimpleQueue[int], stop: Event) -> None:

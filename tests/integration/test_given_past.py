@@ -27,6 +27,7 @@ from tests.round_walk import Walk
 from tests.station_command import Command
 from tests.station_script import Record, Script
 from tests.unit.test_differing import logged, north
+from tests.waiting import until
 
 POLICY = SegmentPolicy(segment_s=60.0)
 
@@ -218,6 +219,19 @@ def test_another_program_that_decides_otherwise_is_told(
 
 def _open(data: Path, incident_id: str, told: list[str], stack: ExitStack) -> Any:
     return open_given(data, incident_id, stack, told.append, lambda _: None, in_place=True)
+
+
+def test_a_replay_that_is_told_to_end_as_it_begins_leaves_no_copy_of_people_s_data(
+    copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setenv("TMPDIR", str(scratch))
+    flags = ("--data", str(copy), "--http", "127.0.0.1:0")
+    with Command(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
+        until(lambda: any(scratch.iterdir()))
+        replaying.stop()
+    assert list(scratch.iterdir()) == []
 
 
 def test_whoever_was_given_another_stations_folder_can_log_in(copy: Path, tmp_path: Path) -> None:
