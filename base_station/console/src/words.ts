@@ -82,11 +82,12 @@ export function isFloorLikely({ floor_probability: sure }: PositionView): boolea
   return sure === null || sure >= LIKELY_FLOOR;
 }
 
-/** The floor, and how sure that is where there is a doubt. */
-export function floorOf(position: PositionView): string {
+/** The floor, and how sure that is where there is a doubt; of an old position it is that of then. */
+export function floorOf(position: PositionView, old = false): string {
   const { floor, floor_probability: sure } = position;
-  const name = floorName(floor);
-  if (floor === null || sure === null || sure >= SURE_OF_FLOOR) return name;
+  if (floor === null) return floorName(floor);
+  const name = old ? `last on ${floorName(floor)}` : floorName(floor);
+  if (sure === null || sure >= SURE_OF_FLOOR) return name;
   if (!isFloorLikely(position)) return `floor unknown, perhaps ${name}`;
   return `${name} (${Math.round(100 * sure)} % sure)`;
 }

@@ -112,6 +112,11 @@ describe("floorRemark", () => {
     expect(floorRemark(position({ floor: 1, floor_probability: 0.49 }), 0)).toBe("floor unknown");
     expect(floorRemark(position({ floor: null }), "all")).toBe("");
   });
+
+  it("says that a floor is the last one that is known of somebody who is not heard", () => {
+    expect(floorRemark(position({ floor: 1 }), 0, true)).toBe("last on floor 1");
+    expect(floorRemark(position({ floor: 1 }), 1, true)).toBe("");
+  });
 });
 
 describe("where names stand on the plan", () => {

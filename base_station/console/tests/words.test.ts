@@ -93,6 +93,14 @@ describe("words", () => {
     expect(words.floorOf(position({ floor: null }))).toBe("floor unknown");
   });
 
+  it("say of which time a floor is that somebody was last heard on", () => {
+    const then = (of: Parameters<typeof position>[0]) => words.floorOf(position(of), true);
+    expect(then({ floor: 1 })).toBe("last on floor 1");
+    expect(then({ floor: 0, floor_probability: 0.8 })).toBe("last on ground floor (80 % sure)");
+    expect(then({ floor: 1, floor_probability: 0.25 })).toBe("floor unknown, perhaps last on floor 1");
+    expect(then({ floor: null })).toBe("floor unknown");
+  });
+
   it.each([
     ["no-motion", "pre-alert", "No motion: pre-alert"],
     ["no-motion", "alarm", "No motion"],

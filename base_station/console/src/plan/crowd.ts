@@ -204,14 +204,15 @@ function hasTrail({ chosen, urgency }: Mark, { units }: Scene): boolean {
 
 function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
   const name = displayName(unit);
+  const old = isOld(position, scene.nowMs) || position.reach.length > 0;
   return {
     name,
     initials: initials(name),
     urgency: urgencyOf(unit, scene.alarms),
     chosen: unit.unit_id === scene.chosen,
-    old: isOld(position, scene.nowMs) || position.reach.length > 0,
+    old,
     ageMs: scene.nowMs - position.t_ms,
-    floor: floorRemark(position, scene.floor),
+    floor: floorRemark(position, scene.floor, old),
     headingRad: position.heading_rad,
     headingKnown: position.heading_std_rad < HEADING_KNOWN_RAD,
   };

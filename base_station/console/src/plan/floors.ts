@@ -44,10 +44,10 @@ export function firstFloor(floors: readonly Floor[]): number | null {
 }
 
 /** What a floor that is shown does not say of somebody on it: another floor, or one that nobody knows. */
-export function floorRemark(position: PositionView, shown: FloorChoice): string {
+export function floorRemark(position: PositionView, shown: FloorChoice, old = false): string {
   if (shown === "all") return "";
   if (!isFloorLikely(position)) return floorName(null);
-  return position.floor === shown ? "" : floorOf(position);
+  return position.floor === shown ? "" : floorOf(position, old);
 }
 
 export function shortName(floor: number): string {

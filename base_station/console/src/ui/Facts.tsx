@@ -47,7 +47,7 @@ export function BriefFacts({ unit, picture }: Props) {
   const old = isOld(position, now) || picture.silentMs.value > 0;
   return (
     <p class={`brief-facts ${old ? "old" : ""}`}>
-      {placeWords(position, picture)}
+      {placeWords(position, picture, old)}
       <span class="spoken">, {words.place(position)}</span>
       {ambient_degc !== null && ` · ${words.temperature(ambient_degc)}`}
       {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
@@ -56,10 +56,10 @@ export function BriefFacts({ unit, picture }: Props) {
 }
 
 /** "ground floor, near store, ± 2.1 m". */
-function placeWords(position: PositionView, picture: Picture): string {
+function placeWords(position: PositionView, picture: Picture, old: boolean): string {
   const region = regionAt(position, picture.silentMs.value);
   const room = roomWord(picture.plan.value, position, region);
-  const parts = [words.floorOf(position), room, words.plusMinus(region.major_m)];
+  const parts = [words.floorOf(position, old), room, words.plusMinus(region.major_m)];
   return parts.filter((part) => part !== "").join(", ");
 }
 
@@ -76,7 +76,7 @@ function Where({ unit, picture }: Props) {
   const old = isOld(position, now);
   return (
     <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
-      {placeWords(position, picture)}
+      {placeWords(position, picture, old)}
       <span class="spoken">, {words.place(position)}</span>
       {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
     </Fact>
