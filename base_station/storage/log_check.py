@@ -12,7 +12,7 @@ from pathlib import Path
 from threading import Lock
 
 from shared.errors import LogError
-from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState
+from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, missing_segments
 
 _log = logging.getLogger(__name__)
 
@@ -30,10 +30,13 @@ class LogCheck:
         self._read: set[Path] = set()
         self._idle = 0  # looks since all were read
         self._damaged: dict[Path, str] = {}  # with what is wrong
+        self._missing: tuple[int, ...] = ()  # numbers between those that are there
 
     def look(self, segments: Iterable[SegmentInfo]) -> None:
         """At one more of them: reading a long log is to hold up nothing."""
+        segments = tuple(segments)
         with self._lock:
+            self._missing = tuple(missing_segments(one.path for one in segments))
             new = (one.path for one in segments if one.state is not SegmentState.OPEN)
             path = next((one for one in new if one not in self._read), None)
             if path is None:
@@ -86,8 +89,18 @@ class LogCheck:
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console."""
         with self._lock:
-            names = ", ".join(sorted(path.name for path in self._damaged))
-        said = (
-            f"A part of the log cannot be read any more ({names}): check the disk. {self._remedy}"
-        )
-        return (said,) if names else ()
+            damaged, missing = sorted(path.name for path in self._damaged), self._missing
+        said = []
+        if damaged:
+            names = ", ".join(damaged)
+            said.append(
+                f"A part of the log cannot be read any more ({names}): check the disk. "
+                f"{self._remedy}"
+            )
+        if missing:
+            numbers = ", ".join(map(str, missing))
+            said.append(
+                f"Files of the log are gone, by their numbers {numbers}: check the disk, restore "
+                "them from a backup, and start the station again"
+            )
+        return tuple(said)

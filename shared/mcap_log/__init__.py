@@ -5,6 +5,7 @@ read as they are, complete, growing, torn or damaged.  The only package that imp
 from __future__ import annotations
 
 from shared.mcap_log.folder import (
+    missing_segments,
     segment_began_ns,
     segment_number,
     segment_path,
@@ -40,6 +41,7 @@ __all__ = [
     "is_derived",
     "location_topic",
     "log_topic",
+    "missing_segments",
     "read_log",
     "recover_log",
     "remove_torn",

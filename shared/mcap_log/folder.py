@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from itertools import zip_longest
 from pathlib import Path
@@ -41,6 +42,12 @@ def segment_number(path: Path) -> int:
     """0 where the name is not that of a segment."""
     match = _NAME.fullmatch(path.name)
     return int(match.group(1)) if match else 0
+
+
+def missing_segments(paths: Iterable[Path]) -> list[int]:
+    """Numbers between those of the segments that are there: they are given one by one."""
+    numbers = {segment_number(path) for path in paths} - {0}
+    return sorted(set(range(min(numbers, default=0), max(numbers, default=0))) - numbers)
 
 
 def segments_within(paths: list[Path], start_ns: int | None, end_ns: int | None) -> list[Path]:
