@@ -269,6 +269,21 @@ def test_a_meeting_on_two_floors_draws_nobody_aside_afterwards_either() -> None:
         assert met.paths[unit_id].places_m == pytest.approx(path.places_m, abs=1e-6)
 
 
+@pytest.mark.parametrize("off_m", [8.0, 20.0])
+def test_a_meeting_of_two_who_were_not_together_draws_nobody_aside_afterwards(off_m: float) -> None:
+    """As far apart as both are known to have been."""
+    one, other = two(60)
+    one.start()
+    other.script.act(SetStart("FF-02", off_m, 0.0, 0.0, 0.0, 0.3, 0.05))
+    meet(one, other)
+    met = one.smoothed()
+    assert not met.verdicts["m"].used
+    assert met.verdicts["m"].residual_m == pytest.approx(off_m, abs=0.3)
+    one.script.act(RemovePin("m"))
+    for unit_id, path in one.smoothed().paths.items():
+        assert met.paths[unit_id].places_m == pytest.approx(path.places_m, abs=0.05)
+
+
 def test_a_meeting_on_two_floors_says_whose_path_contradicts() -> None:
     one, other = two(30)
     other.start()

@@ -9,6 +9,7 @@ et al. 2010, A tutorial on graph-based SLAM).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,7 @@ Ints = NDArray[np.int64]
 
 TURNS = 10  # Gauss-Newton steps at most
 SETTLED_M = 0.02  # no knot moved further: done
+NO_PULL_M = 1e4  # standard deviation of a visit that tells nothing
 ALIGNED_RAD = 0.5  # standard deviation from which a heading is told by the evidence
 
 
@@ -67,6 +69,11 @@ class Graph:
         self.landmarks += landmarks
         for one in landmarks:
             self.common.add_landmarks(self.visited.places_m(one).mean(axis=0))
+
+    def let_go(self, numbers: Sequence[int]) -> None:
+        """Paths no longer lead through these landmarks."""
+        for number in numbers:
+            self.landmarks[number] = replace(self.landmarks[number], std_m=NO_PULL_M)
 
     def find_lines(self) -> bool:
         """Lines that people walk along again and again, as it looks now, in place of those found

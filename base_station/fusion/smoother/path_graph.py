@@ -8,7 +8,7 @@ which may have held somebody in the wrong room.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -198,18 +198,48 @@ class _Solving:
 
     def solution(self) -> Solution:
         graph = self._graph
-        for unit_id, used in graph.places.items():
-            if used:
-                self._judge_used(unit_id, used)
+        refused = self._let_go()
+        for unit_id, agreed in graph.places.items():
+            if agreed:
+                self._judge_used(unit_id, agreed)
         for tie, meeting in zip(self._ties, graph.landmarks, strict=False):
             apart_m = graph.visited.apart_m(meeting)
-            sigmas = apart_m / tie.std_m
-            self._verdicts[tie.name] = Verdict(sigmas**2 <= GATE2, apart_m, sigmas)
+            used = tie.name not in refused
+            self._verdicts[tie.name] = Verdict(used, apart_m, apart_m / tie.std_m)
         spreads = graph.spreads()
         on_plan = graph.spreads(on_plan=True) if graph.words else spreads
         met = self._met()
         paths = {one: self._trail(one, spreads[one], on_plan[one], met) for one in self._units}
         return Solution(paths, {**self._verdicts, **self._not_met})
+
+    def _let_go(self) -> set[str]:
+        """Two who were too far apart have not met either: until here such a meeting counted less,
+        now it tells nothing.  Gives their names.
+        """
+        refused: set[str] = set()
+        while gone := self._worst_misfits(refused):
+            self._graph.let_go(gone)
+            self._graph.settle(self._noise)
+            refused |= {self._ties[number].name for number in gone}
+        return refused
+
+    def _worst_misfits(self, refused: Collection[str]) -> list[int]:
+        """Of the meetings of each two the one that fits least, where it does not fit: it may have
+        drawn them away from the others.
+        """
+        off: dict[int, float] = {}
+        worst: dict[str, float] = {}
+        for number, tie in enumerate(self._ties):
+            if tie.name not in refused:
+                meeting = self._graph.landmarks[number]
+                off[number] = self._graph.visited.apart_m(meeting) / tie.std_m
+                for unit_id in _both(tie):
+                    worst[unit_id] = max(off[number], worst.get(unit_id, 0.0))
+        return [
+            number
+            for number, sigmas in off.items()
+            if sigmas**2 > GATE2 and all(worst[one] <= sigmas for one in _both(self._ties[number]))
+        ]
 
     def _part_floors(self) -> bool:
         """Two who were on different floors have not met: such a meeting tells nothing at all.
