@@ -4,7 +4,7 @@ import { firstFloor, floorRemark, floorsOf } from "../src/plan/floors";
 import type { Colours } from "../src/plan/colours";
 import { colourOf, filling, isStrong, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
 import { placeNames, type Box, type Named, type Pixel, type Place } from "../src/plan/names";
-import { pinWords } from "../src/plan/pins";
+import { isNamed, pinWords } from "../src/plan/pins";
 import { trailLines } from "../src/plan/trail";
 import type { PinView, Plan, TrailPoint } from "../src/wire";
 import { alarm, position, unit } from "./fixtures";
@@ -256,6 +256,15 @@ describe("the name of somebody on the plan", () => {
 });
 
 describe("the name at a pin", () => {
+  it.each([
+    ["used", 1, false],
+    ["conflict", 1, true],
+    ["waiting", 1, true], // who is not heard was there later than the plan shows
+    ["waiting", 0, false], // all who start there
+  ])("stands there of one that is %s, of the time %i: %s", (state, t_ms, named) => {
+    expect(isNamed({ state, t_ms } as PinView)).toBe(named);
+  });
+
   it("is no person's: it says that it is a pin", () => {
     expect(pinWords({ t_ms: 0 } as PinView, "W".repeat(80))).toBe(`Pin: ${"W".repeat(23)}…, start`);
   });

@@ -129,7 +129,7 @@ export class PinLayer {
       }),
     );
     this.source.addFeature(mark);
-    if (!chosen && pin.state !== "conflict") return;
+    if (!chosen && !isNamed(pin)) return;
     const text = pinWords(pin, scene.names.get(pin.unit_id) ?? pin.unit_id);
     this.labelled.push({ pinId: pin.pin_id, text, chosen, at: siteCoordinate(at) });
   }
@@ -182,6 +182,12 @@ function isOn(floor: number | null, chosen: FloorChoice): boolean {
 function pinColour(pin: PinView, colours: Colours): string {
   if (pin.state === "conflict") return colours.immediate;
   return pin.state === "waiting" ? colours.quiet : colours.chosen;
+}
+
+/** Somebody has to see to what contradicts; and of who is not heard, what was said last moves nobody
+ * until positions come. */
+export function isNamed({ state, t_ms }: PinView): boolean {
+  return state === "conflict" || (state === "waiting" && t_ms > 0);
 }
 
 /** Nobody is there now: it says that it is a pin. */
