@@ -246,14 +246,16 @@ def _judged(state: StationState, pin_id: str, unit_id: str, verdict: Verdict) ->
     if verdict.used:
         return PinVerdict("used", verdict.residual_m, verdict.sigmas)
     pin, other = state.pins[pin_id], state.pins.get(verdict.against)
-    path = f"the path of {unit_id}" if pin.kind == "meeting" else "the path walked"
+    path, of = "the path walked", ""
+    if pin.kind == "meeting":
+        path, of = f"the path of {unit_id}", f" for {unit_id}"
     against = f"{path} and the satellite fixes"
     if other is not None:
         against = f"{_words_of(other, pin)} and {path}"
-    away, end = f"{verdict.residual_m:.0f} m from", "kept, and not used"
+    away, end = f"{verdict.residual_m:.0f} m from", f"kept, and not used{of}"
     if verdict.above_m:
         away = f"{verdict.residual_m:.0f} m {'above' if verdict.above_m > 0.0 else 'below'}"
-        end = "kept, and not used unless another pin says so too"
+        end += " unless another pin says so too"
     text = f"{away} where {against} lead: {verdict.sigmas:.0f} times what is to be expected; {end}"
     return PinVerdict("conflict", verdict.residual_m, verdict.sigmas, text)
 

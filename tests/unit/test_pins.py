@@ -378,6 +378,9 @@ def test_a_meeting_that_one_of_both_contradicts_is_shown_so_whoever_is_solved_la
     meet("contradicted", "FF-02", "FF-03", 20, 1.0)
     meet("other", "FF-03", "FF-04", 40, 30.0)
     assert walk.state("contradicted") == "conflict"
+    verdict = walk.script.pipeline.state.pin_verdicts["contradicted"]
+    assert [one for one, of in verdict.of_units if of.state == "used"] == ["FF-03"]
+    assert verdict.text.endswith("kept, and not used for FF-02"), "of FF-03 it may tell something"
     walk.pin("p", "FF-04", 60.0)
     assert walk.state("contradicted") == "conflict"
     for ago_s in (10, 30, 50):
