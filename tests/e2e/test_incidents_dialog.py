@@ -15,7 +15,10 @@ from tests.e2e.stage import ANSWERS, PAST, Stage
 
 
 def test_an_incident_is_saved_or_it_is_said_why_not_and_the_console_stays(stage: Stage) -> None:
-    saved = {f"{PAST}/export/csv": "unit_id,person"}
+    saved = {
+        f"{PAST}/export/csv?fused": "unit_id,person",
+        f"{PAST}/export/csv?smoothed": "known since",
+    }
     formats = [
         {"name": name, "suffix": name, "needs_anchor": name == "gpx"} for name in ("csv", "gpx")
     ]
@@ -24,17 +27,23 @@ def test_an_incident_is_saved_or_it_is_said_why_not_and_the_console_stays(stage:
     dialog = menu(page, "Incidents")
     save_as = dialog.get_by_label(f"Save {scenes.INCIDENT.name} as a file")
     with page.expect_download() as download:
-        save_as.select_option("csv")
+        save_as.select_option("csv fused")
     assert download.value.suggested_filename == f"{scenes.INCIDENT.incident_id}.csv"
     assert "unit_id,person" in download.value.path().read_text()
-    save_as.select_option("gpx")
+    with page.expect_download() as download:
+        save_as.select_option("csv smoothed")
+    assert download.value.suggested_filename == f"{scenes.INCIDENT.incident_id}-smoothed.csv"
+    assert "known since" in download.value.path().read_text()
+    save_as.select_option("gpx fused")
     expect(dialog.get_by_text("The station answered 404")).to_be_visible()
     expect(save_as).to_be_enabled()
     save_as.press("ArrowDown")
     save_as.press("ArrowDown")
     with page.expect_request(re.compile("/export/")) as asked:
         save_as.press("Enter")
-    assert asked.value.url.endswith("/export/gpx"), "what the keys passed is not asked for"
+    assert asked.value.url.endswith("/export/gpx?kind=fused"), (
+        "what the keys passed is not asked for"
+    )
 
 
 def test_an_incident_begins_with_the_times_that_the_station_has(stage: Stage) -> None:

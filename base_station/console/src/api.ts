@@ -199,8 +199,8 @@ export interface ExportFormat {
 }
 
 export const exportFormats = () => call<ExportFormat[]>("GET", "/export-formats");
-export const exported = (incidentId: string, format: string) =>
-  file(`/incidents/${id(incidentId)}/export/${id(format)}`);
+export const exported = (incidentId: string, format: string, kind: string) =>
+  file(`/incidents/${id(incidentId)}/export/${id(format)}?kind=${kind}`);
 
 /** As it is seen: the station refuses it for one that has been raised anew since. */
 export const acknowledge = ({ alarm_id, last_raised_ms }: AlarmView) =>

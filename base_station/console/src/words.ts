@@ -62,6 +62,20 @@ export function dateAndTime(ms: number): string {
   return `${date} ${clockTime(ms).slice(0, 5)}`;
 }
 
+/** The same time where the day is that of `sinceMs`; else with the date: an incident lasts over midnight. */
+export function timeSince(sinceMs: number, ms: number): string {
+  const [since, at] = [dateAndTime(sinceMs), dateAndTime(ms)].map((one) => one.slice(0, 10));
+  return since === at ? clockTime(ms) : `${at} ${clockTime(ms)}`;
+}
+
+/** By how much the times on the screen are not those of exports and of the terminal: "UTC+5:30". */
+export function zone(ms: number): string {
+  const ahead = -new Date(ms).getTimezoneOffset();
+  if (ahead === 0) return "UTC";
+  const [hours, rest] = [Math.floor(Math.abs(ahead) / 60), Math.abs(ahead) % 60];
+  return `UTC${ahead < 0 ? "−" : "+"}${hours}${rest === 0 ? "" : `:${pad(rest)}`}`;
+}
+
 /** "± 2.1 m" while that means something, whole metres above ten. */
 export function plusMinus(radiusM: number): string {
   return `±\u00a0${radiusM < 10 ? radiusM.toFixed(1) : Math.round(radiusM)}\u00a0m`;

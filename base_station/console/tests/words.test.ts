@@ -1,4 +1,4 @@
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import * as words from "../src/words";
 import { alarm, HEALTH, position, STATUS, unit } from "./fixtures";
 
@@ -35,6 +35,24 @@ describe("words", () => {
   it("say a date as everybody writes it", () => {
     expect(words.dateAndTime(new Date(2026, 0, 9, 8, 5, 59).getTime())).toBe("2026-01-09 08:05");
     expect(words.dateAndTime(new Date(2026, 11, 31, 23, 0).getTime())).toBe("2026-12-31 23:00");
+  });
+
+  it("say the day of a time that is of another day than the beginning", () => {
+    const eve = new Date(2026, 10, 24, 23, 50).getTime();
+    expect(words.timeSince(eve, eve + 60_000)).toBe("23:51:00");
+    expect(words.timeSince(eve, eve + 20 * 60_000)).toBe("2026-11-25 00:10:00");
+    expect(words.timeSince(eve, eve + 24 * 3_600_000)).toBe("2026-11-25 23:50:00");
+  });
+
+  it.each([
+    [0, "UTC"],
+    [-60, "UTC+1"],
+    [-330, "UTC+5:30"],
+    [210, "UTC\u22123:30"],
+  ])("say the zone of a browser that is %i min behind", (offset, text) => {
+    const spy = vi.spyOn(Date.prototype, "getTimezoneOffset").mockReturnValue(offset);
+    expect(words.zone(0)).toBe(text);
+    spy.mockRestore();
   });
 
   it("say what a sensor says, and that it says nothing", () => {

@@ -1,7 +1,7 @@
 import { isPast } from "../sessions";
 import { openDialog } from "../view";
 import type { Picture } from "../live/picture";
-import { clockTime, minutes, problemsOf } from "../words";
+import { clockTime, minutes, problemsOf, timeSince, zone } from "../words";
 import { Icon } from "./Icon";
 import { Menu } from "./Menu";
 import { ParClock } from "./ParClock";
@@ -43,9 +43,10 @@ function IncidentTitle({ picture }: { picture: Picture }) {
 
 function Clock({ picture }: { picture: Picture }) {
   const now = picture.nowMs.value;
+  const past = picture.replay.value;
   return (
-    <time class="clock" dateTime={new Date(now).toISOString()}>
-      {clockTime(now)}
+    <time class="clock" dateTime={new Date(now).toISOString()} title={zone(now)}>
+      {past === null ? clockTime(now) : timeSince(past.start_ms, now)}
     </time>
   );
 }

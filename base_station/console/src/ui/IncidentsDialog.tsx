@@ -1,9 +1,10 @@
 import { useSignal } from "@preact/signals";
 import { attempt, live, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
+import { KINDS, type TrailKind } from "../plan/pastTrails";
 import { assess } from "../view";
 import type { IncidentView } from "../wire";
-import { dateAndTime, minutes } from "../words";
+import { dateAndTime, minutes, zone } from "../words";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -91,6 +92,12 @@ export function IncidentsDialog() {
           ))}
         </tbody>
       </table>
+      {entries.value.length > 0 && (
+        <p class="quiet">
+          Times are of this browser: {zone(Date.now())} now. Saved files, the log and the terminal have
+          UTC.
+        </p>
+      )}
       {!loaded.value && <Waiting />}
       {loaded.value && entries.value.length === 0 && (
         <p class="quiet">None yet. What a unit says is kept all the same.</p>
@@ -180,10 +187,11 @@ function MinutesField({ name, label, valueS }: { name: string; label: string; va
 const TAKEN_MS = 60_000; // by then the browser has the file
 
 /** The console stays: the browser would leave it for an answer that is a refusal. */
-async function save(incident: api.Incident, format: api.ExportFormat): Promise<void> {
+async function save(incident: api.Incident, kind: TrailKind, format: api.ExportFormat): Promise<void> {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(await api.exported(incident.incident_id, format.name));
-  link.download = `${incident.incident_id}.${format.suffix}`;
+  link.href = URL.createObjectURL(await api.exported(incident.incident_id, format.name, kind));
+  const which = kind === "fused" ? "" : `-${kind}`; // as the station names it
+  link.download = `${incident.incident_id}${which}.${format.suffix}`;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), TAKEN_MS);
 }
@@ -196,11 +204,12 @@ interface DownloadsProps {
 /** The tracks of an incident for other programs. */
 function Downloads({ incident, formats }: DownloadsProps) {
   const writing = useSignal(false);
-  const chosen = useChosen("", async (name) => {
-    const format = formats.find((one) => one.name === name);
-    if (format === undefined) return;
+  const files = KINDS.flatMap(([kind]) => formats.map((format) => ({ kind, format })));
+  const chosen = useChosen("", async (key) => {
+    const file = files.find((one) => keyOf(one.kind, one.format) === key);
+    if (file === undefined) return;
     writing.value = true;
-    await attempt(save(incident, format));
+    await attempt(save(incident, file.kind, file.format));
     writing.value = false;
   });
   return (
@@ -210,11 +219,19 @@ function Downloads({ incident, formats }: DownloadsProps) {
       {...chosen}
     >
       <option value="">{writing.value ? "Is written …" : "Save as …"}</option>
-      {formats.map((format) => (
-        <option key={format.name} value={format.name}>
-          {format.name}
-        </option>
+      {KINDS.map(([kind, word]) => (
+        <optgroup key={kind} label={word}>
+          {formats.map((format) => (
+            <option key={format.name} value={keyOf(kind, format)}>
+              {format.name}
+            </option>
+          ))}
+        </optgroup>
       ))}
     </select>
   );
+}
+
+function keyOf(kind: TrailKind, format: api.ExportFormat): string {
+  return `${format.name} ${kind}`;
 }

@@ -1,12 +1,6 @@
-import { loadingKinds, shownKinds, toggle, type TrailKind } from "../plan/pastTrails";
+import { KINDS, loadingKinds, shownKinds, toggle } from "../plan/pastTrails";
 import { selectedUnit } from "../view";
 import { Ends } from "./Ends";
-
-const KINDS: readonly [TrailKind, string][] = [
-  ["fused", "As shown at the time"],
-  ["raw", "The unit’s own path"],
-  ["smoothed", "Best known since"],
-];
 
 /** Which trails are drawn, with the lines they are drawn in. */
 export function TrailsPanel() {

@@ -3,7 +3,7 @@ import { attempt, type Replay } from "../sessions";
 import * as api from "../api";
 import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../live/replaying";
 import type { ReplayView } from "../wire";
-import { clockTime, countdown } from "../words";
+import { countdown, timeSince } from "../words";
 import { Icon, type IconName } from "./Icon";
 import { useChosen } from "./useChosen";
 import { useLoaded } from "./useLoaded";
@@ -37,14 +37,14 @@ export function Transport({ replay, state }: Props) {
       <Step icon="forth" word="Next alarm" shown="Alarm" go={jump(nextAlarmMs(alarms, at))} />
       <SeekBar state={state} alarms={alarms} seek={seek} />
       <span class="going" role="status">
-        {state.seeking ? `Going to ${clockTime(at)} …` : ""}
+        {state.seeking ? `Going to ${timeSince(start, at)} …` : ""}
       </span>
       {!state.seeking && (
         <span>
           {countdown(at - start)} of {countdown(end - start)}
         </span>
       )}
-      <GoTo alarms={alarms} seek={seek} />
+      <GoTo alarms={alarms} sinceMs={start} seek={seek} />
       <Speed state={state} choose={(speed) => change({ speed })} />
     </div>
   );
@@ -77,7 +77,7 @@ function keyOf({ alarm_id, raised_ms }: api.PastAlarm): string {
 }
 
 /** The alarms in words, to go to. */
-function GoTo({ alarms, seek }: SeekProps) {
+function GoTo({ alarms, sinceMs, seek }: SeekProps & { sinceMs: number }) {
   const chosen = useChosen("", (raisedMs) => seek(Number(raisedMs) - LEAD_MS));
   return (
     <select
@@ -89,7 +89,7 @@ function GoTo({ alarms, seek }: SeekProps) {
       <option value="">{alarms.length === 0 ? "No alarms" : `${alarms.length} alarms …`}</option>
       {alarms.map((alarm) => (
         <option key={keyOf(alarm)} value={alarm.raised_ms}>
-          {clockTime(alarm.raised_ms)} {alarm.text}
+          {timeSince(sinceMs, alarm.raised_ms)} {alarm.text}
         </option>
       ))}
     </select>
@@ -134,7 +134,7 @@ function SeekBar({ state, alarms, seek }: SeekProps & { state: ReplayView }) {
       <input
         type="range"
         aria-label="Time of the incident"
-        aria-valuetext={clockTime(shown)}
+        aria-valuetext={timeSince(state.start_ms, shown)}
         min={start}
         max={end}
         step={1000}
