@@ -6,7 +6,7 @@ It may be on a medium that nobody can write to, or of a station that nobody here
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -46,6 +46,7 @@ class Given:
     keeps: bool  # what is worked out; else it is gone with the command
     scratch: Path
     log: LogFeed
+    flaws: Sequence[str]  # of the log, as far as they are known by now
     tell: Tell
 
     def archive(self) -> Archive:
@@ -55,7 +56,8 @@ class Given:
         own = Checkpoints(self.scratch / "checkpoints", self.tell)
         saved = self.folder.checkpoints
         theirs = Checkpoints(saved) if saved.is_dir() else own
-        return Archive(self.log.records, theirs, past_pipeline, self.log.watch, own)
+        log = self.log
+        return Archive(log.records, theirs, past_pipeline, log.watch, own, lambda: self.flaws)
 
 
 def open_given(
@@ -74,26 +76,33 @@ def open_given(
     """
     scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-past-")))
     folder = _folder_of(path, scratch)
-    flaws = list(_flaws(folder))
-    for flaw in flaws:
-        tell(flaw)
-    log = LogFeed(folder.log, on_damage=_once(tell))
+    flaws: list[str] = []
+
+    def tell_flaw(what: str) -> None:
+        flaws.append(what)
+        tell(what)
+
+    for flaw in _flaws(folder):
+        tell_flaw(flaw)
+    log = LogFeed(folder.log, on_damage=_once(tell_flaw))
     if not flaws and shows_otherwise(log.records(), past_pipeline(None)):
-        tell(
+        tell_flaw(
             "this version of Muster decides otherwise than the station did: places and alarms of a "
             "replay may differ from what was shown then, which is in the log"
         )
     if in_place and _can_be_written(folder):
         store = closing.enter_context(Store(folder.database))
         if not _is_behind(store, folder, incident_id):
-            return Given(folder, store, keeps=True, scratch=scratch, log=log, tell=tell)
+            return Given(
+                folder, store, keeps=True, scratch=scratch, log=log, flaws=flaws, tell=tell
+            )
     copy = scratch / "station.sqlite"
     copy_database(folder.database, copy)
     store = closing.enter_context(Store(copy))
     if _is_behind(store, folder, incident_id):
         tell("the database does not have this incident; the log is read instead")
         project_whole_log(store, folder.log, on_progress)
-    return Given(folder, store, keeps=False, scratch=scratch, log=log, tell=tell)
+    return Given(folder, store, keeps=False, scratch=scratch, log=log, flaws=flaws, tell=tell)
 
 
 def _folder_of(path: Path, scratch: Path) -> DataFolder:

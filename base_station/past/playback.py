@@ -8,7 +8,7 @@ live station had decided, one by one.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
@@ -40,6 +40,7 @@ class Archive:
     make_pipeline: MakePipeline
     watch: Watch = lambda: lambda: False
     own: Checkpoints | None = None  # where a playback saves the states that it comes by
+    flaws: Callable[[], Sequence[str]] = tuple  # what is known by now not to be as it was, in words
 
     def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
         """The newest state that was saved of this log, as ``Checkpoints.latest``: its place is

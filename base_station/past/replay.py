@@ -22,6 +22,7 @@ DELTA_S = 0.05
 WHOLE_NS = NS_PER_S  # live, consoles hear of the station and of trails that were filled as often
 GRACE_S = 2.0  # for its thread to end
 PAUSED_S = 1.0  # a console that hears nothing for longer believes its link dead
+MOST_FLAWS = 20  # that are said: with every change
 
 _log = logging.getLogger(__name__)
 
@@ -115,7 +116,15 @@ class ReplaySession:
                 speed=self._speed,
                 playing=self._playing,
                 seeking=self._seeking,
+                flaws=self._flaws(),
             )
+
+    def _flaws(self) -> tuple[str, ...]:
+        flaws = tuple(self._archive.flaws())
+        more = len(flaws) - MOST_FLAWS
+        if more <= 0:
+            return flaws
+        return (*flaws[:MOST_FLAWS], f"and {more} more, which the terminal names")
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         self._asked.append(deliver)

@@ -246,6 +246,7 @@ class ReplayView(Answer, frozen=True):
     speed: float
     playing: bool
     seeking: bool = False  # on the way to ``at_ms``; what is shown is of another time
+    flaws: tuple[str, ...] = ()  # why not all is shown as it was, in words
 
 
 class TrailPoint(msgspec.Struct, frozen=True, array_like=True):

@@ -40,10 +40,16 @@ class Stage:
         self._pages: list[Page] = []
 
     def open(
-        self, picture: Snapshot, screen: str = "laptop", answers: Answers = ANSWERS
+        self,
+        picture: Snapshot,
+        screen: str = "laptop",
+        answers: Answers = ANSWERS,
+        timezone: str | None = None,
     ) -> tuple[Page, PlayedStation]:
         width, height = SCREENS[screen]
-        page = self._browser.new_page(viewport={"width": width, "height": height})
+        page = self._browser.new_page(
+            viewport={"width": width, "height": height}, timezone_id=timezone
+        )
         self._pages.append(page)
         station = PlayedStation(page, picture, answers)
         station.open()

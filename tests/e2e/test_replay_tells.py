@@ -5,12 +5,29 @@ from __future__ import annotations
 import re
 
 import msgspec
+import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from base_station.views.wire import Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import menu, strip
 from tests.e2e.looks import flaws
-from tests.e2e.stage import Stage
+from tests.e2e.stage import SCREENS, Stage
+
+MISSING = (
+    "segments 2 to 3 of the log are missing: what happened from 2026-11-21 14:10:00 UTC until "
+    "2026-11-21 14:40:00 UTC is not known"
+)
+TORN = "000004-20261121T144000Z.mcap was not ended in order: its last 3000 bytes cannot be read"
+
+
+def over_a_day(*flaws: str) -> Snapshot:
+    """An incident that was opened the day before."""
+    shown = scenes.past()
+    assert shown.replay is not None
+    start_ms = shown.replay.start_ms - 24 * 60 * scenes.MINUTE_MS
+    replay = msgspec.structs.replace(shown.replay, start_ms=start_ms, flaws=flaws)
+    return msgspec.structs.replace(shown, replay=replay)
 
 
 def begin_replay(page: Page) -> Locator:
@@ -93,3 +110,37 @@ def test_a_jump_in_the_past_begins_the_list_anew(stage: Stage) -> None:
     station.change(units=well, alarms=(), now_ms=scenes.NOW_MS - 20 * scenes.MINUTE_MS)
     jonas = page.locator(".card", has_text="Jonas Bergman")
     expect(jonas).to_have_class(re.compile("normal"), timeout=2000)
+
+
+@pytest.mark.parametrize("screen", SCREENS)
+def test_what_is_not_as_it_was_reaches_who_does_not_see_the_terminal(
+    stage: Stage, screen: str
+) -> None:
+    page, _ = stage.open(over_a_day(MISSING, TORN), screen)
+    told = page.get_by_role("region", name="Replay").get_by_role("button", name="Not all is as")
+    expect(told).to_have_text("Not all is as it was: 2")
+    assert flaws(page) == []
+    told.click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_role("listitem")).to_have_text([MISSING, TORN])
+    assert flaws(page) == []
+
+
+def test_a_replay_of_a_whole_log_warns_of_nothing(stage: Stage) -> None:
+    page, _ = stage.open(scenes.past())
+    bar = page.get_by_role("region", name="Replay")
+    expect(bar).to_contain_text("This is the past")
+    expect(bar).not_to_contain_text("Not all")
+
+
+def test_times_of_another_day_than_the_beginning_say_so_and_of_which_zone_they_are(
+    stage: Stage,
+) -> None:
+    page, _ = stage.open(over_a_day(), timezone="Asia/Kolkata")
+    expect(page.get_by_role("region", name="Replay")).to_contain_text("UTC+5:30. This is the past.")
+    day = re.compile(r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d")
+    expect(page.locator("time.clock")).to_have_text(day)
+    assert day.match(page.get_by_label("Go to an alarm").locator("option").nth(1).inner_text())
+    seek = page.get_by_label("Time of the incident")
+    assert day.match(seek.get_attribute("aria-valuetext") or "")
+    expect(menu(page, "Incidents")).to_contain_text("Times are of this browser: UTC+5:30 now.")

@@ -154,11 +154,12 @@ def test_what_a_log_lacks_is_told(copy: Path, told: list[str], closing_at_end: E
     paths[2].unlink()
     torn = paths[-1]
     torn.write_bytes(torn.read_bytes()[:-3000])
-    _open(copy, "i1", told, closing_at_end)
+    opened = _open(copy, "i1", told, closing_at_end)
     missing = [one for one in told if "missing" in one]
     assert len(missing) == 1
     assert missing[0].startswith("segments 2 to 3 of the log are missing: what happened from 2023-")
     assert any(one.startswith(torn.name) for one in told)
+    assert opened.archive().flaws() == [one for one in told if "database" not in one]
 
 
 def test_a_whole_log_has_nothing_to_tell_of(
@@ -184,7 +185,8 @@ def test_damage_is_told_when_it_is_come_by_and_once(
     opened = _open(copy, "i1", told, closing_at_end)
     for _ in range(2):
         assert list(opened.log.records())
-    assert len([one for one in told if path.name in one]) == 1
+    (damage,) = (one for one in told if path.name in one)
+    assert damage in opened.archive().flaws(), "and on the screen, by then"
 
 
 def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
@@ -213,8 +215,9 @@ def test_another_program_that_decides_otherwise_is_told(
 ) -> None:
     """Nobody may take what it shows for what was shown."""
     _log(tmp_path, list(logged(north(2.0))))
-    _open(tmp_path, "i1", told, closing_at_end)
+    opened = _open(tmp_path, "i1", told, closing_at_end)
     assert any("decides otherwise than the station did" in one for one in told)
+    assert any("decides otherwise" in one for one in opened.archive().flaws())
 
 
 def _open(data: Path, incident_id: str, told: list[str], stack: ExitStack) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from base_station.bench.rig import said
 from base_station.live.sinks import Trails
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.playback import BURST, Archive
-from base_station.past.replay import ReplaySession, Window
+from base_station.past.replay import MOST_FLAWS, ReplaySession, Window
 from base_station.views.wire import Snapshot, TrailPoint
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
@@ -465,3 +466,21 @@ def test_one_goes_on_where_it_cannot_be_seen_whether_the_past_was_changed(
     picture(session)
     assert not session.is_over
     session.close()
+
+
+def test_it_says_what_of_its_log_cannot_be_shown_as_it_was(tmp_path: Path, screen: Screen) -> None:
+    """Also what is come by on the way; whoever looks on does not see the terminal."""
+    flaws = ["segment 2 of the log is missing"]
+    source = replace(archive(walk_with_mayday(), tmp_path), flaws=lambda: flaws)
+    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    session = ReplaySession(source, window, 1.0, screen, lambda _: None, SystemClock())
+    try:
+        flaws.append("a part of the log cannot be read")
+        shown = picture(session).replay
+        assert shown is not None
+        assert shown.flaws == tuple(flaws)
+        flaws.extend(f"part {number}" for number in range(1000))
+        assert len(session.view().flaws) == MOST_FLAWS + 1, "it is said with every change"
+        assert session.view().flaws[-1] == "and 982 more, which the terminal names"
+    finally:
+        session.close()

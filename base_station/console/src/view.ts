@@ -15,6 +15,7 @@ export type DialogName =
   | "units"
   | "site"
   | "health"
+  | "flaws"
   | "roll_call"
   | "account"
   | "users"

@@ -225,6 +225,7 @@ export interface ReplayView {
   speed: number;
   playing: boolean;
   seeking: boolean; // on the way to `at_ms`; what is shown is of another time
+  flaws: string[]; // why not all is shown as it was, in words
 }
 
 export type TrailPoint = [t_ms: number, north_m: number, east_m: number, floor: number | null];

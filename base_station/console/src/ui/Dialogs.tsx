@@ -4,6 +4,7 @@ import { AccountDialog } from "./AccountDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
 import { CommandDialog } from "./CommandDialog";
+import { FlawsDialog } from "./FlawsDialog";
 import { HealthDialog } from "./HealthDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
@@ -27,6 +28,8 @@ export function Dialogs() {
       return <SiteDialog />;
     case "health":
       return <HealthDialog />;
+    case "flaws":
+      return <FlawsDialog />;
     case "roll_call":
       return <RollCallDialog />;
     case "account":

@@ -1,7 +1,7 @@
 import { besideLive, stopReplay, type Replay } from "../sessions";
-import { assess } from "../view";
+import { assess, openDialog } from "../view";
 import type { Picture } from "../live/picture";
-import { dateAndTime, problemsOf } from "../words";
+import { dateAndTime, problemsOf, zone } from "../words";
 import { Icon } from "./Icon";
 import { Transport } from "./Transport";
 
@@ -17,8 +17,10 @@ export function ReplayBar({ replay, live }: Props) {
     <section class="replay-bar" aria-label="Replay">
       <strong class="replay-word">REPLAY</strong>
       <span class="replay-what">
-        {replay.incident.name}, {dateAndTime(replay.incident.opened_ms)}. This is the past.
+        {replay.incident.name}, {dateAndTime(replay.incident.opened_ms)}{" "}
+        {zone(replay.incident.opened_ms)}. This is the past.
       </span>
+      {state && <Flaws flaws={state.flaws} />}
       <button
         type="button"
         class="about-positions"
@@ -39,6 +41,16 @@ export function ReplayBar({ replay, live }: Props) {
       )}
       {state && <Transport key={replay.id} replay={replay} state={state} />}
     </section>
+  );
+}
+
+/** Nobody may take a replay of half a log, or of another Muster, for what the commander saw. */
+function Flaws({ flaws }: { flaws: readonly string[] }) {
+  if (flaws.length === 0) return null;
+  return (
+    <button type="button" class="flaws" title={flaws.join("\n")} onClick={() => openDialog("flaws")}>
+      <Icon name="alarm" /> Not all is as it was: {flaws.length}
+    </button>
   );
 }
 
