@@ -8,7 +8,7 @@ which may have held somebody in the wrong room.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -42,6 +42,7 @@ from base_station.fusion.smoother.walls import Pieces, Words
 Floats = NDArray[np.float64]
 
 TIE_TAIL = 3.0  # standard deviations from which a meeting counts less
+PARTINGS = 3  # rounds in which meetings that do not fit are let go
 SWEEPS = 6  # over what walls say
 LINE_SWEEPS = 2  # over which lines legs are of
 CONTRADICTED = 0.3  # of log weight lost a piece, on the mean: the plan or the path is wrong
@@ -204,8 +205,9 @@ class _Solving:
                 self._judge_used(unit_id, agreed)
         for tie, meeting in zip(self._ties, graph.landmarks, strict=False):
             apart_m = graph.visited.apart_m(meeting)
-            used = tie.name not in refused
-            self._verdicts[tie.name] = Verdict(used, apart_m, apart_m / tie.std_m)
+            sigmas = apart_m / tie.std_m
+            used = tie.name not in refused and sigmas**2 <= GATE2
+            self._verdicts[tie.name] = Verdict(used, apart_m, sigmas)
         spreads = graph.spreads()
         on_plan = graph.spreads(on_plan=True) if graph.words else spreads
         met = self._met()
@@ -214,32 +216,22 @@ class _Solving:
 
     def _let_go(self) -> set[str]:
         """Two who were too far apart have not met either: until here such a meeting counted less,
-        now it tells nothing.  Gives their names.
+        now it tells nothing.  Gives the names of those that do not fit.
         """
-        refused: set[str] = set()
-        while gone := self._worst_misfits(refused):
-            self._graph.let_go(gone)
-            self._graph.settle(self._noise)
-            refused |= {self._ties[number].name for number in gone}
-        return refused
-
-    def _worst_misfits(self, refused: Collection[str]) -> list[int]:
-        """Of the meetings of each two the one that fits least, where it does not fit: it may have
-        drawn them away from the others.
-        """
-        off: dict[int, float] = {}
-        worst: dict[str, float] = {}
-        for number, tie in enumerate(self._ties):
-            if tie.name not in refused:
-                meeting = self._graph.landmarks[number]
-                off[number] = self._graph.visited.apart_m(meeting) / tie.std_m
-                for unit_id in _both(tie):
-                    worst[unit_id] = max(off[number], worst.get(unit_id, 0.0))
-        return [
-            number
-            for number, sigmas in off.items()
-            if sigmas**2 > GATE2 and all(worst[one] <= sigmas for one in _both(self._ties[number]))
-        ]
+        graph = self._graph
+        refused: set[int] = set()
+        for _ in range(PARTINGS):
+            misfits = [
+                number
+                for number, tie in enumerate(self._ties)
+                if (graph.visited.apart_m(graph.landmarks[number]) / tie.std_m) ** 2 > GATE2
+            ]
+            if refused.issuperset(misfits):
+                break
+            refused.update(misfits)
+            graph.let_go(misfits)
+            graph.settle(self._noise)
+        return {self._ties[number].name for number in refused}
 
     def _part_floors(self) -> bool:
         """Two who were on different floors have not met: such a meeting tells nothing at all.
