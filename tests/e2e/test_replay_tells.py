@@ -144,3 +144,25 @@ def test_times_of_another_day_than_the_beginning_say_so_and_of_which_zone_they_a
     seek = page.get_by_label("Time of the incident")
     assert day.match(seek.get_attribute("aria-valuetext") or "")
     expect(menu(page, "Incidents")).to_contain_text("Times are of this browser: UTC+5:30 now.")
+
+
+def test_a_second_replay_at_a_station_that_only_replays_has_nothing_live_beside_it(
+    stage: Stage,
+) -> None:
+    """What is beside it is the past too, and nobody gets out of that without a banner."""
+    page, station = stage.open(scenes.past())
+    bar = page.get_by_role("region", name="Replay")
+    expect(bar).to_contain_text("This is the past")
+    dialog = menu(page, "Incidents")
+    expect(dialog.get_by_role("button", name="Forget")).to_have_count(0)
+    dialog.get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
+    station.expect_changes("/replays")
+    back = bar.get_by_role("button", name="Back to the first replay")
+    expect(back).to_be_visible()
+    expect(bar).not_to_contain_text("live", ignore_case=True)
+    assert flaws(page) == []
+    back.click()
+    expect(back).to_have_count(0)
+    expect(bar).to_contain_text("This is the past")
+    expect(bar.get_by_label("Time of the incident")).to_be_visible()
+    station.expect_changes("/replays", "/replays/r2")

@@ -99,7 +99,7 @@ export function stopReplay(): void {
   const watched = replay.peek();
   if (watched === null || watched.session === live.peek()) return;
   watched.session.close();
-  replay.value = null;
+  replay.value = adopted;
   reset();
   void api.endReplay(watched.id).catch(() => undefined); // it ends by itself with its last viewer
 }
@@ -109,7 +109,7 @@ async function replayOn(before: Replay): Promise<void> {
   const id = await attempt(replayAt(before));
   if (replay.peek() !== before) return;
   if (id === null) {
-    replay.value = null;
+    replay.value = adopted;
     return;
   }
   before.session.open(api.replayPath(id));
@@ -155,7 +155,7 @@ function wait(): void {
 function forget(): void {
   wait();
   live.value = null;
-  replay.value = null;
+  replay.value = adopted = null;
   user.value = null;
   waiting.value = false;
   putDown();
@@ -164,12 +164,15 @@ function forget(): void {
 
 function replayEnded(): void {
   replay.peek()?.session.close();
-  replay.value = null;
+  replay.value = adopted;
   notice.value = "The station has ended this replay.";
 }
 
 /** `muster base replay` shows the past where other stations show what is live. */
-const liveIsPast = computed(() => live.value !== null && live.value.picture.replay.value !== null);
+export const liveIsPast = computed(() => live.value !== null && live.value.picture.replay.value !== null);
+
+/** The replay that such a station was started for: there is nothing behind it. */
+let adopted: Replay | null = null;
 
 effect(() => {
   if (liveIsPast.value && live.value !== null) void adopt(live.value);
@@ -184,5 +187,6 @@ async function adopt(session: Session): Promise<void> {
   const running = ((await attempt(api.replays())) ?? []).find((one) => one.begun_by === "");
   if (running === undefined) return;
   const incident = await attempt(api.incident(running.incident_id));
-  if (incident !== null) replay.value = { id: running.replay_id, session, incident };
+  if (incident === null || live.peek() !== session) return;
+  replay.value = adopted = { id: running.replay_id, session, incident };
 }

@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import { attempt, live, mayAct, user, watchReplay } from "../sessions";
+import { attempt, live, liveIsPast, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
 import { KINDS, type TrailKind } from "../plan/pastTrails";
 import { assess } from "../view";
@@ -23,7 +23,7 @@ export function IncidentsDialog() {
   const { entries, loaded, older, again } = usePages(api.incidents, (one) => one.opened_ms);
   const [formats] = useLoaded(api.exportFormats);
   const open = live.value?.picture.incident.value ?? null;
-  const forgets = user.value?.role === "administrator";
+  const forgets = user.value?.role === "administrator" && !liveIsPast.value;
   const running = open !== null && open.closed_ms === null ? open : null;
   return (
     <Dialog title="Incidents" wide>
@@ -41,6 +41,12 @@ export function IncidentsDialog() {
         </p>
       )}
       {mayAct.value && running !== null && <TimesForm incident={running} />}
+      {entries.value.length > 0 && (
+        <p class="quiet">
+          Times are of this browser: {zone(Date.now())} now. Saved files, the log and the terminal have
+          UTC.
+        </p>
+      )}
       <table class="stacked">
         <caption>Incidents so far</caption>
         <Columns names={forgets ? [...COLUMNS, "Personal data"] : COLUMNS} />
@@ -92,12 +98,6 @@ export function IncidentsDialog() {
           ))}
         </tbody>
       </table>
-      {entries.value.length > 0 && (
-        <p class="quiet">
-          Times are of this browser: {zone(Date.now())} now. Saved files, the log and the terminal have
-          UTC.
-        </p>
-      )}
       {!loaded.value && <Waiting />}
       {loaded.value && entries.value.length === 0 && (
         <p class="quiet">None yet. What a unit says is kept all the same.</p>

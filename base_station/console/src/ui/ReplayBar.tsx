@@ -1,4 +1,4 @@
-import { besideLive, stopReplay, type Replay } from "../sessions";
+import { besideLive, liveIsPast, stopReplay, type Replay } from "../sessions";
 import { assess, openDialog } from "../view";
 import type { Picture } from "../live/picture";
 import { dateAndTime, problemsOf, zone } from "../words";
@@ -30,7 +30,12 @@ export function ReplayBar({ replay, live }: Props) {
       >
         How good?
       </button>
-      {besideLive.value && (
+      {besideLive.value && liveIsPast.value && (
+        <button type="button" class="primary" onClick={stopReplay}>
+          Back to the first replay
+        </button>
+      )}
+      {besideLive.value && !liveIsPast.value && (
         <>
           <LiveAlarms live={live} />
           <button type="button" class="primary" onClick={stopReplay}>
