@@ -108,7 +108,7 @@ def _ambers(unit: UnitState, conflicts: int) -> Iterator[Trust]:
 
 
 def _not_heard(level: Level) -> Trust:
-    return Trust(level, "not heard: shown where it last was", "not heard")
+    return Trust(level, "not heard: shown where it was known last", "not heard")
 
 
 def _only_within(level: Level, within_m: float) -> Trust:

@@ -30,6 +30,7 @@ from base_station.positioning.frame import moved_by, reframe
 from base_station.positioning.fused_message import fused_message
 from base_station.positioning.inside import is_outside, note_inside
 from base_station.positioning.lost_contact import LostContact
+from base_station.positioning.said_place import as_said
 from base_station.positioning.unit_starts import begin, lead_on, unlearn
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.learnt_floors import BEGAN_M, Landing
@@ -252,6 +253,7 @@ class Positioning:
         unit.reach = ()
         if history is not None:
             history.show(estimate, plain.floor)
+            unit.fused = as_said(state, history, unit.fused)
         if unit.fused.quality is not Quality.LOST:
             unit.unplaced_since_ns = None
         elif unit.unplaced_since_ns is None:

@@ -176,7 +176,7 @@ def bad_minute(count: int = 5) -> wire.Snapshot:
         last_heard_ms=NOW_MS - 71_000,
         status_ms=NOW_MS - 72_000,
         position=position(3, 71_000),
-        trust=wire.TrustView("red", "not heard: shown where it last was"),
+        trust=wire.TrustView("red", "not heard: shown where it was known last"),
     )
     stranger = msgspec.structs.replace(
         unit(count), registered=False, person=None, position=None, duty=None, status=None
@@ -261,7 +261,7 @@ def switched_off() -> wire.Snapshot:
             last_heard_ms=NOW_MS - 10 * MINUTE_MS,
             status_ms=NOW_MS - 10 * MINUTE_MS,
             position=position(index, 10 * MINUTE_MS),
-            trust=wire.TrustView("red", "not heard: shown where it last was"),
+            trust=wire.TrustView("red", "not heard: shown where it was known last"),
         )
     off = alarm(0, "link-lost", 3, "Astrid Lindqvist's unit was switched off", 600)
     off = msgspec.structs.replace(off, level="switched off")
