@@ -10,7 +10,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from base_station.views.wire import Snapshot
 from tests.e2e import scenes
-from tests.e2e.console_page import menu, strip
+from tests.e2e.console_page import close, menu, strip
 from tests.e2e.looks import flaws
 from tests.e2e.stage import SCREENS, Stage
 
@@ -160,6 +160,10 @@ def test_a_second_replay_at_a_station_that_only_replays_has_nothing_live_beside_
     back = bar.get_by_role("button", name="Back to the first replay")
     expect(back).to_be_visible()
     expect(bar).not_to_contain_text("live", ignore_case=True)
+    dialog = menu(page, "Incidents")
+    expect(dialog.get_by_role("row", name="the station")).to_be_visible()
+    expect(dialog.get_by_role("button", name="End replay")).to_have_count(0)
+    close(dialog)
     assert flaws(page) == []
     back.click()
     expect(back).to_have_count(0)

@@ -69,14 +69,18 @@ async def test_a_commander_ends_any_replay_by_name_and_moves_none_of_others(
     assert (entry.by, entry.action, entry.detail) == (role.word, "EndedReplay", "i-1 of viewer")
 
 
-async def test_the_replay_that_a_station_shows_belongs_to_all_and_is_ended_by_no_viewer(
-    station: DeskStation, replays: Replays
+@pytest.mark.parametrize("role", [Role.VIEWER, Role.ADMINISTRATOR])
+async def test_the_replay_that_a_station_shows_belongs_to_all_and_is_ended_by_nobody(
+    station: DeskStation, replays: Replays, role: Role
 ) -> None:
+    """There is nothing behind it: the console would show a picture that stands."""
     path, player = begun_by(replays, "")
-    async with station.client(Role.VIEWER) as viewer:
-        assert (await viewer.post(path, json={"playing": True})).status_code == 204
+    async with station.client(role) as client:
+        assert (await client.post(path, json={"playing": True})).status_code == 204
         assert player.told == ["play"]
-        assert (await viewer.delete(path)).status_code == 403
+        refused = await client.delete(path)
+        assert refused.status_code == 403
+        assert "ends with the command" in refused.json()["detail"]
     assert not player.closed
 
 

@@ -84,13 +84,14 @@ def change_replay(replay_id: Id, change: ReplayChange, station: Station, who: Vi
 
 @router.delete("/replays/{replay_id}", status_code=204)
 def end_replay(replay_id: Id, station: Station, who: Viewer) -> None:
-    """One's own; a commander may end any."""
+    """One's own; a commander may end anybody's; nobody the one that a station was started for."""
     replay = _replay_or_404(station, replay_id)
+    if replay.lasting:
+        raise Problem(403, "This replay is for all; it ends with the command that shows it.")
     if not _is_own(replay, who):
         if who.role < Role.COMMANDER:
-            whose = f"{replay.begun_by}'s" if replay.begun_by else "for all"
-            raise Problem(403, f"This replay is {whose}; a commander may end it.")
-        said = f"{replay.player.view().incident_id} of {replay.begun_by or 'the station'}"
+            raise Problem(403, f"This replay is {replay.begun_by}'s; a commander may end it.")
+        said = f"{replay.player.view().incident_id} of {replay.begun_by}"
         station.records.audit(who.username, "EndedReplay", said)
     if not station.replays.close(replay_id):
         raise Problem(404, _NO_REPLAY)

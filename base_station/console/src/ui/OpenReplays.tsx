@@ -24,7 +24,7 @@ export function OpenReplays({ incidents }: { incidents: readonly api.Incident[] 
               {mayEnd(begun_by) && (
                 <ConfirmButton
                   label="End replay"
-                  about={`${nameOf(incident_id)}, of ${begun_by || "the station"}`}
+                  about={`${nameOf(incident_id)}, of ${begun_by}`}
                   question="Whoever looks at it sees it no more."
                   onConfirm={() => void attempt(api.endReplay(replay_id)).then(again)}
                 />
@@ -37,8 +37,8 @@ export function OpenReplays({ incidents }: { incidents: readonly api.Incident[] 
   );
 }
 
-/** One's own, and as a commander any. */
+/** One's own, and as a commander anybody's; what a station was started for ends with it. */
 function mayEnd(begunBy: string): boolean {
   const me = user.value;
-  return me !== null && (me.role !== "viewer" || me.username === begunBy);
+  return me !== null && begunBy !== "" && (me.role !== "viewer" || me.username === begunBy);
 }
