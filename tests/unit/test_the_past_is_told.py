@@ -233,7 +233,7 @@ def test_a_pin_that_waited_for_the_path_is_told_of_as_the_path_comes() -> None:
     walk.go(1)
     pins = {pin.pin_id: pin for pin in script.console.pins}
     assert [pins[one].state for one in ("good", "bad", "early")] == ["used", "conflict", "waiting"]
-    assert "begins 62 s later" in pins["early"].text
+    assert "begins 62 seconds later" in pins["early"].text
 
 
 @pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
@@ -312,7 +312,7 @@ def test_what_the_journal_brings_of_before_can_be_pinned() -> None:
         walk.go(1)
         script.tick()
     assert walk.state("early") == "waiting"
-    assert script.console.pins[0].text.startswith("the path that is known begins 61 s later")
+    assert script.console.pins[0].text.startswith("the path that is known begins 61 seconds later")
     for _ in range(20):
         walk.go(1)
         script.backfill(10)
