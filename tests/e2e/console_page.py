@@ -103,10 +103,15 @@ def click_plan(page: Page, right_px: int, down_px: int) -> None:
 
 
 def drag(page: Page, start: tuple[int, int], end: tuple[int, int]) -> dict[str, Any]:
-    """The pin as it is after it was drawn to another place of the plan."""
+    """The pin as it is after it was drawn to another place of the plan, as slowly as by a hand: the
+    plan stands on the screen as it is when each thing is done.
+    """
+    drawn(page)
     page.mouse.move(*on_plan(page, *start))
     page.mouse.down()
+    drawn(page)
     page.mouse.move(*on_plan(page, *end), steps=8)
+    drawn(page)
     with page.expect_response(
         lambda one: one.request.method == "PUT" and "/pins/" in one.url
     ) as moved:
