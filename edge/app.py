@@ -49,7 +49,7 @@ from shared.bus import Bus
 from shared.channels import NO_TRACKER, tracked_unit, tracker_id
 from shared.clock import SystemClock
 from shared.envelope import Stamper
-from shared.errors import ConfigError
+from shared.errors import BusError, ConfigError
 from shared.messages import EventKind, UnitDescription, UnitEvent
 from shared.service_manager import ServiceManager
 
@@ -288,6 +288,7 @@ class ZenohStation:
 
     def __init__(self, member: Membership) -> None:
         self._member = member
+        self._connect = member.connect  # which is tried first changes
         self._probe = ReachabilityProbe(member.connect)
 
     def open_bus(self) -> Bus:
@@ -298,10 +299,17 @@ class ZenohStation:
         return ZenohBus(UnitEndpoint(self._member.connect, self._member.identity))
 
     def open_listening_bus(self) -> Bus:
-        """Linked with one router: hears other units, which an endpoint for speaking does not."""
+        """Linked with one router: hears other units, which an endpoint for speaking does not.
+
+        While it opens, Zenoh tries the first router again and again, and no other.
+        """
         from shared.bus_zenoh import ClientEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
-        return ZenohBus(ClientEndpoint(self._member.connect, self._member.identity, _PATIENCE_S))
+        try:
+            return ZenohBus(ClientEndpoint(self._connect, self._member.identity, _PATIENCE_S))
+        except BusError:
+            self._connect = (*self._connect[1:], self._connect[0])
+            raise
 
     def is_reachable(self, timeout_s: float) -> bool:
         return self._probe.wait(timeout_s)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import socket
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -136,6 +137,18 @@ def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, star
         assert (last.kind, last.detail) == (EventKind.STOPPED, "told to stop")
     finally:
         station.bus.close()
+
+
+@pytest.mark.parametrize("hangs", [False, True])
+def test_one_that_starts_links_with_the_second_station_where_the_first_is_gone(
+    station, start, hangs
+):
+    with socket.socket() as first:
+        first.bind(("127.0.0.1", 0))
+        if hangs:
+            first.listen()  # and nobody answers
+        start(WALK, "--connect", f"tcp/127.0.0.1:{first.getsockname()[1]}")
+        until(lambda: station.of(Position))
 
 
 def test_a_command_is_answered_and_done_and_a_kill_does_not_undo_it(station, start):
