@@ -6,14 +6,23 @@ Found in the log alone, which knows it even where the database was lost.  Pure.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 
 import msgspec
 
 from base_station.events import Received, event_of
+from shared.channels import tracked_unit
 from shared.errors import UserError
 from shared.messages import Header, OperatorAction
-from shared.messages.station import Assign, CloseIncident, DoneApart, OpenIncident, Unassign
+from shared.messages.station import (
+    Assign,
+    CloseIncident,
+    DoneApart,
+    ForgetWearers,
+    OpenIncident,
+    Unassign,
+)
 
 FOREVER_NS = 2**63 - 1
 Record = tuple[int, str, bytes]  # station time, key, payload
@@ -190,16 +199,42 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
     )
 
 
+def settled_ns(records: Iterable[Record], erasure: Erasure) -> dict[str, int]:
+    """By unit, when a station that leads first forgot in memory who had worn it: that is in the
+    logs of both stations.  ``records`` as above.
+    """
+    handed_back = {
+        unit_id: max(one.until_ns for one in erasure.wearings if one.unit_id == unit_id)
+        for unit_id in erasure.unit_ids
+    }
+    settled: dict[str, int] = {}
+    for t_ns, action in _actions(records):
+        match action.action:
+            case ForgetWearers(unit_id=unit_id) if t_ns >= handed_back.get(unit_id, FOREVER_NS):
+                settled.setdefault(unit_id, t_ns)
+    return settled
+
+
 class Clocks:
     """When a message was captured, by the station's clock.  The least delayed one tells; of a run
     of which nothing came live the unit itself, if it knew the station's time.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, settled_ns: Mapping[str, int] = MappingProxyType({})) -> None:
+        """``settled_ns``: by unit, from when on no message tells more of a run that was heard
+        before; so the other station, which forgets later, places every message as this one did.
+        """
         self._offsets_ns: dict[tuple[str, int], int] = {}
+        self._settled_ns = settled_ns
+        self._settled: set[tuple[str, int]] = set()
 
     def note(self, t_ns: int, header: Header) -> None:
         run = header.unit_id, header.boot_id
+        wearer = tracked_unit(header.unit_id) or header.unit_id
+        if t_ns <= self._settled_ns.get(wearer, FOREVER_NS):
+            self._settled.add(run)
+        elif run in self._settled:
+            return
         offset_ns = t_ns - header.t_mono_ns
         self._offsets_ns[run] = min(self._offsets_ns.get(run, offset_ns), offset_ns)
 

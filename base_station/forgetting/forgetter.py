@@ -30,6 +30,7 @@ from base_station.forgetting.erasure import (
     Record,
     erasure_of_incident,
     erasure_of_person,
+    settled_ns,
 )
 from base_station.forgetting.pending_erasure import PendingErasure
 from base_station.forgetting.redaction import Redactor
@@ -291,7 +292,7 @@ class Forgetter:
         """From signs of life, which come once a second while a unit is linked."""
         senders = [*erasure.unit_ids, *map(tracker_id, erasure.unit_ids)]
         keys = {channel.key(one) for channel in (HEARTBEAT, STATUS) for one in senders}
-        clocks = Clocks()
+        clocks = Clocks(settled_ns(self._actions(), erasure))
         for record in read_log(self._log.folder, keys=keys):
             event = event_of(*record)
             if isinstance(event, Received):

@@ -12,13 +12,21 @@ from base_station.forgetting.erasure import (
     erasure_of_incident,
     erasure_of_person,
     id_put_in,
+    settled_ns,
 )
 from base_station.forgetting.redaction import Redactor
 from shared.channels import OPERATOR
 from shared.codec import encode
 from shared.errors import UserError
 from shared.messages import STATION_ID, Header, OperatorAction
-from shared.messages.station import Action, Assign, CloseIncident, OpenIncident, Unassign
+from shared.messages.station import (
+    Action,
+    Assign,
+    CloseIncident,
+    ForgetWearers,
+    OpenIncident,
+    Unassign,
+)
 
 NOW_NS = 1000
 OPEN, CLOSE = OpenIncident("i1", "Mill Lane"), CloseIncident("i1")
@@ -172,3 +180,25 @@ def test_what_was_put_into_a_part_of_the_log_is_not_put_in_again() -> None:
     assert erasure.is_put_in("a40-B")
     assert not erasure.is_put_in("a20")
     assert not erasure.is_put_in("a201-A")
+
+
+@pytest.mark.parametrize(("sender", "captured_ns"), [("A", 115), ("A@tracker", 115), ("B", 113)])
+def test_of_two_stations_the_one_that_forgets_later_places_every_message_as_the_first(
+    sender: str, captured_ns: int
+) -> None:
+    """Though it has heard words of the unit since that were less delayed."""
+    actions = done((10, ana("A")), (30, ForgetWearers("A")), (200, Unassign("A")),
+                   (300, ForgetWearers("A")), (400, ForgetWearers("A")))  # fmt: skip
+    erasure = erasure_of_person(actions, "p1", "", NOW_NS)
+    clocks = Clocks(settled_ns(actions, erasure))
+    for t_ns, delay_ns in ((50, 9), (300, 5), (301, 3)):
+        clocks.note(t_ns, Header(sender, 7, t_ns, t_ns - delay_ns - 100))
+    assert clocks.captured_ns(Header(sender, 7, 1, 10)) == captured_ns
+
+
+def test_of_a_run_that_was_not_heard_before_what_came_since_tells() -> None:
+    actions = done((10, ana("A")), (200, Unassign("A")), (300, ForgetWearers("A")))
+    clocks = Clocks(settled_ns(actions, erasure_of_person(actions, "p1", "", NOW_NS)))
+    for t_ns, delay_ns in ((400, 9), (500, 3)):
+        clocks.note(t_ns, Header("A", 8, t_ns, t_ns - delay_ns - 100))
+    assert clocks.captured_ns(Header("A", 8, 1, 10)) == 113
