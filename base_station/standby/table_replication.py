@@ -157,8 +157,11 @@ class TableReplication:
             return
         new = self._tables.unknown_audit(entries)
         for entry in new:
-            told = entry["action"] in _FORGOTTEN and entry["by"] != BY_OTHER_STATION
-            if told:  # before the entry is here, which is how it is known the next time
+            # What this one wished itself comes back where the other leads, from where this one may
+            # have copied until then what it had forgotten; one that leads copies nothing.
+            heeds = entry["by"] != BY_OTHER_STATION or self._leader() == other
+            if heeds and entry["action"] in _FORGOTTEN:
+                # Before the entry is here, which is how it is known the next time.
                 self._on_forgotten(str(entry["detail"]).partition(":")[0])
         self._tables.add_audit(new)
         self._audit_number = int(entries[-1]["number"])

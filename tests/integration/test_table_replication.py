@@ -171,11 +171,14 @@ def test_who_was_only_here_goes_and_is_named(sides: tuple[Side, Side]) -> None:
 
 
 def copy_over_the_bus(
-    active: Side, standby: Side, on_forgotten: Callable[[str], None] = lambda _: None
+    active: Side,
+    standby: Side,
+    on_forgotten: Callable[[str], None] = lambda _: None,
+    leader: str | None = "active",
 ) -> TableReplication:
     router = MemoryRouter()
     TableServer("active", router.attach_station(), active.tables, active.pki)
-    return copy_from(router, standby, on_forgotten)
+    return copy_from(router, standby, on_forgotten, leader=leader)
 
 
 def copy_from(
@@ -183,12 +186,13 @@ def copy_from(
     standby: Side,
     on_forgotten: Callable[[str], None] = lambda _: None,
     others_run: Callable[[], int] = lambda: 1,
+    leader: str | None = "active",
 ) -> TableReplication:
     return TableReplication(
         router.attach_station(),
         standby.tables,
         standby.pki,
-        leader=lambda: "active",
+        leader=lambda: leader,
         other=lambda: "active",
         others_run=others_run,
         caught_up=lambda: True,
@@ -247,7 +251,6 @@ def test_what_the_other_has_forgotten_is_heard_of_until_it_is_noted(
 ) -> None:
     active, standby = sides
     active.records.audit("ada", "ForgotPerson", "person p9: 3 records of the log in 1 files")
-    active.records.audit(BY_OTHER_STATION, "ForgotPerson", "person p8: as this one had asked")
     heard: list[str] = []
 
     def full_disk(what: str) -> None:
@@ -259,6 +262,18 @@ def test_what_the_other_has_forgotten_is_heard_of_until_it_is_noted(
     copy_over_the_bus(active, standby, heard.append).look(Event())  # as after a kill
     copy_over_the_bus(active, standby, heard.append).look(Event())
     assert heard == ["person p9", "person p9"]
+
+
+@pytest.mark.parametrize(("leads", "heeds"), [("active", ["person p8"]), (None, [])])
+def test_what_the_other_forgot_as_this_one_asked_is_heeded_again_by_who_has_copied_from_there(
+    sides: tuple[Side, Side], leads: str | None, heeds: list[str]
+) -> None:
+    """And by no other: the two would ask each other for ever."""
+    active, standby = sides
+    active.records.audit(BY_OTHER_STATION, "ForgotPerson", "person p8: as this one had asked")
+    heard: list[str] = []
+    copy_over_the_bus(active, standby, heard.append, leads).look(Event())
+    assert heard == heeds
 
 
 def test_the_base_map_is_the_active_stations(sides: tuple[Side, Side]) -> None:

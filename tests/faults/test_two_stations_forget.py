@@ -1,0 +1,127 @@
+"""Somebody is forgotten at one of two real stations: no byte is left at either of them."""
+
+from __future__ import annotations
+
+import json
+import urllib.request
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from base_station.bench.rig.waiting import wait_until
+from base_station.bench.standby.one_of_two import Place, Station
+from base_station.bench.standby.two_stations import TwoStations
+from tests.forgetting_story import names_in, some_photo, stored_in
+
+NAME = "Zebediah Quartermaine"
+OTHER = "Bo Lind"
+
+
+@pytest.fixture
+def two(tmp_path: Path) -> Iterator[TwoStations]:
+    """One unit, which Zebediah wore in an incident that is over, and Bo does now."""
+    with ExitStack() as closing:
+        two = TwoStations(tmp_path, (Place(), Place()), closing)
+        closing.callback(lambda: print(two.first.said(), two.second.said(), sep="\n"))
+        two.start()
+        two.start_unit("anna", two.first)
+        two.wait_heard(two.first)
+        yield two
+
+
+def tell_story(two: TwoStations) -> tuple[str, bytes]:
+    """Id and photo of the one who is to be forgotten."""
+    at = two.first
+    person_id = str(at.post("/people", {"name": NAME, "crew": "Engine 1"})["person_id"])
+    call(at, "PUT", f"/people/{person_id}/photo", some_photo(), "image/jpeg")
+    incident = at.post("/incidents", {"name": "Mill Lane"})
+    call(at, "POST", "/assignments", {"unit_id": "anna", "person_id": person_id})
+    text = f"{NAME} come out"
+    at.post("/commands", {"kind": "text", "target": {"everyone": True}, "text": text})
+    wait_until("the unit has it", lambda: at.delivered(text) == {"anna"})
+    call(at, "POST", f"/incidents/{incident['incident_id']}/close")
+    other_id = str(at.post("/people", {"name": OTHER, "crew": "Engine 1"})["person_id"])
+    call(at, "POST", "/assignments", {"unit_id": "anna", "person_id": other_id})
+    (photo,) = (
+        call(at, "GET", person["photo_url"].removeprefix("/api/v1"))
+        for person in at.get("/people")
+        if person["person_id"] == person_id
+    )
+    wait_until("the other has it too", lambda: photo[200:600] in stored_in(two.second.data))
+    assert names_in(stored_in(two.second.data), NAME)
+    return person_id, photo[200:600]
+
+
+def call(
+    at: Station, method: str, path: str, body: Any = None, media: str = "application/json"
+) -> bytes:
+    data = body if isinstance(body, bytes) or body is None else json.dumps(body).encode()
+    request = urllib.request.Request(  # our own station's address
+        f"{at.url}/api/v1{path}",
+        method=method,
+        data=data,
+        headers={"Content-Type": media, "Origin": at.url, "Cookie": at.logged_in().cookie},
+    )
+    with urllib.request.urlopen(request, timeout=30.0) as answer:
+        return bytes(answer.read())
+
+
+def done(at: Station) -> bool:
+    states = [one["state"] for one in at.get("/forgettings")]
+    return bool(states) and set(states) == {"done"}
+
+
+def left_of(at: Station, photo: bytes) -> list[str]:
+    stored = stored_in(at.data)
+    return [*names_in(stored, NAME), *(["photo"] if photo in stored else [])]
+
+
+def end_and_compare(two: TwoStations, photo: bytes, ends_first: Station) -> None:
+    """Nothing is left at either, and one log is the beginning of the other."""
+    two.stop_units()
+    (ends_last,) = {two.first, two.second} - {ends_first}
+    for one in (ends_first, ends_last):
+        one.stop()
+        assert left_of(one, photo) == []
+        assert names_in(stored_in(one.data), OTHER)
+    short, long = ends_first.logged(), ends_last.logged()
+    assert (short.duplicates, long.duplicates) == (0, 0)
+    assert short.events == long.events[: len(short.events)]
+
+
+def test_both_forget_and_their_logs_stay_the_same(two: TwoStations) -> None:
+    person_id, photo = tell_story(two)
+    two.first.post(f"/people/{person_id}/forget", {"name": NAME})
+    wait_until("both have forgotten", lambda: done(two.first) and done(two.second))
+    assert left_of(two.second, photo) == []
+    wait_until("the second follows", two.second.follows)
+    end_and_compare(two, photo, two.second)
+
+
+def test_one_that_was_off_and_leads_by_now_forgets_and_the_first_what_it_had_from_there(
+    two: TwoStations,
+) -> None:
+    person_id, photo = tell_story(two)
+    two.second.kill()
+    two.first.post(f"/people/{person_id}/forget", {"name": NAME})
+    wait_until("the first has forgotten", lambda: done(two.first))
+    assert left_of(two.first, photo) == []
+    two.first.kill()
+    two.second.start()
+    wait_until("the second leads", two.second.leads)
+    incident = two.second.post("/incidents", {"name": "Oak Street"})  # forgetting waits for its end
+    call(two.second, "POST", "/assignments", {"unit_id": "anna", "person_id": person_id})
+    text = f"{NAME} answer"
+    two.second.post("/commands", {"kind": "text", "target": {"unit_id": "anna"}, "text": text})
+    wait_until("the unit has it", lambda: two.second.delivered(text) == {"anna"})
+    call(two.second, "DELETE", "/assignments/anna")
+    two.first.start()
+    wait_until("the first follows", two.first.follows)
+    assert names_in(stored_in(two.first.data), NAME)
+    call(two.second, "POST", f"/incidents/{incident['incident_id']}/close")
+    wait_until("the second has forgotten", lambda: done(two.second))
+    wait_until("the first has again", lambda: done(two.first) and left_of(two.first, photo) == [])
+    end_and_compare(two, photo, two.first)
