@@ -98,9 +98,13 @@ def own_places(state: StationState, unit_id: str, history: PathHistory) -> list[
 
 
 def place_of(state: StationState, history: PathHistory, pin: Pin) -> PlaceSeen | str:
+    """Of a place on the path, or what it waits for."""
     t_ns = time_of(history, pin)
-    if isinstance(t_ns, str):
-        return t_ns
+    return t_ns if isinstance(t_ns, str) else place_at(state, pin, t_ns)
+
+
+def place_at(state: StationState, pin: Pin, t_ns: int) -> PlaceSeen | str:
+    """Where a pin that is no meeting says that its unit was then, or what it waits for."""
     beacon = state.beacons.get(pin.other_id) if pin.other_id else None
     if pin.other_id and beacon is None:
         return f"nobody has said where {pin.kind} {pin.other_id} hangs"

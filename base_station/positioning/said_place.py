@@ -9,11 +9,11 @@ import math
 import msgspec
 
 from base_station.fusion.path.history import PathHistory
-from base_station.fusion.smoother.port import ON_FLOOR_STD_M
+from base_station.fusion.smoother.port import PlaceSeen
 from base_station.live_state import StationState
-from base_station.pins.evidence import NEAR_NS, SUREST_M, at_of
+from base_station.pins.evidence import NEAR_NS, at_of, place_at
 from base_station.pins.pin import Pin
-from base_station.site.storeys import storey_of, sureness
+from base_station.site.storeys import sureness
 from shared.messages import FusedPosition
 from shared.quality import Quality
 
@@ -21,35 +21,33 @@ from shared.quality import Quality
 def as_said(state: StationState, history: PathHistory, fused: FusedPosition) -> FusedPosition:
     """At the newest pin of a place that the path has not come to; ``fused`` where there is none."""
     pin = _newest(state, history, fused.unit_id)
-    at = None if pin is None else at_of(state, pin)
-    if pin is None or at is None or at.north_m is None or at.east_m is None:
+    place = None if pin is None else place_at(state, pin, pin.t_ns)
+    if pin is None or not isinstance(place, PlaceSeen):
         return fused
-    std_m = max(pin.std_m if at is pin else math.hypot(pin.std_m, at.std_m), SUREST_M)
     said = msgspec.structs.replace(
         fused,
-        t_meas_ns=pin.t_ns,
-        north_m=at.north_m,
-        east_m=at.east_m,
-        std_north_m=std_m,
-        std_east_m=std_m,
+        t_meas_ns=place.t_ns,
+        north_m=place.north_m,
+        east_m=place.east_m,
+        std_north_m=place.std_m,
+        std_east_m=place.std_m,
         correlation_ne=0.0,
         heading_std_rad=math.pi,
         quality=Quality.GOOD,
         quality_reason="",
     )
-    storeys = state.storeys_at(at.north_m, at.east_m)
-    storey = storey_of(storeys, at.floor)
-    if at.floor is None:
+    floor = at_of(state, pin).floor
+    if floor is None:
         return said
-    if storey is None:  # nobody knows how high that is
-        return msgspec.structs.replace(said, floor=at.floor, floor_probability=None)
-    std_down_m = math.hypot(ON_FLOOR_STD_M, storey.std_m)
+    if place.down_m is None:  # nobody knows how high that is
+        return msgspec.structs.replace(said, floor=floor, floor_probability=None)
+    storeys = state.storeys_at(place.north_m, place.east_m)
     return msgspec.structs.replace(
         said,
-        down_m=storey.down_m,
-        std_down_m=std_down_m,
-        floor=storey.floor,
-        floor_probability=sureness(storeys, storey.floor, storey.down_m, std_down_m),
+        down_m=place.down_m,
+        std_down_m=place.down_std_m,
+        floor=floor,
+        floor_probability=sureness(storeys, floor, place.down_m, place.down_std_m),
     )
 
 
