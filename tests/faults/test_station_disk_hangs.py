@@ -9,7 +9,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import httpx
 import psutil
@@ -36,6 +36,32 @@ BUSY_S = 5.0  # that a busy machine may take
 def disk(tmp_path: Path) -> Iterator[Path]:
     with disk_that_can_hang(tmp_path, size_mb=128) as place:
         yield place
+
+
+class Served(NamedTuple):
+    """A station whose data lies on the disk, a console of it, and a unit that it hears."""
+
+    station: Command
+    browser: Browser
+    unit: Unit
+    data: Path
+    flags: tuple[str, ...]  # to serve it again
+
+
+@pytest.fixture
+def served(disk: Path, tmp_path: Path, make_position: MakePosition) -> Iterator[Served]:
+    data, port = disk / "station", free_port()
+    listens = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
+    flags = ("serve", "--data", str(data), *listens)
+    with ExitStack() as closing:
+        station = Command(tmp_path / "output.txt", *flags)
+        closing.callback(station.kill)
+        browser = closing.enter_context(Browser(station.wait_ready(), data))
+        unit = Unit(port, "FF-01")
+        closing.callback(unit.close)
+        prepare(browser)
+        greet(browser, unit, make_position)
+        yield Served(station, browser, unit, data, flags)
 
 
 class Walk:
@@ -105,74 +131,56 @@ def login(browser: Browser, data: Path) -> httpx.Response:
 
 
 def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
-    disk: Path, tmp_path: Path, make_position: MakePosition
+    disk: Path, served: Served
 ) -> None:
-    data, port = disk / "station", free_port()
-    flags = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
-    with ExitStack() as closing:
-        station = Command(tmp_path / "output.txt", "serve", "--data", str(data), *flags)
-        closing.callback(station.kill)
-        browser = closing.enter_context(Browser(station.wait_ready(), data))
-        unit = Unit(port, "FF-01")
-        closing.callback(unit.close)
-        prepare(browser)
-        greet(browser, unit, make_position)
-        with ExitStack() as walking:
-            walk = Walk(browser, unit, walking)
-            until(lambda: walk.shown > 5)
-            with frozen(disk):
-                until(lambda: any(HANGS in one for one in walk.problems), "it is told")
-                refused = login(browser, data)
-                assert (refused.status_code, HANGS in refused.json()["detail"]) == (503, True)
-                assert httpx.get(browser.address, timeout=PATIENCE_S).is_success
-                walk.press_mayday()
-                until(lambda: walk.alarms.get("mayday") == "raised", "mayday is raised")
-                everybody_out = {"kind": "evacuate", "target": {"everyone": True}}
-                assert post(browser, "/commands", everybody_out, browser.cookie()).is_success
-                mayday = walk.seen["mayday"]
-                acknowledge = f"/alarms/{mayday['alarm_id']}/acknowledge"
-                as_seen = {"last_raised_ms": mayday["last_raised_ms"]}
-                assert post(browser, acknowledge, as_seen, browser.cookie()).is_success
-                until(lambda: walk.alarms.get("mayday") == "acknowledged")
-                shown = walk.shown
-                until(lambda: walk.shown > shown + 20, "the picture goes on")
-            until(lambda: not any(HANGS in one for one in walk.problems), "it is over")
-            assert login(browser, data).is_success
-        assert station.stop() == 0
+    station, browser, unit, data, _ = served
+    with ExitStack() as walking:
+        walk = Walk(browser, unit, walking)
+        until(lambda: walk.shown > 5)
+        with frozen(disk):
+            until(lambda: any(HANGS in one for one in walk.problems), "it is told")
+            refused = login(browser, data)
+            assert (refused.status_code, HANGS in refused.json()["detail"]) == (503, True)
+            assert httpx.get(browser.address, timeout=PATIENCE_S).is_success
+            walk.press_mayday()
+            until(lambda: walk.alarms.get("mayday") == "raised", "mayday is raised")
+            everybody_out = {"kind": "evacuate", "target": {"everyone": True}}
+            assert post(browser, "/commands", everybody_out, browser.cookie()).is_success
+            mayday = walk.seen["mayday"]
+            acknowledge = f"/alarms/{mayday['alarm_id']}/acknowledge"
+            as_seen = {"last_raised_ms": mayday["last_raised_ms"]}
+            assert post(browser, acknowledge, as_seen, browser.cookie()).is_success
+            until(lambda: walk.alarms.get("mayday") == "acknowledged")
+            shown = walk.shown
+            until(lambda: walk.shown > shown + 20, "the picture goes on")
+        until(lambda: not any(HANGS in one for one in walk.problems), "it is over")
+        assert login(browser, data).is_success
+    assert station.stop() == 0
     there = logged(data / "log")
     assert len(there) == len(set(there))
     assert walk.said <= set(there)
 
 
 def test_a_station_whose_disk_hangs_ends_when_it_is_told_to_and_says_what_is_not_kept(
-    disk: Path, tmp_path: Path, make_position: MakePosition
+    disk: Path, served: Served, tmp_path: Path
 ) -> None:
     """Its service would kill it in the end, and nobody would hear what the log lacks."""
-    data, port = disk / "station", free_port()
-    flags = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
-    with ExitStack() as closing:
-        station = Command(tmp_path / "output.txt", "serve", "--data", str(data), *flags)
-        closing.callback(station.kill)
-        browser = closing.enter_context(Browser(station.wait_ready(), data))
-        unit = Unit(port, "FF-01")
-        closing.callback(unit.close)
-        prepare(browser)
-        greet(browser, unit, make_position)
-        (router,) = psutil.Process(station.pid).children()
-        with ExitStack() as walking:
-            walk = Walk(browser, unit, walking)
-            until(lambda: walk.shown > 5)
-            with frozen(disk):
-                until(lambda: any(HANGS in one for one in walk.problems), "it is told")
-                os.kill(station.pid, signal.SIGTERM)
-                until(lambda: NOT_KEPT in station.said(), "what is not kept", ENDING_S)
-                until(lambda: not router.is_running(), "the end of the bus", BUSY_S)
-                with pytest.raises(httpx.ConnectError):
-                    httpx.get(browser.address, timeout=PATIENCE_S)
-        assert station.wait() == 1  # in the kernel it ends when the disk answers
-        with Command(tmp_path / "again.txt", "serve", "--data", str(data), *flags) as again:
-            again.wait_ready()
-            assert again.stop() == 0
+    station, browser, unit, data, flags = served
+    (router,) = psutil.Process(station.pid).children()
+    with ExitStack() as walking:
+        walk = Walk(browser, unit, walking)
+        until(lambda: walk.shown > 5)
+        with frozen(disk):
+            until(lambda: any(HANGS in one for one in walk.problems), "it is told")
+            os.kill(station.pid, signal.SIGTERM)
+            until(lambda: NOT_KEPT in station.said(), "what is not kept", ENDING_S)
+            until(lambda: not router.is_running(), "the end of the bus", BUSY_S)
+            with pytest.raises(httpx.ConnectError):
+                httpx.get(browser.address, timeout=PATIENCE_S)
+    assert station.wait() == 1  # in the kernel it ends when the disk answers
+    with Command(tmp_path / "again.txt", *flags) as again:
+        again.wait_ready()
+        assert again.stop() == 0
     there = logged(data / "log")
     assert len(there) > 0
     assert len(there) == len(set(there))
