@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Route, expect
 
 from tests.e2e.conftest import UNIT
 from tests.e2e.console_page import (
@@ -91,6 +91,25 @@ def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
     expect(banner).to_have_count(0)
     expect(card).to_contain_text("Link good")
     assert metres_north(card) > in_the_past_m
+
+
+def test_a_replay_is_left_after_what_was_asked_of_it(page: Page, card: Locator) -> None:
+    dialog = menu(page, "Incidents")
+    dialog.get_by_role("button", name=f"Replay {INCIDENT}").click()
+    banner = page.get_by_role("region", name="Replay")
+    slow: list[Route] = []
+    page.route(
+        "**/api/v1/replays/*",
+        lambda route: slow.append(route) if route.request.method == "POST" else route.continue_(),
+    )
+    banner.get_by_role("button", name="Pause").click()
+    banner.get_by_role("button", name="Back to live").click()
+    expect(banner).to_have_count(0)
+    with page.expect_response(lambda answer: answer.request.method == "DELETE") as ended:
+        slow[0].continue_()
+    assert ended.value.status == 204
+    page.unroute_all()
+    expect(page.get_by_text("There is no such replay")).to_have_count(0)
 
 
 def test_a_person_is_forgotten_by_who_writes_the_name(

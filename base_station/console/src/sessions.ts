@@ -101,7 +101,16 @@ export function stopReplay(): void {
   watched.session.close();
   replay.value = adopted;
   reset();
-  void api.endReplay(watched.id).catch(() => undefined); // it ends by itself with its last viewer
+  // it ends by itself with its last viewer
+  void steered.then(() => api.endReplay(watched.id)).catch(() => undefined);
+}
+
+let steered: Promise<unknown> = Promise.resolve();
+
+/** After what was asked before: requests of the same moment may reach the station in any order, and
+ * what a person asked for last is what holds. */
+export function steer({ id }: Replay, change: api.ReplayChange): void {
+  steered = steered.then(() => attempt(api.changeReplay(id, change)));
 }
 
 /** Where it was when the login ended; the station has ended it by now if that was a while ago. */

@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import { attempt, type Replay } from "../sessions";
+import { steer, type Replay } from "../sessions";
 import * as api from "../api";
 import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../live/replaying";
 import type { ReplayView } from "../wire";
@@ -21,7 +21,7 @@ export function Transport({ replay, state }: Props) {
   const [loaded] = useLoaded(() => api.incidentAlarms(replay.incident.incident_id));
   const alarms = eachRaising(loaded.value ?? []);
   const { start_ms: start, end_ms: end, at_ms: at, playing } = state;
-  const change = (what: api.ReplayChange) => void attempt(api.changeReplay(replay.id, what));
+  const change = (what: api.ReplayChange) => steer(replay, what);
   const seek = (ms: number) => change({ at_ms: Math.round(within(ms, start, end)) });
   const jump = (ms: number | null) => (ms === null ? undefined : () => seek(ms));
   return (
