@@ -28,6 +28,11 @@ settings.register_profile("muster", deadline=None)
 settings.load_profile("muster")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Else all others would wait at the end for the ones that take longest."""
+    items.sort(key=lambda item: item.get_closest_marker("begun_first") is None)
+
+
 def pytest_collection_finish(session: pytest.Session) -> None:
     """Compile the trackers before the first test: its time is limited, and this may take a minute.
 

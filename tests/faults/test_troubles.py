@@ -11,7 +11,7 @@ from shared.messages import AlarmState
 
 PATIENCE_S = 90.0
 # The others are for `muster bench faults`.
-SHORT = [fault for fault in FAULTS if not isinstance(fault, BadLink) and not fault.is_long]
+SHORT = [fault for fault in FAULTS if not isinstance(fault, BadLink) and not fault.bench_only]
 
 
 @pytest.mark.parametrize("fault", SHORT, ids=lambda fault: fault.name)

@@ -29,8 +29,8 @@ class Fault(Protocol):
         ...
 
     @property
-    def is_long(self) -> bool:
-        """Too long for the suite."""
+    def bench_only(self) -> bool:
+        """For the benchmark, not for the suite."""
         ...
 
     @property
@@ -49,7 +49,7 @@ class BadLink:
     link: Conditions  # both ways
     seconds: float
     after: Conditions = CLEAN
-    is_long: bool = False
+    bench_only: bool = False
 
     def happen(self, site: Site) -> None:
         site.link.set(self.link)
@@ -66,7 +66,7 @@ class Kills:
     agent: bool
     station: bool
     rounds: int
-    is_long: bool = False
+    bench_only: bool = False
     after: Conditions = CLEAN
 
     @property
@@ -97,7 +97,7 @@ class Clone:
 
     name: str = "cloned unit"
     seconds: float = 25.0
-    is_long: bool = False
+    bench_only: bool = False
     after: Conditions = CLEAN
 
     def happen(self, site: Site) -> None:
@@ -121,7 +121,7 @@ class ClockJump:
     name: str
     days: int
     seconds: float = 25.0
-    is_long: bool = False
+    bench_only: bool = False
     after: Conditions = CLEAN
 
     def happen(self, site: Site) -> None:
@@ -139,7 +139,7 @@ class Suspended:
 
     name: str
     seconds: float
-    is_long: bool = False
+    bench_only: bool = False
     after: Conditions = CLEAN
 
     def happen(self, site: Site) -> None:
@@ -153,7 +153,7 @@ class FullDisk:
     agent: bool
     station: bool
     seconds: float = 6.0
-    is_long: bool = False
+    bench_only: bool = False
     after: Conditions = CLEAN
 
     def happen(self, site: Site) -> None:
@@ -169,22 +169,23 @@ class FullDisk:
             site.set_station_disk_full(full=full)
 
 
+TEN_MINUTES = BadLink("outage of 600 s", DARK, 600.0)
 FAULTS: tuple[Fault, ...] = (
     BadLink("40 % loss, 300 ms jitter", Conditions(loss=0.4, jitter_s=0.3), 20.0),
     BadLink("outage of 1 s", DARK, 1.0),
     BadLink("outage of 30 s", DARK, 30.0),
     BadLink("20 kbit/s", THIN, 10.0, after=THIN),
     BadLink("outage of 10 s at 20 kbit/s", DARK, 10.0, after=THIN),
-    BadLink("outage of 30 s at 20 kbit/s", DARK, 30.0, after=THIN, is_long=True),
-    BadLink("outage of 600 s", DARK, 600.0, is_long=True),
+    BadLink("outage of 30 s at 20 kbit/s", DARK, 30.0, after=THIN, bench_only=True),
+    TEN_MINUTES,
     FullDisk("disk full at the unit", agent=True, station=False),
     FullDisk("disk full at the station", agent=False, station=True),
     Suspended("station stands still for 10 s", 10.0),
-    Suspended("station stands still for 45 s", 45.0, is_long=True),
+    Suspended("station stands still for 45 s", 45.0, bench_only=True),
     Clone(),
-    ClockJump("clock a day ahead", 1, is_long=True),
-    ClockJump("clock a day back", -1, is_long=True),
-    Kills("kill -9 of the agent", agent=True, station=False, rounds=3, is_long=True),
-    Kills("kill -9 of the station", agent=False, station=True, rounds=3, is_long=True),
+    ClockJump("clock a day ahead", 1, bench_only=True),
+    ClockJump("clock a day back", -1, bench_only=True),
+    Kills("kill -9 of the agent", agent=True, station=False, rounds=3, bench_only=True),
+    Kills("kill -9 of the station", agent=False, station=True, rounds=3, bench_only=True),
     Kills("kill -9 of both", agent=True, station=True, rounds=2),
 )
