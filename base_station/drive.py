@@ -21,9 +21,10 @@ from base_station import once
 from base_station.commands import book as command_book
 from base_station.events import Refused
 from base_station.journals.backfill import Report
+from base_station.journals.lost_from_log import Lost
 from base_station.journals.unit_journal import Held
 from base_station.live.drive_ports import DrivePorts, Record
-from base_station.live.hearing import Heard, judge
+from base_station.live.hearing import Heard, judge, take_back
 from base_station.live.picture import Picture
 from base_station.live.projector import Projector
 from base_station.live.saving import Saving
@@ -85,6 +86,7 @@ class StationDrive:
         )
         self._saving = Saving(ports.log, ports.checkpoints, self._watch)
         self._inbox: deque[tuple[str, Action, str, Future[ActionDone]]] = deque()
+        self._lost: deque[Lost] = deque()
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._stopping = threading.Event()
         self._unlinked: frozenset[str] = frozenset()  # as was told last
@@ -120,6 +122,11 @@ class StationDrive:
     def save_soon(self) -> None:
         """What was saved is gone: a restart would step the whole log."""
         self._due.checkpoint_ns = 0
+        self._ports.feed.wake()
+
+    def take_back(self, lost: Lost) -> None:
+        """The log has these messages no more: they count as missing."""
+        self._lost.append(lost)
         self._ports.feed.wake()
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
@@ -180,6 +187,7 @@ class StationDrive:
                 self._watch.failed("drive", error)
         if not follows:  # of half a log nobody can tell what an action does
             self._take_actions()
+        self._take_back()
         now_ns = clock.monotonic_ns()
         self._let_time_pass(now_ns, follows=follows)
         if now_ns >= due.checkpoint_ns and not self._saving.is_under_way:
@@ -254,6 +262,12 @@ class StationDrive:
             if future.set_running_or_notify_cancel():
                 future.set_result(done)
             self._due.delta_ns = 0  # who did something sees it at once
+
+    def _take_back(self) -> None:
+        for _ in range(len(self._lost)):
+            for (sender_id, boot_id), runs in self._lost.popleft().items():
+                for seq in (seq for run in runs for seq in range(run.first, run.last + 1)):
+                    take_back((sender_id, boot_id, seq), self._pipeline.state)
 
     def _do(self, by: str, action: Action, action_id: str = "") -> ActionDone:
         """Raises StoreError where the log does not take it: it is not done then, but for what

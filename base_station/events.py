@@ -127,15 +127,20 @@ def number_of(event: StationEvent) -> MessageNumber | None:
     return event.unit_id, header.boot_id, header.seq
 
 
-def _rejected(t_ns: int, key: str, payload: bytes, reason: str) -> Rejected:
-    """What is of a newer program or damaged has a number all the same: it is not missing."""
+def number_in(key: str, payload: bytes) -> MessageNumber | None:
+    """The same of a record, of which nothing more has to be understood."""
     unread = parse_unread_key(key)
     if unread is not None:
-        return Rejected(t_ns, key, reason, unread)
+        return unread
     header = header_of(payload)
     if header is None or not key.startswith(f"{ROOT}/{header.unit_id}/"):
-        return Rejected(t_ns, key, reason)
-    return Rejected(t_ns, key, reason, (header.unit_id, header.boot_id, header.seq))
+        return None
+    return header.unit_id, header.boot_id, header.seq
+
+
+def _rejected(t_ns: int, key: str, payload: bytes, reason: str) -> Rejected:
+    """What is of a newer program or damaged has a number all the same: it is not missing."""
+    return Rejected(t_ns, key, reason, number_in(key, payload))
 
 
 def _makes_sense(header: Header) -> bool:

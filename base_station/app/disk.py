@@ -20,6 +20,7 @@ from base_station.feed import LogFeed
 from base_station.forgetting.desk import Forgetting, ForgettingDesk
 from base_station.forgetting.forgetter import Act, Forgetter, Pulls
 from base_station.fusion.smoother import SMOOTHERS
+from base_station.journals.lost_from_log import Lost, LostFromLog
 from base_station.past.checkpoints import Checkpoints
 from base_station.past.hindsight import Hindsight
 from base_station.past.playback import Archive
@@ -29,7 +30,10 @@ from base_station.storage.recorder import Recorder
 from shared.clock import Clock, SystemClock
 from shared.errors import StoreError
 
-_RESTORE = "What is missing is missing in replays and exports: restore the file from a backup"
+_RESTORE = (
+    "What units said is fetched again from their journals; for the rest, restore the file from a "
+    "backup"
+)
 MENDED_WITHIN = 12  # tries to forget: two minutes for what takes some seconds
 _MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is heard"
 
@@ -55,6 +59,15 @@ class Disk:
     @property
     def archive(self) -> Archive:
         return Archive(self.log.records, self.checkpoints, past_pipeline, self.log.watch)
+
+    def lost_from_log(self, take_back: Callable[[Lost], None]) -> LostFromLog:
+        return LostFromLog(
+            lambda: (*self.check.damaged, *self.check.missing),
+            lambda after_ns: self.archive.latest(after_ns=after_ns),
+            self.log.records,
+            self.clock,
+            take_back,
+        )
 
     def hindsight(self) -> Hindsight:
         return Hindsight(self.archive, SMOOTHERS[0], SmoothedTracks(self.store), self.clock)
@@ -119,6 +132,10 @@ def open_disk(
         project_whole_log(store, folder.log, lambda _: None)
     projection = SqlProjection(store)
     closing.callback(projection.close)
+    check = LogCheck(_RESTORE if alone else _MENDED_FROM_THE_OTHER)
+    for recovery in recorder.recoveries:
+        if recovery.damage:
+            check.note_damaged(recovery.path, "; ".join(recovery.damage), is_cut=True)
     steady = SteadyClock(clock, max((one.end_ns for one in recorder.segments()), default=0))
     return Disk(
         folder=folder,
@@ -130,7 +147,7 @@ def open_disk(
         projection=projection,
         checkpoints=Checkpoints(folder.checkpoints),
         clock=steady,
-        check=LogCheck(_RESTORE if alone else _MENDED_FROM_THE_OTHER),
+        check=check,
     )
 
 

@@ -33,6 +33,7 @@ from base_station.db.base_maps import BaseMaps
 from base_station.db.replicated_tables import ReplicatedTables
 from base_station.forgetting.forgetter import BY_OTHER_STATION
 from base_station.journals.backfill import Backfill, Report
+from base_station.journals.lost_from_log import Lost
 from base_station.journals.on_disk import ReportsOnDisk
 from base_station.live.drive_ports import DrivePorts
 from base_station.live.fair_share import FairShare
@@ -132,6 +133,7 @@ class _LiveStation:
         closing.callback(self._links.close)
         clock_server = ClockServer(steady, self._leads)
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
+        self._taken_back = 0  # times that the log was found to have messages no more
         self._reports = ReportsOnDisk(resources.recorder)
         self._backfill = Backfill(bus, resources.feed.deliver, resources.clock, self._may_forget)
         stamper = Stamper(STATION_ID, secrets.randbits(63), steady)
@@ -261,9 +263,13 @@ class _LiveStation:
             resources.pki, self._gate, self._disk.roster.registered_units, records
         )
 
+        lost = self._disk.lost_from_log(self._take_back)
+
         def keep_house() -> None:
             index.update(resources.recorder.segments())
             self._disk.check.look(resources.recorder.segments())
+            if not resources.config.standby.name:  # else it comes from the other station
+                lost.look()
             self._make_good()
             if resources.renewal.is_due(in_incident=self._is_in_incident()):
                 self._announce("the renewed certificate is taken up")
@@ -334,7 +340,12 @@ class _LiveStation:
     def _report(self, held: Report, in_memory: bool) -> None:
         self._side.note_report()
         self._reports.report_comes()
-        self._backfill.report(held, self._resources.recorder.lost, alerts_only=in_memory)
+        refused = self._resources.recorder.lost + self._taken_back
+        self._backfill.report(held, refused, alerts_only=in_memory)
+
+    def _take_back(self, lost: Lost) -> None:
+        self._drive.take_back(lost)
+        self._taken_back += 1
 
     def _forget(self, what: str) -> None:
         """The other station has forgotten this, and of who it is this one's log tells, too."""

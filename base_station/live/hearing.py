@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
-from base_station.events import Received, StationEvent, number_of
+from base_station.events import MessageNumber, Received, StationEvent, number_of
 from base_station.live_state import StationState
 from shared.channels import Direction, Qos, parse_key
 from shared.errors import UnknownChannelError
@@ -37,11 +37,10 @@ def judge(key: str, event: StationEvent, state: StationState) -> Heard:
     return doubt or (Heard.URGENT if channel.qos is Qos.ALERT else Heard.KEEP)
 
 
-def take_back(event: StationEvent, state: StationState) -> None:
-    """The log did not take what was stepped.  It has been seen, and counts as missing: its unit
-    keeps it, and it is fetched when there is room.
+def take_back(number: MessageNumber | None, state: StationState) -> None:
+    """The log did not take what was stepped, or has it no more.  It has been seen, and counts as
+    missing: its unit keeps it, and it is fetched when there is room.
     """
-    number = number_of(event)
     if number is not None and (sender := state.sender(number[0])) is not None:
         sender.take_back(*number[1:])
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from base_station.events import Output, StationEvent, event_of
+from base_station.events import Output, StationEvent, event_of, number_of
 from base_station.live.drive_ports import Log, Record
 from base_station.live.foxglove_topics import FoxgloveTopics
 from base_station.live.hearing import take_back
@@ -105,7 +105,7 @@ class WriteAhead:
         kept = self._log.write(event.t_ns, key, payload)
         outputs = self._follow(event)
         if not kept:
-            take_back(event, self._pipeline.state)
+            take_back(number_of(event), self._pipeline.state)
         return outputs
 
     def settle(self) -> None:

@@ -30,6 +30,7 @@ class LogCheck:
         self._read: set[Path] = set()
         self._idle = 0  # looks since all were read
         self._damaged: dict[Path, str] = {}  # with what is wrong
+        self._cut: set[Path] = set()  # of these, those that can be read and lack something
         self._missing: tuple[int, ...] = ()  # numbers between those that are there
 
     def look(self, segments: Iterable[SegmentInfo]) -> None:
@@ -55,11 +56,13 @@ class LogCheck:
         else:  # somebody may have put it back from a backup
             self.note_mended(path, again=False)
 
-    def note_damaged(self, path: Path, damage: str) -> None:
-        """Not all of this segment can be read."""
+    def note_damaged(self, path: Path, damage: str, *, is_cut: bool = False) -> None:
+        """Not all of this segment can be read, or, where it ``is_cut``, is left of it."""
         with self._lock:
             known = path in self._damaged
             self._damaged[path] = damage
+            if is_cut:
+                self._cut.add(path)
         if not known:
             _log.error("the log is damaged: %s", damage)
 
@@ -79,12 +82,20 @@ class LogCheck:
         with self._lock:
             return tuple(sorted(self._damaged))
 
+    @property
+    def missing(self) -> tuple[int, ...]:
+        """The numbers of segments that are gone from between the others."""
+        with self._lock:
+            return self._missing
+
     def note_mended(self, path: Path, *, again: bool = True) -> None:
-        """All of this segment can be read; ``again``: it is looked at."""
+        """All of this segment can be read; ``again``: for it was written anew, and is looked at."""
         with self._lock:
             if again:
                 self._read.discard(path)
-            self._damaged.pop(path, None)
+                self._cut.discard(path)
+            if path not in self._cut:
+                self._damaged.pop(path, None)
 
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console."""

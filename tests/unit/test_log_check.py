@@ -123,3 +123,13 @@ def test_a_station_that_lacks_something_starts_again_when_it_can_be_spared() -> 
     assert lacking.can_be_made_good(leads=True, spared=True, in_incident=False)
     assert not lacking.can_be_made_good(leads=True, spared=True, in_incident=True)
     assert not lacking.can_be_made_good(leads=True, spared=False, in_incident=False)
+
+
+def test_what_was_cut_out_of_a_file_is_missing_though_the_rest_can_be_read(
+    recorder: Recorder,
+) -> None:
+    check, path = LogCheck(""), recorder.segments()[0].path
+    check.note_damaged(path, "a chunk is lost", is_cut=True)
+    assert looked(check, recorder).damaged == (path,)
+    check.note_mended(path)
+    assert looked(check, recorder).damaged == ()

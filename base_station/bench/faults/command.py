@@ -109,19 +109,23 @@ def suffer(one: Site, fault: Fault, patience_s: float) -> FaultReport:
     one.link.set(CLEAN)
     said = one.said()
     one.wait_logged(said, patience_s)
-    return _report(one, fault, said - before, said_then - before, over_ns, memory_mb)
+    return _report(one, fault, before, said, said_then, over_ns, memory_mb)
 
 
 def _report(
     one: Site,
     fault: Fault,
+    before: set[MessageOfUnit],
     said: set[MessageOfUnit],
     said_before_end: set[MessageOfUnit],
     over_ns: int,
     memory_mb: float,
 ) -> FaultReport:
-    records = [record for record in one.logged() if record.message in said]
-    arrived_ns = {record.message: record.t_ns for record in reversed(records)}
+    """What was said ``before`` must still be there; else it was lost now."""
+    logged = list(one.logged())
+    arrived_ns = {record.message: record.t_ns for record in reversed(logged)}
+    sent = said - before
+    records = [record for record in logged if record.message in sent]
     heard_ns = [r.t_ns for r in records if r.live and r.t_ns > over_ns]
     complete = said_before_end <= arrived_ns.keys()
     complete_ns = max(arrived_ns[one] for one in said_before_end) if complete else None
@@ -133,10 +137,10 @@ def _report(
     return FaultReport(
         fault=fault.name,
         seconds=fault.seconds,
-        sent=len(said),
-        arrived=len(arrived_ns),
-        lost=len(said) - len(arrived_ns),
-        duplicates=len(records) - len(arrived_ns),
+        sent=len(sent),
+        arrived=len(sent & arrived_ns.keys()),
+        lost=len(said - arrived_ns.keys()),
+        duplicates=len(logged) - len(arrived_ns),
         fetched=sum(not record.live for record in records),
         heard_s=(min(heard_ns) - over_ns) / NS_PER_S if heard_ns else None,
         complete_s=None if complete_ns is None else max(0.0, (complete_ns - over_ns) / NS_PER_S),

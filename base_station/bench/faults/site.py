@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import resource
 import subprocess
 import sys
@@ -17,15 +18,18 @@ from base_station.bench.rig.journal import MessageOfUnit, said_by
 from base_station.bench.rig.lossy_link import LossyLink
 from base_station.bench.rig.station import StationProcess, station_process
 from base_station.pki.folder import PkiFolder
-from shared.channels import Direction, Qos, is_backfilled, parse_key
+from shared.channels import ALARM, Direction, Qos, is_backfilled, parse_key
 from shared.codec import decode
-from shared.errors import BusError
-from shared.mcap_log import read_log
-from shared.messages import AlarmChange
+from shared.errors import BusError, UnknownChannelError
+from shared.mcap_log import read_log, segment_paths
+from shared.messages import STATION_ID, AlarmChange
 
 UNIT = "anna"
 START_PATIENCE_S = 200.0  # the first agent on a machine compiles its tracker
 _PORT = 7447
+_FLIPPED = 3  # bits of each segment
+_HEAD_BYTES = 1000  # of a segment: what kind of file it is, for one
+_TORN_BYTES = 500
 _LOOK_EVERY_S = 0.5
 _STOP_S = 30.0
 _AGENT = "from edge.cli import app; app()"
@@ -126,6 +130,14 @@ class Site:
             for one in stopped:
                 one.resume()
 
+    def damage_log(self, chance: random.Random) -> None:
+        """What a station that does not run has on its disk: bits flip, and the end is gone."""
+        for path in segment_paths(self._data / "log"):
+            content = bytearray(path.read_bytes())
+            for _ in range(_FLIPPED):
+                content[chance.randrange(_HEAD_BYTES, len(content))] ^= 1 << chance.randrange(8)
+            path.write_bytes(content[:-_TORN_BYTES])
+
     def set_station_disk_full(self, *, full: bool) -> None:
         _set_disk_full(self.station.pid, full=full)
 
@@ -139,7 +151,10 @@ class Site:
 
     def logged(self) -> Iterator[Logged]:
         for t_ns, key, payload in read_log(self._data / "log"):
-            unit_id, channel = parse_key(key)
+            try:
+                unit_id, channel = parse_key(key)
+            except UnknownChannelError:  # of a damaged log
+                continue
             if unit_id != UNIT or channel.direction is not Direction.UP:
                 continue
             header = decode(channel, payload).header
@@ -155,7 +170,7 @@ class Site:
         """What has become of the unit's alarms of a rule."""
         changes = []
         for _, key, payload in read_log(self._data / "log"):
-            message = decode(parse_key(key)[1], payload) if key.endswith("/alarm") else None
+            message = decode(ALARM, payload) if key == ALARM.key(STATION_ID) else None
             if isinstance(message, AlarmChange) and message.rule == rule:
                 changes.append(message)
         return changes

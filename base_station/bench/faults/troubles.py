@@ -169,6 +169,24 @@ class FullDisk:
             site.set_station_disk_full(full=full)
 
 
+@dataclass(frozen=True, slots=True)
+class DamagedLog:
+    """The station is killed, and its disk does not give back the log as it was."""
+
+    name: str = "log torn, bits flipped"
+    seconds: float = 20.0  # the station saves its state meanwhile
+    bench_only: bool = False
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        time.sleep(self.seconds)
+        site.kill_station()
+        site.damage_log(random.Random(self.name))  # noqa: S311  # no secret
+        began_ns = time.time_ns()
+        site.start_station()
+        site.wait_heard(START_PATIENCE_S, began_ns)
+
+
 TEN_MINUTES = BadLink("outage of 600 s", DARK, 600.0)
 FAULTS: tuple[Fault, ...] = (
     BadLink("40 % loss, 300 ms jitter", Conditions(loss=0.4, jitter_s=0.3), 20.0),
@@ -182,6 +200,7 @@ FAULTS: tuple[Fault, ...] = (
     FullDisk("disk full at the station", agent=False, station=True),
     Suspended("station stands still for 10 s", 10.0),
     Suspended("station stands still for 45 s", 45.0, bench_only=True),
+    DamagedLog(),
     Clone(),
     ClockJump("clock a day ahead", 1, bench_only=True),
     ClockJump("clock a day back", -1, bench_only=True),
