@@ -5,7 +5,9 @@ the database cannot log in with it.
 
 Of two stations each has sessions of its own, and one table of users.  So what ends a user's
 sessions begins a new *generation* of them in that table: it ends those at the other station too,
-which copies it.  Nobody who gets a removed user's name gets that one's generation.
+which copies it.  Nobody who gets a removed user's name gets that one's generation.  What is taken
+away is noted for good (``db.ended``), and of a role and a password the later one holds: what one
+station did while the other was off holds at both when they meet, whichever leads by then.
 """
 
 from __future__ import annotations
@@ -21,7 +23,8 @@ from sqlalchemy.orm import Session
 from base_station.accounts.let_in import LetIn
 from base_station.accounts.passwords import Passwords
 from base_station.accounts.principals import Principal, Role, require_username
-from base_station.db.models import ApiToken, HandOver, LoginSession, User
+from base_station.db.ended import end
+from base_station.db.models import ApiToken, Ended, HandOver, LoginSession, User
 from base_station.db.store import Store
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
@@ -70,18 +73,21 @@ class Accounts:
             changed = password is not None or (role is not None and role.word != user.role)
             if changed:
                 _end_sessions(session, user)
-            if role is not None:
-                user.role = role.word
+            now_ns = self._clock.utc_ns()  # which may have been set back
+            if role is not None and role.word != user.role:
+                user.role, user.role_ns = role.word, max(now_ns, user.role_ns + 1)
             if password is not None:
                 user.password_hash = password_hash
-                session.execute(delete(ApiToken).where(ApiToken.username == username))
+                user.password_ns = max(now_ns, user.password_ns + 1)
+                for token in session.scalars(select(ApiToken).filter_by(username=username)).all():
+                    end(session, token)
 
     def remove_user(self, username: str) -> None:
         self._let_in.forget_all()
         with self._store.write() as session:
             user = _user(session, username)
             _keep_an_administrator(session, user)
-            session.delete(user)
+            end(session, user)
 
     def users(self) -> Sequence[User]:
         with self._store.read() as session:
@@ -121,6 +127,7 @@ class Accounts:
         now_ns = self._clock.utc_ns()
         with self._store.write() as session:
             session.execute(delete(LoginSession).where(LoginSession.expires_ns <= now_ns))
+            session.execute(delete(Ended).where(Ended.until_ns <= now_ns))
             # Of the generation whose password was right: it may have been changed since.
             expires_ns = now_ns + SESSION_S * NS_PER_S
             return self._begin_session(session, username, user.generation, expires_ns)
@@ -143,7 +150,9 @@ class Accounts:
     def log_out(self, secret: str) -> None:
         self._let_in.forget_all()
         with self._store.write() as session:
-            session.execute(delete(LoginSession).where(LoginSession.token_hash == _sha256(secret)))
+            found = session.get(LoginSession, _sha256(secret))
+            if found is not None:
+                end(session, found)
 
     def of_session(self, secret: str) -> Principal | None:
         return self._let_in.who(secret, self._of_session)
@@ -202,7 +211,7 @@ class Accounts:
             if found is None:
                 return None
             shown, before = found
-            session.delete(shown)
+            end(session, shown)
             return self._begin_session(
                 session, before.username, before.generation, before.expires_ns
             )
@@ -248,7 +257,7 @@ class Accounts:
             token = session.get(ApiToken, token_id)
             if token is None or token.username != username:
                 return False
-            session.delete(token)
+            end(session, token)
             return True
 
     def tokens(self, username: str) -> Sequence[ApiToken]:

@@ -1,7 +1,7 @@
 """The tables.  Times are integer nanoseconds since 1970 (station time), hashes are hex.
 
 A table is either a *projection*, which ``muster base rebuild`` makes again from the log, or
-*kept*: people, users, sessions, tokens and the audit are nowhere else.
+*kept*: people, users, sessions, tokens, what is over of these, and the audit are nowhere else.
 """
 
 from __future__ import annotations
@@ -53,8 +53,10 @@ class User(Base):
     username: Mapped[str] = mapped_column(primary_key=True)
     password_hash: Mapped[str]
     role: Mapped[str]
-    created_ns: Mapped[int]
+    created_ns: Mapped[int]  # with the name: who it is; somebody else may have the name later
     generation: Mapped[int] = mapped_column(server_default="0")  # of logins; older ones are over
+    role_ns: Mapped[int] = mapped_column(server_default="0")  # since when; of two stations' the
+    password_ns: Mapped[int] = mapped_column(server_default="0")  # later holds
 
 
 class LoginSession(Base):
@@ -88,6 +90,17 @@ class ApiToken(Base):
     scopes: Mapped[str] = mapped_column(server_default="")  # words with spaces; empty: all
     created_ns: Mapped[int]
     expires_ns: Mapped[int | None]
+
+
+class Ended(Base):
+    """What was taken away for good (``base_station.db.ended``): a station that did not hear of it
+    when it was done does not bring it back.
+    """
+
+    __tablename__ = "ended"
+
+    what: Mapped[str] = mapped_column(primary_key=True)
+    until_ns: Mapped[int | None]  # by itself it would have ended then; None: never
 
 
 class AuditEntry(Base):

@@ -1,7 +1,8 @@
 """What no log can make again, as it stands: users, sessions, tokens, people, the base map.
 
-A standby station copies it from the active one.  Pictures travel by themselves, named by their
-hashes; the audit is only ever added to.
+A standby station copies it from the active one.  What either has taken away both take away
+(``db.ended``), and of a role and a password the later one holds.  Pictures travel by themselves,
+named by their hashes; the audit is only ever added to.
 """
 
 from __future__ import annotations
@@ -14,11 +15,13 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
+from base_station.db.ended import name_of
 from base_station.db.models import (
     ApiToken,
     AuditEntry,
     Base,
     BaseMap,
+    Ended,
     HandOver,
     LoginSession,
     Person,
@@ -29,6 +32,8 @@ from base_station.db.store import Store
 Row = dict[str, Any]
 _PICTURES = frozenset({"photo", "image"})
 _NUMBER = "number"  # of an audit entry, at the station that is asked
+_ENDED: tuple[type[Base], ...] = (HandOver, LoginSession, ApiToken, User, Person)  # parts first
+_SINCE = {"role_ns": 0, "password_ns": 0}  # as a station says that is of an earlier version
 
 
 class ReplicatedRows(msgspec.Struct, frozen=True):
@@ -40,6 +45,7 @@ class ReplicatedRows(msgspec.Struct, frozen=True):
     hand_overs: tuple[Row, ...]
     people: tuple[Row, ...]
     base_map: tuple[Row, ...]  # one or none
+    ended: tuple[Row, ...] = ()
 
 
 class ReplicatedTables:
@@ -47,7 +53,6 @@ class ReplicatedTables:
 
     def __init__(self, store: Store) -> None:
         self._store = store
-        self._copied_sessions: set[str] = set()
 
     def read(self) -> ReplicatedRows:
         with self._store.read() as session:
@@ -58,29 +63,48 @@ class ReplicatedTables:
                 hand_overs=_rows(session, HandOver),
                 people=_rows(session, Person),
                 base_map=_rows(session, BaseMap),
+                ended=_rows(session, Ended),
             )
 
     def copy(self, active: ReplicatedRows) -> tuple[str, ...]:
         """Make these tables like the active station's.  Gives who and what was only here.
 
         Sessions that began here stay; photos are kept where their hash is the same, and a base map
-        stays until the other one has come.
+        stays until the other one has come.  What was taken away here does not come back.
         """
         with self._store.write() as session:
+            _end_what_ended(session, active.ended)
+            theirs = _without_ended(session, active)
             dropped = (
-                *_only_here(session, User.username, "user", active.users),
-                *_only_here(session, ApiToken.token_id, "token", active.tokens),
-                *_only_here(session, Person.person_id, "person", active.people),
+                *_only_here(session, User.username, "user", theirs.users),
+                *_only_here(session, ApiToken.token_id, "token", theirs.tokens),
+                *_only_here(session, Person.person_id, "person", theirs.people),
             )
-            _replace(session, User, User.username, active.users)
-            _replace(session, ApiToken, ApiToken.token_id, active.tokens)
-            _put_people(session, active.people)
-            self._copy_sessions(session, active.sessions)
-            if active.hand_overs:
-                session.execute(insert(HandOver).on_conflict_do_nothing(), list(active.hand_overs))
+            users = tuple(_with_the_later(session, row) for row in theirs.users)
+            _replace(session, User, User.username, users)
+            _replace(session, ApiToken, ApiToken.token_id, theirs.tokens)
+            _put_people(session, theirs.people)
+            for table, rows in ((LoginSession, theirs.sessions), (HandOver, theirs.hand_overs)):
+                if rows:
+                    session.execute(insert(table).on_conflict_do_nothing(), list(rows))
             if not active.base_map:
                 session.execute(delete(BaseMap))
         return dropped
+
+    def take_away(self, standby: ReplicatedRows) -> bool:
+        """What the standby took away while it could not be heard, and later roles and passwords;
+        nothing else of it.  Whether there was any.
+        """
+        with self._store.write() as session:
+            some = _end_what_ended(session, standby.ended)
+            for row in _without_ended(session, standby).users:
+                user = session.get(User, row["username"])
+                if user is None or user.created_ns != row["created_ns"]:
+                    continue
+                for name, value in _with_the_later(session, row).items():
+                    some = some or getattr(user, name) != value
+                    setattr(user, name, value)
+        return some
 
     def missing_photos(self) -> Sequence[str]:
         """Ids of people whose photo has not come yet."""
@@ -144,14 +168,6 @@ class ReplicatedTables:
             with self._store.write() as session:
                 session.execute(insert(AuditEntry).on_conflict_do_nothing(), new)
 
-    def _copy_sessions(self, session: Session, rows: tuple[Row, ...]) -> None:
-        there = {row["token_hash"] for row in rows}
-        ended = self._copied_sessions - there
-        session.execute(delete(LoginSession).where(LoginSession.token_hash.in_(ended)))
-        if rows:
-            session.execute(insert(LoginSession).on_conflict_do_nothing(), list(rows))
-        self._copied_sessions = there
-
 
 def _rows(session: Session, table: type[Base]) -> tuple[Row, ...]:
     return tuple(map(_row, session.scalars(select(table).order_by(*table.__table__.primary_key))))
@@ -160,6 +176,65 @@ def _rows(session: Session, table: type[Base]) -> tuple[Row, ...]:
 def _row(entry: Base) -> Row:
     names = (column.name for column in entry.__table__.columns if column.name not in _PICTURES)
     return {name: getattr(entry, name) for name in names}
+
+
+def _end_what_ended(session: Session, ended: tuple[Row, ...]) -> bool:
+    """Whether anything was not known to be over."""
+    known = set(session.scalars(select(Ended.what)))
+    new = {row["what"]: row for row in ended if row["what"] not in known}
+    if not new:
+        return False
+    session.execute(insert(Ended), list(new.values()))
+    for table in _ENDED:
+        for row in session.scalars(select(table)).all():
+            if name_of(row) in new:
+                session.delete(row)
+        session.flush()
+    return True
+
+
+def _without_ended(session: Session, rows: ReplicatedRows) -> ReplicatedRows:
+    """What is not over by what this station knows, and belongs to nothing that is."""
+    ended = set(session.scalars(select(Ended.what)))
+
+    def left(table: type[Base], rows: tuple[Row, ...]) -> tuple[Row, ...]:
+        return tuple(row for row in rows if name_of(table(**row)) not in ended)
+
+    users = left(User, rows.users)
+    names = {row["username"] for row in users}
+    sessions = tuple(r for r in left(LoginSession, rows.sessions) if r["username"] in names)
+    secrets = {row["token_hash"] for row in sessions}
+    return msgspec.structs.replace(
+        rows,
+        users=users,
+        tokens=tuple(r for r in left(ApiToken, rows.tokens) if r["username"] in names),
+        sessions=sessions,
+        hand_overs=tuple(
+            r for r in left(HandOver, rows.hand_overs) if r["session_hash"] in secrets
+        ),
+        people=left(Person, rows.people),
+    )
+
+
+def _with_the_later(session: Session, theirs: Row) -> Row:
+    """Another station's row of a user with the later role and password of the two.
+
+    Both stations come to the same, whichever hears of the other first.  Where the passwords
+    differ, no login with the one that no longer holds stays.
+    """
+    user = session.get(User, theirs["username"])
+    if user is None or user.created_ns != theirs["created_ns"]:
+        return theirs
+    mine, row = _row(user), _SINCE | theirs
+    if mine["role_ns"] > row["role_ns"]:
+        row |= {name: mine[name] for name in ("role", "role_ns")}
+    holds, other = (mine, row) if mine["password_ns"] > row["password_ns"] else (row, mine)
+    superseded = holds["password_hash"] != other["password_hash"]
+    return row | {
+        "password_hash": holds["password_hash"],
+        "password_ns": holds["password_ns"],
+        "generation": max(holds["generation"], other["generation"] + superseded),
+    }
 
 
 def _only_here(

@@ -8,6 +8,7 @@ from collections.abc import Collection, Sequence
 from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session
 
+from base_station.db.ended import end
 from base_station.db.forgetting import known_names
 from base_station.db.models import Assignment, Person, Unit
 from base_station.db.pages import newest
@@ -77,7 +78,7 @@ class Roster:
             worn = _worn_by(session, person_id)
             if worn:
                 raise UserError(f"{person.name} wears {', '.join(worn)}; unassign that first")
-            session.delete(person)
+            end(session, person)
         self._photo_hashes.pop(person_id, None)
         return True
 

@@ -2,7 +2,8 @@
 enrolled.
 
 The standby asks in every round whether anything has changed; the answer is all of it, or nothing.
-The audit is added to, in both directions, in the order in which the other one got to know.
+The one that leads asks the same, and takes what the other took away: users, tokens, roles.  The
+audit is added to, in both directions, in the order in which the other one got to know.
 """
 
 from __future__ import annotations
@@ -104,7 +105,7 @@ class TableReplication:
         self._on_people = on_people
         self._on_forgotten = on_forgotten
         self._on_dropped = on_dropped
-        self._known = self._known_enrolled = b""
+        self._known = self._known_enrolled = self._known_of_standby = b""
         self._base_map: tuple[Row, ...] = ()  # of the leader
         self._audit_number = 0  # up to which the other station's audit is here
         self._audit_run = 0  # of its program, in which that was counted
@@ -114,6 +115,8 @@ class TableReplication:
         leader, other = self._leader(), self._other()
         if leader is not None:
             self._copy(leader, stop)
+        elif other is not None:
+            self._take_away(other)
         if other is not None:
             self._take_enrolled(other)
         if other is not None and self._caught_up():
@@ -138,6 +141,15 @@ class TableReplication:
         self._copy_base_map(leader)
         if said is not None or missing:
             self._on_people()
+
+    def _take_away(self, other: str) -> None:
+        """Where nobody else leads."""
+        said = self._ask(other, "all", self._known_of_standby)
+        if said is None:
+            return
+        if self._tables.take_away(unpack(said, ReplicatedRows)):
+            self._on_people()
+        self._known_of_standby = _hash(said)
 
     def _copy_base_map(self, leader: str) -> None:
         for row in self._base_map:

@@ -121,6 +121,135 @@ def test_who_is_shut_out_at_one_is_shut_out_at_both_wherever_the_login_was(
     assert standby.accounts.open_sessions() == {}
 
 
+@pytest.mark.parametrize("how", ["new password", "ended by an administrator", "removed"])
+@pytest.mark.parametrize("first", ["who leads", "who follows"])
+def test_who_was_shut_out_at_one_that_leads_no_more_is_shut_out_at_both(
+    sides: tuple[Side, Side], how: str, first: str
+) -> None:
+    """Whichever of the two hears of the other first."""
+    leads, follows = apart = sides
+    follows.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
+    follows.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    leads.copy(follows)
+    here = leads.accounts.log_in("ada", PASSWORD)
+    assert here is not None
+    _, token = leads.accounts.add_token("ada", "x", Role.VIEWER, None)
+    match how:
+        case "new password":
+            follows.accounts.change_user("ada", "another battery", None)
+        case "ended by an administrator":
+            follows.accounts.end_sessions("ada")
+        case _:
+            follows.accounts.remove_user("ada")
+    meet(leads, follows, first)
+    for one in apart:
+        assert one.accounts.of_session(here) is None
+        assert (one.accounts.log_in("ada", PASSWORD) is None) == (
+            how in ("new password", "removed")
+        )
+        assert (one.accounts.of_token(token) is None) == (how == "removed")
+    meet(leads, follows, first)
+    assert leads.tables.read().users == follows.tables.read().users
+
+
+@pytest.mark.parametrize("first", ["who leads", "who follows"])
+def test_a_token_a_role_and_a_person_that_one_took_away_alone_are_gone_at_both(
+    sides: tuple[Side, Side], first: str
+) -> None:
+    leads, follows = apart = sides
+    follows.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
+    follows.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    token_id, token = follows.accounts.add_token("ada", "x", Role.VIEWER, None)
+    person = follows.roster.add_person("Zoe", "", "")
+    leads.copy(follows)
+    follows.accounts.remove_token("ada", token_id)
+    follows.accounts.change_user("ada", None, Role.VIEWER)
+    follows.roster.remove_person(person.person_id)
+    leads.accounts.change_user("ada", "another battery", None)  # later, and of something else
+    meet(leads, follows, first)
+    for one in apart:
+        assert one.accounts.of_token(token) is None
+        assert not one.roster.people()
+        now = one.accounts.log_in("ada", "another battery")
+        assert now is not None
+        who = one.accounts.of_session(now)
+        assert who is not None
+        assert who.role is Role.VIEWER
+
+
+@pytest.mark.parametrize("first", ["who leads", "who follows"])
+def test_of_two_new_passwords_the_later_holds_and_no_login_with_the_other(
+    sides: tuple[Side, Side], first: str
+) -> None:
+    leads, follows = apart = sides
+    follows.accounts.add_user("ada", PASSWORD, Role.ADMINISTRATOR)
+    leads.copy(follows)
+    leads.accounts.change_user("ada", "the earlier battery", None)
+    with_earlier = leads.accounts.log_in("ada", "the earlier battery")
+    assert with_earlier is not None
+    follows.clock.advance(1.0)
+    follows.accounts.change_user("ada", "the later battery", None)
+    meet(leads, follows, first)
+    for one in apart:
+        assert one.accounts.of_session(with_earlier) is None
+        assert one.accounts.log_in("ada", "the earlier battery") is None
+        assert one.accounts.log_in("ada", "the later battery") is not None
+
+
+def test_somebody_else_who_has_got_a_removed_one_s_name_stays(sides: tuple[Side, Side]) -> None:
+    leads, follows = sides
+    follows.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
+    follows.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    leads.copy(follows)
+    follows.accounts.remove_user("ada")
+    leads.clock.advance(1.0)
+    leads.accounts.remove_user("ada")
+    leads.accounts.add_user("ada", "another battery", Role.VIEWER)
+    meet(leads, follows, "who leads")
+    for one in sides:
+        assert one.accounts.log_in("ada", "another battery") is not None
+
+
+def test_a_ticket_that_was_shown_does_not_come_back(sides: tuple[Side, Side]) -> None:
+    active, standby = sides
+    active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    there = active.accounts.log_in("ada", PASSWORD)
+    assert there is not None
+    ticket = active.accounts.hand_over(there)
+    assert ticket is not None
+    standby.copy(active)
+    assert standby.accounts.take_over(ticket) is not None
+    active.accounts.hand_over(there)  # so that all is copied again
+    standby.copy(active)
+    assert standby.accounts.take_over(ticket) is None
+    assert active.tables.take_away(standby.tables.read())
+    assert active.accounts.take_over(ticket) is None
+
+
+def test_a_login_that_ended_while_the_other_was_off_is_over_there_too(
+    sides: tuple[Side, Side], tmp_path: Path
+) -> None:
+    active, standby = sides
+    active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    there = active.accounts.log_in("ada", PASSWORD)
+    standby.copy(active)
+    assert there is not None
+    active.accounts.log_out(there)
+    with Store(tmp_path / "standby" / "s.sqlite") as store:  # its program begins again
+        again = Side(tmp_path / "standby", store)
+        again.copy(active)
+        assert again.accounts.of_session(there) is None
+
+
+def meet(leads: Side, follows: Side, first: str) -> None:
+    """Each hears of the other, one before the other one."""
+    if first == "who leads":
+        leads.tables.take_away(follows.tables.read())
+    follows.copy(leads)
+    leads.tables.take_away(follows.tables.read())
+    follows.copy(leads)
+
+
 def test_a_login_goes_on_at_the_other_station_once(sides: tuple[Side, Side]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)

@@ -1,0 +1,225 @@
+"""Whom one of two real stations shut out while the other was off, or could not be heard, is out at
+both, whichever leads by then.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from contextlib import ExitStack
+from http import HTTPStatus
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
+from base_station.bench.rig.waiting import wait_until
+from base_station.bench.standby.one_of_two import Place, Station
+from base_station.bench.standby.two_stations import TwoStations
+from base_station.pki.folder import PkiFolder
+from shared.enrolment import Holder
+from shared.errors import BusError
+
+PASSWORD, ANOTHER = "correct horse battery", "another horse battery"
+REMOVED, DEMOTED, RENEWED, ENDED, KEPT = "removed", "demoted", "renewed", "ended", "kept"
+USERS = (REMOVED, DEMOTED, RENEWED, ENDED, KEPT)
+COPIED_S = 3.0  # accounts are copied once a second
+UNHEARD_S = 3.0  # several messages of a unit
+TOLD_S = 3.0  # a beat that names a new unit
+
+
+class People:
+    """What each user has at each station: a login of its own, and a token of the first one's."""
+
+    def __init__(self, at: Station) -> None:
+        self.tokens: dict[str, tuple[str, str]] = {}  # id and secret
+        for name in USERS:
+            new = {"username": name, "password": PASSWORD, "role": "commander"}
+            call(at, as_admin(at), "POST", "/users", new)
+            made = call(at, log_in(at, name), "POST", "/tokens", {"name": "x", "role": "commander"})
+            self.tokens[name] = made["token_id"], made["token"]
+        self.cookies: dict[tuple[str, str], str] = {}
+
+    def log_in(self, at: Station) -> None:
+        for name in USERS:
+            self.cookies[at.name, name] = log_in(at, name)["Cookie"]
+
+    def shut_out(self, at: Station) -> None:
+        """All of them but one."""
+        admin = as_admin(at)
+        call(at, admin, "DELETE", f"/users/{REMOVED}")
+        call(at, admin, "PUT", f"/users/{DEMOTED}", {"role": "viewer"})
+        call(at, admin, "PUT", f"/users/{RENEWED}", {"password": ANOTHER})
+        call(at, admin, "DELETE", f"/users/{ENDED}/sessions")
+        token_id, secret = self.tokens[ENDED]
+        call(at, {"Authorization": f"Bearer {secret}"}, "DELETE", f"/tokens/{token_id}")
+
+    def let_in(self, at: Station) -> dict[str, tuple[str | None, str | None]]:
+        """The role of each by the login and by the token; None: they are nobody."""
+        return {
+            name: (
+                role(at, {"Cookie": self.cookies[at.name, name]}),
+                role(at, {"Authorization": f"Bearer {self.tokens[name][1]}"}),
+            )
+            for name in USERS
+        }
+
+
+EVERYBODY = dict.fromkeys(USERS, ("commander", "commander"))
+SHUT_OUT: dict[str, tuple[str | None, str | None]] = {
+    REMOVED: (None, None),
+    DEMOTED: (None, "viewer"),
+    RENEWED: (None, None),
+    ENDED: (None, None),
+    KEPT: ("commander", "commander"),
+}
+
+
+def as_admin(at: Station) -> dict[str, str]:
+    return {"Cookie": at.place.call(at.logged_in).cookie}
+
+
+def log_in(at: Station, name: str, password: str = PASSWORD) -> dict[str, str]:
+    body = json.dumps({"username": name, "password": password}).encode()
+    headers = {"Content-Type": "application/json", "Origin": at.url}
+
+    def post() -> dict[str, str]:
+        request = urllib.request.Request(
+            f"{at.url}/api/v1/login", method="POST", data=body, headers=headers
+        )
+        with urllib.request.urlopen(request, timeout=30.0) as answer:
+            return {"Cookie": answer.headers["set-cookie"].partition(";")[0]}
+
+    return at.place.call(post)
+
+
+def call(at: Station, who: dict[str, str], method: str, path: str, body: Any = None) -> Any:
+    request = urllib.request.Request(  # our own station's address
+        f"{at.url}/api/v1{path}",
+        method=method,
+        data=None if body is None else json.dumps(body).encode(),
+        headers={"Content-Type": "application/json", "Origin": at.url} | who,
+    )
+
+    def send() -> Any:
+        with urllib.request.urlopen(request, timeout=30.0) as answer:
+            said = answer.read()
+        return json.loads(said) if said else None
+
+    return at.place.call(send)
+
+
+def role(at: Station, who: dict[str, str]) -> str | None:
+    try:
+        return str(call(at, who, "GET", "/me")["role"])
+    except urllib.error.HTTPError as error:
+        if error.code != HTTPStatus.UNAUTHORIZED:
+            raise
+        return None
+
+
+def assert_shut_out(at: Station, people: People) -> None:
+    wait_until(f"they are shut out at {at.name}", lambda: people.let_in(at) == SHUT_OUT)
+    for name, password in ((REMOVED, PASSWORD), (RENEWED, PASSWORD)):
+        with pytest.raises(urllib.error.HTTPError, match="401"):
+            log_in(at, name, password)
+    assert role(at, log_in(at, DEMOTED)) == "viewer"
+    assert role(at, log_in(at, RENEWED, ANOTHER)) == "commander"
+
+
+def heard(at: Station, unit_id: str) -> int:
+    return sum(unit == unit_id for unit, _, _ in at.logged().messages)
+
+
+def assert_unheard(at: Station, unit_id: str, other: str) -> None:
+    """While another one is heard on the same way."""
+    before = heard(at, other)
+
+    def of_the_one_while_the_other_speaks() -> int:
+        before_it, before_other = heard(at, unit_id), heard(at, other)
+        time.sleep(UNHEARD_S)
+        assert heard(at, other) > before_other
+        return heard(at, unit_id) - before_it
+
+    wait_until("nothing more of it is heard", lambda: of_the_one_while_the_other_speaks() == 0)
+    assert heard(at, other) > before
+
+
+@pytest.fixture
+def closing() -> Iterator[ExitStack]:
+    with ExitStack() as closing:
+        yield closing
+
+
+def two_stations(folder: Path, places: tuple[Place, Place], closing: ExitStack) -> TwoStations:
+    two = TwoStations(folder, places, closing)
+    closing.callback(lambda: print(two.first.said(), two.second.said(), sep="\n"))
+    two.start()
+    return two
+
+
+def test_whom_the_first_shut_out_before_it_died_alone_is_out_at_both_when_it_is_back(
+    tmp_path: Path, closing: ExitStack
+) -> None:
+    two = two_stations(tmp_path, (Place(), Place()), closing)
+    for unit_id in ("lost", "bert"):
+        two.start_unit(unit_id, two.second)
+    two.wait_heard(two.first)
+    people = People(two.first)
+    people.log_in(two.first)
+    time.sleep(COPIED_S)
+    people.log_in(two.second)
+    assert people.let_in(two.second) == people.let_in(two.first) == EVERYBODY
+    two.second.kill()
+    people.shut_out(two.first)
+    PkiFolder(two.first.data).revoke("lost")
+    assert_shut_out(two.first, people)
+    two.first.kill()
+    two.second.start()
+    wait_until("the second leads", two.second.leads)
+    assert people.let_in(two.second) == EVERYBODY, "nobody has told it"
+    wait_until("it is heard there", lambda: heard(two.second, "lost"))
+    two.first.start()
+    wait_until("the first follows", two.first.follows)
+    assert_shut_out(two.second, people)
+    assert_shut_out(two.first, people)
+    assert_unheard(two.second, "lost", "bert")
+    for again in two.both:  # the other leads meanwhile
+        again.stop()
+        again.start()
+        wait_until("it follows", again.follows)
+        assert [people.let_in(one) for one in two.both] == [SHUT_OUT, SHUT_OUT]
+        assert all(
+            PkiFolder(one.data).registry().current(Holder.UNIT, "lost") is None for one in two.both
+        )
+
+
+def test_whom_one_of_two_that_lead_shut_out_is_out_at_both_though_it_follows_then(
+    tmp_path: Path, closing: ExitStack
+) -> None:
+    """The cable is cut; the first shuts people out, and the second, which stays, does not."""
+    try:
+        link = LossyLink(7, closing)
+    except BusError as error:
+        pytest.skip(str(error))
+    first, second = (Place(one.address, one) for one in (link.station, link.units))
+    two = two_stations(tmp_path, (first, second), closing)
+    for unit_id, near in (("anna", two.first), ("bert", two.second)):
+        two.start_unit(unit_id, near)
+    two.wait_heard(two.first)
+    people = People(two.first)
+    people.log_in(two.first)
+    time.sleep(COPIED_S + TOLD_S)
+    people.log_in(two.second)
+    link.set(DARK)
+    wait_until("the second leads too", two.second.leads)
+    people.shut_out(two.first)
+    assert people.let_in(two.second) == EVERYBODY
+    link.set(CLEAN)
+    wait_until("the first follows", two.first.follows)
+    for one in two.both:
+        assert_shut_out(one, people)
