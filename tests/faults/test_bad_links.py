@@ -8,7 +8,8 @@ from contextlib import ExitStack
 
 import pytest
 
-from base_station.bench.faults.site import UNIT, Site
+from base_station.bench.faults.members import UNIT
+from base_station.bench.faults.site import Site
 from base_station.bench.faults.troubles import FAULTS, TEN_MINUTES, BadLink
 from base_station.bench.rig.console import Console
 from base_station.bench.rig.lossy_link import CLEAN, DARK

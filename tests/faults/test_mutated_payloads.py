@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from base_station.bench.rig.mutated import mutated, random_payload
 from base_station.drive import StationDrive
 from base_station.events import DECODER_FAILED, Rejected, event_of
 from base_station.live.drive_ports import Record
@@ -45,7 +46,6 @@ from shared.messages import (
 from shared.messages.clock import ClockAnswer
 from shared.messages.station import RegisterUnit
 from tests.live_station import Screen, make_pipeline, ports_of
-from tests.mutated import mutated, random_payload
 from tests.waiting import PATIENCE_S
 
 pytestmark = pytest.mark.begun_first

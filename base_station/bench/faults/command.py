@@ -41,6 +41,7 @@ class FaultReport:
     arrived: int
     lost: int
     duplicates: int  # messages that are more than once in the log
+    forged: int  # messages in the log of somebody who may not say them
     fetched: int  # of those that arrived, from the journal
     heard_s: float | None  # from the fault's end to the first message that came live
     complete_s: float | None  # from the fault's end until all said before it is in the log
@@ -141,6 +142,7 @@ def _report(
         arrived=len(sent & arrived_ns.keys()),
         lost=len(said - arrived_ns.keys()),
         duplicates=len(logged) - len(arrived_ns),
+        forged=one.forged(),
         fetched=sum(not record.live for record in records),
         heard_s=(min(heard_ns) - over_ns) / NS_PER_S if heard_ns else None,
         complete_s=None if complete_ns is None else max(0.0, (complete_ns - over_ns) / NS_PER_S),
@@ -154,23 +156,23 @@ def table_of(reports: Sequence[FaultReport]) -> Table:
     table = Table(
         title="Faults",
         box=SIMPLE,
-        padding=(0, 1, 0, 0),
-        caption="heard: from the fault's end to the first live message, to reach "
-        f"{_RECONNECT_S:.0f} s; complete: until all said before is in the log; alert: the worst, "
-        "from being said, or from the fault's end, to being in the log; memory: the station's. "
-        "Lost and twice: to reach 0.",
+        padding=0,
+        caption="In seconds: heard, from the fault's end to the first live message, to reach "
+        f"{_RECONNECT_S:.0f}; whole, until all said before is in the log; alert, the worst from "
+        "being said, or from the fault's end, to being in the log. MB: the station's memory. "
+        "Lost, twice and forged: to reach 0.",
     )
-    titles = ("sent", "arrived", "lost", "twice", "fetched", "heard", "complete", "alert")
-    table.add_column("fault")
-    for title in (*titles, "memory"):
+    titles = ("sent", "arrived", "lost", "twice", "forged", "fetched", "heard", "whole", "alert")
+    table.add_column("fault", min_width=16)
+    for title in (*titles, "MB"):
         table.add_column(title, justify="right", no_wrap=True)
     for one in reports:
-        counts = (one.sent, one.arrived, one.lost, one.duplicates, one.fetched)
+        counts = (one.sent, one.arrived, one.lost, one.duplicates, one.forged, one.fetched)
         times_s = (one.heard_s, one.complete_s, one.alert_worst_s)
         table.add_row(
             one.fault,
             *(f"{count:,}" for count in counts),
-            *("never" if time_s is None else f"{time_s:.1f} s" for time_s in times_s),
-            f"{one.memory_mb:.0f} MB",
+            *("never" if time_s is None else f"{time_s:.1f}" for time_s in times_s),
+            f"{one.memory_mb:.0f}",
         )
     return table

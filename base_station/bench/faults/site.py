@@ -14,17 +14,18 @@ from typing import NamedTuple
 
 import psutil
 
+from base_station.bench.faults.meddler import FORGED_BOOT
+from base_station.bench.faults.members import GONE, LATE, OTHER, UNIT, Members
 from base_station.bench.rig.journal import MessageOfUnit, said_by
 from base_station.bench.rig.lossy_link import LossyLink
 from base_station.bench.rig.station import StationProcess, station_process
-from base_station.pki.folder import PkiFolder
+from base_station.events import MessageNumber, number_in
 from shared.channels import ALARM, Direction, Qos, is_backfilled, parse_key
 from shared.codec import decode
 from shared.errors import BusError, UnknownChannelError
 from shared.mcap_log import read_log, segment_paths
 from shared.messages import STATION_ID, AlarmChange
 
-UNIT = "anna"
 START_PATIENCE_S = 200.0  # the first agent on a machine compiles its tracker
 _PORT = 7447
 _FLIPPED = 3  # bits of each segment
@@ -54,10 +55,10 @@ class Logged(NamedTuple):
 class Agent:
     """``muster edge run`` of the unit, or of another machine under its name."""
 
-    def __init__(self, link: LossyLink, folder: Path, enrolment: Path) -> None:
+    def __init__(self, link: LossyLink, folder: Path, enrolment: str) -> None:
         self.journal = folder / UNIT / "journal.sqlite"
         self._said = folder.with_suffix(".txt")
-        arguments = ["run", "--enrolment", str(enrolment), "--data", str(folder)]
+        arguments = ["run", "--enrolment", enrolment, "--data", str(folder)]
         self._arguments = [*arguments, "--source", "simulated:search-ground-floor"]
         self._inside = link.units.inside()
         self._process: subprocess.Popen[bytes] | None = None
@@ -96,10 +97,13 @@ class Agent:
 class Site:
     """A station and a unit that are at it already."""
 
-    def __init__(self, folder: Path, link: LossyLink, address: str, stack: ExitStack) -> None:
+    def __init__(
+        self, folder: Path, link: LossyLink, members: Members, address: str, stack: ExitStack
+    ) -> None:
         self.link = link
-        self.agent = Agent(link, folder / "units", folder / "unit.toml")
-        self.clone = Agent(link, folder / "clone", folder / "unit.toml")
+        self.members = members
+        self.agent = Agent(link, folder / "units", members.unit)
+        self.clone = Agent(link, folder / "clone", members.unit)
         for agent in (self.agent, self.clone):
             stack.callback(agent.kill)
         self._data = folder / "station"
@@ -146,6 +150,15 @@ class Site:
         order = {"kind": "par_request", "target": {"unit_id": UNIT}, "expires_s": 900}
         self.link.station.call(lambda: self.station.api.post("/commands", order))
 
+    def meddle(self, what: str, membership: str, names: str, seconds: float) -> None:
+        """Somebody else on the bus does what ``meddler`` says, beside the unit."""
+        module = [sys.executable, "-m", "base_station.bench.faults.meddler", what, membership]
+        command = [*self.link.units.inside(), *module, names, str(self._data / "log"), str(seconds)]
+        before = self._said_by(OTHER)
+        subprocess.run(command, check=True)
+        if OTHER in names.split(",") and self._said_by(OTHER) == before:
+            raise BusError(f"{OTHER} who may speak for itself is not heard, so nothing was tried")
+
     def said(self) -> set[MessageOfUnit]:
         return self.agent.said() | self.clone.said()
 
@@ -165,6 +178,22 @@ class Site:
                 live=not is_backfilled(key),
                 alert=channel.qos is Qos.ALERT,
             )
+
+    def forged(self) -> int:
+        """Messages in the log of somebody who may not say them."""
+        return sum(
+            number[0] in (UNIT, LATE, GONE) and number[1] == FORGED_BOOT
+            for number in self._numbers()
+        )
+
+    def _said_by(self, unit_id: str) -> int:
+        return sum(number[0] == unit_id for number in self._numbers())
+
+    def _numbers(self) -> Iterator[MessageNumber]:
+        for _, key, payload in read_log(self._data / "log"):
+            number = number_in(key, payload)
+            if number is not None:
+                yield number
 
     def alarms(self, rule: str) -> list[AlarmChange]:
         """What has become of the unit's alarms of a rule."""
@@ -204,10 +233,8 @@ def site(folder: Path, seed: int) -> Iterator[Site]:
         data = folder / "station"
         data.mkdir()
         address = f"tls/{link.station.address}:{_PORT}"
-        pki = PkiFolder(data)
-        pki.create("bench", hosts=[link.station.address], connect=[address])
-        pki.enroll(UNIT).write(folder / "unit.toml")
-        one = Site(folder, link, address, stack)
+        members = Members(folder, link.station.address, address)
+        one = Site(folder, link, members, address, stack)
         one.agent.start()
         if not one.wait_heard(START_PATIENCE_S):
             raise BusError("the unit to be measured is not heard")

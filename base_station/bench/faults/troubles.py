@@ -7,6 +7,7 @@ import time
 from dataclasses import dataclass
 from typing import Protocol
 
+from base_station.bench.faults.meddling import MEDDLING
 from base_station.bench.faults.site import START_PATIENCE_S, Site
 from base_station.bench.rig.forwarder import Conditions
 from base_station.bench.rig.lossy_link import CLEAN, DARK
@@ -207,4 +208,5 @@ FAULTS: tuple[Fault, ...] = (
     Kills("kill -9 of the agent", agent=True, station=False, rounds=3, bench_only=True),
     Kills("kill -9 of the station", agent=False, station=True, rounds=3, bench_only=True),
     Kills("kill -9 of both", agent=True, station=True, rounds=2),
+    *MEDDLING,
 )
