@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass
 
 from base_station.bench.bus.onlookers import Onlookers
-from base_station.bench.faults.members import GONE, LATE, OTHER, UNIT
+from base_station.bench.faults.members import BABBLER, GONE, LATE, OTHER, UNIT
 from base_station.bench.faults.site import Site
 from base_station.bench.rig.forwarder import Conditions
 from base_station.bench.rig.lossy_link import CLEAN
@@ -49,7 +49,7 @@ class Crowd:
 
 MEDDLING = (
     Meddling("said again, in any order, backdated", "repeat", "unit"),
-    Meddling("messages that make no sense", "babble", "other", (OTHER,)),
+    Meddling("messages that make no sense", "babble", "babbler", (BABBLER,)),
     Meddling("A speaks as B", "forge", "other", (OTHER, UNIT), bench_only=True),
     Meddling("certificate: none", "forge", "without", bench_only=True),
     Meddling("certificate: foreign", "forge", "foreign", bench_only=True),

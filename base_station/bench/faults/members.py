@@ -9,7 +9,8 @@ from pathlib import Path
 from base_station.pki.folder import PkiFolder
 from shared.enrolment import Enrolment, Holder
 
-UNIT, OTHER, LATE, GONE = "anna", "mallory", "late", "gone"
+UNIT, OTHER, BABBLER, LATE, GONE = "anna", "mallory", "babel", "late", "gone"
+MEMBERS = frozenset({UNIT, OTHER, BABBLER})  # who may speak, each for itself
 
 
 class Members:
@@ -30,6 +31,11 @@ class Members:
     def other(self) -> str:
         """Another unit."""
         return self._file(OTHER, lambda: self._pki.enroll(OTHER))
+
+    @property
+    def babbler(self) -> str:
+        """Another one, of which the station may have had enough."""
+        return self._file(BABBLER, lambda: self._pki.enroll(BABBLER))
 
     @property
     def without(self) -> str:

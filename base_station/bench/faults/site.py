@@ -15,7 +15,7 @@ from typing import NamedTuple
 import psutil
 
 from base_station.bench.faults.meddler import FORGED_BOOT
-from base_station.bench.faults.members import GONE, LATE, OTHER, UNIT, Members
+from base_station.bench.faults.members import GONE, LATE, MEMBERS, UNIT, Members
 from base_station.bench.rig.journal import MessageOfUnit, said_by
 from base_station.bench.rig.lossy_link import LossyLink
 from base_station.bench.rig.station import StationProcess, station_process
@@ -154,10 +154,10 @@ class Site:
         """Somebody else on the bus does what ``meddler`` says, beside the unit."""
         module = [sys.executable, "-m", "base_station.bench.faults.meddler", what, membership]
         command = [*self.link.units.inside(), *module, names, str(self._data / "log"), str(seconds)]
-        before = self._said_by(OTHER)
         subprocess.run(command, check=True)
-        if OTHER in names.split(",") and self._said_by(OTHER) == before:
-            raise BusError(f"{OTHER} who may speak for itself is not heard, so nothing was tried")
+        heard = {unit_id for unit_id, _, _ in self._numbers()}
+        for name in {*names.split(",")} & MEMBERS - heard:
+            raise BusError(f"{name} who may speak for itself is not heard, so nothing was tried")
 
     def said(self) -> set[MessageOfUnit]:
         return self.agent.said() | self.clone.said()
@@ -185,9 +185,6 @@ class Site:
             number[0] in (UNIT, LATE, GONE) and number[1] == FORGED_BOOT
             for number in self._numbers()
         )
-
-    def _said_by(self, unit_id: str) -> int:
-        return sum(number[0] == unit_id for number in self._numbers())
 
     def _numbers(self) -> Iterator[MessageNumber]:
         for _, key, payload in read_log(self._data / "log"):
