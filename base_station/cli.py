@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from base_station.accounts.cli import users
-from base_station.program import interpreter
+from base_station.program import compiled_core, interpreter
+from base_station.program.compiled_core import BESIDE_SOURCES, CompiledFolder
 from base_station.recordings.command import fetch_recording
 from shared.end_signals import sigterm_as_ctrl_c
 from shared.out_file import writable
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from base_station.app.folder import LookBack
     from base_station.config import StationConfig
 
-app = typer.Typer(help="The base station.", no_args_is_help=True, pretty_exceptions_enable=False)
+app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
 app.add_typer(users, name="users")
@@ -39,6 +40,13 @@ InsecureOption = Annotated[
     bool | None,
     typer.Option("--insecure", help="Accept plain connections from other machines."),
 ]
+
+
+@app.callback()
+def base(context: typer.Context, compiled: CompiledFolder = BESIDE_SOURCES) -> None:
+    """The base station."""
+    context.obj = compiled
+    compiled_core.use(compiled)
 
 
 @app.command()
@@ -147,11 +155,22 @@ def forget(
 
 
 @app.command("compile")
-def compile_() -> None:
+def compile_(
+    context: typer.Context,
+    core: Annotated[
+        bool,
+        typer.Option(
+            "--core",
+            help="Also what every message goes through, with a C compiler: for hundreds of units.",
+        ),
+    ] = False,
+) -> None:
     """Compile what every position and every trail goes through now, so that the first station
     starts at once.
     """
     from importlib import import_module  # noqa: PLC0415
+
+    from base_station.program.core_compiler import compile_core  # noqa: PLC0415
 
     for compiled in (
         "base_station.fusion.kernels",
@@ -159,6 +178,10 @@ def compile_() -> None:
         "base_station.site.storeys",
     ):
         import_module(compiled)
+    if core:
+        with _bar("compiling the core") as on_progress:
+            count = compile_core(context.obj, on_progress)
+        typer.echo(f"{count} modules of the core compiled, the others were")
 
 
 @app.command()

@@ -8,7 +8,7 @@ from rich.progress import Progress
 
 from base_station.bench.rig.compressed import compressed_station
 from base_station.bench.rig.units import unit_names
-from base_station.bench.station import measure
+from base_station.bench.station.load import measure
 from shared.channels import FUSED, POSITION, parse_key
 from shared.mcap_log import read_log
 from shared.messages import STATION_ID

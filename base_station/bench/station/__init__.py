@@ -1,0 +1,1 @@
+"""``muster bench station``: what a message costs a station."""

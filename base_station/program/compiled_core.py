@@ -1,0 +1,86 @@
+"""The core's modules as machine code, where ``muster base compile --core`` has made that.
+
+Their sources stay plain Python, and are what counts: a module whose source has changed since is
+loaded from it, and so is every module on a machine on which nothing was compiled.  Both give the
+same, bit for bit (``tests/integration/test_compiled_core.py``).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+import sysconfig
+from collections.abc import Sequence
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ExtensionFileLoader, ModuleSpec
+from importlib.util import spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+from typing import Annotated
+
+import typer
+
+from base_station.program.core_modules import CORE_MODULES
+
+_ENDING = str(sysconfig.get_config_var("EXT_SUFFIX"))  # of this Python on this kind of machine
+
+
+_SOURCES = Path(__file__).resolve().parents[2]
+BESIDE_SOURCES = _SOURCES / "base_station" / "__pycache__"
+
+CompiledFolder = Annotated[
+    Path,
+    typer.Option(
+        "--compiled",
+        envvar="NUMBA_CACHE_DIR",  # the filters are compiled by numba, which goes by that
+        help="Folder of compiled code.",
+        show_default="beside the sources",
+    ),
+]
+
+
+def use(folder: Path) -> None:
+    """From now on, modules of the core are loaded as what ``folder`` holds of them."""
+    sys.meta_path.insert(0, _CompiledFinder(folder))
+
+
+def modules_in_use() -> tuple[str, ...]:
+    """Those of the core that run as machine code in this program."""
+    loaded = (sys.modules.get(name) for name in CORE_MODULES)
+    return tuple(
+        one.__name__
+        for one in loaded
+        if one is not None and isinstance(one.__loader__, ExtensionFileLoader)
+    )
+
+
+def source_of(name: str) -> Path:
+    """Of a module of the core."""
+    return _SOURCES / f"{name.replace('.', '/')}.py"
+
+
+def machine_code_of(name: str, folder: Path) -> Path:
+    """Where it is, or would be: named by what it was made from.  Raises OSError where the source
+    is not there.
+    """
+    digest = hashlib.blake2b(source_of(name).read_bytes(), digest_size=12).hexdigest()
+    return folder / "core" / f"{name}-{digest}{_ENDING}"
+
+
+class _CompiledFinder(MetaPathFinder):
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None,  # noqa: ARG002  # as Python calls it
+        target: ModuleType | None = None,  # noqa: ARG002
+    ) -> ModuleSpec | None:
+        if fullname not in CORE_MODULES:
+            return None
+        compiled = machine_code_of(fullname, self._folder)
+        if not compiled.is_file():
+            return None  # Python itself finds the source
+        loader = ExtensionFileLoader(fullname, str(compiled))
+        return spec_from_file_location(fullname, compiled, loader=loader)

@@ -1,0 +1,63 @@
+"""Which modules nearly every message goes through: those that are worth being machine code.
+
+Nineteen parts of twenty of a message's time, by a profile of ``muster bench station``.  The loops
+around them stay as they are, so that threads take turns between two messages; and so do modules
+with functions of numba, which is machine code already.
+"""
+
+from __future__ import annotations
+
+CORE_MODULES = (
+    "shared.channels",
+    "shared.codec",
+    "shared.geo",
+    "shared.sequence_set",
+    "shared.mcap_log.making",
+    "shared.mcap_log.schemas",
+    "shared.mcap_log.writing",
+    "shared.messages.fused",
+    "shared.messages.header",
+    "shared.messages.position",
+    "shared.messages.quantise",
+    "shared.messages.status",
+    "shared.messages.temperature",
+    "base_station.events",
+    "base_station.live_state",
+    "base_station.pipeline",
+    "base_station.alarms.book",
+    "base_station.alarms.heat",
+    "base_station.assessment.trust",
+    "base_station.fusion.gps_inertial",
+    "base_station.fusion.position_quality",
+    "base_station.fusion.learnt.legs",
+    "base_station.fusion.learnt.recognition",
+    "base_station.fusion.learnt.stairs",
+    "base_station.fusion.path.history",
+    "base_station.fusion.path.own_path",
+    "base_station.fusion.path.recent_path",
+    "base_station.fusion.path.straight_stretch",
+    "base_station.fusion.plane.compassed_filter",
+    "base_station.fusion.plane.horizontal",
+    "base_station.fusion.plane.walled_filter",
+    "base_station.fusion.vertical.height",
+    "base_station.fusion.vertical.rides",
+    "base_station.fusion.vertical.weather",
+    "base_station.live.drawn_trails",
+    "base_station.live.foxglove_topics",
+    "base_station.live.hearing",
+    "base_station.live.picture",
+    "base_station.live.projector",
+    "base_station.live.write_ahead",
+    "base_station.positioning.clocks",
+    "base_station.positioning.fused_message",
+    "base_station.positioning.inside",
+    "base_station.positioning.positioning",
+    "base_station.positioning.said_place",
+    "base_station.site.learnt_floors",
+    "base_station.units.boot_state",
+    "base_station.units.heat_told",
+    "base_station.units.sender",
+    "base_station.units.trail",
+    "base_station.units.updates",
+    "base_station.views.units",
+)
