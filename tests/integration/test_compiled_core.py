@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 
 import pytest
@@ -103,7 +104,7 @@ def test_a_machine_without_a_compiler_is_told_what_to_do(
 def test_a_machine_without_python_s_headers_is_told_what_to_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(core_compiler.sysconfig, "get_path", lambda _: str(tmp_path))
+    monkeypatch.setattr(sysconfig, "get_path", lambda _: str(tmp_path))
     with pytest.raises(UserError, match=r"Python's headers.*apt-get install python3-dev"):
         compile_core(tmp_path, lambda _: None)
 
