@@ -14,12 +14,12 @@ import typer
 from rich.console import Console as Terminal
 from rich.progress import Progress
 
-from base_station.bench.bus.bare import BareFigures, bare_subscriber, measure_flood, measure_steady
-from base_station.bench.bus.onlookers import Onlookers, Seen
-from base_station.bench.bus.recording import recording_hz
 from base_station.bench.bus.report import BusReport, table_of
+from base_station.bench.rig.bare import BareFigures, bare_subscriber, measure_flood, measure_steady
 from base_station.bench.rig.console import Console, watching
 from base_station.bench.rig.latency import latencies_ms, latency_of
+from base_station.bench.rig.onlookers import Onlookers, Seen
+from base_station.bench.rig.recording import recording_hz
 from base_station.bench.rig.station import (
     Membership,
     PlainTcp,

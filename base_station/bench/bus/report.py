@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from rich.table import Table
 
-from base_station.bench.bus.onlookers import Seen
 from base_station.bench.rig.latency import Latency
+from base_station.bench.rig.onlookers import Seen
 from base_station.drive import DELTA_NS
 from shared.clock import NS_PER_S
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from base_station.bench.bus.onlookers import Onlookers
 from base_station.bench.faults.members import BABBLER, GONE, LATE, OTHER, UNIT
 from base_station.bench.faults.site import Site
 from base_station.bench.rig.forwarder import Conditions
 from base_station.bench.rig.lossy_link import CLEAN
+from base_station.bench.rig.onlookers import Onlookers
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,9 +18,10 @@ from base_station.program.compiled_core import BESIDE_SOURCES, CompiledFolder
 from shared.bench_figures import FiguresFile, write_figures
 
 if TYPE_CHECKING:
-    from base_station.bench.station.load import ThroughputReport
+    from base_station.bench.station.load import ThroughputReport, Yardsticks
 
 _TO_REACH_HZ = 20_000.0  # messages a second and core
+_RECORDING_HZ = 150_000.0
 _AS_UNITS_SPEAK_HZ = 7.0
 _FULL_MINUTES = 0.5  # at what is to be reached, which tells nothing more for being longer
 _FLAT_MB_PER_MINUTE = 0.5
@@ -42,21 +43,24 @@ def bench_station(
     json_file: FiguresFile = None,
 ) -> None:
     """What a message costs a station: log, pipeline, database and consoles, without the network,
-    at full speed.  With --minutes 30 it tells whether memory grows.
+    at full speed; beside it what the log alone and a bare subscriber take.  With --minutes 30 it
+    tells whether memory grows.
     """
     compiled_core.use(compiled)
-    from base_station.bench.station.load import measure  # noqa: PLC0415  # loads the core
+    # Loads the core.
+    from base_station.bench.station.load import measure, measure_yardsticks  # noqa: PLC0415
 
     loads = [(rate or _AS_UNITS_SPEAK_HZ, minutes)]
     if rate is None:
         loads.append((_TO_REACH_HZ / units, min(minutes, _FULL_MINUTES)))
     with Progress(transient=True) as progress:
         reports = [measure(units, hz, long, consoles, progress) for hz, long in loads]
-    Terminal().print(_table(reports))
-    write_figures(json_file, reports)
+        yardsticks = measure_yardsticks(progress)
+    Terminal().print(_table(reports, yardsticks))
+    write_figures(json_file, {"loads": reports, "yardsticks": yardsticks})
 
 
-def _table(reports: Sequence[ThroughputReport]) -> Table:
+def _table(reports: Sequence[ThroughputReport], yardsticks: Yardsticks) -> Table:
     one = reports[0]
     core = "compiled" if one.is_compiled else "not compiled (`muster base compile --core`)"
     table = Table(
@@ -80,6 +84,10 @@ def _table(reports: Sequence[ThroughputReport]) -> Table:
     add("to consoles", lambda report: f"{report.console_messages:,}")
     add("memory at first, most, at last", lambda report: _extremes(report.memory_mb))
     add("memory grows, last third", _growth, f"{_FLAT_MB_PER_MINUTE:.2f} MB/min")
+    empty = [""] * (len(reports) - 1)
+    recording = f"{yardsticks.recording_hz:,.0f} /s"
+    table.add_row("a core records alone", recording, *empty, f"{_RECORDING_HZ:,.0f} /s")
+    table.add_row("bare Zenoh, 200 B, takes", f"{yardsticks.bare_zenoh_hz:,.0f} /s", *empty)
     return table
 
 

@@ -1,4 +1,6 @@
-"""How much of the processor's time a station takes for what so many wearers say."""
+"""How much of the processor's time a station takes for what so many wearers say, and what its
+parts could take alone.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +13,17 @@ import numpy as np
 import psutil
 from rich.progress import Progress
 
+from base_station.bench.rig.bare import bare_subscriber, measure_flood
 from base_station.bench.rig.compressed import CompressedStation, compressed_station
+from base_station.bench.rig.recording import recording_hz
+from base_station.bench.rig.station import free_port
 from base_station.bench.rig.units import unit_names
 from base_station.program import interpreter
 from base_station.program.compiled_core import modules_in_use
 
 _WARM_S = 5.0
+_FLOOD_S = 3.0
+_RECORDED = 200_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +41,26 @@ class ThroughputReport:
     # Over the last third: by then trails are full; None: the run was too short to tell.
     memory_slope_mb_per_minute: float | None
     console_messages: int
+
+
+@dataclass(frozen=True, slots=True)
+class Yardsticks:
+    """Of this machine now."""
+
+    bare_zenoh_hz: float  # messages of 200 bytes that a subscriber takes that does nothing else
+    recording_hz: float  # messages that the log alone takes, a second of processor time
+
+
+def measure_yardsticks(progress: Progress) -> Yardsticks:
+    """What a station could take if nothing was done with it."""
+    task = progress.add_task("bare Zenoh, and the log alone", total=2.0)
+    address = f"tcp/127.0.0.1:{free_port()}"
+    with bare_subscriber(address) as far_end:
+        bare = measure_flood(address, far_end, _FLOOD_S)
+    progress.advance(task)
+    recording = recording_hz(_RECORDED)
+    progress.advance(task)
+    return Yardsticks(bare.rate_hz, recording)
 
 
 def measure(
