@@ -25,6 +25,12 @@ def links() -> None:
             pytest.skip(str(error))
 
 
+@pytest.fixture
+def closing() -> Iterator[ExitStack]:
+    with ExitStack() as closing:
+        yield closing
+
+
 @pytest.fixture(scope="module")
 def troubled(links: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     """A station and a unit with a link between them that can be spoiled."""

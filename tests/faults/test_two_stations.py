@@ -24,24 +24,12 @@ from shared.codec import encode
 from shared.errors import BusError
 from shared.messages import Header
 from tests.set_clock import MachineClock
+from tests.two_stations import two_stations
 
 APART_S = 3.0
 TOLD_S = 3.0  # a beat that names a new unit comes within a fifth of that on a busy machine, too
 DAY_S, HOUR_S = 86_400.0, 3_600.0
 OLD_BOOT, BACKLOG = 0xABCD, 40_000
-
-
-@pytest.fixture
-def closing() -> Iterator[ExitStack]:
-    with ExitStack() as closing:
-        yield closing
-
-
-def two_stations(folder: Path, places: tuple[Place, Place], closing: ExitStack) -> TwoStations:
-    """They are ended with ``closing``, and what they said is shown with a test that fails."""
-    two = TwoStations(folder, places, closing)
-    closing.callback(lambda: print(two.first.said(), two.second.said(), sep="\n"))
-    return two
 
 
 def texts(station: Station) -> list[str]:

@@ -8,7 +8,6 @@ import json
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
 from contextlib import ExitStack
 from http import HTTPStatus
 from pathlib import Path
@@ -19,10 +18,10 @@ import pytest
 from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
 from base_station.bench.rig.waiting import wait_until
 from base_station.bench.standby.one_of_two import Place, Station
-from base_station.bench.standby.two_stations import TwoStations
 from base_station.pki.folder import PkiFolder
 from shared.enrolment import Holder
 from shared.errors import BusError
+from tests.two_stations import two_stations
 
 PASSWORD, ANOTHER = "correct horse battery", "another horse battery"
 REMOVED, DEMOTED, RENEWED, ENDED, KEPT = "removed", "demoted", "renewed", "ended", "kept"
@@ -149,23 +148,11 @@ def assert_unheard(at: Station, unit_id: str, other: str) -> None:
     assert heard(at, other) > before
 
 
-@pytest.fixture
-def closing() -> Iterator[ExitStack]:
-    with ExitStack() as closing:
-        yield closing
-
-
-def two_stations(folder: Path, places: tuple[Place, Place], closing: ExitStack) -> TwoStations:
-    two = TwoStations(folder, places, closing)
-    closing.callback(lambda: print(two.first.said(), two.second.said(), sep="\n"))
-    two.start()
-    return two
-
-
 def test_whom_the_first_shut_out_before_it_died_alone_is_out_at_both_when_it_is_back(
     tmp_path: Path, closing: ExitStack
 ) -> None:
     two = two_stations(tmp_path, (Place(), Place()), closing)
+    two.start()
     for unit_id in ("lost", "bert"):
         two.start_unit(unit_id, two.second)
     two.wait_heard(two.first)
@@ -208,6 +195,7 @@ def test_whom_one_of_two_that_lead_shut_out_is_out_at_both_though_it_follows_the
         pytest.skip(str(error))
     first, second = (Place(one.address, one) for one in (link.station, link.units))
     two = two_stations(tmp_path, (first, second), closing)
+    two.start()
     for unit_id, near in (("anna", two.first), ("bert", two.second)):
         two.start_unit(unit_id, near)
     two.wait_heard(two.first)

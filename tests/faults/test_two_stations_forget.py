@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import urllib.request
-from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -15,21 +14,20 @@ from base_station.bench.rig.waiting import wait_until
 from base_station.bench.standby.one_of_two import Place, Station
 from base_station.bench.standby.two_stations import TwoStations
 from tests.forgetting_story import names_in, some_photo, stored_in
+from tests.two_stations import two_stations
 
 NAME = "Zebediah Quartermaine"
 OTHER = "Bo Lind"
 
 
 @pytest.fixture
-def two(tmp_path: Path) -> Iterator[TwoStations]:
+def two(tmp_path: Path, closing: ExitStack) -> TwoStations:
     """One unit, which Zebediah wore in an incident that is over, and Bo does now."""
-    with ExitStack() as closing:
-        two = TwoStations(tmp_path, (Place(), Place()), closing)
-        closing.callback(lambda: print(two.first.said(), two.second.said(), sep="\n"))
-        two.start()
-        two.start_unit("anna", two.first)
-        two.wait_heard(two.first)
-        yield two
+    two = two_stations(tmp_path, (Place(), Place()), closing)
+    two.start()
+    two.start_unit("anna", two.first)
+    two.wait_heard(two.first)
+    return two
 
 
 def tell_story(two: TwoStations) -> tuple[str, bytes]:
