@@ -15,6 +15,9 @@ from base_station.bench.incident.run import Timing, draw_incident, fuse
 from base_station.fusion import FUSERS
 from base_station.fusion.smoother import SMOOTHERS
 
+SHIFTED = "shown 5 m aside, everybody alike"
+SHIFT_M = (3.0, -4.0)
+
 
 @pytest.fixture(autouse=True)
 def few_hours(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -27,8 +30,12 @@ def scores() -> SmoothingScores:
     people = draw_incident(rng)[:2]
     kind = PathKeeping(FUSERS[0])
     runs = [fuse(kind, person, Timing(), with_plan=False) for person in people]
+    evidence = kind.evidence(runs) | engine_evidence(people[0])
     scores = SmoothingScores(SMOOTHERS[0])
-    scores.note(WITHOUT, people, runs, kind.evidence(runs) | engine_evidence(people[0]), rng)
+    scores.note(WITHOUT, people, runs, evidence, rng)
+    for person, run in zip(people, runs, strict=True):
+        run.places_m = person.truth.place_m[:, :2] + SHIFT_M
+    scores.note(SHIFTED, people, runs, evidence, rng)
     return scores
 
 
@@ -49,6 +56,15 @@ def test_what_is_known_afterwards_is_better_and_pins_help(scores: SmoothingScore
     assert 0.5 < report.held_95[WITHOUT]["inside"] <= 1.0
     assert min(report.times_s.values()) > 0.0
     assert len(tables_of(report)) == 2
+
+
+def test_relative_errors_are_less_what_is_common_to_all(scores: SmoothingScores) -> None:
+    report = scores.report(seed=1)
+    assert report.live_mean_m[SHIFTED]["inside"] == pytest.approx(5.0)
+    assert report.live_relative_m[SHIFTED]["inside"] == pytest.approx(0.0, abs=1e-9)
+    assert report.live_relative_m[WITHOUT]["inside"] > 0.1
+    relative_m = report.smoothed_relative_m[WITHOUT]["inside"]
+    assert 0.05 < relative_m < report.smoothed_mean_m[WITHOUT]["inside"]
 
 
 def test_scores_added_to_none_are_the_same(scores: SmoothingScores) -> None:
