@@ -23,8 +23,6 @@ import typer
 from base_station.program.core_modules import CORE_MODULES
 
 _ENDING = str(sysconfig.get_config_var("EXT_SUFFIX"))  # of this Python on this kind of machine
-
-
 _SOURCES = Path(__file__).resolve().parents[2]
 BESIDE_SOURCES = _SOURCES / "base_station" / "__pycache__"
 

@@ -77,6 +77,8 @@ def _compile(compiler: Sequence[str], name: str, made: Path, work: Path) -> None
     _run(name, [*cython, str(source), "-o", str(written)], work)
     _run(name, [*compiler, "-w", str(written), "-o", str(built)], work)
     written.unlink()
+    with built.open("rb") as file:
+        os.fsync(file.fileno())  # cut short by a power cut, it would keep the station from starting
     built.replace(made)
 
 
