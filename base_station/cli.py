@@ -181,7 +181,7 @@ def compile_(
     if core:
         with _bar("compiling the core") as on_progress:
             count = compile_core(context.obj, on_progress)
-        typer.echo(f"{count} modules of the core compiled, the others were")
+        typer.echo(f"the core is compiled: {count} modules now, the others were already")
 
 
 @app.command()

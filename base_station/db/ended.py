@@ -6,21 +6,9 @@ what is over is kept by name, goes to both in either direction, and nothing brin
 
 from __future__ import annotations
 
-from typing import Literal
-
 from sqlalchemy.orm import Session
 
-from base_station.db.models import (
-    ApiToken,
-    Base,
-    Ended,
-    HandOver,
-    LoginSession,
-    Person,
-    User,
-)
-
-Kind = Literal["user", "session", "ticket", "token", "person"]
+from base_station.db.models import ApiToken, Base, Ended, HandOver, LoginSession, Person, User
 
 
 def end(session: Session, row: User | LoginSession | HandOver | ApiToken | Person) -> None:

@@ -1,7 +1,8 @@
 """The core's modules as machine code, where ``muster base compile --core`` has made that.
 
-Their sources stay plain Python, and are what counts: a module whose source has changed since is
-loaded from it, and so is every module on a machine on which nothing was compiled.  Both give the
+Their sources stay plain Python, and are what counts: a module whose source has changed since, or
+whose machine code is damaged, is loaded from it, and so is every module on a machine on which
+nothing was compiled.  Both give the
 same, bit for bit (``tests/integration/test_compiled_core.py``).
 """
 
@@ -23,6 +24,7 @@ import typer
 from base_station.program.core_modules import CORE_MODULES
 
 _ENDING = str(sysconfig.get_config_var("EXT_SUFFIX"))  # of this Python on this kind of machine
+_DIGEST_BYTES = 12
 _SOURCES = Path(__file__).resolve().parents[2]
 BESIDE_SOURCES = _SOURCES / "base_station" / "__pycache__"
 
@@ -61,8 +63,27 @@ def machine_code_of(name: str, folder: Path) -> Path:
     """Where it is, or would be: named by what it was made from.  Raises OSError where the source
     is not there.
     """
-    digest = hashlib.blake2b(source_of(name).read_bytes(), digest_size=12).hexdigest()
-    return folder / "core" / f"{name}-{digest}{_ENDING}"
+    return folder / "core" / f"{name}-{_digest(source_of(name).read_bytes()).hex()}{_ENDING}"
+
+
+def sealed(code: bytes) -> bytes:
+    """With its own digest behind it, where whoever loads it does not look."""
+    return code + _digest(code)
+
+
+def is_whole(path: Path) -> bool:
+    """Whether it is there and what was sealed: code that a disk has damaged would end the program
+    without a word.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return False
+    return content[-_DIGEST_BYTES:] == _digest(content[:-_DIGEST_BYTES])
+
+
+def _digest(content: bytes) -> bytes:
+    return hashlib.blake2b(content, digest_size=_DIGEST_BYTES).digest()
 
 
 class _CompiledFinder(MetaPathFinder):
@@ -78,7 +99,7 @@ class _CompiledFinder(MetaPathFinder):
         if fullname not in CORE_MODULES:
             return None
         compiled = machine_code_of(fullname, self._folder)
-        if not compiled.is_file():
+        if not is_whole(compiled):
             return None  # Python itself finds the source
         loader = ExtensionFileLoader(fullname, str(compiled))
         return spec_from_file_location(fullname, compiled, loader=loader)

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from base_station.program.compiled_core import machine_code_of, source_of
+from base_station.program.compiled_core import is_whole, machine_code_of, sealed, source_of
 from base_station.program.core_modules import CORE_MODULES
 from shared.errors import UserError
 
@@ -25,7 +25,7 @@ _TAIL_LINES = 15
 
 
 def compile_core(folder: Path, on_progress: Callable[[float], None]) -> int:
-    """Compile what is not there, or of another source; gives how many modules that were.
+    """Compile what is not there whole, or of another source; gives how many modules that were.
 
     Raises UserError where this machine cannot, or the folder cannot be written.
     """
@@ -33,7 +33,7 @@ def compile_core(folder: Path, on_progress: Callable[[float], None]) -> int:
     wanted = {name: machine_code_of(name, folder) for name in CORE_MODULES}
     core = wanted[CORE_MODULES[0]].parent
     core.mkdir(parents=True, exist_ok=True)
-    due = [name for name, made in wanted.items() if not made.is_file()]
+    due = [name for name, made in wanted.items() if not is_whole(made)]
     with (
         TemporaryDirectory(dir=core) as work,  # so that what is made is there at once
         ThreadPoolExecutor(os.cpu_count()) as pool,
@@ -77,8 +77,7 @@ def _compile(compiler: Sequence[str], name: str, made: Path, work: Path) -> None
     _run(name, [*cython, str(source), "-o", str(written)], work)
     _run(name, [*compiler, "-w", str(written), "-o", str(built)], work)
     written.unlink()
-    with built.open("rb") as file:
-        os.fsync(file.fileno())  # cut short by a power cut, it would keep the station from starting
+    built.write_bytes(sealed(built.read_bytes()))
     built.replace(made)
 
 

@@ -93,6 +93,20 @@ def test_what_is_of_no_source_any_more_goes_and_the_rest_is_not_made_again(
     assert compile_core(tmp_path, lambda _: None) == 0
 
 
+def test_what_the_disk_has_damaged_is_not_run_and_is_made_again(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(core_compiler, "CORE_MODULES", SMALL)
+    made = compiled_core.machine_code_of(SMALL[0], tmp_path)
+    compile_core(tmp_path, lambda _: None)
+    whole = made.read_bytes()
+    for damaged in (b"", whole[:3000], bytes([whole[0] ^ 1]) + whole[1:]):
+        made.write_bytes(damaged)
+        assert run(str(tmp_path))[0] == 0
+    assert compile_core(tmp_path, lambda _: None) == 1
+    assert run(str(tmp_path))[0] == 1
+
+
 def test_a_machine_without_a_compiler_is_told_what_to_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
