@@ -12,15 +12,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from base_station.accounts.cli import users
-from base_station.program import compiled_core, interpreter
-from base_station.program.compiled_core import BESIDE_SOURCES, CompiledFolder
-from base_station.recordings.command import fetch_recording
+from base_station.app.recordings_command import fetch_recording
+from base_station.app.users_cli import users
+from base_station.process import compiled_core, gc_tuning
+from base_station.process.compiled_core import BESIDE_SOURCES, CompiledFolder
 from shared.end_signals import sigterm_as_ctrl_c
+from shared.options import finite
 from shared.out_file import writable
 
 if TYPE_CHECKING:
-    from base_station.app.folder import LookBack
+    from base_station.app.folder_commands import PostProcessingContext
     from base_station.config import StationConfig
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -66,9 +67,9 @@ def serve(
         "http.listen": http,
         "insecure": insecure or None,
     }
-    settings = _settle(config, flags)
+    settings = _load_settings(config, flags)
     # Imported where needed: it takes its time, and a wrong setting is said before.
-    with interpreter.held():
+    with gc_tuning.paused():
         from base_station.app.live import run_station  # noqa: PLC0415
 
     run_station(settings, _announce)
@@ -80,16 +81,18 @@ def replay(
     config: ConfigOption = None,
     data: DataOption = None,
     http: HttpOption = None,
-    speed: Annotated[float, typer.Option(min=0.25, max=1000.0, help="Times real time.")] = 1.0,
+    speed: Annotated[
+        float, typer.Option(min=0.25, max=1000.0, callback=finite, help="Times real time.")
+    ] = 1.0,
     insecure: InsecureOption = None,
 ) -> None:
     """Show a past incident in a console of its own; the folder is only read."""
     flags = {"data": data, "http.listen": http, "insecure": insecure or None}
-    settings = _settle(config, flags)
-    with interpreter.held():
+    settings = _load_settings(config, flags)
+    with gc_tuning.paused():
         from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
-    with sigterm_as_ctrl_c(), _bar("reading the log") as on_progress:
+    with sigterm_as_ctrl_c(), _progress_bar("reading the log") as on_progress:
         run_replay_station(settings, incident, speed, _announce, on_progress)
 
 
@@ -98,11 +101,13 @@ def rebuild(data: Path = Path("muster-data")) -> None:
     """Make the queryable tables again from the log; people and users are kept."""
     from rich.progress import Progress  # noqa: PLC0415
 
-    from base_station.app import folder as station  # noqa: PLC0415
+    from base_station.app import folder_commands as station  # noqa: PLC0415
 
     with Progress(transient=True) as progress:
         task = progress.add_task("reading the log", total=1.0)
-        count = station.rebuild(data, lambda done: progress.update(task, completed=done))
+        count = station.rebuild(
+            data, lambda done: progress.update(task, completed=done), progress.console.print
+        )
     typer.echo(f"{count} log records projected")
 
 
@@ -114,7 +119,7 @@ def backup(
     """Copy log, database and certificates, also while the station runs; again: what is new."""
     from rich.progress import Progress  # noqa: PLC0415
 
-    from base_station.storage.backup import back_up  # noqa: PLC0415
+    from base_station.app.backup import back_up  # noqa: PLC0415
 
     os.umask(0o077)
     with Progress(transient=True) as progress:
@@ -124,8 +129,8 @@ def backup(
         f"{target}: {done.copied} files ({done.copied_bytes / 1e6:.1f} MB) copied, "
         f"{done.unchanged} were there already"
     )
-    if done.gone:
-        typer.echo(f"{done.gone} segments of the log are there that the station has no more")
+    if done.removed:
+        typer.echo(f"{done.removed} segments of the log are there that the station has no more")
     done.require_whole()
 
 
@@ -134,17 +139,20 @@ def forget(
     what: Annotated[str, typer.Argument(help="A person's id or full name, or an incident's id.")],
     data: Path = Path("muster-data"),
 ) -> None:
-    """Delete what is stored of a person or of everybody in an incident; the audit stays."""
+    """Delete what is stored of a person or of everybody in an incident; the audit stays.
+
+    What the person wears is unassigned first.  A station that runs on the folder does it itself.
+    """
     from rich.progress import Progress  # noqa: PLC0415
 
-    from base_station.app import folder as station  # noqa: PLC0415
+    from base_station.app import folder_commands as station  # noqa: PLC0415
 
     with Progress(transient=True) as progress:
         task = progress.add_task("writing the log anew", total=1.0, start=False)
 
         def confirm(about: str) -> None:
             progress.stop()
-            _ask_again(what, about)
+            _ask_to_confirm(what, about)
             progress.start()
             progress.start_task(task)
 
@@ -170,16 +178,16 @@ def compile_(
     """
     from importlib import import_module  # noqa: PLC0415
 
-    from base_station.program.core_compiler import compile_core  # noqa: PLC0415
+    from base_station.process.core_compiler import compile_core  # noqa: PLC0415
 
     for compiled in (
         "base_station.fusion.kernels",
-        "base_station.fusion.smoother",
+        "base_station.fusion.smoothing",
         "base_station.site.storeys",
     ):
         import_module(compiled)
     if core:
-        with _bar("compiling the core") as on_progress:
+        with _progress_bar("compiling the core") as on_progress:
             count = compile_core(context.obj, on_progress)
         typer.echo(f"the core is compiled: {count} modules now, the others were already")
 
@@ -190,16 +198,22 @@ def smooth(
     data: Path = Path("muster-data"),
 ) -> None:
     """Work out an incident's trails again, from everything that is known afterwards."""
-    from base_station.app import folder as station  # noqa: PLC0415
+    from base_station.app import folder_commands as station  # noqa: PLC0415
 
     with sigterm_as_ctrl_c(), ExitStack() as closing:
-        with _bar("reading the log") as on_progress:
-            past = station.look_back(data, incident, closing, _warn, on_progress)
-        with _bar("smoothing") as on_progress:
-            made = past.hindsight.smooth(past.incident, on_progress)
+        with _progress_bar("reading the log") as on_progress:
+            post_processing = station.open_post_processing(
+                data, incident, closing, _warn, on_progress
+            )
+        with _progress_bar("smoothing") as on_progress:
+            made = post_processing.post_processor.smooth(post_processing.incident, on_progress)
     for unit_id, track in made.tracks.items():
         typer.echo(f"{unit_id}\t{len(track)} points")
-    kept = "kept" if made.is_kept and past.keeps else f"not kept: {_why_not_kept(past)}"
+    kept = (
+        "kept"
+        if made.is_kept and post_processing.keeps_result
+        else f"not kept: {_reason_not_kept(post_processing)}"
+    )
     typer.echo(f"{len(made.tracks)} trails by {made.smoother}; {kept}")
 
 
@@ -213,15 +227,20 @@ def assess(
     ] = None,
 ) -> None:
     """How good an incident's positions were, in the terms of ISO/IEC 18305."""
-    from base_station.app import folder as station  # noqa: PLC0415
-    from base_station.assessment.report import with_people  # noqa: PLC0415
-    from base_station.assessment.tables import print_report, write_report  # noqa: PLC0415
+    from base_station.app import folder_commands as station  # noqa: PLC0415
+    from base_station.replay.assessment.report import with_people  # noqa: PLC0415
+    from base_station.replay.assessment.tables import print_report, write_report  # noqa: PLC0415
 
     with sigterm_as_ctrl_c(), ExitStack() as closing:
-        with _bar("reading the log") as on_progress:
-            past = station.look_back(data, incident, closing, _warn, on_progress)
-        live = past.records.tracks_of(past.incident)
-        report = with_people(past.hindsight.assess(past.incident, live), past.people)
+        with _progress_bar("reading the log") as on_progress:
+            post_processing = station.open_post_processing(
+                data, incident, closing, _warn, on_progress
+            )
+        live = post_processing.records.tracks_of(post_processing.incident)
+        report = with_people(
+            post_processing.post_processor.assess(post_processing.incident, live),
+            post_processing.people,
+        )
     print_report(report)
     if json_file is not None:
         write_report(report, json_file)
@@ -263,14 +282,14 @@ def list_segments(data: Path = Path("muster-data")) -> None:
         )
 
 
-def _settle(config: Path | None, flags: Mapping[str, object]) -> StationConfig:
+def _load_settings(config: Path | None, flags: Mapping[str, object]) -> StationConfig:
     """The settings, and what else is set once for the whole process."""
     from base_station.config import StationConfig  # noqa: PLC0415
     from shared.config import load_config  # noqa: PLC0415
     from shared.log import set_up_logging  # noqa: PLC0415
 
     settings = load_config(config, StationConfig, flags)
-    settings.refuse_plain()
+    settings.require_encryption()
     set_up_logging(settings.log_level)
     logging.getLogger("alembic").setLevel(logging.WARNING)
     os.umask(0o077)  # people's photos and tracks are nobody else's business
@@ -278,7 +297,7 @@ def _settle(config: Path | None, flags: Mapping[str, object]) -> StationConfig:
 
 
 @contextmanager
-def _bar(what: str) -> Iterator[Callable[[float], None]]:
+def _progress_bar(what: str) -> Iterator[Callable[[float], None]]:
     """Shown from when it is first told of until all is done."""
     from rich.progress import Progress  # noqa: PLC0415
 
@@ -296,10 +315,14 @@ def _bar(what: str) -> Iterator[Callable[[float], None]]:
         yield tell
 
 
-def _why_not_kept(past: LookBack) -> str:
-    if past.incident.closed_ns is None:
+def _reason_not_kept(post_processing: PostProcessingContext) -> str:
+    if post_processing.incident.closed_ns is None:
         return "the incident is open"
-    return "the disk takes nothing" if past.keeps else "nothing is written to what was given"
+    return (
+        "the disk takes nothing"
+        if post_processing.keeps_result
+        else "nothing is written to what was given"
+    )
 
 
 def _warn(line: str) -> None:
@@ -311,11 +334,11 @@ def _announce(line: str) -> None:
     sys.stdout.flush()
 
 
-def _ask_again(what: str, about: str) -> None:
+def _ask_to_confirm(what: str, about: str) -> None:
     """It cannot be undone: what is meant is typed a second time, or comes on standard input."""
     from shared.errors import UserError  # noqa: PLC0415
 
     question = f"This deletes all that is stored of the {about}, for good. Type it again"
-    said = typer.prompt(question) if sys.stdin.isatty() else sys.stdin.readline().rstrip("\n")
-    if said != what:
-        raise UserError(f"{said!r} is not {what!r}; nothing was deleted")
+    answer = typer.prompt(question) if sys.stdin.isatty() else sys.stdin.readline().rstrip("\n")
+    if answer != what:
+        raise UserError(f"{answer!r} is not {what!r}; nothing was deleted")

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
-from base_station.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError
@@ -45,7 +45,7 @@ class HttpConfig:
 
 @dataclass(frozen=True, slots=True)
 class LogConfig:
-    """How the log is cut into segments and brought to the disk."""
+    """Segments of the log, and when they are written to the disk."""
 
     segment_s: Annotated[float, Within(1.0, 86_400.0)] = 900.0
     flush_every_s: Annotated[float, Within(0.05, 60.0)] = 0.5
@@ -53,7 +53,7 @@ class LogConfig:
 
 @dataclass(frozen=True, slots=True)
 class AccountabilityConfig:
-    """With what an incident begins; the commander can change it there."""
+    """Times with which an incident begins; the commander can change them there."""
 
     par_interval_s: Annotated[float, Within(30.0, 43_200.0)] = PAR_INTERVAL_S
     work_limit_s: Annotated[float, Within(30.0, 43_200.0)] = WORK_LIMIT_S
@@ -92,8 +92,8 @@ class StationConfig:
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
 
-    def plain_endpoints(self) -> tuple[str, ...]:
-        """Where others could listen in: what is not encrypted and leaves this machine."""
+    def unencrypted_endpoints(self) -> tuple[str, ...]:
+        """Endpoints that are not encrypted and leave this machine, where others could listen in."""
         plain = {
             one: endpoint_address(one) for one in self.bus.listen if not one.startswith("tls/")
         }
@@ -101,15 +101,15 @@ class StationConfig:
             plain[self.http.listen] = host_and_port(self.http.listen)
         return tuple(one for one, (host, _) in plain.items() if not _is_loopback(host))
 
-    def standing_problems(self) -> tuple[str, ...]:
-        """What is wrong for as long as these settings stand, for the console."""
+    def configuration_problems(self) -> tuple[str, ...]:
+        """Problems that last as long as these settings, as sentences for the console."""
         if all(one.startswith("tls/") for one in self.bus.listen):
             return ()
         return ("The bus is plain TCP: whoever reaches it can speak as any unit",)
 
-    def refuse_plain(self) -> None:
+    def require_encryption(self) -> None:
         """ConfigError where plain connections from other machines were not asked for."""
-        if self.insecure or not (plain := self.plain_endpoints()):
+        if self.insecure or not (plain := self.unencrypted_endpoints()):
             return
         raise ConfigError(
             f"{', '.join(plain)} would be open to the network without encryption; listen on "

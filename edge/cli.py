@@ -1,4 +1,4 @@
-"""``muster edge``: run an agent, and what it can be made of."""
+"""Commands ``muster edge``: run an agent, and list what it can be made of."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from edge.calibrate_command import calibrate
+from edge.app.calibrate import calibrate
+from shared.options import finite
 
 app = typer.Typer(
     help="One agent for each wearable.", no_args_is_help=True, pretty_exceptions_enable=False
@@ -30,6 +31,20 @@ Gps = Annotated[
         "nmea:tcp://HOST:PORT."
     ),
 ]
+Temperature = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="A temperature sensor, as hwmon:CHIP, iio:DEVICE or w1:ID with "
+        "?name=NAME&role=environment or electronics; may be repeated."
+    ),
+]
+Battery = Annotated[
+    str | None,
+    typer.Option(
+        help="The battery of this computer: its name in /sys/class/power_supply, or auto where "
+        "there is one."
+    ),
+]
 Enrolment = Annotated[
     Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
 ]
@@ -48,7 +63,8 @@ Calibrated = Annotated[
     Path | None, typer.Option(help="File from `muster edge calibrate` for these sensors.")
 ]
 ForSeconds = Annotated[
-    float | None, typer.Option("--for", help="Stop after this many seconds.", min=0.0, max=1e9)
+    float | None,
+    typer.Option("--for", help="Stop after this many seconds.", min=0.0, max=1e9, callback=finite),
 ]
 Speed = Annotated[
     float | None, typer.Option(help="Play a recording at this multiple of real time.")
@@ -65,6 +81,8 @@ def run(
     source: SamplesFrom = None,
     sightings: Sightings = None,
     gps: Gps = None,
+    temperature: Temperature = None,
+    battery: Battery = None,
     enrolment: Enrolment = None,
     connect: Connect = None,
     data: Data = None,
@@ -76,7 +94,7 @@ def run(
 ) -> None:
     """Run one agent until its source ends, Ctrl-C, or --for is over."""
     # Only this command needs what these import, and they take their time.
-    from edge.app import run_agent  # noqa: PLC0415
+    from edge.app.run import run_agent  # noqa: PLC0415
     from edge.config import EdgeConfig  # noqa: PLC0415
     from shared.config import load_config  # noqa: PLC0415
     from shared.end_signals import told_to_end  # noqa: PLC0415
@@ -88,6 +106,8 @@ def run(
         "source": source,
         "sightings": sightings,
         "gps": gps,
+        "temperatures": temperature,
+        "battery": battery,
         "connect": connect,
         "data": data,
         "tracker": tracker,
@@ -102,17 +122,24 @@ def run(
 
 @app.command()
 def sources() -> None:
-    """List where samples can come from."""
-    from edge.sources import SOURCES  # noqa: PLC0415
+    """List where samples can come from, and what can be read beside them."""
+    from edge.sources.gnss.registry import RECEIVERS  # noqa: PLC0415
+    from edge.sources.registry import SOURCES  # noqa: PLC0415
+    from edge.sources.temperature.registry import TEMPERATURE_SENSORS  # noqa: PLC0415
 
     for kind in SOURCES:
         typer.echo(f"{kind.scheme}:{kind.argument}")
+    for receiver in RECEIVERS:
+        typer.echo(f"--gps {receiver.scheme}:{receiver.argument}")
+    for sensor in TEMPERATURE_SENSORS:
+        typer.echo(f"--temperature {sensor.scheme}:{sensor.argument}")
+    typer.echo("--battery NAME or auto")
 
 
 @app.command()
 def trackers() -> None:
     """List the trackers."""
-    from edge.tracker import TRACKERS  # noqa: PLC0415
+    from edge.tracker.registry import TRACKERS  # noqa: PLC0415
 
     for entry in TRACKERS:
         typer.echo(f"{entry.name:10} {entry.summary}")
@@ -129,6 +156,6 @@ def plan() -> None:
 @app.command("compile")
 def compile_() -> None:
     """Compile the trackers now, so that the first agent starts at once."""
-    from edge.warm_up import compile_trackers  # noqa: PLC0415
+    from edge.app.jit_warmup import compile_trackers  # noqa: PLC0415
 
     compile_trackers()

@@ -1,4 +1,4 @@
-"""What a wearable's sensors deliver: batches of samples with their own time.
+"""Samples that a wearable's sensors deliver: batches with their own time.
 
 Axes are the sensor's own (any mount); at rest the accelerometer shows the
 specific force that holds the sensor up, about +9.81 m/s^2 pointing away from
@@ -7,10 +7,15 @@ the ground.  Times are the unit's monotonic clock in integer nanoseconds.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from msgspec import Meta
 from numpy.typing import NDArray
+
+from shared.messages import BatteryState
 
 Floats = NDArray[np.float64]
 Nanoseconds = NDArray[np.int64]
@@ -52,15 +57,25 @@ class ImuBatch:
 
 @dataclass(frozen=True, slots=True)
 class AmbientSample:
-    """The temperature around the equipment (not of the wearer)."""
+    """Temperature around the equipment (not of the wearer)."""
 
     t_ns: int
     temperature_degc: float
+    sensor: str = ""  # name; empty: the unit's only one
+
+
+@dataclass(frozen=True, slots=True)
+class ElectronicsSample:
+    """Temperature inside the unit: it shows whether the unit will last, and nothing of the air."""
+
+    t_ns: int
+    temperature_degc: float
+    sensor: str
 
 
 @dataclass(frozen=True, slots=True)
 class GpsSample:
-    """One fix of a satellite receiver, WGS-84; ``nan`` where it does not say."""
+    """Fix of a satellite receiver, WGS-84; ``nan`` where it is not known."""
 
     t_ns: int  # monotonic time at which the fix is valid
     lat_deg: float
@@ -75,9 +90,20 @@ class GpsSample:
 
 
 @dataclass(frozen=True, slots=True)
+class ApproximatePosition:
+    """Position where a unit is used, to some kilometres."""
+
+    lat_deg: Annotated[float, Meta(ge=-90.0, le=90.0)]
+    lon_deg: Annotated[float, Meta(ge=-180.0, le=180.0)]
+
+
+@dataclass(frozen=True, slots=True)
 class BatterySample:
     t_ns: int
     level: float  # 0 empty ... 1 full
+    left_s: float = math.nan  # until it is empty; ``nan`` where it is not known
+    state: BatteryState = BatteryState.UNKNOWN
+    battery: str = ""  # name; empty: that of the sensor
 
 
 MAYDAY, CANCEL, ACKNOWLEDGE = "mayday", "cancel", "acknowledge"
@@ -85,8 +111,8 @@ MAYDAY, CANCEL, ACKNOWLEDGE = "mayday", "cancel", "acknowledge"
 
 @dataclass(frozen=True, slots=True)
 class ButtonPress:
-    """The wearer pressed a button of the unit: ``MAYDAY``, ``CANCEL`` (takes a mayday back) or
-    ``ACKNOWLEDGE`` (has understood what the station said).
+    """Press of a button of the unit: ``MAYDAY``, ``CANCEL`` (takes a mayday back) or
+    ``ACKNOWLEDGE`` (has understood the station).
     """
 
     t_ns: int
@@ -98,8 +124,8 @@ BEACON, TAG, UNIT = "beacon", "tag", "unit"
 
 @dataclass(frozen=True, slots=True)
 class SightingSample:
-    """Something that can be told from others was near: a radio beacon, a tag that was scanned, or
-    another unit.
+    """Sighting of an identified thing nearby: a radio beacon, a tag that was scanned, or another
+    unit.
     """
 
     t_ns: int
@@ -109,12 +135,14 @@ class SightingSample:
     range_std_m: float
 
 
-OtherSample = AmbientSample | GpsSample | BatterySample | ButtonPress | SightingSample
+OtherSample = (
+    AmbientSample | ElectronicsSample | GpsSample | BatterySample | ButtonPress | SightingSample
+)
 
 
 @dataclass(frozen=True, slots=True)
 class SensorBatch:
-    """What a source hands over at once: inertial samples and whatever came with them."""
+    """Batch that a source hands over at once: inertial samples and others that came with them."""
 
     imu: ImuBatch
     others: tuple[OtherSample, ...] = ()
@@ -122,7 +150,7 @@ class SensorBatch:
 
 @dataclass(frozen=True, slots=True)
 class SensorDescription:
-    """What a unit's data sheet says; all a tracker may know about a recording in advance."""
+    """Data sheet of a unit; all a tracker may know about a recording in advance."""
 
     name: str
     rate_hz: float

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import logging
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import partial
 from queue import SimpleQueue
@@ -82,7 +82,7 @@ class ZenohBus:
         subscriber = self._session.declare_subscriber(
             key_expression, zenoh.handlers.FifoChannel(_SAMPLES_WAITING)
         )
-        self._start_thread("bus-samples", partial(_hand_over, subscriber, gate))
+        self._start_thread("bus-samples", partial(_hand_over, subscriber, partial(_message, gate)))
         return _Declared(gate, subscriber)
 
     def declare_alive(self, key: str) -> Subscription:
@@ -93,16 +93,11 @@ class ZenohBus:
     def watch_alive(self, key_expression: str, handler: LivelinessHandler) -> Subscription:
         self._require_open()
         gate = HandlerGate(require_key_expression(key_expression), handler)
-
-        def on_sample(sample: zenoh.Sample) -> None:
-            gate(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
-
-        return _Declared(
-            gate,
-            self._session.liveliness().declare_subscriber(
-                key_expression, _direct(on_sample), history=True
-            ),
+        subscriber = self._session.liveliness().declare_subscriber(
+            key_expression, zenoh.handlers.FifoChannel(_SAMPLES_WAITING), history=True
         )
+        self._start_thread("bus-tokens", partial(_hand_over, subscriber, partial(_token, gate)))
+        return _Declared(gate, subscriber)
 
     def serve(self, key_expression: str, handler: QueryHandler) -> Subscription:
         self._require_open()
@@ -208,7 +203,18 @@ class _Declared:
             self._declared = None
 
 
-def _hand_over(subscriber: zenoh.Subscriber[_Samples], gate: HandlerGate) -> None:
+def _message(gate: HandlerGate, sample: zenoh.Sample) -> None:
+    if sample.kind == zenoh.SampleKind.PUT:
+        gate(str(sample.key_expr), sample.payload.to_bytes())
+
+
+def _token(gate: HandlerGate, sample: zenoh.Sample) -> None:
+    gate(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+
+
+def _hand_over(
+    subscriber: zenoh.Subscriber[_Samples], deliver: Callable[[zenoh.Sample], None]
+) -> None:
     """Until the subscription ends.  The link's own thread would have to wait for the interpreter
     with every sample, milliseconds where another thread is at work, and what comes meanwhile
     is dropped at the far end.  So samples wait on this side, and all that are there are taken
@@ -219,8 +225,7 @@ def _hand_over(subscriber: zenoh.Subscriber[_Samples], gate: HandlerGate) -> Non
         while True:
             sample: zenoh.Sample | None = samples.recv()
             while sample is not None:
-                if sample.kind == zenoh.SampleKind.PUT:
-                    gate(str(sample.key_expr), sample.payload.to_bytes())
+                deliver(sample)
                 sample = samples.try_recv()
 
 
@@ -258,17 +263,18 @@ def _hand_replies_over(replies: _Replies, on_reply: ReplyHandler) -> None:
         on_reply(None)  # else whoever asked would wait for ever
 
 
-def _direct(callback: Callable[[zenoh.Sample], None]) -> Any:
-    """Called in the thread that receives: the shortest way."""
-    return zenoh.handlers.Callback(callback, indirect=False)
-
-
 def _in_words(endpoint: Endpoint, error: zenoh.ZError) -> BusError:
     reason = _PLACE_IN_ZENOH.sub("", str(error))
     if not isinstance(endpoint, StationEndpoint):
         return BusError(f"the bus cannot be opened towards {', '.join(endpoint.connect)}: {reason}")
-    where = ", ".join(endpoint.listen)
-    if "address already in use" in reason.lower():
+    in_use = "address already in use" in reason.lower()
+    return cannot_listen(endpoint.listen, reason, in_use=in_use)
+
+
+def cannot_listen(endpoints: Sequence[str], reason: str, *, in_use: bool) -> BusError:
+    """PortInUseError where it is ``in_use``."""
+    where = ", ".join(endpoints)
+    if in_use:
         return PortInUseError(
             f"the bus cannot listen on {where}: another program uses this port, perhaps another "
             "station; stop it or choose another port"

@@ -21,15 +21,21 @@ from typer.core import TyperCommand, TyperGroup
 
 from shared.errors import MusterError
 
+COMMANDS = "muster.commands"  # the group of entry points
 _GROUP_HELP = {"bench": "Measure this build on this machine."}
 
 
 def main() -> NoReturn:
-    """Run the command line; a MusterError becomes one sentence on stderr and exit code 2.
+    """Run the installed commands."""
+    run(entry_points(group=COMMANDS))
+
+
+def run(points: Iterable[EntryPoint]) -> NoReturn:
+    """Run a command line; a MusterError becomes one sentence on stderr and exit code 2.
 
     So does what the system says of a file that no command had expected to be out of reach.
     """
-    program = build_program(entry_points(group="muster.commands"))
+    program = build_program(points)
     try:
         program(prog_name="muster")
     except MusterError as error:

@@ -11,7 +11,10 @@
       ├─ LogError           a log segment or folder cannot be read or written
       │    └─ DataFolderInUseError  another station writes to this folder
       ├─ StoreError         the database, or a file beside it, cannot do what was asked
-      │    └─ DiskHangsError        its disk does not answer
+      │    ├─ DiskHangsError        its disk does not answer
+      │    ├─ DiskFullError         its disk takes nothing: it is full, or can only be read
+      │    └─ MemoryLimitError      it would take more memory than it may
+      ├─ LinkRefusedError   a link leads out of a folder
       └─ UserError          a person asked for something impossible
 
 Each message says what happened and what to do about it.
@@ -66,6 +69,18 @@ class StoreError(MusterError):
 
 class DiskHangsError(StoreError):
     """The database's disk does not answer: nothing is asked of it until it does."""
+
+
+class DiskFullError(StoreError):
+    """The database's disk takes nothing: it is full, has failed, or can only be read."""
+
+
+class MemoryLimitError(StoreError):
+    """It would take more memory than it may; so it would the next time."""
+
+
+class LinkRefusedError(MusterError):
+    """A link in a folder leads out of it, and is not followed."""
 
 
 class UserError(MusterError):

@@ -1,4 +1,8 @@
-"""One program at a time for a folder; the system lets go when the program dies."""
+"""One program at a time for a folder; the system lets go when the program dies.
+
+The folder itself is locked: that holds whatever becomes of the files in it.  So is the file
+``lock``, which says who holds it, and which earlier versions went by alone.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from shared.errors import DataFolderInUseError, LogError
-from shared.own_files import make_folder, open_own
+from shared.own_files import make_folder, open_own, refuse_links
 
 _NAME = "lock"
 
@@ -26,49 +30,93 @@ class FolderLock:
         """Makes the folder where it is missing.
 
         ``holder`` says who may hold it ("station"), ``remedy`` what to do when another one does.
-        Raises DataFolderInUseError, which names the process that holds it, or LogError when the
-        folder cannot be used at all.
+        Raises DataFolderInUseError, which names the process that holds it, LogError when the folder
+        cannot be used at all, or LinkRefusedError where something in it leads out of it.
         """
+        in_use = f"another {holder} is using {folder} (process {{}}): {remedy}"
         try:
             make_folder(folder)
-            self._descriptor = _opened(folder / _NAME)
+            refuse_links(folder)
+            self._folder = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
         except OSError as error:
             raise LogError(f"the data folder {folder} cannot be used: {error.strerror}") from error
         try:
-            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if not _is_free(self._folder, fcntl.LOCK_EX):
+                raise DataFolderInUseError(in_use.format(_holder_of(folder)))
+            self._file = self._opened(folder / _NAME)
         except OSError as error:
-            process = os.pread(self._descriptor, 20, 0).decode("ascii", "replace").strip()
-            os.close(self._descriptor)
-            raise DataFolderInUseError(
-                f"another {holder} is using {folder} (process {process or 'unknown'}): {remedy}"
-            ) from error
+            os.close(self._folder)
+            why = error.strerror
+            raise LogError(f"the data folder {folder} cannot be used: {why}") from error
+        except DataFolderInUseError:
+            os.close(self._folder)
+            raise
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            process = _process_in(self._file)
+            self.close()
+            raise DataFolderInUseError(in_use.format(process)) from error
         with suppress(OSError):  # a disk that is full: it is held, and cannot be said by whom
-            os.ftruncate(self._descriptor, 0)
-            os.pwrite(self._descriptor, f"{os.getpid()}\n".encode("ascii"), 0)
+            os.ftruncate(self._file, 0)
+            os.pwrite(self._file, f"{os.getpid()}\n".encode("ascii"), 0)
 
     @staticmethod
     def is_held(folder: Path) -> bool:
         """Whether a program holds it now; who asks holds it for no longer than that takes."""
-        try:
-            descriptor = os.open(folder / _NAME, os.O_RDONLY)
-        except OSError:
-            return False
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return True
-        finally:
-            os.close(descriptor)
+        for path in (folder, folder / _NAME):
+            try:
+                descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW * (path != folder))
+            except OSError:
+                continue
+            try:
+                if not _is_free(descriptor, fcntl.LOCK_SH):
+                    return True
+            finally:
+                os.close(descriptor)
         return False
 
     def close(self) -> None:
-        os.close(self._descriptor)
+        os.close(self._file)
+        os.close(self._folder)
+
+    def _opened(self, lock: Path) -> int:
+        try:
+            return open_own(lock, os.O_RDWR | os.O_CREAT, 0o640)
+        except OSError as error:
+            if error.errno != errno.EROFS:
+                raise
+        try:  # a disk that has failed: it can be held all the same
+            return open_own(lock, os.O_RDONLY, 0)
+        except FileNotFoundError:
+            return os.dup(self._folder)
 
 
-def _opened(lock: Path) -> int:
+def _is_free(descriptor: int, how: int) -> bool:
+    """Takes the lock, where nobody else has it.  On a file system that locks no folders nobody has:
+    the file is gone by.
+    """
     try:
-        return open_own(lock, os.O_RDWR | os.O_CREAT, 0o640)
-    except OSError as error:
-        if error.errno != errno.EROFS:
-            raise
-        return os.open(lock, os.O_RDONLY)  # a disk that has failed: it can be held all the same
+        fcntl.flock(descriptor, how | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass
+    return True
+
+
+def _holder_of(folder: Path) -> str:
+    try:
+        descriptor = os.open(folder / _NAME, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError:
+        return "unknown"
+    try:
+        return _process_in(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _process_in(descriptor: int) -> str:
+    with suppress(OSError):
+        return os.pread(descriptor, 20, 0).decode("ascii", "replace").strip() or "unknown"
+    return "unknown"

@@ -86,7 +86,11 @@ def _after_handshake(secured: ssl.SSLSocket, where: str) -> str:
         greeting = b"none"
     if greeting:
         return f"{where} accepts this unit's certificate; the link should come by itself"
-    return f"{where} accepts this unit's certificate and then ends the connection"
+    return (
+        f"{where} knows who issued this unit's certificate and ends the connection all the same: "
+        "it was revoked, is not on the station's list yet, or is shut out for a while; the "
+        "station's health page may say which"
+    )
 
 
 def _station_distrusted(error: ssl.SSLCertVerificationError, host: str, where: str) -> str:

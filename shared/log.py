@@ -5,9 +5,12 @@ from __future__ import annotations
 import logging
 import re
 import time
+from io import TextIOWrapper
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
 from typing import Literal
+
+from shared.own_files import append_own
 
 LogLevel = Literal["DEBUG", "INFO", "WARNING", "ERROR"]
 
@@ -18,7 +21,7 @@ _FILES_KEPT = 3
 
 
 class OneLineFormatter(logging.Formatter):
-    """``2026-03-01T10:00:00.123Z WARNING base_station.drive  text``; a traceback follows."""
+    """``2026-03-01T10:00:00.123Z WARNING base_station.engine.feed  text``; a traceback follows."""
 
     converter = staticmethod(time.gmtime)
 
@@ -31,15 +34,20 @@ class OneLineFormatter(logging.Formatter):
         return _UNPRINTABLE.sub(_escaped, super().formatMessage(record))
 
 
+class _PlainFileHandler(RotatingFileHandler):
+    """Follows no link: whoever may write to the folder does not choose where root writes."""
+
+    def _open(self) -> TextIOWrapper:
+        return TextIOWrapper(append_own(Path(self.baseFilename)), encoding=self.encoding)
+
+
 def set_up_logging(level: LogLevel = "INFO", file: Path | None = None) -> None:
     """For a program's start, once: replaces whatever handlers the root logger had."""
     handlers: list[logging.Handler] = [logging.StreamHandler()]
     if file is not None:
         file.parent.mkdir(parents=True, exist_ok=True)
         handlers.append(
-            RotatingFileHandler(
-                file, maxBytes=_FILE_BYTES, backupCount=_FILES_KEPT, encoding="utf-8"
-            )
+            _PlainFileHandler(file, maxBytes=_FILE_BYTES, backupCount=_FILES_KEPT, encoding="utf-8")
         )
     for handler in handlers:
         handler.setFormatter(OneLineFormatter())

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from shared.errors import ConfigError, UserError
+from shared.own_files import write_own
 
 
 def writable(path: Path | None) -> Path | None:
@@ -20,6 +21,8 @@ def writable(path: Path | None) -> Path | None:
     if path is None:
         return None
     is_new = not path.exists()
+    if is_new and path.is_symlink():
+        raise UserError(f"{path} is a link to what is not there; choose another place")
     try:
         with path.open("ab"):
             pass
@@ -39,6 +42,8 @@ def whole(path: Path) -> Iterator[Path]:
     is_file = path.is_file() or not path.exists()  # what is no file is written as it comes
     making = path.with_name(f".part-{path.name}") if is_file else path
     try:
+        if is_file:  # whoever may write to that folder does not choose where else it is written
+            write_own(making).close()
         yield making
         if is_file:
             making.replace(path)

@@ -26,6 +26,10 @@ class Reason(IntFlag):
     BAD_SAMPLES = 32  # not finite, stuck or out of order: left out
     UNCERTAIN = 128  # stated standard deviation past what a commander can use
     UNSETTLED = 256  # no rest has shown the gyroscope's bias yet, and the heading suffers
+    INCONSISTENT = (
+        512  # stances contradict the motion between them, or did until the height was lost
+    )
+    NOT_ON_FOOT = 1024  # the motion is not that of a foot, for which the tracker is made
 
 
 NOT_OF_STEPS = Reason.UNCERTAIN | Reason.UNSETTLED  # nothing against a path's last steps
@@ -39,6 +43,8 @@ _IN_WORDS = {
     Reason.BAD_SAMPLES: "samples unusable",
     Reason.UNCERTAIN: "place only roughly known",
     Reason.UNSETTLED: "heading not settled: stand still for five seconds",
+    Reason.INCONSISTENT: "footfalls contradict the motion between them: height not known",
+    Reason.NOT_ON_FOOT: "not worn on a foot: strap it to the instep",
 }
 
 

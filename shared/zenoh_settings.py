@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,10 +12,12 @@ from shared.tls import TlsIdentity
 
 # A lost link is noticed after the lease; each side's setting decides how fast the other notices.
 _LEASE_MS = 3000
+LOCAL_LINK = "unixsock-stream"  # a socket in a folder of this machine, which is its owner's alone
 _KEEP_ALIVES_A_LEASE = 4
 _RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor": 1.5}
 # What is larger is not taken, whoever sends it: two stations tell each other plans and pictures.
 MOST_BYTES = 64 * 1024 * 1024
+MOST_BYTES_ALONE = 2 * 1024 * 1024
 # What units say and answer is smaller by far: what is larger ends at the router.
 MOST_SAID_BYTES = 64 * 1024
 MOST_ANSWERED_BYTES = 1024 * 1024  # twice what is asked for at once
@@ -23,6 +25,8 @@ _LARGEST = (
     ("said", "put", MOST_SAID_BYTES, ("*/up/**", "*/alert/**", "*/heartbeat")),
     ("answered", "reply", MOST_ANSWERED_BYTES, ("**",)),
 )
+# Who has said hello to the router and has no session yet: all units at once, when it opens again.
+_UNICAST = {"accept_pending": 1000}
 _ASKED_HZ = 5.0  # a unit asks for the time once a second at most
 # Batches of 64 KiB towards each neighbour, made when needed: 1 MB of live data outlasts a second
 # in which a busy machine lets nobody run. With two batches, as is usual, it was dropped.
@@ -44,6 +48,7 @@ class StationEndpoint:
 
     ``access_control``: Zenoh's section of that name, read once, when the bus is opened.
     ``seldom_asked``: of questions under each of these keys a few a second go through.
+    ``links_tls``: with what it joins other stations' routers, where that is another identity.
     """
 
     listen: tuple[str, ...] = ("tcp/0.0.0.0:7447",)
@@ -51,6 +56,7 @@ class StationEndpoint:
     access_control: Mapping[str, Any] | None = None
     links: tuple[str, ...] = ()  # other stations' routers, which it joins
     seldom_asked: tuple[str, ...] = ()
+    links_tls: TlsIdentity | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,10 +88,10 @@ def settings_of(endpoint: Endpoint) -> dict[str, Any]:
     link: dict[str, Any] = {"tx": {"lease": _LEASE_MS, "keep_alive": _KEEP_ALIVES_A_LEASE}}
     if isinstance(endpoint, StationEndpoint):
         link["tx"]["queue"] = {"size": _ROUTER_QUEUES}
-        link["rx"] = {"max_message_size": MOST_BYTES}
+        link["rx"] = {"max_message_size": MOST_BYTES if endpoint.links else MOST_BYTES_ALONE}
     if endpoint.tls is not None:
-        link["protocols"] = ["tls"]
-        link["tls"] = _tls_settings(endpoint.tls, _tls_roles(endpoint))
+        link["protocols"] = ["tls", LOCAL_LINK]
+        link["tls"] = _tls_settings(_tls_roles(endpoint, endpoint.tls))
     return {
         # With gossip, units link to each other and go round the station's access rules.
         "scouting": {
@@ -93,7 +99,7 @@ def settings_of(endpoint: Endpoint) -> dict[str, Any]:
             "gossip": {"enabled": False},
             "delay": 0,  # nobody is scouted for: do not wait half a second for them
         },
-        "transport": {"link": link, "shared_memory": {"enabled": False}},
+        "transport": {"link": link, "shared_memory": {"enabled": False}, "unicast": _UNICAST},
     } | _role_settings(endpoint)
 
 
@@ -146,24 +152,27 @@ def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
     }
 
 
-def _tls_roles(endpoint: Endpoint) -> tuple[str, ...]:
+def _tls_roles(endpoint: Endpoint, tls: TlsIdentity) -> dict[str, TlsIdentity]:
     if not isinstance(endpoint, StationEndpoint):
-        return ("connect",)
-    return ("listen", "connect") if endpoint.links else ("listen",)
+        return {"connect": tls}
+    return {"listen": tls} | ({"connect": endpoint.links_tls or tls} if endpoint.links else {})
 
 
-def _tls_settings(identity: TlsIdentity, roles: Iterable[str]) -> dict[str, Any]:
+def _tls_settings(roles: Mapping[str, TlsIdentity]) -> dict[str, Any]:
     """Inline rather than as paths: an enrolment is one file, and its key is on disk once."""
-    certificate = base64.b64encode(identity.certificate).decode()
-    private_key = base64.b64encode(identity.private_key).decode()
     own: dict[str, str] = {}
-    for role in roles:
+    for role, identity in roles.items():
         own |= {
-            f"{role}_certificate_base64": certificate,
-            f"{role}_private_key_base64": private_key,
+            f"{role}_certificate_base64": _base64(identity.certificate),
+            f"{role}_private_key_base64": _base64(identity.private_key),
         }
+    authorities = dict.fromkeys(identity.authority for identity in roles.values())
     return own | {
-        "root_ca_certificate_base64": base64.b64encode(identity.authority).decode(),
+        "root_ca_certificate_base64": _base64(b"".join(authorities)),
         "enable_mtls": True,
         "close_link_on_expiration": True,
     }
+
+
+def _base64(pem: bytes) -> str:
+    return base64.b64encode(pem).decode()

@@ -14,18 +14,19 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from base_station.bench.rig import said
-from edge.journal.spool import Spool
-from edge.journal.writer import JournalWriter
+from edge.storage.journal.journal import Journal
+from edge.storage.journal.writer import JournalWriter
 from shared.clock import ManualClock
 from shared.envelope import Stamper
 from shared.messages import Position
+from tests.rig import message_factory
 
 PROJECT_ROOT = Path(__file__).resolve().parent.parent
 
 # How long an example takes says how busy the machine is.
 settings.register_profile("muster", deadline=None)
 settings.load_profile("muster")
+settings.register_profile("quick", deadline=None, max_examples=20)  # ./muster test --quick
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -41,7 +42,7 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     if session.config.option.collectonly or not session.items:
         return
     digest = hashlib.sha256()
-    for path in sorted((PROJECT_ROOT / "edge" / "tracker").glob("*.py")):
+    for path in sorted((PROJECT_ROOT / "edge" / "tracker").glob("**/*.py")):
         digest.update(path.read_bytes())
     folder = PROJECT_ROOT / "build"
     folder.mkdir(exist_ok=True)
@@ -57,30 +58,46 @@ def pytest_collection_finish(session: pytest.Session) -> None:
 
 
 @pytest.fixture
-def spool(tmp_path: Path) -> Iterator[Spool]:
+def journal(tmp_path: Path) -> Iterator[Journal]:
     """A unit's journal, with room for everything."""
-    spool = Spool(tmp_path / "journal.sqlite", itertools.count(1).__next__, 0, 10**9)
-    yield spool
-    spool.close()
+    journal = Journal(tmp_path / "journal.sqlite", itertools.count(1).__next__, 0, 10**9)
+    yield journal
+    journal.close()
 
 
 @pytest.fixture
-def journal(spool: Spool) -> Iterator[JournalWriter]:
-    journal = JournalWriter(spool)
-    yield journal
-    journal.close()
+def journal_writer(journal: Journal) -> Iterator[JournalWriter]:
+    journal_writer = JournalWriter(journal)
+    yield journal_writer
+    journal_writer.close()
+
+
+def _recorded(name: str) -> Path:
+    data = Path(os.environ.get("MUSTER_DATA", PROJECT_ROOT.parent / "shared" / "data"))
+    folder = data / name
+    if not folder.is_dir():
+        pytest.skip(
+            f"no recorded walks in {data} (set MUSTER_DATA to the folder that holds '{name}')"
+        )
+    return folder
 
 
 @pytest.fixture(scope="session")
 def walks() -> Path:
     """The folder of recorded walks; the test is skipped where it is not there."""
-    data = Path(os.environ.get("MUSTER_DATA", PROJECT_ROOT.parent / "shared" / "data"))
-    folder = data / "walks"
-    if not folder.is_dir():
-        pytest.skip(
-            f"no recorded walks in {data} (set MUSTER_DATA to the folder that holds 'walks')"
-        )
-    return folder
+    return _recorded("walks")
+
+
+@pytest.fixture(scope="session")
+def hard_walks(walks: Path) -> Path:
+    """The folder of those that are hard to track, beside ``walks``; skipped likewise."""
+    return _recorded("hard")
+
+
+@pytest.fixture(scope="session")
+def worn_elsewhere() -> tuple[Path, ...]:
+    """Folders of recordings on lower backs (with both feet) and of telephones; skipped likewise."""
+    return _recorded("body"), _recorded("phones")
 
 
 @pytest.fixture
@@ -110,6 +127,6 @@ def make_position(stamper: Stamper) -> Callable[..., Position]:
             "distance_m": 12.3,
             "stationary": True,
         }
-        return said.position(stamper.header(), **{**usual, **changes})
+        return message_factory.position(stamper.header(), **{**usual, **changes})
 
     return make

@@ -1,1 +1,1 @@
-"""Who may log in: users' names, roles and passwords; their table is ``db.accounts``."""
+"""Who may log in: users' names, roles and passwords; their table is ``storage.db.accounts``."""

@@ -1,9 +1,16 @@
-"""Passwords as argon2 hashes; making and checking one takes long, and 64 MB, on purpose."""
+"""Passwords as argon2 hashes; making and checking one takes long, and 64 MB, on purpose.
+
+All of it is done by two threads that the machine lets wait for others, so that whoever tries
+passwords takes little from those who are at work.  While they compute they hold no lock of the
+interpreter's.
+"""
 
 from __future__ import annotations
 
+import os
 import secrets
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 from pwdlib import PasswordHash
 
@@ -11,6 +18,7 @@ from shared.errors import UserError
 
 MIN_PASSWORD, MAX_PASSWORD = 10, 256
 _AT_ONCE = 2
+_NICENESS = 5  # of the thread, and of those that argon2 makes for its lanes
 
 
 class Passwords:
@@ -18,9 +26,9 @@ class Passwords:
 
     def __init__(self, hasher: PasswordHash | None = None) -> None:
         self._hasher = hasher or PasswordHash.recommended()
-        self._hashing = threading.BoundedSemaphore(_AT_ONCE)
-        # Checked for names that do not exist, so that the answer takes as long.
-        self._nobody = self._hasher.hash(secrets.token_urlsafe())
+        self._worker = ThreadPoolExecutor(_AT_ONCE, "passwords", initializer=_give_way)
+        # Checked for names that do not exist, so that the answer takes as long; a start goes on.
+        self._nobody = self._worker.submit(self._hasher.hash, secrets.token_urlsafe())
 
     def hash(self, password: str) -> str:
         """UserError where it is too short to be one, or longer than what is read at a login."""
@@ -28,11 +36,15 @@ class Passwords:
             raise UserError(f"a password needs at least {MIN_PASSWORD} characters")
         if len(password) > MAX_PASSWORD:
             raise UserError(f"a password has at most {MAX_PASSWORD} characters")
-        with self._hashing:
-            return self._hasher.hash(password)
+        return self._worker.submit(self._hasher.hash, password).result()
 
     def is_right(self, password: str, stored: str | None) -> bool:
         """``stored``: the hash; None: there is no such user, which takes as long to say."""
-        with self._hashing:
-            verified = self._hasher.verify(password, self._nobody if stored is None else stored)
+        against = self._nobody.result() if stored is None else stored
+        verified = self._worker.submit(self._hasher.verify, password, against).result()
         return verified and stored is not None
+
+
+def _give_way() -> None:
+    """Of Linux's threads each has a niceness of its own."""
+    os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)

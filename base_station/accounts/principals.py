@@ -47,3 +47,4 @@ class Principal(msgspec.Struct, frozen=True):
     role: Role
     scopes: frozenset[str] = frozenset()  # parts of the API; empty: all that the role may
     token_ends_ns: int | None = None  # None: it does not, or who asks has logged in
+    must_change_password: bool = False  # it was generated; until then nothing else may be done

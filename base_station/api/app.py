@@ -9,20 +9,25 @@ from contextlib import asynccontextmanager
 from fastapi import Depends, FastAPI
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
+from base_station.api.admission import AdmissionMiddleware, LoginQueue
+from base_station.api.authentication import check_leads, check_origin
+from base_station.api.connections import KnownNetworks
 from base_station.api.console_files import serve_console
-from base_station.api.forms import MOST_BYTES
-from base_station.api.headers import SecurityHeaders
-from base_station.api.problems import Mistakes, ProblemDocument, TooLarge, handle_problems
+from base_station.api.document import complete_document, operation_id
+from base_station.api.forms import MAX_BYTES
+from base_station.api.head import HeadRequestMiddleware
+from base_station.api.headers import SecurityHeadersMiddleware
+from base_station.api.login_throttle import LoginThrottle
+from base_station.api.problems import (
+    BodyTooLargeMiddleware,
+    UnhandledErrorMiddleware,
+    handle_problems,
+)
+from base_station.api.route_table import DOCUMENT_PATH, PREFIX, allowed_methods, check_query
 from base_station.api.routes import ROUTERS
-from base_station.api.security import LoginThrottle, check_origin, check_standing
 from base_station.api.services import Services
 
-PREFIX = "/api/v1"
-_SWEEP_S = 5.0
-_PROBLEMS = {
-    code: {"model": ProblemDocument, "content": {"application/problem+json": {}}}
-    for code in (400, 401, 403, 404, 409, 413, 422, 429, 503)
-}
+_REPLAY_CHECK_S = 5.0
 
 
 def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop], None]) -> FastAPI:
@@ -33,45 +38,48 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
         loop = asyncio.get_running_loop()
         app.state.loop = loop
         started(loop)
-        sweeping = asyncio.create_task(_end_unwatched_replays(services))
+        closing_unwatched = asyncio.create_task(_close_unwatched_replays(services))
         yield
-        sweeping.cancel()
+        closing_unwatched.cancel()
+        queue.close()
         await asyncio.to_thread(services.replays.close_all)
 
     app = FastAPI(
         title="Muster",
         version="1",
         lifespan=lifespan,
-        openapi_url=f"{PREFIX}/openapi.json",
+        openapi_url=DOCUMENT_PATH,
         docs_url=None,  # its pages would load from elsewhere
         redoc_url=None,
-        dependencies=[Depends(check_origin), Depends(check_standing)],
+        generate_unique_id_function=operation_id,
+        dependencies=[Depends(check_query), Depends(check_origin), Depends(check_leads)],
         telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
     )
     app.state.services = services
-    app.state.login_throttle = LoginThrottle()
-    standing = services.standing
-    app.add_middleware(Mistakes)
+    throttle = app.state.login_throttle = LoginThrottle()
+    queue = app.state.login_queue = LoginQueue()
+    app.state.known_networks = KnownNetworks()
+    ha_status = services.ha_status
+    app.add_middleware(UnhandledErrorMiddleware)
     # The framework's own limit stands outside of what answers like a problem, with its headers.
-    app.add_middleware(RequestBodyLimitMiddleware, max_body_size=MOST_BYTES)
-    app.add_middleware(TooLarge)
+    app.add_middleware(RequestBodyLimitMiddleware, max_body_size=MAX_BYTES)
+    app.add_middleware(BodyTooLargeMiddleware)
+    app.add_middleware(AdmissionMiddleware, throttle=throttle, queue=queue)
+    app.add_middleware(HeadRequestMiddleware)
     app.add_middleware(  # the last one is the outer one
-        SecurityHeaders,
+        SecurityHeadersMiddleware,
         secure=services.secure,
-        other_console=lambda: "" if standing is None else standing.view().other_url,
+        other_console=lambda: "" if ha_status is None else ha_status.view().other_url,
     )
-    handle_problems(app)
+    handle_problems(app, allowed_methods)
     for router in ROUTERS:
-        app.include_router(
-            router,
-            prefix=PREFIX,
-            responses=_PROBLEMS,  # type: ignore[arg-type]  # the stub wants str keys too
-        )
+        app.include_router(router, prefix=PREFIX)
+    complete_document(app)
     serve_console(app)
     return app
 
 
-async def _end_unwatched_replays(services: Services) -> None:
+async def _close_unwatched_replays(services: Services) -> None:
     while True:
-        await asyncio.sleep(_SWEEP_S)
+        await asyncio.sleep(_REPLAY_CHECK_S)
         await asyncio.to_thread(services.replays.close_unwatched)

@@ -11,7 +11,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
-_PACKING = 6  # of 9: a percent larger than the smallest, in half the time
+_COMPRESSION = 6  # of 9: a percent larger than the smallest, in half the time
 _NOT_BUILT = """<!doctype html>
 <html lang="en"><meta charset="utf-8"><title>Muster</title>
 <h1>The console has not been built</h1>
@@ -54,6 +54,6 @@ def serve_built(app: FastAPI, dist: Path) -> None:
         return FileResponse(page, headers={"Cache-Control": "no-cache"})
 
     if (dist / "assets").is_dir():
-        assets = GZipMiddleware(_Assets(directory=dist / "assets"), compresslevel=_PACKING)
+        assets = GZipMiddleware(_Assets(directory=dist / "assets"), compresslevel=_COMPRESSION)
         app.mount("/assets", assets, name="assets")
     app.mount("/", StaticFiles(directory=dist), name="console")

@@ -1,4 +1,4 @@
-"""What is wrong with one field of what was sent, in words for who filled it in."""
+"""Sentences about errors in one field of a request, for the person who filled it in."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 from typing import Any
 
-from base_station.api.forms import FITTING
+from base_station.api.forms import PATTERN_DESCRIPTIONS
 
-_A_NUMBER = "must be a number"
-_A_WHOLE_NUMBER = "must be a whole number"
+_NUMBER = "must be a number"
+_INTEGER = "must be a whole number"
 _SENTENCES = {  # by pydantic's names of errors, with the bounds that come along
     "missing": "is missing; fill it in",
     "extra_forbidden": "is not known here; leave it out",
     "string_type": "must be text",
     "string_too_short": "is too short; give {min_length} characters or more",
     "string_too_long": "is too long; give {max_length} characters or fewer",
-    "int_type": _A_WHOLE_NUMBER,
-    "int_parsing": _A_WHOLE_NUMBER,
-    "int_parsing_size": _A_WHOLE_NUMBER + ", and not so large a one",
-    "int_from_float": _A_WHOLE_NUMBER,
-    "float_type": _A_NUMBER,
-    "float_parsing": _A_NUMBER,
-    "finite_number": _A_NUMBER + ", and a finite one",
+    "int_type": _INTEGER,
+    "int_parsing": _INTEGER,
+    "int_parsing_size": _INTEGER + ", and not so large a one",
+    "int_from_float": _INTEGER,
+    "float_type": _NUMBER,
+    "float_parsing": _NUMBER,
+    "finite_number": _NUMBER + ", and a finite one",
     "greater_than": "must be more than {gt}",
     "greater_than_equal": "must be {ge} or more",
     "less_than": "must be less than {lt}",
@@ -40,19 +40,19 @@ _SENTENCES = {  # by pydantic's names of errors, with the bounds that come along
 }
 
 
-def sentence_of(error: Mapping[str, Any]) -> str:
+def error_sentence(error: Mapping[str, Any]) -> str:
     """``error``: one of pydantic's, with its place, its kind and the bounds that were not kept."""
     kind, bounds = error["type"], error.get("ctx", {})
-    said: str = error["msg"]
+    text: str = error["msg"]
     if kind == "string_pattern_mismatch":
-        said = FITTING.get(bounds["pattern"], said)
+        text = PATTERN_DESCRIPTIONS.get(bounds["pattern"], text)
     elif kind == "string_too_short" and bounds["min_length"] == 1:
-        said = "is empty; fill it in"
+        text = "is empty; fill it in"
     elif kind in _SENTENCES:
-        said = _SENTENCES[kind].format(**bounds)
-    return f"{_place(error['loc'])} {said}".strip()
+        text = _SENTENCES[kind].format(**bounds)
+    return f"{_place(error['loc'])} {text}".strip()
 
 
 def _place(location: Sequence[int | str]) -> str:
-    """Where in the body, query or path; an alternative bears the name of a field of its."""
+    """Names the place in body, query or path; an alternative bears the name of a field of its."""
     return ".".join(str(part) for part, _ in groupby(location[1:]))

@@ -1,4 +1,4 @@
-"""What people may send: every field bounded, nothing unknown, no number that is none.
+"""Types of request fields: every field bounded, no unknown fields, no NaN or infinity.
 
 Names, crews and notes hold no control characters, none that ends a line or turns the direction of
 writing round, and none that XML has no place for.  Times are milliseconds since 1970.
@@ -12,42 +12,44 @@ from fastapi import Path, Query
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from base_station.accounts.principals import BARRED
-from base_station.db.records import FOREVER_NS, Window
+from base_station.storage.db.records import FOREVER_NS, Window
 from shared.clock import NS_PER_MS
 
-MOST_BYTES = 65_536  # of a form
-MOST_UPLOADED_BYTES = 12_000_000  # a picture or a plan
-LAST_MS = FOREVER_NS // NS_PER_MS
+MAX_BYTES = 65_536  # of a form
+MAX_UPLOAD_BYTES = 12_000_000  # a picture or a plan
+MAX_TIME_MS = FOREVER_NS // NS_PER_MS
 
 _PRINTABLE = rf"^[^{BARRED}]*$"
 _NAME = rf"^[^{BARRED}]*[^\s{BARRED}][^{BARRED}]*$"
-_ID = r"^[A-Za-z0-9_.:-]{1,128}$"
+ID = r"^[A-Za-z0-9_.:-]{1,128}$"
 IDEMPOTENCY_KEY = r'^("[!#-~]{1,128}"|[!#-~]{1,128})$'  # the draft has it in quotes
 _ALARM_ID = r"^[A-Za-z0-9_.:@ -]{1,200}$"  # names a part of the station, and whose
 _UNIT_ID = r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}"
 _WHOLE_UNIT_ID, _UNIT_ID_OR_NONE = f"^{_UNIT_ID}$", f"^({_UNIT_ID})?$"
-_A_UNIT_ID = "must be 1 to 64 letters, digits and _.-, the first a letter or digit"
+_UNIT_ID_DESCRIPTION = "must be 1 to 64 letters, digits and _.-, the first a letter or digit"
 
-FITTING = {  # what each pattern asks for, in words
+PATTERN_DESCRIPTIONS = {  # what each pattern asks for, in words
     _PRINTABLE: "must be one line of plain characters",
     _NAME: "must be one line of plain characters, and not blank",
-    _ID: "must be 1 to 128 letters, digits and _.:-",
+    ID: "must be 1 to 128 letters, digits and _.:-",
     IDEMPOTENCY_KEY: "must be 1 to 128 letters, digits and signs without a space, in quotes or not",
     _ALARM_ID: "must be 1 to 200 letters, digits, spaces and _.:@-",
-    _WHOLE_UNIT_ID: _A_UNIT_ID,
-    _UNIT_ID_OR_NONE: f"{_A_UNIT_ID}; or empty",
+    _WHOLE_UNIT_ID: _UNIT_ID_DESCRIPTION,
+    _UNIT_ID_OR_NONE: f"{_UNIT_ID_DESCRIPTION}; or empty",
 }
 
 Name = Annotated[str, StringConstraints(min_length=1, max_length=80, pattern=_NAME)]
-Word = Annotated[str, StringConstraints(max_length=80, pattern=_PRINTABLE)]
+ShortText = Annotated[str, StringConstraints(max_length=80, pattern=_PRINTABLE)]
 Note = Annotated[str, StringConstraints(max_length=500, pattern=_PRINTABLE)]
-Id = Annotated[str, Path(pattern=_ID)]
-AlarmId = Annotated[str, Path(pattern=_ALARM_ID)]
+Id = Annotated[str, Path(pattern=ID)]
+AlarmIdText = Annotated[str, StringConstraints(pattern=_ALARM_ID)]
+AlarmId = Annotated[AlarmIdText, Path()]
 UnitIdText = Annotated[str, StringConstraints(pattern=_WHOLE_UNIT_ID)]
 IdempotencyKeyText = Annotated[str, StringConstraints(pattern=IDEMPOTENCY_KEY)]
 UnitIdOrNone = Annotated[str, StringConstraints(pattern=_UNIT_ID_OR_NONE)]
 UnitId = Annotated[UnitIdText, Path()]
-PersonIdText = Annotated[str, StringConstraints(pattern=_ID)]
+IdempotencyKey = Annotated[IdempotencyKeyText, Path()]
+PersonIdText = Annotated[str, StringConstraints(pattern=ID)]
 Metres = Annotated[float, Field(ge=-100_000.0, le=100_000.0)]
 
 
@@ -57,8 +59,8 @@ class Form(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
-FromMs = Annotated[int, Query(ge=0, le=LAST_MS)]
-UntilMs = Annotated[int, Query(ge=0, le=LAST_MS)]
+FromMs = Annotated[int, Query(ge=0, le=MAX_TIME_MS)]
+UntilMs = Annotated[int, Query(ge=0, le=MAX_TIME_MS)]
 
 
 Limit = Annotated[int, Query(ge=1, le=1000)]
@@ -67,6 +69,6 @@ comes along.  The page before them has ``until_ms`` at that millisecond.
 """
 
 
-def window(from_ms: FromMs = 0, until_ms: UntilMs = LAST_MS) -> Window:
+def window(from_ms: FromMs = 0, until_ms: UntilMs = MAX_TIME_MS) -> Window:
     """Dependency: a window of time from the query."""
     return Window(from_ms * NS_PER_MS, until_ms * NS_PER_MS)

@@ -1,4 +1,4 @@
-"""Security headers on every answer, and what may be kept by a cache."""
+"""Security and cache headers of every response."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _HEADERS = {
 
 
 def content_policy(other_console: str) -> str:
-    """What the console may load, and whom it may ask: this station, and the other one."""
+    """Content security policy: the console loads from, and asks, this station and the other one."""
     known = _ORIGIN.fullmatch(other_console) is not None
     return _CONTENT_POLICY.format(other=f" {other_console}" if known else "")
 
 
-class SecurityHeaders:
+class SecurityHeadersMiddleware:
     """ASGI middleware."""
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Spreads a live picture to the consoles that watch it.
+"""Broadcasts live snapshots and deltas to the consoles that watch.
 
 A delta is encoded once and the same bytes go to everyone.  A client that cannot keep up loses
 its queue, not the station its memory: once it takes something again it gets a snapshot.  Trails,
@@ -15,11 +15,11 @@ from concurrent.futures import Future
 
 import msgspec
 
-from base_station.live.sinks import LiveSource, Trails
+from base_station.engine.ports import LiveSource, Trails
 from base_station.views.wire import Delta, HealthView, Snapshot, Trail
 from shared.errors import StoreError
 
-QUEUE = 64  # messages a client may be behind, some three seconds
+MAX_QUEUED = 64  # messages a client may be behind, some three seconds
 
 
 class Client:
@@ -29,7 +29,7 @@ class Client:
         self._hub = hub
         self._queue: deque[bytes] = deque()
         self._trails: dict[str, bytes] = {}  # by unit: behind the snapshot, and not yet sent
-        self._filled = asyncio.Event()
+        self._has_message = asyncio.Event()
         self._behind = False  # lost its queue and needs a snapshot
         self._waiting = False  # a snapshot is under way
         self.lapses = 0  # how often it was too slow
@@ -37,54 +37,54 @@ class Client:
     async def next_message(self) -> bytes:
         """The next message in order, waiting for it."""
         while not (self._queue or self._trails):
-            self._filled.clear()
+            self._has_message.clear()
             if self._behind:
-                self.ask_for_snapshot()
-            await self._filled.wait()
+                self.request_snapshot()
+            await self._has_message.wait()
         return self._queue.popleft() if self._queue else self._trails.pop(next(iter(self._trails)))
 
-    def ask_for_snapshot(self) -> None:
-        """What is queued is dropped; the next message will be a snapshot."""
-        self._drop()
+    def request_snapshot(self) -> None:
+        """Drops the queue; the next message will be a snapshot."""
+        self._clear()
         self._behind = False
         if not self._waiting:
             self._waiting = True
             self._hub.request_snapshot()
 
-    def take_delta(self, message: bytes, redrawn: Iterable[str]) -> None:
+    def enqueue_delta(self, message: bytes, redrawn: Iterable[str]) -> None:
         """``redrawn``: the units whose whole trail it has."""
         if self._waiting or self._behind:
             return
-        if len(self._queue) >= QUEUE:
-            self._drop()
+        if len(self._queue) >= MAX_QUEUED:
+            self._clear()
             self._behind = True
             self.lapses += 1
             return
         for unit_id in redrawn:
             self._trails.pop(unit_id, None)
-        self._put(message)
+        self._enqueue(message)
 
-    def take_snapshot(
-        self, message: bytes, trails: Mapping[str, bytes], *, wanted_only: bool
+    def enqueue_snapshot(
+        self, message: bytes, trails: Mapping[str, bytes], *, requested_only: bool
     ) -> None:
-        if wanted_only and not self._waiting:
+        if requested_only and not self._waiting:
             return
         self._waiting = self._behind = False
-        self._drop()
+        self._clear()
         self._trails.update(trails)
-        self._put(message)
+        self._enqueue(message)
 
-    def _drop(self) -> None:
+    def _clear(self) -> None:
         self._queue.clear()
         self._trails.clear()
 
-    def _put(self, message: bytes) -> None:
+    def _enqueue(self, message: bytes) -> None:
         self._queue.append(message)
-        self._filled.set()
+        self._has_message.set()
 
 
 class Hub:
-    """A ``base_station.live.sinks.LiveSink`` with any number of clients."""
+    """A ``base_station.engine.ports.LiveSink`` with any number of clients."""
 
     def __init__(self) -> None:
         self._encoder = msgspec.json.Encoder()
@@ -96,7 +96,7 @@ class Hub:
         self.health: HealthView | None = None  # as last said
 
     def connect(self, loop: asyncio.AbstractEventLoop, source: LiveSource) -> None:
-        """What the hub was made for; clients may join before."""
+        """Connects the hub with its source; clients may join before."""
         self._loop, self._source = loop, source
         if self._clients:
             self.request_snapshot()
@@ -116,17 +116,26 @@ class Hub:
         if delta.health is not None:
             self.health = delta.health
         if self._watched:
-            self._in_loop(self._spread_delta, self._encoder.encode(delta), tuple(delta.trails))
+            self.broadcast_delta(self._encoder.encode(delta), tuple(delta.trails))
 
     def reset(self, snapshot: Snapshot, trails: Trails) -> None:
         self.health = snapshot.health
         if self._watched:
-            message = self._encoder.encode(snapshot)
-            self._in_loop(self._spread_snapshot, message, trails, False)
+            self.broadcast_reset(self._encoder.encode(snapshot), trails)
+
+    def broadcast_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None:
+        """A delta that is encoded already; ``redrawn``: the units whose whole trail it has."""
+        if self._watched:
+            self._in_loop(self._broadcast_delta, message, redrawn)
+
+    def broadcast_reset(self, message: bytes, trails: Trails) -> None:
+        """A snapshot that is encoded already, for everybody."""
+        if self._watched:
+            self._in_loop(self._broadcast_snapshot, message, trails, False)
 
     def _deliver(self, snapshot: Snapshot, trails: Trails) -> None:
         self.health = snapshot.health
-        self._in_loop(self._spread_snapshot, self._encoder.encode(snapshot), trails, True)
+        self._in_loop(self._broadcast_snapshot, self._encoder.encode(snapshot), trails, True)
 
     def _in_loop(self, function: Callable[..., None], *arguments: object) -> None:
         if self._loop is None:
@@ -148,7 +157,7 @@ class Hub:
         self._clients.add(client)
         self._watched = True
         try:
-            client.ask_for_snapshot()
+            client.request_snapshot()
         except StoreError:
             self.leave(client)
             raise
@@ -164,16 +173,16 @@ class Hub:
             self._source.request_snapshot(self._deliver)  # if that fails, the next one asks again
             self._requested = True
 
-    def _spread_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None:
+    def _broadcast_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None:
         for client in self._clients:
-            client.take_delta(message, redrawn)
+            client.enqueue_delta(message, redrawn)
 
-    def _spread_snapshot(self, message: bytes, trails: Trails, wanted_only: bool) -> None:
-        if wanted_only:
+    def _broadcast_snapshot(self, message: bytes, trails: Trails, requested_only: bool) -> None:
+        if requested_only:
             self._requested = False
         encoded = {
             unit_id: msgspec.json.encode(Trail(unit_id, points))
             for unit_id, points in trails.items()
         }
         for client in self._clients:
-            client.take_snapshot(message, encoded, wanted_only=wanted_only)
+            client.enqueue_snapshot(message, encoded, requested_only=requested_only)

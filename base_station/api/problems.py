@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from http import HTTPStatus
 
 from fastapi import FastAPI, Request
@@ -13,14 +13,16 @@ from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from base_station.api.field_errors import sentence_of
-from base_station.api.forms import MOST_BYTES, MOST_UPLOADED_BYTES
+from base_station.api.field_errors import error_sentence
+from base_station.api.forms import MAX_BYTES, MAX_UPLOAD_BYTES
 from shared.errors import ConfigError, LogError, MusterError, StoreError, UserError
+
+PROBLEM_MEDIA_TYPE = "application/problem+json"
 
 _log = logging.getLogger(__name__)
 _TOO_LARGE = (
-    f"This is too large: a picture, a plan or a map may have {MOST_UPLOADED_BYTES // 10**6} MB, "
-    f"anything else {MOST_BYTES // 10**3} kB."
+    f"This is too large: a picture, a plan or a map may have {MAX_UPLOAD_BYTES // 10**6} MB, "
+    f"anything else {MAX_BYTES // 10**3} kB."
 )
 
 
@@ -34,38 +36,60 @@ class ProblemDocument(BaseModel):
 
 
 class Problem(HTTPException):
-    """Ends a request with a status and a sentence."""
+    """Ends a request with a status and a sentence; ``members``: more of the document, for programs
+    (RFC 9457, 3.2).
+    """
+
+    def __init__(
+        self,
+        status_code: int,
+        detail: str,
+        headers: Mapping[str, str] | None = None,
+        *,
+        members: Mapping[str, object] | None = None,
+    ) -> None:
+        super().__init__(status_code, detail, headers)
+        self.members = members or {}
 
 
 def problem_response(
-    status: int, detail: str, headers: Mapping[str, str] | None = None
+    status: int,
+    detail: str,
+    headers: Mapping[str, str] | None = None,
+    members: Mapping[str, object] | None = None,
 ) -> JSONResponse:
     document = ProblemDocument(
         type="about:blank", title=HTTPStatus(status).phrase, status=status, detail=detail
     )
     return JSONResponse(
-        document.model_dump(),
+        {**(members or {}), **document.model_dump()},
         status_code=status,
         headers=headers,
-        media_type="application/problem+json",
+        media_type=PROBLEM_MEDIA_TYPE,
     )
 
 
-def handle_problems(app: FastAPI) -> None:
-    """Every error of a route becomes a problem document; for others see ``Mistakes``."""
+def handle_problems(app: FastAPI, allowed_methods: Callable[[str], str]) -> None:
+    """Every error of a route becomes a problem document; others: ``UnhandledErrorMiddleware``.
+
+    ``allowed_methods``: those of a path, as of the header ``Allow``; empty: there is no such path.
+    """
 
     @app.exception_handler(HTTPException)
     async def refused(request: Request, error: HTTPException) -> JSONResponse:
-        unread = error.status_code == 400 and not isinstance(error, Problem)
-        detail = _what_to_send(request) if unread else str(error.detail)
-        return problem_response(error.status_code, detail, error.headers)
+        if error.status_code == 405:
+            return _method_refused(request, allowed_methods(request.url.path))
+        is_unreadable = error.status_code == 400 and not isinstance(error, Problem)
+        detail = _expected_body(request) if is_unreadable else str(error.detail)
+        members = error.members if isinstance(error, Problem) else None
+        return problem_response(error.status_code, detail, error.headers, members)
 
     @app.exception_handler(RequestValidationError)
     async def invalid(request: Request, error: RequestValidationError) -> JSONResponse:
         sentences = (
-            _what_to_send(request)
+            _expected_body(request)
             if one["loc"] == ("body",) or one["type"] == "json_invalid"
-            else sentence_of(one)
+            else error_sentence(one)
             for one in error.errors()
         )
         return problem_response(422, "; ".join(sentences))
@@ -78,7 +102,7 @@ def handle_problems(app: FastAPI) -> None:
         return problem_response(status, str(error))
 
 
-class Mistakes:
+class UnhandledErrorMiddleware:
     """ASGI middleware: what nobody foresaw is answered like every problem, and logged.
 
     The framework's own handler stands outside of all other middleware, whose headers it misses.
@@ -88,24 +112,24 @@ class Mistakes:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        begun = False
+        started = False
 
-        async def noting(message: Message) -> None:
-            nonlocal begun
-            begun = True
+        async def send_and_note_start(message: Message) -> None:
+            nonlocal started
+            started = True
             await send(message)
 
         try:
-            await self._app(scope, receive, noting)
+            await self._app(scope, receive, send_and_note_start)
         except Exception as error:
-            if scope["type"] != "http" or begun:
+            if scope["type"] != "http" or started:
                 raise
             _log.error("%s %s failed", scope["method"], scope["path"], exc_info=error)
             answer = problem_response(500, "The station made a mistake; its log says which.")
             await answer(scope, receive, send)
 
 
-class TooLarge:
+class BodyTooLargeMiddleware:
     """ASGI middleware: a body that is larger than a route takes is answered like every problem,
     whatever the limiter below says of it.
     """
@@ -116,7 +140,7 @@ class TooLarge:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         refused = False
 
-        async def saying_so(message: Message) -> None:
+        async def send_or_replace(message: Message) -> None:
             nonlocal refused
             if message["type"] == "http.response.start" and message["status"] == 413:
                 refused = True
@@ -124,7 +148,14 @@ class TooLarge:
             elif not refused:
                 await send(message)
 
-        await self._app(scope, receive, saying_so)
+        await self._app(scope, receive, send_or_replace)
+
+
+def _method_refused(request: Request, allowed: str) -> JSONResponse:
+    if not allowed:
+        return problem_response(404, "There is no such address.")
+    detail = f"{request.method} is not answered at this address; use one of: {allowed}."
+    return problem_response(405, detail, {"Allow": allowed})
 
 
 def _status_of(error: MusterError) -> int:
@@ -139,7 +170,7 @@ def _status_of(error: MusterError) -> int:
             return 500
 
 
-def _what_to_send(request: Request) -> str:
+def _expected_body(request: Request) -> str:
     """For who sent no body, or one that the framework could not read."""
     route = request.scope["route"]
     kind = route.body_field.field_info.media_type

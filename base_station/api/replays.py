@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from base_station.api.hub import Hub
-from base_station.db.models import Incident
-from base_station.live.sinks import LiveSource
+from base_station.engine.ports import LiveSource
+from base_station.storage.db.models import Incident
 from base_station.views.wire import ReplayView
 from shared.errors import UserError
 
-MOST_REPLAYS = 8
+MAX_REPLAYS = 8
 UNWATCHED_S = 60.0  # a replay that nobody looks at ends
 
 
@@ -52,8 +52,8 @@ class OpenReplay:
     hub: Hub
     player: ReplayPlayer
     begun_by: str  # a user; empty: the station itself
-    lasting: bool  # stays though nobody looks
-    watched_s: float  # when somebody last looked
+    persistent: bool  # stays though nobody looks
+    last_watched_s: float  # when somebody last looked
 
 
 class Replays:
@@ -73,20 +73,20 @@ class Replays:
         speed: float,
         loop: asyncio.AbstractEventLoop,
         begun_by: str,
-        lasting: Hub | None = None,
+        persistent: Hub | None = None,
     ) -> OpenReplay:
         """Start a replay; one that is given its hub lasts until it is closed."""
         with self._lock:
-            if len(self._open) >= MOST_REPLAYS:
-                raise UserError(f"{MOST_REPLAYS} replays are open already; end one of them")
-            hub = lasting or Hub()
+            if len(self._open) >= MAX_REPLAYS:
+                raise UserError(f"{MAX_REPLAYS} replays are open already; end one of them")
+            hub = persistent or Hub()
             player = self._start(incident, speed, hub)
             opened = OpenReplay(
                 secrets.token_hex(8),
                 hub,
                 player,
                 begun_by,
-                lasting is not None,
+                persistent is not None,
                 self._monotonic_s(),
             )
             self._open[opened.replay_id] = opened
@@ -114,9 +114,9 @@ class Replays:
         for replay in self.all():
             if replay.player.is_over:
                 self.close(replay.replay_id)
-            elif replay.hub.watchers or replay.lasting:
-                replay.watched_s = now_s
-            elif now_s - replay.watched_s > UNWATCHED_S:
+            elif replay.hub.watchers or replay.persistent:
+                replay.last_watched_s = now_s
+            elif now_s - replay.last_watched_s > UNWATCHED_S:
                 self.close(replay.replay_id)
 
     def close_all(self) -> None:

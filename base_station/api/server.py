@@ -1,4 +1,4 @@
-"""The HTTP server: uvicorn on a socket of our own, stopped by us."""
+"""HTTP server: uvicorn on the station's own socket, stopped by the station."""
 
 from __future__ import annotations
 
@@ -6,33 +6,32 @@ import asyncio
 import contextlib
 import errno
 import logging
-import resource
 import signal
 import socket
 from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import uvicorn
 from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from base_station.api.networks import network_of
-from base_station.program import interpreter
-from base_station.program.recurring_trouble import RecurringTrouble
-from base_station.program.said_seldom import SaidSeldom
+from base_station.api.connections import ConnectionLimitedSocket
+from base_station.process import gc_tuning
+from base_station.process.log_rate_limit import RateLimitFilter
 from shared.clock import SystemClock
 from shared.errors import ConfigError
+from shared.log_on_change import LogOnChange
 
-_GRACE_S = 5
+_SHUTDOWN_GRACE_S = 5
 _HOUSEKEEPING_S = 5.0
 _BACKLOG = 512
-_LARGEST_REQUEST_BYTES = 4096  # over a WebSocket: all that is asked is a snapshot
-_MOST_CONNECTIONS = 2000
-_MOST_OF_ONE = 500  # place: a proxy, or two hundred consoles behind one router
-_ASK_WITHIN_S = 10.0  # the head of a request, and before it the greeting of TLS
-_GO_ON_WITHIN_S = 60.0  # with a body, for a radio that loses much
+_ACCEPTS_PER_WAKEUP = 16  # before whoever has a connection is served again
+_MAX_MESSAGE_BYTES = 4096  # over a WebSocket: all that is asked is a snapshot
+_REQUEST_TIMEOUT_S = 10.0  # the head of a request, and before it the greeting of TLS
+# A body comes at this rate at least, for a radio that loses much, or it is not waited for.
+_BODY_TIMEOUT_S = 20.0
+_MIN_BODY_BYTES_PER_S = 10_000.0
 
 
 _log = logging.getLogger(__name__)
@@ -57,80 +56,72 @@ class _Server(uvicorn.Server):
             listener = await asyncio.get_running_loop().create_server(
                 new_connection,
                 sock=one,
-                backlog=_BACKLOG,
+                backlog=_ACCEPTS_PER_WAKEUP,
                 ssl=config.ssl,
-                ssl_handshake_timeout=_ASK_WITHIN_S if config.ssl else None,
+                ssl_handshake_timeout=_REQUEST_TIMEOUT_S if config.ssl else None,
             )
             self.servers.append(listener)
-
-
-class _Door(socket.socket):
-    """Nobody takes all the station's connections.  They are counted from when they come in: over
-    TLS it takes a while until one can ask anything, and all that while it takes memory.
-    """
-
-    def __init__(
-        self, family: int = -1, kind: int = -1, protocol: int = -1, fileno: int | None = None
-    ) -> None:
-        super().__init__(family, kind, protocol, fileno)
-        self._places: WeakKeyDictionary[socket.socket, str] = WeakKeyDictionary()
-
-    def accept(self) -> tuple[socket.socket, Any]:
-        """Raises ConnectionAbortedError in the place of one too many, which it lets go."""
-        accepted, address = super().accept()
-        for gone in [one for one in self._places if one.fileno() < 0]:
-            del self._places[gone]
-        place, places = network_of(address[0]), list(self._places.values())
-        if len(places) >= _MOST_CONNECTIONS or places.count(place) >= _MOST_OF_ONE:
-            accepted.close()
-            raise ConnectionAbortedError
-        self._places[accepted] = place
-        return accepted, address
+            one.listen(_BACKLOG)  # asyncio takes one number for both
 
 
 class _Connection(H11Protocol):
-    """Nobody holds one without asking anything."""
+    """HTTP connection with timeouts for head and body: an idle one is closed."""
 
-    _deadline: asyncio.TimerHandle | None = None
+    _timer: asyncio.TimerHandle | None = None
+    _body_since_s: float | None = None  # None: no body is waited for
+    _body_bytes = 0  # since then
     _is_websocket = False  # by now: another protocol minds it
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
-        self._mind_deadline()
+        self._reset_timeout()
 
     def data_received(self, data: bytes) -> None:
         super().data_received(data)
-        self._mind_deadline()
+        self._body_bytes += len(data)
+        self._reset_timeout()
 
     def handle_websocket_upgrade(self, event: Any) -> None:
         self._is_websocket = True  # this one does not hear when it ends
-        self._end_deadline()
+        self._cancel_timeout()
         super().handle_websocket_upgrade(event)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        self._end_deadline()
+        self._cancel_timeout()
         super().connection_lost(exc)
 
-    def _mind_deadline(self) -> None:
+    def _reset_timeout(self) -> None:
         if self._is_websocket:
             return
         answering = getattr(self.cycle, "response_complete", True) is False
         if answering:
-            self._end_deadline()
+            self._cancel_timeout()
         if answering and self.cycle.more_body:
-            self._deadline = self.loop.call_later(_GO_ON_WITHIN_S, self._give_up)
-        elif not answering and self._deadline is None:
-            self._deadline = self.loop.call_later(_ASK_WITHIN_S, self._give_up)
+            self._reset_body_timeout()
+            return
+        self._body_since_s = None
+        if not answering and self._timer is None:
+            self._timer = self.loop.call_later(_REQUEST_TIMEOUT_S, self._on_timeout)
 
-    def _end_deadline(self) -> None:
-        if self._deadline is not None:
-            self._deadline.cancel()
-            self._deadline = None
+    def _reset_body_timeout(self) -> None:
+        """Starts the timeout anew by the bytes of the body so far, however small its pieces."""
+        now_s = self.loop.time()
+        if self._body_since_s is None:
+            self._body_since_s, self._body_bytes = now_s, 0
+        allowed_s = _BODY_TIMEOUT_S + self._body_bytes / _MIN_BODY_BYTES_PER_S
+        left_s = self._body_since_s + allowed_s - now_s
+        self._timer = self.loop.call_later(max(left_s, 0.0), self._on_timeout)
 
-    def _give_up(self) -> None:
-        self._deadline = None
+    def _cancel_timeout(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def _on_timeout(self) -> None:
+        self._timer = None
         if self.flow.read_paused:  # the station lets the body wait
-            self._mind_deadline()
+            self._body_since_s = None
+            self._reset_timeout()
         else:
             self.transport.close()
 
@@ -146,12 +137,16 @@ class ConsoleServer:
         private_key: Path | None = None,
         *,
         on_stop: Callable[[], None] = lambda: None,
+        is_known: Callable[[str], bool] = lambda _: True,
     ) -> None:
         """``on_stop`` is called when it is told to stop, and again when it is told again.
+        ``is_known``: whether somebody is logged in from a place; all others have fewer connections.
 
         Raises ConfigError where the certificate or its key cannot be used.
         """
         self._socket = listening
+        if isinstance(listening, ConnectionLimitedSocket):
+            listening.is_known = is_known
         self._on_stop = on_stop
         host, port = listening.getsockname()[:2]
         scheme = "http" if certificate is None else "https"
@@ -167,8 +162,8 @@ class ConsoleServer:
             server_header=False,
             proxy_headers=False,  # who asks is who connected: logins are counted by it
             ws_per_message_deflate=False,  # one encoding for all consoles
-            ws_max_size=_LARGEST_REQUEST_BYTES,
-            timeout_graceful_shutdown=_GRACE_S,
+            ws_max_size=_MAX_MESSAGE_BYTES,
+            timeout_graceful_shutdown=_SHUTDOWN_GRACE_S,
         )
         try:
             config.load()
@@ -178,15 +173,15 @@ class ConsoleServer:
                 f"used: {error}"
             ) from error
         self._server = _Server(config)
-        self._seldom = SaidSeldom(SystemClock())
+        self._log_limiter = RateLimitFilter(SystemClock())
 
     async def serve(self) -> None:
         """Until ``stop``."""
-        _SERVER_LOG.addFilter(self._seldom)
+        _SERVER_LOG.addFilter(self._log_limiter)
         try:
             await self._server.serve(sockets=[self._socket])
         finally:
-            _SERVER_LOG.removeFilter(self._seldom)
+            _SERVER_LOG.removeFilter(self._log_limiter)
             self._socket.close()
 
     async def wait_started(self) -> None:
@@ -208,7 +203,7 @@ async def serve_until_stopped(
 
     ``housekeeping`` is called now and then, in a thread; where it fails, the station goes on.
     """
-    interpreter.settle()
+    gc_tuning.freeze()
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, server.stop)
@@ -218,26 +213,19 @@ async def serve_until_stopped(
     if starting.done() and not serving.done():  # it may have been stopped as it began
         announce(f"ready {server.address}")
     starting.cancel()
-    trouble = RecurringTrouble(_log, "the station's housekeeping failed; it is tried again")
+    fault_log = LogOnChange(_log, "the station's housekeeping failed; it is tried again")
     while not serving.done():
-        await asyncio.to_thread(_keep_house, housekeeping, trouble)
+        await asyncio.to_thread(_run_housekeeping, housekeeping, fault_log)
         await asyncio.wait({serving}, timeout=_HOUSEKEEPING_S)
     await serving
 
 
-def _keep_house(housekeeping: Callable[[], None], trouble: RecurringTrouble) -> None:
+def _run_housekeeping(housekeeping: Callable[[], None], fault_log: LogOnChange) -> None:
     try:
-        with trouble:
+        with fault_log:
             housekeeping()
     except Exception:  # noqa: BLE001  # people are on the screen: the next time may do
         _log.exception("the station's housekeeping failed; it is tried again")
-
-
-def allow_many_files() -> None:
-    """As many as the machine allows: connections must not take them from the log."""
-    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
-    with contextlib.suppress(OSError, ValueError):
-        resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
 
 
 def bind(host: str, port: int) -> socket.socket:
@@ -246,7 +234,7 @@ def bind(host: str, port: int) -> socket.socket:
         family, kind, protocol, _, address = socket.getaddrinfo(
             host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
-        bound = _Door(family, kind, protocol)
+        bound = ConnectionLimitedSocket(family, kind, protocol)
     except OSError as error:
         raise ConfigError(f"the console cannot listen on {host}:{port}: {error}") from error
     try:

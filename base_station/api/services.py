@@ -1,4 +1,4 @@
-"""What the routes work with, and how they reach it."""
+"""Services of the routes, and their dependencies."""
 
 from __future__ import annotations
 
@@ -6,26 +6,27 @@ import asyncio
 from collections.abc import Callable
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass, field
-from threading import Lock
 from typing import Annotated
 
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from base_station.api.ha_status import HaStatus
 from base_station.api.hub import Hub
+from base_station.api.image_lock import ImageLock
 from base_station.api.problems import Problem
 from base_station.api.replays import Replays
-from base_station.api.standing import Standing
 from base_station.config import AccountabilityConfig
-from base_station.db.accounts import Accounts
-from base_station.db.base_maps import BaseMaps
-from base_station.db.records import Records
-from base_station.db.roster import Roster
-from base_station.forgetting.desk import ForgettingDesk
-from base_station.live.sinks import ActionDone, OperatorGate
-from base_station.once import asks_the_same
-from base_station.past.hindsight import Hindsight
-from base_station.recordings.desk import RecordingDesk
+from base_station.core.idempotency import is_same_request
+from base_station.engine.ports import ActionResult, OperatorGate
+from base_station.privacy.erasure_queue import ErasureQueue
+from base_station.replay.post_processing import PostProcessor
+from base_station.site.plan_reader import PlanReader
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.base_maps import BaseMaps
+from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
+from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import Snapshot
 from shared.clock import Clock
 from shared.errors import StoreError, UserError
@@ -42,22 +43,25 @@ class Services:
     base_maps: BaseMaps
     hub: Hub
     gate: OperatorGate
-    settle: Callable[[], object]  # waits until what was decided can be read from the store
+    wait_for_projection: Callable[
+        [], object
+    ]  # waits until what was decided can be read from the store
     replays: Replays
-    forgettings: ForgettingDesk | None  # None: a station that only replays
+    forgettings: ErasureQueue | None  # None: a station that only replays
     clock: Clock
     secure: bool  # the console is served over TLS
-    standing: Standing | None = None  # None: this is the only station
-    only_replays: bool = False  # what is changed would be lost with its copy of the database
-    recordings: RecordingDesk | None = None  # None: a station that only replays
-    hindsight: Hindsight | None = None  # None: a station without a log
+    ha_status: HaStatus | None = None  # None: this is the only station
+    is_replay_only: bool = False  # what is changed would be lost with its copy of the database
+    recordings: TransferQueue | None = None  # None: a station that only replays
+    post_processor: PostProcessor | None = None  # None: a station without a log
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
-    darkroom: Lock = field(default_factory=Lock)  # one picture at a time: each may take 400 MB
+    plans: PlanReader = field(default_factory=PlanReader)  # of the drive that acts
+    image_lock: ImageLock = field(default_factory=ImageLock)
     # One whole incident at a time: an hour of a hundred units takes 300 MB.  Who waits holds no
     # thread: those are for who acts.
-    copying: asyncio.Lock = field(default_factory=asyncio.Lock)
+    export_lock: asyncio.Lock = field(default_factory=asyncio.Lock)
 
-    def act(self, by: str, action: Action, action_id: str = "") -> ActionDone:
+    def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
         """Have the drive take a person's action, and wait until it can be read everywhere.
 
         Raises UserError with the reason where the action had no effect.  ``action_id``: as of
@@ -66,30 +70,30 @@ class Services:
         try:
             done = self.gate.submit(by, action, action_id).result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
-            again = (
+            advice = (
                 "with the same Idempotency-Key it is done once, however often it is sent"
                 if action_id
                 else "look before you do it again"
             )
             raise StoreError(
-                f"the station is busy and has not done this yet; it may still do it: {again}"
+                f"the station is busy and has not done this yet; it may still do it: {advice}"
             ) from None
-        if not asks_the_same(action_id, done.action_id):
-            raise key_used_before()
+        if not is_same_request(action_id, done.action_id):
+            raise idempotency_key_reused()
         if done.refused is not None:
             raise UserError(done.refused.reason)
-        self.settle()
+        self.wait_for_projection()
         return done
 
     def picture(self) -> Snapshot:
-        """What the consoles show now, but for trails."""
+        """Gives the snapshot of now, without trails."""
         try:
             return self.hub.snapshot().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
             raise StoreError("the station is too busy to say this now; try again") from None
 
 
-def key_used_before() -> Problem:
+def idempotency_key_reused() -> Problem:
     return Problem(
         422,
         "This Idempotency-Key came with another request before, and this one was not done: give "

@@ -7,27 +7,27 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 
-from base_station.accounts.first_login import add_own_login
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.api.server import ConsoleServer, bind, serve_until_stopped
 from base_station.api.services import Services
-from base_station.app.given import open_given
-from base_station.app.parts import (
+from base_station.app.factories import (
     Announce,
     replay_starter,
 )
+from base_station.app.first_login import add_own_login
+from base_station.app.offline_log import open_offline_log
 from base_station.config import StationConfig, host_and_port
-from base_station.db.accounts import Accounts
-from base_station.db.base_maps import BaseMaps
-from base_station.db.records import Records
-from base_station.db.roster import Roster
-from base_station.db.smoothed import SmoothedTracks
-from base_station.fusion.smoother import SMOOTHERS
-from base_station.past.hindsight import Hindsight
-from base_station.past.read_only import ReadOnlyGate
+from base_station.fusion.smoothing import SMOOTHERS
+from base_station.replay.post_processing import PostProcessor
+from base_station.replay.read_only import ReadOnlyGate
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.base_maps import BaseMaps
+from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.smoothed import SmoothedTracks
 from shared.clock import SystemClock
 
 
@@ -46,15 +46,17 @@ def run_replay_station(
     clock = SystemClock()
     with ExitStack() as closing:
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
-        given = open_given(config.data, incident_id, closing, announce, on_progress, in_place=False)
-        folder, store = given.folder, given.store
+        offline_log = open_offline_log(
+            config.data, incident_id, closing, announce, on_progress, in_place=False
+        )
+        folder, store = offline_log.folder, offline_log.store
         accounts, records = Accounts(store, clock), Records(store, clock)
         roster, hub = Roster(store, clock), Hub()
         incident = records.require_incident(incident_id)
         username, password = add_own_login(accounts)
         announce(f"login for this replay: {username}  password: {password}")
 
-        archive = given.archive()
+        archive = offline_log.archive()
         recorded_until_ns = partial(_recorded_until_ns, folder)
         replays = Replays(replay_starter(archive, roster, clock, recorded_until_ns))
         services = Services(
@@ -64,18 +66,24 @@ def run_replay_station(
             base_maps=BaseMaps(store),
             hub=hub,
             gate=ReadOnlyGate(),
-            settle=lambda: None,
+            wait_for_projection=lambda: None,
             replays=replays,
             forgettings=None,
             clock=clock,
             secure=config.http.certificate is not None,
-            only_replays=True,
-            hindsight=Hindsight(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
+            is_replay_only=True,
+            post_processor=PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
         )
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, "", hub))
         )
-        server = ConsoleServer(app, listening, config.http.certificate, config.http.private_key)
+        server = ConsoleServer(
+            app,
+            listening,
+            config.http.certificate,
+            config.http.private_key,
+            is_known=app.state.known_networks.__contains__,
+        )
         asyncio.run(serve_until_stopped(server, announce))
 
 

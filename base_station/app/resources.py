@@ -1,4 +1,4 @@
-"""What a live station opens before anything runs: its folder, port, disk, router and bus."""
+"""Resources of a live station, opened before anything runs: folder, port, disk, router and bus."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ from socket import socket
 
 from base_station.api.hub import Hub
 from base_station.api.server import bind
-from base_station.app.disk import Disk, open_disk
-from base_station.app.parts import Announce
+from base_station.app.exposed_secrets import ExposedSecrets
+from base_station.app.factories import Announce
+from base_station.app.station_storage import StationStorage, open_storage
 from base_station.config import StationConfig, host_and_port
-from base_station.feed import LiveFeed
-from base_station.pki.expiry import ConsoleExpiry, ExpiryWatch
-from base_station.pki.folder import PkiFolder
-from base_station.pki.renewal import Renewal
-from base_station.recordings.desk import RecordingDesk
-from base_station.recordings.fetch import ask_over
-from base_station.router.process import RouterProcess
-from base_station.router.router import station_endpoint
+from base_station.engine.feed import LiveFeed
+from base_station.security.pki.expiry import ConsoleExpiry, ExpiryWatch
+from base_station.security.pki.folder import PkiFolder
+from base_station.security.pki.renewal import Renewal
+from base_station.security.router.process import RouterProcess
+from base_station.security.router.router import station_endpoint
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.recorder import Recorder
+from base_station.unit_sync.recordings.transfer import ask_over
+from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from shared.bus import Bus
 from shared.bus_zenoh import ZenohBus
 from shared.clock import Clock, SystemClock
@@ -35,7 +36,7 @@ class Resources:
     clock: Clock  # the machine's; the station's own is the disk's
     recorder: Recorder
     listening: socket
-    disk: Disk
+    disk: StationStorage
     feed: LiveFeed
     hub: Hub
     router: RouterProcess
@@ -44,7 +45,8 @@ class Resources:
     expiry: ExpiryWatch
     console_expiry: ConsoleExpiry
     renewal: Renewal
-    recordings: RecordingDesk
+    recordings: TransferQueue
+    exposed: ExposedSecrets
 
 
 def open_station(config: StationConfig, announce: Announce, closing: ExitStack) -> Resources:
@@ -59,13 +61,20 @@ def open_station(config: StationConfig, announce: Announce, closing: ExitStack) 
     )
     closing.callback(recorder.close)
     listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
+    exposed = ExposedSecrets(folder, config.http.private_key)
+    for sentence in exposed.problems():
+        announce(sentence)
     alone = not config.standby.name
-    disk = open_disk(folder, recorder, clock, announce, closing, alone=alone)
+    # It takes as long to load as the disk is looked at: both at once.
     router = RouterProcess(folder.path, config.bus.listen, config.standby.peer)
-    closing.callback(router.close)
-    bus = ZenohBus(joining)
+    try:
+        disk = open_storage(folder, recorder, clock, announce, closing, alone=alone)
+    finally:
+        closing.callback(router.close)
+    router.wait_open()
+    bus = ZenohBus(router.endpoint)
     closing.callback(bus.close)
-    recordings = RecordingDesk(ask_over(bus), folder.recordings, disk.clock)
+    recordings = TransferQueue(ask_over(bus), folder.recordings, disk.clock)
     closing.enter_context(recordings)
     return Resources(
         config=config,
@@ -82,4 +91,5 @@ def open_station(config: StationConfig, announce: Announce, closing: ExitStack) 
         console_expiry=ConsoleExpiry(config.http.certificate, pki, clock),
         renewal=Renewal(pki, joining.tls, clock),
         recordings=recordings,
+        exposed=exposed,
     )

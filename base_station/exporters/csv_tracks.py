@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
-from base_station.exporters.port import Exporter, IncidentTracks
+from base_station.exporters.interface import Exporter, IncidentTracks
 from base_station.views.answer import to_ms
 
 COLUMNS = (

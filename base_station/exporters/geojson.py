@@ -1,12 +1,16 @@
-"""GeoJSON (RFC 7946): one line a wearer, ``[lon, lat, height]``, with the times beside it."""
+"""GeoJSON (RFC 7946): one line a wearer and known stretch of the way, ``[lon, lat, height]``, with
+the times beside it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import msgspec
 
-from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
+from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack
+from base_station.storage.db.records import TrackSample
 from base_station.views.answer import to_ms
 from shared.geo import Anchor
 
@@ -16,13 +20,17 @@ def export_geojson(incident: IncidentTracks) -> bytes:
     return msgspec.json.encode(
         {
             "type": "FeatureCollection",
-            "features": [_feature(track, anchor) for track in incident.tracks],
+            "features": [
+                _feature(track, piece, anchor)
+                for track in incident.tracks
+                for piece in track.pieces
+            ],
         }
     )
 
 
-def _feature(track: WornTrack, anchor: Anchor) -> dict[str, Any]:
-    places = [_place(anchor, point.north_m, point.east_m, point.down_m) for point in track.points]
+def _feature(track: WornTrack, piece: Sequence[TrackSample], anchor: Anchor) -> dict[str, Any]:
+    places = [_place(anchor, point.north_m, point.east_m, point.down_m) for point in piece]
     # A line needs two places.
     geometry = (
         {"type": "LineString", "coordinates": places}
@@ -36,8 +44,8 @@ def _feature(track: WornTrack, anchor: Anchor) -> dict[str, Any]:
             "unit_id": track.unit_id,
             "name": track.title,
             "crew": track.crew,
-            "times_ms": [to_ms(point.t_ns) for point in track.points],
-            "floors": [point.floor for point in track.points],
+            "times_ms": [to_ms(point.t_ns) for point in piece],
+            "floors": [point.floor for point in piece],
         },
     }
 

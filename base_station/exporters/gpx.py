@@ -1,10 +1,14 @@
-"""GPX 1.1: one ``trk`` a wearer; heights are above the ellipsoid."""
+"""GPX 1.1: one ``trk`` a wearer, with a ``trkseg`` for each known stretch of the way; heights are
+above the ellipsoid.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
-from base_station.exporters.port import Exporter, IncidentTracks, WornTrack, in_xml, time_of
+from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack, in_xml, time_of
+from base_station.storage.db.records import TrackSample
 from shared.geo import Anchor
 
 _NAMESPACE = "http://www.topografix.com/GPX/1/1"
@@ -25,8 +29,13 @@ def _add_track(gpx: ET.Element, track: WornTrack, anchor: Anchor) -> None:
     ET.SubElement(trk, "name").text = in_xml(track.title)
     if track.crew:
         ET.SubElement(trk, "type").text = in_xml(track.crew)
+    for piece in track.pieces:
+        _add_segment(trk, piece, anchor)
+
+
+def _add_segment(trk: ET.Element, piece: Sequence[TrackSample], anchor: Anchor) -> None:
     segment = ET.SubElement(trk, "trkseg")
-    for point in track.points:
+    for point in piece:
         lat_deg, lon_deg, height_m = anchor.to_geodetic(point.north_m, point.east_m, point.down_m)
         trkpt = ET.SubElement(segment, "trkpt", lat=f"{lat_deg:.8f}", lon=f"{lon_deg:.8f}")
         # The schema wants this order.

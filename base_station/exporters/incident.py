@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from base_station.db.models import Assignment, Incident
-from base_station.db.records import FOREVER_NS, Records, TrackSample, Window
-from base_station.db.roster import Roster
-from base_station.exporters.port import IncidentTracks, WornTrack
+from base_station.exporters.interface import IncidentTracks, WornTrack
+from base_station.storage.db.models import Assignment, Incident
+from base_station.storage.db.records import FOREVER_NS, Records, TrackSample, Window
+from base_station.storage.db.roster import Roster
 
 
 def incident_tracks(

@@ -1,7 +1,7 @@
-"""GPS and inertial path in one filter, whatever the initial heading, with and without GPS.
+"""Fuser of GNSS and inertial odometry, for any initial heading, with and without fixes.
 
-The place on the plane is in ``plane``, the height in ``vertical``, the path's errors in ``path``,
-and what a fix has to stand up to in ``fixes``; here they are put together, and what is said of it.
+It joins the horizontal filter (``horizontal``), the height filter (``vertical``), the errors of the
+path (``odometry``) and the GNSS update (``gnss_update``), and gives the estimate with its quality.
 """
 
 from __future__ import annotations
@@ -13,29 +13,29 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
-from base_station.fusion.fixes.taking import FixTaker
-from base_station.fusion.fuser_memory import Memory
-from base_station.fusion.kernels import Placed, Stretch
-from base_station.fusion.learnt.building import LearntBuilding
-from base_station.fusion.learnt.recognition import Recognition
-from base_station.fusion.parameters import Parameters
-from base_station.fusion.path.own_path import OwnPath
-from base_station.fusion.path.recent_path import PathMemory
-from base_station.fusion.plane.compassed_filter import CompassedFilter
-from base_station.fusion.plane.walled_filter import WalledFilter
-from base_station.fusion.port import (
-    AirHeight,
-    Bearing,
+from base_station.fusion.building_model.building import LearntBuilding
+from base_station.fusion.fuser_memory import FuserMemory
+from base_station.fusion.gnss_update import GnssUpdater
+from base_station.fusion.horizontal.compass_aided import CompassAidedFilter
+from base_station.fusion.horizontal.landmark_matcher import LandmarkMatcher
+from base_station.fusion.horizontal.map_aided import MapAidedFilter
+from base_station.fusion.interface import (
+    BarometricHeight,
+    CompassHeading,
     Estimate,
     FixVerdict,
     PlaceFix,
-    Present,
+    Posterior,
     Start,
 )
+from base_station.fusion.kernels import HorizontalEstimate, OdometryIncrement
+from base_station.fusion.odometry.odometry_increments import OdometryIncrements
+from base_station.fusion.odometry.recent_path import RecentPath
+from base_station.fusion.parameters import Parameters
 from base_station.fusion.position_quality import quality_of
 from base_station.fusion.vertical.height import HeightFilter, climb_var_m2
 from base_station.site.floor_grid import FloorGrid
-from base_station.site.roaming import RADII_95, roamed_m
+from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 from shared.messages import Position
@@ -50,26 +50,28 @@ class GpsInertial(Parameters):
     name: str = "gps-inertial"
 
     def new(self) -> GpsInertialFuser:
-        return GpsInertialFuser(self, Memory())
+        return GpsInertialFuser(self, FuserMemory())
 
     def restore(self, saved: bytes) -> GpsInertialFuser:
-        return GpsInertialFuser(self, msgspec.msgpack.decode(saved, type=Memory))
+        return GpsInertialFuser(self, msgspec.msgpack.decode(saved, type=FuserMemory))
 
 
 class GpsInertialFuser:
     """One unit's filter; see the module's text."""
 
-    def __init__(self, kind: GpsInertial, memory: Memory) -> None:
+    def __init__(self, kind: GpsInertial, memory: FuserMemory) -> None:
         self._kind = kind
         self._memory = memory
-        self._horizontal = WalledFilter(
-            CompassedFilter(kind.scale_std, kind.linear_rad, kind.drift_wander_radps)
+        self._horizontal = MapAidedFilter(
+            CompassAidedFilter(kind.scale_std, kind.linear_rad, kind.drift_wander_radps)
         )
-        self._horizontal.expect_drift(kind.drift_radps)
+        self._horizontal.set_drift_std(kind.drift_radps)
         self._height = HeightFilter(kind)
-        self._own = OwnPath(kind, memory.own)
-        self._fixes = FixTaker(kind, memory, self._horizontal, self._height)
-        self._ended = kind.restore(memory.ended) if memory.ended else None  # the run before this
+        self._odometry = OdometryIncrements(kind, memory.odometry)
+        self._fixes = GnssUpdater(kind, memory, self._horizontal, self._height)
+        self._previous_run = (
+            kind.restore(memory.previous_run) if memory.previous_run else None
+        )  # the run before this
         if memory.horizontal is not None and memory.height is not None:
             self._horizontal.load(memory.horizontal)
             self._height.load(memory.height)
@@ -77,40 +79,42 @@ class GpsInertialFuser:
     def save(self) -> bytes:
         self._memory.horizontal = self._horizontal.save()
         self._memory.height = self._height.save()
-        self._memory.own = self._own.save()
-        self._memory.ended = b"" if self._ended is None else self._ended.save()
+        self._memory.odometry = self._odometry.save()
+        self._memory.previous_run = b"" if self._previous_run is None else self._previous_run.save()
         return msgspec.msgpack.encode(self._memory)
 
     def start(self, start: Start) -> None:
         memory = self._memory
-        self._horizontal.begin(
+        self._horizontal.set_start(
             (start.north_m, start.east_m), start.std_m, start.heading_rad, start.heading_std_rad
         )
-        self._height.begin(start.down_m, start.std_m)
+        self._height.reset(start.down_m, start.std_m)
         memory.assumed = memory.height_assumed = False
-        memory.trust.outliers.clear()
-        memory.recognition.forget()
-        memory.recognition.shared_m2 = start.std_m**2
+        memory.receiver.outliers.clear()
+        memory.landmarks.forget()
+        memory.landmarks.shared_m2 = start.std_m**2
         if memory.last is not None:
-            self._walk(OwnPath(self._kind).stretch(memory.last, 0.0), memory.last.std_down_m)
+            self._predict(
+                OdometryIncrements(self._kind).increment(memory.last, 0.0), memory.last.std_down_m
+            )
 
-    def settle(self, present: Present) -> None:
-        self._horizontal.settle(np.array(present.mean), np.array(present.covariance))
-        if present.down_std_m is not None:
-            self._height.begin(self._height.down_m + present.down_shift_m, present.down_std_m)
+    def set_posterior(self, posterior: Posterior) -> None:
+        self._horizontal.set_posterior(np.array(posterior.mean), np.array(posterior.covariance))
+        if posterior.down_std_m is not None:
+            self._height.reset(self._height.down_m + posterior.down_shift_m, posterior.down_std_m)
             self._memory.height_assumed = False
         self._memory.assumed = False
-        self._memory.trust.outliers.clear()
-        self._memory.recognition.forget()
+        self._memory.receiver.outliers.clear()
+        self._memory.landmarks.forget()
 
-    def consider(self, grid: FloorGrid | None) -> None:
-        self._horizontal.consider(grid)
+    def set_map(self, grid: FloorGrid | None) -> None:
+        self._horizontal.set_map(grid)
 
-    def advance(self, position: Position, away_s: float = 0.0) -> str:
+    def predict(self, position: Position, outage_s: float = 0.0) -> str:
         memory, last = self._memory, self._memory.last
         t_ns = position.header.t_mono_ns
         if last is not None and last.header.boot_id != position.header.boot_id:
-            self._restart(last.header.t_mono_ns, t_ns, away_s)
+            self._restart(last.header.t_mono_ns, t_ns, outage_s)
             last = None
         duration_s = 0.0
         if last is not None:
@@ -118,52 +122,52 @@ class GpsInertialFuser:
             if duration_s < 0.0 and position.header.seq < last.header.seq:
                 return "older than the last position"
             if duration_s < 0.0:
-                self._go_back_to(t_ns)
+                self._on_clock_set_back(t_ns)
             north_m, east_m = position.north_m - last.north_m, position.east_m - last.east_m
             jumped_m = math.hypot(north_m, east_m)
             if jumped_m > self._kind.fastest_mps * max(duration_s, 0.2) + 1.0:
                 strayed_m = max(self._kind.unguided_mps * duration_s, self._kind.restart_m)
-                self._horizontal.spread(min(strayed_m, jumped_m) ** 2)
-                memory.last, memory.path = position, PathMemory()
-                memory.path.note(position)
-                memory.trust.lose_path()
-                self._own.jump(position)
+                self._horizontal.inflate_place(min(strayed_m, jumped_m) ** 2)
+                memory.last, memory.path = position, RecentPath()
+                memory.path.append(position)
+                memory.receiver.forget_path()
+                self._odometry.reset_to(position)
                 return "the unit's own path jumped"
-        stretch = self._own.stretch(position, max(duration_s, 0.0))
-        self._walk(stretch, position.std_down_m)
-        self._horizontal.expect_drift(stretch.drift_radps)
+        increment = self._odometry.increment(position, max(duration_s, 0.0))
+        self._predict(increment, position.std_down_m)
+        self._horizontal.set_drift_std(increment.drift_radps)
         memory.last = position
-        memory.path.note(position)
+        memory.path.append(position)
         return ""
 
-    def feel(self, air: AirHeight) -> None:
-        self._height.feel(air)
+    def update_barometer(self, air: BarometricHeight) -> None:
+        self._height.update_barometer(air)
 
-    def face(self, bearing: Bearing) -> None:
-        self._horizontal.go_by(bearing, assumed=self._memory.assumed)
+    def update_heading(self, heading: CompassHeading) -> None:
+        self._horizontal.update_compass(heading, assumed=self._memory.assumed)
 
-    def rest_on(self, storeys: Sequence[Storey]) -> None:
-        self._height.rest_near(storeys)
+    def constrain_to_floors(self, storeys: Sequence[Storey]) -> None:
+        self._height.constrain_to_learnt_floors(storeys)
 
-    def recognise(self, learnt: LearntBuilding) -> LearntBuilding:
+    def match_building(self, learnt: LearntBuilding) -> LearntBuilding:
         memory, last = self._memory, self._memory.last
         if last is None or memory.assumed:  # it is another frame, and tells nothing of this one
             return learnt
         fix_ns = memory.fix_t_mono_ns
         inside = fix_ns is None or last.header.t_mono_ns - fix_ns > INSIDE_NS
         unit_id = last.header.unit_id
-        return memory.recognition.go_by(unit_id, learnt, self._horizontal, inside=inside)
+        return memory.landmarks.update(unit_id, learnt, self._horizontal, inside=inside)
 
-    def correct(self, fix: PlaceFix) -> FixVerdict:
-        return self._fixes.take(fix)
+    def update_gnss(self, fix: PlaceFix) -> FixVerdict:
+        return self._fixes.update(fix)
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
         self._horizontal.reframe(turn_rad, north_m, east_m)
         self._height.shift(down_m)
-        self._memory.trust.lose_path()
-        self._memory.recognition.forget()
-        if self._ended is not None:
-            self._ended.reframe(turn_rad, north_m, east_m, down_m)
+        self._memory.receiver.forget_path()
+        self._memory.landmarks.forget()
+        if self._previous_run is not None:
+            self._previous_run.reframe(turn_rad, north_m, east_m, down_m)
 
     def estimate(self) -> Estimate | None:
         memory = self._memory
@@ -172,41 +176,41 @@ class GpsInertialFuser:
         last = memory.last
         t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
         heading_rad = last.heading_rad if last else 0.0
-        placed = self._horizontal.placed_before(0.0, 0.0)
+        placed = self._horizontal.estimate_before(0.0, 0.0)
         height = self._height.down_m, self._height.variance_m2
-        return self._estimate_at(t_mono_ns, heading_rad, placed, height)
+        return self._to_estimate(t_mono_ns, heading_rad, placed, height)
 
-    def remember(self, position: Position) -> None:
+    def insert_late_position(self, position: Position) -> None:
         last = self._memory.last
         if last is not None and last.header.boot_id == position.header.boot_id:
-            self._memory.path.fill(position)
+            self._memory.path.insert_late(position)
 
-    def recall(self, position: Position) -> Estimate | None:
-        """The path from then to now is taken back from the present place, with the heading and
-        scale that are believed now; that of the run before this one, from where it had led.
+    def estimate_at(self, position: Position) -> Estimate | None:
+        """Estimate at an earlier position: the present place less the path since, with the present
+        heading and scale; of the previous run, from its last state.
         """
         last, kind = self._memory.last, self._kind
         if last is None or last.header.boot_id != position.header.boot_id:
-            return None if self._ended is None else self._ended.recall(position)
-        placed = self._horizontal.placed_before(
+            return None if self._previous_run is None else self._previous_run.estimate_at(position)
+        placed = self._horizontal.estimate_before(
             last.north_m - position.north_m, last.east_m - position.east_m
         )
         walked_m = abs(last.distance_m - position.distance_m)
         climbed_m = last.down_m - position.down_m
         height_m = self._height.down_m - climbed_m
         height_var_m2 = self._height.variance_m2 + climb_var_m2(kind, climbed_m, walked_m)
-        return self._estimate_at(
+        return self._to_estimate(
             position.header.t_mono_ns,
             position.heading_rad,
-            placed.widened(kind.walk_m_per_sqrt_m**2 * walked_m),
+            placed.inflated(kind.walk_m_per_sqrt_m**2 * walked_m),
             (height_m, height_var_m2),
         )
 
-    def _estimate_at(
+    def _to_estimate(
         self,
         t_mono_ns: int,
         own_heading_rad: float,
-        placed: Placed,
+        placed: HorizontalEstimate,
         height: tuple[float, float],
     ) -> Estimate:
         """``height`` with its variance."""
@@ -233,54 +237,53 @@ class GpsInertialFuser:
             memory.assumed,
         )
 
-    def _walk(self, stretch: Stretch, own_std_m: float) -> None:
+    def _predict(self, increment: OdometryIncrement, own_std_m: float) -> None:
         kind = self._kind
-        path = (stretch.north_m, stretch.east_m, stretch.moving_s, -stretch.down_m)
+        path = (increment.north_m, increment.east_m, increment.moving_s, -increment.down_m)
         noise = kind.walk_m_per_sqrt_m**2, kind.turn_rad_per_sqrt_m**2
-        self._height.climb(
-            stretch.down_m, stretch.length_m, own_std_m, moves=stretch.moving_s > 0.0
+        self._height.predict(
+            increment.down_m, increment.length_m, own_std_m, moves=increment.moving_s > 0.0
         )
-        if self._height.walked_level and self._horizontal.outside_m() < 0.0:
-            self._height.rest_on(self._horizontal.storeys_down_m)
+        if self._height.walked_level and self._horizontal.distance_outside_m() < 0.0:
+            self._height.constrain_to_plan_floors(self._horizontal.storeys_down_m)
         down_m = self._height.down_m
-        self._horizontal.stand_at(down_m)
-        self._horizontal.walk(path, stretch.place_var_m2, stretch.turn_var, noise)
-        self._memory.recognition.follow(stretch, down_m)
+        self._horizontal.select_floor(down_m)
+        self._horizontal.predict(path, increment.place_var_m2, increment.turn_var, noise)
+        self._memory.landmarks.add_increment(increment, down_m)
 
-    def _go_back_to(self, t_mono_ns: int) -> None:
-        """The unit's clock was ahead when it was last heard, and is right again."""
+    def _on_clock_set_back(self, t_mono_ns: int) -> None:
+        """Drop times of a unit's clock that had been ahead and was set back."""
         memory = self._memory
-        memory.path = PathMemory()
+        memory.path = RecentPath()
         memory.wander_t_mono_ns = t_mono_ns
         if memory.fix_t_mono_ns is not None:
             memory.fix_t_mono_ns = min(memory.fix_t_mono_ns, t_mono_ns)
 
-    def _restart(self, last_ns: int, t_ns: int, away_s: float) -> None:
-        """The unit began anew: its frame starts where the wearer got to since, heading unknown,
-        and no better known than while it was silent.
-        Fixes are as old as they were, whatever its clock has done; where nobody knows how long it
-        was away, it went on or went back.
+    def _restart(self, last_ns: int, t_ns: int, outage_s: float) -> None:
+        """Begin a new run of the unit's program: its frame starts within the distance that the
+        wearer can have walked in ``outage_s``, with unknown heading. Ages of fixes are kept
+        whatever the unit's clock did; with an unknown outage the clock went on or went back.
         """
-        self._ended = self._as_it_ends()
+        self._previous_run = self._ended_run()
         memory = self._memory
-        known = 0.0 < away_s < math.inf
-        back_ns = last_ns + round(away_s * NS_PER_S) - t_ns if known else max(0, last_ns - t_ns)
-        roamed_std_m = roamed_m(away_s) / RADII_95
-        self._horizontal.spread(self._kind.restart_m**2 + roamed_std_m**2)
-        self._height.lose_sight(self._kind.climb_part * roamed_std_m, away_s)
-        self._horizontal.forget_heading()
-        memory.path = PathMemory()
-        memory.trust.lose_path()
+        known = 0.0 < outage_s < math.inf
+        back_ns = last_ns + round(outage_s * NS_PER_S) - t_ns if known else max(0, last_ns - t_ns)
+        travel_std_m = max_travel_m(outage_s) / RADII_95
+        self._horizontal.inflate_place(self._kind.restart_m**2 + travel_std_m**2)
+        self._height.on_outage(self._kind.climb_part * travel_std_m, outage_s)
+        self._horizontal.reset_heading()
+        memory.path = RecentPath()
+        memory.receiver.forget_path()
         if memory.fix_t_mono_ns is not None:
             memory.fix_t_mono_ns -= back_ns
         if memory.wander_t_mono_ns is not None:
             memory.wander_t_mono_ns -= back_ns
-        self._own = OwnPath(self._kind)
-        memory.recognition = Recognition(shared_m2=memory.recognition.shared_m2)
-        self._horizontal.hear_anew()
+        self._odometry = OdometryIncrements(self._kind)
+        memory.landmarks = LandmarkMatcher(shared_m2=memory.landmarks.shared_m2)
+        self._horizontal.reset_compass()
 
-    def _as_it_ends(self) -> GpsInertialFuser:
-        """Where this run has led, for what comes of it later."""
-        memory = msgspec.msgpack.decode(self.save(), type=Memory)
-        memory.ended, memory.path, memory.recognition = b"", PathMemory(), Recognition()
+    def _ended_run(self) -> GpsInertialFuser:
+        """Copy of this fuser for positions of the ended run that come late."""
+        memory = msgspec.msgpack.decode(self.save(), type=FuserMemory)
+        memory.previous_run, memory.path, memory.landmarks = b"", RecentPath(), LandmarkMatcher()
         return GpsInertialFuser(self._kind, memory)

@@ -1,13 +1,16 @@
-"""The arithmetic that every position of every unit goes through, compiled.
+"""Compiled filter steps that every position of every unit goes through.
 
-What a unit's filters hold lies together, in one record each, so that a position finds it in a few
-pieces of memory.  Whatever is fused into the path (fixes, their heights, storeys) goes through
-``filterpy``'s update.  What happens five times a second a unit is done here, in place, on the
-records' ``mean`` (n,) and ``covariance`` (n, n).  Each of these equals filterpy's ``predict`` or
-``update`` with the matrices that its text names.
+Symbols: ``x`` (n,) is a record's ``mean``, ``P`` (n, n) its ``covariance``, ``F`` the Jacobian of a
+prediction, ``Q`` its noise, ``H`` the Jacobian of a measurement, ``R`` its variance.  Metres,
+seconds and radians; north, east and down of the incident frame unless said otherwise.
 
-The types stand with the functions, so that nothing is ever compiled while the station is live: it
-is done when this is first imported, and kept on the disk (``muster base compile``).
+The state of each filter is one record, so that a position finds it in a few pieces of memory.
+Steps that run five times a second for each unit are here and work in place; each equals filterpy's
+``predict`` or ``update`` with the matrices of its docstring.  Fixes, their heights and storeys,
+which come less often, go through ``filterpy`` itself.
+
+Signatures are declared, so that nothing is compiled while the station is live: numba compiles at
+the first import and keeps the result on disk (``muster base compile``).
 """
 
 from __future__ import annotations
@@ -21,26 +24,28 @@ from numba import from_dtype, njit
 from numba.core.types import UniTuple, boolean, float64, void
 from numpy.typing import NDArray
 
-from base_station.fusion.plane.state import DRIFT, STATES
-
 Floats = NDArray[np.float64]
 Record = NDArray[Any]  # (1,): a record of one of the types below
 
+# Of the state of ``HorizontalFilter``, see ``horizontal.state``.
+STATES = 9
+DRIFT = 8
+
 _LEAST_SCALE2 = 0.05  # of a state whose turn means anything
 
-# What ``climb`` remembers of the own path.
+# Elements of the memory of ``predict_height``.
 LEVEL_M = 0  # walked since it last climbed
 CLIMBED_M = 1  # net, in these metres
-SETTLED_M2 = 2  # the unit's own variance of its height when its wearer last walked
-DOUBT_M2 = 3  # by how much it is larger now
-RODE_M = 4  # climbed while the wearer rests
+REST_VAR_M2 = 2  # stated variance of the own height when the wearer last walked
+RIDE_VAR_M2 = 3  # growth of that variance since
+RIDDEN_M = 4  # climbed while the wearer rests
 PATH = 5
 
 PLANE = np.dtype([("mean", np.float64, STATES), ("covariance", np.float64, (STATES, STATES))])
 HEIGHT = np.dtype(
     [("mean", np.float64, 3), ("covariance", np.float64, (3, 3)), ("path", np.float64, PATH)]
 )
-OWN = np.dtype(  # what has to be remembered of an own path to judge its next stretch
+ODOMETRY = np.dtype(  # memory of ``integrate_increment``
     [
         ("north_m", np.float64),  # where it was last
         ("east_m", np.float64),
@@ -50,11 +55,11 @@ OWN = np.dtype(  # what has to be remembered of an own path to judge its next st
         ("step_rad", np.float64),  # direction of the last increment; NaN: there was none
         ("moved_heading_std_rad", np.float64),  # when it moved last; NaN: nothing was said yet
         ("moving_s", np.float64),
-        ("grown_radps", np.float64),  # by which that has grown of late, while moving
+        ("heading_std_growth_radps", np.float64),  # recent growth of that, while moving
         ("drift_radps", np.float64),  # how fast its heading may drift
     ]
 )
-HOW = np.dtype(  # of ``Parameters``
+PARAMS = np.dtype(  # of ``Parameters``
     [
         (name, np.float64)
         for name in (
@@ -70,14 +75,14 @@ HOW = np.dtype(  # of ``Parameters``
     ]
 )
 MOVING_MPS = 0.1
-TURN_SEEN_M = 0.1  # of way that has a direction
-LEARNT_S = 10.0  # moved, after which the unit's own heading says how fast it drifts
-OF_LATE_S = 60.0  # moved, over which that is judged
-SUDDEN = 3.0  # so much faster than that, a heading's uncertainty has grown by something else
+MIN_DIRECTION_M = 0.1  # of way that has a direction
+DRIFT_LEARNING_S = 10.0  # moved, after which the unit's own heading says how fast it drifts
+DRIFT_WINDOW_S = 60.0  # moved, over which that is judged
+SUDDEN_GROWTH = 3.0  # so much faster than that, a heading's uncertainty has grown by something else
 
 
-class Placed(NamedTuple):
-    """Where a unit is and how its own frame is turned, out of a state of ``HorizontalFilter``."""
+class HorizontalEstimate(NamedTuple):
+    """Place of a unit and turn of its own frame, from a state of ``HorizontalFilter``."""
 
     north_m: float
     east_m: float
@@ -87,8 +92,8 @@ class Placed(NamedTuple):
     turn_rad: float
     turn_std_rad: float  # pi: not known
 
-    def widened(self, variance_m2: float) -> Placed:
-        """The place less sure by so much, each axis."""
+    def inflated(self, variance_m2: float) -> HorizontalEstimate:
+        """Estimate with this much more variance of the place, each axis."""
         std_north_m = math.sqrt(self.std_north_m**2 + variance_m2)
         std_east_m = math.sqrt(self.std_east_m**2 + variance_m2)
         product = std_north_m * std_east_m
@@ -100,30 +105,32 @@ class Placed(NamedTuple):
         )
 
 
-class Stretch(NamedTuple):
-    """From one position to the next, in the unit's own frame."""
+class OdometryIncrement(NamedTuple):
+    """Movement from one position to the next, in the unit's own frame."""
 
     north_m: float
     east_m: float
     down_m: float
     length_m: float
     moving_s: float
-    place_var_m2: float  # what it added, each axis
+    place_var_m2: float  # variance added to the place, each axis
     turn_var: float
-    drift_radps: float  # how fast the own heading may drift, by what the unit itself says
+    drift_radps: float  # deviation of the drift rate, from the stated heading deviation
 
 
 _VECTOR, _MATRIX = float64[:], float64[:, :]  # of any layout
-_PLANE, _HEIGHT, _OWN, _HOW = (from_dtype(one)[::1] for one in (PLANE, HEIGHT, OWN, HOW))
+_PLANE, _HEIGHT, _ODOMETRY, _PARAMS = (
+    from_dtype(one)[::1] for one in (PLANE, HEIGHT, ODOMETRY, PARAMS)
+)
 _THREE = UniTuple(float64, 3)  # type: ignore[no-untyped-call]
-_PLACED = UniTuple(float64, len(Placed._fields))  # type: ignore[no-untyped-call]
-_STRETCH = UniTuple(float64, len(Stretch._fields))  # type: ignore[no-untyped-call]
+_HORIZONTAL_ESTIMATE = UniTuple(float64, len(HorizontalEstimate._fields))  # type: ignore[no-untyped-call]
+_INCREMENT = UniTuple(float64, len(OdometryIncrement._fields))  # type: ignore[no-untyped-call]
 _compiled = partial(njit, cache=True, error_model="numpy")
 
 
 @_compiled(float64(_VECTOR, _MATRIX, _VECTOR))
-def _between(one: Floats, covariance: Floats, other: Floats) -> float:
-    """The covariance of two sums of the first states."""
+def _covariance_of(one: Floats, covariance: Floats, other: Floats) -> float:
+    """Covariance of two linear combinations of the first states: one' P other."""
     total = 0.0
     for i in range(len(one)):
         for j in range(len(other)):
@@ -131,36 +138,44 @@ def _between(one: Floats, covariance: Floats, other: Floats) -> float:
     return total
 
 
-@_compiled(_STRETCH(_OWN, _HOW, _THREE, _THREE, float64, boolean))
-def stretch(
+@_compiled(_INCREMENT(_ODOMETRY, _PARAMS, _THREE, _THREE, float64, boolean))
+def integrate_increment(
     own: Record,
-    how: Record,
+    params: Record,
     to_m: tuple[float, float, float],
     stds: tuple[float, float, float],
     duration_s: float,
     sure: bool,
 ) -> tuple[float, ...]:
-    """What ``Stretch`` holds: the own path went on ``to_m`` (north, east, down), from where it was
-    last or from the frame's origin.  ``stds``: as the unit states them, north, east and of its
-    heading; ``sure``: it has no doubt of its path.
+    """Fields of ``OdometryIncrement``: movement in the own frame and the noise that it adds.
+
+    From the last position ``p`` (at first the frame's origin) to ``to_m`` (north, east, down):
+
+        d = to_m - p,  l = |d_ne|
+        place variance  q_l l + min(max(0, s^2 - s_last^2), (v_max dt)^2), the second where not sure
+        turn variance   q_t l + growth of the stated heading variance beyond the drift + (k turn)^2
+
+    with ``q_l``, ``q_t``, ``k``, ``v_max`` of ``params``.  ``stds``: stated deviations of north and
+    east (``s``: the larger) in metres and of the heading in radians; ``sure``: quality of the path
+    is good.  The drift rate is what the stated heading deviation grows by while the wearer moves.
     """
-    last, kind = own[0], how[0]
+    last, values = own[0], params[0]
     std_m, heading_std_rad = max(stds[0], stds[1]), stds[2]
     drift_var = doubt_m2 = turned_rad = 0.0
     if math.isnan(last.moved_heading_std_rad):
         last.moved_heading_std_rad, duration_s = heading_std_rad, 0.0
     else:
         if heading_std_rad > last.heading_std_rad:  # by more than it drifts
-            usual_rad = SUDDEN * last.drift_radps * duration_s
+            usual_rad = SUDDEN_GROWTH * last.drift_radps * duration_s
             grown = heading_std_rad**2 - last.heading_std_rad**2
             drift_var = max(0.0, grown - 2.0 * heading_std_rad * usual_rad)
         if not sure:
             added_m2 = max(0.0, std_m**2 - last.std_m**2)
-            doubt_m2 = min(added_m2, (kind.fastest_mps * duration_s) ** 2)
+            doubt_m2 = min(added_m2, (values.fastest_mps * duration_s) ** 2)
     north_m, east_m, down_m = to_m[0] - last.north_m, to_m[1] - last.east_m, to_m[2] - last.down_m
     length_m = math.hypot(north_m, east_m)
     moving_s = duration_s if length_m > MOVING_MPS * duration_s else 0.0
-    if length_m >= TURN_SEEN_M:
+    if length_m >= MIN_DIRECTION_M:
         step_rad = math.atan2(east_m, north_m)
         if not math.isnan(last.step_rad):
             turned_rad = (step_rad - last.step_rad + math.pi) % (2.0 * math.pi) - math.pi
@@ -170,22 +185,24 @@ def stretch(
     if moving_s > 0.0:
         last.moving_s += moving_s
         grown_rad = heading_std_rad - last.moved_heading_std_rad
-        of_late_s = min(last.moving_s, OF_LATE_S)
-        last.grown_radps += (grown_rad - moving_s * last.grown_radps) / of_late_s
+        of_late_s = min(last.moving_s, DRIFT_WINDOW_S)
+        last.heading_std_growth_radps += (
+            grown_rad - moving_s * last.heading_std_growth_radps
+        ) / of_late_s
         last.moved_heading_std_rad = heading_std_rad
-    last.drift_radps = kind.drift_radps
-    if last.moving_s >= LEARNT_S:
-        stated_radps = kind.drift_doubt * last.grown_radps
-        last.drift_radps = min(max(stated_radps, kind.drift_least_radps), kind.drift_most_radps)
-    place_var_m2 = kind.walk_m_per_sqrt_m**2 * length_m + doubt_m2
+    last.drift_radps = values.drift_radps
+    if last.moving_s >= DRIFT_LEARNING_S:
+        stated_radps = values.drift_doubt * last.heading_std_growth_radps
+        last.drift_radps = min(max(stated_radps, values.drift_least_radps), values.drift_most_radps)
+    place_var_m2 = values.walk_m_per_sqrt_m**2 * length_m + doubt_m2
     turn_var = (
-        kind.turn_rad_per_sqrt_m**2 * length_m + drift_var + (kind.turn_part * turned_rad) ** 2
+        values.turn_rad_per_sqrt_m**2 * length_m + drift_var + (values.turn_part * turned_rad) ** 2
     )
     return (north_m, east_m, down_m, length_m, moving_s, place_var_m2, turn_var, last.drift_radps)
 
 
 @_compiled(void(_PLANE, float64, float64, float64, float64, float64, float64))
-def walk(
+def predict_horizontal(
     plane: Record,
     north_m: float,
     east_m: float,
@@ -194,15 +211,20 @@ def walk(
     turn_var: float,
     drift_var: float,
 ) -> None:
-    """The own path went on: the state of ``HorizontalFilter`` is predicted.
+    """Predict the state of ``HorizontalFilter``: x = f(x, d), P = F P F' + Q.
 
-    With ``c, s`` after the drift, ``(a, b)`` cosine and sine of what was drifted and ``t`` the
-    time moving, the Jacobian is the identity but for
+    ``d = (dn, de)``: increment of the own path in metres, ``t``: seconds moving.  The drift turns
+    ``(c, s)`` by ``w t``, with cosine and sine ``(a, b)``; then
+
+        north += c dn - s de        east += s dn + c de
+
+    ``F`` is the identity but for
 
         north  [1, 0, dn, -de, 0 ...    0]        c  [0, 0, a, -b, 0 ... -s t]
         east   [0, 1, de,  dn, 0 ...    0]        s  [0, 0, b,  a, 0 ...  c t]
 
-    and the noise is that of the place, of the turn across ``(c, s)``, and of the drift rate.
+    and ``Q`` is ``place_var_m2`` of north and east, ``turn_var`` across ``(c, s)`` and
+    ``drift_var`` of the drift rate ``w``.
     """
     mean, covariance = plane[0].mean, plane[0].covariance
     drifted_rad = mean[DRIFT] * moving_s
@@ -237,34 +259,35 @@ def walk(
 
 
 @_compiled(void(_HEIGHT, _THREE, boolean, _THREE))
-def climb(
+def predict_height(
     height: Record,
-    stretch: tuple[float, float, float],
+    increment: tuple[float, float, float],
     moves: bool,
-    how: tuple[float, float, float],
+    params: tuple[float, float, float],
 ) -> None:
-    """The own height went on: the state of ``HeightFilter`` is predicted.
+    """Predict the state of ``HeightFilter``: x[0] += d, P[0, 0] += q_c |d| + q_w l.
 
-    ``stretch``: metres down, metres walked, and how sure the unit is of its height; ``moves``:
-    whether its wearer goes anywhere; ``how``: the variance by metre climbed and by metre walked,
-    and the climb that changes floor.  ``path`` is what is remembered of stretches before: a unit
-    that rests and grows less sure of its height may be riding a lift.
+    ``increment``: ``d`` metres down, ``l`` metres walked, and the stated deviation of the own
+    height in metres; ``moves``: the wearer moves; ``params``: ``q_c`` and ``q_w``, variance a metre
+    climbed and a metre walked, and the climb in metres that changes floor.  ``path`` is the memory
+    of earlier increments: a unit that rests while its stated deviation grows may ride a lift, and
+    then that growth is the noise.
     """
     mean, covariance, path = height[0].mean, height[0].covariance, height[0].path
-    down_m, walked_m, own_std_m = stretch
-    per_climb_m2, per_walk_m2, level_m = how
-    grown_m2 = max(0.0, own_std_m * own_std_m - path[SETTLED_M2])
+    down_m, walked_m, own_std_m = increment
+    per_climb_m2, per_walk_m2, level_m = params
+    grown_m2 = max(0.0, own_std_m * own_std_m - path[REST_VAR_M2])
     ridden_m2 = 0.0
     if moves:
         ridden_m2 = grown_m2  # what is left of a ride that is over
-        path[SETTLED_M2] = own_std_m * own_std_m
-        path[DOUBT_M2] = path[RODE_M] = 0.0
+        path[REST_VAR_M2] = own_std_m * own_std_m
+        path[RIDE_VAR_M2] = path[RIDDEN_M] = 0.0
     else:
-        path[DOUBT_M2] = grown_m2
-        path[RODE_M] += down_m
+        path[RIDE_VAR_M2] = grown_m2
+        path[RIDDEN_M] += down_m
     stairs_m2 = per_climb_m2 * abs(down_m) + per_walk_m2 * walked_m
     mean[0] += down_m
-    if path[DOUBT_M2] < stairs_m2:  # else the unit knows of the ride, and how well
+    if path[RIDE_VAR_M2] < stairs_m2:  # else the unit knows of the ride, and how well
         covariance[0, 0] += max(stairs_m2, ridden_m2)
     path[LEVEL_M] += walked_m
     path[CLIMBED_M] += down_m
@@ -273,17 +296,18 @@ def climb(
 
 
 @_compiled(void(_HEIGHT, float64, float64, float64, float64))
-def feel_air(
+def update_barometer(
     height: Record,
     down_m: float,
     wander_m2: float,
     noise_m2: float,
     gate2: float,
 ) -> None:
-    """A barometer's height into the state of ``HeightFilter``, whose shift wandered meanwhile.
+    """Update the state of ``HeightFilter`` with a barometric height: H = [1, 0, 1], R = noise_m2.
 
-    Measured is ``[1, 0, 1]`` of the state with ``noise_m2``.  What lies farther off than
-    ``gate2`` (squared standard deviations) is a step of pressure and widens the shift first.
+    The bias of the barometer ``x[2]`` is predicted first, as a random walk of ``wander_m2``.  An
+    innovation beyond ``gate2`` (squared standard deviations) is a step of pressure: its square is
+    added to the variance of the bias before the update.  ``P`` is updated in Joseph form.
     """
     mean, covariance = height[0].mean, height[0].covariance
     covariance[2, 2] += wander_m2
@@ -306,32 +330,35 @@ def feel_air(
             covariance[row, j] += gain[j] * (noise_m2 * gain[row] - seen)
 
 
-@_compiled(_PLACED(_VECTOR, _MATRIX, float64, float64))
-def placed_before(
+@_compiled(_HORIZONTAL_ESTIMATE(_VECTOR, _MATRIX, float64, float64))
+def estimate_before(
     mean: Floats, covariance: Floats, north_m: float, east_m: float
 ) -> tuple[float, ...]:
-    """What ``Placed`` holds, by a state of ``HorizontalFilter``.  The place is that before so much
-    of own path was walked: ``[1, 0, -dn, de, 0 ...]`` and ``[0, 1, -de, -dn, 0 ...]`` of it.
+    """Fields of ``HorizontalEstimate``, from a state of ``HorizontalFilter``.
+
+    The place is the one before the own path went on by ``(dn, de)`` metres: ``H x`` with variance
+    ``H P H'``, where ``H`` has the rows ``[1, 0, -dn, de, 0 ...]`` and ``[0, 1, -de, -dn, 0 ...]``.
+    The turn is ``atan2(s, c)``; its variance is that across ``(c, s)`` over the squared scale.
     """
     c, s = mean[2], mean[3]
     north = np.array([1.0, 0.0, -north_m, east_m])
     east = np.array([0.0, 1.0, -east_m, -north_m])
     across = np.array([0.0, 0.0, -s, c])
-    std_north_m = math.sqrt(max(_between(north, covariance, north), 0.0))
-    std_east_m = math.sqrt(max(_between(east, covariance, east), 0.0))
+    std_north_m = math.sqrt(max(_covariance_of(north, covariance, north), 0.0))
+    std_east_m = math.sqrt(max(_covariance_of(east, covariance, east), 0.0))
     product = std_north_m * std_east_m
     scale2 = c * c + s * s
     turn_rad, turn_std_rad = 0.0, math.pi
     if scale2 >= _LEAST_SCALE2:
         turn_rad = math.atan2(s, c)
-        turn_var = max(_between(across, covariance, across), 0.0) / (scale2 * scale2)
+        turn_var = max(_covariance_of(across, covariance, across), 0.0) / (scale2 * scale2)
         turn_std_rad = min(math.sqrt(turn_var), math.pi)
     return (
         mean[0] - c * north_m + s * east_m,
         mean[1] - s * north_m - c * east_m,
         std_north_m,
         std_east_m,
-        _between(north, covariance, east) / product if product > 0.0 else 0.0,
+        _covariance_of(north, covariance, east) / product if product > 0.0 else 0.0,
         turn_rad,
         turn_std_rad,
     )

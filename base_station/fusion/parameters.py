@@ -1,4 +1,4 @@
-"""What ``gps-inertial`` takes for granted of units, receivers and people."""
+"""Parameters of ``gps-inertial``: errors of units, receivers and movement."""
 
 from __future__ import annotations
 
@@ -45,4 +45,4 @@ class Parameters:
     climb_part: float = 0.1  # of the way that somebody got unseen, up or down
     stuck_fixes: int = 5
     stuck_m: float = 8.0
-    distrust_most: int = 20
+    max_rejected_count: int = 20

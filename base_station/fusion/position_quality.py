@@ -1,17 +1,22 @@
-"""How far a place can be trusted, in words for a person."""
+"""Quality of an estimate, with a reason for a person."""
 
 from __future__ import annotations
 
 import math
 
-from base_station.fusion.kernels import Placed
+from base_station.fusion.kernels import HorizontalEstimate
 from base_station.fusion.parameters import Parameters
 from shared.messages import Position
 from shared.quality import NOT_OF_STEPS, Quality, Reason, in_words
 
 
 def quality_of(
-    kind: Parameters, placed: Placed, last: Position | None, *, assumed: bool, split: bool
+    kind: Parameters,
+    placed: HorizontalEstimate,
+    last: Position | None,
+    *,
+    assumed: bool,
+    split: bool,
 ) -> tuple[Quality, str]:
     """Quality and the first reason against it.
 

@@ -1,7 +1,7 @@
-"""Where on the Earth a picture of the ground lies, by the world file that came with it.
+"""Base map: place of a picture of the ground, by its world file.
 
-A world file is six numbers: how far one column goes in x and in y, how far one row does (in that
-order a, d, b, e), and x and y of the middle of the upper left pixel (c, f).
+A world file has six numbers: change of x and y a column and a row (in the order a, d, b, e), and x
+and y of the middle of the upper left pixel (c, f).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ LatLon = tuple[float, float]
 
 
 class Corners(msgspec.Struct, frozen=True):
-    """Of a picture, degrees (WGS-84); what lies between goes in proportion."""
+    """Corners of a picture, degrees (WGS-84); between them it is linear."""
 
     upper_left: LatLon
     upper_right: LatLon
@@ -36,7 +36,7 @@ class Corners(msgspec.Struct, frozen=True):
 
 
 def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) -> Corners:
-    """Raises ConfigError, which says what a world file must be."""
+    """Corners by a world file; raises ConfigError for a wrong one."""
     lat_lon = _grid(crs)
     if len(world) != 6 or not all(math.isfinite(value) for value in world):
         raise ConfigError("a world file has six numbers, one a line")
@@ -66,7 +66,7 @@ def corners_of(world: Sequence[float], crs: str, width_px: int, height_px: int) 
 
 
 def _grid(crs: str) -> Callable[[float, float], LatLon]:
-    """What makes degrees of a world file's x and y."""
+    """Function from a world file's x and y to degrees."""
     if crs == DEGREES:
         return lambda x, y: (y, x)
     if crs == WEB_MAPS:

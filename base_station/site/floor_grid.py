@@ -1,30 +1,39 @@
-"""A plan's walls and stairs as squares: what a step crosses, and where ways out begin."""
+"""Grid of a plan's walls and stairs: crossings of steps, and reachable areas."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_dilation
 
-from base_station.site.crossing import BESIDE, FREE, WALL, Costs, Ground, meet_behind, meet_moved
 from base_station.site.plan import Plan, Ring
-from base_station.site.way_out import WayOut
+from base_station.site.reachability import ReachableArea
+from base_station.site.wall_crossing import (
+    BESIDE,
+    FREE,
+    WALL,
+    Costs,
+    Ground,
+    crossings_backward,
+    crossings_shifted,
+)
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 CELL_M = 0.2
 MARGIN_M = 3.0  # of open ground about the building
-LOOK_M = 0.12  # how far apart a step is looked at: a wall is a square thick
+SAMPLING_M = 0.12  # how far apart a step is looked at: a wall is a square thick
 MOST_CELLS = 4_000_000
+PLACES_AT_ONCE = 200_000
 _OPEN = np.zeros((1, 1), dtype=np.uint8)
 _EVERYWHERE = np.ones((1, 1), dtype=np.bool_)
 
 
 class FloorGrid:
-    """Open ground surrounds what the plan shows; nothing stands in the way there."""
+    """Grid of squares by floor; open ground without walls surrounds the plan."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
@@ -45,7 +54,7 @@ class FloorGrid:
 
     @staticmethod
     def of(plan: Plan | None) -> FloorGrid | None:
-        """None where the plan shows no walls, or is larger than any building."""
+        """Grid of a plan; None without walls, or where it is larger than any building."""
         if plan is None or not plan.walls or not plan.outlines:
             return None
         points = np.array([point for wall in plan.walls for point in wall.line])
@@ -53,30 +62,34 @@ class FloorGrid:
         spans_m = np.ptp(points, axis=0) + 2.0 * MARGIN_M
         return FloorGrid(plan) if float(np.prod(spans_m)) < MOST_CELLS * CELL_M**2 else None
 
-    def knows(self, floor: int) -> bool:
+    def has_floor(self, floor: int) -> bool:
         return floor in self._walls
 
-    def met(self, floor: int, from_m: Floats, to_m: Floats) -> Ground:
-        """The worst that straight ways (n, 2) -> (n, 2), north and east, meet on the floor (n,):
-        ``FREE``, ``BESIDE`` a wall, or a ``WALL``.
+    def crossings(self, floor: int, from_m: Floats, to_m: Floats) -> Ground:
+        """Highest class of ground on straight steps (n, 2) -> (n, 2), north and east, on the floor
+        (n,): ``FREE``, ``BESIDE`` a wall, or a ``WALL``.
         """
         ground = self._ground[floor]
         way_m = to_m - from_m
-        looks = max(1, math.ceil(float(np.abs(way_m).max(initial=0.0)) / LOOK_M))
+        looks = max(1, math.ceil(float(np.abs(way_m).max(initial=0.0)) / SAMPLING_M))
         parts = np.arange(1, looks + 1)[:, None] / looks
         north = self._rows(from_m[:, 0] + parts * way_m[:, 0])
         east = self._columns(from_m[:, 1] + parts * way_m[:, 1])
         return np.asarray(ground[north, east].max(axis=0))
 
-    def met_moved(self, floor: int, from_m: Floats, to_m: Floats, moves_m: Floats) -> Ground:
-        """The same of each way moved by each of its moves (n, g, 2): (n, g)."""
+    def crossings_shifted(
+        self, floor: int, from_m: Floats, to_m: Floats, moves_m: Floats
+    ) -> Ground:
+        """Crossings of each step shifted by each of its shifts (n, g, 2): (n, g)."""
         corner = np.array([self._north_m, self._east_m])
         worst = np.empty(moves_m.shape[:2], dtype=np.uint8)
         begins, ways = (from_m - corner) / CELL_M, (to_m - from_m) / CELL_M
-        meet_moved(self._ground[floor], begins, ways, moves_m / CELL_M, LOOK_M / CELL_M, worst)
+        crossings_shifted(
+            self._ground[floor], begins, ways, moves_m / CELL_M, SAMPLING_M / CELL_M, worst
+        )
         return worst
 
-    def go_back(
+    def trace_back(
         self,
         floor: int | None,
         heads: Floats,
@@ -86,8 +99,8 @@ class FloorGrid:
         least: float,
         logs: Floats,
     ) -> None:
-        """Follow heads (n, 5) back over a path (k, 4) that was walked on one floor; as
-        ``meet_behind``, in metres.  A floor that is not known has no walls.
+        """Trace heads (n, 5) back over a path (k, 4) walked on one floor: ``crossings_backward`` in
+        metres. A floor that is not known has no walls.
         """
         corner = np.array([self._north_m, self._east_m])
         ground, stairs = _OPEN, _EVERYWHERE
@@ -96,32 +109,36 @@ class FloorGrid:
         heads[:, :2] = (heads[:, :2] - corner) / CELL_M
         squares = path / (CELL_M, CELL_M, 1.0, 1.0)
         room = room_m[0] / CELL_M, room_m[1] / CELL_M
-        meet_behind(ground, stairs, heads, squares, costs, LOOK_M / CELL_M, room, least, logs)
+        crossings_backward(
+            ground, stairs, heads, squares, costs, SAMPLING_M / CELL_M, room, least, logs
+        )
         heads[:, :2] = corner + CELL_M * heads[:, :2]
 
     def has_stairs(self, floor: int) -> bool:
         return floor in self._stairs
 
     def on_stairs(self, floor: int, place_m: Floats) -> Flags:
-        """Which places (n, 2) lie where people change floor."""
+        """Flags of places (n, 2) on stairs."""
         rows, columns = self._rows(place_m[:, 0]), self._columns(place_m[:, 1])
         return np.asarray(self._stairs[floor][rows, columns])
 
-    def is_within(self, place_m: Floats) -> Flags:
-        """Which places (n, 2) lie in a building."""
+    def is_in_building(self, place_m: Floats) -> Flags:
+        """Flags of places (n, 2) in a building."""
         return np.asarray(self._within[self._rows(place_m[:, 0]), self._columns(place_m[:, 1])])
 
     @property
     def area_m2(self) -> float:
-        """Of the ground that buildings stand on."""
+        """Area of all buildings."""
         return float(np.count_nonzero(self._within)) * CELL_M**2
 
-    def way_out(self, floor: int, north_m: float, east_m: float) -> WayOut | None:
-        """From a place on one floor; None where the floor or the place is not on the plan."""
+    def reachable_area(self, floor: int, north_m: float, east_m: float) -> ReachableArea | None:
+        """Search from a place on one floor; None where the floor or the place is not on
+        the plan.
+        """
         if floor not in self._walls or not self._covers(north_m, east_m):
             return None
         at = (north_m - self._north_m) / CELL_M, (east_m - self._east_m) / CELL_M
-        return WayOut(self._walls[floor], at, CELL_M)
+        return ReachableArea(self._walls[floor], at, CELL_M)
 
     def _covers(self, north_m: float, east_m: float) -> bool:
         row, column = (north_m - self._north_m) / CELL_M, (east_m - self._east_m) / CELL_M
@@ -139,14 +156,19 @@ class FloorGrid:
 
     def _walls_of(self, plan: Plan, floor: int) -> Flags:
         walls = np.zeros(self._shape, dtype=np.bool_)
-        for wall in plan.walls:
-            if wall.floor != floor:
-                continue
-            for (e0_m, n0_m), (e1_m, n1_m) in zip(wall.line, wall.line[1:], strict=False):
-                count = max(2, math.ceil(math.hypot(e1_m - e0_m, n1_m - n0_m) / (CELL_M / 4.0)))
-                parts = np.linspace(0.0, 1.0, count)
-                rows = self._rows(n0_m + parts * (n1_m - n0_m))
-                walls[rows, self._columns(e0_m + parts * (e1_m - e0_m))] = True
+        lines = [wall.line for wall in plan.walls if wall.floor == floor]
+        begins = np.array([at for line in lines for at in line[:-1]])
+        ends = np.array([at for line in lines for at in line[1:]])
+        lengths_m = np.hypot(*(ends - begins).T)
+        counts = np.maximum(2, np.ceil(lengths_m / (CELL_M / 4.0))).astype(np.intp)
+        for some in _portions(counts):
+            steps = counts[some] - 1
+            which = np.repeat(np.arange(len(steps)), counts[some])
+            first = np.repeat(np.cumsum(counts[some]) - counts[some], counts[some])
+            number = np.arange(len(which)) - first
+            parts = np.where(number == steps[which], 1.0, number * (1.0 / steps)[which])
+            places = begins[some][which] + parts[:, None] * (ends - begins)[some][which]
+            walls[self._rows(places[:, 1]), self._columns(places[:, 0])] = True
         return walls
 
     def _stairs_of(self, plan: Plan, floor: int) -> Flags:
@@ -158,21 +180,39 @@ class FloorGrid:
         return stairs
 
     def _ring(self, ring: Ring) -> Flags:
-        north_m = self._north_m + CELL_M * np.arange(self._shape[0])[:, None]
-        east_m = self._east_m + CELL_M * np.arange(self._shape[1])[None, :]
+        north_m = self._north_m + CELL_M * np.arange(self._shape[0])
+        east_m = self._east_m + CELL_M * np.arange(self._shape[1])
         return _within(ring, north_m, east_m)
 
 
+def _portions(counts: NDArray[np.intp]) -> Iterator[slice]:
+    """Slices of places that fit in little memory."""
+    begin, total = 0, 0
+    for end, count in enumerate(counts.tolist(), 1):
+        total += count
+        if total >= PLACES_AT_ONCE or end == len(counts):
+            yield slice(begin, end)
+            begin, total = end, 0
+
+
 def _ground(walls: Flags) -> Ground:
-    beside = binary_dilation(walls, np.ones((3, 3), dtype=np.bool_))
-    return np.where(walls, WALL, np.where(beside, BESIDE, FREE)).astype(np.uint8)
+    return np.where(walls, WALL, np.where(_dilated(walls), BESIDE, FREE)).astype(np.uint8)
+
+
+def _dilated(cells: Flags) -> Flags:
+    """With all cells that touch one of them, at a side or a corner."""
+    around = np.pad(cells, 1)
+    rows = around[:-2] | around[1:-1] | around[2:]
+    return rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
 
 
 def _within(ring: Ring, north_m: Floats, east_m: Floats) -> Flags:
-    inside = np.zeros(np.broadcast_shapes(north_m.shape, east_m.shape), dtype=np.bool_)
+    """Even-odd: a square is inside where an odd number of borders lies east of it."""
+    changes = np.zeros((len(north_m), len(east_m) + 1), dtype=np.bool_)
     for (e0_m, n0_m), (e1_m, n1_m) in zip(ring, ring[1:] + ring[:1], strict=True):
         if n0_m == n1_m:
             continue
-        beside = (n0_m > north_m) != (n1_m > north_m)
-        inside ^= beside & (east_m < e0_m + (north_m - n0_m) * (e1_m - e0_m) / (n1_m - n0_m))
-    return inside
+        rows = np.flatnonzero((n0_m > north_m) != (n1_m > north_m))
+        borders_m = e0_m + (north_m[rows] - n0_m) * (e1_m - e0_m) / (n1_m - n0_m)
+        changes[rows, np.searchsorted(east_m, borders_m)] ^= True
+    return np.logical_xor.accumulate(changes[:, ::-1], axis=1)[:, -2::-1]

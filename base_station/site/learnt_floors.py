@@ -1,9 +1,9 @@
-"""The storeys of each building, learnt from where people walk on the level.
+"""Storeys of each building, learnt from walks on the level.
 
-Somebody who walks some metres without climbing is on a storey, or on the ground outside; the
-height then is kept as a *landing*.  Landings that lie beside each other belong to one building;
-what storeys it has is worked out anew with every landing (``levels``), for everybody alike.
-Only heights that no pin has touched count, so that removing a pin leaves nothing behind.
+A wearer who walks some metres without climbing is on a storey, or on the ground outside; that
+height is kept as a *landing*. Landings beside each other belong to one building; its storeys are
+computed again with new landings (``levels``), for all units alike. Only heights without pins count,
+so that a removed pin leaves nothing behind.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from shared.messages import Position
 
 LEVEL_WALK_M = 6.0  # walked without climbing: on a storey
 CLIMB_M = 0.5  # net, that is a climb
-BEGAN_M = 1.2  # nobody who has never left the height of the beginning has left the ground
+GROUND_RANGE_M = 1.2  # nobody who has never left the height of the beginning has left the ground
 APART_M = 25.0  # buildings
 GROUND_NEAR_M = 60.0  # of a building: that ground tells of its ground floor
 GROUND_STD_M = 0.4  # steps at the door, a kerb, a slope
 MOST_LANDINGS = 300  # of a building, and on the ground
 ROOM = 30  # of them go at once
-LEARNT_SHARE = 16  # one new one of so many is enough to work the storeys out anew
+RELEARN_EVERY = 16  # one new one of so many is enough to work the storeys out anew
 SAME_PLACE_M = 3.0  # of the same unit: tells nothing new
 SAME_HEIGHT_M = 0.25
 
 
 class Landing(msgspec.Struct, frozen=True):
-    """Somebody walked on the level here; incident frame."""
+    """Place and height of a walk on the level; incident frame."""
 
     t_ns: int
     unit_id: str
@@ -43,8 +43,8 @@ class Landing(msgspec.Struct, frozen=True):
     std_m: float
 
 
-class FloorSaid(msgspec.Struct, frozen=True):
-    """A person says which floor a unit was on, whose height was this."""
+class ReportedFloor(msgspec.Struct, frozen=True):
+    """Floor that a person reports for a unit, with the unit's height."""
 
     north_m: float
     east_m: float
@@ -53,7 +53,7 @@ class FloorSaid(msgspec.Struct, frozen=True):
 
 
 class LevelWalk(msgspec.Struct):
-    """What a unit's own path has done since it last climbed."""
+    """Progress of a unit's walk since its last climb."""
 
     boot_id: int = 0
     distance_m: float = 0.0  # as it last said
@@ -76,7 +76,7 @@ class LevelWalk(msgspec.Struct):
         self.walked_m += walked_m
         self.climbed_m += climbed_m
         self.since_start_m += climbed_m
-        self.left_ground = self.left_ground or abs(self.since_start_m) > BEGAN_M
+        self.left_ground = self.left_ground or abs(self.since_start_m) > GROUND_RANGE_M
         if abs(self.climbed_m) > CLIMB_M:
             self.walked_m = self.climbed_m = 0.0
         if self.walked_m < LEVEL_WALK_M:
@@ -86,12 +86,12 @@ class LevelWalk(msgspec.Struct):
 
 
 class Building(msgspec.Struct):
-    """Landings beside each other, and the storeys that they tell of."""
+    """Landings beside each other, with the storeys learnt from them."""
 
     landings: list[Landing]
     box_m: tuple[float, float, float, float]  # south, west, north, east of all landings
     storeys: tuple[Storey, ...] = ()
-    unlearnt: int = 0  # landings since the storeys were worked out
+    pending_landings: int = 0  # landings since the storeys were worked out
 
     def away_m(self, north_m: float, east_m: float) -> float:
         """Distance to the box, 0 in it."""
@@ -99,16 +99,16 @@ class Building(msgspec.Struct):
         to_north_m = max(south - north_m, north_m - north, 0.0)
         return max(to_north_m, west - east_m, east_m - east)
 
-    def take(self, landing: Landing) -> None:
-        self.unlearnt += _keep(self.landings, landing)
+    def add(self, landing: Landing) -> None:
+        self.pending_landings += _add_landing(self.landings, landing)
         self._widen(landing.north_m, landing.east_m, landing.north_m, landing.east_m)
 
-    def unite(self, other: Building) -> None:
+    def merge(self, other: Building) -> None:
         """The storeys are to be worked out anew, of both."""
         self.landings = sorted([*self.landings, *other.landings], key=lambda one: one.t_ns)
         while len(self.landings) > MOST_LANDINGS:
-            _make_room(self.landings)
-        self.unlearnt += len(self.landings)
+            _drop_oldest(self.landings)
+        self.pending_landings += len(self.landings)
         self._widen(*other.box_m)
 
     def _widen(self, south: float, west: float, north: float, east: float) -> None:
@@ -117,15 +117,15 @@ class Building(msgspec.Struct):
 
 
 class LearntFloors(msgspec.Struct):
-    """Of the whole site."""
+    """Buildings and ground of the site."""
 
     ground: list[Landing] = msgspec.field(default_factory=list)
     buildings: list[Building] = msgspec.field(default_factory=list)
     walks: dict[str, LevelWalk] = msgspec.field(default_factory=dict)
-    said: tuple[FloorSaid, ...] = ()
+    reported_floors: tuple[ReportedFloor, ...] = ()
     open: tuple[Storey, ...] = ()  # where nobody has been in any building
     ground_down_m: float = 0.0
-    unlearnt: int = 0  # landings on the ground since all storeys were worked out
+    pending_landings: int = 0  # landings on the ground since all storeys were worked out
 
     def follow(self, position: Position, unit_id: str) -> bool:
         """A unit's own path went on; True where its wearer walks on the level."""
@@ -134,24 +134,22 @@ class LearntFloors(msgspec.Struct):
             walk = self.walks[unit_id] = LevelWalk()
         return walk.follow(position)
 
-    def land(self, landing: Landing, *, is_outside: bool, began_on_ground: bool) -> None:
-        """A unit walks on the level; outside that is the ground, or a slope or a roof, which
-        tells nothing.
-        """
+    def add_landing(self, landing: Landing, *, is_outside: bool, began_on_ground: bool) -> None:
+        """Add a landing; outside it counts for the ground, except on a slope or a roof."""
         walk = self.walks[landing.unit_id]
         apart_m = abs(landing.down_m - self.ground_down_m)
-        if (began_on_ground and not walk.left_ground) or (is_outside and apart_m < BEGAN_M):
-            self.unlearnt += _keep(self.ground, landing)
-            if _is_much(self.unlearnt, self.ground):
+        if (began_on_ground and not walk.left_ground) or (is_outside and apart_m < GROUND_RANGE_M):
+            self.pending_landings += _add_landing(self.ground, landing)
+            if _is_due(self.pending_landings, self.ground):
                 self._learn_all()
         if not is_outside:
             building = self._building_of(landing)
-            building.take(landing)
-            if _is_much(building.unlearnt, building.landings):
+            building.add(landing)
+            if _is_due(building.pending_landings, building.landings):
                 self._learn(building)
 
     def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
-        """Lowest first; empty before anybody has walked anywhere."""
+        """Storeys at a place, lowest first; empty before anyone has walked."""
         storeys, nearest_m = self.open, APART_M
         for building in self.buildings:
             away_m = building.away_m(north_m, east_m)
@@ -161,35 +159,33 @@ class LearntFloors(msgspec.Struct):
 
     @property
     def numbers(self) -> list[list[int]]:
-        """Of each building's storeys, lowest first."""
+        """Floor numbers of each building, lowest first."""
         return [[storey.floor for storey in building.storeys] for building in self.buildings]
 
     @property
     def storeys(self) -> list[tuple[Storey, ...]]:
-        """Of each building."""
+        """Storeys of each building."""
         return [building.storeys for building in self.buildings]
 
-    def say(self, said: Sequence[FloorSaid]) -> bool:
-        """What people say of floors, in the place of what they said before; whether storeys are
-        others by it.
-        """
-        if self.said == tuple(said):
+    def set_reported_floors(self, reported_floors: Sequence[ReportedFloor]) -> bool:
+        """Replace the reported floors; True where that changes storeys."""
+        if self.reported_floors == tuple(reported_floors):
             return False
         before = self.storeys
-        self.said = tuple(said)
+        self.reported_floors = tuple(reported_floors)
         self._learn_all()
         return before != self.storeys
 
     def forget(self, unit_id: str) -> None:
         self.walks.pop(unit_id, None)
-        self.unlearn(unit_id)
+        self.drop_learnt(unit_id)
 
-    def unlearn(self, unit_id: str) -> None:
-        """The unit was not where it was thought to be."""
+    def drop_learnt(self, unit_id: str) -> None:
+        """Drop the landings of a unit that was elsewhere."""
         self._keep_only(lambda landing: landing.unit_id != unit_id)
 
     def trim(self, before_ns: int) -> None:
-        """What lies before that time is no longer wanted."""
+        """Drop landings before a time."""
         self._keep_only(lambda landing: landing.t_ns >= before_ns)
 
     def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
@@ -201,18 +197,18 @@ class LearntFloors(msgspec.Struct):
                 one, north_m=north + north_m, east_m=east + east_m, down_m=one.down_m + down_m
             )
 
-        self._begin_anew(map(moved, self.ground), map(moved, self._inside()))
+        self._rebuild(map(moved, self.ground), map(moved, self._inside()))
 
     def _inside(self) -> list[Landing]:
         return [one for building in self.buildings for one in building.landings]
 
     def _keep_only(self, wanted: Callable[[Landing], bool]) -> None:
-        self._begin_anew(filter(wanted, self.ground), filter(wanted, self._inside()))
+        self._rebuild(filter(wanted, self.ground), filter(wanted, self._inside()))
 
-    def _begin_anew(self, ground: Iterable[Landing], inside: Iterable[Landing]) -> None:
+    def _rebuild(self, ground: Iterable[Landing], inside: Iterable[Landing]) -> None:
         self.ground, self.buildings = list(ground), []
         for landing in sorted(inside, key=lambda one: one.t_ns):
-            self._building_of(landing).take(landing)
+            self._building_of(landing).add(landing)
         self._learn_all()
 
     def _building_of(self, landing: Landing) -> Building:
@@ -224,12 +220,12 @@ class LearntFloors(msgspec.Struct):
             return self.buildings[-1]
         first, *others = beside
         for other in others:
-            first.unite(other)
+            first.merge(other)
             self.buildings.remove(other)
         return first
 
     def _learn_all(self) -> None:
-        self.unlearnt = 0
+        self.pending_landings = 0
         ground = self._ground_of(self.ground)
         self.ground_down_m = ground.down_m
         self.open = number_levels((), ground) if self.ground else ()
@@ -237,34 +233,34 @@ class LearntFloors(msgspec.Struct):
             self._learn(building)
 
     def _learn(self, building: Building) -> None:
-        building.unlearnt = 0
+        building.pending_landings = 0
         near = [
             one for one in self.ground if building.away_m(one.north_m, one.east_m) < GROUND_NEAR_M
         ]
         ground = self._ground_of(near or self.ground)
-        said = [
+        reported_floors = [
             (one.down_m, one.floor)
-            for one in self.said
+            for one in self.reported_floors
             if building.away_m(one.north_m, one.east_m) < APART_M
         ]
         heights = [Height(one.down_m, one.std_m) for one in building.landings]
-        building.storeys = number_levels(levels_of(heights), ground, said)
+        building.storeys = number_levels(levels_of(heights), ground, reported_floors)
 
     def _ground_of(self, landings: Sequence[Landing]) -> Height:
-        """Where nobody was seen outside or beginning, the frame's heights begin on the ground."""
+        """Height of the ground; without landings outside, the origin of the frame."""
         if not landings:
             return Height(0.0, GROUND_STD_M)
         return Height(median(one.down_m for one in landings), GROUND_STD_M)
 
 
-def _is_much(unlearnt: int, landings: Sequence[Landing]) -> bool:
+def _is_due(pending_landings: int, landings: Sequence[Landing]) -> bool:
     """Every new landing of a few counts; of hundreds some must come together."""
-    return unlearnt * LEARNT_SHARE > len(landings)
+    return pending_landings * RELEARN_EVERY > len(landings)
 
 
-def _keep(landings: list[Landing], landing: Landing) -> bool:
-    """One of the same unit at the same place takes the place of the other; False where it tells
-    nothing new.
+def _add_landing(landings: list[Landing], landing: Landing) -> bool:
+    """Add a landing, in place of one of the same unit at the same place; False where it adds
+    nothing.
     """
     for row, one in enumerate(landings):
         if (
@@ -279,11 +275,11 @@ def _keep(landings: list[Landing], landing: Landing) -> bool:
             return True
     landings.append(landing)
     if len(landings) > MOST_LANDINGS:
-        _make_room(landings)
+        _drop_oldest(landings)
     return True
 
 
-def _make_room(landings: list[Landing]) -> None:
+def _drop_oldest(landings: list[Landing]) -> None:
     """Again and again, at the height at which there are most, the oldest one goes."""
     heights = [round(one.down_m) for one in landings]
     counts = Counter(heights)

@@ -40,7 +40,7 @@ _BIN_M = 0.25
 
 @dataclass(frozen=True, slots=True)
 class Height:
-    """Somebody walked on the level here."""
+    """Height of a walk on the level."""
 
     down_m: float
     std_m: float
@@ -75,8 +75,8 @@ def levels_of(heights: Sequence[Height]) -> list[Level]:
 def number_levels(
     levels: Sequence[Level], ground: Height, said: Sequence[tuple[float, int]] = ()
 ) -> tuple[Storey, ...]:
-    """The building's storeys, lowest first: those walked on, those between and some beyond.
-    ``said``: down and the floor that a person says is there.
+    """Storeys of a building, lowest first: those walked on, those between and some beyond.
+    ``said``: reported heights (down) and floors.
     """
     known, at = _with_ground(levels, ground)
     numbers = {at: (0, 1.0)}
@@ -91,7 +91,7 @@ def number_levels(
 
 
 def _fits(numbers: Mapping[int, tuple[int, float]], row: int, floor: int) -> bool:
-    """Whether a number can be that of this level, beside those that are known."""
+    """True where a number can be that of a level, beside the known ones."""
     return row not in numbers and all(
         (floor - number) * (1 if row > other else -1) >= abs(row - other)
         for other, (number, _) in numbers.items()
@@ -99,7 +99,7 @@ def _fits(numbers: Mapping[int, tuple[int, float]], row: int, floor: int) -> boo
 
 
 def _mean(group: Sequence[Height]) -> tuple[float, float]:
-    """Of the heights, and what it weighs."""
+    """Weighted mean of heights, and its weight."""
     weights = [1.0 / (one.std_m**2 + LEVEL_STD_M**2) for one in group]
     total = sum(weights)
     return sum(w * one.down_m for w, one in zip(weights, group, strict=True)) / total, total
@@ -113,7 +113,9 @@ def _middle_m(group: Sequence[Height]) -> float:
 
 
 def _level(group: Sequence[Height]) -> Level:
-    """Known no better than whoever knew best: those who come back have the same error again."""
+    """Level of a group, no better known than by its best height: repeated visits have the same
+    error.
+    """
     best_m = min(one.std_m for one in group)
     weight = sum(1.0 / (one.std_m**2 + LEVEL_STD_M**2) for one in group)
     return Level(_middle_m(group), math.hypot(best_m, LEVEL_STD_M), weight)
@@ -135,7 +137,7 @@ def _apart(levels: list[Level]) -> list[Level]:
 
 
 def _with_ground(levels: Sequence[Level], ground: Height) -> tuple[list[Level], int]:
-    """The levels and which of them is the ground's; it is there whoever walked on it."""
+    """Levels with that of the ground, and its row; the ground exists in any case."""
     std_m = math.hypot(ground.std_m, LEVEL_STD_M)
     nearest = min(levels, key=lambda one: abs(one.down_m - ground.down_m), default=None)
     if nearest is not None and abs(nearest.down_m - ground.down_m) < GROUND_M:
@@ -165,9 +167,7 @@ def _between(
 
 
 def _gap_fits(levels: Sequence[Level], numbers: Mapping[int, tuple[int, float]]) -> list[Floats]:
-    """For each gap, how well each height of a storey (rows) and each number of storeys, from 1
-    on, fits it.
-    """
+    """Fit of each storey height (rows) and each number of storeys, from 1, for each gap."""
     counts = np.arange(1, _MOST_BETWEEN + 1)
     common_m2 = min(level.std_m**2 for level in levels)  # everybody's, from the ground
     fits: list[Floats] = []
@@ -241,7 +241,7 @@ def _rising(floors: list[tuple[int, float]]) -> list[tuple[int, float]]:
 def _filled(
     levels: Sequence[Level], floors: Sequence[tuple[int, float]], storey_m: float, std_m: float
 ) -> tuple[Storey, ...]:
-    """With the storeys that nobody has walked on yet."""
+    """Levels with the storeys on which no one has walked yet."""
     first, last = levels[0], levels[-1]
     storeys = [
         _expected(first, floors[0], -count, storey_m, std_m)

@@ -16,20 +16,21 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import Annotated, Any, TypeVar
+from itertools import pairwise
+from typing import Any
 
 import msgspec
 
-from base_station.site.storeys import Storey, floor_at, sureness
+from base_station.site.plan_features import Floor, Metres, read_feature, require_strict
+from base_station.site.storeys import Storey, floor_at, floor_probability
 from shared.errors import UserError
 
-LEAST_POINTS = 2  # of a line
-MOST_M = 100_000.0  # from the origin
-MOST_FLOORS = 1000  # above or below
 OUTLINE_HYSTERESIS_M = 1.5
+MOST_OUTLINE_POINTS = 1000  # looked at for every position: half a millisecond
+MOST_STAIRS = 1000
+MOST_WALLS_M = 200_000.0
 
 Ring = tuple[tuple[float, float], ...]  # (east_m, north_m)
-Read = TypeVar("Read")
 
 
 class Wall(msgspec.Struct, frozen=True, array_like=True):
@@ -43,21 +44,28 @@ class Stairs(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Plan(msgspec.Struct, frozen=True):
-    """What is left of a plan once it was understood; ``geojson`` is what the console draws."""
+    """Plan as read; ``geojson`` is the text that the console draws."""
 
     geojson: bytes
     storeys: tuple[Storey, ...]  # by height, lowest first
     outlines: tuple[Ring, ...]
     walls: tuple[Wall, ...] = ()
     stairs: tuple[Stairs, ...] = ()
+    damage: str = ""  # for a person: what of it cannot be read, and is left out
+    read_whole: bool = False  # each of its features was looked at: before, only some were
+
+    @property
+    def walls_m(self) -> float:
+        """Total length of the walls."""
+        return sum(math.dist(*ends) for one in self.walls for ends in pairwise(one.line))
 
     @property
     def storeys_down_m(self) -> tuple[float, ...]:
         return tuple(storey.down_m for storey in self.storeys)
 
-    def sureness(self, floor: int, down_m: float, std_down_m: float) -> float:
+    def floor_probability(self, floor: int, down_m: float, std_down_m: float) -> float:
         """The probability of a floor, of all that the plan has."""
-        return sureness(self.storeys, floor, down_m, std_down_m)
+        return floor_probability(self.storeys, floor, down_m, std_down_m)
 
     def floor_at(self, down_m: float, floor: int | None) -> int | None:
         """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""
@@ -80,31 +88,68 @@ class Plan(msgspec.Struct, frozen=True):
 
 
 def read_plan(geojson: bytes) -> Plan:
-    """Raises UserError, which says what a plan must look like."""
+    """Read a plan; raises UserError with the wrong feature and what is expected."""
+    plan, faults = _read_plan(geojson)
+    if faults:
+        raise UserError(faults[0])
+    return plan
+
+
+def salvage_plan(geojson: bytes) -> Plan:
+    """Read a plan accepted before; unreadable features are left out and listed in ``damage``."""
+    return _read_plan(geojson)[0]
+
+
+def _read_plan(geojson: bytes) -> tuple[Plan, list[str]]:
+    """With what is wrong with each feature that cannot be read."""
     document = _document(geojson)
     outlines: list[Ring] = []
     walls: list[Wall] = []
     stairs: list[Stairs] = []
-    features = _read(document.get("features", ()), list[_Feature], "feature")
-    for number, feature in enumerate(features):
-        about = feature.properties or {}
-        kind = about.get("kind")
-        if kind in _KINDS:
-            lines = _lines(feature, f"{kind} (feature {number})")
-            floor = _read(about.get("floor", 0), _Number, f"floor of a {kind} (feature {number})")
-            if kind == "outline":
-                outlines += lines
-            elif kind == "wall":
-                walls += [Wall(floor, line) for line in lines]
-            else:
-                stairs += [Stairs(floor, line) for line in lines]
-    return Plan(geojson, _storeys(document["muster"]), tuple(outlines), tuple(walls), tuple(stairs))
+    sound: list[msgspec.Raw] = []
+    faults: list[str] = []
+    for number, encoded in enumerate(document.features):
+        try:
+            feature = read_feature(number, encoded)
+        except UserError as error:
+            faults.append(str(error))
+            continue
+        if feature.is_typed:
+            sound.append(encoded)
+        else:
+            faults.append(f'the plan\'s {feature.name} does not say "type": "Feature"')
+        match feature.kind:
+            case "outline":
+                outlines += feature.lines()
+            case "wall":
+                walls += [Wall(feature.floor, line) for line in feature.lines()]
+            case "stairs":
+                stairs += [Stairs(feature.floor, line) for line in feature.lines()]
+    damage = _damage(faults)
+    plan = Plan(
+        _drawn(document, sound, damage) if faults else geojson,
+        _storeys(document.muster),
+        tuple(outlines),
+        tuple(walls),
+        tuple(stairs),
+        damage,
+        read_whole=True,
+    )
+    return plan, faults
 
 
-def require_floors(plan: Plan) -> None:
-    """UserError where walls or stairs are drawn on a floor whose height nobody says: nobody can be
-    known to be there, so nobody would heed them.
+def check_plan(geojson: bytes) -> Plan:
+    """Read a plan that is set now; refuses more than ``read_plan``.
+
+    Refused: walls or stairs on a floor without height, as no one can be placed there, and more
+    walls than the station can check for every position.
     """
+    plan = read_plan(geojson)
+    document = _document(geojson)
+    for number, encoded in enumerate(document.features):
+        require_strict(read_feature(number, encoded))
+    if not isinstance(document.muster.get("name", ""), str):
+        raise UserError('the plan\'s name must be a string: "name" of its member "muster"')
     listed = {storey.floor for storey in plan.storeys}
     drawn = {wall.floor for wall in plan.walls} | {one.floor for one in plan.stairs}
     if missing := sorted(drawn - listed):
@@ -112,46 +157,44 @@ def require_floors(plan: Plan) -> None:
             f"the plan has walls or stairs on floor {missing[0]} and says not how high that is: "
             f'"floors" of its member "muster" must list {{"floor": {missing[0]}, "down_m": ...}}'
         )
-
-
-_KINDS = ("outline", "wall", "stairs")
-
-
-_Number = Annotated[int, msgspec.Meta(ge=-MOST_FLOORS, le=MOST_FLOORS)]
-_Metres = Annotated[float, msgspec.Meta(ge=-MOST_M, le=MOST_M)]
+    points = sum(map(len, plan.outlines))
+    if points > MOST_OUTLINE_POINTS:
+        raise UserError(
+            f"the plan's outlines have {points} points: more than {MOST_OUTLINE_POINTS} are too "
+            "many to look at for every position; draw them with fewer"
+        )
+    if len(plan.stairs) > MOST_STAIRS:
+        raise UserError(f"the plan has {len(plan.stairs)} stairs: more than {MOST_STAIRS}")
+    if plan.walls_m > MOST_WALLS_M:
+        raise UserError(
+            f"the plan's walls are {plan.walls_m / 1000.0:.0f} km long: more than "
+            f"{MOST_WALLS_M / 1000.0:.0f} km are in no building"
+        )
+    return plan
 
 
 class _Floor(msgspec.Struct):
-    floor: _Number
-    down_m: _Metres
+    floor: Floor
+    down_m: Metres
 
 
-class _Geometry(msgspec.Struct):
-    type: str
-    coordinates: Any
+class _Document(msgspec.Struct):
+    type: Any = None
+    muster: Any = None
+    features: list[msgspec.Raw] = []
 
 
-class _Feature(msgspec.Struct):
-    properties: dict[str, Any] | None = None
-    geometry: Any = None  # only what the station uses is looked at
-
-
-def _read(value: object, kind: type[Read], what: str) -> Read:
+def _document(geojson: bytes) -> _Document:
     try:
-        return msgspec.convert(value, kind)
+        msgspec.json.decode(geojson, type=msgspec.Raw)
+        document = msgspec.json.decode(geojson, type=_Document)
     except msgspec.ValidationError as error:
-        raise UserError(f"the plan has a {what} that cannot be read: {error}") from error
-
-
-def _document(geojson: bytes) -> dict[str, Any]:
-    try:
-        document = msgspec.json.decode(geojson)
+        raise UserError(f"the plan is no GeoJSON FeatureCollection: {error}") from error
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UserError(f"the plan is no JSON: {error}") from error
-    if not isinstance(document, dict) or document.get("type") != "FeatureCollection":
+    if document.type != "FeatureCollection":
         raise UserError("the plan is no GeoJSON FeatureCollection")
-    site = document.get("muster")
-    if not isinstance(site, dict) or site.get("frame") != "site-m":
+    if not isinstance(document.muster, dict) or document.muster.get("frame") != "site-m":
         raise UserError(
             'the plan has no scale: its member "muster" must say {"frame": "site-m", ...}, and '
             "coordinates must be [east_m, north_m] in metres"
@@ -159,31 +202,34 @@ def _document(geojson: bytes) -> dict[str, Any]:
     return document
 
 
+def _drawn(document: _Document, features: list[msgspec.Raw], damage: str) -> bytes:
+    """GeoJSON of the readable features, for consoles, which show the faults beside it."""
+    muster = {**document.muster, "damage": damage}
+    return msgspec.json.encode(
+        {"type": "FeatureCollection", "muster": muster, "features": features}
+    )
+
+
+def _damage(faults: list[str]) -> str:
+    """Text of the faults for a person; empty without any."""
+    if not faults:
+        return ""
+    others = f"; {len(faults) - 1} more cannot either" if len(faults) > 1 else ""
+    return f"The plan is damaged and not shown whole: {faults[0]}{others}. Lay a sound plan"
+
+
 def _storeys(site: dict[str, Any]) -> tuple[Storey, ...]:
     """Lowest first."""
-    listed = _read(site.get("floors", ()), list[_Floor], "list of floors")
+    try:
+        listed = msgspec.convert(site.get("floors", ()), list[_Floor])
+    except msgspec.ValidationError as error:
+        raise UserError(f"the plan has a list of floors that cannot be read: {error}") from error
     numbers = Counter(one.floor for one in listed)
     twice = [floor for floor, count in numbers.items() if count > 1]
     if twice:
         raise UserError(f"the plan lists floor {twice[0]} more than once")
     lowest_first = sorted(listed, key=lambda one: -one.down_m)
     return tuple(Storey(one.floor, one.down_m) for one in lowest_first)
-
-
-def _lines(feature: _Feature, what: str) -> list[Ring]:
-    """The points of each of its lines, or of its polygons' outer rings; a height beside a point is
-    left.
-    """
-    geometry = _read(feature.geometry, _Geometry, what)
-    is_multi = geometry.type.startswith("Multi")
-    parts = _read(geometry.coordinates, list[Any], what) if is_multi else [geometry.coordinates]
-    if not geometry.type.endswith("LineString"):
-        parts = [part[0] if isinstance(part, list) and part else part for part in parts]
-    lines = [_read(part, list[tuple[_Metres, ...]], what) for part in parts]
-    points = [point for line in lines for point in line]
-    if min(map(len, lines), default=0) < LEAST_POINTS or any(len(point) < 2 for point in points):
-        raise UserError(f"the plan's {what} has fewer than two points [east_m, north_m]")
-    return [tuple((point[0], point[1]) for point in line) for line in lines]
 
 
 def _depth_m(ring: Ring, x_m: float, y_m: float) -> float:

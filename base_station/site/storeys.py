@@ -1,4 +1,4 @@
-"""Which storey somebody is on, by height: those of a plan, or those that were learnt."""
+"""Storey of a person by height, among the storeys of a plan or learnt ones."""
 
 from __future__ import annotations
 
@@ -33,29 +33,31 @@ class Storey(msgspec.Struct, frozen=True, cache_hash=True):
 
 
 def floor_at(storeys: tuple[Storey, ...], down_m: float, floor: int | None) -> int | None:
-    """The nearest storey's number, staying on ``floor`` until another is clearly nearer."""
+    """Number of the nearest storey; ``floor`` is kept until another is clearly nearer."""
     if not storeys:
         return None
     row = _nearest(_table(storeys), down_m, math.nan if floor is None else floor)
     return floor if row < 0 else storeys[row].floor
 
 
-def sureness(storeys: tuple[Storey, ...], floor: int, down_m: float, std_down_m: float) -> float:
-    """The probability of a floor, of all the storeys that there are; 0 of one that is not."""
-    sure: float = _sureness(_table(storeys), floor, down_m, std_down_m)
+def floor_probability(
+    storeys: tuple[Storey, ...], floor: int, down_m: float, std_down_m: float
+) -> float:
+    """Probability of a floor among all storeys; 0 of one that does not exist."""
+    sure: float = _floor_probability(_table(storeys), floor, down_m, std_down_m)
     return sure
 
 
 @lru_cache
 def _table(storeys: tuple[Storey, ...]) -> Floats:
-    """Number, height, its variance, and how sure the number is; a row each."""
+    """Rows of number, height, its variance, and probability of the number."""
     rows = [(one.floor, one.down_m, one.std_m * one.std_m, one.numbered) for one in storeys]
     return np.array(rows).reshape(-1, 4)
 
 
 @_compiled(int64(_TABLE, float64, float64))
 def _nearest(storeys: Floats, down_m: float, held: float) -> int:
-    """Its row; -1: the one that was held is."""
+    """Row of the nearest storey; -1: the held one stays."""
     nearest, nearest_m, held_m = 0, math.inf, math.inf
     for row in range(len(storeys)):
         apart_m = abs(storeys[row, 1] - down_m)
@@ -67,7 +69,7 @@ def _nearest(storeys: Floats, down_m: float, held: float) -> int:
 
 
 @_compiled(float64(_TABLE, float64, float64, float64))
-def _sureness(storeys: Floats, floor: float, down_m: float, std_down_m: float) -> float:
+def _floor_probability(storeys: Floats, floor: float, down_m: float, std_down_m: float) -> float:
     own_var_m2 = std_down_m * std_down_m + FLOOR_STD_M * FLOOR_STD_M
     least, total, found = math.inf, 0.0, 0.0
     for row in range(len(storeys)):
@@ -86,5 +88,5 @@ def _sureness(storeys: Floats, floor: float, down_m: float, std_down_m: float) -
 
 
 def storey_of(storeys: Sequence[Storey], floor: int | None) -> Storey | None:
-    """The one with this number, where it is more than to be expected."""
+    """Storey of this number, if it is on the plan or was walked on."""
     return next((one for one in storeys if one.floor == floor and one.seen), None)

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from base_station.standby.places import BEGINNING, Place
-from base_station.standby.words import Beat, Role
+from base_station.core.log_position import START, LogPosition
+from base_station.standby.protocol import PeerHeartbeat, Role
 from shared.clock import NS_PER_S
 
 Decision = Literal["stay", "follow", "lead", "step back"]
@@ -23,14 +23,14 @@ _OPENING_NS = NS_PER_S  # that a router listens to nobody when it opens again
 _WITNESS_NS = NS_PER_S  # a cable that is whole again may bring a unit's word before the station's
 
 
-class Me(NamedTuple):
+class LocalStatus(NamedTuple):
     """How this station stands at the moment."""
 
     station: str
     preferred: bool
     term: int  # of the last take-over in its log
-    place: Place
-    stepped: Place  # its disk may have less of the other one's log
+    place: LogPosition
+    stepped: LogPosition  # its disk may have less of the other one's log
     units: int  # that are linked with either router, as far as it knows
     unit_heard_ns: int  # when a unit last said anything; monotonic
     other_listens: bool = False  # the other one's router takes connections
@@ -42,7 +42,7 @@ class Election:
     def __init__(self, lease_ns: int, now_ns: int) -> None:
         self._lease_ns = lease_ns
         self._since_ns = now_ns  # waits to hear of another one
-        self._other: Beat | None = None
+        self._other: PeerHeartbeat | None = None
         self._heard_ns = 0
         self._token_there = False
         self._listened_ns: int | None = None  # when the other one's router last did
@@ -51,16 +51,16 @@ class Election:
         self.role: Role = "waiting"
 
     @property
-    def other(self) -> Beat | None:
+    def other(self) -> PeerHeartbeat | None:
         """What the other station said last, however long ago."""
         return self._other
 
     @property
-    def nobody_can_tell(self) -> bool:
+    def is_undecided(self) -> bool:
         """Which of the two is cut off: the other one had no units."""
         return self._other is not None and self._other.units == 0
 
-    def hear(self, beat: Beat, now_ns: int) -> None:
+    def hear(self, beat: PeerHeartbeat, now_ns: int) -> None:
         self._other, self._heard_ns = beat, now_ns
         self._token_there = True
         self._witness_ns = None
@@ -81,13 +81,13 @@ class Election:
         alone = self.role == "standby" and not self.is_there(now_ns)
         return alone and not self._has_witness(now_ns)
 
-    def decide(self, me: Me, now_ns: int) -> Decision:
+    def decide(self, me: LocalStatus, now_ns: int) -> Decision:
         self._note_witness(me, now_ns)
         if me.other_listens:
             self._listened_ns = now_ns
         self.lacks_log = (
             self._other is not None
-            and Place(*self._other.place).t_ns - me.stepped.t_ns > _LACKING_NS
+            and LogPosition(*self._other.place).t_ns - me.stepped.t_ns > _LACKING_NS
         )
         other = self._other if self.is_there(now_ns) else None
         if self.role == "active":
@@ -99,24 +99,24 @@ class Election:
             return "stay" if self.role == "standby" else "follow"
         return "lead" if _rank_of(me) > _rank(other) else "stay"
 
-    def _alone(self, me: Me, now_ns: int) -> Decision:
+    def _alone(self, me: LocalStatus, now_ns: int) -> Decision:
         if self.role == "standby":
             goes = self._has_witness(now_ns) and not self._is_awaited(now_ns)
             return "lead" if goes else "stay"
-        if me.place == BEGINNING and not me.preferred:
+        if me.place == START and not me.preferred:
             return "stay"  # made to follow: a log of its own would keep it from that for ever
         leases = 1 if me.preferred else 2
         if me.other_listens:  # it may lead, and the two routers have not linked yet
             leases = _GREETING_LEASES
         return "lead" if now_ns - self._since_ns >= leases * self._lease_ns else "stay"
 
-    def _note_witness(self, me: Me, now_ns: int) -> None:
+    def _note_witness(self, me: LocalStatus, now_ns: int) -> None:
         if self._witness_ns is None and me.unit_heard_ns > self._heard_ns + _ON_THE_WAY_NS:
             self._witness_ns = now_ns
 
     def _has_witness(self, now_ns: int) -> bool:
         """Whether it is the other station that is gone, and not this one."""
-        if self.nobody_can_tell:
+        if self.is_undecided:
             return True
         return self._witness_ns is not None and now_ns - self._witness_ns >= _WITNESS_NS
 
@@ -127,26 +127,26 @@ class Election:
         silent_ns = now_ns - self._heard_ns
         if self.lacks_log and silent_ns < LACKING_LEASES * self._lease_ns:
             return True
-        if not self.nobody_can_tell:
+        if not self.is_undecided:
             return False
         listened_ns = self._listened_ns
         listens = listened_ns is not None and now_ns - listened_ns < _OPENING_NS
         return silent_ns < (_GREETING_LEASES if listens else 1) * self._lease_ns
 
 
-def _claim(beat: Beat) -> tuple[int, bool, str]:
+def _claim(beat: PeerHeartbeat) -> tuple[int, bool, str]:
     """Of two that lead, the later take-over stays."""
     return beat.term, beat.preferred, beat.station
 
 
-def _claim_of(me: Me) -> tuple[int, bool, str]:
+def _claim_of(me: LocalStatus) -> tuple[int, bool, str]:
     return me.term, me.preferred, me.station
 
 
-def _rank(beat: Beat) -> tuple[int, Place, bool, str]:
+def _rank(beat: PeerHeartbeat) -> tuple[int, LogPosition, bool, str]:
     """Of two that do not lead, whoever has more of the log begins."""
-    return beat.term, Place(*beat.place), beat.preferred, beat.station
+    return beat.term, LogPosition(*beat.place), beat.preferred, beat.station
 
 
-def _rank_of(me: Me) -> tuple[int, Place, bool, str]:
+def _rank_of(me: LocalStatus) -> tuple[int, LogPosition, bool, str]:
     return me.term, me.place, me.preferred, me.station

@@ -6,8 +6,8 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from threading import Condition
 
-from base_station.live.drive_ports import Log
-from base_station.standby.places import BEGINNING, Place, Record, is_event
+from base_station.core.log_position import START, LogPosition, Record, is_event
+from base_station.engine.ports import Log
 from shared.channels import OPERATOR
 from shared.clock import Clock
 from shared.codec import decode
@@ -32,16 +32,16 @@ class SharedLog:
         self.follows = False  # it is to be the same as another station's
         self.is_cut_short = False  # and is not, until this station starts again
         self._news = Condition()
-        self._first: Place = BEGINNING  # what is at hand begins behind it
-        self._places: list[Place] = []
+        self._first: LogPosition = START  # what is at hand begins behind it
+        self._places: list[LogPosition] = []
         self._recent: list[Record] = []
         self._bytes = 0
-        self._durable = BEGINNING
-        self._offered = BEGINNING
+        self._durable = START
+        self._offered = START
         self._take_overs: list[TakeOver] = []
         self._log_id = 0
 
-    def begin(self, place: Place, log_id: int, take_overs: Sequence[TakeOver]) -> None:
+    def begin(self, place: LogPosition, log_id: int, take_overs: Sequence[TakeOver]) -> None:
         """Before anything is written: what the log says so far."""
         self._first = self._durable = self._offered = place
         self._log_id = log_id
@@ -69,7 +69,7 @@ class SharedLog:
         with self._news:  # in one order here and there
             kept = not self.is_cut_short and self._log.write(t_ns, key, payload)
             if is_event(key):
-                self._offered = self._offered.then(t_ns)
+                self._offered = self._offered.next(t_ns)
                 self._news.notify_all()
             if kept:
                 self.written_ns = self._clock.monotonic_ns()
@@ -91,18 +91,18 @@ class SharedLog:
     # ---- for two stations
 
     @property
-    def place(self) -> Place:
+    def place(self) -> LogPosition:
         """Behind the last event written."""
         with self._news:
             return self._place()
 
     @property
-    def offered(self) -> Place:
+    def offered(self) -> LogPosition:
         """Behind the last event that was to be written, whether or not the disk took it."""
         return self._offered
 
     @property
-    def durable(self) -> Place:
+    def durable(self) -> LogPosition:
         """Up to here it is on the disk."""
         return self._durable
 
@@ -120,21 +120,21 @@ class SharedLog:
         with self._news:
             return self._take_overs[-1].term if self._take_overs else 0
 
-    def wait_beyond(self, place: Place, timeout_s: float) -> bool:
+    def wait_beyond(self, place: LogPosition, timeout_s: float) -> bool:
         """Until something is written behind ``place``."""
         with self._news:
             return self._news.wait_for(lambda: self._place() > place, timeout_s)
 
-    def wait_reached(self, place: Place, timeout_s: float) -> bool:
+    def wait_reached(self, place: LogPosition, timeout_s: float) -> bool:
         with self._news:
             return self._news.wait_for(lambda: self._place() >= place, timeout_s)
 
-    def wait_offered(self, place: Place, timeout_s: float) -> bool:
+    def wait_offered(self, place: LogPosition, timeout_s: float) -> bool:
         """As ``wait_reached``, though the log has a hole or ends before."""
         with self._news:
             return self._news.wait_for(lambda: self._offered >= place, timeout_s)
 
-    def behind(self, place: Place, most_bytes: int) -> list[Record] | None:
+    def behind(self, place: LogPosition, most_bytes: int) -> list[Record] | None:
         """The events behind ``place``, as many as that; None: they are no longer at hand."""
         with self._news:
             if place < self._first:
@@ -147,12 +147,12 @@ class SharedLog:
                     break
             return found
 
-    def _place(self) -> Place:
+    def _place(self) -> LogPosition:
         return self._places[-1] if self._places else self._first
 
     def _note(self, t_ns: int, key: str, payload: bytes) -> None:
         self._log_id = self._log_id or t_ns
-        self._places.append(self._place().then(t_ns))
+        self._places.append(self._place().next(t_ns))
         self._recent.append((t_ns, key, payload))
         self._bytes += len(payload)
         if self._bytes > 2 * _RECENT_BYTES:

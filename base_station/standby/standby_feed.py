@@ -6,8 +6,8 @@ from collections import deque
 from collections.abc import Sequence
 from threading import Condition
 
-from base_station.feed import LiveFeed
-from base_station.standby.places import Record
+from base_station.core.log_position import Record
+from base_station.engine.feed import LiveFeed
 from shared.channels import Direction, backfilled_key, is_backfilled, parse_key
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UnknownChannelError

@@ -14,19 +14,19 @@ from threading import Event
 
 import msgspec
 
-from base_station.db.replicated_tables import ReplicatedRows, ReplicatedTables, Row
-from base_station.forgetting.forgetter import BY_OTHER_STATION
-from base_station.pki.folder import PkiFolder
-from base_station.pki.registry import Registry
-from base_station.standby.asking import Answers, ask
-from base_station.standby.words import pack, unpack
+from base_station.privacy.erasure_service import BY_OTHER_STATION
+from base_station.security.pki.folder import PkiFolder
+from base_station.security.pki.registry import Registry
+from base_station.standby.protocol import pack, unpack
+from base_station.standby.rpc import RpcServer, ask
+from base_station.storage.db.replicated_tables import ReplicatedRows, ReplicatedTables, Row
 from shared.bus import Bus
 
 _AUDIT_ENTRIES = 500
-_FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.forgetting.forgetter says it
+_FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.privacy.erasure_service says it
 
 
-class TableServer(Answers):
+class TableServer(RpcServer):
     """Serves ``tables/`` all, photo, base-map, audit and enrolled."""
 
     def __init__(self, station: str, bus: Bus, tables: ReplicatedTables, pki: PkiFolder) -> None:

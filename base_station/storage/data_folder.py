@@ -9,7 +9,8 @@ from pathlib import Path
 from base_station.storage.recorder import LOG_FOLDER
 from shared.errors import LogError, StoreError
 from shared.folder_lock import FolderLock
-from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, segment_paths
+from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, own_segments
+from shared.own_files import refuse_links
 
 
 class DataFolder:
@@ -24,9 +25,10 @@ class DataFolder:
         self.first_login = path / "first-login.txt"
 
     def require(self) -> None:
-        """LogError where there is nothing to read."""
+        """LogError where there is nothing to read, LinkRefusedError where links lead out."""
         if not self.log.is_dir():
             raise LogError(f"there is no station's log in {self.path}; give the folder with --data")
+        refuse_links(self.path)
 
     def require_database(self) -> Path:
         """StoreError where no station has ever run here."""
@@ -35,6 +37,7 @@ class DataFolder:
                 f"there is no station's database in {self.path}; give the folder with --data, or "
                 "start the station there once"
             )
+        refuse_links(self.path)
         return self.database
 
     def segments(self) -> Iterator[SegmentInfo]:
@@ -43,7 +46,7 @@ class DataFolder:
         Raises LogError when one is taken away meanwhile.
         """
         is_written = FolderLock.is_held(self.path)
-        paths = segment_paths(self.log)
+        paths, _ = own_segments(self.log)
         for path in paths:
             with SegmentReader(path) as reader:
                 info = reader.info()

@@ -6,14 +6,16 @@ not be lost (alarms, actions, alerts) is waited for.
 
 from __future__ import annotations
 
+import errno
 import logging
 import shutil
 import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
-from threading import Condition, Lock, RLock, Thread
+from threading import Condition, Lock, RLock
 
 from shared.channels import OPERATOR, Qos, parse_key
 from shared.clock import NS_PER_S, Clock
@@ -26,9 +28,10 @@ from shared.mcap_log import (
     SegmentPolicy,
     SegmentReader,
     SegmentWriter,
+    own_segments,
     recover_log,
-    segment_paths,
 )
+from shared.worker import Worker
 
 logger = logging.getLogger(__name__)
 
@@ -43,6 +46,8 @@ _LITTLE_FREE_BYTES = 1_000_000_000
 _RECORD_BYTES = 200  # that a record takes in memory beside the bytes of its key and payload
 _ALERTS_SHARE = 1.25  # of what may wait for the disk, until alerts are refused
 _ACTIONS_SHARE = 1.5  # and what people do
+_TAKES_NOTHING = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)  # of a full disk, or a
+# failed one that the system has made read-only
 
 SegmentHandler = Callable[[SegmentInfo, str], None]  # a segment, and what recovery said of it
 
@@ -55,6 +60,23 @@ def _share_of(key: str) -> float:
     if channel is OPERATOR:
         return _ACTIONS_SHARE
     return _ALERTS_SHARE if channel.qos is Qos.ALERT else 1.0
+
+
+def _mended(folder: Path) -> tuple[Recovery, ...]:
+    """A disk that takes nothing keeps no station from its start: what is torn can be read all the
+    same, and is mended at a start when there is room.  Raises LogError.
+    """
+    try:
+        return tuple(recover_log(folder))
+    except LogError as error:
+        if getattr(error.__cause__, "errno", None) not in _TAKES_NOTHING:
+            raise
+        logger.warning("%s", error)
+        return ()
+
+
+def _clock_time(t_ns: int) -> str:
+    return f"{datetime.fromtimestamp(t_ns // NS_PER_S, UTC):%H:%M:%S}"
 
 
 def _ignore(_: SegmentInfo, __: str) -> None:
@@ -90,7 +112,7 @@ class Recorder:
         self.folder = data / LOG_FOLDER
         self._lock = FolderLock(data)
         try:
-            self.recoveries: tuple[Recovery, ...] = tuple(recover_log(self.folder))
+            self.recoveries: tuple[Recovery, ...] = _mended(self.folder)
             self._segments = self._look_up_segments()
             # What is taken is kept: this recorder refuses, so that the writer never has to.
             patient = replace(policy, waiting_bytes_max=sys.maxsize)
@@ -107,14 +129,16 @@ class Recorder:
         self._on_disk = 0
         self._flushes_asked = 0
         self._flushes_done = 0
-        self._closing = False
         self._ending = False  # behind what is in the queue the segment is complete
         self._refused = 0
+        self._refused_from_ns = self._refused_until_ns = 0
         self._failure = ""
-        self._turned_ns = clock.monotonic_ns()
+        self._turned_ns = self._received_ns = self._looked_ns = clock.monotonic_ns()
+        self._last_t_ns = 0  # log time of the last record
+        self._taken = 0
         self._disk_free_bytes = shutil.disk_usage(self.folder).free
-        self._thread = Thread(target=self._run, name="recorder", daemon=True)
-        self._thread.start()
+        self._worker = Worker("recorder", self._step, "nothing is logged", at_end=self._end)
+        self._worker.start()
 
     # ---- from any thread
 
@@ -126,7 +150,7 @@ class Recorder:
         """
         with self._taking:  # the condition's own lock, without what a condition costs
             if self.refuses and not self._has_room_for(key):
-                self._refused += 1
+                self._note_refused(t_ns)
                 return False
             self._queue.append((t_ns, key, payload))
             self._queued_bytes += len(payload) + len(key) + _RECORD_BYTES
@@ -140,12 +164,16 @@ class Recorder:
         with self._news:
             self._flushes_asked += 1
             mine = self._flushes_asked
-            self._news.notify_all()
+            self._worker.wake()
             done = self._news.wait_for(
                 lambda: self._flushes_done >= mine or bool(self._failure),
                 _HUNG_WAIT_S if self.hangs else _LONGEST_WAIT_S,
             )
         return done and not self._failure and not self._writer.problem
+
+    def number_after(self, number: int) -> None:
+        """The next segment's number is higher: the log had one of this number, which is gone."""
+        self._writer.number_after(number)
 
     def complete_segments(self) -> tuple[Path, ...]:
         """End the open segment and go on in another; all that are complete, in order.
@@ -172,7 +200,10 @@ class Recorder:
             return self._failure
         missing = ""
         if self.lost:  # said until the station starts anew
-            missing = f"the disk did not keep up: {self.lost} records are missing in the log"
+            missing = (
+                f"the disk did not keep up: {self.lost} records are missing in the log, from "
+                f"{_clock_time(self._refused_from_ns)} to {_clock_time(self._refused_until_ns)} UTC"
+            )
         hangs = f"{self.folder} cannot be written: its disk does not answer; check it"
         problems = (missing, hangs if self.hangs else self._writer.problem)
         return "; ".join(filter(None, problems))
@@ -246,15 +277,18 @@ class Recorder:
 
     def close(self) -> None:
         """Write what is left, end the segment in order, and let go of the folder."""
-        with self._news:
-            self._closing = True
-            self._news.notify_all()
-        self._thread.join()
+        self._worker.close()
         self._lock.close()
 
     @property
     def _waiting_bytes(self) -> int:
         return self._queued_bytes + self._unwritten_bytes
+
+    def _note_refused(self, t_ns: int) -> None:
+        if not self._refused:
+            self._refused_from_ns = t_ns
+        self._refused += 1
+        self._refused_until_ns = max(t_ns, self._refused_until_ns)
 
     def _has_room_for(self, key: str) -> bool:
         """Though there is none for everything."""
@@ -268,56 +302,60 @@ class Recorder:
 
     # ---- in the thread
 
-    def _run(self) -> None:
+    def _step(self) -> float:
+        """Take a turn; a recorder that failed stops, for what it logged behind a gap would not be
+        what happened.
+        """
         try:
             self._record()
         except Exception as error:
             logger.exception("the recorder stopped")
             self._failure = f"the recorder stopped and nothing is logged ({error!r}): restart it"
+            self._worker.stop()
             with self._news:
                 self._news.notify_all()
+        return 0.0 if self._flushes_asked > self._flushes_done else _TURN_S
+
+    def _end(self) -> None:
+        """Write what came since the last turn, and close the log."""
+        if not self._failure:
+            self._step()
+        if not self._failure:
+            self._writer.close()
 
     def _record(self) -> None:
-        last_t_ns = taken = 0
-        seen_ns = looked_ns = self._clock.monotonic_ns()
-        closing = False
-        while not closing:
-            records, flushes, ending, closing = self._take()
-            now_ns = self._turned_ns = self._clock.monotonic_ns()
-            for t_ns, key, payload in records:
-                self._writer.add(t_ns, key, payload)
-                last_t_ns, seen_ns = t_ns, now_ns
-            taken += len(records)
-            if ending:
-                self._writer.end_segment()
-                self._tell_flushed(flushes)
-            elif flushes > self._flushes_done:
-                self._writer.flush()
-                self._tell_flushed(flushes)
-            else:  # log time goes on although nothing comes
-                self._writer.advance(last_t_ns + now_ns - seen_ns)
-            self._unwritten_bytes = self._writer.waiting_bytes if self._writer.problem else 0
-            if self._writer.is_on_disk:
-                self._on_disk = taken
-            if now_ns - looked_ns >= _LOOK_AT_DISK_EVERY_NS:
-                looked_ns = now_ns
-                with suppress(OSError):  # of a disk that fails, what is written tells
-                    self._disk_free_bytes = shutil.disk_usage(self.folder).free
-        self._writer.close()
+        records, flushes, ending = self._take()
+        now_ns = self._turned_ns = self._clock.monotonic_ns()
+        for t_ns, key, payload in records:
+            self._writer.add(t_ns, key, payload)
+            self._last_t_ns, self._received_ns = t_ns, now_ns
+        self._taken += len(records)
+        if ending:
+            self._writer.end_segment()
+            self._tell_flushed(flushes)
+        elif flushes > self._flushes_done:
+            self._writer.flush()
+            self._tell_flushed(flushes)
+        else:  # log time goes on although nothing comes
+            self._writer.advance(self._last_t_ns + now_ns - self._received_ns)
+        self._unwritten_bytes = self._writer.waiting_bytes if self._writer.problem else 0
+        if self._writer.is_on_disk:
+            self._on_disk = self._taken
+        if now_ns - self._looked_ns >= _LOOK_AT_DISK_EVERY_NS:
+            self._looked_ns = now_ns
+            with suppress(OSError):  # of a disk that fails, what is written tells
+                self._disk_free_bytes = shutil.disk_usage(self.folder).free
 
-    def _take(self) -> tuple[list[LogRecord], int, bool, bool]:
-        """What came, up to which flush was asked for, whether a segment ends behind it, and
-        whether it is the last.
+    def _take(self) -> tuple[list[LogRecord], int, bool]:
+        """Return what came, up to which flush was asked for, and whether a segment ends behind
+        it.
         """
         with self._news:
-            self._news.wait_for(
-                lambda: self._flushes_asked > self._flushes_done or self._closing, _TURN_S
-            )
             records, self._queue = self._queue, []
             self._unwritten_bytes += self._queued_bytes
             self._queued_bytes = 0
             ending, self._ending = self._ending, False
-            return records, self._flushes_asked, ending, self._closing
+            return records, self._flushes_asked, ending
 
     def _tell_flushed(self, flushes: int) -> None:
         with self._news:
@@ -338,7 +376,8 @@ class Recorder:
     def _look_up_segments(self) -> tuple[SegmentInfo, ...]:
         notes = {recovery.path: str(recovery) for recovery in self.recoveries}
         segments = []
-        for path in segment_paths(self.folder):
+        own, self.foreign = own_segments(self.folder)
+        for path in own:
             with SegmentReader(path) as reader:
                 segments.append(reader.info())
             self._tell(segments[-1], notes.get(path, ""))

@@ -3,40 +3,64 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 
-from base_station.db.models import LogSegment
-from base_station.db.records import Records
-from base_station.program.recurring_trouble import RecurringTrouble
+from base_station.storage.db.models import LogSegment
+from base_station.storage.db.records import Records
+from base_station.storage.missing_segments import KnownSegment
+from shared.log_on_change import LogOnChange
 from shared.mcap_log import SegmentInfo
 
 _log = logging.getLogger(__name__)
 
 
 class SegmentIndex:
-    def __init__(self, records: Records, notes: Mapping[Path, str]) -> None:
-        """``notes``: what recovery had to say of segments."""
+    def __init__(
+        self,
+        records: Records,
+        notes: Mapping[Path, str],
+        lacking: Callable[[], Collection[str]] = tuple,
+    ) -> None:
+        """``notes``: what recovery had to say of segments.  ``lacking`` names those of which
+        something is gone: the table goes on telling what was in them.
+        """
         self._records = records
         self._notes = notes
-        self._trouble = RecurringTrouble(_log, "the list of log segments is not up to date")
+        self._lacking = lacking
+        self._trouble = LogOnChange(_log, "the list of log segments is not up to date")
         self._written: dict[Path, SegmentInfo] = {}
 
     def update(self, segments: Iterable[SegmentInfo]) -> None:
         """Write what has changed; where the store does not take it, next time again."""
-        changed = [one for one in segments if self._written.get(one.path) != one]
+        lacking = self._lacking()
+        changed = [
+            one
+            for one in segments
+            if one.path.name not in lacking and self._written.get(one.path) != one
+        ]
         if not changed:
             return
         with self._trouble:
-            self._records.put_segments(map(self._row, changed))
+            self._records.put_segments(
+                segment_row(one, self._notes.get(one.path, "")) for one in changed
+            )
             self._written |= {one.path: one for one in changed}
 
-    def _row(self, segment: SegmentInfo) -> LogSegment:
-        return LogSegment(
-            name=segment.path.name,
-            first_ns=segment.start_ns,
-            last_ns=segment.end_ns,
-            messages=segment.messages,
-            size_bytes=segment.size_bytes,
-            note=self._notes.get(segment.path, ""),
-        )
+
+def segment_row(segment: SegmentInfo, note: str = "") -> LogSegment:
+    return LogSegment(
+        name=segment.path.name,
+        first_ns=segment.start_ns,
+        last_ns=segment.end_ns,
+        messages=segment.messages,
+        size_bytes=segment.size_bytes,
+        note=note,
+    )
+
+
+def known_segments_of(records: Records) -> list[KnownSegment]:
+    return [
+        KnownSegment(one.name, one.first_ns, one.last_ns, one.messages)
+        for one in records.segments()
+    ]

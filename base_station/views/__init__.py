@@ -1,1 +1,1 @@
-"""What a console is shown: the structs, and how the live state fills them."""
+"""Structs of what a console shows, and their making from the live state."""

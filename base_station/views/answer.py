@@ -1,4 +1,4 @@
-"""What the station shows and the API answers with: written once, as a struct."""
+"""Base of the structs that the console is shown and the API answers with."""
 
 from __future__ import annotations
 

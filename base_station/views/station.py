@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import msgspec
 
-from base_station.accountability import warning_s
-from base_station.commands.state import Delivery, SentCommand
-from base_station.db.models import Alarm as StoredAlarm
-from base_station.journals.losses import unkept_problem
-from base_station.live.sinks import PhotoUrls
-from base_station.live_state import Alarm, Incident, StationState
-from base_station.pins.evidence import at_of
-from base_station.pins.pin import WAITING, Pin
+from base_station.core.accountability import warning_s
+from base_station.core.pins.evidence import location_of
+from base_station.core.state import Alarm, Incident, StationState
+from base_station.core.state.command import Delivery, SentCommand
+from base_station.core.state.pin import WAITING, Pin
+from base_station.core.units.unkept_messages import unkept_problem
+from base_station.storage.db.models import Alarm as StoredAlarm
 from base_station.views.answer import to_ms, to_ms_or_none
-from base_station.views.units import unit_views
+from base_station.views.units import PhotoUrls, unit_views
 from base_station.views.wire import (
     AlarmView,
     AnchorView,
@@ -35,7 +34,7 @@ RESOLVED_SHOWN = 20
 
 
 class StationFacts(msgspec.Struct, frozen=True):
-    """What the drive knows of the station's surroundings, for health."""
+    """Facts of the station's surroundings that the engine adds, for health."""
 
     problems: tuple[str, ...] = ()  # beside those in the live state
     log_bytes: int = 0
@@ -75,6 +74,7 @@ def command_view(command: SentCommand) -> CommandView:
         asks_wearer=command.asks_wearer,
         open=command.is_open,
         units=tuple(_delivery_view(command, one) for one in command.deliveries.values()),
+        incident_id=command.incident_id,
     )
 
 
@@ -87,6 +87,7 @@ def _delivery_view(command: SentCommand, delivery: Delivery) -> DeliveryView:
         acknowledged_ms=to_ms_or_none(delivery.acknowledged_ns),
         acknowledged_by=delivery.acknowledged_by,
         reason=delivery.reason,
+        acknowledged_via=delivery.acknowledged_via,
     )
 
 
@@ -109,7 +110,7 @@ def pin_views(state: StationState) -> tuple[PinView, ...]:
 
 def _pin_view(state: StationState, pin: Pin) -> PinView:
     verdict = state.pin_verdicts.get(pin.pin_id, WAITING)
-    at = at_of(state, pin)
+    at = location_of(state, pin)
     return PinView(
         pin_id=pin.pin_id,
         kind=pin.kind,
@@ -151,15 +152,17 @@ def beacon_views(state: StationState) -> tuple[BeaconView, ...]:
 def health_view(state: StationState, facts: StationFacts) -> HealthView:
     counts = state.counts
     problems = [*state.problems.values(), *facts.problems]
+    if state.plan is not None and state.plan.damage:
+        problems.append(state.plan.damage)
     if unkept := unkept_problem(state):
         problems.append(unkept)
     if counts.undecodable:
         problems.append(
             f"{counts.undecodable} messages could not be read; last {counts.last_undecodable}"
         )
-    if counts.units_left_out:
+    if counts.unregistered_dropped:
         problems.append(
-            f"{counts.units_left_out} messages of more unregistered units than are shown"
+            f"{counts.unregistered_dropped} messages of more unregistered units than are shown"
         )
     return HealthView(
         problems=tuple(problems),

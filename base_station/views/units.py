@@ -3,28 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
-from base_station.assessment.trust import conflicts_of, trust_of
-from base_station.live.sinks import PhotoUrls
-from base_station.live_state import Alarm, Duty, Person, StationState, UnitState
+from base_station.core.state import Alarm, Person, StationState, UnitState
+from base_station.core.state.duty import Duty
+from base_station.core.trust.trust import conflicts_of, trust_of
+from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.plan import Ring
-from base_station.site.roaming import RADII_95, roamed_m
-from base_station.views.answer import to_ms_or_none
+from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.wire import (
     ClockView,
     DutyView,
     PersonView,
     PositionView,
+    SensorTemperatureView,
     StatusView,
     TrustView,
     UnitView,
 )
 from shared.clock import NS_PER_MS, NS_PER_S
-from shared.messages import Activity, FusedPosition, Heartbeat, Status
+from shared.messages import (
+    Activity,
+    BatteryState,
+    FusedPosition,
+    Heartbeat,
+    SensorTemperature,
+    Status,
+)
 from shared.quality import Quality
 
+PhotoUrls = Callable[[str], str | None]  # person id -> where the console finds the photo
+
 _ACTIVITY_WORDS = tuple(activity.name.lower() for activity in Activity)  # by number
+_BATTERY_WORDS = tuple(state.name.lower() for state in BatteryState)
 _QUALITY_WORDS = tuple(quality.name.lower() for quality in Quality)
 _GREEN = TrustView("green", "")
 
@@ -75,13 +86,15 @@ def _unit_view(
         round(unit.heat_dose, 2),
         _position_view(state, unit.fused, unit.reach) if unit.fused else None,
         to_ms_or_none(unit.inside_since_ns),
-        _duty_view(unit.duty) if unit.duty else None,
+        _duty_view(state, unit, unit.duty) if unit.duty else None,
         tuple([alarm.alarm_id for alarm in open_alarms]),
         TrustView(trust.level, trust.reason) if trust.reason else _GREEN,
         _clock_view(unit.heartbeat),
         "cloned-unit" in levels,
         unit.gps.reason if unit.gps else None,
         unit.stopped_ns is not None,
+        to_ms_or_none(unit.temperature_ns) if unit.temperature else None,
+        _sensors_view(unit.temperature.sensors) if unit.temperature else (),
     )
 
 
@@ -101,15 +114,21 @@ def person_view(person: Person, photo_urls: PhotoUrls) -> PersonView:
     )
 
 
-def _duty_view(duty: Duty) -> DutyView:
+def _duty_view(state: StationState, unit: UnitState, duty: Duty) -> DutyView:
+    last = duty.confirmation
+    opened_ns = 0 if state.incident is None else state.incident.opened_ns
     return DutyView(
-        checked_in_ms=duty.checked_in_ns // NS_PER_MS,
-        checked_in_by=duty.checked_in_by,
-        due_ms=duty.due_ns // NS_PER_MS,
-        asked_ms=to_ms_or_none(duty.asked_ns),
+        checked_in_ms=None if last is None else to_ms(last.t_ns),
+        checked_in_by="" if last is None else last.by,
+        due_ms=to_ms(duty.due_ns),
+        asked_ms=to_ms_or_none(duty.open_request_ns),
         work_since_ms=to_ms_or_none(duty.work_since_ns),
         rest_since_ms=to_ms_or_none(duty.rest_since_ns),
         rest_due_ms=to_ms_or_none(duty.rest_due_ns),
+        confirmed=duty.confirmed,
+        on_duty_ms=to_ms(duty.since_ns),
+        located=unit.heard_ns is not None and unit.heard_ns >= opened_ns,
+        entry_id="" if last is None else last.entry_id,
     )
 
 
@@ -121,14 +140,23 @@ def _status_view(unit: UnitState, status: Status) -> StatusView:
         mayday=status.mayday,
         steps=status.steps,
         distance_m=unit.position.distance_m if unit.position else 0.0,
+        battery_left_s=status.battery_left_s,
+        battery_state=_BATTERY_WORDS[status.battery_state],
+        electronics=_sensors_view(status.electronics),
     )
+
+
+def _sensors_view(sensors: Sequence[SensorTemperature]) -> tuple[SensorTemperatureView, ...]:
+    if not sensors:  # mostly, and there are thousands a second
+        return ()
+    return tuple([SensorTemperatureView(one.name, one.temperature_degc) for one in sensors])
 
 
 def _position_view(state: StationState, fused: FusedPosition, reach: Ring) -> PositionView:
     lat_deg = lon_deg = None
     if state.anchor is not None:
         lat_deg, lon_deg, _ = state.anchor.to_geodetic(fused.north_m, fused.east_m, fused.down_m)
-    silent_m = roamed_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
+    silent_m = max_travel_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
     major_m, minor_m, heading_rad = _ellipse(fused)
     return PositionView(  # by place: there are thousands a second
         fused.t_meas_ns // NS_PER_MS,

@@ -1,23 +1,36 @@
-"""What the console hears over the WebSocket ``/api/v1/live``: a snapshot, then deltas.
+"""Messages to the console over the WebSocket ``/api/v1/live``: a snapshot, then deltas.
 
 Both carry ``seq``; a delta whose ``seq`` is not the last one plus one means that the console
 missed something and must ask for a snapshot (send ``{"type": "snapshot"}``).  The trails that
 were behind the units at the snapshot come one by one, whenever no delta has to go out.
 Times are milliseconds since 1970 (station time; in a replay, the time of the incident).
 Positions are metres north, east and down in the incident frame.  The console's
-``src/wire.ts`` mirrors these types.
+``src/wire.ts`` is generated from these types (``python -m tests.rig.console_types``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Final, Literal
 
 import msgspec
 
 from base_station.views.answer import Answer
 
 Link = Literal["live", "stale", "lost", "never"]
+
+
+def shown_as(typescript: str) -> msgspec.Meta:
+    """Type in the console of what has no exact type here."""
+    return msgspec.Meta(extra={"typescript": typescript})
+
+
+def one_of(*values: str) -> msgspec.Meta:
+    """Values that a string may have."""
+    return shown_as(" | ".join(f'"{value}"' for value in values))
+
+
+_POINTS: Final = shown_as("TrailPoint[]")
 
 
 class PersonView(Answer, frozen=True):
@@ -28,6 +41,13 @@ class PersonView(Answer, frozen=True):
     photo_url: str | None
 
 
+class SensorTemperatureView(Answer, frozen=True):
+    """Reading of one named temperature sensor of a unit."""
+
+    name: str
+    temperature_degc: float
+
+
 class StatusView(Answer, frozen=True):
     activity: str  # lower-case name of shared.messages.Activity
     motionless_s: float
@@ -35,6 +55,9 @@ class StatusView(Answer, frozen=True):
     mayday: bool
     steps: int
     distance_m: float
+    battery_left_s: int | None  # until it is empty; None: unknown
+    battery_state: str  # lower-case name of shared.messages.BatteryState
+    electronics: tuple[SensorTemperatureView, ...]  # inside the unit; not the air around it
 
 
 class PositionView(Answer, frozen=True):
@@ -74,21 +97,25 @@ class AlarmView(Answer, frozen=True):
 
 
 class DutyView(Answer, frozen=True):
-    """While an incident is open: when somebody vouched for the wearer, and work and rest."""
+    """While an incident is open: how the member's PAR stands, and work and rest."""
 
-    checked_in_ms: int
-    checked_in_by: str
-    due_ms: int  # of the next check-in
-    asked_ms: int | None  # a roll call was asked for, and is not answered
+    checked_in_ms: int | None  # at the last PAR confirmation; None: not yet confirmed
+    checked_in_by: str  # self: the member; radio: who entered it; empty: not yet confirmed
+    due_ms: int  # of the next PAR
+    asked_ms: int | None  # a PAR was requested, and is not answered
     work_since_ms: int | None
     rest_since_ms: int | None
     rest_due_ms: int | None
+    confirmed: Annotated[str, one_of("self", "radio", "not_yet")]  # self: by the member's own unit
+    on_duty_ms: int  # since when
+    located: bool  # a message of the unit has come in this incident
+    entry_id: str  # by which a confirmation by radio can be undone; empty: there is none, or no id
 
 
 class TrustView(Answer, frozen=True):
     """How far the place of a unit can be trusted, as a light."""
 
-    level: str  # green | amber | red
+    level: Annotated[str, one_of("green", "amber", "red")]
     reason: str  # for a person; empty: green
 
 
@@ -103,7 +130,7 @@ class PinView(Answer, frozen=True):
     """Where somebody was, as a person or a beacon told, and what became of it."""
 
     pin_id: str
-    kind: str  # place | start | meeting | beacon | tag
+    kind: Annotated[str, one_of("place", "start", "meeting", "beacon", "tag")]
     unit_id: str
     other_id: str  # the beacon or tag, or the other unit of a meeting; else empty
     t_ms: int  # 0: where the unit's path begins
@@ -116,7 +143,7 @@ class PinView(Answer, frozen=True):
     note: str
     by: str  # who set it; the unit itself where that saw it
     set_ms: int
-    state: str  # used | conflict | waiting
+    state: Annotated[str, one_of("used", "conflict", "waiting")]
     residual_m: float | None  # between the pin and the trail
     sigmas: float | None  # the same in standard deviations of what was expected
     text: str  # for a person: what it conflicts with, or what it waits for
@@ -158,18 +185,24 @@ class UnitView(Answer, frozen=True):
     cloned: bool  # two machines speak under its name; one of them is shown
     gps: str | None  # why its last fix is not used; empty: it is; None: none has come
     switched_off: bool  # in order: its silence since is no loss
+    ambient_ms: int | None  # when the temperature around the equipment came
+    ambient_sensors: tuple[SensorTemperatureView, ...]  # its readings by name; empty: one sensor
 
 
 class DeliveryView(Answer, frozen=True):
     """How far a command has got with one unit."""
 
     unit_id: str
-    state: str  # queued | sent | received | acknowledged | refused | expired
+    state: Annotated[
+        str, one_of("queued", "sent", "received", "acknowledged", "refused", "expired")
+    ]
     sent_ms: int | None
     received_ms: int | None
     acknowledged_ms: int | None
-    acknowledged_by: str  # the wearer, or who heard from the wearer
-    reason: str  # of a refusal
+    acknowledged_by: str  # self: the member; radio: who entered it
+    reason: str  # of a refusal, or of a withdrawal
+    # self: on the member's own unit; empty: not yet
+    acknowledged_via: Annotated[str, one_of("self", "radio", "")]
 
 
 class CommandView(Answer, frozen=True):
@@ -184,6 +217,7 @@ class CommandView(Answer, frozen=True):
     asks_wearer: bool  # done only when somebody has acknowledged it
     open: bool  # more is to come of it
     units: tuple[DeliveryView, ...]
+    incident_id: str  # that was open when it was given; empty: none was
 
 
 class IncidentView(Answer, frozen=True):
@@ -236,6 +270,13 @@ class HealthView(Answer, frozen=True):
     reading: float | None = None  # share of its log; nothing is live: what was last stored is shown
 
 
+class GapView(Answer, frozen=True):
+    """Of this time the record has nothing."""
+
+    from_ms: int
+    until_ms: int
+
+
 class ReplayView(Answer, frozen=True):
     """Where a replay stands; absent when the console shows what is live."""
 
@@ -247,15 +288,30 @@ class ReplayView(Answer, frozen=True):
     playing: bool
     seeking: bool = False  # on the way to ``at_ms``; what is shown is of another time
     flaws: tuple[str, ...] = ()  # why not all is shown as it was, in words
+    gap: GapView | None = None  # in which it stands: what is shown is of before
 
 
 class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
-    """One point of a trail, at most one a second: ``[t_ms, north_m, east_m, floor]``."""
+    """One point of a trail, at most one a second: ``[t_ms, north_m, east_m, floor]``, and behind a
+    gap a fifth element, 1.  Of older points those that lie on one line are left out.
+    """
 
     t_ms: int
     north_m: float
     east_m: float
     floor: int | None
+    after_gap: Annotated[int, shown_as("0 | 1")] = (
+        0  # 1: nothing tells the way from the point before
+    )
+
+
+def encoded_trail(points: Iterable[TrailPoint]) -> bytes:
+    """Without the fifth element where there is no gap: trails are most of what is sent."""
+    rows = [
+        (one.t_ms, one.north_m, one.east_m, one.floor, *([1] if one.after_gap else []))
+        for one in points
+    ]
+    return msgspec.json.encode(rows)
 
 
 class AnchorView(Answer, frozen=True):
@@ -274,7 +330,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     commands: tuple[CommandView, ...]  # all that are open, and the last closed ones; oldest first
     pins: tuple[PinView, ...]  # in the order of setting
     beacons: tuple[BeaconView, ...]
-    plan: msgspec.Raw | None  # GeoJSON as stored: see docs/messages
+    plan: Annotated[msgspec.Raw, shown_as("Plan")] | None  # GeoJSON as stored: see docs/messages
     anchor: AnchorView | None
     health: HealthView
     replay: ReplayView | None
@@ -284,7 +340,7 @@ class Trail(msgspec.Struct, frozen=True, tag="trail"):
     """Where a unit was before the last snapshot; deltas since then have gone on from there."""
 
     unit_id: str
-    points: msgspec.Raw  # ``TrailPoint``s
+    points: Annotated[msgspec.Raw, _POINTS]
 
 
 class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
@@ -293,7 +349,7 @@ class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
     units: tuple[UnitView, ...] = ()
     alarms: tuple[AlarmView, ...] = ()
     commands: tuple[CommandView, ...] = ()
-    trails: Mapping[str, msgspec.Raw] = {}  # ``TrailPoint``s; whole, of units whose past changed
+    trails: Mapping[str, Annotated[msgspec.Raw, _POINTS]] = {}  # whole, of units whose past changed
     pins: tuple[PinView, ...] | None = None  # all of them, where any changed
     beacons: tuple[BeaconView, ...] | None = None
     health: HealthView | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from http import HTTPStatus
 from types import TracebackType
 from typing import Any, Self
 
@@ -14,6 +15,7 @@ from deploy.demo.portrait import portrait_png
 from shared.errors import UserError
 
 _TIMEOUT_S = 10.0
+_DESPITE = ("despite_alarm_ids", "despite_unit_ids")
 
 
 class ConsoleClient:
@@ -23,6 +25,11 @@ class ConsoleClient:
         self._http = httpx.Client(timeout=_TIMEOUT_S)
         self._login = {"username": username, "password": password}
         self.move_to(address)
+
+    @property
+    def password(self) -> str:
+        """With which a person logs in too."""
+        return self._login["password"]
 
     def __enter__(self) -> Self:
         return self
@@ -39,7 +46,15 @@ class ConsoleClient:
         """Log in at this station; another one knows the same people."""
         self._http.base_url = httpx.URL(f"{address}/api/v1")
         self._http.headers["Origin"] = address
-        self._call("POST", "/login", json=self._login)
+        if self._call("POST", "/login", json=self._login)["must_change_password"]:
+            self._change_password()
+
+    def _change_password(self) -> None:
+        """The station asks for it at first; a demo's is no secret."""
+        old = self._login["password"]
+        new = f"demo-{old[:9]}"
+        self._call("POST", "/me/password", json={"old_password": old, "new_password": new})
+        self._login["password"] = new
 
     def prepare(self, crew: Crew, plan_geojson: bytes, incident_name: str) -> str:
         """Set site, plan and people, open an incident; its id."""
@@ -71,7 +86,13 @@ class ConsoleClient:
         self._call("POST", "/commands", json=order)
 
     def close_incident(self, incident_id: str) -> None:
-        self._call("POST", f"/incidents/{incident_id}/close")
+        """Over whatever alarms are open and whoever is inside: it is a demo that ends."""
+        path = f"/incidents/{incident_id}/close"
+        answer = self._ask("POST", path)
+        if answer.status_code == HTTPStatus.CONFLICT:  # what comes up from here on is an error
+            despite = {name: answer.json().get(name, []) for name in _DESPITE}
+            answer = self._ask("POST", path, json=despite)
+        _content(answer)
 
     def health(self) -> dict[str, Any]:
         health: dict[str, Any] = self._call("GET", "/health")
@@ -105,10 +126,17 @@ class ConsoleClient:
         self._call("POST", "/assignments", json=worn)
 
     def _call(self, method: str, path: str, **request: Any) -> Any:
+        return _content(self._ask(method, path, **request))
+
+    def _ask(self, method: str, path: str, **request: Any) -> httpx.Response:
         try:
-            answer = self._http.request(method, path, **request)
+            return self._http.request(method, path, **request)
         except httpx.HTTPError as error:
             raise UserError(f"the station does not answer {method} {path}: {error}") from error
-        if answer.is_error:
-            raise UserError(f"the station refused {method} {path}: {answer.text}")
-        return answer.json() if answer.content else None
+
+
+def _content(answer: httpx.Response) -> Any:
+    if answer.is_error:
+        asked = answer.request
+        raise UserError(f"the station refused {asked.method} {asked.url.path}: {answer.text}")
+    return answer.json() if answer.content else None

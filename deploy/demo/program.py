@@ -21,6 +21,7 @@ from deploy.demo.processes import Child, Children, ToldToEndError
 from deploy.demo.stations import Site, Stations
 from shared.end_signals import told_to_end
 from shared.errors import UserError
+from shared.options import finite
 
 _WATCH_EVERY_S = 0.5
 _ROLL_CALL_AT_S = 55.0  # the commander asks once, when somebody is down already
@@ -35,7 +36,12 @@ _USUAL_RECORDING = Path("walks") / "footprints" / "37"
 def demo(
     for_s: Annotated[
         float | None,
-        typer.Option("--for", help="End so many seconds after all units were heard.", min=1.0),
+        typer.Option(
+            "--for",
+            help="End so many seconds after all units were heard.",
+            min=1.0,
+            callback=finite,
+        ),
     ] = None,
     headless: Annotated[
         bool, typer.Option(help="For scripts: no moving status line, a summary at the end.")
@@ -99,12 +105,13 @@ class _Demo:
         username, password = self._stations.start()
         site = self._stations.leading()
         with ConsoleClient(site.address, username, password) as console:
+            self._stations.note_login(username, console.password)
             plan = self._children.run("plan", ("edge", "plan"))
             incident = console.prepare(self._crew, plan, f"Demo {datetime.now(UTC):%H:%M} UTC")
             self._start_agents(console, enrolments)
             self._screen.print(
                 f"\n  console   [bold]{site.address}[/]\n"
-                f"  login     [bold]{username}[/]  password  [bold]{password}[/]\n"
+                f"  login     [bold]{username}[/]  password  [bold]{console.password}[/]\n"
                 f"  data      {self._folder}\n"
             )
             self._tell_of_standby()

@@ -72,6 +72,12 @@ class Stations:
         login = dict(line.split(": ", 1) for line in text.splitlines())
         return login["username"], login["password"]
 
+    def note_login(self, username: str, password: str) -> None:
+        """For whoever starts the stations on this folder again."""
+        for site in self.sites:
+            if _note(site).exists():
+                _note(site).write_text(f"username: {username}\npassword: {password}\n")
+
     def leading(self) -> Site:
         """The station that leads; waits for one that takes over.  UserError where none does."""
         end_s = time.monotonic() + _PATIENCE_S

@@ -1,4 +1,4 @@
-"""Takes a unit's errors out of its samples as they come."""
+"""Correction of a unit's sensor errors in its samples as they come."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from edge.samples import Floats, ImuBatch, SensorDescription
 
 
 class Correction:
-    """Takes the samples of one unit in order; the same however they are batched.
+    """Correction of the samples of one unit in order; the same however they are batched.
 
     Most sensors tell their temperature more seldom than they tell motion: what was told last
     holds until the next.
@@ -27,12 +27,12 @@ class Correction:
         degc = imu.imu_temperature_degc
         if degc is None or not len(imu):
             return self._calibration.apply(imu, self._sensor)
-        held = replace(imu, imu_temperature_degc=self._held(degc))
-        return replace(self._calibration.apply(held, self._sensor), imu_temperature_degc=degc)
+        filled = replace(imu, imu_temperature_degc=self._hold_last(degc))
+        return replace(self._calibration.apply(filled, self._sensor), imu_temperature_degc=degc)
 
-    def _held(self, degc: Floats) -> Floats:
+    def _hold_last(self, degc: Floats) -> Floats:
         rows = np.where(np.isfinite(degc), np.arange(len(degc)), -1)
-        told = np.maximum.accumulate(rows)
-        held = np.where(told < 0, self._last_degc, degc[told])
-        self._last_degc = float(held[-1])
-        return held
+        last_known = np.maximum.accumulate(rows)
+        filled = np.where(last_known < 0, self._last_degc, degc[last_known])
+        self._last_degc = float(filled[-1])
+        return filled

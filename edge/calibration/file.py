@@ -74,7 +74,7 @@ def to_toml(calibration: Calibration) -> str:
 
 
 def _numbers(value: Any) -> Iterator[float]:
-    """All that are in a table."""
+    """Yield all numbers in a table."""
     if isinstance(value, dict):
         value = list(value.values())
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""What is known of one unit's sensor errors, and how samples are rid of them.
+"""Model of one unit's sensor errors, and their correction.
 
     force = gain (reading - bias - bias_per_degc (temperature - at_degc))
     rate  = reading - bias - bias_per_degc (temperature - at_degc) - per_force (force reading)
@@ -46,7 +46,7 @@ class Accelerometer(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
     @property
     def is_checked(self) -> bool:
-        """Whether there were more poses than unknowns: else nothing shows that one was wrong."""
+        """True when there were more poses than unknowns: else nothing shows that one was wrong."""
         return self.poses > _SCALE_AND_BIAS
 
 
@@ -76,7 +76,7 @@ class Magnetometer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Warmth(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How the biases follow the sensor's temperature."""
+    """Dependence of the biases on the sensor's temperature."""
 
     accel_bias_per_degc_mps2: Vector
     accel_std_mps2: Vector  # of the line above, for one degree
@@ -122,7 +122,9 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return replace(sensor, mag_iron_std_ut=part.left_ut, mag_earth_ut=part.field_ut)
 
     def faults(self) -> tuple[str, ...]:
-        """What is poor about it, in words; empty where all residuals are as they should be."""
+        """Return what is poor about it, for a person; empty where all residuals are as they
+        should be.
+        """
         found = []
         if self.accelerometer and not self.accelerometer.is_checked:
             found.append(
@@ -138,17 +140,17 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return tuple(found)
 
     def impossible(self) -> str | None:
-        """What no sensor that is whole is off by: the file is damaged, or the samples were of other
-        units.
+        """Return an error that no intact sensor has: the file is damaged, or the samples were of
+        other
         """
         if not _MADE[0] <= self.made < _MADE[1]:
             return f"made in {self.made.year}"
-        for what, values, most in self._off_by():
+        for name, values, most in self._off_by():
             if not np.all(np.abs(values) <= most):
-                return f"{what} is off by more than {most:g}"
-        for what, value, (least, most) in self._said():
+                return f"{name} is off by more than {most:g}"
+        for name, value, (least, most) in self._surroundings():
             if value is not None and not least <= value <= most:
-                return f"{what} is not from {least:g} to {most:g}"
+                return f"{name} is not from {least:g} to {most:g}"
         return None
 
     def _off_by(self) -> Iterator[tuple[str, Floats, float]]:
@@ -168,8 +170,8 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             slope = np.array(warmth.gyro_bias_per_degc_radps)
             yield "warmth.gyro_bias_per_degc_radps", slope, 0.02
 
-    def _said(self) -> Iterator[tuple[str, float | None, tuple[float, float]]]:
-        """What was measured of the surroundings: its name in the file, and the least and most."""
+    def _surroundings(self) -> Iterator[tuple[str, float | None, tuple[float, float]]]:
+        """Yield measured properties of the surroundings: name in the file, value, and bounds."""
         if part := self.accelerometer:
             yield "accelerometer.at_degc", part.at_degc, _DEGC
         if gyroscope := self.gyroscope:
@@ -209,7 +211,9 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return _turned(part.gain, mag_ut - np.array(part.hard_iron_ut))
 
     def _drift(self, imu: ImuBatch, slope: Vector | None, at_degc: float | None) -> Floats:
-        """What warmth adds to the bias (n, 3); nothing where the temperature is not known."""
+        """Return the effect of temperature on the bias (n, 3); zero where the temperature is not
+        known.
+        """
         degc = imu.imu_temperature_degc
         if slope is None or at_degc is None or degc is None or self.warmth is None:
             return np.zeros(3)

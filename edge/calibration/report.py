@@ -1,4 +1,4 @@
-"""What a calibration found, for the person who made it."""
+"""Report of a calibration, for the person who made it."""
 
 from __future__ import annotations
 
@@ -66,15 +66,15 @@ def _table(calibration: Calibration) -> Table:
 
 
 def _residuals(calibration: Calibration) -> list[str]:
-    said = []
+    residuals = []
     if accel := calibration.accelerometer:
         off = f"{accel.residual_mps2:.4f} m/s2" if accel.is_checked else "unknown"
-        said.append(f"accelerometer {off} over {accel.poses} poses")
+        residuals.append(f"accelerometer {off} over {accel.poses} poses")
     if gyro := calibration.gyroscope:
-        said.append(f"gyroscope {np.degrees(gyro.residual_radps):.4f} deg/s")
+        residuals.append(f"gyroscope {np.degrees(gyro.residual_radps):.4f} deg/s")
     if mag := calibration.magnetometer:
-        said.append(f"magnetometer {mag.residual_ut:.2f} of {mag.field_ut:.1f} uT")
-    return [f"Residuals: {'; '.join(said)}."] if said else []
+        residuals.append(f"magnetometer {mag.residual_ut:.2f} of {mag.field_ut:.1f} uT")
+    return [f"Residuals: {'; '.join(residuals)}."] if residuals else []
 
 
 def _advice(calibration: Calibration) -> list[str]:

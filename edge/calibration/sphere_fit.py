@@ -21,7 +21,7 @@ _CONVERGED = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """Which entries of the gain are free; the entry (k, j) follows (j, k) where it is mirrored."""
+    """Pattern of free entries of the gain; the entry (k, j) follows (j, k) where it is mirrored."""
 
     entries: tuple[tuple[int, int], ...]
     mirrored: bool = False

@@ -1,4 +1,4 @@
-"""The four steps of a calibration: what each asks for, takes in, and still lacks.
+"""Steps of a calibration: instruction, samples taken in, and what is still missing.
 
 A step takes samples in order.  ``missing`` says why they cannot determine the answer yet,
 ``wanted`` what would make it better; both are None when there is enough.
@@ -11,8 +11,8 @@ from typing import Protocol
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from edge.calibration.rest import RestFinder, Window, mean_of, seconds
-from edge.calibration.solve import tells_misalignment
+from edge.calibration.rest_detector import RestDetector, Window, mean_of, seconds
+from edge.calibration.solver import observes_misalignment
 from edge.samples import Floats, ImuBatch
 
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -26,7 +26,7 @@ _SAME_POSE_COS = 0.985  # 10 degrees
 _FACE_COS = 0.82  # 35 degrees
 _SPAN_DEGC = 10.0
 _WARM_UP_BLOCKS = 8 * 20  # windows
-_AROUND = 3  # windows on either side of one, by which its temperature is judged
+_NEIGHBOURS = 3  # windows on either side of one, by which its temperature is judged
 _MISREAD_DEGC = 2.0  # off those around it: no sensor warms so fast
 _MISREAD_MOST = 0.25  # of the windows: what is left of more spans ten degrees by chance
 _DIRECTIONS = 3.0  # steps from -1 to 1 on each axis in which directions of the field are told
@@ -43,7 +43,7 @@ class Step(Protocol):
 
     @property
     def instruction(self) -> str:
-        """What the person is to do."""
+        """Instruction to the person."""
         ...
 
     def push(self, imu: ImuBatch) -> None: ...
@@ -56,13 +56,13 @@ class Step(Protocol):
 
 
 class StillStep:
-    """For the bias of the gyroscope: the longest rest."""
+    """Step for the bias of the gyroscope: the longest rest."""
 
     name = "still"
     instruction = "Lay the unit on a table that nobody touches, and leave it alone."
 
     def __init__(self) -> None:
-        self._finder = RestFinder()
+        self._finder = RestDetector()
 
     def push(self, imu: ImuBatch) -> None:
         self._finder.push(imu)
@@ -80,7 +80,7 @@ class StillStep:
             return f"moved during the still step (last at {moved_s:.1f} s): it lay still for {lay}"
         if float(np.linalg.norm(mean_of(windows).gyro_radps)) > _TURNING_RADPS:
             return "turned evenly during the whole still step: lay it on something that stands"
-        return self._hangs()
+        return self._is_stuck()
 
     def wanted(self) -> str | None:
         return self.missing()
@@ -88,7 +88,7 @@ class StillStep:
     def progress(self) -> str:
         return f"{min(seconds(self.windows()), _STILL_FOR_S):.0f} of {_STILL_FOR_S:.0f} s"
 
-    def _hangs(self) -> str | None:
+    def _is_stuck(self) -> str | None:
         """A gyroscope that works trembles at rest; one value repeated tells nothing of its bias."""
         spread = np.ptp([window.gyro_radps for window in self.windows()], axis=0)
         axes = [axis for axis, by in zip("xyz", spread, strict=True) if by < _REPEATED_RADPS]
@@ -101,7 +101,7 @@ class StillStep:
 
 
 class PosesStep:
-    """For the accelerometer: rests in directions that differ by 10 degrees or more."""
+    """Step for the accelerometer: rests in directions that differ by 10 degrees or more."""
 
     name = "poses"
     instruction = (
@@ -110,13 +110,13 @@ class PosesStep:
     )
 
     def __init__(self) -> None:
-        self._finder = RestFinder()
+        self._finder = RestDetector()
 
     def push(self, imu: ImuBatch) -> None:
         self._finder.push(imu)
 
     def poses(self) -> list[Window]:
-        """One a direction, by the longest rest in it."""
+        """Return one pose a direction, by the longest rest in it."""
         kept: list[Window] = []
         rests = [rest for rest in self._finder.rests if seconds(rest) >= _POSE_S]
         for rest in sorted(rests, key=len, reverse=True):
@@ -138,8 +138,8 @@ class PosesStep:
     def wanted(self) -> str | None:
         if lacks := self.missing():
             return lacks
-        told = tells_misalignment(self._directions())
-        pairs = [pair for pair, known in zip(_PAIRS, told, strict=True) if not known]
+        observed = observes_misalignment(self._directions())
+        pairs = [pair for pair, known in zip(_PAIRS, observed, strict=True) if not known]
         if pairs:
             return f"lean it half way between {', or '.join(pairs)}"
         few = 12 - len(self.poses())
@@ -160,7 +160,7 @@ class PosesStep:
 
 
 class TurningStep:
-    """For the magnetometer: readings in as many directions as a person can turn it to.
+    """Step for the magnetometer: readings in as many directions as a person can turn it to.
 
     Readings of one direction are averaged, so that a direction in which the unit was held
     for long weighs no more than the others.
@@ -186,12 +186,12 @@ class TurningStep:
         self._stale = True
 
     def fields_ut(self) -> Floats:
-        """The mean reading of each direction, (n, 3)."""
+        """Return the mean reading of each direction, (n, 3)."""
         if self._stale:
             self._stale = False
-            whole = np.vstack(self._parts)
-            self._parts = [whole]
-            self._binned = _mean_by_direction(_readings_of_one_field(whole))
+            readings = np.vstack(self._parts)
+            self._parts = [readings]
+            self._binned = _mean_by_direction(_readings_of_one_field(readings))
         return self._binned
 
     def missing(self) -> str | None:
@@ -208,7 +208,7 @@ class TurningStep:
                 "turned about one axis only: turn it about the other two axes as well, and "
                 "upside down"
             )
-        return self._unseen() or self._strange()
+        return self._missing_directions() or self._wrong_strength()
 
     def wanted(self) -> str | None:
         if lacks := self.missing():
@@ -218,7 +218,7 @@ class TurningStep:
     def progress(self) -> str:
         return f"{len(self.fields_ut())} of {_GOOD_FIELDS} directions"
 
-    def _unseen(self) -> str | None:
+    def _missing_directions(self) -> str | None:
         fields = self.fields_ut()
         low, high = fields.min(axis=0), fields.max(axis=0)
         directions = (fields - (low + high) / 2.0) / ((high - low) / 2.0)
@@ -230,7 +230,7 @@ class TurningStep:
             )
         return None
 
-    def _strange(self) -> str | None:
+    def _wrong_strength(self) -> str | None:
         fields = self.fields_ut()
         half_ut = (fields.max(axis=0) - fields.min(axis=0)) / 2.0
         if _FIELDS_UT[0] <= half_ut.min() and half_ut.max() <= _FIELDS_UT[1]:
@@ -242,7 +242,7 @@ class TurningStep:
 
 
 class WarmUpStep:
-    """For the biases' dependence on temperature: one long rest, from cold to warm."""
+    """Step for the biases' dependence on temperature: one long rest, from cold to warm."""
 
     name = "warm-up"
     instruction = (
@@ -251,16 +251,16 @@ class WarmUpStep:
     )
 
     def __init__(self) -> None:
-        self._finder = RestFinder()
+        self._finder = RestDetector()
 
     def push(self, imu: ImuBatch) -> None:
         self._finder.push(imu)
 
     def windows(self) -> list[Window]:
-        return _without_misread(self._told())
+        return _without_misread(self._known_windows())
 
-    def _told(self) -> list[Window]:
-        """The longest rest, as far as the temperature is known."""
+    def _known_windows(self) -> list[Window]:
+        """Return the longest rest, as far as the temperature is known."""
         longest = max(self._finder.rests, key=len, default=[])
         return [window for window in longest if np.isfinite(window.temperature_degc)]
 
@@ -268,8 +268,8 @@ class WarmUpStep:
         windows = self.windows()
         if not windows and self._finder.rests:
             return "this unit does not tell its sensor's temperature: leave the warm-up out"
-        told = self._told()
-        if len(windows) < (1.0 - _MISREAD_MOST) * len(told):
+        observed = self._known_windows()
+        if len(windows) < (1.0 - _MISREAD_MOST) * len(observed):
             return (
                 f"the temperature jumps about by more than {_MISREAD_DEGC:.0f} degC between half "
                 "seconds, which tells nothing of how warm the sensor is: is its thermometer whole?"
@@ -300,17 +300,17 @@ class WarmUpStep:
 
 
 def _without_misread(windows: list[Window]) -> list[Window]:
-    """Those whose temperature is that of the windows around them."""
+    """Return the windows whose temperature is that of the windows around them."""
     degc = np.array([window.temperature_degc for window in windows])
-    if len(degc) <= _AROUND:
+    if len(degc) <= _NEIGHBOURS:
         return windows
-    around = sliding_window_view(np.pad(degc, _AROUND, mode="reflect"), 2 * _AROUND + 1)
-    off = np.abs(degc - np.median(around, axis=1))
+    neighbours = sliding_window_view(np.pad(degc, _NEIGHBOURS, mode="reflect"), 2 * _NEIGHBOURS + 1)
+    off = np.abs(degc - np.median(neighbours, axis=1))
     return [window for window, by in zip(windows, off, strict=True) if by < _MISREAD_DEGC]
 
 
 def _readings_of_one_field(fields_ut: Floats) -> Floats:
-    """Without the few (n, 3) that no turning in the others' field can give."""
+    """Return the readings without the few (n, 3) that no turning in the others' field can give."""
     if not len(fields_ut):
         return fields_ut
     off_ut = np.abs(fields_ut - np.median(fields_ut, axis=0)).max(axis=1)
@@ -336,5 +336,5 @@ def _unit(values: Floats) -> Floats:
     return np.asarray(values / max(float(np.linalg.norm(values)), 1e-9))
 
 
-def _listed(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]

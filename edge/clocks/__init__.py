@@ -1,1 +1,1 @@
-"""A unit's clocks: its source's, its machine's, the station's, and where they lie to each other."""
+"""Clocks of a unit: its source's, its machine's, the station's, and their offsets."""

@@ -1,4 +1,5 @@
-"""Where the station's time lies on a unit's monotonic clock, from exchanges of four timestamps.
+"""Offset of the station's clock from a unit's monotonic clock, from exchanges of four
+timestamps.
 
 Pure.  An exchange bounds the offset: it is the middle of what is possible give or take half the
 round trip (Mills, "Network Time Protocol", RFC 5905, section 8), so quick exchanges count for much
@@ -27,23 +28,25 @@ _SET_AFTER = 3  # impossible exchanges in a row: the station's clock was set, or
 
 
 class Exchange(NamedTuple):
-    """Asked and answered by the unit's monotonic clock, received and sent by the station's."""
+    """Exchange of timestamps: query and reply by the unit's monotonic clock, receipt and answer
+    by the station's.
+    """
 
-    asked_ns: int
+    query_ns: int
     received_utc_ns: int
     sent_utc_ns: int
-    answered_ns: int
+    reply_ns: int
 
     @property
     def round_trip_s(self) -> float:
         at_station_ns = self.sent_utc_ns - self.received_utc_ns
-        return (self.answered_ns - self.asked_ns - at_station_ns) / NS_PER_S
+        return (self.reply_ns - self.query_ns - at_station_ns) / NS_PER_S
 
     @property
     def offset_ns(self) -> int:
         """Station time less monotonic time, if both ways took the same."""
-        there_ns = self.received_utc_ns - self.asked_ns
-        return (there_ns + self.sent_utc_ns - self.answered_ns) // 2
+        forward_ns = self.received_utc_ns - self.query_ns
+        return (forward_ns + self.sent_utc_ns - self.reply_ns) // 2
 
 
 class ClockEstimate(NamedTuple):
@@ -52,8 +55,10 @@ class ClockEstimate(NamedTuple):
     drift: float  # of the station's clock against the monotonic one, seconds a second
 
 
-class ClockOffset:
-    """``note`` exchanges as they come; one that was overtaken by a later one is not used."""
+class ClockOffsetFilter:
+    """Kalman filter; ``note`` exchanges as they come; one that was overtaken by a later one is
+    not used.
+    """
 
     def __init__(self) -> None:
         self._round_trips_s: deque[float] = deque(maxlen=_RECENT)
@@ -64,10 +69,10 @@ class ClockOffset:
         self._cov = np.zeros((2, 2))
 
     def note(self, exchange: Exchange) -> bool:
-        """False where it is not used: no such exchange is possible."""
+        """Use an exchange; return False where no such exchange is possible."""
         if exchange.round_trip_s < 0.0 or exchange.sent_utc_ns < exchange.received_utc_ns:
             return False
-        middle_ns = (exchange.asked_ns + exchange.answered_ns) // 2
+        middle_ns = (exchange.query_ns + exchange.reply_ns) // 2
         if self._base_ns is None:
             self._begin(exchange, middle_ns)
             return True
@@ -91,7 +96,7 @@ class ClockOffset:
         return True
 
     def at(self, t_mono_ns: int) -> ClockEstimate | None:
-        """None before the first exchange."""
+        """Return the estimate at a time; None before the first exchange."""
         if self._base_ns is None:
             return None
         state, cov = self._predicted(t_mono_ns)
@@ -114,7 +119,7 @@ class ClockOffset:
         self._cov = np.diag([_var(exchange.round_trip_s), _DRIFT_STD**2])
 
     def _predicted(self, t_mono_ns: int) -> tuple[np.ndarray, np.ndarray]:
-        """States and their covariance at a time, also one before the last exchange."""
+        """Return states and their covariance at a time, also one before the last exchange."""
         dt_s = (t_mono_ns - self._t_ns) / NS_PER_S
         step = np.array([[1.0, dt_s], [0.0, 1.0]])
         span_s = abs(dt_s)
@@ -125,5 +130,5 @@ class ClockOffset:
 
 
 def _var(round_trip_s: float) -> float:
-    """Of an offset that lies evenly within half the round trip."""
+    """Return the variance of an offset that lies evenly within half the round trip."""
     return (round_trip_s / 2.0) ** 2 / 3.0 + _STAMP_STD_S**2

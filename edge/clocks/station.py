@@ -1,4 +1,4 @@
-"""The unit's idea of the station's time: asks for it now and then, and stamps by it.
+"""Station clock of a unit: queries the station's time now and then, and stamps by it.
 
 Monotonic time is the machine's own and is what tracking goes by.  Until the station has answered
 once, UTC is the machine's, and nothing is claimed of how good that is.
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from threading import Lock
 
-from edge.clocks.offset import ClockEstimate, ClockOffset, Exchange
+from edge.clocks.offset import ClockEstimate, ClockOffsetFilter, Exchange
 from shared.bus import ReplyHandler
 from shared.clock import NS_PER_S, Clock
 from shared.errors import WireError
@@ -24,11 +24,11 @@ Ask = Callable[[ReplyHandler], None]  # puts the question; without a link nothin
 
 
 class StationClock:
-    """A ``Clock``.  ``turn`` it often; any thread may read it."""
+    """Clock of station time.  Call ``turn`` often; any thread may read it."""
 
     def __init__(self, machine: Clock) -> None:
         self._machine = machine
-        self._offset = ClockOffset()
+        self._offset = ClockOffsetFilter()
         self._lock = Lock()
         self._answered = 0
         self._due_ns = 0
@@ -47,32 +47,34 @@ class StationClock:
         return 0.0 if estimate is None else max(estimate.std_s, _LEAST_STD_S)
 
     def estimate(self) -> ClockEstimate | None:
-        """As it stands now; None before the station has answered."""
+        """Return the estimate as it stands now; None before the station has answered."""
         return self._at(self._machine.monotonic_ns())
 
     def machine_ahead_s(self) -> float:
-        """How far the machine's own UTC is ahead of the station's; 0 before it has answered."""
+        """Return how far the machine's own UTC is ahead of the station's; 0 before it has
+        answered.
+        """
         ahead_ns = self._machine.utc_ns() - self.utc_ns()
         return 0.0 if self.estimate() is None else ahead_ns / NS_PER_S
 
     def turn(self, ask: Ask) -> None:
-        """Ask the station where that is due."""
+        """Query the station if that is due."""
         now_ns = self._machine.monotonic_ns()
         if now_ns < self._due_ns:
             return
         self._due_ns = now_ns + (_FIRST_EVERY_NS if self._answered < _FIRST else _EVERY_NS)
-        asked_ns = self._machine.monotonic_ns()
-        ask(lambda reply: self._take(asked_ns, reply))
+        query_ns = self._machine.monotonic_ns()
+        ask(lambda reply: self._take(query_ns, reply))
 
-    def _take(self, asked_ns: int, reply: bytes | None) -> None:
-        answered_ns = self._machine.monotonic_ns()
+    def _take(self, query_ns: int, reply: bytes | None) -> None:
+        reply_ns = self._machine.monotonic_ns()
         if reply is None:
             return
         try:
             answer = ClockAnswer.from_bytes(reply)
         except WireError:
             return  # no time is better than a wrong one
-        exchange = Exchange(asked_ns, answer.received_utc_ns, answer.sent_utc_ns, answered_ns)
+        exchange = Exchange(query_ns, answer.received_utc_ns, answer.sent_utc_ns, reply_ns)
         with self._lock:
             self._answered += self._offset.note(exchange)
 

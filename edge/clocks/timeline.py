@@ -1,4 +1,4 @@
-"""How a source's own time lies on this machine's monotonic clock, and when a batch is due."""
+"""Timelines: mapping of a source's own time to this machine's monotonic clock."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ _DRIFT = 2e-4  # of one quartz against another, at most
 
 @dataclass(frozen=True, slots=True)
 class Timeline:
-    """A source played at ``speed`` from one instant on; as it stands, a live source's."""
+    """Timeline of a source played at ``speed`` from one instant on; by default that of a live
+    source.
+    """
 
     source_origin_ns: int = 0
     mono_origin_ns: int = 0
@@ -28,15 +30,15 @@ class Timeline:
 
 
 class Timekeeper(Protocol):
-    """Lays a source's time on the machine's, batch by batch."""
+    """Mapping of a source's time to the machine's, batch by batch."""
 
     def place(self, first_t_ns: int, last_t_ns: int, now_mono_ns: int) -> Timeline:
-        """The timeline of the batch whose samples lie between the two times."""
+        """Return the timeline of the batch whose samples lie between the two times."""
         ...
 
 
 class Pacer:
-    """Plays recorded time on the machine's clock.
+    """Timekeeper that plays recorded time on the machine's clock.
 
     A jump of more than ten seconds in the recording is a clock that was set, not a wait:
     from there time is laid on anew.
@@ -57,7 +59,7 @@ class Pacer:
 
 
 class Follower:
-    """Lays the clock of another machine on this one, while its samples come.
+    """Timekeeper that maps the clock of another machine to this one, while its samples come.
 
     The quickest of them says how the two stand: one that the radio held up says nothing, and a
     backlog neither.  Over a shift two clocks drift seconds apart, and that is followed.
@@ -68,11 +70,11 @@ class Follower:
         self._ahead_ns: int | None = None  # this machine's time less the other's
 
     def place(self, first_t_ns: int, last_t_ns: int, now_mono_ns: int) -> Timeline:
-        came_ns = now_mono_ns - last_t_ns
+        delay_ns = now_mono_ns - last_t_ns
         elapsed_ns = last_t_ns - self._last_t_ns
         if self._ahead_ns is None or elapsed_ns < -_BACK_NS:
-            self._ahead_ns = came_ns
+            self._ahead_ns = delay_ns
         else:
-            self._ahead_ns = min(came_ns, self._ahead_ns + round(_DRIFT * max(elapsed_ns, 0)))
+            self._ahead_ns = min(delay_ns, self._ahead_ns + round(_DRIFT * max(elapsed_ns, 0)))
         self._last_t_ns = last_t_ns
         return Timeline(first_t_ns, first_t_ns + self._ahead_ns)

@@ -1,4 +1,4 @@
-"""Where a walking person's right leg and trunk are at every time, as curves."""
+"""Body plan: a walking person's right leg and trunk at every time, as curves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The two-storey training house: one plan for the walks, the magnetic field, GPS and the console.
+"""Training house with two storeys: one plan for the walks, the magnetic field, GPS and the
+console.
 
 ``building.geojson`` is a GeoJSON FeatureCollection in metres: coordinates are
 [east, north] in the site frame whose origin is the anchor in the foreign
@@ -112,7 +113,7 @@ class Building:
 
 
 def plan_path() -> Path:
-    """Where the plan file lies, for whoever wants to show it."""
+    """Return the path of the plan file."""
     return Path(str(resources.files("edge.simulation") / "building.geojson"))
 
 

@@ -23,7 +23,7 @@ class Curve:
 
     @property
     def end_s(self) -> float:
-        """When the last move ends."""
+        """End of the last move."""
         return self._knot_s[-1]
 
     @property

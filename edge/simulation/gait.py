@@ -1,4 +1,4 @@
-"""How a foot moves in one stride, for every way of moving that is simulated.
+"""Gait: motion of a foot in one stride, for every way of moving that is simulated.
 
 The shape follows the sagittal gait cycle (Perry, "Gait Analysis", 1992): the heel
 rises about the ball of the foot, the foot swings, strikes with the heel and
@@ -15,7 +15,7 @@ from shared.messages.status import Activity
 
 @dataclass(frozen=True, slots=True)
 class Gait:
-    """One stride's measures; windows are fractions of the time the foot moves."""
+    """Measures of one stride; windows are fractions of the time the foot moves."""
 
     activity: Activity
     stride_m: float  # two steps

@@ -20,7 +20,7 @@ _REACQUIRE_S = 4.0
 
 
 class Gps:
-    """One fix a call; keeps its slowly wandering error and when it last saw the sky."""
+    """Receiver: one fix a call; keeps its slowly wandering error and when it last saw the sky."""
 
     def __init__(self, anchor: Anchor, building: Building | None, rng: np.random.Generator) -> None:
         self._anchor = anchor

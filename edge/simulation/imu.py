@@ -1,4 +1,4 @@
-"""Inertial sensors with honest errors.
+"""Inertial sensors with realistic errors.
 
 The model is the usual one (Groves, "Principles of GNSS, Inertial and Multisensor
 Integrated Navigation Systems", 2013, chapter 4): scale and misalignment, turn-on
@@ -93,7 +93,7 @@ UNCALIBRATED_IMU = ImuErrors(
 
 
 class Triad:
-    """One three-axis sensor; keeps its bias from call to call."""
+    """Three-axis sensor; keeps its bias from call to call."""
 
     def __init__(self, errors: TriadErrors, rate_hz: float, rng: np.random.Generator) -> None:
         self._errors = errors
@@ -107,24 +107,24 @@ class Triad:
         self._per_force = rng.normal(0.0, 1.0, (3, 3)) * errors.g_sensitivity_std
 
     def measure(self, true: Floats, force_mps2: Floats, temperature_degc: Floats) -> Floats:
-        """What the sensor says (n, 3) where ``true`` (n, 3) is; all in sensor axes."""
+        """Return the readings (n, 3) where ``true`` (n, 3) is; all in sensor axes."""
         errors = self._errors
         steps = self._rng.normal(0.0, 1.0, true.shape) * (errors.bias_walk / self._rate_hz**0.5)
         bias = self._bias + np.cumsum(steps, axis=0)
         self._bias = bias[-1]
         warmth = (temperature_degc - _CALIBRATED_AT_DEGC)[:, None]
         noise = self._rng.normal(0.0, 1.0, true.shape)
-        said = (
+        reading = (
             true @ self._gain.T
             + bias
             + warmth * self._per_degc
             + force_mps2 @ self._per_force.T
             + noise * (errors.noise_density * self._rate_hz**0.5)
         )
-        said = np.clip(said, -errors.full_scale, errors.full_scale)
+        reading = np.clip(reading, -errors.full_scale, errors.full_scale)
         if errors.resolution:
-            said = np.rint(said / errors.resolution) * errors.resolution
-        return np.asarray(said, dtype=np.float64)
+            reading = np.rint(reading / errors.resolution) * errors.resolution
+        return np.asarray(reading, dtype=np.float64)
 
 
 class Imu:

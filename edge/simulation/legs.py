@@ -1,4 +1,4 @@
-"""What a person does, one leg after the other.
+"""Legs of a walk: what a simulated person does, one after the other.
 
 Points are (north, east) in metres in the site frame.  The same names are the
 ``type`` of a leg in a scenario file.

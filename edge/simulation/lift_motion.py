@@ -1,4 +1,4 @@
-"""How a lift's floor moves: speeding up, going evenly, slowing down."""
+"""Motion of a lift's floor: speeding up, going evenly, slowing down."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a body can do: each function continues a ``BodyPlan`` by one movement.
+"""Movements of a body: each function continues a ``BodyPlan`` by one movement.
 
 Footholds are (north, east) in metres, angles in radians.  The small differences
 between one stride and the next are drawn from the generator.
@@ -26,7 +26,7 @@ _ROLLS_RADPS = radians(6.0)
 _CREEPS_MPS = 0.0106  # each way, of Student's t: some strides creep far more than most
 _CREEPS_FREEDOM = 3.0
 _CREEPS_MOST_MPS = 0.1  # none of 511 recorded stances rose or sank faster
-_GIVES_WAY_S = 0.15  # before it is down altogether
+_DEFORMS_S = 0.15  # before it is down altogether
 _CURVE_PEAK = 140.0 / 64.0  # of a curve's speed by its mean
 _CRAWL_PITCH_RAD = radians(-72)
 _CRAWL_TRUNK_RAD = radians(-75)
@@ -73,7 +73,7 @@ def stride(
         return off_s + start * (end_s - off_s), off_s + end * (end_s - off_s)
 
     _stand_on_it(plan, rng, gait, begin_s, off_s)
-    _give_way(plan, rng, gait, begin_s, off_s + 0.20 * (end_s - off_s))
+    _deform_ground(plan, rng, gait, begin_s, off_s + 0.20 * (end_s - off_s))
     plan.rock.move(*window(0.20, 0.80), 0.0)
     plan.pivot.move(*window(0.40, 0.85), float(gait.lands_on_heel))
     plan.north.move(*window(*gait.forward), foothold[0])
@@ -106,7 +106,7 @@ def _settle_rad(rng: np.random.Generator) -> float:
 
 
 def _tilt_rad(rng: np.random.Generator, gait: Gait) -> float:
-    """How far a foothold slopes; 0 on a floor."""
+    """Return the slope of a foothold; 0 on a floor."""
     return float(rng.normal(0.0, gait.tilt_rad)) if gait.tilt_rad else 0.0
 
 
@@ -120,8 +120,8 @@ def _stand_on_it(
     """
     flat_s = begin_s + 0.35 * (off_s - begin_s)
     rise_s = begin_s + 0.60 * (off_s - begin_s)
-    gives_way_rad = 0.2 * _tilt_rad(rng, gait)
-    plan.roll.move(begin_s, flat_s, plan.roll.last + gives_way_rad if gait.tilt_rad else 0.0)
+    deformation_rad = 0.2 * _tilt_rad(rng, gait)
+    plan.roll.move(begin_s, flat_s, plan.roll.last + deformation_rad if gait.tilt_rad else 0.0)
     # The pivot changes while the foot is flat, where it has no effect.
     plan.pivot.move(flat_s, rise_s, float(gait.leaves_on_heel))
     if gait.sink_rad:
@@ -133,14 +133,14 @@ def _stand_on_it(
         plan.east.move(slips_s, off_s, plan.east.last - slip_m * sin(plan.yaw.last))
 
 
-def _give_way(
+def _deform_ground(
     plan: BodyPlan, rng: np.random.Generator, gait: Gait, begin_s: float, lifted_s: float
 ) -> None:
     """No shoe holds a foot still: it rolls on, unless the heel sinks, and creeps any way.
 
     It does so before the foot is flat and after, so the stillest moment is in the middle.
     """
-    begins_s = begin_s - _GIVES_WAY_S
+    begins_s = begin_s - _DEFORMS_S
 
     def creep(curve: Curve, per_s: float) -> None:
         start_s = max(curve.end_s, begins_s)

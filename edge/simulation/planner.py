@@ -8,6 +8,7 @@ import numpy as np
 
 from edge.simulation.body_plan import BodyPlan
 from edge.simulation.gait import PACES, STAIRS_PACES, TURN, Gait
+from edge.simulation.idle_movements import sit, stay_kneeling, wait
 from edge.simulation.legs import (
     Kneel,
     Leg,
@@ -22,7 +23,6 @@ from edge.simulation.legs import (
     Wait,
     Walk,
 )
-from edge.simulation.lingering import sit, stay_kneeling, wait
 from edge.simulation.movements import kneel, lie, pull, ride, rise, stand, stride, unwrapped
 from edge.simulation.polyline import Polyline, arc, split_at_sharp_turns
 

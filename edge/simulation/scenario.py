@@ -1,4 +1,4 @@
-"""What happens in a simulated walk, as data: built in or read from a file."""
+"""Scenario of a simulated walk, as data: built in or read from a file."""
 
 from __future__ import annotations
 

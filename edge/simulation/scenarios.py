@@ -1,4 +1,4 @@
-"""The built-in scenarios: four working days in the training house, and measured paths."""
+"""Built-in scenarios: four working days in the training house, and measured paths."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _enter() -> tuple[Leg, ...]:
 
 
 def _track(straight_m: float = 84.39, radius_m: float = 36.8) -> tuple[Point, ...]:
-    """One round of a standard athletic track, anticlockwise, on its measuring line."""
+    """Return one round of a standard athletic track, anticlockwise, on its measuring line."""
     first = arc((straight_m, -radius_m), radius_m, pi / 2, -pi / 2)
     second = arc((0.0, -radius_m), radius_m, -pi / 2, -3 * pi / 2)
     return ((straight_m, 0.0), *first, (0.0, -2.0 * radius_m), *second)

@@ -1,4 +1,4 @@
-"""Plays a scenario: the truth at any time, and the stream of what the sensors say."""
+"""Simulation of a scenario: the truth at any time, and the stream of sensor samples."""
 
 from __future__ import annotations
 
@@ -23,14 +23,9 @@ from edge.samples import (
 )
 from edge.simulation.beacons import Beacons
 from edge.simulation.body_plan import BodyPlan
+from edge.simulation.body_segments import Tremor, segment_motion
 from edge.simulation.building import load_building
-from edge.simulation.gps import Gps
-from edge.simulation.imu import CONSUMER_IMU, IDEAL_IMU, UNCALIBRATED_IMU, Imu, ImuErrors
-from edge.simulation.kinematics import Motion
-from edge.simulation.planner import Planner
-from edge.simulation.scenario import Scenario
-from edge.simulation.segments import Tremor, segment_motion
-from edge.simulation.surroundings import (
+from edge.simulation.environment import (
     CONSUMER_BARO,
     CONSUMER_MAG,
     IDEAL_BARO,
@@ -43,6 +38,11 @@ from edge.simulation.surroundings import (
     Magnetometer,
     earth_n_ut,
 )
+from edge.simulation.gps import Gps
+from edge.simulation.imu import CONSUMER_IMU, IDEAL_IMU, UNCALIBRATED_IMU, Imu, ImuErrors
+from edge.simulation.kinematics import Motion
+from edge.simulation.planner import Planner
+from edge.simulation.scenario import Scenario
 from shared.errors import ConfigError
 from shared.messages.status import Activity
 
@@ -64,7 +64,7 @@ UNCALIBRATED_SENSORS = SensorErrors(UNCALIBRATED_IMU, UNCALIBRATED_MAG, CONSUMER
 
 
 class Simulation:
-    """One performance of a scenario; equal seeds give equal samples to the last bit.
+    """Simulation of a scenario; equal seeds give equal samples to the last bit.
 
     The sensor sits on its part of the body at an angle drawn from the seed.  Navigation axes
     are those of the site frame (NED, origin at its anchor); time starts at 0.
@@ -115,13 +115,11 @@ class Simulation:
         )
 
     def sensor_rngs(self) -> list[np.random.Generator]:
-        """What the errors are drawn from, anew at each call: of the inertial sensors, the
-        magnetometer, the barometer, GPS and the slow ones.
-        """
+        """Return the generators of the errors, new at each call: of the inertial sensors, the"""
         return [np.random.default_rng(seed) for seed in _children(self._sensor_seed, 5)]
 
     def beacon_rng(self) -> np.random.Generator:
-        """What the loudness of beacons is drawn from, anew at each call."""
+        """Return the generator of the beacons' signal strength, new at each call."""
         return np.random.default_rng(_children(self._sensor_seed, 6)[-1])
 
     def _body(self, t_s: Floats) -> Motion:
@@ -175,7 +173,7 @@ class Simulation:
         return np.asarray(np.interp(t_s, times_s, values), dtype=np.float64)
 
     def _imu_temperature_degc(self, t_s: Floats) -> Floats:
-        """What is left of the warm-up, and a little of what is around."""
+        """Return the rest of the warm-up, and a little of the surroundings."""
         around = self.ambient_degc(t_s)
         warming_degc = 5.0 * (1.0 - np.exp(-t_s / 300.0))
         return 22.0 + warming_degc + 0.05 * (around - 22.0)
@@ -199,17 +197,17 @@ class _Others:
                 samples.append(BatterySample(second * 1_000_000_000, self._battery(second)))
             samples.append(self._ambient(float(second)))
             samples.append(self._fix(float(second)))
-            samples += self._heard(second)
+            samples += self._sightings(second)
             every_s = self._simulation.scenario.acknowledges_every_s
             if every_s is not None and second % every_s == 0:
                 samples.append(ButtonPress(second * 1_000_000_000, ACKNOWLEDGE))
         return tuple(samples)
 
-    def _heard(self, second: int) -> list[SightingSample]:
+    def _sightings(self, second: int) -> list[SightingSample]:
         if not self._simulation.scenario.beacons:
             return []
         north_m, east_m, down_m = self._simulation.truth(np.array([float(second)])).position_n_m[0]
-        return self._beacons.heard(second, (float(north_m), float(east_m), float(down_m)))
+        return self._beacons.sightings(second, (float(north_m), float(east_m), float(down_m)))
 
     def _battery(self, t_s: float) -> float:
         scenario = self._simulation.scenario
@@ -217,14 +215,14 @@ class _Others:
 
     def _ambient(self, t_s: float) -> AmbientSample:
         true_degc = float(self._simulation.ambient_degc(np.array([t_s]))[0])
-        said_degc = true_degc + float(self._rng.normal(0.0, 0.15))
-        return AmbientSample(round(t_s * 1e9), round(said_degc, 2))
+        reading_degc = true_degc + float(self._rng.normal(0.0, 0.15))
+        return AmbientSample(round(t_s * 1e9), round(reading_degc, 2))
 
     def _fix(self, t_s: float) -> GpsSample:
         # The wearer's velocity is the foot's mean over a stride.
-        around_s = np.array([max(0.0, t_s - 0.55), t_s, t_s + 0.55])
-        place = self._simulation.truth(around_s).position_n_m
-        velocity = (place[2] - place[0]) / (around_s[2] - around_s[0])
+        neighbour_s = np.array([max(0.0, t_s - 0.55), t_s, t_s + 0.55])
+        place = self._simulation.truth(neighbour_s).position_n_m
+        velocity = (place[2] - place[0]) / (neighbour_s[2] - neighbour_s[0])
         return self._gps.fix(
             t_s,
             (float(place[1, 0]), float(place[1, 1]), float(place[1, 2])),
@@ -246,7 +244,7 @@ def _plan(scenario: Scenario, rng: np.random.Generator) -> BodyPlan:
 
 
 def _children(seed: np.random.SeedSequence, count: int) -> list[np.random.SeedSequence]:
-    """As ``spawn``, but the same ones at every call."""
+    """Return child seeds as ``spawn``, but the same ones at every call."""
     return [
         np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, k)) for k in range(count)
     ]

@@ -1,4 +1,6 @@
-"""Replays a unit's black box: the same batches that its tracker saw, to the last bit."""
+"""Source that replays a unit's black box: the same batches that its tracker saw, to the last
+bit.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +8,9 @@ import logging
 from collections.abc import Iterator
 from pathlib import Path
 
-from edge.raw.stream import batch_of, sensor_of
+from edge.sample_codec.codec import batch_of, sensor_of
 from edge.samples import SensorBatch, SensorDescription
-from edge.sources.port import Played
+from edge.sources.interface import OfflineSource
 from shared.channels import DESCRIPTION, Channel, parse_key
 from shared.codec import decode
 from shared.errors import RecordingError, UnknownChannelError, WireError
@@ -18,8 +20,8 @@ from shared.messages import Message, RawImu, UnitDescription
 logger = logging.getLogger(__name__)
 
 
-class BlackBoxSource(Played):
-    """``path`` is a segment, or the folder of segments of one boot of one unit.
+class BlackBoxSource(OfflineSource):
+    """Source; ``path`` is a segment, or the folder of segments of one boot of one unit.
 
     A black box that is torn is played up to the tear.  Raises RecordingError for what is none.
     """
@@ -34,7 +36,9 @@ class BlackBoxSource(Played):
         return self._description
 
     def batches(self) -> Iterator[SensorBatch]:
-        """A batch was written at one instant, its inertial samples first; there may be none."""
+        """Yield batches as they were written: at one instant, inertial samples first; there may
+        be none.
+        """
         group: list[Message] = []
         group_ns = 0
         for log_ns, message in self._messages():

@@ -1,4 +1,4 @@
-"""A table of numbers from CSV text, with errors that name the line and the column."""
+"""Table of numbers from CSV text, with errors that name the line and the column."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def read_table(
     header, _, body = _read_text(path).lstrip("\ufeff").partition("\n")
     names = [name.strip() for name in header.split(",")]
     if names == [""]:
-        is_what = "starts with an empty line" if body.strip() else "is empty"
-        raise RecordingError(f"{path} {is_what}; it must start with a line of column names")
+        state = "starts with an empty line" if body.strip() else "is empty"
+        raise RecordingError(f"{path} {state}; it must start with a line of column names")
     if len(names) == 1 and (";" in header or "\t" in header):
         raise RecordingError(
             f"{path}: its columns lie between {'semicolons' if ';' in header else 'tabs'}; save it "

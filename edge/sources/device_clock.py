@@ -1,4 +1,4 @@
-"""Lays a device's own clock onto this machine's, by when its messages come.
+"""Clock of a device, mapped to this machine's clock by when its messages come.
 
 A message comes after it was meant, never before: the least delay of the last seconds is the
 offset, give or take what the quickest message took.  The offset follows the device's drift a little
@@ -18,32 +18,32 @@ _SLEW = 0.001  # of elapsed time: far less than scale errors, far more than a cr
 
 
 class DeviceClock:
-    """``place`` the times of messages as they come; what it gives only ever goes forward."""
+    """Mapping; ``place`` the times of messages as they come; the result only ever goes forward."""
 
     def __init__(self) -> None:
         self._offset_ns: int | None = None
         self._last_device_ns: int | None = None
         self._last_ns: int | None = None
-        self._doubted_ns: int | None = None  # a time that the next message may confirm
+        self._unconfirmed_ns: int | None = None  # a time that the next message may confirm
         self._since_ns = 0  # device time at which the window began
         self._least_ns = self._least_before_ns = 0  # delay and offset in one
-        self._told: list[str] = []
+        self._events: list[str] = []
         self.repeated = 0  # messages of a time that had been
-        self.doubted = 0  # messages whose time fitted nothing
+        self.implausible = 0  # messages whose time fitted nothing
 
     def reopened(self) -> None:
-        """The line was cut: how late messages come is to be learnt anew."""
+        """Start again: the delay of messages is to be learned anew after the line was cut."""
         self._offset_ns = None
-        self._doubted_ns = None
+        self._unconfirmed_ns = None
 
-    def told(self) -> list[str]:
-        """What happened to the device's clock since the last call, for a person."""
-        told, self._told = self._told, []
-        return told
+    def take_events(self) -> list[str]:
+        """Return what happened to the device's clock since the last call, for a person."""
+        take_events, self._events = self._events, []
+        return take_events
 
     def place(self, device_ns: int, arrival_ns: int) -> int | None:
-        """This machine's monotonic time of a sample; None of one that has no place."""
-        if self._last_device_ns is not None and not self._goes_on(device_ns, arrival_ns):
+        """Return this machine's monotonic time of a sample; None of one that has no place."""
+        if self._last_device_ns is not None and not self._can_be_placed(device_ns, arrival_ns):
             return None
         self._note(device_ns, arrival_ns)
         assert self._offset_ns is not None
@@ -54,8 +54,8 @@ class DeviceClock:
         self._last_ns = t_ns
         return t_ns
 
-    def _goes_on(self, device_ns: int, arrival_ns: int) -> bool:
-        """Whether the sample can be placed; after a jump, from the second one on."""
+    def _can_be_placed(self, device_ns: int, arrival_ns: int) -> bool:
+        """Return True if the sample can be placed; after a jump, from the second one on."""
         assert self._last_device_ns is not None
         step_ns = device_ns - self._last_device_ns
         back = step_ns < -_BACK_NS
@@ -64,34 +64,34 @@ class DeviceClock:
         )
         if back or ahead:
             if not self._is_confirmed(device_ns):
-                self._doubted_ns = device_ns
-                self.doubted += 1
+                self._unconfirmed_ns = device_ns
+                self.implausible += 1
                 return False
-            self._tell_jump(step_ns)
+            self._report_jump(step_ns)
             self._offset_ns = None
             return True
-        self._doubted_ns = None
+        self._unconfirmed_ns = None
         if step_ns <= 0:
             self.repeated += 1
             return False
         return True
 
     def _is_confirmed(self, device_ns: int) -> bool:
-        return self._doubted_ns is not None and 0 < device_ns - self._doubted_ns < _JUMP_NS
+        return self._unconfirmed_ns is not None and 0 < device_ns - self._unconfirmed_ns < _JUMP_NS
 
-    def _tell_jump(self, step_ns: int) -> None:
-        self._doubted_ns = None
+    def _report_jump(self, step_ns: int) -> None:
+        self._unconfirmed_ns = None
         if step_ns < 0:
             far = f"went back by {-step_ns / NS_PER_S:.1f} s"
-            self._told.append(
+            self._events.append(
                 f"its clock {far}: it was started anew, or set; time goes on from now"
             )
         else:
             far = f"went ahead by {step_ns / NS_PER_S:.1f} s"
-            self._told.append(f"its clock {far}: it was set; time goes on from now")
+            self._events.append(f"its clock {far}: it was set; time goes on from now")
 
     def _note(self, device_ns: int, arrival_ns: int) -> None:
-        """Take in how late this message came, and follow."""
+        """Learn the delay of this message, and follow."""
         late_ns = arrival_ns - device_ns
         if self._offset_ns is None or self._last_device_ns is None:
             self._offset_ns = self._least_ns = self._least_before_ns = late_ns
@@ -103,7 +103,7 @@ class DeviceClock:
         self._least_ns = min(self._least_ns, late_ns)
         apart_ns = min(self._least_ns, self._least_before_ns) - self._offset_ns
         if apart_ns > _JUMP_NS:
-            self._told.append(
+            self._events.append(
                 f"its samples have come {apart_ns / NS_PER_S:.1f} s late for "
                 f"{_WINDOW_NS // NS_PER_S} s: the line is too slow for them, or its clock was set"
             )

@@ -1,4 +1,5 @@
-"""Recorded walks: a trial folder (``imu.csv.gz``, ``trial.json``, ``truth.csv``) or a bare CSV.
+"""Source of recorded walks: a trial folder (``imu.csv.gz``, ``trial.json``, ``truth.csv``) or a
+bare CSV.
 
 What a sensor can do (missed samples, gaps, repeated or backward times, clipping)
 is counted and passed on as it was recorded, because coping with it is the
@@ -17,7 +18,7 @@ import numpy as np
 
 from edge.samples import Floats, ImuBatch, Nanoseconds, SensorBatch, SensorDescription
 from edge.sources.csv_table import read_table
-from edge.sources.port import Played
+from edge.sources.interface import OfflineSource
 from shared.errors import RecordingError
 
 _ACCEL = ("accel_x_mps2", "accel_y_mps2", "accel_z_mps2")
@@ -31,7 +32,7 @@ _CLIP_FRACTION = 0.998  # of full scale; sensors clip a little below the round n
 
 
 class Trial(msgspec.Struct, frozen=True):
-    """What ``trial.json`` says about a recording; unknown keys are left alone."""
+    """Contents of ``trial.json``; unknown keys are left alone."""
 
     dataset: str = ""
     trial: str = ""
@@ -59,7 +60,7 @@ class RecordedTruth:
 
 @dataclass(frozen=True, slots=True)
 class RecordingReport:
-    """What is unusual in a recording; printing it gives one line for a person."""
+    """Report of what is unusual in a recording; printing it gives one line for a person."""
 
     samples: int
     nan_samples: int  # samples in which an inertial axis is missing
@@ -81,8 +82,8 @@ class RecordingReport:
         return f"{self.samples} samples: " + (", ".join(found) if found else "nothing unusual")
 
 
-class RecordingSource(Played):
-    """Plays a recording from its first sample to its last; reads it whole when made.
+class RecordingSource(OfflineSource):
+    """Source that plays a recording from its first sample to its last; reads it whole when made.
 
     ``path`` is a trial folder or a bare CSV / CSV.gz with the same columns,
     whose rate is then estimated from its times.  Raises ``RecordingError``.

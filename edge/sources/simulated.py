@@ -1,15 +1,15 @@
-"""A simulated wearer as a source of samples."""
+"""Source of a simulated wearer."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from edge.samples import SensorBatch, SensorDescription
-from edge.simulation import open_simulation
-from edge.sources.port import Outage, Played
+from edge.simulation.factory import open_simulation
+from edge.sources.interface import OfflineSource, Outage
 
 
-class SimulatedSource(Played):
+class SimulatedSource(OfflineSource):
     """``NAME`` or ``PATH.toml``, with ``?seed=N&worn_on=chest``; the truth is in ``simulation``."""
 
     def __init__(self, text: str, batch_s: float = 0.05) -> None:

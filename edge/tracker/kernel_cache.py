@@ -1,9 +1,9 @@
-"""A name for the state of the compiled kernels' sources.
+"""Digest of the sources of the compiled kernels, as a part of their types.
 
-numba's cache on disk looks at the time stamp of the file that holds a function, not
-at the files of the functions it calls.  So only the entry points ``admit`` and ``work``
-are cached, and the types of what they take carry this digest of all sources: an
-edit or an upgrade anywhere compiles anew.
+numba's cache on disk compares the time stamp of the file that holds a function, not of the files of
+the functions it calls.  So only the entry points ``preprocess`` and ``work`` are cached, and the
+types of their arguments carry this digest of all sources: an edit or an upgrade anywhere compiles
+again.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from pathlib import Path
 
 
 def source_digest() -> str:
-    """Return eight hexadecimal digits of this package's sources."""
+    """Return eight hexadecimal digits of the sources of this package and all below it."""
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("*.py")):
+    for path in sorted(Path(__file__).parent.glob("**/*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:8]
 

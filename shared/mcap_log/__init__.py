@@ -12,6 +12,7 @@ from shared.mcap_log.folder import (
     segment_paths,
     segments_within,
 )
+from shared.mcap_log.foreign import own_segments
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.recovery import Recovery, recover_log
 from shared.mcap_log.rewriting import remove_torn, rewrite_segment
@@ -42,6 +43,7 @@ __all__ = [
     "location_topic",
     "log_topic",
     "missing_segments",
+    "own_segments",
     "read_log",
     "recover_log",
     "remove_torn",

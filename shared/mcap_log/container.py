@@ -22,6 +22,7 @@ CHUNK_INDEX = struct.Struct("<QQQQI")  # start, end, offset, length, length of t
 INDEX_OFFSET = struct.Struct("<HQ")
 INDEX_HEAD = struct.Struct("<HI")  # channel, bytes of the entries
 INDEX_ENTRY = struct.Struct("<QQ")
+DATA_END_BYTES = 4
 FOOTER_BYTES = 9 + 20 + len(MCAP0_MAGIC)
 CHUNK_BYTES_MAX = 1 << 30
 COMPRESSION = b"zstd"

@@ -14,6 +14,7 @@ from shared.mcap_log.container import (
     CHUNK,
     CHUNK_INDEX,
     CHUNK_MARK,
+    DATA_END_BYTES,
     FOOTER_BYTES,
     NONSENSE,
     RECORD,
@@ -95,6 +96,8 @@ def _from_walk(file: SegmentFile) -> Contents:
         except ValueError:
             found = _next_chunk(file, offset + 1)
             if found is None:
+                if _is_behind_chunks(file, offset):
+                    contents.readable_bytes = file.size
                 break
             file.note(f"bytes {offset} to {found} make no sense")
             offset = found
@@ -117,6 +120,15 @@ def _record_at(file: SegmentFile, offset: int) -> tuple[int, Chunk | None]:
         raise ValueError("no such record stands between chunks")
     start_ns, end_ns, *_ = CHUNK.unpack(file.read(offset + 9, CHUNK.size))
     return length, Chunk(offset, start_ns, end_ns)
+
+
+def _is_behind_chunks(file: SegmentFile, offset: int) -> bool:
+    """Whether what begins there and cannot be read is no record: an index, or what ends a file."""
+    try:
+        opcode, length = file.record_at(offset)
+    except ValueError:
+        return False
+    return opcode == Opcode.MESSAGE_INDEX or (opcode, length) == (Opcode.DATA_END, DATA_END_BYTES)
 
 
 def _next_chunk(file: SegmentFile, offset: int) -> int | None:

@@ -19,6 +19,7 @@ from shared.mcap_log.container import (
 )
 from shared.mcap_log.contents import Chunk, contents_of
 from shared.mcap_log.folder import segment_paths, segments_within
+from shared.mcap_log.foreign import candidates, foreign_by_content
 from shared.mcap_log.schemas import DERIVED
 from shared.mcap_log.segment_file import SegmentFile
 from shared.mcap_log.writing import SegmentInfo, SegmentState
@@ -81,7 +82,9 @@ class SegmentReader:
 
     @property
     def bytes_lost(self) -> int:
-        """Behind the last readable record of a file that was not ended in order."""
+        """Behind the last readable chunk of a file that was not ended in order; indexes are made
+        again, and count as none.
+        """
         return self._file.size - self._contents.readable_bytes
 
     def info(self) -> SegmentInfo:
@@ -210,16 +213,23 @@ def read_log(
     start_ns: int | None = None,
     end_ns: int | None = None,
     keys: Collection[str] | None = None,
-    on_damage: Callable[[str], None] = lambda _: None,
+    on_damage: Callable[[str], object] = lambda _: None,
 ) -> Iterator[LogRecord]:
     """The records of a folder of segments in the order of writing: ``(t_ns, key, payload)``.
 
     From ``start_ns`` until before ``end_ns``; log times must not go back from one segment to the
-    next.  ``on_damage`` hears in words of each part that could not be read.  Raises LogError
-    when a segment is taken away meanwhile.
+    next.  Files that are no segments of this log are left out.  ``on_damage`` hears in words of
+    each part that could not be read.  Raises LogError when a segment is taken away meanwhile.
     """
-    for path in segments_within(segment_paths(folder), start_ns, end_ns):
+    foreign: dict[Path, str] = {}
+    following = dict(candidates(segment_paths(folder), foreign))
+    for path in segments_within(list(following), start_ns, end_ns):
+        if reason := foreign_by_content(path, following[path]):
+            foreign[path] = reason
+            continue
         with SegmentReader(path) as segment:
             yield from segment.records(start_ns, end_ns, keys)
             for note in segment.damage:
                 on_damage(note)
+    for path, reason in foreign.items():
+        on_damage(f"{path.name} is no segment of this log and is left out: {reason}")

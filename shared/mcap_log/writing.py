@@ -166,6 +166,10 @@ class SegmentWriter:
         self._trouble: OSError | None = None
         self.lost = 0
 
+    def number_after(self, number: int) -> None:
+        """The next segment's number is higher than this one, too."""
+        self._next_number = max(self._next_number, number + 1)
+
     @property
     def problem(self) -> str:
         """Why records do not reach the disk, as a sentence for a person; empty: they do."""

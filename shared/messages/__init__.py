@@ -19,8 +19,8 @@ from shared.messages.journal import JournalBoot, JournalChunk, JournalEntry, Jou
 from shared.messages.position import MagneticNorth, Position
 from shared.messages.sighting import Sighting, SightingKind
 from shared.messages.station import OperatorAction, Tick
-from shared.messages.status import Activity, Status
-from shared.messages.temperature import Temperature
+from shared.messages.status import Activity, BatteryState, Status
+from shared.messages.temperature import SensorTemperature, Temperature
 from shared.messages.unit_description import UnitDescription
 
 Message = (
@@ -48,6 +48,7 @@ __all__ = [
     "Activity",
     "AlarmChange",
     "AlarmState",
+    "BatteryState",
     "Command",
     "CommandKind",
     "CommandReply",
@@ -67,6 +68,7 @@ __all__ = [
     "OperatorAction",
     "Position",
     "RawImu",
+    "SensorTemperature",
     "Sighting",
     "SightingKind",
     "Status",

@@ -21,7 +21,7 @@ class AlarmState(IntEnum):
 class AlarmChange(msgspec.Struct, frozen=True):
     header: Header  # the station's; t_utc_ns is the station time of the change
     alarm_id: str  # the same through the alarm's life
-    rule: str  # as in base_station.alarms.ALARMS
+    rule: str  # as in base_station.core.alarms.ALARMS
     unit_id: str  # empty: the station itself
     priority: int  # 1 immediate, 2 soon, 3 information
     state: AlarmState

@@ -67,8 +67,9 @@ class Position(msgspec.Struct, frozen=True):
         others = self.reasons & ~NOT_OF_STEPS
         if not others:
             return Quality.GOOD
-        # Of what is against its steps only a stance that is missing makes a path lost.
-        return self.quality if others & Reason.NO_STANCE else min(self.quality, Quality.DEGRADED)
+        # Of what is against its steps only stances that are missing or wrong make a path lost.
+        stances = Reason.NO_STANCE | Reason.INCONSISTENT | Reason.NOT_ON_FOOT
+        return self.quality if others & stances else min(self.quality, Quality.DEGRADED)
 
     def to_wire(self) -> position_pb2.Position:
         north = self.magnetic_north

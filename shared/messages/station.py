@@ -55,7 +55,11 @@ class OpenIncident(msgspec.Struct, frozen=True):
 
 
 class CloseIncident(msgspec.Struct, frozen=True):
+    """Over the alarms and the people inside that are named, knowingly: a record, no condition."""
+
     incident_id: str
+    despite_alarm_ids: tuple[str, ...] = ()
+    despite_unit_ids: tuple[str, ...] = ()
 
 
 class Assign(msgspec.Struct, frozen=True):
@@ -134,18 +138,26 @@ class SendCommand(msgspec.Struct, frozen=True):
 
 
 class ConfirmCommand(msgspec.Struct, frozen=True):
-    """Somebody has heard from the wearer in another way."""
+    """The member answered the command by radio."""
 
     command_id: str
     unit_id: str
 
 
 class CheckIn(msgspec.Struct, frozen=True):
-    """Somebody has heard from the wearer, from a crew or from everyone: one of the three."""
+    """PAR by radio, of a member, a crew or everyone: one of the three."""
 
     unit_id: str
     crew: str
     everyone: bool
+    check_in_id: str = ""  # by which it can be undone; empty: of an old log
+
+
+class UndoConfirmation(msgspec.Struct, frozen=True):
+    """Undoing what was entered by radio."""
+
+    entry_id: str  # of the check-in, or of the command that was confirmed
+    unit_id: str = ""  # empty: of all whom that confirmed
 
 
 class SetAccountability(msgspec.Struct, frozen=True):
@@ -212,6 +224,7 @@ Action = (
     | PlaceBeacon
     | RemoveBeacon
     | CheckIn
+    | UndoConfirmation
     | SetAccountability
     | SetThresholds
     | SetRest
@@ -242,6 +255,7 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     PlaceBeacon: "place_beacon",
     RemoveBeacon: "remove_beacon",
     CheckIn: "check_in",
+    UndoConfirmation: "undo_confirmation",
     SetAccountability: "set_accountability",
     SetThresholds: "set_thresholds",
     SetRest: "set_rest",

@@ -10,6 +10,7 @@ from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import status_pb2
 from shared.messages.quantise import signed32, unsigned32
+from shared.messages.temperature import SensorTemperature
 
 
 class Activity(IntEnum):
@@ -24,6 +25,13 @@ class Activity(IntEnum):
     FALLING = 8
 
 
+class BatteryState(IntEnum):
+    UNKNOWN = 0
+    DISCHARGING = 1
+    CHARGING = 2
+    FULL = 3  # on external power, and not charging
+
+
 class Status(msgspec.Struct, frozen=True):
     header: Header
     activity: Activity
@@ -35,6 +43,10 @@ class Status(msgspec.Struct, frozen=True):
     floors_climbed: int  # net, up positive
     tracker_rows_dropped: int
     journal_pending: int  # messages written but not known to have arrived
+    electronics: tuple[SensorTemperature, ...] = ()  # inside the unit; not the air around it
+    battery_left_s: int | None = None  # until the battery is empty; None: unknown
+    battery_state: BatteryState = BatteryState.UNKNOWN
+    battery_name: str = ""  # of several the emptiest; empty: that of the sensor
 
     def to_wire(self) -> status_pb2.Status:
         return status_pb2.Status(
@@ -49,6 +61,10 @@ class Status(msgspec.Struct, frozen=True):
             floors_climbed=signed32(self.floors_climbed, 1.0),
             tracker_rows_dropped=self.tracker_rows_dropped,
             journal_pending=self.journal_pending,
+            electronics=[sensor.to_wire() for sensor in self.electronics],
+            battery_left_s=self.battery_left_s or 0,
+            battery_state=int(self.battery_state),  # type: ignore[arg-type]  # as above
+            battery_name=self.battery_name,
         )
 
     @staticmethod
@@ -64,4 +80,8 @@ class Status(msgspec.Struct, frozen=True):
             floors_climbed=wire.floors_climbed,
             tracker_rows_dropped=wire.tracker_rows_dropped,
             journal_pending=wire.journal_pending,
+            electronics=tuple(map(SensorTemperature.from_wire, wire.electronics)),
+            battery_left_s=wire.battery_left_s or None,
+            battery_state=known(BatteryState, wire.battery_state),
+            battery_name=wire.battery_name,
         )

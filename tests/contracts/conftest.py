@@ -7,7 +7,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from tests.bus_ends import Ends, Fabric, MemoryFabric, ZenohFabric
+from tests.rig.bus_ends import Ends, Fabric, MemoryFabric, ZenohFabric
 
 
 @pytest.fixture(params=["memory", "zenoh"])

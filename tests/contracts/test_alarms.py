@@ -7,13 +7,14 @@ import re
 import msgspec
 import pytest
 
-from base_station.alarms import ALARMS
-from base_station.alarms.book import AlarmBook
-from base_station.alarms.port import AlarmRule, Clear, Finding
-from base_station.alarms.thresholds import limits_of
-from base_station.bench.rig import said
-from base_station.live_state import Duty, Fault, GpsUse, StationState, UnitState
-from base_station.units.boot_state import BootState
+from base_station.core.alarms import ALARMS
+from base_station.core.alarms.alarm_manager import AlarmManager
+from base_station.core.alarms.interface import AlarmRule, Clear, Finding
+from base_station.core.alarms.thresholds import limits_of
+from base_station.core.alarms.worn_wrong import WornWrong
+from base_station.core.state import Fault, GpsUse, StationState, UnitState
+from base_station.core.state.boot_state import BootState
+from base_station.core.state.duty import Duty
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
@@ -21,7 +22,8 @@ from shared.messages import (
     Header,
     Temperature,
 )
-from shared.quality import Quality
+from shared.quality import Quality, Reason
+from tests.rig import message_factory
 
 HEADER = Header("FF-01", 1, 1, 0)
 T_NS = 1_700_000_000 * NS_PER_S
@@ -34,21 +36,21 @@ def calm(seen_ns: int = T_NS) -> UnitState:
         registered=True,
         heard_ns=seen_ns,
         link="live",
-        status=said.status(HEADER),
+        status=message_factory.status(HEADER),
         status_ns=seen_ns,
         temperature=Temperature(HEADER, 20.0),
         temperature_ns=seen_ns,
-        position=said.position(HEADER),
+        position=message_factory.position(HEADER),
         position_ns=seen_ns,
-        fused=said.fused(HEADER, "FF-01"),
-        description=said.description(HEADER),
-        boots=[BootState(1, there_from_ns=seen_ns - 600 * NS_PER_S, there_to_ns=seen_ns)],
+        fused=message_factory.fused(HEADER, "FF-01"),
+        description=message_factory.description(HEADER),
+        boots=[BootState(1, first_live_ns=seen_ns - 600 * NS_PER_S, last_live_ns=seen_ns)],
         gps=GpsUse(seen_ns),
     )
 
 
 def lost_place(seen_ns: int) -> FusedPosition:
-    return said.fused(
+    return message_factory.fused(
         Header("station", 1, 1, seen_ns, t_utc_ns=seen_ns),
         "FF-01",
         std_north_m=40.0,
@@ -58,9 +60,12 @@ def lost_place(seen_ns: int) -> FusedPosition:
     )
 
 
-def in_trouble(seen_ns: int = T_NS) -> UnitState:
-    """A unit of which everything is the matter at once."""
+def in_trouble(seen_ns: int = T_NS, rule: AlarmRule | None = None) -> UnitState:
+    """A unit of which everything is the matter at once; of one that is worn wrong nothing else is
+    the matter with its tracker.
+    """
     unit = calm(seen_ns)
+    reasons = Reason.NOT_ON_FOOT if isinstance(rule, WornWrong) else Reason.NONE
     assert unit.status is not None
     assert unit.position is not None
     unit.registered = False
@@ -69,22 +74,24 @@ def in_trouble(seen_ns: int = T_NS) -> UnitState:
     unit.temperature = Temperature(HEADER, 300.0)
     unit.heat_dose = 2.0
     unit.gps = GpsUse(seen_ns, "the receiver is stuck", seen_ns - 60 * NS_PER_S)
-    unit.position = msgspec.structs.replace(unit.position, quality=Quality.LOST, distance_m=3000.0)
+    unit.position = msgspec.structs.replace(
+        unit.position, quality=Quality.LOST, reasons=reasons, distance_m=3000.0
+    )
     unit.degraded_since_ns = seen_ns - 60 * NS_PER_S
     unit.mayday_ns = unit.fall_ns = seen_ns
     unit.fused = lost_place(seen_ns)
-    unit.unplaced_since_ns = seen_ns - 60 * NS_PER_S
+    unit.position_lost_since_ns = seen_ns - 60 * NS_PER_S
     unit.duty = Duty(
-        seen_ns - 3600 * NS_PER_S, "chief", work_since_ns=seen_ns - 3600 * NS_PER_S,
+        seen_ns - 3600 * NS_PER_S, work_since_ns=seen_ns - 3600 * NS_PER_S,
         due_ns=seen_ns - NS_PER_S, rest_due_ns=seen_ns - NS_PER_S,
     )  # fmt: skip
     unit.fault = Fault(seen_ns, "the accelerometer is stuck")
     unit.tracker = UnitState("FF-01@tracker", fault=Fault(seen_ns, "the disk is full"))
     unit.boots = [
-        BootState(boot_id, there_from_ns=seen_ns - 90 * NS_PER_S, there_to_ns=unit.heard_ns)
+        BootState(boot_id, first_live_ns=seen_ns - 90 * NS_PER_S, last_live_ns=unit.heard_ns)
         for boot_id in (1, 2)
     ]
-    unit.description = said.description(
+    unit.description = message_factory.description(
         HEADER,
         tracker=NO_TRACKER,
         calibration="c1",
@@ -112,7 +119,7 @@ def test_what_may_be_set_has_its_default_within_its_limits(rule: AlarmRule) -> N
 
 
 def test_it_finds_what_it_looks_for(rule: AlarmRule) -> None:
-    verdict = rule.judge(in_trouble(), T_NS, "")
+    verdict = rule.judge(in_trouble(rule=rule), T_NS, "")
     assert isinstance(verdict, Finding)
     assert verdict.level in rule.levels
     assert verdict.priority in {1, 2, 3}
@@ -125,7 +132,7 @@ def test_it_is_silent_about_a_calm_unit(rule: AlarmRule) -> None:
 
 
 def test_a_unit_that_nobody_registered_is_not_believed() -> None:
-    raised = AlarmBook(ALARMS).review(StationState(t_ns=T_NS), in_trouble())
+    raised = AlarmManager(ALARMS).review(StationState(t_ns=T_NS), in_trouble())
     assert {alarm.rule for alarm in raised} == {"unknown-unit", "cloned-unit"}
 
 
@@ -144,7 +151,7 @@ def test_evidence_does_not_get_newer_by_waiting(rule: AlarmRule) -> None:
 
 
 def test_it_changes_nothing_and_repeats_itself(rule: AlarmRule) -> None:
-    for unit in (calm(), in_trouble()):
+    for unit in (calm(), in_trouble(rule=rule)):
         before = msgspec.msgpack.encode(unit)
         first = rule.judge(unit, T_NS, "")
         assert rule.judge(unit, T_NS, "") == first
@@ -153,7 +160,7 @@ def test_it_changes_nothing_and_repeats_itself(rule: AlarmRule) -> None:
 
 def test_a_standing_level_is_no_easier_to_leave_than_to_reach(rule: AlarmRule) -> None:
     """Hysteresis: whatever raises an alarm also keeps it."""
-    unit = in_trouble()
+    unit = in_trouble(rule=rule)
     found = rule.judge(unit, T_NS, "")
     assert isinstance(found, Finding)
     kept = rule.judge(unit, T_NS, found.level)

@@ -10,8 +10,8 @@ import pytest
 
 from shared.channels import POSITION, Qos
 from shared.errors import BusError
-from tests.bus_ends import Ends, Heard, publish_until_heard
-from tests.waiting import until
+from tests.rig.bus_ends import Ends, Heard, publish_until_heard
+from tests.rig.waiting import until
 
 KEY = POSITION.key("anna")
 
@@ -113,8 +113,10 @@ def test_a_failing_handler_is_logged_once_and_stops_nothing(
     ends: Ends, caplog: pytest.LogCaptureFixture
 ) -> None:
     heard = Heard()
+    failed: list[str] = []
 
     def failing(key: str, payload: bytes) -> None:
+        failed.append(key)
         raise ValueError("a bug")
 
     ends.station.subscribe("muster/v1/**", failing)
@@ -123,6 +125,7 @@ def test_a_failing_handler_is_logged_once_and_stops_nothing(
         publish_until_heard(ends.unit, KEY, heard)
         ends.unit.publish(KEY, b"later", Qos.LIVE)
         until(lambda: bool(heard.samples), "a message beside a failing handler")
+        until(lambda: len(failed) > 1, "it has failed again")  # each handler has its own thread
     assert [record.exc_info is not None for record in caplog.records] == [True]
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 import pytest
 
 from shared.channels import POSITION, alive_key
-from tests.bus_ends import Ends, Heard
-from tests.waiting import until
+from tests.rig.bus_ends import Ends, Heard
+from tests.rig.waiting import until
 
 KEY = POSITION.key("anna")
 ALIVE = alive_key("anna")

@@ -11,15 +11,15 @@ from xml.etree import ElementTree as ET
 import msgspec
 import pytest
 
-from base_station.db.models import Assignment
-from base_station.db.records import TrackSample
 from base_station.exporters import EXPORTERS
 from base_station.exporters.csv_tracks import CSV
 from base_station.exporters.geojson import GEOJSON
 from base_station.exporters.gpx import GPX
 from base_station.exporters.incident import _split
+from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack
 from base_station.exporters.kml import KML
-from base_station.exporters.port import Exporter, IncidentTracks, WornTrack
+from base_station.storage.db.models import Assignment
+from base_station.storage.db.records import TrackSample
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.geo import Anchor
@@ -143,6 +143,35 @@ def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
     # With a new photo it is the same person who goes on.
     photo = [worn("Ada", 0, 3), worn("Ada", 3, None)]
     assert [len(one.points) for one in _split("FF-01", points, photo)] == [8]
+
+
+@pytest.mark.parametrize(("gap_s", "north_m", "pieces"), [(60, 30, 2), (19, 30, 1), (60, 0.5, 1)])
+def test_no_line_is_drawn_over_a_way_that_nobody_knows(
+    gap_s: int, north_m: float, pieces: int
+) -> None:
+    track = incident(points=6).tracks[0]
+    moved = tuple(
+        msgspec.structs.replace(one, t_ns=one.t_ns + gap_s * NS_PER_S, north_m=2.0 + north_m)
+        for one in track.points[3:]
+    )
+    parted = msgspec.structs.replace(track, points=(*track.points[:3], *moved))
+    of = {
+        one.name: one.export(msgspec.structs.replace(incident(ANCHOR), tracks=(parted,)))
+        for one in EXPORTERS
+    }
+    gpx, kml = ET.fromstring(of["gpx"]), ET.fromstring(of["kml"])
+    segments = list(gpx.iter(f"{{{GPX_NAMESPACE}}}trkseg"))
+    assert [len(one) for one in segments] == [6 // pieces] * pieces
+    assert len(list(gpx.iter(f"{{{GPX_NAMESPACE}}}trk"))) == 1
+    tracks = list(kml.iter(f"{{{GX_NAMESPACE}}}Track"))
+    assert [len(one.findall(f"{{{GX_NAMESPACE}}}coord")) for one in tracks] == [
+        6 // pieces
+    ] * pieces
+    features = msgspec.json.decode(of["geojson"])["features"]
+    lines = [len(one["geometry"]["coordinates"]) for one in features]
+    assert lines == [6 // pieces] * pieces
+    assert [len(one["properties"]["times_ms"]) for one in features] == lines
+    assert of["csv"].count(b"\r\n") == 1 + 6
 
 
 def test_gpx_goes_north_with_the_wearer() -> None:

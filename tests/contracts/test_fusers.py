@@ -9,15 +9,15 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.bench.fusion.walks import Receiver, Walk
-from base_station.bench.rig.said import mono_ns
 from base_station.fusion import FUSERS
-from base_station.fusion.learnt.building import LearntBuilding
-from base_station.fusion.port import Estimate, Fuser, FuserKind, Start
+from base_station.fusion.building_model.building import LearntBuilding
+from base_station.fusion.interface import Estimate, Fuser, FuserKind, Start
 from shared.clock import NS_PER_S
 from shared.geo import rotate
 from shared.messages import Position
 from shared.quality import Quality
+from tests.bench.fusion.simulated_walks import Receiver, Walk
+from tests.rig.message_factory import mono_ns
 
 CHI2_2_95 = 5.991
 
@@ -36,9 +36,9 @@ def walk() -> Walk:
 def go(fuser: Fuser, walk: Walk, receiver: Receiver, begin: int, end: int) -> list[Estimate]:
     estimates = []
     for index in range(begin, end):
-        fuser.advance(walk.position(index))
+        fuser.predict(walk.position(index))
         if index % 5 == 0:
-            fuser.correct(receiver.fix(float(walk.t_s[index]), walk.truth_m[index]))
+            fuser.update_gnss(receiver.fix(float(walk.t_s[index]), walk.truth_m[index]))
         estimate = fuser.estimate()
         assert estimate is not None
         estimates.append(estimate)
@@ -67,10 +67,10 @@ def test_the_same_calls_give_the_same_answers(kind: FuserKind, walk: Walk) -> No
 def test_a_building_that_nobody_knows_moves_nobody(kind: FuserKind, walk: Walk) -> None:
     """Outside, with fixes, nothing is learnt of one either."""
     listening, source, plain = kind.new(), receiver(), go(kind.new(), walk, receiver(), 0, 300)
-    assert listening.recognise(LearntBuilding()) == LearntBuilding()
+    assert listening.match_building(LearntBuilding()) == LearntBuilding()
     for index in range(300):
         estimates = go(listening, walk, source, index, index + 1)
-        assert listening.recognise(LearntBuilding()) == LearntBuilding()
+        assert listening.match_building(LearntBuilding()) == LearntBuilding()
         assert estimates == [plain[index]]
 
 
@@ -120,7 +120,7 @@ def test_a_moved_frame_moves_everything_and_changes_nothing_else(
 def test_a_start_places_the_way_walked_so_far(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     for index in range(50):
-        fuser.advance(walk.position(index))
+        fuser.predict(walk.position(index))
     fuser.start(Start(10.0, -5.0, -3.0, 1.2, 0.1, 0.0))
     estimate = fuser.estimate()
     assert estimate is not None
@@ -135,7 +135,7 @@ def test_a_path_that_jumps_is_not_followed(kind: FuserKind, walk: Walk) -> None:
     go(fuser, walk, receiver(), 0, 200)
     before = fuser.estimate()
     walk.own_m[200:] += 500.0
-    reason = fuser.advance(walk.position(200))
+    reason = fuser.predict(walk.position(200))
     after = fuser.estimate()
     assert "jumped" in reason
     assert before is not None
@@ -152,8 +152,8 @@ def test_what_is_said_last_is_followed_though_the_clock_was_ahead_before(
     header = msgspec.structs.replace(
         ahead.header, t_mono_ns=ahead.header.t_mono_ns + 86_400 * NS_PER_S
     )
-    assert not fuser.advance(msgspec.structs.replace(ahead, header=header))
-    assert not fuser.advance(walk.position(101))
+    assert not fuser.predict(msgspec.structs.replace(ahead, header=header))
+    assert not fuser.predict(walk.position(101))
     go(fuser, walk, receiver(), 102, 200)
     estimate = fuser.estimate()
     assert estimate is not None
@@ -173,10 +173,10 @@ def begun_anew(kind: FuserKind, behind_s: float) -> list[Estimate]:
         t_mono_ns = mono_ns(t_s - behind_s if index >= restart else t_s)
         position = walk.position(index, boot_id=1 if index < restart else 2)
         header = msgspec.structs.replace(position.header, t_mono_ns=t_mono_ns)
-        fuser.advance(msgspec.structs.replace(position, header=header))
+        fuser.predict(msgspec.structs.replace(position, header=header))
         if index % 5 == 0 and index < 600 and abs(index - restart) > 50:
             fix = source.fix(t_s, walk.truth_m[index])
-            assert fuser.correct(msgspec.structs.replace(fix, t_mono_ns=t_mono_ns)).accepted
+            assert fuser.update_gnss(msgspec.structs.replace(fix, t_mono_ns=t_mono_ns)).accepted
         estimate = fuser.estimate()
         assert estimate is not None
         assert estimate.t_mono_ns == t_mono_ns
@@ -201,14 +201,14 @@ def test_an_older_position_is_refused(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     go(fuser, walk, receiver(), 0, 100)
     before = fuser.save()
-    assert fuser.advance(walk.position(50))
+    assert fuser.predict(walk.position(50))
     assert fuser.save() == before
 
 
 def test_a_receiver_without_a_tracker_is_followed_too(kind: FuserKind, walk: Walk) -> None:
     fuser, source = kind.new(), receiver()
     for index in range(0, len(walk), 5):
-        fuser.correct(source.fix(float(walk.t_s[index]), walk.truth_m[index]))
+        fuser.update_gnss(source.fix(float(walk.t_s[index]), walk.truth_m[index]))
     estimate = fuser.estimate()
     assert estimate is not None
     assert math.dist((estimate.north_m, estimate.east_m), walk.truth_m[-1]) < 15.0
@@ -217,13 +217,14 @@ def test_a_receiver_without_a_tracker_is_followed_too(kind: FuserKind, walk: Wal
 def test_the_present_recalled_is_the_present(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     present = go(fuser, walk, receiver(), 0, len(walk))[-1]
-    recalled = fuser.recall(walk.position(len(walk) - 1))
+    recalled = fuser.estimate_at(walk.position(len(walk) - 1))
     assert recalled is not None
     assert recalled.north_m == pytest.approx(present.north_m)
     assert recalled.east_m == pytest.approx(present.east_m)
     assert recalled.std_north_m == pytest.approx(present.std_north_m)
 
 
+@pytest.mark.slow
 def test_what_is_recalled_lies_about_where_the_wearer_was(kind: FuserKind) -> None:
     inside = total = 0
     for seed in range(20):
@@ -233,7 +234,7 @@ def test_what_is_recalled_lies_about_where_the_wearer_was(kind: FuserKind) -> No
         go(fuser, walk, Receiver(rng), 0, len(walk))
         before = fuser.save()
         for index in range(len(walk) - 300, len(walk), 20):
-            recalled = fuser.recall(walk.position(index))
+            recalled = fuser.estimate_at(walk.position(index))
             assert recalled is not None
             assert recalled.t_mono_ns == walk.position(index).header.t_mono_ns
             error_m = np.array([recalled.north_m, recalled.east_m]) - walk.truth_m[index]
@@ -259,25 +260,25 @@ def test_what_is_recalled_of_the_run_before_is_as_it_was_when_that_was_over(
     fuser = kind.new()
     go(fuser, walk, receiver(), 0, 100)
     earlier, later = walk.position(90), walk.position(110)
-    before = fuser.recall(earlier)
+    before = fuser.estimate_at(earlier)
     assert before is not None
-    fuser.advance(restarted(walk.position(0)), 30.0)
-    fuser.correct(receiver().fix(float(walk.t_s[130]), walk.truth_m[130] + 50.0))
-    assert fuser.recall(earlier) == before
+    fuser.predict(restarted(walk.position(0)), 30.0)
+    fuser.update_gnss(receiver().fix(float(walk.t_s[130]), walk.truth_m[130] + 50.0))
+    assert fuser.estimate_at(earlier) == before
     fuser = kind.restore(fuser.save())
-    assert fuser.recall(earlier) == before
-    behind = fuser.recall(later)
+    assert fuser.estimate_at(earlier) == before
+    behind = fuser.estimate_at(later)
     assert behind is not None, "it was not heard before the run was over"
     assert math.dist((behind.north_m, behind.east_m), walk.truth_m[110]) < 10.0
     assert behind.std_north_m > before.std_north_m
     fuser.reframe(math.pi / 2, 100.0, 0.0, 3.0)
-    moved = fuser.recall(earlier)
+    moved = fuser.estimate_at(earlier)
     assert moved is not None
     place = moved.north_m - 100.0, moved.east_m, moved.down_m - 3.0
     assert place == pytest.approx((-before.east_m, before.north_m, before.down_m))
-    fuser.advance(restarted(restarted(walk.position(0))), 30.0)
-    assert fuser.recall(earlier) is None, "of the one before that nothing is known any more"
-    assert fuser.recall(restarted(walk.position(1))) is not None
+    fuser.predict(restarted(restarted(walk.position(0))), 30.0)
+    assert fuser.estimate_at(earlier) is None, "of the one before that nothing is known any more"
+    assert fuser.estimate_at(restarted(walk.position(1))) is not None
 
 
 def test_another_run_of_the_unit_cannot_be_recalled(kind: FuserKind, walk: Walk) -> None:
@@ -285,4 +286,4 @@ def test_another_run_of_the_unit_cannot_be_recalled(kind: FuserKind, walk: Walk)
     go(fuser, walk, receiver(), 0, 50)
     earlier = walk.position(10)
     header = msgspec.structs.replace(earlier.header, boot_id=earlier.header.boot_id + 1)
-    assert fuser.recall(msgspec.structs.replace(earlier, header=header)) is None
+    assert fuser.estimate_at(msgspec.structs.replace(earlier, header=header)) is None

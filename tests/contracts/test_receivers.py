@@ -11,14 +11,14 @@ from threading import Event
 
 import pytest
 
-from edge.receivers import RECEIVERS, open_receiver
-from edge.receivers.gps_reader import GpsReader
 from edge.samples import GpsSample
+from edge.sources.gnss.reader import GnssReader
+from edge.sources.gnss.registry import RECEIVERS, open_receiver
 from shared.clock import ManualClock, SystemClock
 from shared.errors import ConfigError
-from tests.gps_receiver import NAN, GpsdServer, Told, burst, gpsd_report
-from tests.waiting import PATIENCE_S, until
-from tests.ximu3_device import PtyDevice, TcpDevice
+from tests.rig.gps_receiver import NAN, GpsdServer, Told, burst, gpsd_report
+from tests.rig.waiting import PATIENCE_S, until
+from tests.rig.ximu3_device import PtyDevice, TcpDevice
 
 Device = GpsdServer | TcpDevice | PtyDevice
 Saying = Callable[[Told], bytes]
@@ -40,7 +40,7 @@ def fixes(request: pytest.FixtureRequest) -> Iterator[Callable[..., list[GpsSamp
     The reader's clock stands but for that, so that nothing hangs on how busy this machine is.
     """
     make, saying = PRETENDED[request.param]
-    opened: list[tuple[Device, GpsReader]] = []
+    opened: list[tuple[Device, GnssReader]] = []
 
     def heard(*told: Told, held_s: float = 0.0) -> list[GpsSample]:
         clock, first_is_heard = ManualClock(), Event()

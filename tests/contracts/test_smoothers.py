@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from base_station.bench.fusion.walks import RATE_HZ, Receiver, Walk
-from base_station.fusion.path.history import PathHistory
-from base_station.fusion.port import Start
-from base_station.fusion.smoother import SMOOTHERS
-from base_station.fusion.smoother.port import (
-    PlaceSeen,
+from base_station.fusion.interface import Start
+from base_station.fusion.odometry.path_history import PathHistory
+from base_station.fusion.smoothing import SMOOTHERS
+from base_station.fusion.smoothing.interface import (
+    EncounterConstraint,
+    PositionConstraint,
     SmoothedPath,
     Smoother,
-    Tie,
     UnitEvidence,
 )
+from tests.bench.fusion.simulated_walks import RATE_HZ, Receiver, Walk
 
 CHI2_2_95 = 5.991
 Floats = NDArray[np.float64]
@@ -45,7 +45,7 @@ def evidence_of(
     for row in range(len(walk)):
         t_s = float(walk.t_s[row])
         position = walk.position(row, boot_id=1 if t_s < restart_s else 2)
-        history.note(position, position.header.t_mono_ns, jumped=False)
+        history.append(position, position.header.t_mono_ns, jumped=False)
         if row % RATE_HZ == 0 and any(begin <= t_s < end for begin, end in fixes_s):
             fix = receiver.fix(t_s, walk.truth_m[row])
             history.fix(fix, fix.t_mono_ns)
@@ -63,11 +63,11 @@ def errors_of(walk: Walk, path: SmoothedPath) -> Floats:
     return errors
 
 
-def pin_at(walk: Walk, t_s: float, off_m: float = 0.0, name: str = "pin") -> PlaceSeen:
+def pin_at(walk: Walk, t_s: float, off_m: float = 0.0, name: str = "pin") -> PositionConstraint:
     row = int(np.searchsorted(walk.t_s, t_s))
     north_m, east_m = walk.truth_m[row]
     t_ns = walk.position(row).header.t_mono_ns
-    return PlaceSeen(name, t_ns, float(north_m) + off_m, float(east_m), 0.5)
+    return PositionConstraint(name, t_ns, float(north_m) + off_m, float(east_m), 0.5)
 
 
 def a_walk(seed: int, lasts_s: float = 300.0) -> Walk:
@@ -87,6 +87,7 @@ def test_the_same_evidence_gives_the_same_trails(smoother: Smoother) -> None:
     assert np.array_equal(one.paths["a"].std_north_m, two.paths["a"].std_north_m)
 
 
+@pytest.mark.slow
 def test_every_point_has_a_place_and_an_honest_uncertainty(smoother: Smoother) -> None:
     held = []
     for seed in range(20):
@@ -110,6 +111,7 @@ def test_every_point_has_a_place_and_an_honest_uncertainty(smoother: Smoother) -
     assert np.mean(held) > 0.85
 
 
+@pytest.mark.slow
 def test_fixes_at_both_ends_hold_the_middle(smoother: Smoother) -> None:
     one_end: list[float] = []
     both_ends: list[float] = []
@@ -178,9 +180,11 @@ def test_who_meets_somebody_well_known_is_well_known(smoother: Smoother) -> None
         "lost": evidence_of(lost, 5, [(0.0, 30.0)]),
         "known": evidence_of(known, 6, [(0.0, 300.0)]),
     }
-    tie = Tie("met", "lost", "known", lost.position(meets).header.t_mono_ns, 0.5)
-    alone, together = smoother.smooth(evidence), smoother.smooth(evidence, [tie])
-    row = int(np.searchsorted(alone.paths["lost"].t_ns, tie.t_ns))
+    encounter = EncounterConstraint(
+        "met", "lost", "known", lost.position(meets).header.t_mono_ns, 0.5
+    )
+    alone, together = smoother.smooth(evidence), smoother.smooth(evidence, [encounter])
+    row = int(np.searchsorted(alone.paths["lost"].t_ns, encounter.t_ns))
     before, after = (errors_of(lost, one.paths["lost"])[row] for one in (alone, together))
     assert after < max(before, 2.0)
     assert together.verdicts["met"].used
@@ -208,7 +212,7 @@ def test_a_path_that_hardly_began_is_placed(smoother: Smoother, points: int) -> 
 def test_the_present_is_the_last_point(smoother: Smoother) -> None:
     walk = a_walk(9)
     path = smoother.solve({"a": evidence_of(walk, 9, [(0.0, 100.0)])}).paths["a"]
-    present = path.present
+    present = path.posterior
     assert present.mean[:2] == pytest.approx([path.north_m[-1], path.east_m[-1]])
     spread = np.array(present.covariance)
     assert np.allclose(spread, spread.T)

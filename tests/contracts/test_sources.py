@@ -10,21 +10,21 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-from edge.raw.listener import UnitListener
-from edge.raw.stream import RawStream, raw_imu
-from edge.recording.black_box import BlackBox
-from edge.sources import SOURCES, open_source
+from edge.sample_codec.codec import SampleEncoder, raw_imu
+from edge.sample_codec.listener import RawStreamListener
 from edge.sources.bus import BusSource
-from edge.sources.port import Source
-from edge.sources.ximu3 import Ximu3Source
+from edge.sources.interface import Source
+from edge.sources.registry import SOURCES, open_source
+from edge.sources.ximu3.source import Ximu3Source
+from edge.storage.black_box.black_box import BlackBox
 from shared.bus_memory import MemoryRouter
 from shared.channels import DESCRIPTION, IMU, NO_TRACKER, Qos
 from shared.clock import ManualClock
 from shared.codec import encode
 from shared.errors import ConfigError, MusterError
 from shared.messages import Header
-from tests.waiting import until
-from tests.ximu3_device import PtyDevice, TcpDevice, at_rest
+from tests.rig.waiting import until
+from tests.rig.ximu3_device import PtyDevice, TcpDevice, at_rest
 
 Example = Callable[[Path], str]
 
@@ -44,7 +44,7 @@ def _simulated(_: Path) -> str:
 def _mcap(folder: Path) -> str:
     source = open_source("simulated:straight?seed=5")
     clock = ManualClock()
-    raw = RawStream("u1", 7)
+    raw = SampleEncoder("u1", 7)
     description = raw.description(0, source.description, source="", tracker="")
     black_box = BlackBox(folder / "box", description, 10**9, clock)
     for batch in source.batches():
@@ -112,12 +112,12 @@ def _listening(text: str) -> Iterator[Source]:
 def _say_everything(source: BusSource) -> None:
     """A unit walks, then starts again, which ends what the source gives."""
     router = MemoryRouter()
-    listener = UnitListener(source.unit_id, router.attach_station)
+    listener = RawStreamListener(source.unit_id, router.attach_station)
     assert listener.open(Event())
     unit = router.attach_unit()
     walk = open_source("simulated:straight?seed=5")
     for boot_id in (7, 8):
-        raw = RawStream(source.unit_id, boot_id)
+        raw = SampleEncoder(source.unit_id, boot_id)
         description = raw.description(0, walk.description, source="", tracker=NO_TRACKER)
         unit.publish(DESCRIPTION.key(source.unit_id), encode(description), Qos.LIVE)
         for seq, batch in enumerate(walk.batches(), start=1):
@@ -133,6 +133,7 @@ def test_every_kind_has_an_example() -> None:
     assert {name.split()[0] for name in (*EXAMPLES, *DEVICES)} == {kind.scheme for kind in SOURCES}
 
 
+@pytest.mark.slow
 def test_batches_agree_with_the_description(source: Source) -> None:
     description = source.description
     assert description.name
@@ -151,12 +152,14 @@ def test_batches_agree_with_the_description(source: Source) -> None:
     source.close()
 
 
+@pytest.mark.slow
 def test_other_samples_come_with_the_batch_of_their_time(source: Source) -> None:
     for batch in source.batches():
         for other in batch.others:
             assert batch.imu.t_ns[0] <= other.t_ns <= batch.imu.t_ns[-1] + 50_000_000
 
 
+@pytest.mark.slow
 def test_a_second_reading_is_the_same_to_the_last_bit(source: Source) -> None:
     if isinstance(source, BusSource) or source.is_live:
         pytest.skip("what was said once on the bus, or by hardware, is not said again")
@@ -167,6 +170,7 @@ def test_a_second_reading_is_the_same_to_the_last_bit(source: Source) -> None:
         assert repr(first.others) == repr(second.others)
 
 
+@pytest.mark.slow
 def test_radio_outages_are_in_order(source: Source) -> None:
     starts_s = [outage.start_s for outage in source.radio_outages]
     assert starts_s == sorted(starts_s)

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
+from functools import cache
 
+import msgspec
 import numpy as np
 import pytest
 
 from edge.samples import ImuBatch, SensorDescription
-from edge.tracker import TRACKERS, make_tracker
-from edge.tracker.port import Quality
-from edge.tracker.rows import join_rows
+from edge.simulation.scenarios import SCENARIOS
+from edge.simulation.simulation import Simulation
+from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.interface import Quality
+from edge.tracker.registry import TRACKERS, make_tracker
 from shared.earth_field import EarthField
 from shared.errors import ConfigError
-from tests.walking import part, walk
+from tests.rig.exact_strides import part, walk
 
 WALK = walk(strides=5)
+STRAIGHT = next(scenario for scenario in SCENARIOS if scenario.name == "straight")  # 50 m
 
 
 @pytest.fixture(params=[entry.name for entry in TRACKERS])
@@ -49,7 +54,7 @@ def test_the_earths_field_may_be_learned_at_any_time_and_changes_nothing_before(
     at = round(share * len(WALK.imu))
     field = EarthField(0.3, 0.01, 18.0, 45.0, 0.1, 0.1)
     before = tracker.push(part(WALK.imu, slice(0, at)))
-    tracker.learn_field(field, int(WALK.imu.t_ns[at]))
+    tracker.set_earth_field(field, int(WALK.imu.t_ns[at]))
     rows = join_rows([before, tracker.push(part(WALK.imu, slice(at, None))), tracker.finish()])
     assert np.array_equal(rows.t_ns, without.t_ns)
     assert np.array_equal(rows.position_n_m[: len(before)], without.position_n_m[: len(before)])
@@ -87,6 +92,26 @@ def test_a_straight_walk_comes_out_straight_and_as_long(name):
     assert rows.steps[-1] == 5
     assert rows.distance_m[-1] == pytest.approx(5 * 1.3, rel=0.1)
     assert abs(rows.position_n_m[-1, 2]) < 0.6
+
+
+@cache
+def straight(rate_hz):
+    simulation = Simulation(msgspec.structs.replace(STRAIGHT, rate_hz=rate_hz), seed=0)
+    return simulation.description, [batch.imu for batch in simulation.batches()]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate_hz", [60.0, 100.0, 200.0, 250.0, 400.0, 820.0])
+@pytest.mark.parametrize("described", ["as it is", "four times too low"])
+def test_fifty_metres_are_fifty_metres_at_any_rate(name, rate_hz, described):
+    description, batches = straight(rate_hz)
+    if described == "four times too low":
+        description = replace(description, rate_hz=rate_hz / 4.0)
+    tracker = make_tracker(name, description)
+    rows = join_rows([*map(tracker.push, batches), tracker.finish()])
+    assert rows.distance_m[-1] == pytest.approx(50.0, rel=0.05)
+    away_m = np.hypot(*(rows.position_n_m[-1] - rows.position_n_m[0])[:2])
+    assert away_m == pytest.approx(50.0, rel=0.05)
 
 
 def test_nothing_in_nothing_out(name):

@@ -14,12 +14,16 @@ from tests.e2e.enlisting import enlist
 from tests.e2e.stage import Stage
 from tests.e2e.station_process import StationProcess
 from tests.e2e.wearable import Wearable
+from tests.rig.waiting import PATIENCE_S
 
 # The one without windows takes half of the processor time.
 CHROMIUM = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 UNIT = "FF-07"
 STATION_AWAY = ("ERR_CONNECTION", "ERR_EMPTY_RESPONSE")  # not there, or gone before it answered
-expect.set_options(timeout=60_000)  # in ms; a loaded machine draws late, and nothing is timed here
+# Nothing is timed here. A loaded machine draws late, and what looks at the past stands back behind
+# everything else that runs on it.
+PATIENCE_MS = PATIENCE_S * 1000
+expect.set_options(timeout=PATIENCE_MS)
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +38,7 @@ def chromium() -> Iterator[Browser]:
         browser = playwright.chromium.launch(
             executable_path=program, args=["--no-sandbox", "--disable-gpu"]
         )
+        browser.on("context", lambda context: context.set_default_timeout(PATIENCE_MS))
         yield browser
         browser.close()
 

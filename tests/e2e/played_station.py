@@ -15,7 +15,7 @@ import msgspec
 from playwright.sync_api import Page, Route, WebSocketRoute
 
 from base_station.api.routes.live import NOT_LOGGED_IN
-from base_station.views.wire import Delta, Snapshot
+from base_station.views.wire import Delta, Snapshot, Trail
 from tests.e2e import scenes
 from tests.e2e.console_files import DIST
 
@@ -40,6 +40,7 @@ class PlayedStation:
         self._replays: list[WebSocketRoute] = []
         self._page = page
         self._hangs = False
+        self._trails: dict[str, Trail] = {}
         page.route("**/*", self._answer)
         page.route_web_socket("**/*", self._speak)
 
@@ -78,6 +79,17 @@ class PlayedStation:
             getattr(one, _ID_OF[name]): one for one in (*getattr(self._picture, name), *changed)
         }
         return tuple(by_id.values())
+
+    def say(self, text: str) -> None:
+        """Whatever it is."""
+        for socket in self._sockets:
+            socket.send(text)
+
+    def show_trail(self, trail: Trail) -> None:
+        """Of a unit, now and with every picture that is asked for."""
+        self._trails[trail.unit_id] = trail
+        for socket in self._sockets:
+            self._show(socket)
 
     def hang(self) -> None:
         """It says no more, and its connections stay."""
@@ -124,7 +136,8 @@ class PlayedStation:
     def _show(self, socket: WebSocketRoute) -> None:
         if self._hangs:
             return
-        for message in (self._picture, *map(scenes.trail, self._picture.units)):
+        trails = [self._trails.get(one.unit_id) or scenes.trail(one) for one in self._picture.units]
+        for message in (self._picture, *trails):
             socket.send(msgspec.json.encode(message).decode())
 
     def _answer(self, route: Route) -> None:

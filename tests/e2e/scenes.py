@@ -73,7 +73,9 @@ def unit(index: int) -> wire.UnitView:
         person=person(index),
         link="live",
         last_heard_ms=NOW_MS - 300,
-        status=wire.StatusView("walking", 0.0, 0.4 + index % 6 / 10, False, 420, 260.0),
+        status=wire.StatusView(
+            "walking", 0.0, 0.4 + index % 6 / 10, False, 420, 260.0, None, "unknown", ()
+        ),
         status_ms=NOW_MS - 500,
         ambient_degc=18.0 + index,
         heat_level="",
@@ -88,6 +90,10 @@ def unit(index: int) -> wire.UnitView:
             NOW_MS - 14 * MINUTE_MS,
             None,
             NOW_MS + 26 * MINUTE_MS,
+            "radio",
+            NOW_MS - 50 * MINUTE_MS,
+            located=True,
+            entry_id=f"k{index}",
         ),
         alarms=(),
         trust=wire.TrustView("green", ""),
@@ -95,6 +101,8 @@ def unit(index: int) -> wire.UnitView:
         cloned=False,
         gps="",
         switched_off=False,
+        ambient_ms=NOW_MS - 400,
+        ambient_sensors=(),
     )
 
 
@@ -166,7 +174,7 @@ def bad_minute(count: int = 5) -> wire.Snapshot:
         2, "heat", 2, "186 °C around the equipment of Mira Okafor, 35% of its heat budget used", 55
     )
     lost = alarm(3, "link-lost", 2, "Nothing heard of Tomas Novak's unit for 30 s", 41)
-    lying = wire.StatusView("lying", 55.0, 0.07, False, 80, 51.0)
+    lying = wire.StatusView("lying", 55.0, 0.07, False, 80, 51.0, None, "unknown", ())
     units[1] = with_alarms(units[1], fall, still, status=lying)
     units[2] = with_alarms(units[2], heat, heat_level="warning", ambient_degc=186.0)
     units[3] = with_alarms(
@@ -195,13 +203,12 @@ def bad_minute(count: int = 5) -> wire.Snapshot:
         True,
         True,
         tuple(
-            wire.DeliveryView(
-                one.unit_id, state, NOW_MS - 60_000, None, None, "chief" if state == "x" else "", ""
-            )
+            wire.DeliveryView(one.unit_id, state, NOW_MS - 60_000, None, None, "", "", "")
             for one, state in zip(
                 units, ("received", "received", "sent", "queued", "received"), strict=False
             )
         ),
+        INCIDENT.incident_id,
     )
     health = msgspec.structs.replace(
         HEALTH, problems=("only 700 MB are free for the log", "The bus's router is away")
@@ -241,12 +248,72 @@ def answered() -> wire.Snapshot:
     shown = bad_minute()
     answers = tuple(
         msgspec.structs.replace(
-            one, state="acknowledged", acknowledged_ms=NOW_MS, acknowledged_by="Featherstonehaugh"
+            one,
+            state="acknowledged",
+            acknowledged_ms=NOW_MS,
+            acknowledged_by="Featherstonehaugh",
+            acknowledged_via="self",
         )
         for one in shown.commands[0].units
     )
     return msgspec.structs.replace(
         shown, commands=(msgspec.structs.replace(shown.commands[0], units=answers),)
+    )
+
+
+def never_confirmed(one: wire.UnitView) -> wire.UnitView:
+    """The same member, on duty for two minutes, of whom no message has come yet."""
+    duty = wire.DutyView(
+        None,
+        "",
+        NOW_MS + 18 * MINUTE_MS,
+        None,
+        None,
+        None,
+        None,
+        "not_yet",
+        NOW_MS - 2 * MINUTE_MS,
+        located=False,
+        entry_id="",
+    )
+    return msgspec.structs.replace(
+        one, duty=duty, link="never", last_heard_ms=None, position=None, status=None,
+        inside_since_ms=None,
+    )  # fmt: skip
+
+
+def order(
+    command_id: str,
+    kind: str,
+    states: dict[str, str],
+    *,
+    is_open: bool = True,
+    incident_id: str = INCIDENT.incident_id,
+) -> wire.CommandView:
+    """To these units, a minute ago; who has acknowledged it did so on the own unit."""
+    return wire.CommandView(
+        command_id,
+        kind,
+        "",
+        "chief",
+        NOW_MS - 60_000,
+        NOW_MS + 500_000,
+        True,
+        is_open,
+        tuple(
+            wire.DeliveryView(
+                unit,
+                state,
+                NOW_MS - 60_000,
+                None,
+                NOW_MS - 40_000 if state == "acknowledged" else None,
+                unit if state == "acknowledged" else "",
+                "",
+                "self" if state == "acknowledged" else "",
+            )
+            for unit, state in states.items()
+        ),
+        incident_id,
     )
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from base_station.bench.rig.station import free_port
-from tests.station_command import Command
+from tests.rig.first_login import first_login
+from tests.rig.station_command import Command
+from tests.rig.station_process import free_port
 
 
 class StationProcess:
@@ -40,7 +41,5 @@ class StationProcess:
             self._command.stop()
 
     def login(self) -> tuple[str, str]:
-        """Name and password that the station made at its first start."""
-        text = (self.data / "first-login.txt").read_text()
-        entries = dict(line.split(": ", 1) for line in text.splitlines())
-        return entries["username"], entries["password"]
+        """Name and password that the station made at its first start, changed as it asks."""
+        return first_login(self.address, self.data / "first-login.txt")

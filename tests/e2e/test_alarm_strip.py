@@ -21,7 +21,7 @@ def test_an_alarm_says_the_figure_of_now_beside_the_time_since(stage: Stage) -> 
     expect(row["no-motion"]).to_contain_text("has not moved for 30 s")
     expect(row["no-motion"]).to_contain_text("now 55 s")
     hot, lying = station.picture.units[2], station.picture.units[1]
-    walking = wire.StatusView("walking", 0.0, 0.07, False, 80, 51.0)
+    walking = wire.StatusView("walking", 0.0, 0.07, False, 80, 51.0, None, "unknown", ())
     station.change(
         units=(
             msgspec.structs.replace(hot, ambient_degc=231.4, heat_used=0.65),

@@ -34,18 +34,26 @@ def test_a_roll_call_is_received_and_acknowledged(
     wearable.acknowledge()
     expect(bar).not_to_contain_text("acknowledged")
     dialog = command(page, "PAR")
-    expect(row).to_contain_text(f"acknowledged{NAME}")
+    expect(row).to_contain_text(f"acknowledged{NAME}, own unit")
     close(dialog)
 
 
-def test_people_are_ticked_off_at_the_roll_call(page: Page, card: Locator) -> None:
-    clock = page.get_by_role("button", name="until the next check-in")
+def test_par_is_confirmed_by_radio_and_that_is_undone(page: Page, card: Locator) -> None:
+    clock = page.get_by_role("button", name="until the next PAR")
     expect(clock).to_contain_text(re.compile(r"PAR 0?\d:\d\d"))
     clock.click()
     dialog = page.get_by_role("dialog")
     row = dialog.get_by_role("listitem").filter(has_text=NAME)
-    press(row.get_by_role("button", name=f"Heard {NAME}"))
-    expect(row).to_contain_text("by admin")
+    expect(row).to_contain_text("by own unit")
+    press(row.get_by_role("button", name=f"Confirm by radio: {NAME}"))
+    expect(row).to_contain_text("by radio, entered by admin")
+    dialog.get_by_role("status").get_by_role("button", name="Undo").click()
+    expect(row).to_contain_text("by own unit")
+    press(row.get_by_role("button", name=f"Confirm by radio: {NAME}"))
+    row.get_by_role("button", name="Undo").click()
+    page.wait_for_timeout(600)
+    row.get_by_role("button", name="Yes, undo").click()
+    expect(row).to_contain_text("by own unit")
     close(dialog)
     expect(card).to_contain_text(re.compile(r"PAR (10:00|09:\d\d)"))
 
@@ -63,14 +71,21 @@ def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card
     close(dialog)
 
 
-def test_an_evacuation_asks_first_and_may_be_answered_by_voice(page: Page, card: Locator) -> None:
+def test_an_evacuation_asks_first_and_may_be_answered_by_radio(page: Page, card: Locator) -> None:
     dialog = command(page, "Evacuate")
     expect(card).not_to_contain_text("Evacuate")
     dialog.get_by_role("button", name="Evacuate now").click()
     row = dialog.get_by_role("row", name=NAME).first
     expect(row).to_contain_text("received")
-    row.get_by_role("button", name="Answered by voice").click()
-    expect(row).to_contain_text("acknowledgedadmin")
+    answered = row.get_by_role("button", name=f"Answered by radio: {NAME}")
+    press(answered)
+    expect(row).to_contain_text("acknowledgedby radio, admin")
+    dialog.get_by_role("status").get_by_role("button", name="Undo").click()
+    press(answered)
+    expect(row).to_contain_text("acknowledgedby radio, admin")
+    close(dialog)
+    dialog = command(page, "Evacuate")
+    expect(dialog.get_by_role("table")).to_have_count(0)  # it is over, and this would be another
     close(dialog)
 
 
@@ -84,7 +99,7 @@ def test_a_message_stays_on_the_card_until_it_is_answered(page: Page, card: Loca
 
 
 def test_everybody_can_use_the_roll_call_and_the_plan(page: Page, card: Locator) -> None:
-    page.get_by_role("button", name="until the next check-in").click()
+    page.get_by_role("button", name="until the next PAR").click()
     assert barriers(page) == []
     close(page.get_by_role("dialog"))
     card.get_by_role("button", name="Pin on the plan").click()

@@ -26,7 +26,7 @@ from tests.e2e.console_page import (
     pins,
 )
 from tests.e2e.enlisting import NAME
-from tests.waiting import until
+from tests.rig.waiting import until
 
 
 def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator) -> None:

@@ -58,7 +58,7 @@ def test_who_was_chosen_is_seen_by_name_with_what_can_be_done(stage: Stage, scre
     page, _ = stage.open(scenes.bad_minute(), screen)
     card = page.locator(".card").first
     card.get_by_role("button").first.click()
-    expect(card.get_by_role("button", name="Heard")).to_be_in_viewport(ratio=1)
+    expect(card.get_by_role("button", name="PAR by radio")).to_be_in_viewport(ratio=1)
     assert is_seen(page, card.locator(".name"))
     assert is_seen(page, card.locator(".fact dd").first)
     assert flaws(page) == []

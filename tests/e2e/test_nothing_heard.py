@@ -52,6 +52,6 @@ def test_a_picture_of_before_a_sleep_is_old_at_once_when_the_machine_wakes(stage
 def test_whose_login_has_ended_is_told_so(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     station.end_logins()
-    expect(page.get_by_role("status")).to_contain_text("This login has ended")
+    expect(page.get_by_role("status").filter(has_text="This login has ended")).to_be_visible()
     expect(page.get_by_role("button", name="Log in")).to_be_visible()
     expect(page).to_have_title("Muster")

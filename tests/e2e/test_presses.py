@@ -61,11 +61,13 @@ def test_two_presses_tick_off_one_person(stage: Stage) -> None:
         station.change(units=(heard(crew[0]),))
         expect(names).to_have_text([second, third, first])
 
-    press_twice(page, page.get_by_role("dialog").get_by_text("Heard", exact=True).first, heard_of)
+    press_twice(
+        page, page.get_by_role("dialog").get_by_text("Confirm by radio", exact=True).first, heard_of
+    )
     station.expect_changes("/check-ins")
     let_time_go_on(page)
     with page.expect_response(re.compile("/check-ins$")):
-        page.get_by_role("button", name=f"Heard {second}").click()
+        page.get_by_role("button", name=f"Confirm by radio: {second}").click()
     station.expect_changes("/check-ins", "/check-ins")
 
 
@@ -190,11 +192,11 @@ def test_everybody_is_ticked_off_once(stage: Stage) -> None:
     """A question that was answered does not stand there for the next press."""
     page, station = stage.open(scenes.quiet())
     page.locator(".par-clock").click()
-    everybody = page.get_by_role("dialog").get_by_role("button", name="All heard", exact=True)
+    everybody = page.get_by_role("dialog").get_by_role("button", name="Confirm all", exact=True)
     stop_time(page)
     everybody.click()
     let_time_go_on(page)
-    page.get_by_role("button", name="Yes, all heard").click()
+    page.get_by_role("button", name="Yes, answered by radio").click()
     expect(everybody).to_be_visible()
     station.expect_changes("/check-ins")
 

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from base_station.views.wire import Snapshot
+from base_station.views.wire import GapView, Snapshot
 from tests.e2e import scenes
 from tests.e2e.console_page import close, menu, strip
 from tests.e2e.looks import flaws
@@ -131,6 +131,27 @@ def test_a_replay_of_a_whole_log_warns_of_nothing(stage: Stage) -> None:
     bar = page.get_by_role("region", name="Replay")
     expect(bar).to_contain_text("This is the past")
     expect(bar).not_to_contain_text("Not all")
+
+
+@pytest.mark.parametrize("screen", ["laptop", "tablet upright", "phone on its side"])
+def test_a_gap_of_the_record_is_named_and_nothing_in_it_looks_current(
+    stage: Stage, screen: str
+) -> None:
+    shown = scenes.past()
+    assert shown.replay is not None
+    from_ms = shown.replay.at_ms - scenes.MINUTE_MS
+    gap = GapView(from_ms, from_ms + 2 * scenes.MINUTE_MS)
+    page, station = stage.open(shown, screen)
+    expect(page.get_by_text("No record from")).to_have_count(0)
+    station.change(replay=msgspec.structs.replace(shown.replay, gap=gap))
+    expect(page.get_by_role("region", name="Replay").get_by_role("alert")).to_contain_text(
+        re.compile(r"No record from .*\d\d:\d\d:\d\d to .*\d\d:\d\d:\d\d")
+    )
+    expect(page.locator(".console")).to_have_class(re.compile("not-now"))
+    assert flaws(page) == []
+    station.change(replay=shown.replay)
+    expect(page.get_by_text("No record from")).to_have_count(0)
+    expect(page.locator(".console")).not_to_have_class(re.compile("not-now"))
 
 
 def test_times_of_another_day_than_the_beginning_say_so_and_of_which_zone_they_are(

@@ -20,10 +20,10 @@ def test_nobody_ticks_off_who_is_down_without_a_word(stage: Stage) -> None:
     down = dialog.get_by_role("listitem").filter(has_text="Jonas Bergman")
     expect(down).to_contain_text("Fall, No motion")
     assert flaws(page) == []
-    dialog.get_by_role("button", name="All heard", exact=True).click()
-    expect(
-        dialog.get_by_role("group", name="Has everybody answered, Jonas Bergman too?")
-    ).to_be_visible()
+    dialog.get_by_role("button", name="Confirm all", exact=True).click()
+    question = "In alarm: Jonas Bergman (Fall, No motion). Has everybody answered by radio?"
+    expect(dialog.get_by_role("group", name=question)).to_be_visible()
+    assert flaws(page) == []
     station.expect_changes()
 
 
@@ -32,15 +32,17 @@ def test_a_crew_with_somebody_down_is_ticked_off_on_a_second_word(stage: Stage) 
     page, station = stage.open(shown)
     page.locator(".par-clock").click()
     crews = page.get_by_role("dialog").get_by_role("region")
-    calm = crews.filter(has_text="Engine 1").get_by_role("button", name="all heard")
+    calm = crews.filter(has_text="Engine 1").get_by_role("button", name="confirm all")
     press(calm)
     station.expect_changes("/check-ins")
     confirm_crew = crews.filter(has_text="Jonas Bergman")
-    ticks = crews.get_by_text(re.compile("all heard", re.IGNORECASE))  # beside that for everybody
-    assert {"Engine 1: all heard", "Engine 2: all heard"} <= set(ticks.all_inner_texts())
-    confirm_crew.get_by_role("button", name="Engine 2: all heard").click()
-    expect(confirm_crew).to_contain_text("Have all answered, Jonas Bergman too?")
+    ticks = crews.get_by_text(re.compile("confirm all"))
+    assert {"Engine 1: confirm all", "Engine 2: confirm all"} <= set(ticks.all_inner_texts())
+    confirm_crew.get_by_role("button", name="Engine 2: confirm all").click()
+    expect(confirm_crew).to_contain_text(
+        "In alarm: Jonas Bergman (Fall, No motion). Have all answered by radio?"
+    )
     station.expect_changes("/check-ins")
     page.wait_for_timeout(600)
-    confirm_crew.get_by_role("button", name="Yes, all heard").click()
+    confirm_crew.get_by_role("button", name="Yes, answered by radio").click()
     station.expect_changes("/check-ins", "/check-ins")

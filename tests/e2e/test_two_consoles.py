@@ -7,8 +7,9 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, Page, expect
 
-from base_station.bench.standby.one_of_two import Place, Station
-from base_station.bench.standby.two_stations import TwoStations
+from tests.bench.standby.station_of_pair import Place, Station
+from tests.bench.standby.two_stations import TwoStations
+from tests.rig.loaded_program import launch_loaded
 
 PATIENCE_MS = 60_000
 COPIED_MS = 3_000  # by then the other station knows the ticket
@@ -25,7 +26,7 @@ def test_the_console_goes_to_the_station_that_has_taken_over(
     chromium: Browser, tmp_path: Path
 ) -> None:
     with ExitStack() as closing:
-        two = TwoStations(tmp_path, (Place(), Place()), closing)
+        two = TwoStations(tmp_path, (Place(), Place()), closing, launch_loaded)
         two.start()
         two.first.post("/incidents", {"name": "Mill Lane"})
         page = chromium.new_page()
@@ -49,6 +50,8 @@ def test_the_console_goes_to_the_station_that_has_taken_over(
         page.context.clear_cookies()  # who comes without a ticket logs in
         page.goto("about:blank")
         page.goto(f"{two.second.url}/#from=first&ticket=used")
-        expect(page.get_by_role("status")).to_contain_text("The same user and password hold here")
+        expect(
+            page.get_by_role("status").filter(has_text="The same user and password hold here")
+        ).to_be_visible()
         log_in(page, two.second)
         expect(page.get_by_text("Mill Lane").first).to_be_visible()

@@ -7,8 +7,7 @@ import threading
 from queue import SimpleQueue
 from typing import Self
 
-from base_station.bench.rig import said
-from edge.commands import CommandDesk
+from edge.agent.command_handler import CommandHandler
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import COMMAND, channel_of
 from shared.clock import SystemClock
@@ -24,6 +23,7 @@ from shared.messages import (
     Temperature,
     UnitEvent,
 )
+from tests.rig import message_factory
 
 STEP_S = 0.2
 SPEED_MPS = 1.0
@@ -36,7 +36,7 @@ class Wearable:
     def __init__(self, unit_id: str, station: str) -> None:
         self._bus = ZenohBus(UnitEndpoint((station,)))
         self._stamper = Stamper(unit_id, secrets.randbits(63), SystemClock())
-        self._desk = CommandDesk(self._stamper, lambda _: None)
+        self._desk = CommandHandler(self._stamper, lambda _: None)
         self._commands: SimpleQueue[bytes] = SimpleQueue()
         self._hearing = self._bus.subscribe(
             COMMAND.key(unit_id), lambda _, payload: self._commands.put(payload)
@@ -86,7 +86,7 @@ class Wearable:
         self._bus.publish(channel.key(self._stamper.unit_id), encode(message), channel.qos)
 
     def _position(self, walked_m: float) -> Position:
-        return said.position(
+        return message_factory.position(
             self._stamper.header(),
             north_m=walked_m,
             velocity_north_mps=SPEED_MPS,
@@ -96,4 +96,6 @@ class Wearable:
         )
 
     def _status(self, steps: int) -> Status:
-        return said.status(self._stamper.header(), battery=0.83, steps=steps, cadence_hz=1.8)
+        return message_factory.status(
+            self._stamper.header(), battery=0.83, steps=steps, cadence_hz=1.8
+        )

@@ -7,10 +7,11 @@ from contextlib import ExitStack
 
 import pytest
 
-from base_station.bench.faults.site import Site, site
-from base_station.bench.rig.lossy_link import LossyLink
 from shared.errors import BusError
-from tests.recorded_unit import RecordedUnit
+from tests.bench.faults.site import Site, site
+from tests.rig.loaded_program import launch_loaded_as_it_is
+from tests.rig.lossy_link import LossyLink
+from tests.rig.recorded_unit import RecordedUnit
 
 LUCK = 5  # the seed of the links
 
@@ -34,7 +35,7 @@ def closing() -> Iterator[ExitStack]:
 @pytest.fixture(scope="module")
 def troubled(links: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     """A station and a unit with a link between them that can be spoiled."""
-    with site(tmp_path_factory.mktemp("site"), LUCK) as one:
+    with site(tmp_path_factory.mktemp("site"), LUCK, launch_loaded_as_it_is) as one:
         yield one
 
 

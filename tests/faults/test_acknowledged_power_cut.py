@@ -12,21 +12,21 @@ from threading import Event, Thread
 
 import pytest
 
-from base_station import drive as drive_module
-from base_station.feed import LiveFeed
-from base_station.journals import unit_journal
-from base_station.journals.backfill import Backfill, Report
-from base_station.journals.on_disk import ReportsOnDisk
-from edge.journal.server import JournalServer
-from edge.journal.spool import Journaled, Spool
+from base_station.engine import engine as drive_module
+from base_station.engine.feed import LiveFeed
+from base_station.unit_sync import journal_client
+from base_station.unit_sync.backfill import Backfill, Report
+from base_station.unit_sync.durable_ack import DurableAckGate
+from edge.storage.journal.journal import Journal, JournalRow
+from edge.storage.journal.server import JournalServer
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import decode, encode
 from shared.mcap_log import read_log, segment_paths
 from shared.messages import Header, Position
 from shared.messages.station import RegisterUnit
-from tests.live_station import LiveStation
-from tests.waiting import until
+from tests.rig.live_station import LiveStation
+from tests.rig.waiting import until
 
 U, BOOT = "FF-01", 0xB007
 CUTS = 4
@@ -57,13 +57,13 @@ class Station(LiveStation):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
-        self._reports = ReportsOnDisk(self.recorder)
+        self._reports = DurableAckGate(self.recorder)
         self.backfill = Backfill(
-            self.bus, self.feed.deliver, SystemClock(), self._reports.has_report_before
+            self.bus, self.feed.deliver, SystemClock(), self._reports.previous_report_is_durable
         )
 
     def _note_report(self, report: Report, in_memory: bool) -> None:
-        self._reports.report_comes()
+        self._reports.note_report_received()
         self.backfill.report(report, alerts_only=in_memory)
 
 
@@ -71,7 +71,7 @@ class Unit:
     """Speaks thirty times a second; every third message is lost on the air."""
 
     def __init__(self, folder: Path, make_position: MakePosition) -> None:
-        self.spool = Spool(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
+        self.journal = Journal(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
         self._make = make_position
         self._stop = Event()
 
@@ -80,7 +80,7 @@ class Unit:
         while not self._stop.wait(0.03):
             seq += 1
             said = self._make(header=Header(U, BOOT, seq, seq * NS_PER_S // 30))
-            self.spool.append([Journaled(seq, POSITION, seq, encode(said))])
+            self.journal.append([JournalRow(seq, POSITION, seq, encode(said))])
             if seq % 3:
                 station.say(said)
 
@@ -100,13 +100,13 @@ def there(log: Path) -> set[int]:
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reports so soon after each other that the disk has not what the first one told of."""
     monkeypatch.setattr(drive_module, "TICK_NS", NS_PER_S // 10)
-    monkeypatch.setattr(unit_journal, "_ACKNOWLEDGE_EVERY_NS", NS_PER_S // 2)
+    monkeypatch.setattr(journal_client, "_ACKNOWLEDGE_EVERY_NS", NS_PER_S // 2)
 
 
 @pytest.fixture
 def unit(tmp_path: Path, make_position: MakePosition) -> Iterator[Unit]:
     unit = Unit(tmp_path, make_position)
-    with closing(unit.spool):
+    with closing(unit.journal):
         yield unit
 
 
@@ -115,7 +115,7 @@ def test_what_a_unit_may_forget_is_in_the_log_after_a_power_cut(
 ) -> None:
     disk, cuts = Disk(), list[tuple[int, Path]]()
     monkeypatch.setattr("shared.mcap_log.durable_file.os.fsync", disk.fsync)
-    server = JournalServer(U, unit.spool)
+    server = JournalServer(U, unit.journal)
     with Station(tmp_path / "data") as station:
 
         def replies(key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
@@ -146,7 +146,7 @@ def test_what_a_unit_may_forget_is_in_the_log_after_a_power_cut(
 def test_while_one_units_backlog_comes_others_are_told_what_they_may_forget(
     tmp_path: Path, hasty: None, unit: Unit, make_position: MakePosition
 ) -> None:
-    server = JournalServer(U, unit.spool)
+    server = JournalServer(U, unit.journal)
     ending = Event()
 
     def bring_for_long(feed: LiveFeed) -> None:
@@ -167,7 +167,7 @@ def test_while_one_units_backlog_comes_others_are_told_what_they_may_forget(
         speaking = Thread(target=unit.speak, args=(station,))
         speaking.start()
         try:
-            until(lambda: unit.spool.last_seq - unit.spool.pending > 20, "they are told", 30.0)
+            until(lambda: unit.journal.last_seq - unit.journal.pending > 20, "they are told", 30.0)
         finally:
             ending.set()
             unit.close()

@@ -8,13 +8,13 @@ from contextlib import ExitStack
 
 import pytest
 
-from base_station.bench.faults.members import UNIT
-from base_station.bench.faults.site import Site
-from base_station.bench.faults.troubles import FAULTS, TEN_MINUTES, BadLink
-from base_station.bench.rig.console import Console
-from base_station.bench.rig.lossy_link import CLEAN, DARK
-from tests.bad_link import BUSY_S, TOLD_S, assert_nothing_is_lost
-from tests.waiting import until
+from tests.bench.faults.bus_identities import UNIT
+from tests.bench.faults.fault_scenarios import FAULTS, TEN_MINUTES, BadLink
+from tests.bench.faults.site import Site
+from tests.rig.bad_link_checks import BUSY_S, TOLD_S, assert_nothing_is_lost
+from tests.rig.console_client import Console
+from tests.rig.lossy_link import CLEAN, DARK
+from tests.rig.waiting import until
 
 PATIENCE_S = 90.0
 # The others are for `muster bench faults`; ten minutes are begun before all other tests.

@@ -17,12 +17,12 @@ from shared.clock import NS_PER_S
 WRITER = """
 import sys, time
 from pathlib import Path
-from edge.recording.black_box import BlackBox
-from edge.raw.stream import RawStream
-from edge.sources import open_source
+from edge.storage.black_box.black_box import BlackBox
+from edge.sample_codec.codec import SampleEncoder
+from edge.sources.registry import open_source
 from shared.clock import SystemClock
 source = open_source("simulated:straight")
-raw = RawStream("u1", 7)
+raw = SampleEncoder("u1", 7)
 description = raw.description(0, source.description, source="", tracker="")
 box = BlackBox(Path(sys.argv[1]), description, 10**9, SystemClock())
 started = time.monotonic()

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from edge.raw.stream import RawStream
-from edge.recording.black_box import BlackBox
-from edge.sources import open_source
+from edge.sample_codec.codec import SampleEncoder
 from edge.sources.black_box import BlackBoxSource
+from edge.sources.registry import open_source
+from edge.storage.black_box.black_box import BlackBox
 from shared.clock import NS_PER_S, SystemClock
 from shared.mcap_log import segment_paths
 
@@ -52,7 +52,7 @@ def test_at_most_a_second_of_samples_is_lost_with_the_power(
     folder.mkdir()
     monkeypatch.setattr(os, "fsync", disk.fsync)
     source = open_source("simulated:straight")
-    raw = RawStream("u1", 7)
+    raw = SampleEncoder("u1", 7)
     description = raw.description(0, source.description, source="", tracker="")
     box = BlackBox(folder, description, 10**9, SystemClock())
     handed_over_ns: list[int] = []  # at each cut

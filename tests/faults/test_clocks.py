@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import pytest
 
-from base_station.clocks.server import ClockServer
-from base_station.clocks.steady import SteadyClock
-from edge.clocks.offset import ClockOffset, Exchange
+from base_station.engine.station_clock import SteadyClock
+from base_station.unit_sync.clock_server import ClockServer
+from edge.clocks.offset import ClockOffsetFilter, Exchange
 from edge.clocks.station import StationClock
 from shared.bus import ReplyHandler
 from shared.channels import POSITION, backfilled_key
@@ -17,7 +17,7 @@ from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.envelope import Stamper
 from shared.messages import Header, Heartbeat, Position
-from tests.station_script import START_NS, Script
+from tests.rig.station_script import START_NS, Script
 
 U = "FF-01"
 DAY_S = 86_400.0
@@ -43,7 +43,7 @@ class SetClock:
         return self._mono_ns + self._utc_offset_ns
 
 
-class Pair:
+class HaController:
     """A unit and a station, with a link between them that queues now this way, now that."""
 
     def __init__(self, drift: float = 0.0, seed: int = 1, queue_s: float = 0.0) -> None:
@@ -82,7 +82,7 @@ class Pair:
 
 
 def test_before_the_station_has_answered_nothing_is_claimed() -> None:
-    pair = Pair()
+    pair = HaController()
     pair.linked = False
     pair.run(30.0)
     assert pair.clock.utc_std_s() == 0.0
@@ -90,7 +90,7 @@ def test_before_the_station_has_answered_nothing_is_claimed() -> None:
 
 
 def test_a_unit_a_week_behind_stamps_in_the_station_s_time() -> None:
-    pair = Pair()
+    pair = HaController()
     pair.run(30.0)
     assert abs(pair.error_s()) < 0.005
     assert pair.clock.machine_ahead_s() == pytest.approx(-7 * DAY_S, abs=0.01)
@@ -101,7 +101,7 @@ def test_a_unit_a_week_behind_stamps_in_the_station_s_time() -> None:
 
 @pytest.mark.parametrize("drift", [-4e-5, 0.0, 4e-5])
 def test_the_drift_is_learnt_and_carries_over_an_outage(drift: float) -> None:
-    pair = Pair(drift, queue_s=0.002)
+    pair = HaController(drift, queue_s=0.002)
     pair.run(1200.0)
     estimate = pair.clock.estimate()
     assert estimate is not None
@@ -115,7 +115,7 @@ def test_its_uncertainty_is_honest_on_links_that_queue() -> None:
     """Errors in standard deviations, over many units at a random time each."""
     squares = []
     for seed in range(60):
-        pair = Pair(random.Random(seed).gauss(0.0, 2e-5), seed, queue_s=0.2)
+        pair = HaController(random.Random(seed).gauss(0.0, 2e-5), seed, queue_s=0.2)
         pair.run(5.0 + 300.0 * random.Random(-seed).random())
         squares.append((pair.error_s() / pair.clock.utc_std_s()) ** 2)
     assert sum(squares) / len(squares) < 1.5
@@ -123,7 +123,7 @@ def test_its_uncertainty_is_honest_on_links_that_queue() -> None:
 
 
 def test_a_slow_exchange_among_quick_ones_hardly_counts() -> None:
-    offset = ClockOffset()
+    offset = ClockOffsetFilter()
     for number in range(10):
         t_ns = number * NS_PER_S
         offset.note(Exchange(t_ns, t_ns + 10_000_000, t_ns + 10_000_000, t_ns + 20_000_000))
@@ -137,14 +137,14 @@ def test_a_slow_exchange_among_quick_ones_hardly_counts() -> None:
 
 
 def test_exchanges_that_cannot_be_are_not_used() -> None:
-    offset = ClockOffset()
+    offset = ClockOffsetFilter()
     assert not offset.note(Exchange(10, 0, 0, 5))
     assert not offset.note(Exchange(0, 20, 10, 50))
     assert offset.at(0) is None
 
 
 def test_the_unit_follows_a_station_whose_clock_is_set_forward_by_a_day() -> None:
-    pair = Pair()
+    pair = HaController()
     pair.run(60.0)
     pair.station_machine.set_utc_ahead(DAY_S)
     pair.run(60.0)
@@ -152,7 +152,7 @@ def test_the_unit_follows_a_station_whose_clock_is_set_forward_by_a_day() -> Non
 
 
 def test_a_station_whose_clock_is_set_back_goes_on_and_so_does_the_unit() -> None:
-    pair = Pair()
+    pair = HaController()
     pair.run(60.0)
     stamps_ns = []
     pair.station_machine.set_utc_ahead(-DAY_S)
@@ -165,7 +165,7 @@ def test_a_station_whose_clock_is_set_back_goes_on_and_so_does_the_unit() -> Non
 
 @pytest.mark.parametrize("by_s", [DAY_S, -DAY_S])
 def test_a_unit_whose_own_clock_is_set_goes_on_in_the_station_s_time(by_s: float) -> None:
-    pair = Pair()
+    pair = HaController()
     pair.run(30.0)
     stamper = Stamper(U, 1, pair.clock, pair.clock.utc_std_s)
     before = stamper.header()

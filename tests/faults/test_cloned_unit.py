@@ -10,7 +10,7 @@ from base_station.views.units import unit_views
 from shared.clock import NS_PER_S
 from shared.messages import AlarmState, Header, Position
 from shared.messages.station import ResolveAlarm
-from tests.station_script import Script
+from tests.rig.station_script import Script
 
 U = "FF-01"
 

@@ -8,11 +8,11 @@ from threading import Event
 import numpy as np
 import pytest
 
-from edge.app import compose_agent
+from edge.app.composition import compose_agent
 from edge.config import EdgeConfig
-from edge.data_folder import DataFolder
-from edge.sources import open_source
-from edge.tracker.port import Quality, Reason
+from edge.sources.registry import open_source
+from edge.storage.data_folder import DataFolder
+from edge.tracker.interface import Quality, Reason
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.channels import EVENT, POSITION, STATUS, parse_key
@@ -58,15 +58,17 @@ def run_agent_on(rows: np.ndarray, folder: Path):
     data = DataFolder(folder / "u1")
     source = open_source(config.source)
     agent = compose_agent(config, "u1", data, source, Nobody(), speed=None)
-    spool = agent._parts.spool
-    read = spool.close
+    journal = agent._parts.journal
+    read = journal.close
     sent: list[tuple[str, bytes]] = []
 
     def keep_and_close() -> None:
-        sent.extend((entry.suffix, entry.payload) for entry in spool.read(spool.boot_id, 1, 10**9))
+        sent.extend(
+            (entry.suffix, entry.payload) for entry in journal.read(journal.boot_id, 1, 10**9)
+        )
         read()
 
-    spool.close = keep_and_close  # type: ignore[method-assign]
+    journal.close = keep_and_close  # type: ignore[method-assign]
     agent.run(Event())
     data.close()
     decoded = [

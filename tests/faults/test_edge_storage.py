@@ -14,20 +14,20 @@ from pathlib import Path
 
 import pytest
 
-from edge.app import compose_agent
+from edge.app.composition import compose_agent
+from edge.app.jit_warmup import compile_trackers
 from edge.config import EdgeConfig
-from edge.data_folder import DataFolder
-from edge.journal.spool import Journaled, Spool
-from edge.sources import open_source
-from edge.warm_up import compile_trackers
+from edge.sources.registry import open_source
+from edge.storage.data_folder import DataFolder
+from edge.storage.journal.journal import Journal, JournalRow
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.channels import EVENT, alive_key, parse_key
 from shared.codec import decode
 from shared.mcap_log import segment_paths
 from shared.messages import EventKind, Heartbeat, Message, Position, UnitEvent
-from tests.hanging_disk import disk_that_can_hang, freeze, frozen, thaw
-from tests.waiting import until
+from tests.rig.hanging_disk import disk_that_can_hang, freeze, frozen, thaw
+from tests.rig.waiting import until
 
 ENDING_S = 15.0  # of the 20 s after which its service kills it
 
@@ -118,9 +118,9 @@ def running(tmp_path):
 
 def set_room(running: Running, pages: int) -> None:
     """How large the journal's file can become, as a disk would limit it."""
-    spool = running.parts.spool
-    with spool._lock:
-        spool._writer.execute(f"PRAGMA max_page_count = {pages}")
+    journal = running.parts.journal
+    with journal._lock:
+        journal._writer.execute(f"PRAGMA max_page_count = {pages}")
 
 
 def test_a_full_disk_under_the_journal(running):
@@ -132,15 +132,15 @@ def test_a_full_disk_under_the_journal(running):
     assert "full" in running.station.faults()[0]
 
     set_room(running, 1_000_000)
-    until(lambda: running.parts.journal.fault is None)
-    spool = running.parts.spool
-    kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
+    until(lambda: running.parts.journal_writer.fault is None)
+    journal = running.parts.journal
+    kept = [entry.seq for entry in journal.read(journal.boot_id, 1, 10**9)]
     assert kept == list(range(1, len(kept) + 1))
-    assert running.parts.journal.never_saved == 0
+    assert running.parts.journal_writer.never_saved == 0
 
 
 def test_what_a_full_disk_cost_is_said_with_the_heartbeat(running, monkeypatch):
-    monkeypatch.setattr("edge.journal.writer._UNSAVED_KEPT", 3)
+    monkeypatch.setattr("edge.storage.journal.writer._UNSAVED_MAX", 3)
     set_room(running, 1)
     until(lambda: any(beat.never_saved > 0 for beat in running.station.heartbeats()))
     set_room(running, 1_000_000)
@@ -177,25 +177,25 @@ def test_a_fault_of_one_hides_none_of_the_other(running, monkeypatch):
 
 
 def test_a_journal_that_is_damaged_while_it_is_written(running, monkeypatch):
-    spool = running.parts.spool
-    insert, had = spool._insert, spool.last_seq
+    journal = running.parts.journal
+    insert, had = journal._insert, journal.last_seq
 
-    def spoilt(messages: Sequence[Journaled]) -> None:
-        if not spool.damage:
+    def spoilt(messages: Sequence[JournalRow]) -> None:
+        if not journal.damage:
             error = sqlite3.DatabaseError("database disk image is malformed")
             error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
             raise error
         insert(messages)
 
-    monkeypatch.setattr(spool, "_insert", spoilt)
+    monkeypatch.setattr(journal, "_insert", spoilt)
     until(running.station.faults)
     assert "a new one is begun" in running.station.faults()[0]
-    until(lambda: spool.last_seq > had + 20)
-    kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
+    until(lambda: journal.last_seq > had + 20)
+    kept = [entry.seq for entry in journal.read(journal.boot_id, 1, 10**9)]
     assert kept[0] > had
     assert kept == list(range(kept[0], kept[0] + len(kept)))
-    assert running.parts.journal.fault is None
-    assert running.parts.journal.never_saved == 0
+    assert running.parts.journal_writer.fault is None
+    assert running.parts.journal_writer.never_saved == 0
     assert len(running.station.faults()) == 1
 
 
@@ -231,7 +231,7 @@ def fill(disk: Path) -> None:
 
 def started_before(disk: Path) -> None:
     running = Running(disk)
-    until(lambda: running.parts.spool.last_seq > 20)
+    until(lambda: running.parts.journal.last_seq > 20)
     running.end()
 
 
@@ -263,10 +263,10 @@ def test_a_disk_that_is_full_of_old_recordings_takes_what_a_person_is_shown(disk
     running = Running(disk)
     try:
         until(lambda: (disk / "u1" / "journal.sqlite-wal").stat().st_size > 0)
-        spool = running.parts.spool
-        until(lambda: spool.last_seq > 100 and running.parts.journal.fault is None)
+        journal = running.parts.journal
+        until(lambda: journal.last_seq > 100 and running.parts.journal_writer.fault is None)
         until(lambda: running.parts.black_box.fault is None)
-        assert running.parts.journal.never_saved == 0
+        assert running.parts.journal_writer.never_saved == 0
         kept = [one for one in (recorded, *old) if one.exists()]
         assert 0 < len(kept) <= len(old)
     finally:
@@ -315,12 +315,12 @@ def test_what_waits_at_the_end_for_a_disk_that_comes_back_is_kept(freezing_disk:
         running.told_to_stop()
         time.sleep(1.0)
     assert running.ends_within(ENDING_S)
-    spool = Spool(freezing_disk / "u1" / "journal.sqlite", lambda: 1, 0, 10**9)
+    journal = Journal(freezing_disk / "u1" / "journal.sqlite", lambda: 1, 0, 10**9)
     try:
-        (boot,) = spool.boots()
-        kept = list(spool.read(boot.boot_id, 1, boot.last_seq))
+        (boot,) = journal.boots()
+        kept = list(journal.read(boot.boot_id, 1, boot.last_seq))
     finally:
-        spool.close()
+        journal.close()
     assert [entry.seq for entry in kept] == list(range(1, len(kept) + 1))
     last = decode(EVENT, kept[-1].payload)
     assert isinstance(last, UnitEvent)
@@ -332,9 +332,9 @@ def assert_told_and_made_good(running: Running, mend: Callable[[], object]) -> N
     before = running.station.count(Position)
     until(lambda: running.station.count(Position) > before + 20)
     mend()
-    until(lambda: running.parts.journal.fault is None)
+    until(lambda: running.parts.journal_writer.fault is None)
     until(lambda: running.parts.black_box.fault is None)
-    spool = running.parts.spool
-    kept = [entry.seq for entry in spool.read(spool.boot_id, 1, 10**9)]
+    journal = running.parts.journal
+    kept = [entry.seq for entry in journal.read(journal.boot_id, 1, 10**9)]
     assert kept == list(range(1, len(kept) + 1))
-    assert running.parts.journal.never_saved == 0
+    assert running.parts.journal_writer.never_saved == 0

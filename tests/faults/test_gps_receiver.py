@@ -13,11 +13,11 @@ from typing import TypeVar
 import numpy as np
 import pytest
 
-from edge.receivers import open_receiver
-from edge.receivers.gps_reader import GpsReader
 from edge.samples import GpsSample
+from edge.sources.gnss.reader import GnssReader
+from edge.sources.gnss.registry import open_receiver
 from shared.clock import SystemClock
-from tests.gps_receiver import (
+from tests.rig.gps_receiver import (
     DEVICE,
     GpsdServer,
     Hasty,
@@ -28,8 +28,8 @@ from tests.gps_receiver import (
     json_line,
     sentence,
 )
-from tests.waiting import until
-from tests.ximu3_device import PtyDevice, TcpDevice
+from tests.rig.waiting import until
+from tests.rig.ximu3_device import PtyDevice, TcpDevice
 
 HERE = Told()
 Device = GpsdServer | TcpDevice | PtyDevice
@@ -42,7 +42,7 @@ class Heard:
     """What a unit takes of a receiver."""
 
     def __init__(self, text: str, hasty: bool) -> None:
-        self.reader: GpsReader = open_receiver(text, Hasty() if hasty else SystemClock())
+        self.reader: GnssReader = open_receiver(text, Hasty() if hasty else SystemClock())
         self._fixes: list[GpsSample] = []
         self._faults: list[str] = []
         self.reader.start()

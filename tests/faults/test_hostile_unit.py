@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+import statistics
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
@@ -11,23 +12,36 @@ from threading import Event, Thread
 
 import pytest
 
-from base_station.bench.rig.said import position
-from base_station.bench.rig.station import Membership, StationProcess, station_process
-from base_station.bench.rig.units import BenchUnit, unit_names
-from base_station.bench.rig.waiting import wait_until
+from shared.bus import QueryHandler
 from shared.bus_zenoh import ZenohBus
-from shared.channels import POSITION, Qos, parse_key
-from shared.clock import SystemClock
-from shared.codec import encode
+from shared.channels import EVENT, POSITION, Qos, alive_key, parse_key
+from shared.clock import NS_PER_S, SystemClock
+from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.mcap_log import read_log
-from shared.messages import Header
+from shared.messages import (
+    EventKind,
+    Header,
+    JournalBoot,
+    JournalChunk,
+    JournalEntry,
+    JournalIndex,
+    Position,
+    UnitEvent,
+)
+from tests.rig.loaded_program import launch_loaded
+from tests.rig.message_factory import position
+from tests.rig.pacing import wait_until
+from tests.rig.simulated_units import BenchUnit, unit_names
+from tests.rig.station_process import Membership, StationProcess, station_process
 
 EVIL = "evil"
 SECONDS = 4
 FLOOD_S = 0.01
 AT_ONCE = 100  # 10,000 a second, where the machine can
 GROWN_MB = 150.0
+MAYDAYS = 3500  # 500 at once, and as many as one answer may bring beyond
+AT_ONCE_S = 0.3
 
 Say = Callable[[ZenohBus, Header], None]
 
@@ -54,7 +68,9 @@ class Scene:
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         names = unit_names(3)
         member = Membership(folder, [*names, EVIL], plain=False)
-        self.station: StationProcess = stack.enter_context(station_process(folder, member.address))
+        self.station: StationProcess = stack.enter_context(
+            station_process(folder, member.address, launch=launch_loaded)
+        )
         self.units = [BenchUnit(name, member.endpoint_of(name), stack) for name in names]
         self.evil = stack.enter_context(closing(ZenohBus(member.endpoint_of(EVIL))))
         for name in [*names, EVIL]:
@@ -108,6 +124,98 @@ def test_others_are_heard_and_the_station_does_not_grow(scene: Scene, say: Say, 
         "nothing of the others is missing",
         lambda: logged(scene) == [unit.sent.messages for unit in scene.units],
     )
+
+
+def endless_journal(boot_id: int, suffix: str) -> QueryHandler:
+    """Has whatever it is asked for: as much as fits, of a run that never ends."""
+
+    def answer(key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
+        asked = dict(pair.split("=") for pair in parameters.split(";") if pair)
+        if key.endswith(("/index", "/acknowledge")):
+            yield JournalIndex((JournalBoot(boot_id, 1, 10**9, 0, 0),)).to_bytes()
+            return
+        first, last = int(asked["from"]), int(asked["to"])
+        for begin in range(first, min(last, first + 40_000), 400):
+            end = min(last, begin + 399)
+            payloads = (encode(mayday(Header(EVIL, boot_id, n, n))) for n in range(begin, end + 1))
+            entries = tuple(
+                JournalEntry(begin + i, suffix, payload) for i, payload in enumerate(payloads)
+            )
+            yield JournalChunk(boot_id, begin, end, entries, key.endswith("/urgent")).to_bytes()
+
+    return answer
+
+
+def mayday(header: Header) -> UnitEvent:
+    return UnitEvent(header, EventKind.MAYDAY)
+
+
+def maydays(scene: Scene) -> int:
+    """In the log, of the one that runs wild."""
+    return sum(f"/{EVIL}/" in key and "alert/" in key for _, key, _ in read_log(scene.station.log))
+
+
+def test_a_journal_that_never_ends_fills_no_disk_and_is_told(scene: Scene) -> None:
+    boot_id = secrets.randbits(63)
+    serving = scene.evil.serve(
+        f"muster/v1/{EVIL}/journal/**", endless_journal(boot_id, EVENT.suffix)
+    )
+    token = scene.evil.declare_alive(alive_key(EVIL))  # who has a link is asked
+    try:
+        scene.evil.publish(
+            POSITION.key(EVIL), encode(position(Header(EVIL, boot_id, 10**9, 1))), Qos.LIVE
+        )
+        wait_until("a person is told", lambda: "evil's journal brings more" in scene.problems())
+        assert maydays(scene) < MAYDAYS
+        for _ in range(7 * SECONDS):
+            for unit in scene.units:
+                unit.speak()
+            time.sleep(1.0 / 7.0)
+        wait_until(
+            "nothing of the others is missing",
+            lambda: logged(scene) == [unit.sent.messages for unit in scene.units],
+        )
+        assert maydays(scene) < MAYDAYS
+    finally:
+        for declared in (serving, token):
+            declared.close()
+
+
+def test_others_are_heard_at_once_beside_a_token_that_comes_and_goes(scene: Scene) -> None:
+    """Last: afterwards the unit is shut out."""
+    before_mb, began_ns = scene.station.memory_mb(), time.time_ns()
+    over = Event()
+    flood = Thread(target=toggle, args=(scene.evil, over))
+    flood.start()
+    try:
+        for _ in range(7 * SECONDS):
+            for unit in scene.units:
+                unit.speak()
+            time.sleep(1.0 / 7.0)
+        wait_until("a person is told", lambda: "evil appears and vanishes" in scene.problems())
+        assert scene.station.memory_mb() < before_mb + GROWN_MB
+        wait_until("it has no link", lambda: not scene.evil.is_heard(POSITION.key(EVIL)))
+    finally:
+        over.set()
+        flood.join()
+    wait_until(
+        "nothing of the others is missing",
+        lambda: logged(scene) == [unit.sent.messages for unit in scene.units],
+    )
+    delays_s = [
+        (t_ns - message.header.t_utc_ns) / NS_PER_S
+        for t_ns, key, payload in read_log(scene.station.log, start_ns=began_ns)
+        if "/up/position" in key
+        and isinstance(message := decode(POSITION, payload), Position)
+        and message.header.unit_id != EVIL
+    ]
+    assert statistics.median(delays_s) < AT_ONCE_S
+
+
+def toggle(bus: ZenohBus, over: Event) -> None:
+    """As fast as the machine can."""
+    while not over.is_set():
+        bus.declare_alive(alive_key(EVIL)).close()
 
 
 def logged(scene: Scene) -> list[int]:

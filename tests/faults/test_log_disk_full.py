@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
+import resource
 import time
 from collections.abc import Callable
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
-from base_station.past.checkpoints import Checkpoints
+from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.recorder import Recorder
 from shared.channels import POSITION, Qos, backfilled_key
 from shared.clock import NS_PER_S, SystemClock
@@ -26,9 +28,9 @@ from shared.mcap_log import (
 from shared.messages import CommandKind, EventKind, Header, Position, UnitEvent
 from shared.messages.station import RegisterUnit, SendCommand
 from shared.sequence_set import Run
-from tests.full_disk import files_of_at_most
-from tests.live_station import LiveStation, make_pipeline
-from tests.waiting import until
+from tests.rig.full_disk import files_of_at_most
+from tests.rig.live_station import LiveStation, make_pipeline
+from tests.rig.waiting import until
 
 KEY = POSITION.key("anna")
 T0_NS = 1_700_000_000 * NS_PER_S
@@ -106,14 +108,20 @@ def test_what_a_recorder_lost_is_said_until_it_starts_anew(tmp_path: Path) -> No
     recorder = Recorder(tmp_path, SystemClock(), SegmentPolicy(waiting_bytes_max=2000))
     with files_of_at_most(0):
         for number in range(100):
-            recorder.write(T0_NS + number, KEY, bytes(200), urgent=True)
+            recorder.write(T0_NS + number * NS_PER_S, KEY, bytes(200), urgent=True)
     assert recorder.flush()
     assert recorder.lost > 0
+    first = 100 - recorder.lost
     assert recorder.problem == (
-        f"the disk did not keep up: {recorder.lost} records are missing in the log"
+        f"the disk did not keep up: {recorder.lost} records are missing in the log, from "
+        f"{_clock_time(T0_NS, first)} to {_clock_time(T0_NS, 99)} UTC"
     )
     recorder.close()
     assert len(payloads(tmp_path / "log")) + recorder.lost == 100
+
+
+def _clock_time(t_ns: int, later_s: int) -> str:
+    return f"{datetime.fromtimestamp(t_ns // NS_PER_S + later_s, UTC):%H:%M:%S}"
 
 
 def test_a_recorder_on_a_full_disk_is_behind_until_there_is_room(tmp_path: Path) -> None:
@@ -172,6 +180,31 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
     keys = [key for _, key, _ in read_log(tmp_path / "log")]
     backfilled = keys.count(backfilled_key(unit, POSITION.suffix))
     assert keys.count(POSITION.key(unit)) + backfilled == 99
+
+
+def test_a_station_that_starts_on_a_full_disk_tells_no_unit_that_anything_is_safe(
+    tmp_path: Path, make_position: Callable[..., Position]
+) -> None:
+    unit, boot = "FF-01", 0xB007
+
+    def said(seq: int) -> Position:
+        return make_position(header=Header(unit, boot, seq, seq * NS_PER_S), north_m=float(seq))
+
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit(unit, "one"))
+    (path,) = segment_paths(tmp_path / "log")
+    path.write_bytes(path.read_bytes()[:-50])  # it was killed, and cannot even mend that
+    with files_of_at_most(0):
+        station = LiveStation(tmp_path)
+        with station:
+            station.say(said(1))
+            until(lambda: north_of_one_m(station) == pytest.approx(1.0))
+            until(lambda: station.recorder.problem)
+            assert unit not in station.reported
+            resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY,) * 2)
+            until(lambda: station.reported.get(unit))
+    with LiveStation(tmp_path) as again:
+        assert list(again.pipeline.state.units[unit].boots[0].seen.runs()) == [Run(1, 1)]
 
 
 def test_what_people_do_is_kept_where_the_log_takes_nothing_else(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.bench.faults.site import Site
-from base_station.bench.faults.troubles import TEN_MINUTES
-from tests.bad_link import assert_nothing_is_lost
-from tests.waiting import PATIENCE_S
+from tests.bench.faults.fault_scenarios import TEN_MINUTES
+from tests.bench.faults.site import Site
+from tests.rig.bad_link_checks import assert_nothing_is_lost
+from tests.rig.waiting import PATIENCE_S
 
 pytestmark = pytest.mark.begun_first
 

@@ -9,8 +9,8 @@ from contextlib import ExitStack, closing
 
 import pytest
 
-from base_station.bench.rig.forwarder import Conditions
-from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
+from tests.rig.link_forwarder import Conditions
+from tests.rig.lossy_link import CLEAN, DARK, LossyLink
 
 SEED = 5
 PORT = 5000

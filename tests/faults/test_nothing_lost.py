@@ -10,12 +10,12 @@ from contextlib import closing
 from functools import partial
 from pathlib import Path
 
-from base_station.bench.rig.station import free_port
 from shared.channels import is_backfilled, parse_key
 from shared.codec import decode
 from shared.mcap_log import read_log
-from tests.station_command import Agent, Browser, Command
-from tests.waiting import until
+from tests.rig.station_command import Agent, Browser, Command
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 UNIT = "anna"
 COMPILING_S = 200.0  # the first agent on a machine compiles its tracker

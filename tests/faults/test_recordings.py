@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import random
 import subprocess
 from collections.abc import Iterator
@@ -12,17 +11,17 @@ from pathlib import Path
 
 import pytest
 
-from base_station.recordings.fetch import HASHES, Fetch, FetchState
+from base_station.unit_sync.recordings.transfer import HASHES, Transfer, TransferState
 from edge.sources.black_box import BlackBoxSource
 from shared.messages.recording import RecordingPiece
-from tests.recorded_unit import RecordedUnit, U, begin, finish
+from tests.rig.recorded_unit import RecordedUnit, U, begin, finish
 
 
 def test_all_of_it_is_the_unit_s_to_the_last_bit_and_replays(
     unit: RecordedUnit, tmp_path: Path
 ) -> None:
     fetch = finish(begin(unit, tmp_path))
-    assert (fetch.state, fetch.problem) == (FetchState.DONE, "")
+    assert (fetch.state, fetch.problem) == (TransferState.DONE, "")
     assert fetch.done_bytes == fetch.total_bytes > 0
     pulled = tmp_path / U / unit.boot.name
     assert {one.name for one in pulled.iterdir()} == {one.name for one in unit.boot.iterdir()}
@@ -73,9 +72,9 @@ def test_a_station_that_is_killed_again_and_again_asks_for_no_byte_twice(
         fetch = begin(unit, tmp_path)
         for _ in range(chance.randrange(1, 40)):
             fetch.step()
-        os.close(fetch._lock._descriptor)  # all that the system does for a program that dies
+        fetch._lock.close()  # all that the system does for a program that dies
     fetch = finish(begin(unit, tmp_path))
-    assert fetch.state is FetchState.DONE
+    assert fetch.state is TransferState.DONE
     assert sum(length for _, length in given) == fetch.total_bytes
 
 
@@ -87,10 +86,10 @@ def test_a_unit_that_goes_away_is_waited_for(unit: RecordedUnit, tmp_path: Path)
     unit.linked = False
     for _ in range(5):
         fetch.step()
-    assert fetch.state is FetchState.WAITING
+    assert fetch.state is TransferState.WAITING
     assert "FF-01 does not answer" in fetch.problem
     unit.linked = True
-    assert finish(fetch).state is FetchState.DONE
+    assert finish(fetch).state is TransferState.DONE
     assert fetch.done_bytes > came
 
 
@@ -104,7 +103,7 @@ def test_flipped_bits_on_the_way_are_asked_for_again(unit: RecordedUnit, tmp_pat
         return reply
 
     unit.spoil = flip
-    assert finish(begin(unit, tmp_path)).state is FetchState.DONE
+    assert finish(begin(unit, tmp_path)).state is TransferState.DONE
     for one in unit.boot.iterdir():
         assert (tmp_path / U / unit.boot.name / one.name).read_bytes() == one.read_bytes()
 
@@ -118,7 +117,7 @@ def test_what_was_spoiled_on_the_station_s_disk_is_pulled_anew(
     fetch.close()
     (part,) = tmp_path.rglob("*.part")
     part.write_bytes(bytes(part.stat().st_size))
-    assert finish(begin(unit, tmp_path)).state is FetchState.DONE
+    assert finish(begin(unit, tmp_path)).state is TransferState.DONE
 
 
 def test_a_unit_whose_answers_never_agree_is_given_up_in_words(
@@ -133,7 +132,7 @@ def test_a_unit_whose_answers_never_agree_is_given_up_in_words(
 
     unit.spoil = wrong
     fetch = finish(begin(unit, tmp_path))
-    assert fetch.state is FetchState.FAILED
+    assert fetch.state is TransferState.FAILED
     assert "different" in fetch.problem
     assert not list(tmp_path.rglob("*.mcap"))
 
@@ -160,7 +159,7 @@ def test_what_has_come_whole_is_kept_though_the_unit_gives_it_up_meanwhile(
     assert any(_step_to(fetch, unit, before) for _ in range(100))
     with given_up(first):
         fetch = finish(fetch)
-    assert fetch.state is FetchState.DONE
+    assert fetch.state is TransferState.DONE
     pulled = tmp_path / U / unit.boot.name / first.name
     if before == "piece":
         assert "1 of 2 files are gone" in fetch.problem
@@ -170,7 +169,7 @@ def test_what_has_come_whole_is_kept_though_the_unit_gives_it_up_meanwhile(
         assert pulled.read_bytes() == content
 
 
-def _step_to(fetch: Fetch, unit: RecordedUnit, what: str) -> bool:
+def _step_to(fetch: Transfer, unit: RecordedUnit, what: str) -> bool:
     """Whether the next question is of that kind for the first time."""
     fetch.step()
     part = next(iter(fetch.folder.rglob("*.mcap.part")), None)
@@ -187,7 +186,7 @@ def test_what_was_whole_stays_so_though_what_was_added_is_given_up(
     window = unit.window(0.0, 10.0)
     try:
         first.write_bytes(content[:1000])
-        assert finish(begin(unit, tmp_path, window)).state is FetchState.DONE
+        assert finish(begin(unit, tmp_path, window)).state is TransferState.DONE
         first.write_bytes(content)
         fetch = begin(unit, tmp_path, window)
         fetch.step()
@@ -207,12 +206,12 @@ def test_a_recording_that_grows_is_gone_on_with(unit: RecordedUnit, tmp_path: Pa
     whole = first.read_bytes()
     try:
         first.write_bytes(whole[:1000])
-        assert finish(begin(unit, tmp_path, unit.window(0.0, 10.0))).state is FetchState.DONE
+        assert finish(begin(unit, tmp_path, unit.window(0.0, 10.0))).state is TransferState.DONE
         first.write_bytes(whole)
         asked = len(unit.questions)
         fetch = finish(begin(unit, tmp_path, unit.window(0.0, 10.0)))
     finally:
         first.write_bytes(whole)
-    assert fetch.state is FetchState.DONE
+    assert fetch.state is TransferState.DONE
     assert (tmp_path / U / unit.boot.name / first.name).read_bytes() == whole
     assert len(unit.questions) > asked

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from base_station.recordings import fetch as fetching
-from base_station.recordings.fetch import FetchState
-from tests.recorded_unit import U, finish
-from tests.telling_unit import TellingUnit, listed, pulled
+from base_station.unit_sync.recordings import transfer as fetching
+from base_station.unit_sync.recordings.transfer import TransferState
+from tests.rig.changing_recordings import TellingUnit, listed, pulled
+from tests.rig.recorded_unit import U, finish
 
 
 def test_a_file_that_got_shorter_at_the_unit_is_asked_for_as_it_is_now(tmp_path: Path) -> None:
@@ -24,7 +24,7 @@ def test_a_file_that_got_shorter_at_the_unit_is_asked_for_as_it_is_now(tmp_path:
 
     unit.before = lose
     fetch = finish(unit.pull(tmp_path), steps=20)
-    assert (fetch.state, fetch.problem) == (FetchState.DONE, "")
+    assert (fetch.state, fetch.problem) == (TransferState.DONE, "")
     assert pulled(tmp_path) == {"a.mcap": b"recorded" * 128}
 
 
@@ -45,10 +45,10 @@ def test_what_is_begun_again_counts_nothing_twice(
     with monkeypatch.context() as patched:
         patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
         fetch.step()
-    assert fetch.state is FetchState.WAITING
+    assert fetch.state is TransferState.WAITING
     unit.files = TellingUnit(**files).files
     fetch = finish(fetch)
-    assert fetch.state is FetchState.DONE
+    assert fetch.state is TransferState.DONE
     assert fetch.problem.startswith("1 of 2 files came whole")
 
 
@@ -65,7 +65,7 @@ def test_what_was_whole_stays_so_though_the_unit_has_another_now_and_gives_it_up
 
     unit.before = give_up
     fetch = finish(unit.pull(tmp_path))
-    assert fetch.state is FetchState.DONE
+    assert fetch.state is TransferState.DONE
     assert "1 of 1 files are gone" in fetch.problem
     assert pulled(tmp_path)["a.mcap"] == b"before" * 20
 
@@ -82,7 +82,7 @@ def test_what_was_whole_stays_so_while_more_of_it_is_on_its_way(tmp_path: Path) 
     assert pulled(tmp_path)["a.mcap"] == before
     fetch.close()
     unit.pieces.clear()
-    assert finish(unit.pull(tmp_path)).state is FetchState.DONE
+    assert finish(unit.pull(tmp_path)).state is TransferState.DONE
     assert pulled(tmp_path) == {"a.mcap": grown}
     assert sum(unit.pieces) < len(grown) - len(before), "what had come is not asked for again"
 
@@ -93,7 +93,7 @@ def test_a_list_of_hashes_that_is_damaged_ends_no_pull(tmp_path: Path) -> None:
     hashes = tmp_path / U / fetching.HASHES
     hashes.write_bytes(b"\xff\xfe" + hashes.read_bytes())
     unit.files["boot/b.mcap"] = b"another"
-    assert finish(unit.pull(tmp_path)).state is FetchState.DONE
+    assert finish(unit.pull(tmp_path)).state is TransferState.DONE
     digest = hashlib.sha256(b"another").hexdigest()
     assert f"{digest}  boot/b.mcap" in hashes.read_text(encoding="utf-8").splitlines()
 
@@ -103,7 +103,7 @@ def test_a_unit_that_has_another_file_under_the_name_gives_that(tmp_path: Path) 
     finish(unit.pull(tmp_path))
     unit.files = {"boot/a.mcap": b"shorter", "boot/b.mcap": b"longer" * 99}
     fetch = finish(unit.pull(tmp_path))
-    assert (fetch.state, fetch.problem) == (FetchState.DONE, "")
+    assert (fetch.state, fetch.problem) == (TransferState.DONE, "")
     assert pulled(tmp_path) == {"a.mcap": b"shorter", "b.mcap": b"longer" * 99}
 
 
@@ -119,10 +119,10 @@ def test_what_is_given_up_while_a_pull_waits_is_gone(
         patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
         for _ in range(3):
             fetch.step()
-        assert fetch.state is FetchState.WAITING
+        assert fetch.state is TransferState.WAITING
     del unit.files["boot/a.mcap"], unit.files["boot/b.mcap"]
     fetch = finish(fetch)
-    assert fetch.state is FetchState.DONE
+    assert fetch.state is TransferState.DONE
     assert fetch.problem == "1 of 3 files are gone: the unit needed the room"
     assert pulled(tmp_path)["a.mcap"] == b"a" * 500
     assert listed(tmp_path).keys() == {"a.mcap", "c.mcap"}
@@ -142,6 +142,6 @@ def test_what_has_come_is_listed_with_its_hash_though_the_rest_never_comes(
 
     unit.before = spoil
     fetch = finish(unit.pull(tmp_path))
-    assert (fetch.state, "different" in fetch.problem) == (FetchState.FAILED, True)
+    assert (fetch.state, "different" in fetch.problem) == (TransferState.FAILED, True)
     assert pulled(tmp_path) == {"a.mcap": whole}
     assert listed(tmp_path) == {"a.mcap": hashlib.sha256(whole).hexdigest()}

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from edge.clocks.station import StationClock
-from edge.data_folder import DataFolder
-from edge.raw.stream import RawStream
-from edge.recording.black_box import BlackBox
-from edge.recording.server import RecordingServer
-from edge.sources import open_source
+from edge.sample_codec.codec import SampleEncoder
+from edge.sources.registry import open_source
+from edge.storage.black_box.black_box import BlackBox
+from edge.storage.black_box.server import RecordingServer
+from edge.storage.data_folder import DataFolder
 from shared.bus import ReplyHandler
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import SegmentReader, segment_began_ns, segment_paths
@@ -45,7 +45,7 @@ def record(folder: DataFolder, machine: Machine, began_ns: int, set_at_s: float)
     """The unit begins at this station time, and somebody sets its clock later."""
     clock = StationClock(machine)
     source = open_source("simulated:climbs-stairs?seed=3")
-    raw = RawStream(U, 7)
+    raw = SampleEncoder(U, 7)
     description = raw.description(0, source.description, source="", tracker="")
     box = BlackBox(folder.black_box, description, 10**9, clock, clock.utc_std_s)
     for number, batch in zip(range(BATCHES), source.batches(), strict=False):
@@ -107,7 +107,7 @@ def test_of_boots_that_ended_long_before_nothing_is_read(
     clock = record(folder, machine, STATION_NS, set_at_s=-1.0)
     last = segment_paths(next(folder.black_box.iterdir()))[-1]
     last.write_bytes(last.read_bytes()[:-100])
-    monkeypatch.setattr("edge.recording.server.SegmentReader", Counted)
+    monkeypatch.setattr("edge.storage.black_box.server.SegmentReader", Counted)
     server = RecordingServer(U, folder, clock)
     assert found(server, SECONDS - 20.0) == [f"{last.parent.name}/{last.name}"]
     assert found(server, SECONDS - 1.0) == [f"{last.parent.name}/{last.name}"], "it may go on"
@@ -126,7 +126,7 @@ def test_the_oldest_goes_first_whatever_its_date(tmp_path: Path) -> None:
     first, second = sorted(folder.black_box.iterdir(), reverse=True)
     kept_bytes = sum(one.stat().st_size for one in segment_paths(second))
     source = open_source("simulated:climbs-stairs?seed=3")
-    description = RawStream(U, 9).description(0, source.description, source="", tracker="")
+    description = SampleEncoder(U, 9).description(0, source.description, source="", tracker="")
     BlackBox(folder.black_box, description, kept_bytes, Machine()).close()
     assert not first.exists()
     assert segment_paths(second)

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from base_station.recordings.fetch import Fetch, FetchState, Wanted
+from base_station.unit_sync.recordings.transfer import Transfer, TransferRequest, TransferState
 from shared.clock import ManualClock
-from tests.recorded_unit import U, finish
-from tests.telling_unit import TellingUnit, pulled
+from tests.rig.changing_recordings import TellingUnit, pulled
+from tests.rig.recorded_unit import U, finish
 
 
 @pytest.mark.parametrize(("others_s", "link_s", "grows"), [(20.0, 0.0, True), (0.0, 20.0, False)])
@@ -20,7 +20,7 @@ def test_what_other_units_take_is_no_time_of_this_ones_link(
     """One that is out of reach may take seconds of every round."""
     unit, clock = TellingUnit(a=bytes(100_000)), ManualClock()
     unit.before = lambda _: clock.advance(link_s)
-    fetch = Fetch(unit.ask, tmp_path, Wanted(U, 1, 2), clock)
+    fetch = Transfer(unit.ask, tmp_path, TransferRequest(U, 1, 2), clock)
     for _ in range(8):
         fetch.step()
         clock.advance(others_s)
@@ -37,7 +37,7 @@ def test_a_link_that_gets_thin_is_asked_for_as_little_as_it_carries(tmp_path: Pa
         answer = unit.ask(unit_id, question)
         return answer if len(answer) <= carried_bytes else None
 
-    fetch = Fetch(ask, tmp_path, Wanted(U, 1, 2), ManualClock())
+    fetch = Transfer(ask, tmp_path, TransferRequest(U, 1, 2), ManualClock())
     for _ in range(8):
         fetch.step()
     assert unit.pieces[-1] > 10 * unit.pieces[0]
@@ -64,7 +64,7 @@ def test_a_unit_that_gives_less_than_it_says_is_not_asked_without_a_pause(tmp_pa
         fetch.step()
         states.append(fetch.state)
     fetch.close()
-    assert FetchState.WAITING in states[4:], "the desk rests then"
+    assert TransferState.WAITING in states[4:], "the desk rests then"
     assert not fetch.state.is_over
 
 
@@ -79,5 +79,5 @@ def test_a_bus_that_fails_ends_no_pull(tmp_path: Path) -> None:
     fetch = unit.pull(tmp_path)
     fetch.step()
     fetch.step()
-    assert (fetch.state, "does not answer" in fetch.problem) == (FetchState.WAITING, True)
-    assert finish(fetch).state is FetchState.DONE
+    assert (fetch.state, "does not answer" in fetch.problem) == (TransferState.WAITING, True)
+    assert finish(fetch).state is TransferState.DONE

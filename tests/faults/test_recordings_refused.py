@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.recordings.fetch import Fetch, FetchState, Wanted
+from base_station.unit_sync.recordings.transfer import Transfer, TransferRequest, TransferState
 from shared.clock import SystemClock
 from shared.errors import DataFolderInUseError
 from shared.messages.recording import (
@@ -14,7 +14,7 @@ from shared.messages.recording import (
     RecordingIndex,
     RecordingPiece,
 )
-from tests.recorded_unit import SECONDS, RecordedUnit, U, begin, finish
+from tests.rig.recorded_unit import SECONDS, RecordedUnit, U, begin, finish
 
 
 @pytest.mark.parametrize(("from_s", "to_s"), [(-900.0, -800.0), (SECONDS + 900, SECONDS + 1900)])
@@ -22,7 +22,7 @@ def test_a_window_without_a_recording_is_said(
     unit: RecordedUnit, tmp_path: Path, from_s: float, to_s: float
 ) -> None:
     fetch = finish(begin(unit, tmp_path, unit.window(from_s, to_s)))
-    assert fetch.state is FetchState.FAILED
+    assert fetch.state is TransferState.FAILED
     assert "no recording of that time" in fetch.problem
 
 
@@ -34,8 +34,8 @@ def test_a_unit_cannot_name_a_file_outside_its_folder(tmp_path: Path, name: str)
         assert question.startswith("index")
         return RecordingIndex((RecordedFile(name, 10),), 1).to_bytes()
 
-    fetch = finish(Fetch(ask, tmp_path, Wanted(U, 1, 2), SystemClock()))
-    assert fetch.state is FetchState.FAILED
+    fetch = finish(Transfer(ask, tmp_path, TransferRequest(U, 1, 2), SystemClock()))
+    assert fetch.state is TransferState.FAILED
     assert "names files" in fetch.problem
 
 

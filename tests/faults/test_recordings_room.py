@@ -9,10 +9,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from base_station.recordings import fetch as fetching
-from base_station.recordings.fetch import FetchState
-from tests.recorded_unit import RecordedUnit, U, begin, finish
-from tests.telling_unit import TellingUnit
+from base_station.unit_sync.recordings import transfer as fetching
+from base_station.unit_sync.recordings.transfer import TransferState
+from tests.rig.changing_recordings import TellingUnit
+from tests.rig.recorded_unit import RecordedUnit, U, begin, finish
 
 
 def test_a_disk_that_has_no_room_is_said_before_anything_is_pulled(
@@ -23,10 +23,10 @@ def test_a_disk_that_has_no_room_is_said_before_anything_is_pulled(
         patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
         for _ in range(5):
             fetch.step()
-        assert fetch.state is FetchState.WAITING
+        assert fetch.state is TransferState.WAITING
         assert "when the disk is freed" in fetch.problem
         assert "piece" not in unit.questions
-    assert finish(fetch).state is FetchState.DONE
+    assert finish(fetch).state is TransferState.DONE
 
 
 def test_a_disk_on_which_the_log_grows_meanwhile_is_left_to_it(
@@ -41,10 +41,10 @@ def test_a_disk_on_which_the_log_grows_meanwhile_is_left_to_it(
         patched.setattr(fetching, "_SPARED_BYTES", 1 << 62)
         for _ in range(5):
             fetch.step()
-        assert fetch.state is FetchState.WAITING
+        assert fetch.state is TransferState.WAITING
         assert unit.questions.count("piece") <= asked + 1  # which was asked before
     fetch = finish(fetch)
-    assert fetch.state is FetchState.DONE
+    assert fetch.state is TransferState.DONE
     for one in unit.boot.iterdir():
         assert (tmp_path / U / unit.boot.name / one.name).read_bytes() == one.read_bytes()
 
@@ -62,9 +62,9 @@ def test_a_disk_that_gets_full_on_the_way_is_said_and_what_came_is_kept(
     with monkeypatch.context() as patched:
         patched.setattr(os, "fsync", full)
         finish(fetch)
-    assert fetch.state is FetchState.FAILED
+    assert fetch.state is TransferState.FAILED
     assert "No space left on device" in fetch.problem
-    assert finish(begin(unit, tmp_path)).state is FetchState.DONE
+    assert finish(begin(unit, tmp_path)).state is TransferState.DONE
 
 
 def test_what_is_here_of_other_times_makes_no_room(
@@ -80,5 +80,5 @@ def test_what_is_here_of_other_times_makes_no_room(
     for _ in range(5):
         fetch.step()
     fetch.close()
-    assert fetch.state is FetchState.WAITING
+    assert fetch.state is TransferState.WAITING
     assert unit.pieces == []

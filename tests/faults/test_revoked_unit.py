@@ -12,17 +12,18 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.rig.journal import MessageOfUnit, said_by
-from base_station.bench.rig.station import free_port, station_process
-from base_station.pki.folder import PkiFolder
+from base_station.security.pki.folder import PkiFolder
 from shared.bus_zenoh import ClientEndpoint, ZenohBus
 from shared.channels import ROOT, Direction, parse_key
 from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.enrolment import Holder
 from shared.mcap_log import read_log
-from tests.station_command import Agent
-from tests.waiting import until
+from tests.rig.loaded_program import launch_loaded
+from tests.rig.station_command import Agent
+from tests.rig.station_process import free_port, station_process
+from tests.rig.unit_journal import MessageOfUnit, said_by
+from tests.rig.waiting import until
 
 LOST, OTHER = "FF-01", "FF-02"
 COMPILING_S = 200.0  # the first agent on a machine compiles its tracker
@@ -63,7 +64,7 @@ def test_nothing_more_of_it_comes_in_and_the_other_loses_nothing(
     chief = pki.enroll("chief", Holder.OPERATOR)
     shown_ns: list[int] = []
     with (
-        station_process(tmp_path / "station", listen),
+        station_process(tmp_path / "station", listen, launch=launch_loaded),
         closing(ZenohBus(ClientEndpoint(chief.connect, chief.identity))) as program,
     ):
         program.subscribe(f"{ROOT}/**", lambda _key, _payload: shown_ns.append(time.time_ns()))

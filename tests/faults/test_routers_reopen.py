@@ -16,13 +16,13 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.rig.station import free_port
-from base_station.pki.folder import PkiFolder
-from base_station.router.process import RouterProcess
-from base_station.router.router import station_endpoint
+from base_station.security.pki.folder import PkiFolder
+from base_station.security.router.process import RouterProcess
+from base_station.security.router.router import station_endpoint
 from shared.bus_zenoh import ZenohBus
 from shared.channels import Qos
-from tests.waiting import until
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 ROUNDS = 10
 SEED = 4
@@ -78,7 +78,7 @@ def ends(tmp_path: Path) -> Iterator[tuple[End, End]]:
 
 def _end(pki: PkiFolder, own: str, other: str, stack: ExitStack) -> End:
     data = pki.path.parent
-    process = stack.enter_context(closing(RouterProcess(data, (own,), (other,))))
+    process = stack.enter_context(closing(RouterProcess(data, (own,), (other,)).wait_open()))
     bus = stack.enter_context(closing(ZenohBus(station_endpoint(data, (own,)))))
     end = End(data.name, pki, process, bus)
     stack.enter_context(closing(bus.subscribe("muster/v1/**", end.note)))

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.rig.station import free_port
-from edge.journal.server import JournalServer
-from edge.journal.spool import Journaled, Spool
+from edge.storage.journal.journal import Journal, JournalRow
+from edge.storage.journal.server import JournalServer
 from shared.channels import HEARTBEAT, POSITION, alive_key, is_backfilled, parse_key
 from shared.clock import NS_PER_S
 from shared.codec import decode, encode
 from shared.mcap_log import read_log
 from shared.messages import Header, Heartbeat, Position
-from tests.station_command import Browser, Command, Unit
-from tests.waiting import until
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 U, BOOT = "FF-01", 0xB007
 AWAY_S = 3600
@@ -29,33 +29,33 @@ MakePosition = Callable[..., Position]
 
 
 @pytest.fixture
-def spool(tmp_path: Path, make_position: MakePosition) -> Iterator[Spool]:
+def journal(tmp_path: Path, make_position: MakePosition) -> Iterator[Journal]:
     """As the unit left it: it has said all of it, and nobody was there."""
     began_ns = time.time_ns() - AWAY_S * NS_PER_S
-    with closing(Spool(tmp_path / "journal.sqlite", lambda: BOOT, 0, 10**9)) as spool:
+    with closing(Journal(tmp_path / "journal.sqlite", lambda: BOOT, 0, 10**9)) as journal:
         seq = 0
         for second in range(AWAY_S):
-            said: list[Journaled] = []
+            said: list[JournalRow] = []
             for number in range(POSITIONS_HZ + 1):
                 seq += 1
                 since_ns = second * NS_PER_S + number * NS_PER_S // POSITIONS_HZ
                 header = Header(U, BOOT, seq, since_ns, began_ns + since_ns, 0.01)
                 if number < POSITIONS_HZ:
                     position = encode(make_position(header=header))
-                    said.append(Journaled(seq, POSITION, since_ns, position))
+                    said.append(JournalRow(seq, POSITION, since_ns, position))
                 else:
                     beat = encode(Heartbeat(header, 1, seq))
-                    said.append(Journaled(seq, HEARTBEAT, since_ns, beat))
-            spool.append(said)
-        yield spool
+                    said.append(JournalRow(seq, HEARTBEAT, since_ns, beat))
+            journal.append(said)
+        yield journal
 
 
-def test_it_has_all_of_it_some_seconds_after_it_is_back(tmp_path: Path, spool: Spool) -> None:
+def test_it_has_all_of_it_some_seconds_after_it_is_back(tmp_path: Path, journal: Journal) -> None:
     """The unit says nothing more, or nothing of it gets through: it only holds its link."""
     data, port = tmp_path / "station", free_port()
     serve = ["serve", "--data", str(data), "--listen", f"tcp/127.0.0.1:{port}"]
     serve += ["--http", f"127.0.0.1:{free_port()}"]
-    server = JournalServer(U, spool)
+    server = JournalServer(U, journal)
     with ExitStack() as held:
         station = held.enter_context(Command(tmp_path / "said.txt", *serve))
         browser = held.enter_context(Browser(station.wait_ready(), data))
@@ -64,7 +64,7 @@ def test_it_has_all_of_it_some_seconds_after_it_is_back(tmp_path: Path, spool: S
         held.callback(unit.bus.serve(server.key_expression, server.replies).close)
         held.callback(unit.bus.declare_alive(alive_key(U)).close)
         browser.call("POST", "/units", json={"unit_id": U})
-        until(lambda: len(logged(data)) == spool.last_seq, "the log has all", SOON_S, 0.5)
+        until(lambda: len(logged(data)) == journal.last_seq, "the log has all", SOON_S, 0.5)
         assert station.stop() == 0
     assert set(logged(data).values()) == {1}
 

@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 
-from base_station.bench.rig.station import free_port
 from shared.clock import NS_PER_S
 from shared.mcap_log import read_log
 from shared.messages import Temperature
-from tests.set_clock import MachineClock
-from tests.station_command import Browser, Command, Unit
-from tests.waiting import until
+from tests.rig.settable_clock import MachineClock
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 DAY_S = 86_400.0
 
@@ -89,7 +89,7 @@ def test_a_clock_that_is_set_in_an_incident_makes_nobody_missing_and_ends_no_log
     until(lambda: ground.problem_said("days behind"), "a clock that is not set is said")
     assert not [rule for rule, _ in ground.alarms() if rule != "link-lost"]
     ground.clock.set_ahead(0.0)
-    ground.browser.call("POST", f"/incidents/{ground.incident_id}/close")  # now it may leap
+    assert ground.browser.close_incident(ground.incident_id) == 204  # now it may leap
     until(lambda: not ground.problem_said("This machine"), "a clock set right is no problem")
     ground.station.stop()
     times_ns = ground.times_ns()

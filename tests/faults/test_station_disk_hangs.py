@@ -16,15 +16,15 @@ import psutil
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from base_station.bench.rig import said
-from base_station.bench.rig.station import free_port
-from base_station.events import Received, event_of
+from base_station.core.events import Received, event_of
 from shared.mcap_log import read_log
 from shared.messages import EventKind, Header, UnitEvent
-from tests.hanging_disk import disk_that_can_hang, frozen
-from tests.served_station import MakePosition, greet, prepare, watch
-from tests.station_command import Browser, Command, Unit
-from tests.waiting import PATIENCE_S, until
+from tests.rig import message_factory
+from tests.rig.hanging_disk import disk_that_can_hang, frozen
+from tests.rig.served_station import MakePosition, greet, prepare, watch
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.station_process import free_port
+from tests.rig.waiting import PATIENCE_S, until
 
 HANGS = "does not answer"
 NOT_KEPT = "records are not safely in the log"
@@ -93,7 +93,7 @@ class Walk:
     def _walk(self) -> None:
         while not self._ending.wait(0.1):
             header = self._header()
-            self._unit.say(said.position(header, north_m=0.1 * header.seq))
+            self._unit.say(message_factory.position(header, north_m=0.1 * header.seq))
 
     def _look(self) -> None:
         while not self._ending.is_set():

@@ -10,24 +10,24 @@ from threading import Event
 
 import pytest
 
-from base_station import drive as drive_module
-from base_station.alarms import ALARMS
-from base_station.alarms.port import Verdict
-from base_station.drive import StationDrive
-from base_station.events import Output, Received, StationEvent
+from base_station.core.alarms import ALARMS
+from base_station.core.alarms.interface import Verdict
+from base_station.core.events import Output, Received, StationEvent
+from base_station.core.pipeline import StationPipeline
+from base_station.core.state import UnitState
+from base_station.engine import engine as drive_module
+from base_station.engine.checkpoint_writer import CheckpointWriter
+from base_station.engine.console_publisher import ConsolePublisher
+from base_station.engine.engine import StationEngine
 from base_station.fusion import FUSERS
-from base_station.live.picture import Picture
-from base_station.live.saving import Saving
-from base_station.live_state import UnitState
-from base_station.pipeline import StationPipeline
 from base_station.storage.recorder import Recorder
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import LogRecord
 from shared.messages import Message, Position
 from shared.messages.station import ForgetWearers, RegisterUnit
-from tests.live_station import LiveStation, Screen, make_pipeline, ports_of
-from tests.station_script import Script
-from tests.waiting import PATIENCE_S, until
+from tests.rig.live_station import LiveStation, Screen, make_pipeline, ports_of
+from tests.rig.station_script import Script
+from tests.rig.waiting import PATIENCE_S, until
 
 MakePosition = Callable[..., Position]
 U = "FF-01"
@@ -122,7 +122,7 @@ def test_somebody_is_forgotten_when_what_is_being_saved_is_over(
 ) -> None:
     """It has them in it, and would be read at the next start."""
     saving = {"now": True}
-    monkeypatch.setattr(Saving, "is_under_way", property(lambda _: saving["now"]))
+    monkeypatch.setattr(CheckpointWriter, "is_under_way", property(lambda _: saving["now"]))
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         forgotten = station.drive.submit("chief", ForgetWearers(U))
@@ -174,12 +174,12 @@ def test_a_picture_that_cannot_be_drawn_takes_neither_all_the_time_nor_the_disk(
     clock = ManualClock()
     feed = Idle(clock, 300)
     ports = ports_of(feed, Nowhere(), Screen(), tmp_path, clock)
-    drive = StationDrive(make_pipeline(), ports)
+    drive = StationEngine(make_pipeline(), ports)
 
     def fail(*_: object) -> None:
         raise KeyError("a mistake")
 
-    monkeypatch.setattr(Picture, "flush", fail)
+    monkeypatch.setattr(ConsolePublisher, "publish_delta", fail)
     drive.start()
     feed.done.wait(PATIENCE_S)
     drive.stop()
@@ -196,8 +196,8 @@ class FailsFor:
     levels: tuple[str, ...] = ("x",)
     clear_after_s: float = 0.0
     rearm_after_s: float | None = None
-    for_strangers: bool = False
-    heeds: tuple[type[Message], ...] = ()
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:
         if unit.unit_id == self.unit_id:

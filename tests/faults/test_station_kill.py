@@ -7,13 +7,13 @@ import time
 from pathlib import Path
 from threading import Event, Thread
 
-from base_station.bench.rig.station import free_port
 from shared.channels import TEMPERATURE
 from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.mcap_log import LogRecord, read_log
 from shared.messages import Temperature
-from tests.station_command import Browser, Command, Unit
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.station_process import free_port
 
 KILLS = 2
 SAFE_AFTER_NS = 3 * NS_PER_S  # flushed every half second, and a machine under test may be busy
@@ -67,7 +67,7 @@ def test_what_was_written_and_what_was_promised_outlives_a_kill(tmp_path: Path) 
                 assert set(promised) <= set(known)
                 browser.call("POST", "/units", json={"unit_id": "anna"})
                 for incident in known:
-                    browser.status("POST", f"/incidents/{incident}/close")
+                    browser.close_incident(incident)
                 speaker = Speaker(port, boot_id)
                 time.sleep(4.0 + chance.random())
                 opened = browser.call("POST", "/incidents", json={"name": f"fire {boot_id}"})

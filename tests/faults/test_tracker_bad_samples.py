@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from edge.samples import ImuBatch, SensorDescription
-from edge.tracker.eskf import EskfTracker
-from edge.tracker.port import Quality, Reason
-from tests.faulty_walk import (
+from edge.tracker.foot.eskf import EskfTracker
+from edge.tracker.interface import Quality, Reason
+from tests.rig.faulty_walk import (
     IN_STANCE,
     IN_SWING,
     LENGTH_M,

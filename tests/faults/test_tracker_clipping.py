@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from edge.samples import SensorDescription
-from edge.tracker.port import Reason
-from tests.faulty_walk import IN_STANCE, IN_SWING, WALK, copy, flagged, index, reached_m, run
+from edge.tracker.interface import Reason
+from tests.rig.faulty_walk import IN_STANCE, IN_SWING, WALK, copy, flagged, index, reached_m, run
 
 
 def test_a_clipped_gyroscope_is_flagged_and_widens_the_uncertainty():

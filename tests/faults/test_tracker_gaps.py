@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from edge.samples import ImuBatch, SensorDescription
-from edge.tracker.eskf import EskfTracker
-from edge.tracker.port import Quality, Reason
-from edge.tracker.rows import join_rows
-from tests.faulty_walk import (
+from edge.tracker.foot.eskf import EskfTracker
+from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.interface import Quality, Reason
+from tests.rig.faulty_walk import (
     IN_STANCE,
     IN_SWING,
     LENGTH_M,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.bench.faults.command import suffer
-from base_station.bench.faults.site import Site
-from base_station.bench.faults.troubles import FAULTS, BadLink, Clone, Fault
 from shared.messages import AlarmState
+from tests.bench.faults.command import suffer
+from tests.bench.faults.fault_scenarios import FAULTS, BadLink, Clone, Fault
+from tests.bench.faults.site import Site
 
 PATIENCE_S = 90.0
 # The others are for `muster bench faults`.

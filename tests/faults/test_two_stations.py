@@ -11,20 +11,20 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
-from base_station.bench.rig.said import position
-from base_station.bench.rig.waiting import wait_until
-from base_station.bench.standby.command import kill_both
-from base_station.bench.standby.one_of_two import Place, Station
-from base_station.bench.standby.two_stations import TwoStations
-from edge.journal.spool import Journaled, Spool
+from edge.storage.journal.journal import Journal, JournalRow
 from shared.channels import POSITION
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.errors import BusError
 from shared.messages import Header
-from tests.set_clock import MachineClock
-from tests.two_stations import two_stations
+from tests.bench.standby.command import kill_both
+from tests.bench.standby.station_of_pair import Place, Station
+from tests.bench.standby.two_stations import TwoStations
+from tests.rig.lossy_link import CLEAN, DARK, LossyLink
+from tests.rig.message_factory import position
+from tests.rig.pacing import PATIENCE_S, wait_until
+from tests.rig.settable_clock import MachineClock
+from tests.rig.two_stations import two_stations
 
 APART_S = 3.0
 TOLD_S = 3.0  # a beat that names a new unit comes within a fifth of that on a busy machine, too
@@ -55,7 +55,7 @@ def evacuate(station: Station, key: str) -> str:
                 "Idempotency-Key": key,
             },
         )
-        with urllib.request.urlopen(request, timeout=30.0) as answer:
+        with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
             return str(json.load(answer)["command_id"])
 
     return station.place.call(post)
@@ -64,15 +64,15 @@ def evacuate(station: Station, key: str) -> str:
 def fill_journal(folder: Path, unit_id: str) -> None:
     """What a unit has said in an hour without a station."""
     folder.mkdir(parents=True)
-    spool = Spool(folder / "journal.sqlite", lambda: OLD_BOOT, time.time_ns(), 10**9)
+    journal = Journal(folder / "journal.sqlite", lambda: OLD_BOOT, time.time_ns(), 10**9)
     for first in range(1, BACKLOG, 1000):
         headers = [
             Header(unit_id, OLD_BOOT, seq, seq * 10**8) for seq in range(first, first + 1000)
         ]
-        spool.append(
-            [Journaled(one.seq, POSITION, one.seq, encode(position(one))) for one in headers]
+        journal.append(
+            [JournalRow(one.seq, POSITION, one.seq, encode(position(one))) for one in headers]
         )
-    spool.close()
+    journal.close()
 
 
 def count_old(station: Station) -> int:

@@ -15,13 +15,13 @@ from typing import Any
 
 import pytest
 
-from base_station.bench.rig.lossy_link import CLEAN, DARK, LossyLink
-from base_station.bench.rig.waiting import wait_until
-from base_station.bench.standby.one_of_two import Place, Station
-from base_station.pki.folder import PkiFolder
+from base_station.security.pki.folder import PkiFolder
 from shared.enrolment import Holder
 from shared.errors import BusError
-from tests.two_stations import two_stations
+from tests.bench.standby.station_of_pair import Place, Station
+from tests.rig.lossy_link import CLEAN, DARK, LossyLink
+from tests.rig.pacing import PATIENCE_S, wait_until
+from tests.rig.two_stations import two_stations
 
 PASSWORD, ANOTHER = "correct horse battery", "another horse battery"
 REMOVED, DEMOTED, RENEWED, ENDED, KEPT = "removed", "demoted", "renewed", "ended", "kept"
@@ -69,7 +69,7 @@ class People:
 
 
 EVERYBODY = dict.fromkeys(USERS, ("commander", "commander"))
-SHUT_OUT: dict[str, tuple[str | None, str | None]] = {
+BANNED: dict[str, tuple[str | None, str | None]] = {
     REMOVED: (None, None),
     DEMOTED: (None, "viewer"),
     RENEWED: (None, None),
@@ -90,7 +90,7 @@ def log_in(at: Station, name: str, password: str = PASSWORD) -> dict[str, str]:
         request = urllib.request.Request(
             f"{at.url}/api/v1/login", method="POST", data=body, headers=headers
         )
-        with urllib.request.urlopen(request, timeout=30.0) as answer:
+        with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
             return {"Cookie": answer.headers["set-cookie"].partition(";")[0]}
 
     return at.place.call(post)
@@ -105,7 +105,7 @@ def call(at: Station, who: dict[str, str], method: str, path: str, body: Any = N
     )
 
     def send() -> Any:
-        with urllib.request.urlopen(request, timeout=30.0) as answer:
+        with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
             said = answer.read()
         return json.loads(said) if said else None
 
@@ -122,7 +122,7 @@ def role(at: Station, who: dict[str, str]) -> str | None:
 
 
 def assert_shut_out(at: Station, people: People) -> None:
-    wait_until(f"they are shut out at {at.name}", lambda: people.let_in(at) == SHUT_OUT)
+    wait_until(f"they are shut out at {at.name}", lambda: people.let_in(at) == BANNED)
     for name, password in ((REMOVED, PASSWORD), (RENEWED, PASSWORD)):
         with pytest.raises(urllib.error.HTTPError, match="401"):
             log_in(at, name, password)
@@ -179,7 +179,7 @@ def test_whom_the_first_shut_out_before_it_died_alone_is_out_at_both_when_it_is_
         again.stop()
         again.start()
         wait_until("it follows", again.follows)
-        assert [people.let_in(one) for one in two.both] == [SHUT_OUT, SHUT_OUT]
+        assert [people.let_in(one) for one in two.both] == [BANNED, BANNED]
         assert all(
             PkiFolder(one.data).registry().current(Holder.UNIT, "lost") is None for one in two.both
         )

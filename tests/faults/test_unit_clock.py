@@ -11,16 +11,16 @@ from typing import NamedTuple
 
 import pytest
 
-from base_station.bench.rig.journal import MessageOfUnit, said_by
-from base_station.bench.rig.station import free_port
 from shared.channels import is_backfilled, parse_key
 from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.mcap_log import read_log
 from shared.messages import Heartbeat, Message, Position
-from tests.set_clock import MachineClock
-from tests.station_command import Agent, Browser, Command
-from tests.waiting import PATIENCE_S, until
+from tests.rig.settable_clock import MachineClock
+from tests.rig.station_command import Agent, Browser, Command
+from tests.rig.station_process import free_port
+from tests.rig.unit_journal import MessageOfUnit, said_by
+from tests.rig.waiting import PATIENCE_S, until
 
 UNIT = "anna"
 DAY_S = 86_400.0

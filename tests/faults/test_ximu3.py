@@ -14,11 +14,10 @@ import numpy as np
 import pytest
 
 from edge.samples import SensorBatch
-from edge.sources.line_place import why_not
-from edge.sources.ximu3 import Ximu3Source
-from edge.sources.ximu3_place import place_of
-from tests.waiting import until
-from tests.ximu3_device import STEP_US, PtyDevice, TcpDevice, at_rest, text_message
+from edge.sources.transport.address import explain_os_error
+from edge.sources.ximu3.source import Ximu3Source, parse_settings
+from tests.rig.waiting import until
+from tests.rig.ximu3_device import STEP_US, PtyDevice, TcpDevice, at_rest, text_message
 
 
 class Hasty:
@@ -190,4 +189,4 @@ def test_what_is_no_serial_port_is_told(listen, tmp_path: Path) -> None:
     ],
 )
 def test_each_failure_of_a_line_has_a_sentence(error: OSError, told: str) -> None:
-    assert told in why_not(error, place_of("tcp://imu.local").line)
+    assert told in explain_os_error(error, parse_settings("tcp://imu.local").line)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from base_station.past.playback import compare
+from base_station.replay.playback import compare
 from shared.channels import channel_of
 from shared.codec import encode
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, Sighting, SightingKind
 from shared.messages.pins import PlaceBeacon, RemovePin, SetMeeting
-from tests.live_station import make_pipeline
-from tests.round_walk import Walk
-from tests.station_script import Record, Script
+from tests.rig.live_station import make_pipeline
+from tests.rig.round_walk import Walk
+from tests.rig.station_script import Record, Script
 
 
 def told() -> Walk:

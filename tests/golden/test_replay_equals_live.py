@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from base_station.alarms import ALARMS
-from base_station.checkpoint import read_checkpoint
+from base_station.core.alarms import ALARMS
+from base_station.core.checkpoint import read_checkpoint
+from base_station.core.events import is_decision
+from base_station.core.pipeline import StationPipeline
 from base_station.fusion import FUSERS
-from base_station.past.playback import Playback, compare, is_decision
-from base_station.pipeline import StationPipeline
+from base_station.replay.playback import Playback, compare
 from shared.channels import OPERATOR, Qos, channel_of
 from shared.codec import decode, encode
 from shared.messages import (
@@ -36,11 +37,12 @@ from shared.messages.station import (
     SetPlan,
     SetRest,
     SetStart,
+    UndoConfirmation,
 )
 from shared.quality import Quality
-from tests.live_station import LiveStation, make_pipeline
-from tests.station_script import Record, Script
-from tests.waiting import until
+from tests.rig.live_station import LiveStation, make_pipeline
+from tests.rig.station_script import Record, Script
+from tests.rig.waiting import until
 
 PLAN = (
     b'{"type":"FeatureCollection","muster":{"frame":"site-m","floors":[{"floor":0,"down_m":0},'
@@ -93,7 +95,9 @@ def _second(script: Script, second: int) -> None:
         script.act(AcknowledgeAlarm(script.alarms[0].alarm_id))
     _commands(script, second)
     if second in {120, 240}:
-        script.act(CheckIn("", "red", False))
+        script.act(CheckIn("", "red", False, f"k{second}"))
+    if second == 245:  # one of them had not answered
+        script.act(UndoConfirmation("k240", "FF-01"))
     if second == 130:
         script.act(SetRest("FF-01", True))
     if second == 50:

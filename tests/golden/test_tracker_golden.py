@@ -1,18 +1,33 @@
-"""Recorded walks give the figures they gave when somebody last looked."""
+"""Every registered tracker walks recorded trials as it did when somebody last looked."""
 
 from __future__ import annotations
 
-import json
-
+import numpy as np
 import pytest
 
-from tests.golden.tracker_figures import GOLDEN, measure
+from edge.tracker.registry import TRACKERS
+from tests.golden.tracker_figures import GOLDEN, TRIALS, golden_path, measure, read_golden
+
+NAMES = [entry.name for entry in TRACKERS]
 
 
-def test_figures_change_only_on_purpose(walks):
-    expected = json.loads(GOLDEN.read_text())
-    measured = measure(walks)
+@pytest.mark.parametrize("name", NAMES)
+def test_trajectories_and_figures_change_only_on_purpose(name, hard_walks):
+    expected = read_golden(name)
+    assert expected, f"{golden_path(name)} is missing: python -m tests.golden.tracker_figures"
+    measured = measure(hard_walks.parent, name)
     assert measured.keys() == expected.keys()
-    for trial, figures in expected.items():
+    for trial, walked in expected.items():
         # Another processor may round differently; a millimetre is no change of method.
-        assert measured[trial] == pytest.approx(figures, abs=1e-3, rel=1e-3), trial
+        figures = pytest.approx(walked["figures"], abs=1e-3, rel=1e-3)
+        assert measured[trial]["figures"] == figures, trial
+        assert measured[trial]["steps"] == walked["steps"], trial
+        assert measured[trial]["quality"] == walked["quality"], trial
+        np.testing.assert_allclose(
+            measured[trial]["path_n_m"], walked["path_n_m"], rtol=1e-3, atol=5e-3, err_msg=trial
+        )
+
+
+def test_each_golden_file_is_of_a_registered_tracker_and_has_every_trial():
+    assert {path.stem for path in GOLDEN.glob("*.json")} == set(NAMES)
+    assert all(list(read_golden(name)) == list(TRIALS) for name in NAMES)

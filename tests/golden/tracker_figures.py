@@ -1,4 +1,4 @@
-"""Figures of the default tracker that change only on purpose.
+"""Trajectories and figures of every registered tracker that change only on purpose.
 
 ``python -m tests.golden.tracker_figures`` shows before and after and writes the
 new ones; look at every figure that got worse before committing them.
@@ -8,19 +8,29 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import asdict
 from pathlib import Path
+from typing import TypedDict
 
-from edge.bench.track import score_trial
+import numpy as np
 
-GOLDEN = Path(__file__).with_name("tracker_figures.json")
+from edge.app.track import run_tracker
+from edge.sources.recording import RecordingSource, read_truth
+from edge.tracker.interface import TrackBatch
+from edge.tracker.registry import TRACKERS
+from tests.bench.tracker.scoring import score_track
+
+GOLDEN = Path(__file__).with_name("trackers")  # a file each
 TRIALS = (
-    "vicon/2017-11-22-11-22-46",  # walking
-    "vicon/2017-11-22-11-36-45",  # running
-    "vicon/2017-11-22-11-50-42",  # crawling
-    "footprints/35",  # sprint, saturated
-    "footprints/40",  # late stamps
-    "loops/31",
-    "xio/short_walk",  # repeated samples
+    "walks/vicon/2017-11-22-11-22-46",  # walking
+    "walks/vicon/2017-11-22-11-36-45",  # running
+    "walks/vicon/2017-11-22-11-50-42",  # crawling
+    "walks/footprints/35",  # sprint, saturated
+    "walks/footprints/40",  # late stamps
+    "walks/loops/31",  # strides over a second at 250 Hz
+    "walks/xio/short_walk",  # repeated samples
+    "hard/footprints/30",  # sprint, clipped in rate and force
+    "hard/vicon/2018-02-09-11-16-53",  # feet raised and put down slowly
 )
 FIGURES = (
     "ate_m",
@@ -29,27 +39,70 @@ FIGURES = (
     "closure_vertical_m",
     "distance_m",
 )
+EVERY_S = 2.0  # of the trajectories
 
 
-def measure(walks: Path) -> dict[str, dict[str, float]]:
-    """Return the figures of every golden trial, to a tenth of a millimetre."""
-    figures = {}
-    for trial in TRIALS:
-        score = score_trial(walks / trial, "eskf").score
-        values = {name: getattr(score, name) for name in FIGURES}
-        figures[trial] = {name: round(v, 4) for name, v in values.items() if v is not None}
-    return figures
+class Walked(TypedDict):
+    """One trial by one tracker."""
+
+    figures: dict[str, float]  # to a tenth of a millimetre
+    steps: int
+    quality: list[int]  # of the same rows as the path
+    path_n_m: list[list[float]]  # to a millimetre, from the first row on
+
+
+def golden_path(tracker: str) -> Path:
+    return GOLDEN / f"{tracker}.json"
+
+
+def read_golden(tracker: str) -> dict[str, Walked]:
+    """Return what was written last; empty for a tracker that has no file yet."""
+    path = golden_path(tracker)
+    golden: dict[str, Walked] = json.loads(path.read_text()) if path.exists() else {}
+    return golden
+
+
+def measure(data: Path, tracker: str) -> dict[str, Walked]:
+    """Track every golden trial below ``data``."""
+    return {trial: _walked(data / trial, tracker) for trial in TRIALS}
+
+
+def _walked(trial: Path, tracker: str) -> Walked:
+    source = RecordingSource(trial)
+    rows = run_tracker(source, tracker, quiet=True)
+    score = score_track(
+        rows, read_truth(trial), closed_loop=source.trial.truth_kind == "closed_loop"
+    )
+    values = asdict(score)
+    at = _every(rows)
+    path_n_m = rows.position_n_m[at] - rows.position_n_m[0]
+    return Walked(
+        figures={name: round(values[name], 4) for name in FIGURES if values[name] is not None},
+        steps=int(rows.steps[-1]),
+        quality=rows.quality[at].tolist(),
+        path_n_m=np.round(path_n_m, 3).tolist(),
+    )
+
+
+def _every(rows: TrackBatch) -> list[int]:
+    """Return the first row of every ``EVERY_S``."""
+    since_s = (rows.t_ns - rows.t_ns[0]) * 1e-9
+    first = np.unique(since_s // EVERY_S, return_index=True)[1]
+    return [int(row) for row in first]
 
 
 def main() -> None:
     root = Path(__file__).resolve().parents[2]
     data = Path(os.environ.get("MUSTER_DATA", root.parent / "shared" / "data"))
-    before = json.loads(GOLDEN.read_text()) if GOLDEN.exists() else {}
-    after = measure(data / "walks")
-    for trial, values in after.items():
-        for name, value in values.items():
-            print(f"{trial} {name}: {before.get(trial, {}).get(name)} -> {value}")
-    GOLDEN.write_text(json.dumps(after, indent=2) + "\n", encoding="utf-8")
+    GOLDEN.mkdir(exist_ok=True)
+    for entry in TRACKERS:
+        before, after = read_golden(entry.name), measure(data, entry.name)
+        for trial, walked in after.items():
+            old = before[trial]["figures"] if trial in before else {}
+            for name, value in walked["figures"].items():
+                print(f"{entry.name} {trial} {name}: {old.get(name)} -> {value}")
+        lines = (f"{json.dumps(trial)}: {json.dumps(walked)}" for trial, walked in after.items())
+        golden_path(entry.name).write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -10,13 +10,13 @@ import httpx
 import pytest
 import pytest_asyncio
 
-from base_station.bench.rig.station import free_port
 from base_station.storage.data_folder import DataFolder
 from shared.clock import ManualClock
-from tests.forgetting_folders import split_log
-from tests.forgetting_story import Story
-from tests.station import ORIGIN, PASSWORD, DeskStation
-from tests.station_command import Command, Unit
+from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.erasure_folders import split_log
+from tests.rig.erasure_scenario import Story
+from tests.rig.station_command import Command, Unit
+from tests.rig.station_process import free_port
 
 
 @pytest.fixture

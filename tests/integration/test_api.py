@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import io
 import xml.etree.ElementTree as ET
 from collections.abc import AsyncIterator, Callable
@@ -13,12 +14,16 @@ import pytest_asyncio
 from PIL import Image
 
 from base_station.accounts.principals import Role
+from base_station.api.image_lock import MAX_WAITING
 from base_station.exporters import EXPORTERS
 from shared.clock import NS_PER_MS, ManualClock
 from shared.envelope import Stamper
 from shared.messages import EventKind, Position, Temperature, UnitEvent
 from shared.messages.station import ReportProblem
-from tests.station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.incident_closing import despite
+
+pytestmark = pytest.mark.usefixtures("consoles")
 
 
 @pytest_asyncio.fixture
@@ -83,8 +88,9 @@ async def test_a_person_gets_a_photo_and_a_unit(
         (lambda: b"<svg onload=alert(1)>", "cannot be read"),
         (lambda: photo(kind="JPEG")[:200], "cannot be read"),
         (lambda: photo((8000, 8000)), "million pixels"),
+        (lambda: photo((4000, 3100), kind="WEBP"), "12 million pixels"),
     ],
-    ids=["no picture", "cut short", "too large"],
+    ids=["no picture", "cut short", "too large", "too large for its kind"],
 )
 async def test_what_is_no_photo_is_refused(
     commander: httpx.AsyncClient, upload: Callable[[], bytes], reason: str
@@ -95,6 +101,31 @@ async def test_what_is_no_photo_is_refused(
     )
     assert answer.status_code == 422
     assert reason in answer.json()["detail"]
+
+
+async def test_of_many_pictures_at_once_few_wait_and_the_others_are_told_to_come_again(
+    station: DeskStation, commander: httpx.AsyncClient
+) -> None:
+    person_id = (await commander.post("/people", json={"name": "Ada"})).json()["person_id"]
+    image_lock = station.services.image_lock
+
+    async def send() -> httpx.Response:
+        headers = {"content-type": "image/png"}
+        path = f"/people/{person_id}/photo"
+        return await commander.put(path, content=photo(), headers=headers)
+
+    with image_lock:  # somebody else's
+        sent = [asyncio.create_task(send()) for _ in range(10)]
+        refused: list[httpx.Response] = []
+        for one in asyncio.as_completed(sent):
+            refused.append(await one)
+            if len(refused) == 10 - MAX_WAITING:
+                break
+    answers = [await task for task in sent]
+    assert sorted(answer.status_code for answer in answers) == [204] * 3 + [429] * 7
+    assert all(one.status_code == 429 for one in refused)
+    assert "in some seconds" in refused[0].json()["detail"]
+    assert int(refused[0].headers["retry-after"]) > 0
 
 
 async def test_an_incident_is_opened_once_and_closed(
@@ -212,7 +243,7 @@ async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
     again_ms = now_ms()
     path = f"/incidents/{incident['incident_id']}"
     clock.advance(1.0)
-    await commander.post(f"{path}/close")
+    await close_over_all(commander, path)
     assert (await acknowledge(commander, pressed["alarm_id"], again_ms)).status_code == 204
     mayday()
     station.projection.flush()
@@ -255,8 +286,15 @@ async def _walk(
     for step in range(11):
         clock.advance(1.0)
         station.drive.hear(make_position(north_m=float(step)))
-    await commander.post(f"/incidents/{incident['incident_id']}/close")
+    await close_over_all(commander, f"/incidents/{incident['incident_id']}")
     return str(incident["incident_id"])
+
+
+async def close_over_all(commander: httpx.AsyncClient, incident: str) -> None:
+    refused = await commander.post(f"{incident}/close")
+    assert refused.status_code == 409, "with somebody inside, or an open alarm"
+    closed = await commander.post(f"{incident}/close", json=despite(refused.json()))
+    assert closed.status_code == 204
 
 
 async def test_tracks_can_be_thinned(

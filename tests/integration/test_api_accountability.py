@@ -10,8 +10,8 @@ from httpx import AsyncClient
 from base_station.accounts.principals import Role
 from base_station.config import AccountabilityConfig
 from shared.clock import ManualClock
-from shared.messages import STATION_ID, Header, Tick
-from tests.station import DeskStation
+from shared.messages import STATION_ID, Header, Heartbeat, Tick
+from tests.rig.desk_station import DeskStation
 
 pytestmark = pytest.mark.usefixtures("consoles")
 
@@ -40,7 +40,7 @@ async def test_green_warning_overdue_and_ticked_off(
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         incident_id = await open_incident(commander)
-        assert await states(commander) == {"FF-01": "green", "FF-02": "green"}
+        assert await states(commander) == {"FF-01": "not_confirmed", "FF-02": "not_confirmed"}
         pass_time(station, clock, 500.0)
         crew = {"target": {"crew": "A"}}
         assert (await commander.post("/check-ins", json=crew)).status_code == 204
@@ -55,6 +55,7 @@ async def test_green_warning_overdue_and_ticked_off(
         assert (await commander.post("/check-ins", json=everyone)).status_code == 204
         (one, _) = (await commander.get("/accountability")).json()
         assert (one["state"], one["checked_in_by"], one["left_s"]) == ("green", "commander", 650.0)
+        assert one["confirmed"] == "radio"
         rest = {"resting": True}
         assert (await commander.put("/units/FF-01/rest", json=rest)).status_code == 204
         assert (await commander.put("/units/FF-01/rest", json=rest)).status_code == 409
@@ -62,6 +63,70 @@ async def test_green_warning_overdue_and_ticked_off(
         assert await states(commander) == {}
         assert (await commander.put(path, json=times)).status_code == 404
         assert (await commander.post("/check-ins", json=everyone)).status_code == 409
+
+
+async def test_nobody_is_confirmed_by_being_given_a_unit(
+    station: DeskStation, clock: ManualClock
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await open_incident(commander)
+        one, other = (await commander.get("/accountability")).json()
+        for member in (one, other):
+            assert (member["confirmed"], member["checked_in_ms"], member["checked_in_by"]) == (
+                "not_yet", None, ""
+            )  # fmt: skip
+            assert not member["located"]
+        clock.advance(1.0)
+        station.drive.hear(Heartbeat(Header("FF-01", 7, 1, 0), 0, 0))
+        listed = (await commander.get("/accountability")).json()
+        assert {one["unit_id"]: one["located"] for one in listed} == {
+            "FF-01": True, "FF-02": False
+        }  # fmt: skip
+
+
+async def test_a_check_in_is_undone_by_its_id(station: DeskStation) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await open_incident(commander)
+        everyone = {"target": {"everyone": True}}
+        mine = everyone | {"check_in_id": "mine"}
+        assert (await commander.post("/check-ins", json=mine)).status_code == 204
+        again = await commander.post("/check-ins", json=mine)
+        assert (again.status_code, "id of its own" in again.json()["detail"]) == (409, True)
+        bad = await commander.post("/check-ins", json=everyone | {"check_in_id": "a b"})
+        assert (bad.status_code, "check_in_id" in bad.json()["detail"]) == (422, True)
+        entries = {one["entry_id"] for one in (await commander.get("/accountability")).json()}
+        assert entries == {"mine"}
+        one = {"unit_id": "FF-01"}
+        assert (await commander.post("/check-ins/mine/undo", json=one)).status_code == 204
+        assert await states(commander) == {"FF-01": "not_confirmed", "FF-02": "green"}
+        assert (await commander.post("/check-ins/mine/undo", json=one)).status_code == 409
+        assert (await commander.post("/check-ins/mine/undo")).status_code == 204
+        assert await states(commander) == {"FF-01": "not_confirmed", "FF-02": "not_confirmed"}
+        await commander.post("/check-ins", json=everyone)
+        (entry, *_) = (await commander.get("/accountability")).json()
+        assert (await commander.post(f"/check-ins/{entry['entry_id']}/undo")).status_code == 204
+    async with station.client(Role.ADMINISTRATOR) as administrator:
+        entries = (await administrator.get("/audit")).json()
+    assert [entry["action"] for entry in entries].count("UndoConfirmation") == 3
+
+
+async def test_an_answer_by_radio_to_a_par_request_is_undone(station: DeskStation) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        await open_incident(commander)
+        request = {"kind": "par_request", "target": {"everyone": True}}
+        command = (await commander.post("/commands", json=request)).json()
+        path, one = f"/commands/{command['command_id']}", {"unit_id": "FF-01"}
+        await commander.post(f"{path}/confirm", json=one)
+        (first, _) = (await commander.get(path)).json()["units"]
+        assert (first["state"], first["acknowledged_via"]) == ("acknowledged", "radio")
+        assert (await states(commander))["FF-01"] == "green"
+        assert (await commander.post(f"{path}/confirm/undo", json=one)).status_code == 204
+        (first, _) = (await commander.get(path)).json()["units"]
+        assert (first["state"], first["acknowledged_via"]) == ("queued", "")
+        assert "green" not in (await states(commander)).values()
+        assert (await commander.post(f"{path}/confirm/undo", json=one)).status_code == 409
+        none = await commander.post("/commands/none/confirm/undo", json=one)
+        assert none.status_code == 404
 
 
 async def test_an_incident_begins_with_the_times_of_the_station(station: DeskStation) -> None:
@@ -82,6 +147,8 @@ async def test_an_incident_begins_with_the_times_of_the_station(station: DeskSta
     ("method", "path", "body"),
     [
         ("POST", "/check-ins", {"target": {"everyone": True}}),
+        ("POST", "/check-ins/k1/undo", {}),
+        ("POST", "/commands/c1/confirm/undo", {"unit_id": "FF-01"}),
         ("PUT", "/units/FF-01/rest", {"resting": True}),
         ("PUT", "/incidents/i/accountability", {"par_interval_s": 600, "work_limit_s": 600}),
     ],

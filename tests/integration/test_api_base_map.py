@@ -10,7 +10,7 @@ from PIL import Image
 from base_station.accounts.principals import Role
 from base_station.site.base_map import corners_of
 from shared.errors import ConfigError
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 # A degree of latitude is 111 km: 200 by 100 pixels of a metre, north up.
 WORLD = (1.6e-5, 0.0, 0.0, -9e-6, 4.0, 52.0)

@@ -9,8 +9,8 @@ import pytest
 import pytest_asyncio
 
 from base_station.accounts.principals import Role
-from base_station.api.forms import MOST_BYTES, MOST_UPLOADED_BYTES
-from tests.station import DeskStation
+from base_station.api.forms import MAX_BYTES, MAX_UPLOAD_BYTES
+from tests.rig.desk_station import DeskStation
 
 
 @pytest_asyncio.fixture
@@ -27,9 +27,9 @@ async def chunks(count: int) -> AsyncIterator[bytes]:
 @pytest.mark.parametrize(
     ("method", "path", "most"),
     [
-        ("POST", "/people", MOST_BYTES),
-        ("PUT", "/site/plan", MOST_UPLOADED_BYTES),
-        ("PUT", "/people/x/photo", MOST_UPLOADED_BYTES),
+        ("POST", "/people", MAX_BYTES),
+        ("PUT", "/site/plan", MAX_UPLOAD_BYTES),
+        ("PUT", "/people/x/photo", MAX_UPLOAD_BYTES),
     ],
 )
 async def test_a_body_without_end_is_refused(

@@ -7,7 +7,7 @@ import pytest
 from base_station.accounts.principals import Role
 from shared.clock import ManualClock
 from shared.messages import CommandReply, CommandState, Header
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 

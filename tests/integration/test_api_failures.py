@@ -10,12 +10,12 @@ import pytest
 
 from base_station.accounts.principals import Role
 from base_station.api import services
-from base_station.db.records import Records
+from base_station.engine.ports import ActionResult
 from base_station.exporters import EXPORTERS
-from base_station.exporters.port import Exporter
-from base_station.live.sinks import ActionDone
+from base_station.exporters.interface import Exporter
+from base_station.storage.db.records import Records
 from shared.errors import LogError, MusterError, StoreError
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 
 @pytest.mark.parametrize("error", [StoreError("the disk is full"), LogError("a segment is torn")])
@@ -58,7 +58,7 @@ async def test_what_the_station_has_not_done_in_time_it_may_still_do(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Who is told to try again opens two."""
-    waiting: Future[ActionDone] = Future()
+    waiting: Future[ActionResult] = Future()
     monkeypatch.setattr(services, "ACTION_TIMEOUT_S", 0.0)
     monkeypatch.setattr(station.drive, "submit", lambda *_: waiting)
     async with station.client(Role.COMMANDER) as commander:

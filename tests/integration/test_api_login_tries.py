@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import asyncio
+import threading
 import time
 from collections.abc import Callable
+from functools import partial
 
 import pytest
 from pwdlib import PasswordHash
 
 from base_station.accounts.principals import Role
+from base_station.api.admission import LoginQueue
+from base_station.api.attempt_limiter import AttemptLimiter
+from base_station.api.login_throttle import LoginThrottle
 from base_station.api.problems import Problem
-from base_station.api.security import LoginThrottle
-from base_station.api.tries import Tries
-from tests.station import ORIGIN, PASSWORD, DeskStation
+from base_station.storage.db.records import Records
+from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 
 HERE = "192.0.2.1"
 
@@ -27,7 +32,7 @@ class Seconds:
         return self.now_s
 
 
-def refused(check: Callable[[], None]) -> bool:
+def refused(check: Callable[[], object]) -> bool:
     try:
         check()
     except Problem as problem:
@@ -131,16 +136,16 @@ def test_all_names_of_a_place_together_have_their_limit() -> None:
     for number in range(60):
         throttle.check(HERE, f"user {number}")
     assert refused(lambda: throttle.check(HERE, "commander"))
-    assert refused(lambda: throttle.check_place(HERE))
+    assert refused(lambda: throttle.check_network(HERE))
     throttle.check("192.0.2.2", "commander")
 
 
 def test_what_was_tried_long_ago_takes_no_memory() -> None:
     seconds = Seconds()
-    tries = Tries(10, 60.0, seconds)
+    tries = AttemptLimiter(10, 60.0, seconds)
     for number in range(100):
-        tries.note(f"user {number}")
-        tries.note("somebody who tries all the time")
+        tries.record(f"user {number}")
+        tries.record("somebody who tries all the time")
         seconds.now_s += 6.0
     assert len(tries) <= 11
 
@@ -166,3 +171,66 @@ async def test_an_old_password_cannot_be_guessed_without_end(station: DeskStatio
     async with station.client(Role.VIEWER) as client:
         answers = [await client.post("/me/password", json=guess) for _ in range(11)]
     assert [one.status_code for one in answers] == [403] * 10 + [429]
+
+
+def test_one_name_has_its_limit_from_all_places_together() -> None:
+    throttle = LoginThrottle(Seconds())
+    for number in range(30):
+        throttle.check(f"192.0.2.{number}", "commander")
+    assert refused(lambda: throttle.check("192.0.2.99", "commander"))
+    throttle.check("192.0.2.99", "viewer")
+
+
+def test_who_has_logged_in_from_a_place_does_so_while_others_guess_the_name() -> None:
+    throttle = LoginThrottle(Seconds())
+    assert throttle.check(HERE, "commander") is False
+    throttle.record_login(HERE, "commander")
+    for number in range(100, 140):
+        refused(partial(throttle.check, f"192.0.2.{number}", "commander"))
+    assert throttle.check(HERE, "commander") is True
+    for _ in range(8):  # the limits of the place hold
+        throttle.check(HERE, "commander")
+    assert refused(lambda: throttle.check(HERE, "commander"))
+
+
+async def test_a_place_that_tried_too_often_is_refused_before_its_request_is_read(
+    station: DeskStation,
+) -> None:
+    throttle: LoginThrottle = station.app.state.login_throttle
+    for number in range(60):
+        throttle.check("127.0.0.1", f"user {number}")
+    async with station.client() as client:
+        answer = await client.post("/login", content=b"no JSON")
+    assert answer.status_code == 429
+    assert (answer.headers["retry-after"], answer.headers["connection"]) == ("60", "close")
+
+
+async def test_few_log_ins_wait_and_places_are_left_for_who_is_known() -> None:
+    queue, go = LoginQueue(), threading.Event()
+    held = [asyncio.create_task(queue.run(go.wait, is_known=False)) for _ in range(6)]
+    await asyncio.sleep(0)
+    with pytest.raises(Problem) as refusal:
+        await queue.run(go.wait, is_known=False)
+    assert (refusal.value.status_code, refusal.value.headers) == (503, {"Retry-After": "5"})
+    known = asyncio.create_task(queue.run(go.wait, is_known=True))
+    await asyncio.sleep(0)
+    go.set()
+    assert await asyncio.gather(*held, known) == [True] * 7
+    queue.close()
+
+
+async def test_what_reads_much_takes_not_all_threads(
+    station: DeskStation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The framework has forty of them for all routes."""
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
+    go = threading.Event()
+    monkeypatch.setattr(Records, "incident", lambda *_: go.wait() and None)
+    async with station.client(Role.COMMANDER) as client:
+        path = "/incidents/x/trails"
+        reading = [asyncio.create_task(client.get(path)) for _ in range(50)]
+        await asyncio.sleep(0.1)
+        async with asyncio.timeout(10.0):
+            assert (await client.post("/units", json={"unit_id": "FF-01"})).status_code == 201
+        go.set()
+        assert {one.status_code for one in await asyncio.gather(*reading)} == {404}

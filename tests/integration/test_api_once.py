@@ -11,10 +11,10 @@ import pytest_asyncio
 
 from base_station.accounts.principals import Role
 from base_station.api import services
-from base_station.live.sinks import ActionDone
+from base_station.engine.ports import ActionResult
 from shared.clock import ManualClock
 from shared.messages.station import ReportProblem
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 PIN = {"unit_id": "FF-01", "north_m": 1.0, "east_m": 2.0}
@@ -157,7 +157,7 @@ async def test_what_is_no_key_is_told_so(commander: httpx.AsyncClient, key: str)
 async def test_who_gave_a_key_and_had_no_answer_is_told_to_ask_again(
     station: DeskStation, commander: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    waiting: Future[ActionDone] = Future()
+    waiting: Future[ActionResult] = Future()
     monkeypatch.setattr(services, "ACTION_TIMEOUT_S", 0.0)
     monkeypatch.setattr(station.drive, "submit", lambda *_: waiting)
     answer = await commander.post("/commands", json=EVACUATE, headers=KEY)
@@ -182,8 +182,10 @@ async def test_the_schema_tells_of_the_key_wherever_something_is_done(
         "/alarms/{alarm_id}/resolve",
         "/assignments",
         "/check-ins",
+        "/check-ins/{check_in_id}/undo",
         "/commands",
         "/commands/{command_id}/confirm",
+        "/commands/{command_id}/confirm/undo",
         "/incidents",
         "/incidents/{incident_id}/close",
         "/people",
@@ -192,3 +194,29 @@ async def test_the_schema_tells_of_the_key_wherever_something_is_done(
         "/pins/start",
         "/units",
     }
+
+
+async def test_who_had_no_answer_can_ask_whether_it_was_carried_out(
+    station: DeskStation, commander: httpx.AsyncClient, clock: ManualClock
+) -> None:
+    path = "/idempotency-keys/8e03978e-40d5-43dd-bc93-6894a57f9324"
+    assert (await commander.get(path)).status_code == 404
+    assert (await commander.post("/commands", json=EVACUATE, headers=KEY)).status_code == 201
+    carried_out = (await commander.get(path)).json()
+    assert carried_out["action"] == "SendCommand"
+    assert carried_out["t_ms"] == clock.utc_ns() // 1_000_000
+    async with station.client(Role.ADMINISTRATOR) as other:
+        assert (await other.get(path)).status_code == 404, "a key counts for who sent it"
+
+
+async def test_an_added_person_is_carried_out_and_a_refusal_is_not(
+    commander: httpx.AsyncClient,
+) -> None:
+    added, refused = {"Idempotency-Key": "k-added"}, {"Idempotency-Key": "k-refused"}
+    assert (await commander.post("/people", json={"name": "Bo"}, headers=added)).is_success
+    assert (await commander.get("/idempotency-keys/k-added")).json()["action"] == "AddedPerson"
+    nowhere = {"unit_id": "FF-99", "person_id": "nobody"}
+    answer = await commander.post("/assignments", json=nowhere, headers=refused)
+    assert not answer.is_success
+    assert (await commander.get("/idempotency-keys/k-refused")).status_code == 404
+    assert (await commander.get("/idempotency-keys/%25")).status_code in (404, 422)

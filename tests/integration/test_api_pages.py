@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from base_station.accounts.principals import Role
-from base_station.db import models
-from base_station.db.store import Store
+from base_station.storage.db import models
+from base_station.storage.db.store import Store
 from shared.clock import NS_PER_MS
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 INCIDENT = "i-0"
 START_MS = 1_000

@@ -9,10 +9,10 @@ import msgspec
 import pytest
 
 from base_station.accounts.principals import Role
-from base_station.db.records import EVER
+from base_station.storage.db.records import EVER
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import Header, Position
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 pytestmark = pytest.mark.usefixtures("consoles")
 

@@ -12,10 +12,10 @@ import pytest
 import pytest_asyncio
 
 from base_station.accounts.principals import Role
-from base_station.recordings.desk import RecordingDesk
+from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from shared.clock import ManualClock
 from shared.messages.station import RegisterUnit
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 WINDOW = {"unit_id": "FF-01", "from_ms": 1_000, "to_ms": 2_000}
 
@@ -24,8 +24,8 @@ WINDOW = {"unit_id": "FF-01", "from_ms": 1_000, "to_ms": 2_000}
 async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
     station = DeskStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
-    station.services.act("chief", RegisterUnit("FF-01", "one"))
-    with RecordingDesk(lambda *_: None, tmp_path / "recordings", clock) as desk:
+    station.services.perform("chief", RegisterUnit("FF-01", "one"))
+    with TransferQueue(lambda *_: None, tmp_path / "recordings", clock) as desk:
         station.app.state.services = replace(station.services, recordings=desk)
         yield station
     station.close()

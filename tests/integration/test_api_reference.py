@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.accounts.principals import Role
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 PATH = "/reference-barometer"
 

@@ -16,15 +16,15 @@ from fastapi.routing import APIRoute, APIWebSocketRoute
 from PIL import Image
 
 from base_station.accounts.principals import Role
+from base_station.api.authentication import Scope
 from base_station.api.routes import ROUTERS
-from base_station.api.security import Scope
-from base_station.db.records import EVER, Window
-from base_station.recordings.desk import RecordingDesk
+from base_station.storage.db.records import EVER, Window
+from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import StandbyView
 from shared.clock import NS_PER_MS, ManualClock
 from shared.messages import EventKind, Header, UnitEvent
-from tests.station import ORIGIN, PASSWORD, DeskStation
-from tests.waiting import until
+from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.waiting import until
 
 V, C, A = Role
 NOBODY = None  # needs no login
@@ -51,9 +51,10 @@ LEAST: dict[str, dict[str, Role | None]] = {
     "alarms": {"GET /alarms": V, "GET /alarms/{alarm_id}": V,
                "POST /alarms/{alarm_id}/acknowledge": C, "POST /alarms/{alarm_id}/resolve": C},
     "commands": {"GET /commands": V, "POST /commands": C, "GET /commands/{command_id}": V,
-                 "POST /commands/{command_id}/confirm": C},
+                 "POST /commands/{command_id}/confirm": C,
+                 "POST /commands/{command_id}/confirm/undo": C},
     "accountability": {"GET /accountability": V, "GET /accountability/usual": V,
-                       "POST /check-ins": C,
+                       "POST /check-ins": C, "POST /check-ins/{check_in_id}/undo": C,
                        "PUT /incidents/{incident_id}/accountability": C,
                        "PUT /units/{unit_id}/rest": C},
     "site": {"GET /site/anchor": V, "PUT /site/anchor": C, "GET /site/plan": V,
@@ -71,7 +72,7 @@ LEAST: dict[str, dict[str, Role | None]] = {
     "forgetting": {"GET /forgettings": A, "POST /people/{person_id}/forget": A,
                    "POST /incidents/{incident_id}/forget": A},
     "health": {"GET /health": V},
-    "audit": {"GET /audit": A},
+    "audit": {"GET /audit": A, "GET /idempotency-keys/{key}": V},
     "standby": {"GET /standby": V, "GET /standby/leads": NOBODY, "POST /standby/take-over": C},
 }  # fmt: skip
 SOCKETS = {"/live", "/replays/{replay_id}/live"}
@@ -86,7 +87,7 @@ PLAN = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": 
 Do = Callable[..., Awaitable[Any]]
 
 
-class Standing:
+class HaStatus:
     def view(self) -> StandbyView:
         return StandbyView("a", "active", ORIGIN, "b", "standby", "", in_step=True)
 
@@ -101,8 +102,8 @@ class Standing:
 async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
     station = DeskStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
-    with RecordingDesk(lambda *_: None, tmp_path / "recordings", clock) as desk:
-        services = dataclasses.replace(station.services, recordings=desk, standing=Standing())
+    with TransferQueue(lambda *_: None, tmp_path / "recordings", clock) as desk:
+        services = dataclasses.replace(station.services, recordings=desk, ha_status=HaStatus())
         station.services = station.app.state.services = services
         yield station
     station.close()
@@ -183,7 +184,7 @@ async def test_another_sites_page_changes_nothing_by_any_route(station: DeskStat
 async def test_a_standby_changes_nothing_by_any_route(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Standing, "refusal", lambda _: "this is the standby")
+    monkeypatch.setattr(HaStatus, "refusal", lambda _: "this is the standby")
     async with station.client(Role.ADMINISTRATOR) as client:
         for route in CHANGING:
             method, path = route.split()
@@ -195,7 +196,7 @@ async def test_a_standby_changes_nothing_by_any_route(
 async def test_a_station_that_only_replays_takes_nothing_that_would_be_lost(
     station: DeskStation,
 ) -> None:
-    services = dataclasses.replace(station.services, only_replays=True)
+    services = dataclasses.replace(station.services, is_replay_only=True)
     station.app.state.services = services
     async with station.client(Role.ADMINISTRATOR) as client:
         for route in CHANGING:
@@ -230,7 +231,7 @@ class Story:
         return answer.json() if answer.content else None
 
     def _authors(self) -> list[str]:
-        self._station.services.settle()
+        self._station.services.wait_for_projection()
         entries = self._station.services.records.audit_entries(EVER)
         return [entry.by for entry in sorted(entries, key=lambda one: one.number)]
 
@@ -253,7 +254,7 @@ async def test_whatever_changes_something_is_in_the_audit(
         await do("POST /login", {"username": "administrator", "password": f"{PASSWORD} 2"})
         await do("POST /logout")
     assert set(CHANGING) - story.done == {
-        # They need a log: test_served_past.py and test_forgetting.py look for their entries.
+        # They need a log: test_served_past.py and test_erasure_service.py look for their entries.
         "POST /replays",
         "POST /replays/{replay_id}",
         "DELETE /replays/{replay_id}",
@@ -286,12 +287,14 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     times = {"par_interval_s": 900.0, "work_limit_s": 1800.0}
     await do("PUT /incidents/{incident_id}/accountability", times, incident_id=incident)
     await do("PUT /units/{unit_id}/rest", {"resting": True}, **unit)
-    await do("POST /check-ins", {"target": {"everyone": True}})
+    await do("POST /check-ins", {"target": {"everyone": True}, "check_in_id": "k1"})
+    await do("POST /check-ins/{check_in_id}/undo", {}, check_in_id="k1")
     told = await do("POST /commands", {"kind": "text", "text": "out", "target": unit})
     await do("POST /commands/{command_id}/confirm", unit, command_id=told["command_id"])
+    await do("POST /commands/{command_id}/confirm/undo", unit, command_id=told["command_id"])
     await act_on_pins(do)
     station.drive.hear(UnitEvent(Header("FF-01", 7, 1, 5), EventKind.MAYDAY))
-    station.services.settle()
+    station.services.wait_for_projection()
     (alarm, *_) = station.services.records.alarms(Window(0, 2**62))
     seen = {"last_raised_ms": alarm.last_raised_ns // NS_PER_MS}
     await do("POST /alarms/{alarm_id}/acknowledge", seen, alarm_id=alarm.alarm_id)

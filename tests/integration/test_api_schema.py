@@ -23,7 +23,7 @@ from base_station.accounts.principals import Role
 from base_station.api.forms import IDEMPOTENCY_KEY
 from base_station.api.server import ConsoleServer, bind
 from shared.clock import ManualClock
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 EXAMPLES = 15  # of each operation
 FRAMEWORK = re.compile("Input should|Field required|Value error|not permitted")  # its own words

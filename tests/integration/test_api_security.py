@@ -11,11 +11,11 @@ import pytest
 
 from base_station.accounts.principals import Role
 from base_station.api.app import create_app
-from base_station.api.security import COOKIE
-from base_station.db.accounts import SESSION_S
-from base_station.db.records import EVER
+from base_station.api.authentication import COOKIE
+from base_station.storage.db.accounts import SESSION_S
+from base_station.storage.db.records import EVER
 from shared.clock import ManualClock
-from tests.station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 
 
 def shown(secret: str) -> dict[str, str]:
@@ -133,7 +133,8 @@ async def test_a_cookie_changes_nothing_without_an_origin_but_beside_a_token(
 
 
 async def test_a_session_ends(browser: httpx.AsyncClient, clock: ManualClock) -> None:
-    assert (await browser.get("/me")).json() == {"username": "commander", "role": "commander"}
+    me = (await browser.get("/me")).json()
+    assert me == {"username": "commander", "role": "commander", "must_change_password": False}
     clock.advance(SESSION_S - 1.0)
     assert (await browser.get("/me")).status_code == 200
     clock.advance(1.0)

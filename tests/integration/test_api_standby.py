@@ -9,13 +9,13 @@ import pytest
 from base_station.accounts.principals import Role
 from base_station.api.headers import content_policy
 from base_station.views.wire import StandbyView
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 HERE, THERE = "https://b:8443", "https://a:8443"
 STANDBY = StandbyView("second", "standby", HERE, "first", "active", THERE, in_step=True)
 
 
-class Standing:
+class HaStatus:
     def __init__(self, refusal: str | None) -> None:
         self._refusal = refusal
         self.taken_over = 0
@@ -31,15 +31,15 @@ class Standing:
 
 
 @pytest.fixture
-def standing(station: DeskStation) -> Standing:
+def ha_status(station: DeskStation) -> HaStatus:
     """The station is a standby from now on."""
-    standing = Standing("this is the standby: the active station is first at https://a:8443")
-    station.services = dataclasses.replace(station.services, standing=standing)
+    ha_status = HaStatus("this is the standby: the active station is first at https://a:8443")
+    station.services = dataclasses.replace(station.services, ha_status=ha_status)
     station.app.state.services = station.services
-    return standing
+    return ha_status
 
 
-@pytest.mark.usefixtures("standing")
+@pytest.mark.usefixtures("ha_status")
 async def test_a_standby_is_looked_at_and_refuses_changes_in_a_sentence(
     station: DeskStation,
 ) -> None:
@@ -52,7 +52,7 @@ async def test_a_standby_is_looked_at_and_refuses_changes_in_a_sentence(
             assert "the active station is first at https://a:8443" in answer.json()["detail"]
 
 
-@pytest.mark.usefixtures("standing")
+@pytest.mark.usefixtures("ha_status")
 async def test_people_log_in_at_a_standby(station: DeskStation) -> None:
     async with station.client() as client:
         answer = await client.post("/login", json={"username": "viewer", "password": "x"})
@@ -60,22 +60,22 @@ async def test_people_log_in_at_a_standby(station: DeskStation) -> None:
 
 
 async def test_a_commander_makes_it_lead_and_a_viewer_does_not(
-    station: DeskStation, standing: Standing
+    station: DeskStation, ha_status: HaStatus
 ) -> None:
     for role, status in ((Role.VIEWER, 403), (Role.COMMANDER, 202)):
         async with station.client(role) as client:
             assert (await client.post("/standby/take-over")).status_code == status
-    assert standing.taken_over == 1
+    assert ha_status.taken_over == 1
 
 
 async def test_the_other_stations_console_may_ask_whether_this_one_leads(
-    station: DeskStation, standing: Standing
+    station: DeskStation, ha_status: HaStatus
 ) -> None:
     async with station.client() as client:
         answer = await client.get("/standby/leads", headers={"Origin": THERE})
         assert answer.json() == {"leads": False}
         assert answer.headers["access-control-allow-origin"] == "*"
-        standing._refusal = None
+        ha_status._refusal = None
         assert (await client.get("/standby/leads")).json() == {"leads": True}
 
 

@@ -6,12 +6,12 @@ import httpx
 import pytest
 
 from base_station.accounts.principals import Role
+from base_station.api.authentication import Scope
 from base_station.api.routes import ROUTERS
-from base_station.api.security import Scope
-from base_station.db.accounts import MOST_TOKENS
+from base_station.storage.db.accounts import MOST_TOKENS
 from shared.clock import NS_PER_S, ManualClock
 from shared.errors import UserError
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
 
 
 async def test_a_token_may_do_no_more_than_its_maker(

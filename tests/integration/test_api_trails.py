@@ -12,18 +12,18 @@ import pytest
 import pytest_asyncio
 
 from base_station.accounts.principals import Role
-from base_station.db.smoothed import SmoothedTracks
-from base_station.fusion.smoother import SMOOTHERS
-from base_station.past.checkpoints import Checkpoints
-from base_station.past.hindsight import Hindsight
-from base_station.past.playback import Archive
+from base_station.fusion.smoothing import SMOOTHERS
+from base_station.replay.playback import Archive
+from base_station.replay.post_processing import PostProcessor
+from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.db.smoothed import SmoothedTracks
 from shared.channels import channel_of
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.messages import Header, Message, Position
 from shared.messages.station import SetAnchor
-from tests.live_station import make_pipeline
-from tests.station import DeskStation
+from tests.rig.desk_station import DeskStation
+from tests.rig.live_station import make_pipeline
 
 Record = tuple[int, str, bytes]
 
@@ -32,6 +32,7 @@ Record = tuple[int, str, bytes]
 async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStation]:
     """It keeps a log in memory of what it hears."""
     station = DeskStation(tmp_path, clock)
+    station.hub.connect(asyncio.get_running_loop(), station.drive)
     records: list[Record] = []
     hear = station.drive.hear
 
@@ -46,8 +47,8 @@ async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStati
         Checkpoints(tmp_path / "checkpoints"),
         make_pipeline,
     )
-    hindsight = Hindsight(archive, SMOOTHERS[0], SmoothedTracks(station.store), clock)
-    station.app.state.services = replace(station.services, hindsight=hindsight)
+    post_processor = PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(station.store), clock)
+    station.app.state.services = replace(station.services, post_processor=post_processor)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     yield station
     station.close()
@@ -74,7 +75,8 @@ async def worked(
         incident_id: str = opened.json()["incident_id"]
         if closed:
             clock.advance(1.0)
-            await commander.post(f"/incidents/{incident_id}/close")
+            closed_as = await commander.post(f"/incidents/{incident_id}/close")
+            assert closed_as.status_code == 204
         return incident_id
 
 

@@ -8,9 +8,9 @@ import httpx
 import pytest
 
 from base_station.accounts.principals import Role
-from base_station.db.records import EVER
+from base_station.storage.db.records import EVER
 from shared.errors import UserError
-from tests.station import ORIGIN, PASSWORD, DeskStation
+from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 
 
 @pytest.mark.parametrize("username", ["Zoë O'Neil", "a#b?c%2Fd&e", "x" * 80, "50 %"])

@@ -6,8 +6,8 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.served_station import MakePosition, greet, prepare, snapshot, trail, walk
-from tests.station_command import Browser, Command, Unit
+from tests.rig.served_station import MakePosition, greet, prepare, snapshot, trail, walk
+from tests.rig.station_command import Browser, Command, Unit
 
 
 def test_a_station_goes_on_from_a_backup_that_was_made_while_it_ran(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rich.progress import Progress
 
-from base_station.bench.backfill import measure
+from tests.bench.backfill import measure
 
 
 def test_a_short_backlog_arrives_whole() -> None:

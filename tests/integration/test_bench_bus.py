@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.progress import Progress
 
-from base_station.bench.bus.command import Load, measure
-from base_station.bench.rig.latency import latencies_ms
+from tests.bench.bus.command import Load, measure
+from tests.rig.latency import latencies_ms
 
 MS = 1_000_000
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 from rich.progress import Progress
 
-from base_station.bench.rig.compressed import compressed_station
-from base_station.bench.rig.units import unit_names
-from base_station.bench.station.load import measure
 from shared.channels import FUSED, POSITION, parse_key
 from shared.mcap_log import read_log
 from shared.messages import STATION_ID
+from tests.bench.station.load import measure
+from tests.rig.accelerated_station import compressed_station
+from tests.rig.simulated_units import unit_names
 
 
 def test_what_wearers_say_in_compressed_time_is_in_the_log(tmp_path: Path) -> None:

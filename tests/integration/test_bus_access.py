@@ -26,7 +26,7 @@ from shared.channels import (
     tracker_id,
 )
 from shared.enrolment import Holder
-from tests.secured_bus import (
+from tests.rig.secured_bus import (
     QUIET_S,
     Site,
     assert_powerless,
@@ -34,7 +34,7 @@ from tests.secured_bus import (
     publish_until_heard,
     say_forged,
 )
-from tests.waiting import until
+from tests.rig.waiting import until
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from cryptography import x509
 
-from base_station.pki.folder import PkiFolder
+from base_station.security.pki.folder import PkiFolder
 from shared.bus_zenoh import ClientEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import (
     POSITION,
@@ -21,8 +21,8 @@ from shared.channels import (
 from shared.enrolment import Enrolment
 from shared.errors import BusError
 from shared.tls import TlsIdentity
-from tests.secured_bus import QUIET_S, Site, assert_never_linked, publish_until_heard
-from tests.waiting import until
+from tests.rig.secured_bus import QUIET_S, Site, assert_never_linked, publish_until_heard
+from tests.rig.waiting import until
 
 
 @pytest.fixture

@@ -11,12 +11,12 @@ from contextlib import closing, contextmanager, suppress
 import pytest
 import zenoh
 
-from base_station.bench.rig.station import free_port
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos, clock_key
 from shared.errors import BusError
 from shared.zenoh_settings import MOST_ANSWERED_BYTES, MOST_SAID_BYTES
-from tests.waiting import until
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 
 @pytest.fixture

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
+
+import pytest
 
 CHECKOUT = Path(__file__).parents[2]
 
@@ -21,3 +26,32 @@ def test_an_environment_without_its_installer_is_made_anew(tmp_path: Path) -> No
     )
     assert (environment / "muster-dependencies.stamp").exists(), ran.stderr
     assert "the step 'Building Muster and its console' failed" in ran.stderr  # there is no project
+
+
+def test_the_quick_tests_are_one_for_each_core_and_leave_out_slow_ones(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    loader = SourceFileLoader("checkout_script", str(CHECKOUT / "muster"))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    script = module_from_spec(spec)
+    loader.exec_module(script)
+    for name in ("use_recent_python", "prepare_environment", "compile_kernels"):
+        monkeypatch.setattr(script, name, lambda: None)
+    ran: list[tuple[str, ...]] = []
+
+    def run_pytest(*arguments: str) -> subprocess.CompletedProcess[bytes]:
+        ran.append(arguments)
+        return subprocess.CompletedProcess(arguments, 0)
+
+    monkeypatch.setattr(script, "run_pytest", run_pytest)
+    with pytest.raises(SystemExit) as ended:
+        script.main(["test", "--quick", "-x"])
+    assert ended.value.code == 0
+    (arguments,) = ran
+    assert arguments[:2] == ("-n", str(os.cpu_count()))
+    assert arguments[-1] == "-x"
+    assert "not slow" in arguments
+    folders = [CHECKOUT / one for one in arguments if one.startswith("tests/")]
+    assert all(folder.is_dir() for folder in folders)
+    assert {folder.name for folder in folders} == {"unit", "property", "contracts", "meta"}

@@ -8,11 +8,11 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from base_station.commands import downlink
-from base_station.commands.downlink import Downlink
-from base_station.commands.state import Order
-from base_station.past.playback import compare
-from edge.commands import CommandDesk
+from base_station.core.state.command import Order
+from base_station.replay.playback import compare
+from base_station.unit_sync import command_sender
+from base_station.unit_sync.command_sender import CommandSender
+from edge.agent.command_handler import CommandHandler
 from shared.bus import Subscription
 from shared.bus_memory import MemoryBus, MemoryRouter
 from shared.channels import COMMAND, REPLY
@@ -22,8 +22,8 @@ from shared.envelope import Stamper
 from shared.errors import BusError
 from shared.messages import STATION_ID, Command, CommandKind, CommandReply
 from shared.messages.station import ConfirmCommand, RegisterUnit, SendCommand
-from tests.live_station import LiveStation, make_pipeline
-from tests.waiting import until
+from tests.rig.live_station import LiveStation, make_pipeline
+from tests.rig.waiting import until
 
 U = "FF-01"
 
@@ -36,7 +36,7 @@ class Unit:
         self.rates: list[float] = []
         self.heard: list[Command] = []
         self.is_mute = False
-        self.desk = CommandDesk(Stamper(U, boot_id, SystemClock()), self.rates.append)
+        self.desk = CommandHandler(Stamper(U, boot_id, SystemClock()), self.rates.append)
         self._hearing: Subscription | None = None
 
     def come(self) -> None:
@@ -64,8 +64,8 @@ class Unit:
 
 @pytest.fixture(autouse=True)
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 10**8)
-    monkeypatch.setattr(downlink, "_LOOK_EVERY_S", 0.02)
+    monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 10**8)
+    monkeypatch.setattr(command_sender, "_LOOK_EVERY_S", 0.02)
 
 
 def order(kind: CommandKind, rate_hz: float = 0.0, lasts_s: float = 600.0) -> SendCommand:
@@ -171,25 +171,25 @@ def an_order(expires_ns: int) -> Order:
 
 
 @pytest.fixture
-def link() -> tuple[Downlink, Unit, ManualClock]:
+def link() -> tuple[CommandSender, Unit, ManualClock]:
     router, clock = MemoryRouter(), ManualClock()
     return (
-        Downlink(router.attach_station(), Stamper(STATION_ID, 1, clock), clock),
+        CommandSender(router.attach_station(), Stamper(STATION_ID, 1, clock), clock),
         Unit(router),
         clock,
     )
 
 
 def test_repeats_wait_for_a_reply_and_not_beyond_the_end(
-    link: tuple[Downlink, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
+    link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 2 * 10**9)
+    monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 2 * 10**9)
     down, unit, clock = link
     unit.come()
     orders = [an_order(clock.utc_ns() + 5 * 10**9)]
     counts = []
     for _ in range(14):
-        down._say_all(orders)
+        down.send_due(orders)
         counts.append(len(unit.heard))
         clock.advance(0.5)
     assert counts == [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3]
@@ -197,21 +197,21 @@ def test_repeats_wait_for_a_reply_and_not_beyond_the_end(
 
 
 def test_who_was_away_is_told_at_once(
-    link: tuple[Downlink, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
+    link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 100 * 10**9)
+    monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 100 * 10**9)
     down, unit, clock = link
     orders = [an_order(clock.utc_ns() + 10**12)]
     come_and_go: list[Callable[[], None]] = [unit.come, unit.go, unit.come]
     for happens in come_and_go:
         happens()
-        down._say_all(orders)
+        down.send_due(orders)
         clock.advance(0.1)
     assert len(unit.heard) == 2
 
 
 def test_one_that_cannot_be_told_keeps_nobody_else_from_being_told(
-    link: tuple[Downlink, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
+    link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nor are the others told again and again for it."""
     down, unit, clock = link
@@ -224,19 +224,19 @@ def test_one_that_cannot_be_told_keeps_nobody_else_from_being_told(
         return heard(key)
 
     monkeypatch.setattr(down._bus, "is_heard", fail_for_one)
-    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 2 * 10**9)
+    monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 2 * 10**9)
     order = an_order(clock.utc_ns() + 10**12)
     orders = [msgspec.structs.replace(order, unit_id=one) for one in ("FF-00", U, "FF-99")]
     for _ in range(3):
-        down._say_all(orders)
+        down.send_due(orders)
         clock.advance(0.2)
     assert len(unit.heard) == 1
 
 
 def test_what_a_unit_has_answered_is_not_said_again(
-    link: tuple[Downlink, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
+    link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(downlink, "_AGAIN_AFTER_NS", 0)
+    monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 0)
     down, unit, clock = link
     unit.come()
     one = an_order(clock.utc_ns() + 10**12)

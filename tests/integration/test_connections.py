@@ -15,12 +15,13 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import PlainTextResponse
 from starlette.types import Receive, Scope, Send
 
-from base_station.api import server
-from base_station.api.networks import network_of
-from base_station.api.server import ConsoleServer, allow_many_files, bind
-from base_station.pki.certificates import issue, make_authority
+from base_station.api import connections, server
+from base_station.api.server import ConsoleServer, bind
+from base_station.process.open_files import allow_many_files
+from base_station.security.networks import network_of
+from base_station.security.pki.certificates import issue, make_authority
 from shared.enrolment import Holder
-from tests.waiting import PATIENCE_S
+from tests.rig.waiting import PATIENCE_S
 
 GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
 UPGRADE = (
@@ -28,6 +29,7 @@ UPGRADE = (
     b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
 )
 Stream = tuple[asyncio.StreamReader, asyncio.StreamWriter]
+STRANGERS: set[str] = set()  # places from which nobody is logged in
 
 
 async def answer_what_was_read(scope: Scope, receive: Receive, send: Send) -> None:
@@ -47,9 +49,9 @@ async def answer_what_was_read(scope: Scope, receive: Receive, send: Send) -> No
 
 @pytest.fixture
 def bounds(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "_ASK_WITHIN_S", 1.0)
-    monkeypatch.setattr(server, "_GO_ON_WITHIN_S", 1.0)
-    monkeypatch.setattr(server, "_MOST_OF_ONE", 5)
+    monkeypatch.setattr(server, "_REQUEST_TIMEOUT_S", 1.0)
+    monkeypatch.setattr(server, "_BODY_TIMEOUT_S", 1.0)
+    monkeypatch.setattr(connections, "MAX_PER_NETWORK", 5)
 
 
 @pytest_asyncio.fixture
@@ -71,7 +73,9 @@ async def secure_port(bounds: None, tmp_path: Path) -> AsyncIterator[int]:
 
 async def served(*identity: Path) -> AsyncIterator[int]:
     listening = bind("127.0.0.1", 0)
-    serving = ConsoleServer(answer_what_was_read, listening, *identity)
+    serving = ConsoleServer(
+        answer_what_was_read, listening, *identity, is_known=lambda place: place not in STRANGERS
+    )
     task = asyncio.create_task(serving.serve())
     await serving.wait_started()
     yield listening.getsockname()[1]
@@ -131,6 +135,42 @@ async def test_who_does_not_go_on_with_a_body_is_let_go(port: int) -> None:
         stream[1].close()
 
 
+async def test_who_goes_on_with_a_body_by_single_bytes_is_let_go(port: int) -> None:
+    """Each of them is progress, and none is enough."""
+    drip = await connect(port)
+    drip[1].write(GET.replace(b"GET", b"POST") + b"Content-Length: 1000\r\n\r\n")
+    sent = 0
+    async with asyncio.timeout(PATIENCE_S):
+        while not drip[0].at_eof() and not drip[1].is_closing():
+            drip[1].write(b" ")
+            sent += 1
+            await asyncio.sleep(0.1)
+    assert sent < 100  # of a thousand
+    drip[1].close()
+
+
+async def test_who_comes_new_gets_in_though_strangers_hold_all_they_can(
+    port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the place that holds most the oldest is let go; places with a login keep theirs."""
+    monkeypatch.setattr(connections, "MAX_ANONYMOUS", 6)
+    monkeypatch.setattr(connections, "MAX_PER_ANONYMOUS_NETWORK", 4)
+    monkeypatch.setattr(server, "_REQUEST_TIMEOUT_S", 1000.0)
+    monkeypatch.setattr(f"{__name__}.STRANGERS", {f"127.0.0.{number}" for number in range(2, 6)})
+    known = await connect(port, "127.0.0.9")
+    greedy = [await connect(port, "127.0.0.2") for _ in range(5)]
+    async with asyncio.timeout(PATIENCE_S):
+        assert await greedy[4][0].read() == b""  # one place has four
+    others = [await connect(port, f"127.0.0.{number}") for number in (3, 4, 5)]
+    async with asyncio.timeout(PATIENCE_S):
+        assert await greedy[0][0].read() == b""
+    for one in (*greedy[1:4], *others, known):
+        one[1].write(GET + b"\r\n")
+        assert await answer_of(one) == b"HTTP/1.1 200 OK"
+    for one in (known, *greedy, *others):
+        one[1].close()
+
+
 async def test_a_websocket_that_ended_soon_is_minded_no_more(secure_port: int) -> None:
     """Nor is one that goes on: what it says is not waited for."""
     troubles: list[object] = []
@@ -142,7 +182,7 @@ async def test_a_websocket_that_ended_soon_is_minded_no_more(secure_port: int) -
     refused[1].close()
     assert (await open_one[0].readuntil(b"\r\n\r\n")).startswith(b"HTTP/1.1 101")
     with pytest.raises(TimeoutError):
-        async with asyncio.timeout(2.0 * server._ASK_WITHIN_S):
+        async with asyncio.timeout(2.0 * server._REQUEST_TIMEOUT_S):
             await open_one[0].read()
     open_one[1].close()
     assert troubles == []
@@ -178,7 +218,7 @@ async def test_who_does_not_get_to_ask_over_tls_counts_too(
     secure_port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each takes more of the station's memory than who asks."""
-    monkeypatch.setattr(server, "_ASK_WITHIN_S", 1000.0)
+    monkeypatch.setattr(server, "_REQUEST_TIMEOUT_S", 1000.0)
     held = [await connect(secure_port) for _ in range(5)]
     with pytest.raises((ssl.SSLError, ConnectionError)):
         await connect(secure_port, secured=trusting())
@@ -190,7 +230,7 @@ async def test_who_does_not_get_to_ask_over_tls_counts_too(
 
 
 async def test_all_together_have_only_so_many(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "_MOST_CONNECTIONS", 3)
+    monkeypatch.setattr(connections, "MAX_CONNECTIONS", 3)
     streams = [await connect(port, f"127.0.0.{number}") for number in range(1, 6)]
     for _, writer in streams:
         writer.write(GET + b"\r\n")

@@ -17,16 +17,16 @@ from alembic import command
 from sqlalchemy import inspect, text
 
 from base_station.accounts.principals import Principal, Role
-from base_station.bench.rig import said
-from base_station.db.accounts import Accounts
-from base_station.db.migrate import alembic_config
-from base_station.db.models import Base, Person
-from base_station.db.projecting import project_into
-from base_station.db.projection import SqlProjection
-from base_station.db.records import FOREVER_NS, Records, Window
-from base_station.db.roster import Roster
-from base_station.db.store import Store, copy_database
-from base_station.live.sinks import Projection
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.copying import copy_database, known_segments
+from base_station.storage.db.migrate import alembic_config
+from base_station.storage.db.models import Base, Person
+from base_station.storage.db.projecting import project_into
+from base_station.storage.db.projection import SqlProjection
+from base_station.storage.db.records import FOREVER_NS, Records, Window
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.store import Store
+from base_station.storage.projection import Projection
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.errors import StoreError
@@ -39,6 +39,7 @@ from shared.messages.station import (
     RegisterUnit,
     Unassign,
 )
+from tests.rig import message_factory
 
 ALL = Window(0, FOREVER_NS)
 
@@ -133,7 +134,7 @@ def test_a_database_of_a_newer_program_is_refused(path: Path) -> None:
 
 def test_what_is_no_database_is_refused_and_kept(path: Path) -> None:
     path.write_bytes(b"this is a shopping list, not a database" * 100)
-    with pytest.raises(StoreError, match="move it away"):
+    with pytest.raises(StoreError, match="muster base rebuild"):
         Store(path)
     assert path.read_bytes().startswith(b"this is a shopping list")
 
@@ -153,9 +154,9 @@ def test_a_database_that_is_damaged_in_a_part_says_what_to_do(
     path.write_bytes(content)
     with Store(path) as store:
         records = Records(store, clock)
-        with pytest.raises(StoreError, match=r"malformed.*move it away"):
+        with pytest.raises(StoreError, match=r"malformed.*muster base rebuild"):
             records.audit_entries(ALL)
-        with pytest.raises(StoreError, match=r"malformed.*move it away"):
+        with pytest.raises(StoreError, match=r"malformed.*muster base rebuild"):
             records.audit("chief", "Looked", "again")
 
 
@@ -180,30 +181,41 @@ def test_a_copy_can_be_taken_while_someone_writes(
         assert [person.name for person in Roster(copy, clock).people()] == ["Ada"]
 
 
-def test_a_database_that_this_user_may_only_read_is_copied(
-    store: Store, path: Path, tmp_path: Path, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
+def content(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize("left", [(), ("-wal",), ("-wal", "-shm")])
+def test_a_database_that_nobody_has_open_is_read_and_its_folder_stays_as_it_was(
+    left: tuple[str, ...], store: Store, path: Path, tmp_path: Path, clock: ManualClock
 ) -> None:
-    """As it lies in a folder of somebody else, with what a kill left beside it: SQLite would put
-    files there.
-    """
+    """Also with what a kill left beside it, which has the changes in it."""
     killed = tmp_path / "killed"
     killed.mkdir()
     Roster(store, clock).add_person("Ada", "A", "")
-    for suffix in ("", "-wal"):
+    if not left:
+        store.close()
+    for suffix in ("", *left):
         shutil.copy(f"{path}{suffix}", killed)
-
-    def refuse(_: Path) -> sqlite3.Connection:
-        error = sqlite3.OperationalError("attempt to write a readonly database")
-        error.sqlite_errorcode = sqlite3.SQLITE_READONLY
-        raise error
-
-    monkeypatch.setattr("base_station.db.store._reading", refuse)
+    before, stamp_ns = content(killed), killed.stat().st_mtime_ns
+    known_segments(killed / "station.sqlite")
     copy_database(killed / "station.sqlite", tmp_path / "copy.sqlite")
+    assert (content(killed), killed.stat().st_mtime_ns) == (before, stamp_ns)
     with Store(tmp_path / "copy.sqlite") as copy:
         assert [person.name for person in Roster(copy, clock).people()] == ["Ada"]
-    (killed / "station.sqlite-shm").touch()  # somebody has it open: its files are no whole
-    with pytest.raises(StoreError, match="readonly"):
-        copy_database(killed / "station.sqlite", tmp_path / "no.sqlite")
+
+
+def test_what_is_written_all_the_time_is_not_copied_in_halves(
+    store: Store, path: Path, tmp_path: Path, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def change_meanwhile(source: Path, target: Path) -> None:
+        target.write_bytes(source.read_bytes())
+        Roster(store, clock).add_person("Ada", "A", "")
+
+    Roster(store, clock).add_person("Ada", "A", "")
+    monkeypatch.setattr("base_station.storage.db.reading._copy_file", change_meanwhile)
+    with pytest.raises(StoreError, match="see who writes to it"):
+        copy_database(path, tmp_path / "no.sqlite")
 
 
 @pytest.mark.parametrize("name", ["site#1", "what?", "100%41", "?mode=memory"])
@@ -250,7 +262,7 @@ def alarm(t_s: float, state: AlarmState, by: str = "") -> AlarmChange:
 
 
 def fused(t_s: float, north_m: float) -> FusedPosition:
-    return said.fused(header(t_s), "FF-01", north_m=north_m)
+    return message_factory.fused(header(t_s), "FF-01", north_m=north_m)
 
 
 def acted(t_s: float, *actions: Action) -> Projection:
@@ -345,7 +357,7 @@ def test_a_projection_that_cannot_be_written_is_said_and_holds_up_no_other(
 ) -> None:
     projection = SqlProjection(store)
     with monkeypatch.context() as broken:
-        broken.setattr("base_station.db.projection.project_into", _break)
+        broken.setattr("base_station.storage.db.projection.project_into", _break)
         projection.project(STORY[0])
         assert projection.flush()
     projection.project(STORY[1])

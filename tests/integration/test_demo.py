@@ -11,8 +11,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from base_station.bench.rig.station import free_port
-from tests.waiting import until
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 
 def start_demo(folder: Path, *arguments: str) -> subprocess.Popen[str]:

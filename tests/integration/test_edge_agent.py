@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from edge.warm_up import compile_trackers
+from edge.app.jit_warmup import compile_trackers
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, Qos, alive_key, parse_key
 from shared.clock import SystemClock
@@ -29,8 +29,8 @@ from shared.messages import (
     RawImu,
     UnitEvent,
 )
-from tests.station_command import Agent
-from tests.waiting import until
+from tests.rig.station_command import Agent
+from tests.rig.waiting import until
 
 WALK = "simulated:search-ground-floor"
 

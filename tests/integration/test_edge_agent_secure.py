@@ -9,17 +9,17 @@ from pathlib import Path
 
 import pytest
 
-from base_station.clocks.server import ClockServer
-from base_station.pki.access import access_control
-from base_station.pki.folder import PkiFolder
-from edge.warm_up import compile_trackers
+from base_station.security.pki.access import access_control
+from base_station.security.pki.folder import PkiFolder
+from base_station.unit_sync.clock_server import ClockServer
+from edge.app.jit_warmup import compile_trackers
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, ZenohBus
 from shared.channels import HEARTBEAT, IMU, POSITION, ROOT, alive_key, clock_key, tracker_id
 from shared.clock import SystemClock
 from shared.codec import decode
 from shared.enrolment import Holder
-from tests.station_command import Agent
-from tests.waiting import until
+from tests.rig.station_command import Agent
+from tests.rig.waiting import until
 
 
 class Site:

@@ -8,12 +8,12 @@ from threading import Event
 import numpy as np
 import pytest
 
-from edge.app import run_agent
-from edge.calibration import identity, read_calibration
-from edge.calibration.session import calibrate_recorded
+from edge.app.calibration_session import calibrate_recorded
+from edge.app.run import run_agent
+from edge.calibration.file import identity, read_calibration
 from edge.config import EdgeConfig
-from edge.sources import open_source
 from edge.sources.recording import RecordingSource
+from edge.sources.registry import open_source
 from shared.channels import DESCRIPTION, parse_key
 from shared.codec import decode
 from shared.mcap_log import read_log

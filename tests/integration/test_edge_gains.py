@@ -10,11 +10,11 @@ from threading import Event
 
 import pytest
 
-from edge.app import run_agent
+from edge.app.run import run_agent
 from edge.config import EdgeConfig
-from edge.journal.spool import Spool
 from edge.sources.black_box import BlackBoxSource
-from edge.tracker.config import EskfConfig
+from edge.storage.journal.journal import Journal
+from edge.tracker.foot.config import EskfConfig
 from shared.channels import DESCRIPTION, POSITION, Channel
 from shared.codec import decode
 from shared.messages import Message, Position, UnitDescription
@@ -66,15 +66,15 @@ def ran(folder: Path, gain_std: float | None) -> Ran:
     return Ran(described, last, BlackBoxSource(boot))
 
 
-def newest(journal: Path, *channels: Channel) -> list[Message]:
+def newest(path: Path, *channels: Channel) -> list[Message]:
     """The last message of each channel in the journal that an agent left."""
-    spool = Spool(journal, lambda: secrets.randbits(63), 0, 10**9)
+    journal = Journal(path, lambda: secrets.randbits(63), 0, 10**9)
     try:
-        (boot,) = spool.boots()
-        kept = {one.suffix: one.payload for one in spool.read(boot.boot_id, 1, boot.last_seq)}
+        (boot,) = journal.boots()
+        kept = {one.suffix: one.payload for one in journal.read(boot.boot_id, 1, boot.last_seq)}
         return [decode(each, kept[each.suffix]) for each in channels]
     finally:
-        spool.close()
+        journal.close()
 
 
 @pytest.fixture(scope="module")

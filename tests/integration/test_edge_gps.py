@@ -13,17 +13,17 @@ from typing import TypeVar
 import numpy as np
 import pytest
 
-from base_station.alarms import ALARMS
-from base_station.events import Received
+from base_station.core.alarms import ALARMS
+from base_station.core.events import Received
+from base_station.core.pipeline import StationPipeline
 from base_station.fusion import FUSERS
-from base_station.pipeline import StationPipeline
-from edge.app import compose_agent
+from edge.app.composition import compose_agent
+from edge.app.jit_warmup import compile_trackers
 from edge.config import EdgeConfig
-from edge.data_folder import DataFolder
-from edge.receivers import open_receiver
 from edge.samples import GpsSample, ImuBatch
-from edge.sources import open_source
-from edge.warm_up import compile_trackers
+from edge.sources.gnss.registry import open_receiver
+from edge.sources.registry import open_source
+from edge.storage.data_folder import DataFolder
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.channels import COMMAND, parse_key
@@ -42,9 +42,9 @@ from shared.messages import (
     UnitEvent,
 )
 from shared.messages.station import RegisterUnit
-from tests.gps_receiver import GpsdServer, Told, burst, gpsd_report
-from tests.waiting import until
-from tests.ximu3_device import TcpDevice, paced, played
+from tests.rig.gps_receiver import GpsdServer, Told, burst, gpsd_report
+from tests.rig.waiting import until
+from tests.rig.ximu3_device import TcpDevice, paced, played
 
 BEGIN_NS = 3 * NS_PER_S  # of the recorded walk, which stands for five seconds
 WALK_S = 9.0

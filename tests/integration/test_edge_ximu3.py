@@ -7,15 +7,15 @@ from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
-from base_station.bench.rig.station import free_port
-from edge.warm_up import compile_trackers
+from edge.app.jit_warmup import compile_trackers
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.channels import COMMAND, ROOT, parse_key
 from shared.codec import decode
 from shared.messages import EventKind, Message, Position, Status, UnitEvent
-from tests.station_command import Agent
-from tests.waiting import until
-from tests.ximu3_device import TcpDevice, at_rest, paced
+from tests.rig.station_command import Agent
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
+from tests.rig.ximu3_device import TcpDevice, at_rest, paced
 
 SECONDS = 4
 

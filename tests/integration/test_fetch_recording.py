@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from base_station.bench.rig.station import free_port
 from base_station.cli import app
+from edge.app.jit_warmup import compile_trackers
 from edge.sources.black_box import BlackBoxSource
-from edge.warm_up import compile_trackers
 from shared.errors import UserError
 from shared.mcap_log import segment_paths
-from tests.station_command import Agent, Browser, Command
-from tests.waiting import until
+from tests.rig.station_command import Agent, Browser, Command
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 UNIT = "anna"
 

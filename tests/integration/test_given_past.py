@@ -3,31 +3,39 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
+from mcap.writer import Writer
 from typer.testing import CliRunner, Result
 
 from base_station.accounts.principals import Role
-from base_station.app import folder as station_app
-from base_station.app.given import open_given
+from base_station.app import folder_commands as station_app
+from base_station.app.offline_log import open_offline_log
 from base_station.cli import app
-from base_station.db.accounts import Accounts
-from base_station.db.records import Records
-from base_station.db.store import Store
-from shared.clock import SystemClock
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.records import Records
+from base_station.storage.db.store import Store
+from shared.clock import NS_PER_S, SystemClock
 from shared.errors import LogError, UserError
-from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_paths
+from shared.mcap_log import (
+    SegmentPolicy,
+    SegmentReader,
+    SegmentWriter,
+    recover_log,
+    segment_paths,
+)
 from shared.messages.station import CloseIncident, OpenIncident
-from tests.round_walk import Walk
-from tests.station_command import Command
-from tests.station_script import Record, Script
-from tests.unit.test_differing import logged, north
-from tests.waiting import until
+from tests.rig.round_walk import Walk
+from tests.rig.station_command import Command, CommandByModes
+from tests.rig.station_script import Record, Script
+from tests.rig.waiting import PATIENCE_S, until
+from tests.unit.base_station.replay.test_version_check import logged, north
 
 POLICY = SegmentPolicy(segment_s=60.0)
 
@@ -153,13 +161,13 @@ def test_what_a_log_lacks_is_told(copy: Path, told: list[str], closing_at_end: E
     paths[1].unlink()
     paths[2].unlink()
     torn = paths[-1]
-    torn.write_bytes(torn.read_bytes()[:-3000])
+    torn.write_bytes(torn.read_bytes()[:300])
     opened = _open(copy, "i1", told, closing_at_end)
     missing = [one for one in told if "missing" in one]
     assert len(missing) == 1
     assert missing[0].startswith("segments 2 to 3 of the log are missing: what happened from 2023-")
     assert any(one.startswith(torn.name) for one in told)
-    assert opened.archive().flaws() == [one for one in told if "database" not in one]
+    assert list(opened.archive().flaws()) == [one for one in told if "database" not in one]
 
 
 def test_a_whole_log_has_nothing_to_tell_of(
@@ -168,7 +176,7 @@ def test_a_whole_log_has_nothing_to_tell_of(
     station_app.rebuild(copy, lambda _: None)
     opened = _open(copy, "i1", told, closing_at_end)
     assert told == []
-    assert opened.keeps
+    assert opened.keeps_result
     segment_paths(copy / "log")[-1].unlink()
     _open(copy, "i1", told, closing_at_end)
     assert any("missing" in one for one in told), "only the database knows of it"
@@ -189,6 +197,100 @@ def test_damage_is_told_when_it_is_come_by_and_once(
     assert damage in opened.archive().flaws(), "and on the screen, by then"
 
 
+def test_damage_that_a_seek_passes_over_is_found_by_looking_on(
+    copy: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    station_app.rebuild(copy, lambda _: None)
+    archive = _open(copy, "i1", told, closing_at_end).archive()
+    path = segment_paths(copy / "log")[1]
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 0xFF
+    path.write_bytes(data)
+    assert archive.flaws() == ()
+    while archive.look():
+        pass
+    (damage,) = archive.flaws()
+    assert damage.startswith(f"a part of the log cannot be read: {path.name}: the chunk at byte")
+    assert told == [damage]
+
+
+def emptied(path: Path) -> None:
+    """A whole file of MCAP, with nothing in it."""
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(profile="muster")
+        writer.finish()
+
+
+def of_another_time(path: Path) -> None:
+    elsewhere = path.parent.parent / "elsewhere"
+    later = [(t_ns + 7200 * NS_PER_S, key, payload) for t_ns, key, payload in walked()[:500]]
+    _log(elsewhere, later)
+    shutil.copy(segment_paths(elsewhere / "log")[0], path)
+
+
+def cut_short(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+@pytest.mark.parametrize(
+    ("damage", "words"),
+    [
+        (emptied, "is empty: what happened from 2023-"),
+        (of_another_time, "is no segment of this log and is left out"),
+        (cut_short, "cannot be read"),
+        (Path.unlink, "segment 2 of the log is missing: what happened from 2023-"),
+    ],
+)
+@pytest.mark.parametrize("has_database", [True, False])
+def test_whatever_became_of_a_segment_is_told_and_the_replay_is_as_long_as_before(
+    damage: Callable[[Path], None],
+    words: str,
+    has_database: bool,
+    copy: Path,
+    told: list[str],
+    closing_at_end: ExitStack,
+) -> None:
+    if has_database:
+        station_app.rebuild(copy, lambda _: None)
+    end_ns = max(one.end_ns for one in DataFolder(copy).segments())
+    damage(segment_paths(copy / "log")[1])
+    opened = _open(copy, "i1", told, closing_at_end)
+    assert any(words in one for one in told), told
+    assert not any("decides otherwise" in one for one in told)
+    assert max(one.end_ns for one in opened.folder.segments()) == end_ns
+
+
+def test_a_part_of_a_log_from_its_middle_is_no_other_program(
+    copy: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    """It lacks what was before, and that is told."""
+    _log(copy / "decided", list(logged()), SegmentPolicy(segment_s=30.0))
+    segment_paths(copy / "decided" / "log")[0].rename(copy / "first.mcap")
+    (middle, *_) = segment_paths(copy / "decided" / "log")
+    _open(middle, "i1", told, closing_at_end)
+    assert not any("decides otherwise" in one for one in told)
+
+
+def test_a_log_of_which_only_the_index_is_cut_has_lost_nothing(
+    copy: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    path = segment_paths(copy / "log")[1]
+    with SegmentReader(path) as reader:
+        records = list(reader.records())
+    content = path.read_bytes()
+    for end in range(len(content) - 1, len(content) - 2000, -97):
+        path.write_bytes(content[:end])
+        with SegmentReader(path) as reader:
+            if list(reader.records()) == records:
+                assert reader.bytes_lost == 0
+    path.write_bytes(content[:-40])
+    assert recover_log(copy / "log")[0].bytes_lost == 0
+    assert str(recover_log(copy / "log")) == "[]"
+    _open(copy, "i1", told, closing_at_end)
+    assert not any("lost" in one or "cannot be read" in one for one in told)
+
+
 def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
     tmp_path: Path, told: list[str], closing_at_end: ExitStack
 ) -> None:
@@ -206,7 +308,7 @@ def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
     _log(tmp_path, script.records[half:])
     opened = _open(tmp_path, "i2", told, closing_at_end)
     assert Records(opened.store, SystemClock()).require_incident("i2").name == "Church Street"
-    assert not opened.keeps
+    assert not opened.keeps_result
     assert Records(_open(tmp_path, "i1", told, closing_at_end).store, SystemClock()).incident("i1")
 
 
@@ -221,7 +323,7 @@ def test_another_program_that_decides_otherwise_is_told(
 
 
 def _open(data: Path, incident_id: str, told: list[str], stack: ExitStack) -> Any:
-    return open_given(data, incident_id, stack, told.append, lambda _: None, in_place=True)
+    return open_offline_log(data, incident_id, stack, told.append, lambda _: None, in_place=True)
 
 
 def test_a_replay_that_is_told_to_end_as_it_begins_leaves_no_copy_of_people_s_data(
@@ -232,9 +334,43 @@ def test_a_replay_that_is_told_to_end_as_it_begins_leaves_no_copy_of_people_s_da
     monkeypatch.setenv("TMPDIR", str(scratch))
     flags = ("--data", str(copy), "--http", "127.0.0.1:0")
     with Command(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
-        until(lambda: any(scratch.iterdir()))
+        until(lambda: any(scratch.glob("muster-past-*/*")), "the first file of the copy is there")
         replaying.stop()
     assert list(scratch.iterdir()) == []
+
+
+@pytest.mark.parametrize(("left", "writable"), [(("-wal",), True), (("-wal", "-shm"), False)])
+def test_a_replay_leaves_the_folder_as_it_was(
+    left: tuple[str, ...], writable: bool, copy: Path, tmp_path: Path
+) -> None:
+    """Also what a kill left beside the database, and where nothing can be written."""
+    station_app.rebuild(copy, lambda _: None)
+    database = copy / "station.sqlite"
+    if left:
+        with Store(database) as store:
+            Accounts(store, SystemClock()).add_user("ada", "only the others know it", Role.VIEWER)
+            beside = {one: Path(f"{database}{one}").read_bytes() for one in ("", *left)}
+        for suffix, content in beside.items():
+            Path(f"{database}{suffix}").write_bytes(content)
+    before = {one: one.read_bytes() for one in copy.rglob("*") if one.is_file()}
+    folders = {one: one.stat().st_mtime_ns for one in (copy, copy / "log")}
+    for path in () if writable else (*before, *folders):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    flags = ("--data", str(copy), "--http", "127.0.0.1:0")
+    with CommandByModes(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
+        address = replaying.wait_ready()
+        (line,) = (one for one in replaying.said().splitlines() if "login" in one)
+        _, username, password = (part.split()[0] for part in line.split(": "))
+        headers = {"Origin": address}
+        with httpx.Client(
+            base_url=f"{address}/api/v1", headers=headers, timeout=PATIENCE_S
+        ) as client:
+            login = {"username": username, "password": password}
+            assert client.post("/login", json=login).is_success
+            assert client.get("/incidents/i1/trails?kind=smoothed").is_success
+        assert replaying.stop() == 0
+    assert {one: one.read_bytes() for one in copy.rglob("*") if one.is_file()} == before
+    assert {one: one.stat().st_mtime_ns for one in folders} == folders
 
 
 def test_whoever_was_given_another_stations_folder_can_log_in(copy: Path, tmp_path: Path) -> None:
@@ -248,7 +384,10 @@ def test_whoever_was_given_another_stations_folder_can_log_in(copy: Path, tmp_pa
         address = replaying.wait_ready()
         (line,) = (one for one in replaying.said().splitlines() if "login" in one)
         _, username, password = (part.split()[0] for part in line.split(": "))
-        with httpx.Client(base_url=f"{address}/api/v1", headers={"Origin": address}) as client:
+        headers = {"Origin": address}
+        with httpx.Client(
+            base_url=f"{address}/api/v1", headers=headers, timeout=PATIENCE_S
+        ) as client:
             login = {"username": username, "password": password}
             assert client.post("/login", json=login).is_success
             assert client.get("/incidents/i1/alarms").is_success

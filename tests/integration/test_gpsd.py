@@ -12,15 +12,15 @@ from dataclasses import replace
 
 import pytest
 
-from base_station.bench.rig.station import free_port
-from edge.receivers import open_receiver
-from edge.receivers.gps_reader import GpsReader
 from edge.samples import GpsSample
+from edge.sources.gnss.reader import GnssReader
+from edge.sources.gnss.registry import open_receiver
 from shared.clock import NS_PER_S, SystemClock
 from shared.messages import FixType
-from tests.gps_receiver import Told, burst
-from tests.waiting import until
-from tests.ximu3_device import PtyDevice, paced
+from tests.rig.gps_receiver import Told, burst
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
+from tests.rig.ximu3_device import PtyDevice, paced
 
 LONG_S = 120  # longer than any of this takes
 STD_M = 2.0
@@ -61,13 +61,13 @@ def gpsd() -> Iterator[Gpsd]:
 
 
 @pytest.fixture(scope="module")
-def reader(gpsd: Gpsd) -> Iterator[GpsReader]:
+def reader(gpsd: Gpsd) -> Iterator[GnssReader]:
     with closing(open_receiver(f"gpsd://127.0.0.1:{gpsd.port}", SystemClock())) as reader:
         reader.start()
         yield reader
 
 
-def sure_fix(reader: GpsReader) -> GpsSample:
+def sure_fix(reader: GnssReader) -> GpsSample:
     """The first of which gpsd has heard the receiver's own accuracy."""
     found: list[GpsSample] = []
 
@@ -79,7 +79,7 @@ def sure_fix(reader: GpsReader) -> GpsSample:
     return found[0]
 
 
-def test_a_fix_is_what_the_receiver_said(reader: GpsReader) -> None:
+def test_a_fix_is_what_the_receiver_said(reader: GnssReader) -> None:
     fix = sure_fix(reader)
     assert (fix.lat_deg, fix.lon_deg) == pytest.approx((HERE.lat_deg, HERE.lon_deg), abs=1e-6)
     assert fix.height_m == pytest.approx(HERE.height_m, abs=0.1)  # above the ellipsoid
@@ -88,7 +88,7 @@ def test_a_fix_is_what_the_receiver_said(reader: GpsReader) -> None:
     assert abs(fix.t_ns - SystemClock().monotonic_ns()) < 5 * NS_PER_S
 
 
-def test_one_that_is_begun_again_is_heard_again(gpsd: Gpsd, reader: GpsReader) -> None:
+def test_one_that_is_begun_again_is_heard_again(gpsd: Gpsd, reader: GnssReader) -> None:
     sure_fix(reader)
     gpsd.end()
     until(reader.take_faults, "word of its end")

@@ -22,7 +22,7 @@ async def test_a_failure_is_told_and_tried_again(
 ) -> None:
     monkeypatch.setattr("base_station.api.server._HOUSEKEEPING_S", 0.01)
     # This process goes on.
-    monkeypatch.setattr("base_station.program.interpreter.settle", lambda: None)
+    monkeypatch.setattr("base_station.process.gc_tuning.freeze", lambda: None)
     tries = 0
 
     def keep_house() -> None:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.station_command import Agent, Command
-from tests.waiting import PATIENCE_S
+from tests.rig.station_command import Agent, Command
+from tests.rig.waiting import PATIENCE_S
 
 
 @pytest.fixture

@@ -11,13 +11,13 @@ from threading import Thread
 
 import pytest
 
-from base_station.bench.rig.station import free_port
-from base_station.pki.access import access_control
-from base_station.pki.folder import PkiFolder
+from base_station.security.pki.access import access_control
+from base_station.security.pki.folder import PkiFolder
 from shared.bus_zenoh import StationEndpoint, ZenohBus
 from shared.enrolment import Enrolment
 from shared.link_diagnosis import why_no_link
 from shared.tls import TlsIdentity
+from tests.rig.station_process import free_port
 
 
 @pytest.fixture

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.rig.station import free_port
-from base_station.router.neighbour import listens
-from base_station.router.router import Router
-from tests.waiting import until
+from base_station.security.router.peer_router_probe import accepts_connections
+from base_station.security.router.router import Router
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 LOOKS = 9  # more than a router waits before it opens again
 
@@ -28,7 +28,7 @@ def until_linked(*routers: Router) -> None:
     def linked() -> bool:
         for router in routers:
             router.refresh()
-        return all(router._neighbour.answers() for router in routers)
+        return all(router._peer_probe.responds() for router in routers)
 
     until(linked, "they are linked", look_every_s=1.0)
 
@@ -50,9 +50,9 @@ def test_two_routers_that_are_linked_stay_as_they_are(tmp_path: Path) -> None:
 def test_whether_the_other_one_listens_is_seen_whatever_else_its_end_of_the_bus_says() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listening:
         end = f"tcp/127.0.0.1:{listening.getsockname()[1]}"
-        assert listens((end,))
-        assert listens((endpoint(), f"{end}#iface=lo"))
-    assert not listens((f"{end}#iface=lo",))
+        assert accepts_connections((end,))
+        assert accepts_connections((endpoint(), f"{end}#iface=lo"))
+    assert not accepts_connections((f"{end}#iface=lo",))
 
 
 def test_a_router_whose_other_one_is_off_waits_for_it(tmp_path: Path) -> None:
@@ -68,7 +68,7 @@ def test_a_router_whose_other_one_has_only_just_come_back_leaves_it_to_link(
 ) -> None:
     """However long it was away: opened again just then, all its units would be away too."""
     other = endpoint()
-    monkeypatch.setattr("base_station.router.router._patience", lambda: 3)
+    monkeypatch.setattr("base_station.security.router.router._random_check_limit", lambda: 3)
     with closing(Router(tmp_path, (endpoint(),), (other,))) as router:
         for _ in range(8):  # the next look would be the third in a row
             router.refresh()
@@ -94,7 +94,7 @@ def test_a_router_opens_again_where_the_other_answers_and_there_is_no_link(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = endpoint()
-    monkeypatch.setattr("base_station.router.router._patience", lambda: 3)
+    monkeypatch.setattr("base_station.security.router.router._random_check_limit", lambda: 3)
     with (
         closing(Router(tmp_path, (other,))),
         closing(Router(tmp_path, (endpoint(),), (other,))) as router,

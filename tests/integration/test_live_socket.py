@@ -16,12 +16,12 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from base_station.accounts.principals import Role
+from base_station.api.authentication import COOKIE, Scope
 from base_station.api.routes import live
-from base_station.api.security import COOKIE, Scope
 from base_station.api.server import ConsoleServer, bind
 from shared.errors import StoreError
 from shared.messages.station import OpenIncident
-from tests.station import PASSWORD, DeskStation
+from tests.rig.desk_station import PASSWORD, DeskStation
 
 
 @pytest_asyncio.fixture
@@ -97,6 +97,22 @@ async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: s
 async def test_without_a_login_there_is_a_code_for_it(address: str) -> None:
     async with connect(f"ws://{address}/api/v1/live") as console:
         assert await close_code(console) == live.NOT_LOGGED_IN
+
+
+async def test_with_a_generated_password_nothing_is_seen_before_it_is_changed(
+    station: DeskStation, address: str
+) -> None:
+    accounts = station.services.accounts
+    accounts.add_user("first", PASSWORD, Role.ADMINISTRATOR, generated=True)
+    headers = {"Cookie": f"{COOKIE}={accounts.log_in('first', PASSWORD)}"}
+    url, own = f"ws://{address}/api/v1/live", f"http://{address}"
+    async with connect(url, additional_headers=headers, origin=own) as console:  # type: ignore[arg-type]  # a str will do
+        assert await close_code(console) == live.NOT_LOGGED_IN
+        assert "generated" in (console.close_reason or "")
+    accounts.change_user("first", f"{PASSWORD}!", None)
+    headers = {"Cookie": f"{COOKIE}={accounts.begin_session('first')}"}
+    async with connect(url, additional_headers=headers, origin=own) as console:  # type: ignore[arg-type]  # a str will do
+        assert (await heard(console))["type"] == "snapshot"
 
 
 @pytest.mark.parametrize("path", ["live", "replays/none/live"])

@@ -9,15 +9,15 @@ import msgspec
 import pytest
 from typer.testing import CliRunner
 
-from base_station.app import folder as station_app
+from base_station.app import folder_commands as station_app
 from base_station.cli import app
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.messages import Header, Position
 from shared.messages.pins import SetPin
 from shared.messages.station import CloseIncident, OpenIncident, RegisterUnit, SetStart
-from tests.live_station import LiveStation
-from tests.waiting import until
+from tests.rig.live_station import LiveStation
+from tests.rig.waiting import until
 
 
 @pytest.fixture

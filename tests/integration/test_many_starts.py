@@ -7,22 +7,22 @@ from collections import Counter
 from contextlib import ExitStack, closing
 from pathlib import Path
 
-from base_station.bench.rig.said import position
-from base_station.journals.backfill import Backfill
-from base_station.units.sender import STARTS
-from edge.journal.server import JournalServer
-from edge.journal.spool import Journaled, Spool
+from base_station.core.state.message_stream import STARTS_KEPT
+from base_station.unit_sync.backfill import Backfill
+from edge.storage.journal.journal import Journal, JournalRow
+from edge.storage.journal.server import JournalServer
 from shared.channels import POSITION
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import encode
 from shared.messages import Header
 from shared.messages.station import RegisterUnit
-from tests.live_station import LiveStation
-from tests.waiting import until
+from tests.rig.live_station import LiveStation
+from tests.rig.message_factory import position
+from tests.rig.waiting import until
 
 U = "FF-01"
 MESSAGES = 5
-RUNS = STARTS + 9  # so quickly after each other that some are left to the journal
+RUNS = STARTS_KEPT + 9  # so quickly after each other that some are left to the journal
 
 
 def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
@@ -33,19 +33,21 @@ def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
     with LiveStation(tmp_path / "station") as station, ExitStack() as stack:
         station.act(RegisterUnit(U, "one"))
         for run in range(RUNS):
-            spool = Spool(tmp_path / "journal.sqlite", boot_ids.__next__, 0, 10**9)
-            stack.callback(spool.close)
+            journal = Journal(tmp_path / "journal.sqlite", boot_ids.__next__, 0, 10**9)
+            stack.callback(journal.close)
             messages = [
-                position(Header(U, spool.boot_id, seq, (10 * run + seq) * NS_PER_S))
+                position(Header(U, journal.boot_id, seq, (10 * run + seq) * NS_PER_S))
                 for seq in range(1, MESSAGES + 1)
             ]
-            spool.append([Journaled(one.header.seq, POSITION, 0, encode(one)) for one in messages])
+            journal.append(
+                [JournalRow(one.header.seq, POSITION, 0, encode(one)) for one in messages]
+            )
             said += map(encode, messages)
             for one in messages:
                 station.say(one)
-        live = set(said[: STARTS * MESSAGES])
+        live = set(said[: STARTS_KEPT * MESSAGES])
         until(lambda: live <= {one for _, _, one in station.log.records()}, "what came live")
-        server = JournalServer(U, spool)
+        server = JournalServer(U, journal)
         station.router.attach_unit().serve(server.key_expression, server.replies)
         backfill = Backfill(station.bus, station.feed.deliver, SystemClock())
         stack.enter_context(closing(backfill))
@@ -62,4 +64,4 @@ def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
             station.reported = {}
             until(lambda: station.reported, "the next report")
             assert counts() == {1}
-        assert backfill.fetched == (RUNS - STARTS) * MESSAGES
+        assert backfill.fetched == (RUNS - STARTS_KEPT) * MESSAGES

@@ -18,21 +18,19 @@ from starlette.types import Receive, Scope, Send
 from websockets.sync.client import connect
 
 from base_station.accounts.principals import Role
-from base_station.api.security import COOKIE
+from base_station.api.authentication import COOKIE
 from base_station.api.server import bind
-from base_station.app.disk import Disk, open_disk
-from base_station.app.early_console import early_console
-from base_station.bench.rig import said as said_by_bench
+from base_station.app import startup_console as module
+from base_station.app import stored_snapshot
+from base_station.app.startup_console import serve_while_recovering, startup_application
+from base_station.app.station_storage import StationStorage, open_storage
+from base_station.app.stored_snapshot import StoredSnapshotSource
 from base_station.config import HttpConfig, StationConfig
-from base_station.live import last_known
-from base_station.live import recovering as module
-from base_station.live.drive_ports import Record
-from base_station.live.last_known import LastKnown
-from base_station.live.recovering import recovering
-from base_station.live.sinks import Projection, Trails
-from base_station.pki.certificates import issue, make_authority
-from base_station.site.roaming import roamed_m
+from base_station.engine.ports import Record, Trails
+from base_station.security.pki.certificates import issue, make_authority
+from base_station.site.max_travel import max_travel_m
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.projection import Projection
 from base_station.storage.recorder import Recorder
 from base_station.views.wire import Snapshot
 from shared.clock import NS_PER_S, ManualClock
@@ -42,7 +40,9 @@ from shared.errors import StoreError
 from shared.mcap_log import SegmentInfo, SegmentState
 from shared.messages import STATION_ID, AlarmChange, AlarmState, OperatorAction
 from shared.messages.station import Action, Assign, OpenIncident, RegisterUnit
-from tests.station import PASSWORD
+from tests.rig import message_factory as said_by_bench
+from tests.rig.desk_station import PASSWORD
+from tests.rig.waiting import PATIENCE_S
 
 SEGMENT = SegmentInfo(Path("1.mcap"), SegmentState.CLOSED, 1000, 5000, 5, 1)
 
@@ -50,16 +50,16 @@ SEGMENT = SegmentInfo(Path("1.mcap"), SegmentState.CLOSED, 1000, 5000, 5, 1)
 def test_what_was_last_stored_is_shown_and_nothing_can_be_changed(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock: ManualClock
 ) -> None:
-    monkeypatch.setattr(module, "_SHOWN_AFTER_S", 0.0)
-    monkeypatch.setattr(module, "_SAID_EVERY_S", 0.0)
-    monkeypatch.setattr(module, "_TOLD_EVERY", 1)
-    monkeypatch.setattr(last_known, "_SAID_AGAIN_NS", 0)
+    monkeypatch.setattr(module, "_SERVE_AFTER_S", 0.0)
+    monkeypatch.setattr(module, "_ANNOUNCE_EVERY_S", 0.0)
+    monkeypatch.setattr(module, "_RECORDS_PER_REPORT", 1)
+    monkeypatch.setattr(stored_snapshot, "_PUBLISH_EVERY_NS", 0)
     said: list[str] = []
     folder = DataFolder(tmp_path)
     recorder = Recorder(tmp_path, clock)
     with bind("127.0.0.1", 0) as listening, ExitStack() as closing:
         closing.callback(recorder.close)
-        disk = open_disk(folder, recorder, clock, said.append, closing)
+        disk = open_storage(folder, recorder, clock, said.append, closing)
         store_what_happened(disk)
         address = f"http://127.0.0.1:{listening.getsockname()[1]}"
         config = StationConfig(data=tmp_path)
@@ -69,8 +69,12 @@ def test_what_was_last_stored_is_shown_and_nothing_can_be_changed(
                 yield t_ns, "key", b""
             look(address)
 
-        with recovering(
-            [SEGMENT], listening, HttpConfig(), lambda: early_console(config, disk), said.append
+        with serve_while_recovering(
+            [SEGMENT],
+            listening,
+            HttpConfig(),
+            lambda: startup_application(config, disk),
+            said.append,
         ) as watched:
             assert [t_ns for t_ns, _, _ in watched(records())] == [1000, 2000, 3000]
         with pytest.raises(httpx.TransportError):
@@ -79,7 +83,7 @@ def test_what_was_last_stored_is_shown_and_nothing_can_be_changed(
     assert said[-1] == "reading the log: 50%"
 
 
-def store_what_happened(disk: Disk, raised_before_s: float = 0.0) -> None:
+def store_what_happened(disk: StationStorage, raised_before_s: float = 0.0) -> None:
     disk.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     stamper = Stamper(STATION_ID, 1, disk.clock)
     t_ns = disk.clock.utc_ns()
@@ -132,13 +136,15 @@ def test_who_was_last_heard_of_long_ago_in_this_incident_is_shown_where_that_was
     folder, recorder = DataFolder(tmp_path), Recorder(tmp_path, clock)
     with ExitStack() as closing:
         closing.callback(recorder.close)
-        disk = open_disk(folder, recorder, clock, lambda _: None, closing)
+        disk = open_storage(folder, recorder, clock, lambda _: None, closing)
         disk.store.hangs = lambda: False  # hours go by between two turns of the recorder
         store_what_happened(disk, raised_before_s=600.0)
         pictures = []
         for waited_s in (1800.0, 3 * 3600.0):
             clock.advance(waited_s)
-            pictures.append(LastKnown(disk.roster, disk.records, clock, Nobody()).whole())
+            pictures.append(
+                StoredSnapshotSource(disk.roster, disk.records, clock, Nobody()).snapshot()
+            )
     for picture, trails in pictures:
         (shown,) = picture.units
         assert shown.position is not None
@@ -153,20 +159,20 @@ def test_where_they_can_be_by_now_grows_while_nobody_is_heard(
     with ExitStack() as closing:
         recorder = Recorder(tmp_path, clock)
         closing.callback(recorder.close)
-        disk = open_disk(DataFolder(tmp_path), recorder, clock, lambda _: None, closing)
+        disk = open_storage(DataFolder(tmp_path), recorder, clock, lambda _: None, closing)
         disk.store.hangs = lambda: False
         store_what_happened(disk)
-        known = LastKnown(disk.roster, disk.records, clock, Nobody())
+        known = StoredSnapshotSource(disk.roster, disk.records, clock, Nobody())
         radii_m = []
         for waited_s in (1.0, 30.0, 60.0):
             clock.advance(waited_s)
-            (shown,) = known.whole()[0].units
+            (shown,) = known.snapshot()[0].units
             assert shown.position is not None
             assert shown.position.ellipse_major_m == shown.position.ellipse_minor_m
             radii_m.append(shown.position.ellipse_major_m)
     first_m, second_m, third_m = radii_m
-    assert second_m - first_m == pytest.approx(roamed_m(31.0))
-    assert third_m - first_m == pytest.approx(roamed_m(91.0))
+    assert second_m - first_m == pytest.approx(max_travel_m(31.0))
+    assert third_m - first_m == pytest.approx(max_travel_m(91.0))
 
 
 class Consoles:
@@ -186,29 +192,31 @@ def test_tables_that_cannot_be_read_for_a_while_end_no_start(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, clock: ManualClock
 ) -> None:
     """The log has everything; what was last stored is shown once it can be read."""
-    monkeypatch.setattr(last_known, "_SAID_AGAIN_NS", 0)
+    monkeypatch.setattr(stored_snapshot, "_PUBLISH_EVERY_NS", 0)
     folder, recorder = DataFolder(tmp_path), Recorder(tmp_path, clock)
     with ExitStack() as closing:
         closing.callback(recorder.close)
-        disk = open_disk(folder, recorder, clock, lambda _: None, closing)
+        disk = open_storage(folder, recorder, clock, lambda _: None, closing)
         store_what_happened(disk)
         hangs = True
         disk.store.hangs = lambda: hangs
         consoles = Consoles()
-        known = LastKnown(disk.roster, disk.records, clock, consoles)
-        known.tell(0.1)
+        known = StoredSnapshotSource(disk.roster, disk.records, clock, consoles)
+        known.report_progress(0.1)
         with pytest.raises(StoreError):
             known.request_snapshot(consoles.reset)
         assert consoles.shown == []
         hangs = False
-        known.tell(0.2)
+        known.report_progress(0.2)
     (shown,) = consoles.shown
     assert shown.health.reading == 0.2
 
 
 def look(address: str) -> None:
-    with httpx.Client(base_url=f"{address}/api/v1", headers={"origin": address}) as browser:
-        page = httpx.get(address)
+    with httpx.Client(
+        base_url=f"{address}/api/v1", headers={"origin": address}, timeout=PATIENCE_S
+    ) as browser:
+        page = httpx.get(address, timeout=PATIENCE_S)
         assert "frame-ancestors" in page.headers["content-security-policy"]
         assert browser.get("/units").status_code == 401
         credentials = {"username": "ada", "password": PASSWORD}
@@ -242,11 +250,11 @@ def never() -> NoReturn:
 
 
 def test_a_quick_start_shows_no_page(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "_EarlyServer", None)
+    monkeypatch.setattr(module, "_StartupServer", None)
     said: list[str] = []
     with (
         bind("127.0.0.1", 0) as listening,
-        recovering([SEGMENT], listening, HttpConfig(), never, said.append) as watched,
+        serve_while_recovering([SEGMENT], listening, HttpConfig(), never, said.append) as watched,
     ):
         assert list(watched(iter([(1000, "key", b"")]))) == [(1000, "key", b"")]
     assert said == []
@@ -255,7 +263,7 @@ def test_a_quick_start_shows_no_page(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_greeting_of_tls_under_way_leaves_nothing_behind_when_the_log_is_read(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(module, "_SHOWN_AFTER_S", 0.0)
+    monkeypatch.setattr(module, "_SERVE_AFTER_S", 0.0)
     now, day = datetime.now(UTC), timedelta(days=1)
     issued = issue(make_authority("Test", now, 2 * day), "station", Holder.STATION, now, day)
     http = HttpConfig(certificate=tmp_path / "station.pem", private_key=tmp_path / "station.key")
@@ -268,7 +276,7 @@ def test_a_greeting_of_tls_under_way_leaves_nothing_behind_when_the_log_is_read(
             client.sendall(first_words())
             assert client.recv(1), "the station answers, and waits for what never comes"
 
-        with recovering(
+        with serve_while_recovering(
             [SEGMENT], listening, http, lambda: (no_page, lambda _: None), lambda _: None
         ) as watched:
             assert len(list(watched(records()))) == 1

@@ -12,17 +12,16 @@ from threading import Event
 import msgspec
 import pytest
 
-from edge.journal.server import JournalServer
-from edge.journal.spool import Journaled, Spool
-from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.raw.listener import UnitListener
-from edge.raw.stream import RawStream, batch_of
-from edge.raw.uplink import RawUplink
+from edge.agent.pipeline import TrackerPipeline, UnitIdentity
+from edge.sample_codec.codec import SampleEncoder, batch_of
+from edge.sample_codec.listener import RawStreamListener
+from edge.sample_codec.uplink import RawUplink
 from edge.samples import SensorBatch, SensorDescription
-from edge.sources import open_source
 from edge.sources.bus import BusSource
-from edge.tracker import make_tracker
-from edge.tracker.none import NoTracker
+from edge.sources.registry import open_source
+from edge.storage.journal.journal import Journal, JournalRow
+from edge.storage.journal.server import JournalServer
+from edge.tracker.registry import NoTracker, make_tracker
 from shared.bus_memory import MemoryRouter
 from shared.channels import IMU, NO_TRACKER, channel_of, tracker_id
 from shared.clock import NS_PER_S, ManualClock
@@ -39,7 +38,7 @@ BATCHES = 800  # of the walk, 50 ms each
 
 def batches(one_by_one: bool = False) -> Iterator[SensorBatch]:
     """What a unit's pipeline gets: rounded as the wire does."""
-    raw = RawStream(U, 1)
+    raw = SampleEncoder(U, 1)
     for batch in islice(open_source(WALK).batches(), BATCHES):
         if not one_by_one:
             yield batch_of(raw.messages(batch))
@@ -78,7 +77,7 @@ class Air:
         router = MemoryRouter()
         self._unit = router.attach_unit()
         self.clock = ManualClock()
-        self.listener = UnitListener(U, router.attach_station, self.clock)
+        self.listener = RawStreamListener(U, router.attach_station, self.clock)
         assert self.listener.open(Event())
 
     def send(self, messages: Iterable[Message]) -> None:
@@ -86,10 +85,10 @@ class Air:
             channel = channel_of(message)
             self._unit.publish(channel.key(U), encode(message), channel.qos)
 
-    def keep(self, journal: Spool, messages: Iterable[Message]) -> None:
+    def keep(self, journal: Journal, messages: Iterable[Message]) -> None:
         """The unit has them in its journal, and answers for them."""
         journal.append(
-            [Journaled(one.header.seq, channel_of(one), 0, encode(one)) for one in messages]
+            [JournalRow(one.header.seq, channel_of(one), 0, encode(one)) for one in messages]
         )
         server = JournalServer(U, journal)
         self._unit.serve(server.key_expression, server.replies)
@@ -118,8 +117,8 @@ def air() -> Air:
 
 
 @pytest.fixture
-def journal(tmp_path: Path) -> Iterator[Spool]:
-    with closing(Spool(tmp_path / "journal.sqlite", lambda: 7, 0, 10**9)) as journal:
+def journal(tmp_path: Path) -> Iterator[Journal]:
+    with closing(Journal(tmp_path / "journal.sqlite", lambda: 7, 0, 10**9)) as journal:
         yield journal
 
 
@@ -176,7 +175,7 @@ def test_a_hole_in_the_raw_stream_is_flagged(air: Air) -> None:
 
 @pytest.mark.parametrize("lost", [slice(50, 51), slice(100, 400)])
 def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
-    air: Air, journal: Spool, lost: slice
+    air: Air, journal: Journal, lost: slice
 ) -> None:
     said = weak_unit()
     raw = [message for message in said if isinstance(message, RawImu)]
@@ -189,7 +188,9 @@ def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
     assert air.source.fetched == len(missed)
 
 
-def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(air: Air, journal: Spool) -> None:
+def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(
+    air: Air, journal: Journal
+) -> None:
     said = weak_unit()
     raw = [message for message in said if isinstance(message, RawImu)]
     air.keep(journal, said)
@@ -205,7 +206,7 @@ def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(air: Air, jour
     assert (air.source.fetched, air.source.late) == (10, 10)
 
 
-def test_what_the_journal_has_given_up_stays_a_hole(air: Air, journal: Spool) -> None:
+def test_what_the_journal_has_given_up_stays_a_hole(air: Air, journal: Journal) -> None:
     said = weak_unit()
     raw = [message for message in said if isinstance(message, RawImu)]
     lost = raw[200:240]

@@ -14,15 +14,15 @@ from pathlib import Path
 import psutil
 import pytest
 
-from base_station.bench.rig.station import free_port
-from base_station.pki.folder import PkiFolder
-from base_station.router.process import RouterProcess
-from base_station.router.router import Router, station_endpoint
+from base_station.security.pki.folder import PkiFolder
+from base_station.security.router.process import RouterProcess
+from base_station.security.router.router import Router, station_endpoint
 from shared.bus_zenoh import ClientEndpoint, UnitEndpoint, ZenohBus
-from shared.channels import POSITION, Qos
+from shared.channels import POSITION, Qos, alive_key
 from shared.enrolment import Enrolment
-from shared.errors import BusError, ConfigError
-from tests.waiting import PATIENCE_S, until
+from shared.errors import BusError, ConfigError, MusterError
+from tests.rig.station_process import free_port
+from tests.rig.waiting import PATIENCE_S, until
 
 KEY = POSITION.key("anna")
 
@@ -46,7 +46,7 @@ def pki(tmp_path: Path, listen: tuple[str, ...]) -> PkiFolder:
 
 @pytest.fixture
 def process(tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]) -> Iterator[RouterProcess]:
-    with closing(RouterProcess(tmp_path, listen)) as running:
+    with closing(RouterProcess(tmp_path, listen).wait_open()) as running:
         yield running
 
 
@@ -69,13 +69,32 @@ def test_enrolling_and_revoking_take_effect_while_it_runs(
             anna.publish(KEY, b"", Qos.LIVE)
             until(lambda: heard == [KEY], "the message")
             pki.revoke("anna")
-            until(lambda: not anna.is_heard(KEY), "the end of the right")
-            until(anna.is_linked, "the link, which a valid certificate still gets")
-            time.sleep(0.5)
-            assert not anna.is_heard(KEY)
+            until(lambda: not anna.is_linked(), "the end of the link")
+            refused = process.refused.total
+            until(lambda: process.refused.total > refused + 1, "further tries, refused")
+            assert not anna.is_linked()
             anna.publish(KEY, b"", Qos.LIVE)
             time.sleep(0.5)
     assert heard == [KEY]
+
+
+def test_revoking_one_leaves_the_links_of_the_others_as_they_are(
+    process: RouterProcess, pki: PkiFolder, listen: tuple[str, ...]
+) -> None:
+    enrolments = [pki.enroll(name) for name in ("anna", "ben")]
+    tokens: list[tuple[str, bool]] = []
+    with closing(station(pki, listen)) as base, closing(unit(enrolments[0])) as anna:
+        base.watch_alive(alive_key("*"), lambda key, there: tokens.append((key, there)))
+        with closing(unit(enrolments[1])) as ben:
+            held = [anna.declare_alive(alive_key("anna")), ben.declare_alive(alive_key("ben"))]
+            until(lambda: {key for key, _ in tokens} == {alive_key("anna"), alive_key("ben")})
+            tokens.clear()
+            pki.revoke("ben")
+            until(lambda: tokens, "the end of the revoked one's link")
+            refused = process.refused.total
+            until(lambda: process.refused.total > refused + 1, "further tries, refused")
+            assert tokens == [(alive_key("ben"), False)]
+            assert len(held) == 2
 
 
 def test_a_killed_router_is_started_again(
@@ -100,8 +119,8 @@ def test_it_ends_when_its_parent_is_killed(
 ) -> None:
     script = (
         "import sys, time; from pathlib import Path\n"
-        "from base_station.router.process import RouterProcess\n"
-        "print(RouterProcess(Path(sys.argv[1]), (sys.argv[2],)).pid, flush=True)\n"
+        "from base_station.security.router.process import RouterProcess\n"
+        "print(RouterProcess(Path(sys.argv[1]), (sys.argv[2],)).wait_open().pid, flush=True)\n"
         "time.sleep(600)\n"
     )
     with subprocess.Popen(
@@ -120,7 +139,7 @@ def test_it_ends_without_a_word_where_its_parent_was_killed_before_it_was_open(
 ) -> None:
     said = tmp_path / "said.txt"
     reading, writing = os.pipe()
-    command = [sys.executable, "-m", "base_station.router", str(tmp_path)]
+    command = [sys.executable, "-m", "base_station.security.router", str(tmp_path)]
     with said.open("wb") as errors:
         router = subprocess.Popen(
             [*command, endpoint.format(port=free_port())],
@@ -137,7 +156,7 @@ def test_it_ends_without_a_word_where_its_parent_was_killed_before_it_was_open(
 
 def test_what_keeps_it_from_opening_is_said(tmp_path: Path, listen: tuple[str, ...]) -> None:
     with pytest.raises(BusError, match="no certificate authority; make one with `muster pki init`"):
-        RouterProcess(tmp_path, listen)
+        RouterProcess(tmp_path, listen).wait_open()
 
 
 def test_a_taken_port_is_said_and_nothing_else(
@@ -147,7 +166,7 @@ def test_a_taken_port_is_said_and_nothing_else(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
     with pytest.raises(BusError, match="another program uses this port"):
-        RouterProcess(tmp_path, listen)
+        RouterProcess(tmp_path, listen).wait_open()
     assert "Fatal" not in capfd.readouterr().err
 
 
@@ -189,7 +208,7 @@ def test_a_renewed_station_certificate_is_taken_up(
 def test_plain_tcp_works_when_asked_for_by_name(tmp_path: Path, address: str) -> None:
     plain = (f"tcp/{address}",)
     with (
-        closing(RouterProcess(tmp_path, plain)),
+        closing(RouterProcess(tmp_path, plain).wait_open()),
         closing(ZenohBus(ClientEndpoint(plain))) as base,
         closing(ZenohBus(UnitEndpoint(plain))) as bus,
     ):
@@ -219,3 +238,24 @@ def test_a_station_that_its_own_certificate_keeps_out_is_told_at_once(tmp_path: 
     for host in ("192.0.2.8", "other.local", "m\u00fcller.local", "[fd00::8]"):
         with pytest.raises(ConfigError, match=r"does not stand for .*renew-station --host"):
             station_endpoint(tmp_path, (f"tls/{host}:7447",))
+
+
+@pytest.mark.parametrize("option", ["iface=no-such-one", "rubbish=1", "iface=lo;rubbish=1"])
+def test_an_option_of_the_endpoint_that_cannot_be_kept_is_said(
+    tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...], option: str
+) -> None:
+    with pytest.raises(MusterError, match=r"cannot listen on|only #iface=INTERFACE"):
+        Router(tmp_path, (f"{listen[0]}#{option}",))
+
+
+def test_it_listens_on_one_interface_where_that_is_asked_for(
+    tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
+) -> None:
+    anna = pki.enroll("anna")
+    with (
+        closing(Router(tmp_path, (f"{listen[0]}#iface=lo",))),
+        closing(station(pki, listen)) as base,
+    ):
+        base.subscribe("muster/v1/**", lambda *_: None)
+        with closing(unit(anna)) as bus:
+            until(lambda: bus.is_heard(KEY), "the right to speak")

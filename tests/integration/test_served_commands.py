@@ -5,9 +5,8 @@ from __future__ import annotations
 from contextlib import closing
 from pathlib import Path
 
-from base_station.bench.rig.station import free_port
-from base_station.pki.folder import PkiFolder
-from edge.commands import CommandDesk
+from base_station.security.pki.folder import PkiFolder
+from edge.agent.command_handler import CommandHandler
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
 from shared.channels import COMMAND, REPLY
 from shared.clock import SystemClock
@@ -15,8 +14,9 @@ from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.messages import Command as UnitCommand
 from shared.messages import CommandReply
-from tests.station_command import Browser, Command
-from tests.waiting import until
+from tests.rig.station_command import Browser, Command
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
 
 U = "FF-01"
 
@@ -28,7 +28,7 @@ def test_a_par_goes_to_the_unit_and_its_answer_comes_back(tmp_path: Path) -> Non
     enrolment = pki.enroll(U)
     flags = ("serve", "--data", str(data), "--http", "127.0.0.1:0", "--listen", listen)
     station = Command(tmp_path / "output.txt", *flags)
-    desk = CommandDesk(Stamper(U, 1, SystemClock()), lambda _: None)
+    desk = CommandHandler(Stamper(U, 1, SystemClock()), lambda _: None)
     heard: list[UnitCommand] = []
     try:
         with (

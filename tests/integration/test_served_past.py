@@ -13,13 +13,13 @@ from typing import Any
 from websockets.sync.client import ClientConnection
 
 from base_station.accounts.principals import Role
-from base_station.db.accounts import Accounts
-from base_station.db.store import Store
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.store import Store
 from shared.clock import NS_PER_MS, SystemClock
 from shared.mcap_log import SegmentWriter
 from shared.messages import EventKind, UnitEvent
 from shared.messages.station import OpenIncident
-from tests.served_station import (
+from tests.rig.served_station import (
     MakePosition,
     greet,
     prepare,
@@ -27,9 +27,9 @@ from tests.served_station import (
     walk,
     watch,
 )
-from tests.station_command import Browser, Command, Unit
-from tests.station_script import START_NS, Script
-from tests.waiting import until
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.station_script import START_NS, Script
+from tests.rig.waiting import PATIENCE_S, until
 
 
 def play_incident(
@@ -42,7 +42,7 @@ def play_incident(
     unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
     until(lambda: browser.call("GET", "/alarms"), "mayday is raised")
     walk(unit, make_position, 15, 25)
-    browser.call("POST", f"/incidents/{incident_id}/close")
+    assert browser.close_incident(incident_id) == 204
     alarms: list[dict[str, Any]] = browser.call("GET", f"/incidents/{incident_id}/alarms")
     return incident_id, alarms
 
@@ -70,6 +70,8 @@ def test_a_past_incident_is_replayed_in_the_console(
             shown = _wait_for(console, lambda one: one["type"] == "snapshot")
             assert shown["alarms"] == []
         assert snapshot(browser)["replay"] is None
+        known = browser.call("GET", f"/incidents/{incident_id}/trails?kind=smoothed")
+        assert [one["unit_id"] for one in known["trails"]] == ["FF-01"]
         browser.call("DELETE", path)
         assert browser.status("GET", path) == 404
     assert station.stop() == 0
@@ -78,7 +80,7 @@ def test_a_past_incident_is_replayed_in_the_console(
 def _wait_for(
     console: ClientConnection, condition: Callable[[dict[str, Any]], bool]
 ) -> dict[str, Any]:
-    end_s = time.monotonic() + 30.0
+    end_s = time.monotonic() + PATIENCE_S
     while time.monotonic() < end_s:
         message: dict[str, Any] = json.loads(console.recv(10.0))
         if condition(message):

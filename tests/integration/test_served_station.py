@@ -12,15 +12,14 @@ import httpx
 import pytest
 
 from base_station.api.routes.live import NOT_LOGGED_IN
-from base_station.bench.rig import said
-from base_station.bench.rig.station import free_port
-from base_station.pki.certificates import issue, make_authority
+from base_station.security.pki.certificates import issue, make_authority
 from shared.channels import ROOT, Qos
 from shared.enrolment import Holder
 from shared.mcap_log import SegmentReader, SegmentState, segment_paths
 from shared.messages import EventKind, UnitEvent
 from shared.messages.status import Activity
-from tests.served_station import (
+from tests.rig import message_factory
+from tests.rig.served_station import (
     MakePosition,
     close_code,
     greet,
@@ -30,8 +29,9 @@ from tests.served_station import (
     walk,
     watch,
 )
-from tests.station_command import Browser, Command, Unit
-from tests.waiting import until
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.station_process import free_port
+from tests.rig.waiting import PATIENCE_S, until
 
 
 def test_after_a_kill_the_live_state_comes_back_from_the_log(
@@ -42,7 +42,7 @@ def test_after_a_kill_the_live_state_comes_back_from_the_log(
         prepare(browser)
         greet(browser, unit, make_position)
         walk(unit, make_position, 0, 20)
-        lying = said.status(
+        lying = message_factory.status(
             unit.stamper.header(), activity=Activity.LYING, battery=0.5, mayday=True
         )
         unit.say(lying)
@@ -196,7 +196,7 @@ def test_over_tls_the_cookie_never_leaves_it(
     address = station.wait_ready()
     assert address.startswith("https://")
     trusting = ssl.create_default_context(cadata=authority.certificate_pem().decode())
-    with httpx.Client(base_url=address, verify=trusting) as client:
+    with httpx.Client(base_url=address, verify=trusting, timeout=PATIENCE_S) as client:
         credentials = {"username": "nobody", "password": "x"}
         refused = client.post("/api/v1/login", json=credentials)
         assert "max-age" in refused.headers["strict-transport-security"]

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from base_station.bench.rig import said
-from tests.served_station import MakePosition, greet, prepare, snapshot
-from tests.station_command import Browser, Command, Unit
-from tests.waiting import until
+from tests.rig import message_factory
+from tests.rig.served_station import MakePosition, greet, prepare, snapshot
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.waiting import until
 
 
 def set_in(browser: Browser) -> list[dict[str, Any]]:
@@ -35,7 +35,7 @@ def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
         until(lambda: set_in(browser) == [ours], "the thresholds are in the audit")
         prepare(browser)
         greet(browser, unit, make_position)
-        unit.say(said.status(unit.stamper.header(), battery=0.5))
+        unit.say(message_factory.status(unit.stamper.header(), battery=0.5))
         until(lambda: snapshot(browser)["alarms"], "the battery is low")
         (alarm,) = snapshot(browser)["alarms"]
         assert (alarm["rule"], alarm["level"]) == ("battery", "low")

@@ -14,8 +14,8 @@ from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.messages import STATION_ID, Header, Position
 from shared.messages.station import RegisterUnit, Tick
-from tests.live_station import LiveStation
-from tests.waiting import until
+from tests.rig.live_station import LiveStation
+from tests.rig.waiting import until
 
 MakePosition = Callable[..., Position]
 U = "FF-01"
@@ -89,7 +89,7 @@ def test_a_unit_that_holds_its_link_and_says_nothing_is_asked_for_its_journal(
     tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Over a link that live data does not get through, say: it is not waited for."""
-    monkeypatch.setattr("base_station.units.sender.STALE_AFTER_S", 0.1)
+    monkeypatch.setattr("base_station.core.state.message_stream.STALE_AFTER_S", 0.1)
     with LiveStation(tmp_path) as station:
         for unit_id in (U, "FF-02", "FF-03"):
             station.act(RegisterUnit(unit_id, unit_id))

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from base_station.drive import StationDrive
-from base_station.feed import LiveFeed
+from base_station.engine.engine import StationEngine
+from base_station.engine.feed import LiveFeed
 from base_station.storage.recorder import Recorder
 from shared.channels import POSITION
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.messages import AlarmState, Header, Position
 from shared.messages.station import Assign, OpenIncident, RegisterUnit
-from tests.live_station import Screen, make_pipeline, ports_of
+from tests.rig.live_station import Screen, make_pipeline, ports_of
 
 MakePosition = Callable[..., Position]
 
@@ -29,7 +29,7 @@ class Station:
         self.recorder = Recorder(folder, self.clock)
         self.pipeline = make_pipeline()
         ports = ports_of(self._feed, self.recorder, Screen(), folder, self.clock)
-        self._drive = StationDrive(self.pipeline, ports)
+        self._drive = StationEngine(self.pipeline, ports)
         self._drive.submit("chief", OpenIncident("i1", "Mill Lane"))
         for unit_id in ("FF-01", "FF-02"):
             self._drive.submit("chief", RegisterUnit(unit_id, unit_id))
@@ -41,7 +41,7 @@ class Station:
                 self._seq += 1
                 header = Header(unit_id, 7, self._seq, self.clock.monotonic_ns())
                 self._feed.offer(POSITION.key(unit_id), encode(self._make(header=header)))
-            self._drive._turn()
+            self._drive._run_once()
             self.clock.advance(0.5)
 
     def lost(self) -> dict[str, AlarmState]:

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+import os
 import shutil
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+import sqlite3
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 
 import pytest
 
-from base_station.app import folder as station_folder
-from base_station.app.disk import Disk, open_disk
-from base_station.standby.places import Place
+from base_station.accounts.principals import Role
+from base_station.app import folder_commands as station_folder
+from base_station.app.factories import announce_first_login
+from base_station.app.offline_log import open_offline_log
+from base_station.app.station_storage import StationStorage, open_storage
+from base_station.core.log_position import LogPosition
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.records import EVER, Records
 from base_station.storage.recorder import Recorder
 from shared.clock import ManualClock
 from shared.errors import LogError, StoreError
 from shared.messages.station import OpenIncident
-from tests.station_script import START_NS, Script
+from tests.rig.station_script import START_NS, Script
 
 
 def record(data: Path, incident: str) -> None:
@@ -33,13 +39,13 @@ def record(data: Path, incident: str) -> None:
 
 
 @contextmanager
-def opened(data: Path, said: list[str] | None = None) -> Iterator[Disk]:
+def opened(data: Path, said: list[str] | None = None) -> Iterator[StationStorage]:
     clock = ManualClock(START_NS)
     with ExitStack() as closing:
         recorder = Recorder(data, clock)
         closing.callback(recorder.close)
         tell = (said if said is not None else []).append
-        yield open_disk(DataFolder(data), recorder, clock, tell, closing)
+        yield open_storage(DataFolder(data), recorder, clock, tell, closing)
 
 
 def incidents(data: Path) -> list[str]:
@@ -54,10 +60,18 @@ def test_a_database_that_is_gone_or_empty_is_made_again(tmp_path: Path, left: by
         (tmp_path / "station.sqlite").write_bytes(left)
     said: list[str] = []
     for _ in range(2):
+        before = len(said)
         with opened(tmp_path, said) as disk:
             assert [one.name for one in disk.records.incidents()] == ["Mill Lane"]
-    assert len(said) == 1, "once"
+            assert bool(disk.store.problem) == (len(said) > before), "in the run that made it"
+            if not disk.accounts.users():
+                disk.accounts.add_user("mia", "something long enough", Role.ADMINISTRATOR)
+    assert len(said) == 2, "once"
     assert "made again from the log" in said[0]
+    for what in ("users and their passwords", "the roster of people", "first-login.txt"):
+        assert what in said[1]
+    with opened(tmp_path) as disk:  # whoever comes later finds it
+        assert "MadeDatabaseAgain" in [one.action for one in disk.records.audit_entries(EVER)]
 
 
 def test_what_was_cut_short_while_it_was_made_is_made_again(
@@ -69,7 +83,7 @@ def test_what_was_cut_short_while_it_was_made_is_made_again(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as cut:
-        cut.setattr("base_station.app.parts.project_log", killed)
+        cut.setattr("base_station.app.factories.project_log", killed)
         for begin in (lambda: incidents(tmp_path), lambda: rebuild(tmp_path)):
             with pytest.raises(KeyboardInterrupt):
                 begin()
@@ -89,9 +103,9 @@ def test_a_log_that_is_not_cut_in_the_end_leaves_nothing_of_it_unknown(
     def full(*_: object) -> None:
         raise LogError("the disk is full")
 
-    monkeypatch.setattr("base_station.app.folder.set_aside", full)
+    monkeypatch.setattr("base_station.app.folder_commands.set_aside", full)
     with pytest.raises(LogError):
-        station_folder.cut_log(tmp_path, Place(START_NS, 1), lambda _: None)
+        station_folder.cut_log(tmp_path, LogPosition(START_NS, 1), lambda _: None)
     assert incidents(tmp_path) == ["Mill Lane"]
 
 
@@ -115,3 +129,137 @@ def test_a_log_of_which_old_segments_were_moved_away_is_no_other(tmp_path: Path)
     first, _ = sorted((tmp_path / "log").glob("*.mcap"))
     first.unlink()
     assert incidents(tmp_path) == before
+
+
+# ---- a damaged database
+
+
+@pytest.fixture
+def served(tmp_path: Path) -> Path:
+    """A station has run here: Mia may log in, Ada is on the roster, and something was audited."""
+    record(tmp_path, "Mill Lane")
+    with opened(tmp_path) as disk:
+        disk.accounts.add_user("mia", "something long enough", Role.ADMINISTRATOR)
+        disk.roster.add_person("Ada", "A", "")
+        disk.records.audit("mia", "AddedPerson", "Ada")
+    return tmp_path
+
+
+def spoil(data: Path, table: str) -> None:
+    """Its first page is overwritten, as a disk that fails may do."""
+    with closing(sqlite3.connect(data / "station.sqlite")) as reading:
+        wanted = "SELECT rootpage FROM sqlite_master WHERE name = ?"
+        (page,) = reading.execute(wanted, [table]).fetchone()
+        (page_bytes,) = reading.execute("PRAGMA page_size").fetchone()
+    with (data / "station.sqlite").open("r+b") as file:
+        file.seek((page - 1) * page_bytes)
+        file.write(b"\xee" * page_bytes)
+
+
+def shorten(data: Path) -> None:
+    os.truncate(data / "station.sqlite", 10_000)
+
+
+def zero(data: Path) -> None:
+    database = data / "station.sqlite"
+    database.write_bytes(bytes(database.stat().st_size))
+
+
+def set_aside(data: Path) -> list[Path]:
+    return list(data.glob("station.sqlite.damaged-*Z"))
+
+
+@pytest.mark.parametrize("table", ["incidents", "audit"])
+def test_what_can_be_read_of_a_damaged_database_is_kept(served: Path, table: str) -> None:
+    spoil(served, table)
+    damaged = (served / "station.sqlite").read_bytes()
+    said: list[str] = []
+    with opened(served, said) as disk:
+        assert [one.name for one in disk.records.incidents()] == ["Mill Lane"]
+        assert [one.username for one in disk.accounts.users()] == ["mia"]
+        assert [one.name for one in disk.roster.people()] == ["Ada"]
+        assert f"The database was damaged ({table}: " in disk.store.problem
+        assert disk.store.problem in said
+        assert ("are lost" in disk.store.problem) == (table == "audit")
+    (aside,) = set_aside(served)
+    assert aside.read_bytes() == damaged
+    assert aside.name in said[-1]
+    assert incidents(served) == ["Mill Lane"], "once: now it is whole"
+    assert len(set_aside(served)) == 1
+
+
+def test_who_loses_the_table_of_users_is_told_how_to_get_in(served: Path) -> None:
+    with opened(served) as disk:
+        disk.accounts.add_token("mia", "wall", Role.VIEWER, None)
+        assert disk.accounts.log_in("mia", "something long enough")
+    spoil(served, "users")
+    with opened(served) as disk:
+        assert disk.accounts.users() == []
+        for what in ("users and their passwords", "API tokens", "logins", "first-login.txt"):
+            assert what in disk.store.problem
+        assert "the roster" not in disk.store.problem
+        assert [one.name for one in disk.roster.people()] == ["Ada"]
+        note = disk.folder.first_login
+        announce_first_login(disk.accounts, note, lambda _: None)
+        name, password = (line.split(": ")[1] for line in note.read_text().splitlines())
+        assert disk.accounts.log_in(name, password)
+
+
+@pytest.mark.parametrize("damage", [shorten, zero])
+def test_a_database_of_which_nothing_can_be_read_is_made_again(
+    served: Path, damage: Callable[[Path], None]
+) -> None:
+    damage(served)
+    with opened(served) as disk:
+        assert [one.name for one in disk.records.incidents()] == ["Mill Lane"]
+        assert "The database was damaged" in disk.store.problem
+    assert len(set_aside(served)) == 1
+
+
+def test_a_salvage_that_is_cut_short_is_gone_on_with(
+    served: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spoil(served, "incidents")
+
+    def killed(*_: object) -> Path:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as cut:  # between its two renamings
+        cut.setattr("base_station.storage.db.salvage.Path.replace", killed)
+        with pytest.raises(KeyboardInterrupt):
+            incidents(served)
+    with opened(served) as disk:
+        assert [one.name for one in disk.records.incidents()] == ["Mill Lane"]
+        assert [one.username for one in disk.accounts.users()] == ["mia"]
+    assert {path.name for path in served.glob("station.sqlite*")} == {
+        "station.sqlite",
+        *(path.name for path in set_aside(served)),
+    }
+
+
+def test_damage_that_is_met_later_is_said_and_rebuilding_mends_it(served: Path) -> None:
+    with opened(served) as disk:
+        spoil(served, "units")
+        disk.store.engine.dispose()  # what it has read of it is in memory still
+        with pytest.raises(StoreError, match="malformed"):
+            disk.roster.units()
+        assert "The database is damaged" in disk.projection.problem()
+        assert "muster base rebuild" in disk.projection.problem()
+    said: list[str] = []
+    station_folder.rebuild(served, lambda _: None, said.append)
+    assert "users and people were kept" in said[0]
+    with opened(served) as disk:
+        assert [unit.unit_id for unit, _ in disk.roster.units()] == ["anna"]
+        assert disk.store.problem == ""
+
+
+def test_a_past_beside_a_damaged_database_is_read_from_the_log(served: Path) -> None:
+    spoil(served, "incidents")
+    said: list[str] = []
+    with ExitStack() as closing_:
+        given = open_offline_log(
+            served, "Mill Lane", closing_, said.append, lambda _: None, in_place=True
+        )
+        assert Records(given.store, ManualClock()).incident("Mill Lane")
+    assert any("the database is damaged" in one for one in said)
+    assert not set_aside(served), "a station may be running here"

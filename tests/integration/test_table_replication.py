@@ -10,25 +10,25 @@ from threading import Event
 import pytest
 
 from base_station.accounts.principals import Role
-from base_station.db.accounts import HAND_OVER_S, SESSION_S, Accounts
-from base_station.db.base_maps import BaseMaps
-from base_station.db.records import EVER, Records
-from base_station.db.replicated_tables import ReplicatedTables
-from base_station.db.roster import Roster
-from base_station.db.store import Store
-from base_station.forgetting.forgetter import BY_OTHER_STATION
-from base_station.pki.folder import PkiFolder
+from base_station.privacy.erasure_service import BY_OTHER_STATION
+from base_station.security.pki.folder import PkiFolder
 from base_station.site.base_map import Corners
 from base_station.standby.table_replication import TableReplication, TableServer
+from base_station.storage.db.accounts import HAND_OVER_S, SESSION_S, Accounts
+from base_station.storage.db.base_maps import BaseMaps
+from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.replicated_tables import ReplicatedTables
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.store import Store
 from shared.bus_memory import MemoryRouter
 from shared.clock import ManualClock
 from shared.errors import StoreError
-from tests.station import QUICK_HASH
+from tests.rig.quick_hash import QUICK_HASH
 
 PASSWORD = "correct horse battery"
 
 
-class Side:
+class HaMode:
     """One station's database, as its console uses it."""
 
     def __init__(self, folder: Path, store: Store) -> None:
@@ -39,21 +39,21 @@ class Side:
         self.base_maps = BaseMaps(store)
         self.pki = PkiFolder(folder)
 
-    def copy(self, other: Side) -> tuple[str, ...]:
+    def copy(self, other: HaMode) -> tuple[str, ...]:
         return self.tables.copy(other.tables.read())
 
 
 @pytest.fixture
-def sides(tmp_path: Path) -> Iterator[tuple[Side, Side]]:
+def sides(tmp_path: Path) -> Iterator[tuple[HaMode, HaMode]]:
     folders = [tmp_path / name for name in ("active", "standby")]
     for folder in folders:
         folder.mkdir()
     with Store(folders[0] / "s.sqlite") as one, Store(folders[1] / "s.sqlite") as other:
-        yield Side(folders[0], one), Side(folders[1], other)
+        yield HaMode(folders[0], one), HaMode(folders[1], other)
 
 
 def test_a_user_of_a_removed_one_s_name_has_none_of_that_one_s_logins(
-    sides: tuple[Side, Side],
+    sides: tuple[HaMode, HaMode],
 ) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
@@ -68,7 +68,7 @@ def test_a_user_of_a_removed_one_s_name_has_none_of_that_one_s_logins(
 
 
 def test_the_same_people_log_in_with_the_same_passwords_tokens_and_sessions(
-    sides: tuple[Side, Side],
+    sides: tuple[HaMode, HaMode],
 ) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
@@ -82,7 +82,7 @@ def test_the_same_people_log_in_with_the_same_passwords_tokens_and_sessions(
     assert standby.accounts.log_in("ada", "wrong password") is None
 
 
-def test_what_ends_there_ends_here_and_a_login_here_stays(sides: tuple[Side, Side]) -> None:
+def test_what_ends_there_ends_here_and_a_login_here_stays(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     there = active.accounts.log_in("ada", PASSWORD)
@@ -98,7 +98,7 @@ def test_what_ends_there_ends_here_and_a_login_here_stays(sides: tuple[Side, Sid
 
 @pytest.mark.parametrize("how", ["new password", "ended by an administrator", "removed"])
 def test_who_is_shut_out_at_one_is_shut_out_at_both_wherever_the_login_was(
-    sides: tuple[Side, Side], how: str
+    sides: tuple[HaMode, HaMode], how: str
 ) -> None:
     active, standby = sides
     active.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
@@ -124,7 +124,7 @@ def test_who_is_shut_out_at_one_is_shut_out_at_both_wherever_the_login_was(
 @pytest.mark.parametrize("how", ["new password", "ended by an administrator", "removed"])
 @pytest.mark.parametrize("first", ["who leads", "who follows"])
 def test_who_was_shut_out_at_one_that_leads_no_more_is_shut_out_at_both(
-    sides: tuple[Side, Side], how: str, first: str
+    sides: tuple[HaMode, HaMode], how: str, first: str
 ) -> None:
     """Whichever of the two hears of the other first."""
     leads, follows = apart = sides
@@ -154,7 +154,7 @@ def test_who_was_shut_out_at_one_that_leads_no_more_is_shut_out_at_both(
 
 @pytest.mark.parametrize("first", ["who leads", "who follows"])
 def test_a_token_a_role_and_a_person_that_one_took_away_alone_are_gone_at_both(
-    sides: tuple[Side, Side], first: str
+    sides: tuple[HaMode, HaMode], first: str
 ) -> None:
     leads, follows = apart = sides
     follows.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
@@ -179,7 +179,7 @@ def test_a_token_a_role_and_a_person_that_one_took_away_alone_are_gone_at_both(
 
 @pytest.mark.parametrize("first", ["who leads", "who follows"])
 def test_of_two_new_passwords_the_later_holds_and_no_login_with_the_other(
-    sides: tuple[Side, Side], first: str
+    sides: tuple[HaMode, HaMode], first: str
 ) -> None:
     leads, follows = apart = sides
     follows.accounts.add_user("ada", PASSWORD, Role.ADMINISTRATOR)
@@ -196,7 +196,7 @@ def test_of_two_new_passwords_the_later_holds_and_no_login_with_the_other(
         assert one.accounts.log_in("ada", "the later battery") is not None
 
 
-def test_somebody_else_who_has_got_a_removed_one_s_name_stays(sides: tuple[Side, Side]) -> None:
+def test_somebody_else_who_has_got_a_removed_one_s_name_stays(sides: tuple[HaMode, HaMode]) -> None:
     leads, follows = sides
     follows.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
     follows.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
@@ -210,7 +210,7 @@ def test_somebody_else_who_has_got_a_removed_one_s_name_stays(sides: tuple[Side,
         assert one.accounts.log_in("ada", "another battery") is not None
 
 
-def test_a_ticket_that_was_shown_does_not_come_back(sides: tuple[Side, Side]) -> None:
+def test_a_ticket_that_was_shown_does_not_come_back(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     there = active.accounts.log_in("ada", PASSWORD)
@@ -227,7 +227,7 @@ def test_a_ticket_that_was_shown_does_not_come_back(sides: tuple[Side, Side]) ->
 
 
 def test_a_login_that_ended_while_the_other_was_off_is_over_there_too(
-    sides: tuple[Side, Side], tmp_path: Path
+    sides: tuple[HaMode, HaMode], tmp_path: Path
 ) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
@@ -236,12 +236,12 @@ def test_a_login_that_ended_while_the_other_was_off_is_over_there_too(
     assert there is not None
     active.accounts.log_out(there)
     with Store(tmp_path / "standby" / "s.sqlite") as store:  # its program begins again
-        again = Side(tmp_path / "standby", store)
+        again = HaMode(tmp_path / "standby", store)
         again.copy(active)
         assert again.accounts.of_session(there) is None
 
 
-def meet(leads: Side, follows: Side, first: str) -> None:
+def meet(leads: HaMode, follows: HaMode, first: str) -> None:
     """Each hears of the other, one before the other one."""
     if first == "who leads":
         leads.tables.take_away(follows.tables.read())
@@ -250,7 +250,7 @@ def meet(leads: Side, follows: Side, first: str) -> None:
     follows.copy(leads)
 
 
-def test_a_login_goes_on_at_the_other_station_once(sides: tuple[Side, Side]) -> None:
+def test_a_login_goes_on_at_the_other_station_once(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     there = active.accounts.log_in("ada", PASSWORD)
@@ -272,7 +272,7 @@ def test_a_login_goes_on_at_the_other_station_once(sides: tuple[Side, Side]) -> 
     assert active.accounts.take_over(last) is None
 
 
-def test_a_ticket_and_what_it_gave_end(sides: tuple[Side, Side]) -> None:
+def test_a_ticket_and_what_it_gave_end(sides: tuple[HaMode, HaMode]) -> None:
     active, _ = sides
     active.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
     session = active.accounts.log_in("ada", PASSWORD)
@@ -289,7 +289,7 @@ def test_a_ticket_and_what_it_gave_end(sides: tuple[Side, Side]) -> None:
     assert active.accounts.of_session(went_on) is None
 
 
-def test_who_was_only_here_goes_and_is_named(sides: tuple[Side, Side]) -> None:
+def test_who_was_only_here_goes_and_is_named(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     active.accounts.add_user("ada", PASSWORD, Role.ADMINISTRATOR)
     standby.accounts.add_user("mallory", PASSWORD, Role.ADMINISTRATOR)
@@ -300,8 +300,8 @@ def test_who_was_only_here_goes_and_is_named(sides: tuple[Side, Side]) -> None:
 
 
 def copy_over_the_bus(
-    active: Side,
-    standby: Side,
+    active: HaMode,
+    standby: HaMode,
     on_forgotten: Callable[[str], None] = lambda _: None,
     leader: str | None = "active",
 ) -> TableReplication:
@@ -312,7 +312,7 @@ def copy_over_the_bus(
 
 def copy_from(
     router: MemoryRouter,
-    standby: Side,
+    standby: HaMode,
     on_forgotten: Callable[[str], None] = lambda _: None,
     others_run: Callable[[], int] = lambda: 1,
     leader: str | None = "active",
@@ -331,11 +331,13 @@ def copy_from(
     )
 
 
-def audit_of(side: Side) -> set[str]:
+def audit_of(side: HaMode) -> set[str]:
     return {one.detail for one in side.records.audit_entries(EVER)}
 
 
-def test_the_audit_is_the_same_at_both_whatever_their_clocks_say(sides: tuple[Side, Side]) -> None:
+def test_the_audit_is_the_same_at_both_whatever_their_clocks_say(
+    sides: tuple[HaMode, HaMode],
+) -> None:
     active, standby = sides
     copying = copy_over_the_bus(active, standby)
     standby.clock.advance(86_400.0)  # whoever acts here is a day ahead
@@ -353,7 +355,7 @@ def test_the_audit_is_the_same_at_both_whatever_their_clocks_say(sides: tuple[Si
 
 
 def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_beginning(
-    sides: tuple[Side, Side], tmp_path: Path
+    sides: tuple[HaMode, HaMode], tmp_path: Path
 ) -> None:
     gone, standby = sides
     router = MemoryRouter()
@@ -365,7 +367,7 @@ def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_b
     copying.look(Event())
     serving.close()
     with Store(tmp_path / "new.sqlite") as store:
-        new = Side(tmp_path, store)
+        new = HaMode(tmp_path, store)
         new.records.audit("ada", "LoggedIn", "at the new machine")
         new.tables.add_audit(standby.tables.audit_behind(0, 9))  # so it has as many, and more
         TableServer("active", router.attach_station(), new.tables, new.pki)
@@ -376,7 +378,7 @@ def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_b
 
 
 def test_what_the_other_has_forgotten_is_heard_of_until_it_is_noted(
-    sides: tuple[Side, Side],
+    sides: tuple[HaMode, HaMode],
 ) -> None:
     active, standby = sides
     active.records.audit("ada", "ForgotPerson", "person p9: 3 records of the log in 1 files")
@@ -395,7 +397,7 @@ def test_what_the_other_has_forgotten_is_heard_of_until_it_is_noted(
 
 @pytest.mark.parametrize(("leads", "heeds"), [("active", ["person p8"]), (None, [])])
 def test_what_the_other_forgot_as_this_one_asked_is_heeded_again_by_who_has_copied_from_there(
-    sides: tuple[Side, Side], leads: str | None, heeds: list[str]
+    sides: tuple[HaMode, HaMode], leads: str | None, heeds: list[str]
 ) -> None:
     """And by no other: the two would ask each other for ever."""
     active, standby = sides
@@ -405,7 +407,7 @@ def test_what_the_other_forgot_as_this_one_asked_is_heeded_again_by_who_has_copi
     assert heard == heeds
 
 
-def test_the_base_map_is_the_active_stations(sides: tuple[Side, Side]) -> None:
+def test_the_base_map_is_the_active_stations(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     copying = copy_over_the_bus(active, standby)
     corners = Corners((1.0, 2.0), (1.0, 3.0), (0.0, 2.0))
@@ -423,7 +425,7 @@ def test_the_base_map_is_the_active_stations(sides: tuple[Side, Side]) -> None:
     assert standby.base_maps.corners() is None
 
 
-def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[Side, Side]) -> None:
+def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[HaMode, HaMode]) -> None:
     active, standby = sides
     active.pki.create("Test", [], ["tls/10.0.0.1:7447"])
     standby.pki.join(active.pki.enroll_station("standby", [], "tls/10.0.0.2:7447"))

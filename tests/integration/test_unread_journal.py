@@ -10,17 +10,17 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from base_station.journals.backfill import Backfill
-from edge.journal.server import JournalServer
-from edge.journal.spool import Journaled, Spool
+from base_station.unit_sync.backfill import Backfill
+from edge.storage.journal.journal import Journal, JournalRow
+from edge.storage.journal.server import JournalServer
 from shared.channels import POSITION
 from shared.clock import SystemClock
 from shared.codec import encode
 from shared.messages import Header, Position
 from shared.messages.header import SCHEMA_REVISION
 from shared.messages.station import RegisterUnit
-from tests.live_station import LiveStation
-from tests.waiting import until
+from tests.rig.live_station import LiveStation
+from tests.rig.waiting import until
 
 MakePosition = Callable[..., Position]
 U, BOOT = "FF-01", 0xB007
@@ -39,9 +39,9 @@ class Unit:
             self.position(6),
         ]
         self.kept = [*map(encode, messages), b"\xff\xfe rotten", b""]
-        self.spool = Spool(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
+        self.journal = Journal(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
         entries = enumerate(self.kept, start=2)
-        self.spool.append([Journaled(seq, POSITION, seq, payload) for seq, payload in entries])
+        self.journal.append([JournalRow(seq, POSITION, seq, payload) for seq, payload in entries])
 
     def position(self, seq: int, **changes: object) -> Position:
         header = Header(U, BOOT, seq, seq * 10**8)
@@ -51,7 +51,7 @@ class Unit:
 @pytest.fixture
 def unit(tmp_path: Path, make_position: MakePosition) -> Iterator[Unit]:
     unit = Unit(tmp_path, make_position)
-    with closing(unit.spool):
+    with closing(unit.journal):
         yield unit
 
 
@@ -59,7 +59,7 @@ def unit(tmp_path: Path, make_position: MakePosition) -> Iterator[Unit]:
 def running(folder: Path, unit: Unit) -> Iterator[tuple[LiveStation, Backfill]]:
     """A station that hears the unit and may ask for its journal."""
     with LiveStation(folder) as station:
-        server = JournalServer(U, unit.spool)
+        server = JournalServer(U, unit.journal)
         station.router.attach_unit().serve(server.key_expression, server.replies)
         backfill = Backfill(station.bus, station.feed.deliver, SystemClock())
         backfill.start()

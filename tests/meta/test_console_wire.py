@@ -1,41 +1,51 @@
-"""The console's ``wire.ts`` has every field of every struct that the station sends, and no more."""
+"""Tests of the console's generated types against the structs and the API of the station."""
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
-
-import msgspec
 import pytest
 
-from base_station.views import wire
-
-ROOT = Path(__file__).resolve().parents[2]
-WIRE_TS = (ROOT / "base_station/console/src/wire.ts").read_text(encoding="utf-8")
-STRUCTS: list[type[msgspec.Struct]] = [
-    item
-    for item in vars(wire).values()
-    if isinstance(item, type) and issubclass(item, msgspec.Struct) and item is not msgspec.Struct
-]
+from tests.rig.console_types import ANSWERS_TS, WIRE_TS, answer_types, wire_types
 
 
-def fields_in_typescript(name: str) -> list[str]:
-    """Field names of ``interface name``, or of a labelled tuple type."""
-    interface = re.search(rf"interface {name} \{{(.*?)\n\}}", WIRE_TS, re.DOTALL)
-    if interface is not None:
-        return re.findall(r"^\s*(\w+)\??:", interface[1], re.MULTILINE)
-    labelled = re.search(rf"type {name} = \[(.*?)\];", WIRE_TS, re.DOTALL)
-    return [] if labelled is None else re.findall(r"(\w+)\??:", labelled[1])
+def test_types_of_the_console_are_those_of_the_station() -> None:
+    written = WIRE_TS.read_text(encoding="utf-8")
+    assert written == wire_types(), "run: python -m tests.rig.console_types"
 
 
-@pytest.mark.parametrize("struct", STRUCTS, ids=lambda struct: struct.__name__)
-def test_every_struct_is_mirrored(struct: type[msgspec.Struct]) -> None:
-    sent = list(struct.__struct_fields__)
-    if struct.__struct_config__.tag is not None:
-        sent = ["type", *sent]
-    assert fields_in_typescript(struct.__name__) == sent
+def test_types_of_requests_and_answers_are_those_of_the_api() -> None:
+    written = ANSWERS_TS.read_text(encoding="utf-8")
+    assert written == answer_types(), "run: python -m tests.rig.console_types"
 
 
-@pytest.mark.parametrize("link", ["live", "stale", "lost", "never"])
-def test_every_state_of_a_link_is_known(link: str) -> None:
-    assert f'"{link}"' in WIRE_TS
+@pytest.mark.parametrize(
+    "declared",
+    [
+        "export interface UnitView {",
+        '  link: "live" | "lost" | "never" | "stale";',  # values of a string
+        "  reach: [number, number][];",
+        "  position: PositionView | null;",
+        "  after_gap?: 0 | 1,",  # left out of an array where it is the default
+        '  type: "delta";',
+        "  trails?: Record<string, TrailPoint[]>;",  # left out of a delta, never null
+        "  pins?: PinView[];",
+        "  plan: Plan | null;",
+    ],
+)
+def test_generated_types_declare_what_a_message_may_hold(declared: str) -> None:
+    assert declared in wire_types().split("\n")
+
+
+@pytest.mark.parametrize(
+    "declared",
+    [
+        "export interface PinForm {",
+        "  std_m?: number;",  # has a default
+        "  floor?: number | null;",
+        "  raisings: Raising[];",
+        "  upper_left: [number, number];",
+        "  target: UnitTarget | CrewTarget | EveryoneTarget;",
+        'export type TrailKind = "raw" | "fused" | "smoothed";',
+    ],
+)
+def test_generated_types_declare_requests_and_answers(declared: str) -> None:
+    assert declared in ANSWERS_TS.read_text(encoding="utf-8").split("\n")

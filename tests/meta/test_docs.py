@@ -2,18 +2,39 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
+from pathlib import Path
 
 import pytest
 
+from tests.bench.__main__ import bench_entry_points
 from tests.conftest import PROJECT_ROOT
 
 PAGES = [PROJECT_ROOT / "README.md", *sorted((PROJECT_ROOT / "docs").rglob("*.md"))]
-COMMANDS = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]["entry-points"][
-    "muster.commands"
+PYPROJECT = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())
+COMMANDS = [
+    *PYPROJECT["project"]["entry-points"]["muster.commands"],
+    *(point.name for point in bench_entry_points()),
 ]
 OF_THE_BOOTSTRAP = {"test"}
+FOLDERS = ("base_station", "deploy", "edge", "shared", "tests")
+# A page that shows how to add a file names it before it is there.
+OF_TODAY = [page for page in PAGES if not page.stem.startswith("add-")]
+
+
+def source_files() -> frozenset[str]:
+    """The files of all folders, as paths below the project."""
+    found: set[str] = set()
+    for folder in FOLDERS:
+        for root, folders, names in os.walk(PROJECT_ROOT / folder):
+            folders[:] = [name for name in folders if name not in {"node_modules", "__pycache__"}]
+            found.update(str(Path(root, name).relative_to(PROJECT_ROOT)) for name in names)
+    return frozenset(found)
+
+
+SOURCES = source_files()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
@@ -21,6 +42,30 @@ def test_every_link_leads_to_a_file(page):
     for target in re.findall(r"\]\(([^)#]+)", page.read_text()):
         if not target.startswith("http"):
             assert (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_every_anchor_is_a_heading(page):
+    for target, anchor in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", page.read_text()):
+        there = page.parent / target if target else page
+        assert anchor in anchors_of(there.read_text()), f"{target}#{anchor}"
+
+
+def anchors_of(text: str) -> set[str]:
+    """The anchors that GitHub gives the headings of a page."""
+    without_code = re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
+    found: set[str] = set()
+    for title in re.findall(r"^#+ (.+)$", without_code, flags=re.MULTILINE):
+        slug = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+        repeats = sum(anchor == slug or anchor.startswith(f"{slug}-") for anchor in found)
+        found.add(f"{slug}-{repeats}" if slug in found else slug)
+    return found
+
+
+@pytest.mark.parametrize("page", OF_TODAY, ids=lambda page: page.stem)
+def test_every_source_file_named_exists(page):
+    for name in re.findall(r"`([\w./-]+\.(?:py|tsx?|proto))`", page.read_text()):
+        assert any(f"/{path}".endswith(f"/{name}") for path in SOURCES), name
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -10,16 +10,18 @@ import pytest
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from shared.command_line import build_program
+from shared.command_line import COMMANDS, build_program
+from tests.bench.__main__ import bench_entry_points
 from tests.conftest import PROJECT_ROOT
 
 PAGES = [PROJECT_ROOT / "README.md", *sorted((PROJECT_ROOT / "docs").rglob("*.md"))]
+POINTS = [*entry_points(group=COMMANDS), *bench_entry_points()]
 TYPED = re.compile(r"(?:^|[`/ ])muster (?P<words>[a-z][^`\n#&|;]*)", flags=re.MULTILINE)
 
 
 @pytest.fixture(scope="module")
 def program() -> TyperGroup:
-    return build_program(entry_points(group="muster.commands"))
+    return build_program(POINTS)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
@@ -37,7 +39,7 @@ def test_every_option_exists(page: Path, program: TyperGroup) -> None:
 
 def commands_of(text: str) -> list[list[str]]:
     """As words, of those commands that this program's name stands before."""
-    names = {point.name.partition(".")[0] for point in entry_points(group="muster.commands")}
+    names = {point.name.partition(".")[0] for point in POINTS}
     typed = [match["words"].split() for match in TYPED.finditer(text.replace("\\\n", " "))]
     return [words for words in typed if words[0] in names]
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from base_station.alarms import ALARMS
-from base_station.alarms.thresholds import limits_of
 from base_station.config import StationConfig
+from base_station.core.alarms import ALARMS
+from base_station.core.alarms.thresholds import limits_of
 from edge.config import EdgeConfig
 from shared.config import load_config
 from tests.conftest import PROJECT_ROOT

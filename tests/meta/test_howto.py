@@ -9,20 +9,20 @@ from pathlib import Path
 
 import pytest
 
-from base_station.bench.rig import said
 from shared.channels import FUSED, STATUS
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.mcap_log import SegmentWriter
 from shared.messages import STATION_ID, Header
 from tests.conftest import PROJECT_ROOT
+from tests.rig import message_factory
 
 # By page: the tuple that the entry is named in, and the suite that runs over it.
 PLACES = {
     "add-a-fuser": ("base_station.fusion", "FUSERS", "test_fusers.py"),
-    "add-a-source": ("edge.sources", "SOURCES", "test_sources.py"),
-    "add-a-tracker": ("edge.tracker", "TRACKERS", "test_trackers.py"),
-    "add-an-alarm": ("base_station.alarms", "ALARMS", "test_alarms.py"),
+    "add-a-source": ("edge.sources.registry", "SOURCES", "test_sources.py"),
+    "add-a-tracker": ("edge.tracker.registry", "TRACKERS", "test_trackers.py"),
+    "add-an-alarm": ("base_station.core.alarms", "ALARMS", "test_alarms.py"),
     "add-an-exporter": ("base_station.exporters", "EXPORTERS", "test_exporters.py"),
 }
 PAGES = sorted((PROJECT_ROOT / "docs" / "howto").glob("*.md"))
@@ -57,6 +57,7 @@ def test_every_page_with_an_example_is_known() -> None:
     assert pages == {*PLACES, "read-an-incident"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PLACES)
 def test_the_example_keeps_the_contract_of_its_kind(page: str) -> None:
     package, entries, suite = PLACES[page]
@@ -73,14 +74,17 @@ def test_the_example_keeps_the_contract_of_its_kind(page: str) -> None:
     assert ran.returncode == 0, ran.stdout + ran.stderr
 
 
+@pytest.mark.slow
 def test_the_example_that_reads_a_log_says_where_people_were(tmp_path: Path) -> None:
     log = SegmentWriter(tmp_path)
     for second in range(3):
         t_ns = (1_800_000_000 + second) * NS_PER_S
         header = Header(STATION_ID, 1, second, 0, t_ns)
-        place = said.fused(header, "FF-01", north_m=1.5 * second, floor=1)
+        place = message_factory.fused(header, "FF-01", north_m=1.5 * second, floor=1)
         log.write(t_ns, FUSED.key(STATION_ID), encode(place))
-        log.write(t_ns, STATUS.key("FF-01"), encode(said.status(Header("FF-01", 1, 1, 0))))
+        log.write(
+            t_ns, STATUS.key("FF-01"), encode(message_factory.status(Header("FF-01", 1, 1, 0)))
+        )
     log.close()
     ran = subprocess.run(
         [sys.executable, "-c", example_of("read-an-incident"), str(tmp_path)],

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from edge.calibration.model import Accelerometer, Calibration, Gyroscope, Magnetometer, Warmth
-from edge.calibration.solve import matrix as to_matrix
+from edge.calibration.solver import matrix as to_matrix
 from edge.calibration.sphere_fit import SYMMETRIC, TRIANGULAR, fit_sphere
 from edge.samples import ImuBatch, SensorDescription
 

@@ -7,15 +7,15 @@ from collections import Counter
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from base_station.commands.book import unanswered
-from edge.commands import CommandDesk
+from base_station.core.commands.command_tracker import open_orders
+from edge.agent.command_handler import CommandHandler
 from shared.channels import COMMAND
 from shared.clock import NS_PER_S, ManualClock
 from shared.codec import encode
 from shared.envelope import Stamper
 from shared.messages import STATION_ID, Command, CommandKind, CommandReply, CommandState
 from shared.messages.station import SendCommand
-from tests.station_script import Script
+from tests.rig.station_script import Script
 
 U = "FF-01"
 FOREVER_S = 80_000.0
@@ -37,7 +37,9 @@ class Radio:
     def restart(self) -> None:
         self.boot_id += 1
         stamper = Stamper(U, self.boot_id, self.clock)
-        self.desk = CommandDesk(stamper, lambda rate_hz: self.rates.update([rate_hz]), self.journal)
+        self.desk = CommandHandler(
+            stamper, lambda rate_hz: self.rates.update([rate_hz]), self.journal
+        )
 
     def send(self, kind: CommandKind) -> None:
         number = len(self.station.pipeline.state.commands) + 1
@@ -46,7 +48,7 @@ class Radio:
 
     def exchange(self, down: int, up: int) -> None:
         """The station says what is unanswered; the unit replies."""
-        for order in unanswered(self.station.pipeline.state):
+        for order in open_orders(self.station.pipeline.state):
             header = self.station.header(STATION_ID)
             command = Command(
                 header, order.command_id, order.kind, "chief", order.expires_ns,

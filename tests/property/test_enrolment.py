@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from base_station.pki.folder import PkiFolder
+from base_station.security.pki.folder import PkiFolder
 from shared.enrolment import Enrolment, parse_enrolment
 from shared.errors import ConfigError
 

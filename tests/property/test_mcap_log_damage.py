@@ -73,7 +73,7 @@ def unfinished(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def log_of(folder: Path, content: bytes) -> Path:
     for old in folder.iterdir():
         old.unlink()
-    (folder / "000001-20260301T100000Z.mcap").write_bytes(content)
+    (folder / "000001-20231114T221320Z.mcap").write_bytes(content)
     return folder
 
 

@@ -41,6 +41,8 @@ def strategy_of(annotation: object) -> st.SearchStrategy[object]:
         return COUNTS
     if isinstance(annotation, type) and issubclass(annotation, msgspec.Struct):
         return struct_strategy(annotation)
+    if typing.get_origin(annotation) is tuple and typing.get_args(annotation)[1:] == (...,):
+        return st.lists(strategy_of(typing.get_args(annotation)[0]), max_size=4).map(tuple)
     if isinstance(annotation, types.UnionType):
         return st.one_of(*(strategy_of(part) for part in typing.get_args(annotation)))
     return st.from_type(annotation)  # type: ignore[arg-type]  # whatever else a field may be

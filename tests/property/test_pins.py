@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from shared.messages.pins import RemovePin
-from tests.round_walk import Walk
+from tests.rig.round_walk import Walk
 
 SECONDS = 80
 PINS = st.lists(

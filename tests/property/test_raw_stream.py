@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from edge.raw.stream import RawStream, batch_of, sensor_of
+from edge.sample_codec.codec import SampleEncoder, batch_of, sensor_of
 from edge.samples import (
     AmbientSample,
     BatterySample,
@@ -65,7 +65,7 @@ BATCHES = st.builds(SensorBatch, imu_batches(), st.lists(OTHERS, max_size=4).map
 
 def through(batch: SensorBatch) -> SensorBatch:
     """As a black box gives it back: by way of bytes."""
-    raw = RawStream("u1", 1).messages(batch)
+    raw = SampleEncoder("u1", 1).messages(batch)
     return batch_of(tuple(decode(channel_of(message), encode(message)) for message in raw))
 
 
@@ -84,7 +84,7 @@ def test_what_has_passed_once_passes_unchanged(batch):
 
 @given(BATCHES)
 def test_the_agents_own_batch_is_the_one_in_the_black_box(batch):
-    own = batch_of(RawStream("u1", 1).messages(batch))
+    own = batch_of(SampleEncoder("u1", 1).messages(batch))
     assert text_of(own) == text_of(through(batch))
 
 
@@ -104,7 +104,7 @@ def test_inertial_samples_keep_their_times_and_nearly_their_values(batch):
 )
 def test_a_description_that_has_passed_once_passes_unchanged(rate_hz, full_scale, mag, gain_std):
     def passed(sensor: SensorDescription) -> SensorDescription:
-        return sensor_of(RawStream("u1", 1).description(0, sensor, source="", tracker=""))
+        return sensor_of(SampleEncoder("u1", 1).description(0, sensor, source="", tracker=""))
 
     sensor = SensorDescription("s", rate_hz, full_scale, full_scale, mag, gain_std=gain_std)
     once = passed(sensor)

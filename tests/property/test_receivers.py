@@ -8,18 +8,18 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from edge.raw.stream import gps_fix
-from edge.receivers.fix_clock import FixClock
-from edge.receivers.gpsd import Gpsd
-from edge.receivers.nmea import Nmea
-from edge.receivers.port import Dialect
+from edge.sample_codec.codec import gps_fix
 from edge.samples import GpsSample
+from edge.sources.gnss.fix_clock import FixClock
+from edge.sources.gnss.gpsd import Gpsd
+from edge.sources.gnss.interface import Dialect
+from edge.sources.gnss.nmea import Nmea
 from shared.clock import NS_PER_S
 from shared.errors import WireError
 from shared.messages import GpsFix, Header
-from tests.gps_receiver import Told, burst, gpsd_report, sentence
+from tests.rig.gps_receiver import Told, burst, gpsd_report, sentence
 
-WHOLE = [line for said in (burst, gpsd_report) for line in said(Told(std_m=1.0)).split(b"\n")]
+WHOLE = [line for values in (burst, gpsd_report) for line in values(Told(std_m=1.0)).split(b"\n")]
 FIELDS = st.text("0123456789.,-+eENSWAVMnaif ", max_size=60)
 KINDS = st.sampled_from(["GNGGA", "GPRMC", "GNGST", "GNGSA", "GNGNS", "PUBX", "GPGSV"])
 HUGE = st.sampled_from([0, -1, 1e-300, -1e300, 1e308, 10**19, -(10**19), 10**400, None, "1", True])
@@ -73,15 +73,15 @@ def test_any_line_is_a_fix_that_can_be_or_a_reason(
     receiver: Dialect = Gpsd("//h") if by_gpsd else Nmea("/dev/ttyUSB0")
     for number, line in enumerate(lines):
         try:
-            reports = receiver.hear(line, number * NS_PER_S)
+            reports = receiver.parse_line(line, number * NS_PER_S)
         except WireError:
             continue
-        for report in (*reports, *(receiver.pause() if pauses else ())):
+        for report in (*reports, *(receiver.end_of_burst() if pauses else ())):
             assert can_be(report.fix)
             assert report.of_day_ns is None or 0 <= report.of_day_ns < 86_400 * NS_PER_S
             wire = gps_fix(Header("u", 1, 1, 0), report.fix).to_wire()
             assert GpsFix.from_wire(wire).satellites == report.fix.satellites
-    receiver.why_nothing()
+    receiver.silence_reason()
 
 
 @given(

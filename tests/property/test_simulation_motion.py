@@ -12,10 +12,12 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from edge.samples import Floats
-from edge.simulation import SCENARIOS, Scenario, Simulation
 from edge.simulation.curve import Curve
 from edge.simulation.jet import Jet, cosine, oscillation, sine
 from edge.simulation.legs import Segment
+from edge.simulation.scenario import Scenario
+from edge.simulation.scenarios import SCENARIOS
+from edge.simulation.simulation import Simulation
 
 STEP_S = 1e-4
 TIMES_S = st.floats(1.0, 120.0)
@@ -112,6 +114,7 @@ def test_jets_follow_product_and_chain_rules(value: float, rate: float, accel: f
         assert central(jet.rate) == pytest.approx(jet.accel[2], abs=1e-5)
 
 
+@pytest.mark.slow
 @given(SEEDS)
 def test_equal_seeds_give_equal_samples_however_they_are_cut(seed: int) -> None:
     scenario = scenario_named("climbs-stairs")
@@ -126,6 +129,7 @@ def test_equal_seeds_give_equal_samples_however_they_are_cut(seed: int) -> None:
     assert repr(sum((part.others for part in some), ())) == repr(whole.others)
 
 
+@pytest.mark.slow
 @given(SEEDS)
 def test_other_seeds_give_other_samples(seed: int) -> None:
     scenario = scenario_named("straight")

@@ -7,10 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from base_station.fusion.path.points import BREAK, DOUBTFUL, RESTART, PathArrays
-from base_station.fusion.port import Start
-from base_station.fusion.smoother import SMOOTHERS
-from base_station.fusion.smoother.port import PlaceSeen, Smoother, Tie, UnitEvidence
+from base_station.fusion.interface import Start
+from base_station.fusion.odometry.points import BREAK, DOUBTFUL, RESTART, PathArrays
+from base_station.fusion.smoothing import SMOOTHERS
+from base_station.fusion.smoothing.interface import (
+    EncounterConstraint,
+    PositionConstraint,
+    Smoother,
+    UnitEvidence,
+)
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import Plan, Stairs, Wall
 from base_station.site.storeys import Storey
@@ -55,7 +60,7 @@ def any_evidence(rng: np.random.Generator, unit_id: str) -> UnitEvidence:
     path = any_path(rng)
     far = rng.choice([1.0, 100.0, 1e5])
     places = tuple(
-        PlaceSeen(
+        PositionConstraint(
             name=f"{unit_id}{number}",
             t_ns=int(rng.integers(path.t_ns[0] - 5, path.t_ns[-1] + 5)),
             north_m=float(rng.normal() * far),
@@ -79,14 +84,16 @@ def test_every_place_and_every_uncertainty_is_a_number(smoother: Smoother) -> No
         rng = np.random.default_rng(seed)
         units = {name: any_evidence(rng, name) for name in "abc"[: int(rng.integers(1, 4))]}
         names = list(units)
-        ties = [Tie("met", names[0], names[-1], int(units[names[0]].path.t_ns[-1]), 1.0)]
-        solution = smoother.smooth(units, ties if len(names) > 1 else ())
+        encounters = [
+            EncounterConstraint("met", names[0], names[-1], int(units[names[0]].path.t_ns[-1]), 1.0)
+        ]
+        solution = smoother.smooth(units, encounters if len(names) > 1 else ())
         for path in solution.paths.values():
             places = (path.north_m, path.east_m, path.down_m, path.turn_rad, path.correlation_ne)
             assert all(np.isfinite(column).all() for column in places), seed
             stds = (path.std_north_m, path.std_east_m, path.std_down_m)
             assert all((np.isfinite(std) & (std > 0.0)).all() for std in stds), seed
-            assert all(math.isfinite(value) for value in path.present.mean), seed
-            assert np.isfinite(path.present.covariance).all(), seed
+            assert all(math.isfinite(value) for value in path.posterior.mean), seed
+            assert np.isfinite(path.posterior.covariance).all(), seed
         told = {place.name for unit in units.values() for place in unit.places}
         assert told <= solution.verdicts.keys(), seed

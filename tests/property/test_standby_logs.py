@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from base_station.standby.history import parting
-from base_station.standby.places import BEGINNING, Place
-from base_station.standby.words import History
+from base_station.core.log_position import START, LogPosition
+from base_station.standby.log_ancestry import find_divergence
+from base_station.standby.protocol import LogAncestry
 from shared.errors import ConfigError
 from shared.messages.station import TakeOver
 
@@ -23,18 +23,18 @@ class Log:
     def __init__(self, events: Sequence[Event | TakeOver] = ()) -> None:
         self.events = list(events)
 
-    def place(self, upto: int | None = None) -> Place:
-        here = BEGINNING
+    def place(self, upto: int | None = None) -> LogPosition:
+        here = START
         for event in self.events[:upto]:
-            here = here.then(_time(event))
+            here = here.next(_time(event))
         return here
 
-    def history(self) -> History:
+    def history(self) -> LogAncestry:
         take_overs = tuple(event for event in self.events if isinstance(event, TakeOver))
         log_id = _time(self.events[0]) if self.events else 0
-        return History(log_id, take_overs, self.place())
+        return LogAncestry(log_id, take_overs, self.place())
 
-    def cut(self, place: Place) -> None:
+    def cut(self, place: LogPosition) -> None:
         self.events = [
             event for count, event in enumerate(self.events, 1) if self.place(count) <= place
         ]
@@ -87,18 +87,20 @@ def test_after_any_history_a_cut_makes_one_log_the_beginning_of_the_other(
 
 
 def _follow(mine: Log, leader: Log, most: int) -> None:
-    cut = parting(mine.history(), leader.history())
+    cut = find_divergence(mine.history(), leader.history())
     if cut is not None:
         mine.cut(cut)
-    assert parting(mine.history(), leader.history()) is None
+    assert find_divergence(mine.history(), leader.history()) is None
     assert mine.events == leader.events[: len(mine.events)]
     mine.events += leader.events[len(mine.events) : len(mine.events) + most]
 
 
 def test_an_empty_log_follows_any() -> None:
-    assert parting(History(0, (), BEGINNING), History(5, (), Place(9, 1))) is None
+    assert find_divergence(LogAncestry(0, (), START), LogAncestry(5, (), LogPosition(9, 1))) is None
 
 
 def test_a_log_of_another_station_is_refused() -> None:
     with pytest.raises(ConfigError, match="holds the log of another station"):
-        parting(History(4, (), Place(9, 1)), History(5, (), Place(9, 1)))
+        find_divergence(
+            LogAncestry(4, (), LogPosition(9, 1)), LogAncestry(5, (), LogPosition(9, 1))
+        )

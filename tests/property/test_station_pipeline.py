@@ -8,9 +8,10 @@ from collections.abc import Callable
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from base_station.alarms import ALARMS
-from base_station.alarms.thresholds import limits_of
-from base_station.checkpoint import read_checkpoint
+from base_station.core.alarms import ALARMS
+from base_station.core.alarms.thresholds import limits_of
+from base_station.core.checkpoint import read_checkpoint
+from base_station.core.state.duty import ParConfirmation
 from shared.messages import (
     AlarmChange,
     AlarmState,
@@ -39,15 +40,17 @@ from shared.messages.station import (
     SetStart,
     SetThresholds,
     Unassign,
+    UndoConfirmation,
 )
 from shared.quality import Quality
-from tests.live_station import make_pipeline
-from tests.station_script import Script
+from tests.rig.live_station import make_pipeline
+from tests.rig.station_script import Script
 
 UNITS = st.sampled_from(["FF-01", "FF-02", "stranger"])
 METRES = st.floats(-1e4, 1e4)
 ANY = st.floats(allow_nan=True, allow_infinity=True, width=32)
 COMMAND_IDS = st.sampled_from(["c1", "c2", "c3"])
+CHECK_IN_IDS = st.sampled_from(["k1", "k2"])
 ANGLES = st.floats(0.0, 6.28)
 
 THRESHOLDS = [f"{rule.name}.{name}" for rule in ALARMS for name in limits_of(rule)]
@@ -137,10 +140,16 @@ DEEDS: st.SearchStrategy[Deed] = st.one_of(
     ),
     st.builds(lambda u, i: lambda s: s.act(ConfirmCommand(i, u)), UNITS, COMMAND_IDS),
     st.builds(
-        lambda u, c, e: lambda s: s.act(CheckIn(u, c, e)),
+        lambda u, c, e, i: lambda s: s.act(CheckIn(u, c, e, i)),
         st.just("") | UNITS,
         st.sampled_from(["", "red"]),
         st.booleans(),
+        st.just("") | CHECK_IN_IDS,
+    ),
+    st.builds(
+        lambda i, u: lambda s: s.act(UndoConfirmation(i, u)),
+        st.just("") | CHECK_IN_IDS | COMMAND_IDS,
+        st.just("") | UNITS,
     ),
     st.builds(lambda p, w: lambda s: s.act(SetAccountability(p, w)), st.just(30.0) | ANY, ANY),
     st.builds(
@@ -253,10 +262,10 @@ def test_only_a_person_completes_a_roll_call(deeds: list[Deed]) -> None:
             assert vouched(script) == before
 
 
-def vouched(script: Script) -> dict[str, tuple[int, str]]:
-    """When and by whom, of each unit on duty."""
+def vouched(script: Script) -> dict[str, list[ParConfirmation]]:
+    """Of each unit on duty."""
     return {
-        unit.unit_id: (unit.duty.checked_in_ns, unit.duty.checked_in_by)
+        unit.unit_id: list(unit.duty.confirmations)
         for unit in script.pipeline.state.units.values()
         if unit.duty is not None
     }

@@ -10,14 +10,15 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from edge.bench.honesty import inertial
 from edge.samples import ImuBatch
-from edge.simulation import Scenario, Simulation
 from edge.simulation.legs import Stand, Walk
-from edge.tracker.eskf import EskfTracker
-from edge.tracker.rows import join_rows
-from edge.tracker.strapdown import rotation_matrix
-from tests.walking import part, walk
+from edge.simulation.scenario import Scenario
+from edge.simulation.simulation import Simulation
+from edge.tracker.foot.eskf import EskfTracker
+from edge.tracker.foot.filter.strapdown import rotation_matrix
+from edge.tracker.foot.output.track_rows import join_rows
+from tests.bench.tracker.honesty import inertial
+from tests.rig.exact_strides import part, walk
 
 WALK = walk(strides=6, gyro_bias_radps=(0.002, -0.004, 0.003), accel_bias_mps2=(0.05, 0.0, -0.1))
 

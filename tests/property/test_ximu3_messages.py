@@ -9,21 +9,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from edge.sources.ximu3_messages import (
+from edge.sources.ximu3.messages import (
     ACCEL_FULL_SCALE_G,
     GYRO_FULL_SCALE_DPS,
     LONGEST,
     Battery,
+    Button,
     Frames,
     Inertial,
     Magnetometer,
-    Notice,
+    Notification,
     Other,
     Temperature,
     message_of,
 )
 from shared.errors import WireError
-from tests.ximu3_device import at_rest, binary_message, text_message
+from shared.messages import BatteryState
+from tests.rig.ximu3_device import at_rest, binary_message, text_message
 
 TIMES = st.integers(0, 2**62)
 RATES = st.floats(-GYRO_FULL_SCALE_DPS, GYRO_FULL_SCALE_DPS, width=32)
@@ -54,14 +56,17 @@ def only(said: bytes) -> bytes:
             Magnetometer(1000000, (1.0, 0.0, 0.0)),
         ),
         (b"T,1000000,25.0000\r\n", Temperature(1000000, 25.0)),
-        (b"B,1000000,100.0000,4.2000,2.0000\r\n", Battery(1000000, 1.0)),
+        (b"T,1000000,180.0000\r\n", Temperature(1000000, 180.0)),
+        (b"O,1000000,1.0000\r\n", Button(1000000, is_down=True)),
+        (bytes.fromhex("CF40420F000000000000000000") + b"\n", Button(1000000, is_down=False)),
+        (b"B,1000000,100.0000,4.2000,2.0000\r\n", Battery(1000000, 1.0, BatteryState.FULL)),
         (
             b"N,1000000,This is a notification message.\r\n",
-            Notice(1000000, "This is a notification message.", is_error=False),
+            Notification(1000000, "This is a notification message.", is_error=False),
         ),
         (
             bytes.fromhex("C640420F0000000000") + b"This is an error message.\n",
-            Notice(1000000, "This is an error message.", is_error=True),
+            Notification(1000000, "This is an error message.", is_error=True),
         ),
         (b"W,1000000,100.0000,-50.0000\r\n", Other()),
         (b"Q,1000000,1.0000,0.0000,0.0000,0.0000\r\n", Other()),

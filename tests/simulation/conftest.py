@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.fusion import FUSERS
-from base_station.fusion.port import FuserKind
+from base_station.fusion.interface import FuserKind
 
 
 @pytest.fixture(params=FUSERS, ids=lambda kind: kind.name)

@@ -7,16 +7,16 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.simulation import open_simulation
+from edge.agent.pipeline import TrackerPipeline, UnitIdentity
+from edge.simulation.factory import open_simulation
 from edge.simulation.simulation import Simulation
-from edge.tracker import make_tracker
+from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.messages import Message, Position, Sighting
 from shared.messages.pins import PlaceBeacon, RemoveBeacon
 from shared.messages.station import OpenIncident, SetPlan, SetStart
-from tests.station_script import Script
+from tests.rig.station_script import Script
 
 LASTS_S = 150
 PLAN = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from edge.bench.simulated import score_simulated, simulated_walks
+from tests.bench.tracker.simulated_walks import score_simulated, simulated_walks
 
 
 def test_every_walk_comes_with_every_seed():

@@ -12,19 +12,19 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-from edge.calibration import read_calibration
-from edge.calibration.guide import guide, solve
-from edge.calibration.session import calibrate_guided
+from edge.agent.pipeline import TrackerPipeline, UnitIdentity
+from edge.app.calibration_session import calibrate_guided
+from edge.calibration.file import read_calibration
+from edge.calibration.procedure import run_step, solve
 from edge.calibration.steps import AXES, PosesStep, Step, StillStep, TurningStep
-from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.raw.listener import UnitListener
-from edge.raw.stream import RawStream, batch_of
-from edge.raw.uplink import RawUplink
+from edge.sample_codec.codec import SampleEncoder, batch_of
+from edge.sample_codec.listener import RawStreamListener
+from edge.sample_codec.uplink import RawUplink
 from edge.samples import ImuBatch, SensorBatch
-from edge.simulation.handling import HandledUnit, cut
-from edge.sources import open_source
+from edge.simulation.handled_unit import HandledUnit, cut
 from edge.sources.bus import BusSource
-from edge.tracker.none import NoTracker
+from edge.sources.registry import open_source
+from edge.tracker.registry import NoTracker
 from shared.bus_memory import MemoryRouter
 from shared.channels import NO_TRACKER, channel_of
 from shared.clock import ManualClock
@@ -76,7 +76,7 @@ def test_who_only_does_what_is_said_is_done_in_minutes(seed):
     steps: list[Step] = [StillStep(), PosesStep(), TurningStep()]
     for step in steps:
         person.hear(step.instruction)
-        guide(step, batches, LIMIT_S, person.hear)
+        run_step(step, batches, LIMIT_S, person.hear)
         assert step.wanted() is None
     assert person.handled_s < 300.0
     calibration = solve(steps, "u1", "s", datetime.now(UTC))
@@ -88,7 +88,7 @@ def test_a_unit_is_calibrated_over_the_bus_from_the_raw_samples_that_it_sends(tm
     """The live source of a station: whatever driver the unit has."""
     router = MemoryRouter()
     unit = router.attach_unit()
-    listener = UnitListener("FF-01", router.attach_station)
+    listener = RawStreamListener("FF-01", router.attach_station)
     assert listener.open(Event())
     source = BusSource("FF-01")
     handled = open_source("bench:3")
@@ -100,7 +100,7 @@ def test_a_unit_is_calibrated_over_the_bus_from_the_raw_samples_that_it_sends(tm
         5.0,
         raw_uplink=RawUplink(stamper),
     )
-    raw, done = RawStream("FF-01", 7), Event()
+    raw, done = SampleEncoder("FF-01", 7), Event()
 
     def wear() -> None:
         messages = list(pipeline.start())

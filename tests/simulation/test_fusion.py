@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from base_station.bench.fusion.walks import Errors, Floats, Receiver, Scores, Walk, run
-from base_station.bench.rig.said import mono_ns
-from base_station.fusion.port import FuserKind, Start
+from base_station.fusion.interface import FuserKind, Start
 from shared.geo import wrap_pi
 from shared.quality import Quality
-from tests.fusion_walks import SEEDS, walks
+from tests.bench.fusion.simulated_walks import Errors, Floats, Receiver, Scores, Walk, run
+from tests.rig.fusion_walks import SEEDS, walks
+from tests.rig.message_factory import mono_ns
 
 ALWAYS, NEVER = (0.0, math.inf), (math.inf, math.inf)
 
@@ -33,9 +33,9 @@ def test_the_heading_is_found_all_the_way_round_within_a_walk_of_25_m(
     for walk, receiver in walks(120.0, fix_std_m):
         fuser = kind.new()
         for index in range(len(walk)):
-            fuser.advance(walk.position(index))
+            fuser.predict(walk.position(index))
             if index % 5 == 0:
-                fuser.correct(receiver.fix(float(walk.t_s[index]), walk.truth_m[index]))
+                fuser.update_gnss(receiver.fix(float(walk.t_s[index]), walk.truth_m[index]))
             estimate = fuser.estimate()
             assert estimate is not None
             if estimate.heading_std_rad < 0.2:
@@ -107,7 +107,7 @@ def test_nothing_known_is_shown_about_the_unit_s_own_start(kind: FuserKind) -> N
     walk = Walk.wander(np.random.default_rng(0), 30.0)
     fuser = kind.new()
     for index in range(len(walk)):
-        fuser.advance(walk.position(index))
+        fuser.predict(walk.position(index))
         estimate = fuser.estimate()
         assert estimate is not None
         assert (estimate.north_m, estimate.east_m) == pytest.approx(tuple(walk.own_m[index]))
@@ -124,7 +124,7 @@ def test_standing_still_costs_nothing(kind: FuserKind) -> None:
     last = len(walk) - 1
     for _ in range(3000):
         walk.t_s[last] += 0.2
-        fuser.advance(walk.position(last))
+        fuser.predict(walk.position(last))
     after = fuser.estimate()
     assert before is not None
     assert after is not None
@@ -142,13 +142,13 @@ def test_confident_rubbish_indoors_moves_nobody(kind: FuserKind) -> None:
         rubbish = Receiver(rng, Errors(fix_std_m=3.0, slow_part=0.9, slow_s=60.0))
         for index in range(len(walk)):
             t_s = float(walk.t_s[index])
-            fuser.advance(walk.position(index))
+            fuser.predict(walk.position(index))
             if index % 5 == 0:
                 if t_s < 120.0:
-                    fuser.correct(receiver.fix(t_s, walk.truth_m[index]))
+                    fuser.update_gnss(receiver.fix(t_s, walk.truth_m[index]))
                 else:
                     stuck_about = walk.truth_m[600] + np.array([0.0, 40.0])
-                    scores.verdicts.append(fuser.correct(rubbish.fix(t_s, stuck_about)))
+                    scores.verdicts.append(fuser.update_gnss(rubbish.fix(t_s, stuck_about)))
             scores.note(fuser, walk.truth_m[index])
         refused = np.mean([not verdict.accepted for verdict in scores.verdicts])
         assert refused > 0.5, f"seed {seed}: {refused:.0%} refused"
@@ -163,9 +163,9 @@ def test_going_back_outside_closes_the_error_without_losing_the_way(kind: FuserK
         scores = Scores()
         for index in range(len(walk)):
             t_s = float(walk.t_s[index])
-            fuser.advance(walk.position(index))
+            fuser.predict(walk.position(index))
             if index % 5 == 0 and not 60.0 <= t_s < 300.0:
-                scores.verdicts.append(fuser.correct(receiver.fix(t_s, walk.truth_m[index])))
+                scores.verdicts.append(fuser.update_gnss(receiver.fix(t_s, walk.truth_m[index])))
             scores.note(fuser, walk.truth_m[index])
         ends += scores.error_m[-150:]
     assert np.percentile(ends, 95) < 7.0
@@ -181,9 +181,9 @@ def test_a_path_that_went_wrong_unseen_is_given_up_for_fixes_that_agree(kind: Fu
     scores = Scores()
     for index in range(len(walk)):
         t_s = float(walk.t_s[index])
-        fuser.advance(walk.position(index))
+        fuser.predict(walk.position(index))
         if index % 5 == 0:
-            scores.verdicts.append(fuser.correct(receiver.fix(t_s, walk.truth_m[index])))
+            scores.verdicts.append(fuser.update_gnss(receiver.fix(t_s, walk.truth_m[index])))
         scores.note(fuser, walk.truth_m[index])
     assert np.mean(scores.error_m[-100:]) < 6.0
 
@@ -194,14 +194,14 @@ def test_a_receiver_that_is_stuck_is_noticed(kind: FuserKind) -> None:
     stuck = Receiver(np.random.default_rng(2)).fix(60.0, walk.truth_m[300])
     verdicts = []
     for index in range(len(walk)):
-        fuser.advance(walk.position(index))
+        fuser.predict(walk.position(index))
         if index % 5 == 0:
             t_s = float(walk.t_s[index])
             fix = receiver.fix(t_s, walk.truth_m[index])
             if t_s > 60.0:
                 place = (stuck.north_m, stuck.east_m, 0.0)
                 fix = type(stuck)(mono_ns(t_s), *place, stuck.horizontal_std_m, None)
-            verdicts.append(fuser.correct(fix))
+            verdicts.append(fuser.update_gnss(fix))
     assert {verdict.reason for verdict in verdicts[-10:]} == {"the receiver is stuck"}
 
 
@@ -216,11 +216,11 @@ def test_a_restarted_unit_goes_on_from_where_its_wearer_is(kind: FuserKind) -> N
             walk.own_m[restart:] -= walk.own_m[restart - 1]
             walk.own_m[restart:] = walk.own_m[restart:] @ _turn(2.0).T  # another own north
         t_s = float(walk.t_s[index])
-        fuser.advance(walk.position(index, boot_id=1 if index < restart else 2))
+        fuser.predict(walk.position(index, boot_id=1 if index < restart else 2))
         if index % 5 == 0 and t_s < 140.0:
-            fuser.correct(receiver.fix(t_s, walk.truth_m[index]))
+            fuser.update_gnss(receiver.fix(t_s, walk.truth_m[index]))
         if index % 5 == 0 and t_s > 170.0:
-            scores.verdicts.append(fuser.correct(receiver.fix(t_s, walk.truth_m[index])))
+            scores.verdicts.append(fuser.update_gnss(receiver.fix(t_s, walk.truth_m[index])))
         scores.note(fuser, walk.truth_m[index])
     assert scores.inside_95 > 0.9
     assert np.mean(scores.error_m[-100:]) < 6.0

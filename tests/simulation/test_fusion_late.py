@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from base_station.bench.fusion.walks import Receiver, Scores, Walk, run
-from base_station.fusion.port import FuserKind
-from tests.fusion_walks import SEEDS, walks
+from base_station.fusion.interface import FuserKind
+from tests.bench.fusion.simulated_walks import Receiver, Scores, Walk, run
+from tests.rig.fusion_walks import SEEDS, walks
 
 
 def test_a_late_fix_corrects_as_if_it_had_come_in_time(kind: FuserKind) -> None:
@@ -17,15 +17,15 @@ def test_a_late_fix_corrects_as_if_it_had_come_in_time(kind: FuserKind) -> None:
         waiting = []
         for index in range(len(walk)):
             for fuser in (punctual, late):
-                fuser.advance(walk.position(index))
+                fuser.predict(walk.position(index))
             if index % 5 == 0:
                 fix = receiver.fix(float(walk.t_s[index]), walk.truth_m[index])
-                punctual.correct(fix)
+                punctual.update_gnss(fix)
                 waiting.append(fix)
             if len(waiting) > 8:
-                late.correct(waiting.pop(0))
+                late.update_gnss(waiting.pop(0))
         for fix in waiting:
-            late.correct(fix)
+            late.update_gnss(fix)
         one, other = punctual.estimate(), late.estimate()
         assert one is not None
         assert other is not None
@@ -38,7 +38,7 @@ def test_a_fix_of_before_the_path_is_refused_with_a_reason(kind: FuserKind) -> N
     fuser, receiver = kind.new(), Receiver(np.random.default_rng(1))
     old = receiver.fix(-60.0, walk.truth_m[5])
     run(fuser, walk, receiver, (100.0, 200.0))
-    verdict = fuser.correct(old)
+    verdict = fuser.update_gnss(old)
     assert not verdict.accepted
     assert verdict.reason == "too old"
 
@@ -58,15 +58,15 @@ def test_fixes_out_of_a_journal_count_at_their_own_time(kind: FuserKind) -> None
             if index in silent:
                 fixes += [] if fix is None else [fix]
                 continue
-            fuser.advance(walk.position(index))
+            fuser.predict(walk.position(index))
             if fix is not None and index < 40:
-                fuser.correct(fix)
+                fuser.update_gnss(fix)
         before = fuser.estimate()
         assert before is not None
         without.append(math.dist((before.north_m, before.east_m), walk.truth_m[-1]))
         for index in silent:
-            fuser.remember(walk.position(index))
-        taken = [fuser.correct(fix).accepted for fix in fixes]
+            fuser.insert_late_position(walk.position(index))
+        taken = [fuser.update_gnss(fix).accepted for fix in fixes]
         scores = Scores()
         scores.note(fuser, walk.truth_m[-1])
         filled += scores.error_m
@@ -84,16 +84,16 @@ def test_fixes_of_before_the_newest_one_correct_the_present(kind: FuserKind) -> 
         kept = []
         for index in range(len(walk)):
             t_s = float(walk.t_s[index])
-            fuser.advance(walk.position(index))
+            fuser.predict(walk.position(index))
             if index % 5 == 0 and t_s < 150.0:
                 fix = receiver.fix(t_s, walk.truth_m[index])
                 if 30.0 < t_s < 140.0:
                     kept.append(fix)
                 else:
-                    fuser.correct(fix)
+                    fuser.update_gnss(fix)
         before = fuser.estimate()
         assert before is not None
-        assert all(fuser.correct(fix).accepted for fix in kept[::10])
+        assert all(fuser.update_gnss(fix).accepted for fix in kept[::10])
         after = fuser.estimate()
         assert after is not None
         assert after.std_north_m + after.std_east_m < before.std_north_m + before.std_east_m

@@ -1,5 +1,5 @@
 """The fuser on the tracks of recorded walks, with satellite fixes cut in: the recipe is that of
-``base_station.bench.fusion.recorded``.
+``tests.bench.fusion.recorded_walks``.
 """
 
 from __future__ import annotations
@@ -9,19 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from base_station.bench.fusion.recorded import (
+from base_station.fusion.interface import FuserKind
+from edge.app.track import run_tracker, write_csv
+from edge.sources.recording import RecordingSource, read_truth
+from edge.tracker.registry import TRACKERS
+from shared.errors import UserError
+from tests.bench.fusion.recorded_walks import (
     WITH_GPS,
     Tracked,
     fuse_recorded,
     print_recorded,
     turned,
 )
-from base_station.bench.fusion.walks import RATE_HZ, Receiver, Scores, Walk, run
-from base_station.fusion.port import FuserKind
-from edge.sources.recording import RecordingSource, read_truth
-from edge.track_command import run_tracker, write_csv
-from edge.tracker import TRACKERS
-from shared.errors import UserError
+from tests.bench.fusion.simulated_walks import RATE_HZ, Receiver, Scores, Walk, run
 
 TRIALS = ("31", "37", "40", "44")  # of ``footprints``: walks with a footprint at every stride
 

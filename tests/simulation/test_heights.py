@@ -9,8 +9,8 @@ import msgspec
 import numpy as np
 import pytest
 
+from base_station.fusion.interface import BarometricHeight
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.port import AirHeight
 from base_station.fusion.vertical.height import HeightFilter
 from base_station.fusion.vertical.weather import Barometers, Weather
 from shared.clock import NS_PER_S
@@ -37,7 +37,7 @@ class Wearer:
 
     def __init__(self) -> None:
         self.height = HeightFilter(Parameters())
-        self.height.begin(0.0, 0.2)
+        self.height.reset(0.0, 0.2)
         self.t_s = 0
         self.rng = np.random.default_rng(1)
         self.true_down_m = 0.0
@@ -45,12 +45,12 @@ class Wearer:
     def second(self, added_pa: float, *, climbs_m: float = 0.0, referenced: bool = False) -> None:
         self.t_s += 1
         self.true_down_m -= climbs_m
-        self.height.climb(-climbs_m, 1.0)
+        self.height.predict(-climbs_m, 1.0)
         if self.height.walked_level:
-            self.height.rest_on(())
+            self.height.constrain_to_plan_floors(())
         noise_m = float(self.rng.normal(0.0, 0.15))
         air_m = down_of(added_pa, self.true_down_m) + 5.0 + noise_m
-        self.height.feel(AirHeight(self.t_s * NS_PER_S, air_m, referenced))
+        self.height.update_barometer(BarometricHeight(self.t_s * NS_PER_S, air_m, referenced))
 
     @property
     def off_m(self) -> float:
@@ -87,18 +87,18 @@ def test_stairs_are_climbed_with_the_fan_on() -> None:
 
 def test_on_the_level_inside_people_are_on_a_storey() -> None:
     height = HeightFilter(Parameters())
-    height.begin(-2.8, 0.5)
-    height.climb(0.0, 10.0)
+    height.reset(-2.8, 0.5)
+    height.predict(0.0, 10.0)
     assert height.walked_level
-    height.rest_on(STOREYS_DOWN_M)
+    height.constrain_to_plan_floors(STOREYS_DOWN_M)
     assert height.down_m == pytest.approx(-3.2, abs=0.15)
 
 
 def test_half_way_between_two_storeys_neither_is_taken() -> None:
     height = HeightFilter(Parameters())
-    height.begin(-1.6, 0.5)
-    height.climb(0.0, 10.0)
-    height.rest_on(STOREYS_DOWN_M)
+    height.reset(-1.6, 0.5)
+    height.predict(0.0, 10.0)
+    height.constrain_to_plan_floors(STOREYS_DOWN_M)
     assert height.down_m == pytest.approx(-1.6)
 
 
@@ -116,14 +116,14 @@ def test_the_weather_is_told_by_whoever_stays_and_nobody_moves_by_joining() -> N
 
 def test_a_reference_tells_the_weather_and_only_it(position: Position) -> None:
     barometers = Barometers()
-    barometers.refer_to("REF", 0.0)
+    barometers.set_reference("REF", 0.0)
     for second in range(300):
         added_pa = second * 350.0 / 3600.0
         t_ns = second * NS_PER_S
         for unit_id, extra_pa in (("REF", 0.0), ("FF-01", 25.0)):
             pressure_pa = pressure_pa_at(SITE_M) + added_pa + extra_pa
             said = msgspec.structs.replace(position, pressure_pa=pressure_pa)
-            air = barometers.hear(unit_id, t_ns, said, is_outside=True)
+            air = barometers.update(unit_id, t_ns, said, is_outside=True)
     assert air is not None
     assert air.referenced
     first = down_of(25.0) - SITE_M
@@ -133,4 +133,4 @@ def test_a_reference_tells_the_weather_and_only_it(position: Position) -> None:
 def test_a_pressure_that_cannot_be_is_left_alone(position: Position) -> None:
     for pressure_pa in (None, 0.5, 1e6, math.nan):
         said = msgspec.structs.replace(position, pressure_pa=pressure_pa)
-        assert Barometers().hear("FF-01", 0, said, is_outside=True) is None
+        assert Barometers().update("FF-01", 0, said, is_outside=True) is None

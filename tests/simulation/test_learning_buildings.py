@@ -8,8 +8,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from base_station.bench.fusion.walks import Floats, Receiver, Scores, Walk
-from base_station.bench.incident.run import (
+from base_station.fusion.building_model.building import LearntBuilding
+from base_station.fusion.interface import Estimate, Fuser, FuserKind, PlaceFix, Start
+from shared.geo import wrap_pi
+from shared.messages import Header
+from tests.bench.fusion.simulated_walks import Floats, Receiver, Scores, Walk
+from tests.rig import message_factory
+from tests.rig.incident.run import (
     Known,
     Person,
     Run,
@@ -18,12 +23,7 @@ from base_station.bench.incident.run import (
     fuse,
     fuse_all,
 )
-from base_station.bench.incident.scores import CHI2_95_2DOF
-from base_station.bench.rig import said
-from base_station.fusion.learnt.building import LearntBuilding
-from base_station.fusion.port import Estimate, Fuser, FuserKind, PlaceFix, Start
-from shared.geo import wrap_pi
-from shared.messages import Header
+from tests.rig.incident.scores import CHI2_95_2DOF
 
 SEEDS = range(12)
 INCIDENTS = range(8001, 8007)
@@ -57,13 +57,13 @@ def test_where_nothing_is_at_right_angles_nothing_is_lost(kind: FuserKind) -> No
         for index in range(len(walk)):
             t_s = float(walk.t_s[index])
             position = walk.position(index)
-            learning.advance(position)
-            plain.advance(position)
-            learnt = learning.recognise(learnt)
+            learning.predict(position)
+            plain.predict(position)
+            learnt = learning.match_building(learnt)
             if index % 5 == 0 and t_s < 120.0:
                 fix = receiver.fix(t_s, walk.truth_m[index])
-                learning.correct(fix)
-                plain.correct(fix)
+                learning.update_gnss(fix)
+                plain.update_gnss(fix)
             scores.note(learning, walk.truth_m[index])
         with_it.append(scores.error_m[-1])
         held += scores.normalised2[-500:]
@@ -114,10 +114,12 @@ def test_who_is_in_a_frame_of_their_own_tells_nothing_of_the_building(
         fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.03))
     for row in range(600):
         place += 0.5 * 1j ** (row // 12)
-        header = Header("FF-01", 1, row + 1, said.mono_ns(0.5 * row))
+        header = Header("FF-01", 1, row + 1, message_factory.mono_ns(0.5 * row))
         north_m, east_m, way_m = place.real, place.imag, 0.5 * row
-        fuser.advance(said.position(header, north_m=north_m, east_m=east_m, distance_m=way_m))
-        learnt = fuser.recognise(learnt)
+        fuser.predict(
+            message_factory.position(header, north_m=north_m, east_m=east_m, distance_m=way_m)
+        )
+        learnt = fuser.match_building(learnt)
     assert (learnt.axis is not None) is is_said
 
 
@@ -135,15 +137,15 @@ def _through_two_buildings(fuser: Fuser, outside_m: int, angle_rad: float) -> It
     for direction_rad, steps, fixed in ways:
         for _ in range(steps):
             place, row = place + 0.5 * np.exp(1j * direction_rad), row + 1
-            header = Header("FF-01", 1, row, said.mono_ns(0.5 * row))
+            header = Header("FF-01", 1, row, message_factory.mono_ns(0.5 * row))
             north_m, east_m, way_m = float(place.real), float(place.imag), 0.5 * row
-            position = said.position(
+            position = message_factory.position(
                 header, north_m=north_m, east_m=east_m, distance_m=way_m, heading_std_rad=0.03
             )
-            fuser.advance(position)
-            learnt = fuser.recognise(learnt)
+            fuser.predict(position)
+            learnt = fuser.match_building(learnt)
             if fixed:
-                fuser.correct(PlaceFix(header.t_mono_ns, north_m, east_m, 0.0, 1.5, None))
+                fuser.update_gnss(PlaceFix(header.t_mono_ns, north_m, east_m, 0.0, 1.5, None))
             estimate = fuser.estimate()
             assert estimate is not None
             yield estimate

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.checkpoint import read_checkpoint
-from base_station.events import Refused
-from base_station.past.playback import compare
+from base_station.core.checkpoint import read_checkpoint
+from base_station.core.events import Refused
+from base_station.replay.playback import compare
 from shared.channels import channel_of
 from shared.codec import encode
 from shared.messages import STATION_ID, FusedPosition
@@ -19,8 +19,8 @@ from shared.messages.station import (
     SetPlan,
     SetStart,
 )
-from tests.live_station import make_pipeline
-from tests.station_script import Script
+from tests.rig.live_station import make_pipeline
+from tests.rig.station_script import Script
 
 STOREY_M = 3.4
 PLAN = (

@@ -9,19 +9,19 @@ from itertools import islice
 import numpy as np
 import pytest
 
+from base_station.fusion.interface import BarometricHeight
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.port import AirHeight
 from base_station.fusion.vertical.height import HeightFilter
 from base_station.site.storeys import Storey
-from edge.pipeline import TrackerPipeline, UnitIdentity
+from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import Floats
-from edge.simulation import open_simulation
-from edge.tracker import make_tracker
+from edge.simulation.factory import open_simulation
+from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.messages import FusedPosition, Position
 from shared.messages.station import SetPlan, SetStart
-from tests.station_script import Script
+from tests.rig.station_script import Script
 
 LASTS_S = 200
 STOREY_M = 3.2
@@ -99,11 +99,11 @@ def test_heights_of_rides_are_as_sure_as_they_say(seed: int) -> None:
 
 def test_while_it_rides_nobody_is_surer_than_the_unit() -> None:
     height = HeightFilter(Parameters())
-    height.begin(0.0, 0.2)
+    height.reset(0.0, 0.2)
     for _ in range(20):
-        height.climb(-0.5, 0.0, 0.8, moves=False)
+        height.predict(-0.5, 0.0, 0.8, moves=False)
     assert math.sqrt(height.variance_m2) > 0.8
-    height.climb(0.0, 1.0, 0.15, moves=True)
+    height.predict(0.0, 1.0, 0.15, moves=True)
     assert math.sqrt(height.variance_m2) < 0.4
     assert height.down_m == pytest.approx(-10.0)
 
@@ -111,14 +111,14 @@ def test_while_it_rides_nobody_is_surer_than_the_unit() -> None:
 def rest(height: HeightFilter, begin_s: int, airs_m: list[float]) -> None:
     """Stand still while the air says this, a look a second."""
     for second, air_m in enumerate(airs_m, begin_s):
-        height.climb(0.0, 0.0, 0.1, moves=False)
-        height.feel(AirHeight(second * NS_PER_S, air_m, referenced=True))
+        height.predict(0.0, 0.0, 0.1, moves=False)
+        height.update_barometer(BarometricHeight(second * NS_PER_S, air_m, referenced=True))
 
 
 def test_a_ride_that_the_unit_does_not_feel_leaves_its_height_in_doubt() -> None:
     """It may be a fan: nobody is moved, and nobody is sure."""
     height = HeightFilter(Parameters())
-    height.begin(0.0, 0.2)
+    height.reset(0.0, 0.2)
     ramp = [5.0 - 0.8 * min(second, 8) for second in range(20)]
     rest(height, 0, [5.0] * 30)
     rest(height, 30, ramp)
@@ -129,10 +129,10 @@ def test_a_ride_that_the_unit_does_not_feel_leaves_its_height_in_doubt() -> None
 def test_after_a_ride_that_nobody_felt_the_only_storey_known_is_not_the_one() -> None:
     """The first thing that somebody does; then they walk where nobody has walked before."""
     height = HeightFilter(Parameters())
-    height.begin(0.0, 0.2)
+    height.reset(0.0, 0.2)
     rest(height, 0, [5.0] * 5 + [5.0 - 0.9 * min(second, 18) for second in range(25)])
-    height.climb(0.0, 8.0, 0.1)
-    height.rest_near([Storey(0, 0.0, std_m=0.2)])
+    height.predict(0.0, 8.0, 0.1)
+    height.constrain_to_learnt_floors([Storey(0, 0.0, std_m=0.2)])
     assert math.sqrt(height.variance_m2) > 8.0
 
 
@@ -140,18 +140,20 @@ def test_doors_that_slam_are_no_ride() -> None:
     """Waves of some metres, 1.5 a second, gone in a second or two (``edge.simulation``)."""
     for phase in range(10):
         height = HeightFilter(Parameters())
-        height.begin(0.0, 0.2)
+        height.reset(0.0, 0.2)
         for tick in range(600):
             age_s = (tick % 97) / 5.0 + 0.02 * phase
             wave_m = 4.0 * math.exp(-age_s / 0.4) * math.sin(3.0 * math.pi * age_s)
-            height.climb(0.0, 0.0, 0.1, moves=False)
-            height.feel(AirHeight(tick * NS_PER_S // 5, 5.0 + wave_m, referenced=True))
+            height.predict(0.0, 0.0, 0.1, moves=False)
+            height.update_barometer(
+                BarometricHeight(tick * NS_PER_S // 5, 5.0 + wave_m, referenced=True)
+            )
         assert math.sqrt(height.variance_m2) < 0.5
 
 
 def test_a_door_that_opens_and_weather_that_turns_are_no_ride() -> None:
     for airs_m in ([5.0] * 10 + [8.0] * 30, [5.0 + 0.008 * k for k in range(600)]):
         height = HeightFilter(Parameters())
-        height.begin(0.0, 0.2)
+        height.reset(0.0, 0.2)
         rest(height, 0, airs_m)
         assert math.sqrt(height.variance_m2) < 0.5

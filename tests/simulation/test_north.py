@@ -9,19 +9,18 @@ import msgspec
 import numpy as np
 import pytest
 
-from edge.bench.calibrated import calibration_of
-from edge.expected_field import Place
-from edge.pipeline import TrackerPipeline, UnitIdentity
-from edge.samples import SensorBatch
-from edge.simulation import SCENARIOS, Simulation
+from edge.agent.pipeline import TrackerPipeline, UnitIdentity
+from edge.samples import ApproximatePosition, SensorBatch
 from edge.simulation.building import load_building
-from edge.simulation.simulation import UNCALIBRATED_SENSORS
-from edge.tracker import make_tracker
+from edge.simulation.scenarios import SCENARIOS
+from edge.simulation.simulation import UNCALIBRATED_SENSORS, Simulation
+from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
 from shared.messages import Position
 from shared.messages.station import SetAnchor, SetStart
-from tests.station_script import Script
+from tests.bench.tracker.simulated_calibration import calibration_of
+from tests.rig.station_script import Script
 
 NOW_NS = round(datetime(2026, 7, 1, tzinfo=UTC).timestamp()) * NS_PER_S
 
@@ -31,7 +30,7 @@ def positions_of(simulation: Simulation) -> list[Position]:
     calibration = calibration_of(simulation)
     sensor = calibration.described(simulation.description)
     anchor = load_building().anchor
-    place = Place(round(anchor.lat_deg, 1), round(anchor.lon_deg, 1))
+    place = ApproximatePosition(round(anchor.lat_deg, 1), round(anchor.lon_deg, 1))
     identity = UnitIdentity("1", "simulated", "eskf", sensor, calibration, place)
     stamper = Stamper("u1", 7, ManualClock(NOW_NS))
     pipeline = TrackerPipeline(identity, make_tracker("eskf", sensor), stamper, 5.0)

@@ -12,10 +12,10 @@ from msgspec.structs import replace
 from numba import njit
 
 from edge.samples import Floats
-from edge.simulation import SCENARIOS, Simulation
 from edge.simulation.imu import GRAVITY_MPS2
 from edge.simulation.legs import Segment
-from edge.simulation.simulation import IDEAL_SENSORS
+from edge.simulation.scenarios import SCENARIOS
+from edge.simulation.simulation import IDEAL_SENSORS, Simulation
 
 RATE_HZ = 4000.0  # fine enough that the integrator's own error stays below a millimetre
 

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.bench.honesty import inertial
-from edge.bench.scoring import CHI2_95_2DOF, horizontal_nees
-from edge.bench.walk_errors import track, true_way_m
-from edge.simulation import Simulation
 from edge.simulation.imu import GRAVITY_MPS2
 from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
-from edge.tracker.port import Reason
+from edge.simulation.simulation import Simulation
+from edge.tracker.interface import Reason
+from tests.bench.tracker.honesty import inertial
+from tests.bench.tracker.scoring import CHI2_95_2DOF, horizontal_nees
+from tests.bench.tracker.walk_errors import track, true_way_m
 
 LEGS = (Stand(4.0), Walk(((60.0, 0.0), (0.0, 0.0)), pace="sprint"), Stand(2.0))
 

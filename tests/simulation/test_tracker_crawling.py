@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.bench.honesty import inertial
-from edge.bench.walk_errors import track, true_way_m
-from edge.simulation import Simulation
 from edge.simulation.legs import Crawl, Stand
 from edge.simulation.scenario import Scenario
-from edge.simulation.simulation import UNCALIBRATED_SENSORS
-from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import GYRO_BIAS, POSITION, SIZE
-from edge.tracker.first_rest import doubt_bias
-from edge.tracker.port import Quality
-from edge.tracker.stance import glides
-from edge.tracker.state import RING, new_filter_state
+from edge.simulation.simulation import UNCALIBRATED_SENSORS, Simulation
+from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.error_state import GYRO_BIAS, POSITION, SIZE
+from edge.tracker.foot.filter.initial_gyro_bias import inflate_bias
+from edge.tracker.foot.sample_ring import RING
+from edge.tracker.foot.state import new_filter_state
+from edge.tracker.foot.zupt.zupt import is_gliding
+from edge.tracker.interface import Quality
+from tests.bench.tracker.honesty import inertial
+from tests.bench.tracker.walk_errors import track, true_way_m
 
 CUT_S = 9.3  # into the crawl
 WAY = Crawl(((8.0, 0.0), (8.0, 5.0), (0.0, 5.0), (-4.0, 5.0), (-4.0, 0.0), (4.0, 0.0)))
@@ -58,30 +58,30 @@ def standing(motion_m2ps4, speed_mps):
 @pytest.mark.parametrize(
     ("motion_m2ps4", "speed_mps", "is_one"),
     [(0.7, 1.0, True), (0.7, 0.2, False), (0.05, 1.0, False), (0.7, -1.0, True)],
-    ids=["glides", "stands nearly", "the stillest of its stride", "backwards"],
+    ids=["is_gliding", "stands nearly", "the stillest of its stride", "backwards"],
 )
 def test_a_glide_is_told_by_a_velocity_that_is_known(motion_m2ps4, speed_mps, is_one):
     ring, state = standing(motion_m2ps4, speed_mps)
-    assert glides(ring, state, 0, EskfConfig()) is is_one
+    assert is_gliding(ring, state, 0, EskfConfig()) is is_one
 
 
 def test_a_gyroscope_that_is_worse_than_its_kind_is_doubted_about_the_vertical_too():
     config = EskfConfig()
     state = new_filter_state()[0]
-    state["unshown_bias_std_radps"] = config.data_sheet_bias_std_radps
-    state["doubted_b"] = [0.0, 0.0, 1.0]
+    state["unobserved_bias_std_radps"] = config.data_sheet_bias_std_radps
+    state["least_known_axis_b"] = [0.0, 0.0, 1.0]
     for i in range(3):
         state["covariance"][GYRO_BIAS + i, GYRO_BIAS + i] = config.start_gyro_bias_std_radps**2
     state["covariance"][POSITION, GYRO_BIAS + 2] = state["covariance"][GYRO_BIAS + 2, POSITION] = (
         0.2 * config.start_gyro_bias_std_radps**2
     )
-    doubt_bias(state, config)
-    usual_m = float(state["unshown"][0])
+    inflate_bias(state, config)
+    usual_m = float(state["unobserved_effect"][0])
     state["gyro_bias_radps"] = [0.0, 0.0, 0.05]  # what the vertical shows is not of the level axes
-    doubt_bias(state, config)
-    assert state["unshown"][0] == usual_m
+    inflate_bias(state, config)
+    assert state["unobserved_effect"][0] == usual_m
     state["gyro_bias_radps"] = [0.04, 0.03, 0.0]
-    doubt_bias(state, config)
-    assert state["unshown"][0] == pytest.approx(
+    inflate_bias(state, config)
+    assert state["unobserved_effect"][0] == pytest.approx(
         usual_m * 0.05 / np.sqrt(2.0) / config.data_sheet_bias_std_radps
     )

@@ -7,19 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.bench.honesty import inertial
-from edge.bench.scoring import CHI2_95_2DOF, horizontal_nees
-from edge.bench.walk_errors import track, true_way_m
 from edge.samples import ImuBatch
-from edge.simulation import Simulation
 from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
-from edge.simulation.simulation import UNCALIBRATED_SENSORS
-from edge.tracker.config import EskfConfig
-from edge.tracker.error_model import GYRO_BIAS, SIZE
-from edge.tracker.first_rest import believe_rest
-from edge.tracker.port import Quality, Reason
-from edge.tracker.state import new_filter_state
+from edge.simulation.simulation import UNCALIBRATED_SENSORS, Simulation
+from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.error_state import GYRO_BIAS, SIZE
+from edge.tracker.foot.filter.initial_gyro_bias import update_from_rest
+from edge.tracker.foot.state import new_filter_state
+from edge.tracker.interface import Quality, Reason
+from tests.bench.tracker.honesty import inertial
+from tests.bench.tracker.scoring import CHI2_95_2DOF, horizontal_nees
+from tests.bench.tracker.walk_errors import track, true_way_m
 
 RATE_HZ = 200
 WALKED_S = 4.0  # when the recording begins, a second into the walk
@@ -101,8 +100,8 @@ def test_a_foot_that_sways_does_not_rest():
     before = state["covariance"].copy()
     state["rest_rate_radps"][2] = 0.03
     state["rest_rate_var_rad2ps2"] = (0.5 * 0.03) ** 2
-    believe_rest(state, config)
+    update_from_rest(state, config)
     assert np.array_equal(state["covariance"], before)
     state["rest_rate_var_rad2ps2"] = (0.02 * 0.03) ** 2
-    believe_rest(state, config)
+    update_from_rest(state, config)
     assert state["covariance"][GYRO_BIAS + 2, GYRO_BIAS + 2] > 0.03**2

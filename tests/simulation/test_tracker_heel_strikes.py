@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.bench.honesty import inertial
-from edge.simulation import Simulation
 from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
-from edge.tracker.config import EskfConfig
-from edge.tracker.eskf import EskfTracker
-from edge.tracker.rows import join_rows
+from edge.simulation.simulation import Simulation
+from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.eskf import EskfTracker
+from edge.tracker.foot.output.track_rows import join_rows
+from tests.bench.tracker.honesty import inertial
 
 LEGS = (Stand(4.0), Walk(((50.0, 0.0), (0.0, 0.0))), Stand(2.0))
 STRIKE_MPS = 0.2  # of velocity, up or down, that a strike leaves in the samples
@@ -60,8 +60,8 @@ def test_a_strike_is_put_right_and_not_the_swing_before_it(seed, clips):
     if clips:
         description, hard = clipped(description, hard)
     by_swing_m, by_strike_m = (
-        rms_rise_m(track(description, hard, no_floor._replace(unseen_per_strike=doubt)))
-        for doubt in (0.0, no_floor.unseen_per_strike)
+        rms_rise_m(track(description, hard, no_floor._replace(curvature_noise_per_strike=doubt)))
+        for doubt in (0.0, no_floor.curvature_noise_per_strike)
     )
     assert by_swing_m > 0.05
     assert by_strike_m < 0.7 * by_swing_m

@@ -7,7 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.bench.honesty import (
+from edge.simulation.imu import GRAVITY_MPS2
+from edge.simulation.legs import Crawl, Stand, Walk
+from edge.simulation.scenario import Scenario
+from edge.simulation.simulation import CONSUMER_SENSORS, Simulation
+from edge.tracker.interface import Reason
+from tests.bench.tracker.honesty import (
     Honesty,
     ending,
     ending_of,
@@ -15,14 +20,8 @@ from edge.bench.honesty import (
     inertial,
     nees_bounds,
 )
-from edge.bench.walk_errors import rms, track
-from edge.simulation import Simulation
-from edge.simulation.imu import GRAVITY_MPS2
-from edge.simulation.legs import Crawl, Stand, Walk
-from edge.simulation.scenario import Scenario
-from edge.simulation.simulation import CONSUMER_SENSORS
-from edge.tracker.port import Reason
-from tests.walking import walk
+from tests.bench.tracker.walk_errors import rms, track
+from tests.rig.exact_strides import walk
 
 SEEDS = range(12)
 NEES_BOUNDS = nees_bounds(len(SEEDS))

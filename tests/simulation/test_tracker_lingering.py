@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.bench.honesty import inertial
-from edge.bench.wearers import KINDS, Wearer, Wore, stray, wearers_table
-from edge.simulation import Simulation
 from edge.simulation.legs import Kneel, Sit, Stand, Wait
 from edge.simulation.scenario import Scenario
-from edge.tracker.error_model import GYRO_BIAS
-from edge.tracker.eskf import EskfTracker
+from edge.simulation.simulation import Simulation
+from edge.tracker.foot.error_state import GYRO_BIAS
+from edge.tracker.foot.eskf import EskfTracker
+from tests.bench.tracker.honesty import inertial
+from tests.bench.tracker.wearers import KINDS, Wearer, Wore, stray, wearers_table
 
 
 @pytest.mark.parametrize("seed", [103, 104])

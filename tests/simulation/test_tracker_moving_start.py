@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.bench.walk_errors import track
-from tests.walking import part, walk
+from tests.bench.tracker.walk_errors import track
+from tests.rig.exact_strides import part, walk
 
 MADE = walk(strides=6, start_s=2.0)
 SWING_S, STRIDE_M = 0.7, 1.3

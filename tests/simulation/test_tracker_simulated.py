@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from edge.samples import ImuBatch
-from edge.simulation import open_simulation
-from edge.tracker.eskf import EskfTracker
-from edge.tracker.rows import join_rows
-from edge.tracker.strapdown import rotation_matrix
+from edge.simulation.factory import open_simulation
+from edge.tracker.foot.eskf import EskfTracker
+from edge.tracker.foot.filter.strapdown import rotation_matrix
+from edge.tracker.foot.output.track_rows import join_rows
 
 SEEDS = range(6)
 # 95 % of the mean of six chi-square values with two degrees of freedom: chi2(12) / 6.

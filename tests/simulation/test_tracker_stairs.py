@@ -9,8 +9,8 @@ from edge.samples import ImuBatch
 from edge.simulation.legs import Spiral, Stairs, Stand, Turn, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
-from edge.tracker.eskf import EskfTracker
-from edge.tracker.rows import join_rows
+from edge.tracker.foot.eskf import EskfTracker
+from edge.tracker.foot.output.track_rows import join_rows
 
 RISERS = 9  # a flight; two flights and a landing a floor
 

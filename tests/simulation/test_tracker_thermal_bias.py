@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from edge.samples import ImuBatch
-from edge.tracker.eskf import EskfTracker
-from edge.tracker.rows import join_rows
-from tests.walking import walk
+from edge.tracker.foot.eskf import EskfTracker
+from edge.tracker.foot.output.track_rows import join_rows
+from tests.rig.exact_strides import walk
 
 PER_K_RADPS = np.array([1e-4, -1.5e-4, 2e-4])
 MADE = walk(strides=40)

@@ -8,11 +8,11 @@ import math
 import numpy as np
 import pytest
 
-from base_station.bench.incident.run import Floats, Person, Run, Timing, draw_incident, fuse
-from base_station.bench.incident.scores import CHI2_95_2DOF, FAR_M
-from base_station.fusion.port import FuserKind, Start
+from base_station.fusion.interface import FuserKind, Start
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.plan import read_plan
+from tests.rig.incident.run import Floats, Person, Run, Timing, draw_incident, fuse
+from tests.rig.incident.scores import CHI2_95_2DOF, FAR_M
 
 PEOPLE = 3
 
@@ -61,18 +61,18 @@ def test_saved_inside_and_restored_it_goes_on_with_the_very_same_numbers(
     person = people[1]
     grid = FloorGrid.of(read_plan(person.building.geojson()))
     straight = kind.new()
-    straight.consider(grid)
+    straight.set_map(grid)
     north_m, east_m = person.truth.place_m[0, :2]
     straight.start(Start(north_m, east_m, 0.0, person.turn_rad, 0.5, 0.1))
     half, end = 300, 500
     for row in range(half):
-        straight.advance(person.positions[row])
+        straight.predict(person.positions[row])
     restored = kind.restore(straight.save())
-    restored.consider(grid)
+    restored.set_map(grid)
     for row in range(half, end):
         position = person.positions[row]
-        straight.advance(position)
-        restored.advance(position)
+        straight.predict(position)
+        restored.predict(position)
         assert restored.estimate() == straight.estimate()
     assert restored.save() == straight.save()
 
@@ -83,17 +83,17 @@ def test_a_gap_in_the_radio_is_not_taken_for_a_walk_through_walls(
     """Half a minute is missing again and again; the way between is not a straight one."""
     person = people[0]
     fuser = kind.new()
-    fuser.consider(FloorGrid.of(read_plan(person.building.geojson())))
+    fuser.set_map(FloorGrid.of(read_plan(person.building.geojson())))
     truth, off_m = person.truth, []
     for row in range(len(truth.t_s)):
         t_s = float(truth.t_s[row])
         inside = truth.goes_in_s + 60.0 < t_s < truth.comes_out_s
         if inside and t_s % 90.0 < 30.0:
             continue
-        fuser.advance(person.positions[row])
+        fuser.predict(person.positions[row])
         fix = person.fixes.get(row)
         if fix is not None:
-            fuser.correct(fix)
+            fuser.update_gnss(fix)
         estimate = fuser.estimate()
         assert estimate is not None
         if inside:

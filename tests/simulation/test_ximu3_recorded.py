@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from edge.app.track import run_tracker
 from edge.samples import ImuBatch
-from edge.sources.line_place import LinePlace
 from edge.sources.recording import RecordingSource
-from edge.sources.ximu3 import Ximu3Source
-from edge.track_command import run_tracker
+from edge.sources.transport.address import TransportAddress
+from edge.sources.ximu3.source import Ximu3Source
 from shared.clock import ManualClock
-from tests.ximu3_device import played
+from tests.rig.ximu3_device import played
 
 CHUNK = 16  # messages that come at once
 
@@ -49,7 +49,7 @@ def test_the_path_is_that_of_the_recording(
 ) -> None:
     recording = RecordingSource(walks / "xio" / "short_walk")
     line = PlayedLine(recording.imu, binary)
-    monkeypatch.setattr(LinePlace, "open", lambda _: line)
+    monkeypatch.setattr(TransportAddress, "open", lambda _: line)
     live = run_tracker(line.source, "eskf", quiet=True)
     meant = run_tracker(recording, "eskf", quiet=True)
     distinct = len(np.unique(recording.imu.t_ns))

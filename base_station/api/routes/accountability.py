@@ -1,45 +1,60 @@
-"""The roll call (PAR), work and rest of who is on duty in the open incident."""
+"""PAR, work and rest of who is on duty in the open incident."""
 
 from __future__ import annotations
 
+import uuid
 from typing import Annotated
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, StringConstraints
 
-from base_station.accountability import LONGEST_S, SHORTEST_S
-from base_station.api.acting import Act
-from base_station.api.forms import Form, Id, UnitId
+from base_station.api.authentication import Viewer
+from base_station.api.forms import ID, Form, Id, UnitId, UnitIdOrNone
+from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
 from base_station.api.routes.commands import CrewTarget, Target, UnitTarget
-from base_station.api.security import Viewer
 from base_station.api.services import Station
+from base_station.core.accountability import LONGEST_S, SHORTEST_S
 from base_station.views.wire import DutyView, IncidentView, PersonView
-from shared.messages.station import CheckIn, SetAccountability, SetRest
+from shared.messages.station import CheckIn, SetAccountability, SetRest, UndoConfirmation
 
 router = APIRouter(tags=["accountability"])
 
 Seconds = Annotated[float, Field(ge=SHORTEST_S, le=LONGEST_S)]
 
 
+CheckInId = Annotated[str, StringConstraints(pattern=ID)]
+
+
 class OnDuty(BaseModel):
-    """Somebody who is to be heard from."""
+    """A member whose PAR is to be confirmed."""
 
     unit_id: str
     person_id: str
     name: str
     crew: str
-    state: str  # green | warning | overdue
-    left_s: float  # until the next check-in is due; negative: overdue
-    checked_in_ms: int
-    checked_in_by: str
+    state: str  # green | not_confirmed | warning | overdue
+    left_s: float  # until the next PAR is due; negative: overdue
+    checked_in_ms: int | None  # at the last PAR confirmation; None: not yet confirmed
+    checked_in_by: str  # self: the member; radio: who entered it; empty: not yet confirmed
     asked_ms: int | None
     work_since_ms: int | None
     rest_since_ms: int | None
+    confirmed: str  # self: by the member's own unit | radio | not_yet
+    on_duty_ms: int
+    located: bool  # a message of the unit has come in this incident
+    entry_id: str  # of a confirmation by radio: the check-in, or the command; else empty
 
 
 class NewCheckIn(Form):
+    """PAR confirmed by radio."""
+
     target: Target
+    check_in_id: CheckInId | None = None  # of the client's choice, to undo it by; None: any
+
+
+class UndoCheckIn(Form):
+    unit_id: UnitIdOrNone = ""  # empty: of all whom the check-in confirmed
 
 
 class Times(Form):
@@ -53,7 +68,7 @@ class Rest(Form):
 
 @router.get("/accountability")
 def list_on_duty(station: Station, _: Viewer) -> list[OnDuty]:
-    """Who is to be heard from, the most urgent first."""
+    """Whose PAR is to be confirmed, the most urgent first."""
     picture = station.picture()
     incident = picture.incident
     if incident is None or incident.closed_ms is not None:
@@ -74,42 +89,62 @@ def usual_times(station: Station, _: Viewer) -> Times:
 
 
 @router.post("/check-ins", status_code=204)
-def check_in(new: NewCheckIn, act: Act) -> None:
-    """Somebody has heard from them: that, and nothing that a unit measures, completes a PAR."""
+def check_in(new: NewCheckIn, perform: Perform) -> None:
+    """PAR by radio.  It resolves the alarm that the PAR is overdue, and no other alarm."""
     unit_id = new.target.unit_id if isinstance(new.target, UnitTarget) else ""
     crew = new.target.crew if isinstance(new.target, CrewTarget) else ""
-    act(CheckIn(unit_id, crew, everyone=not unit_id and not crew))
+    everyone = not unit_id and not crew
+    perform(CheckIn(unit_id, crew, everyone, new.check_in_id or uuid.uuid4().hex))
+
+
+@router.post("/check-ins/{check_in_id}/undo", status_code=204)
+def undo_check_in(check_in_id: Id, perform: Perform, undo: UndoCheckIn | None = None) -> None:
+    """The PAR stands as if this check-in had not been entered.  What members answered on their own
+    units stays.
+    """
+    perform(UndoConfirmation(check_in_id, undo.unit_id if undo else ""))
 
 
 @router.put("/incidents/{incident_id}/accountability", status_code=204)
-def set_times(incident_id: Id, times: Times, station: Station, act: Act) -> None:
+def set_times(incident_id: Id, times: Times, station: Station, perform: Perform) -> None:
     incident = station.picture().incident
     if incident is None or incident.incident_id != incident_id or incident.closed_ms is not None:
         raise Problem(404, f"There is no open incident {incident_id}.")
-    act(SetAccountability(times.par_interval_s, times.work_limit_s))
+    perform(SetAccountability(times.par_interval_s, times.work_limit_s))
 
 
 @router.put("/units/{unit_id}/rest", status_code=204)
-def set_rest(unit_id: UnitId, rest: Rest, act: Act) -> None:
+def set_rest(unit_id: UnitId, rest: Rest, perform: Perform) -> None:
     """The wearer goes to rest, or is ready for work again."""
-    act(SetRest(unit_id, rest.resting))
+    perform(SetRest(unit_id, rest.resting))
 
 
 def _on_duty(
     unit_id: str, person: PersonView, duty: DutyView, incident: IncidentView, now_ms: int
 ) -> OnDuty:
     left_s = (duty.due_ms - now_ms) / 1000.0
-    state = "green" if left_s > incident.par_warning_s else "warning" if left_s > 0 else "overdue"
     return OnDuty(
         unit_id=unit_id,
         person_id=person.person_id,
         name=person.name,
         crew=person.crew,
-        state=state,
+        state=_state(duty, incident, left_s),
         left_s=left_s,
         checked_in_ms=duty.checked_in_ms,
         checked_in_by=duty.checked_in_by,
         asked_ms=duty.asked_ms,
         work_since_ms=duty.work_since_ms,
         rest_since_ms=duty.rest_since_ms,
+        confirmed=duty.confirmed,
+        on_duty_ms=duty.on_duty_ms,
+        located=duty.located,
+        entry_id=duty.entry_id,
     )
+
+
+def _state(duty: DutyView, incident: IncidentView, left_s: float) -> str:
+    if left_s <= 0.0:
+        return "overdue"
+    if left_s <= incident.par_warning_s:
+        return "warning"
+    return "not_confirmed" if duty.confirmed == "not_yet" else "green"

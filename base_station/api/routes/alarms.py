@@ -9,13 +9,13 @@ import msgspec
 from fastapi import APIRouter, Depends
 from pydantic import Field
 
-from base_station.api.acting import Act
-from base_station.api.forms import LAST_MS, AlarmId, Form, Limit, Note, window
+from base_station.api.authentication import Viewer
+from base_station.api.forms import MAX_TIME_MS, AlarmId, Form, Limit, Note, window
+from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.db import models
-from base_station.db.records import Window
+from base_station.storage.db import models
+from base_station.storage.db.records import Window
 from base_station.views.answer import Answer, to_ms
 from base_station.views.station import alarm_view
 from base_station.views.wire import AlarmView
@@ -42,7 +42,7 @@ class AlarmWithLife(AlarmView, frozen=True):
 class Acknowledgement(Form):
     """Of the alarm as it was seen: what has been raised anew since nobody has seen."""
 
-    last_raised_ms: Annotated[int, Field(gt=0, le=LAST_MS)]
+    last_raised_ms: Annotated[int, Field(gt=0, le=MAX_TIME_MS)]
 
 
 class Resolution(Acknowledgement):
@@ -68,20 +68,22 @@ def get_alarm(alarm_id: AlarmId, station: Station, _: Viewer) -> AlarmWithLife:
 
 
 @router.post("/alarms/{alarm_id}/acknowledge", status_code=204)
-def acknowledge(alarm_id: AlarmId, seen: Acknowledgement, station: Station, act: Act) -> None:
+def acknowledge(
+    alarm_id: AlarmId, seen: Acknowledgement, station: Station, perform: Perform
+) -> None:
     """Refused (409) where it has been raised anew since it was seen; so is resolving it."""
     _require_alarm(station, alarm_id)
-    act(AcknowledgeAlarm(alarm_id, seen.last_raised_ms))
+    perform(AcknowledgeAlarm(alarm_id, seen.last_raised_ms))
 
 
 @router.post("/alarms/{alarm_id}/resolve", status_code=204)
-def resolve(alarm_id: AlarmId, resolution: Resolution, station: Station, act: Act) -> None:
+def resolve(alarm_id: AlarmId, resolution: Resolution, station: Station, perform: Perform) -> None:
     _require_alarm(station, alarm_id)
-    act(ResolveAlarm(alarm_id, resolution.note, resolution.last_raised_ms))
+    perform(ResolveAlarm(alarm_id, resolution.note, resolution.last_raised_ms))
 
 
 def _alarm_or_404(station: Services, alarm_id: str) -> models.Alarm:
-    station.settle()  # an alarm on the screen may be newer than the store
+    station.wait_for_projection()  # an alarm on the screen may be newer than the store
     alarm = station.records.alarm(alarm_id)
     if alarm is None:
         raise Problem(404, "There is no such alarm.")

@@ -1,17 +1,17 @@
-"""How good an incident's positions were, said by the station itself."""
+"""Accuracy report of an incident."""
 
 from __future__ import annotations
 
 import msgspec
 from fastapi import APIRouter
 
+from base_station.api.authentication import Viewer
 from base_station.api.forms import Id
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import hindsight_of
-from base_station.api.security import Viewer
 from base_station.api.services import Station
-from base_station.assessment.report import IncidentReport, with_people
-from base_station.assessment.wearers import wearers
+from base_station.replay.assessment.report import IncidentReport, with_people
+from base_station.replay.assessment.wearers import wearers
 
 router = APIRouter(tags=["incidents"])
 
@@ -21,7 +21,7 @@ def assess_incident(incident_id: Id, station: Station, _: Viewer) -> IncidentRep
     """What was promised at the time, and how it stands up to what is known afterwards."""
     incident = incident_or_404(station, incident_id)
     live = station.records.tracks_of(incident)
-    hindsight = hindsight_of(station)
-    report = hindsight.assess(incident, live)
+    post_processor = hindsight_of(station)
+    report = post_processor.assess(incident, live)
     named = with_people(report, wearers(station.roster, incident))
-    return msgspec.structs.replace(named, is_newest=hindsight.is_newest(incident))
+    return msgspec.structs.replace(named, is_newest=post_processor.is_newest(incident))

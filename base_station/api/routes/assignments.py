@@ -1,4 +1,4 @@
-"""Who wears which unit."""
+"""Assignments of units to people."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Annotated
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
-from base_station.api.acting import Act
+from base_station.api.authentication import Viewer
 from base_station.api.forms import Form, Limit, PersonIdText, UnitId, UnitIdText, window
+from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
-from base_station.api.security import Viewer
 from base_station.api.services import Station
-from base_station.db.records import Window
+from base_station.storage.db.records import Window
 from base_station.views.answer import to_ms, to_ms_or_none
 from shared.messages.station import Assign, Unassign
 
@@ -54,15 +54,15 @@ def list_assignments(
 
 
 @router.post("/assignments", status_code=204)
-def assign(new: NewAssignment, station: Station, act: Act) -> None:
+def assign(new: NewAssignment, station: Station, perform: Perform) -> None:
     """From now on this person wears this unit, and no other."""
     person = station.roster.person(new.person_id)
     if person is None:
         raise Problem(404, "There is no such person.")
-    act(Assign(new.unit_id, person.person_id, person.name, person.crew, person.role))
+    perform(Assign(new.unit_id, person.person_id, person.name, person.crew, person.role))
 
 
 @router.delete("/assignments/{unit_id}", status_code=204)
-def unassign(unit_id: UnitId, act: Act) -> None:
+def unassign(unit_id: UnitId, perform: Perform) -> None:
     """Nobody wears this unit from now on."""
-    act(Unassign(unit_id))
+    perform(Unassign(unit_id))

@@ -1,4 +1,4 @@
-"""Who did what."""
+"""Audit of operator actions."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import Annotated
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
-from base_station.api.forms import Limit, window
-from base_station.api.security import Administrator
+from base_station.api.authentication import Administrator, Viewer
+from base_station.api.forms import IdempotencyKey, Limit, window
+from base_station.api.problems import Problem
 from base_station.api.services import Station
-from base_station.db.records import Window
+from base_station.core.idempotency import audit_entry_prefixes
+from base_station.storage.db.records import Window
 from base_station.views.answer import to_ms
 
 router = APIRouter(tags=["audit"])
@@ -22,6 +24,24 @@ class AuditEntry(BaseModel):
     by: str
     action: str
     detail: str
+
+
+class CarriedOut(BaseModel):
+    """What was done with an Idempotency-Key."""
+
+    action: str
+    t_ms: int
+
+
+@router.get("/idempotency-keys/{key}")
+def get_carried_out(key: IdempotencyKey, station: Station, who: Viewer) -> CarriedOut:
+    """For who had no answer: whether the request with this key, of the same person, was carried
+    out.  404: it was not so far, or it was refused.
+    """
+    entry = station.records.audited(audit_entry_prefixes(who.username, key.strip('"')))
+    if entry is None:
+        raise Problem(404, "Nothing was carried out with this Idempotency-Key.")
+    return CarriedOut(action=entry.action, t_ms=to_ms(entry.t_ns))
 
 
 @router.get("/audit")

@@ -7,14 +7,15 @@ from typing import Annotated
 from fastapi import APIRouter, Body, Query, Response
 from pydantic import BaseModel
 
-from base_station.api.forms import MOST_UPLOADED_BYTES, Id
-from base_station.api.photos import clean_map
+from base_station.api.authentication import Administrator, AuthenticatedRoute, Viewer
+from base_station.api.document import file_response
+from base_station.api.forms import MAX_UPLOAD_BYTES, Id
+from base_station.api.images import normalize_map
 from base_station.api.problems import Problem
-from base_station.api.security import Administrator, AfterLogin, Viewer
 from base_station.api.services import Station
 from base_station.site.base_map import DEGREES, Corners, corners_of
 
-router = APIRouter(tags=["site"], route_class=AfterLogin)
+router = APIRouter(tags=["site"], route_class=AuthenticatedRoute)
 
 LatLon = tuple[float, float]
 
@@ -34,7 +35,7 @@ def get_base_map(station: Station, _: Viewer) -> BaseMap | None:
     return None if found is None else _view(*found)
 
 
-@router.put("/site/base-map", max_body_size=MOST_UPLOADED_BYTES)
+@router.put("/site/base-map", max_body_size=MAX_UPLOAD_BYTES)
 def set_base_map(
     image: Annotated[bytes, Body(media_type="image/png")],
     world: Annotated[list[float], Query(min_length=6, max_length=6)],
@@ -45,8 +46,8 @@ def set_base_map(
     """PNG, JPEG or WebP, written anew without its metadata; ``world``: the numbers of its world
     file, in the order of its lines; ``crs``: the grid that they are in, by its EPSG number.
     """
-    with station.darkroom:
-        webp, image_hash, (width_px, height_px), smaller = clean_map(image)
+    with station.image_lock:
+        webp, image_hash, (width_px, height_px), smaller = normalize_map(image)
     a, d, b, e, c, f = world
     half = 0.5 * (smaller - 1.0)  # the middle of a larger pixel
     moved = [*(smaller * value for value in (a, d, b, e)), c + half * (a + b), f + half * (d + e)]
@@ -63,7 +64,9 @@ def remove_base_map(station: Station, who: Administrator) -> None:
     station.records.audit(who.username, "RemovedBaseMap", "")
 
 
-@router.get("/site/base-map/{image_hash}", response_class=Response)
+@router.get(
+    "/site/base-map/{image_hash}", response_class=Response, responses=file_response("image/webp")
+)
 def get_base_map_image(image_hash: Id, station: Station, _: Viewer) -> Response:
     webp = station.base_maps.image(image_hash)
     if webp is None:

@@ -1,4 +1,4 @@
-"""What units are told, and how far that has got with each of them."""
+"""Commands to units, and their delivery to each of them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Annotated, Literal
 from fastapi import APIRouter
 from pydantic import Discriminator, Field, Tag
 
-from base_station.api.acting import Act
-from base_station.api.forms import Form, Id, Note, UnitIdText, Word
+from base_station.api.authentication import Viewer
+from base_station.api.forms import Form, Id, Note, ShortText, UnitIdText
+from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.views.wire import CommandView
 from shared.messages import CommandKind
-from shared.messages.station import ConfirmCommand, SendCommand
+from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmation
 
 router = APIRouter(tags=["commands"])
 
@@ -34,7 +34,7 @@ class UnitTarget(Form):
 
 
 class CrewTarget(Form):
-    crew: Annotated[Word, Field(min_length=1)]
+    crew: Annotated[ShortText, Field(min_length=1)]
 
 
 class EveryoneTarget(Form):
@@ -82,7 +82,7 @@ def get_command(command_id: Id, station: Station, _: Viewer) -> CommandView:
 
 
 @router.post("/commands", status_code=201)
-def send(new: NewCommand, station: Station, act: Act) -> CommandView:
+def send(new: NewCommand, station: Station, perform: Perform) -> CommandView:
     """It is sent to each unit until that answers, ``expires_s`` from now at the latest."""
     action = SendCommand(
         command_id=uuid.uuid4().hex,
@@ -94,14 +94,25 @@ def send(new: NewCommand, station: Station, act: Act) -> CommandView:
         position_rate_hz=new.position_rate_hz if new.kind is Kind.SET_POSITION_RATE else 0.0,
         lasts_s=new.expires_s,
     )
-    return _command_or_404(station, act(action).made_id)
+    return _command_or_404(station, perform(action).created_id)
 
 
 @router.post("/commands/{command_id}/confirm", status_code=204)
-def confirm(command_id: Id, by_voice: Confirmation, station: Station, act: Act) -> None:
-    """Somebody has heard from the wearer in another way: that acknowledges the command."""
+def confirm(command_id: Id, by_radio: Confirmation, station: Station, perform: Perform) -> None:
+    """The member answered by radio: that acknowledges the command."""
     _command_or_404(station, command_id)
-    act(ConfirmCommand(command_id, by_voice.unit_id))
+    perform(ConfirmCommand(command_id, by_radio.unit_id))
+
+
+@router.post("/commands/{command_id}/confirm/undo", status_code=204)
+def undo_confirm(
+    command_id: Id, by_radio: Confirmation, station: Station, perform: Perform
+) -> None:
+    """The command waits again for this member, whose answer by radio was entered in error; so does
+    the PAR that it confirmed.
+    """
+    _command_or_404(station, command_id)
+    perform(UndoConfirmation(command_id, by_radio.unit_id))
 
 
 def _command_or_404(station: Services, command_id: str) -> CommandView:

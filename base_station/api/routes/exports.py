@@ -8,11 +8,12 @@ from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 
 from base_station.accounts.principals import Principal
+from base_station.api.authentication import Viewer
+from base_station.api.document import file_response
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import TrailKind, trails_of
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.exporters import EXPORTERS
 from base_station.exporters.incident import incident_tracks
@@ -40,7 +41,11 @@ def list_formats(_: Viewer) -> list[Format]:
     ]
 
 
-@router.get("/incidents/{incident_id}/export/{format_name}", response_class=Response)
+@router.get(
+    "/incidents/{incident_id}/export/{format_name}",
+    response_class=Response,
+    responses=file_response("*/*"),
+)
 async def export_incident(
     incident_id: Id,
     format_name: Id,
@@ -49,7 +54,7 @@ async def export_incident(
     kind: TrailKind = TrailKind.FUSED,
 ) -> Response:
     """``kind``: what was shown at the time, or the trails as they are known afterwards."""
-    async with station.copying:
+    async with station.export_lock:
         return await run_in_threadpool(_export, incident_id, format_name, station, who, kind)
 
 

@@ -7,19 +7,25 @@ from collections.abc import Collection
 from fastapi import APIRouter
 from pydantic import BaseModel
 
+from base_station.api.authentication import Administrator
 from base_station.api.forms import Form, Id, Name
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
-from base_station.api.security import Administrator
 from base_station.api.services import Services, Station
-from base_station.forgetting.desk import Forgetting, ForgettingDesk
+from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue
 from base_station.views.wire import CommandView
+from shared.errors import UserError
+from shared.messages.station import Unassign
 
 router = APIRouter(tags=["forgetting"])
 
 
-class Confirmation(Form):
+class NameConfirmation(Form):
     name: Name  # of what is to be forgotten, as it is shown: it cannot be undone
+
+
+class PersonConfirmation(NameConfirmation):
+    unassign: bool = False  # what the person wears; else that is refused
 
 
 class Progress(BaseModel):
@@ -42,37 +48,64 @@ def list_forgettings(station: Station, _: Administrator) -> list[Progress]:
 
 @router.post("/people/{person_id}/forget", status_code=202)
 def forget_person(
-    person_id: Id, confirmation: Confirmation, station: Station, who: Administrator
+    person_id: Id, confirmation: PersonConfirmation, station: Station, who: Administrator
 ) -> Progress:
     """Name, photo and everywhere the person was; goes on until it is done, whoever is started
     again meanwhile.  Who was removed from the roster is known by every name of before.
     """
-    desk = _desk(station)
+    _desk(station)
     person = station.roster.person(person_id)
     names = station.roster.names_of(person_id) if person is None else {person.name}
     if not names:
         raise Problem(404, "There is no such person.")
     _require_name(confirmation, names)
     worn = station.roster.worn_by(person_id)
-    if worn:
-        raise Problem(409, f"{confirmation.name} wears {', '.join(worn)}; unassign that first.")
-    return _progress(desk.add(who.username, "person", person_id))
+    if worn and not confirmation.unassign:
+        units = ", ".join(worn)
+        raise Problem(
+            409, f"{confirmation.name} wears {units}; unassign that first, or send unassign."
+        )
+    return _progress(_accept(station, who.username, "person", person_id))
 
 
 @router.post("/incidents/{incident_id}/forget", status_code=202)
 def forget_incident(
-    incident_id: Id, confirmation: Confirmation, station: Station, who: Administrator
+    incident_id: Id, confirmation: NameConfirmation, station: Station, who: Administrator
 ) -> Progress:
     """Who was there and where; its name, its times and that there were alarms stay."""
-    desk = _desk(station)
+    _desk(station)
     incident = incident_or_404(station, incident_id)
     _require_name(confirmation, {incident.name})
     if incident.closed_ns is None:
         raise Problem(409, f"The incident {incident.name} is open; close it first.")
-    return _progress(desk.add(who.username, "incident", incident_id))
+    return _progress(_accept(station, who.username, "incident", incident_id))
 
 
-def _desk(station: Services) -> ForgettingDesk:
+def accept_from_command(station: Services, by: str, kind: str, subject_id: str) -> ErasureJob:
+    """Accepts an order of a command at the station's machine, which has had the name confirmed
+    there.  Raises UserError with the reason where it is refused.
+    """
+    refusal = None if station.ha_status is None else station.ha_status.refusal()
+    if refusal is not None:
+        raise UserError(f"nothing was changed: {refusal}")
+    try:
+        return _accept(station, by, kind, subject_id)
+    except Problem as problem:
+        raise UserError(problem.detail) from problem
+
+
+def _accept(station: Services, by: str, kind: str, subject_id: str) -> ErasureJob:
+    """What a person wears is unassigned: else what the unit goes on saying would be forgotten
+    never.
+    """
+    desk = _desk(station)
+    if kind == "person":
+        for unit_id in station.roster.worn_by(subject_id):
+            station.perform(by, Unassign(unit_id))
+    return desk.add(by, kind, subject_id)
+
+
+def _desk(station: Services) -> ErasureQueue:
     if station.forgettings is None:
         raise Problem(409, "This station only replays; nothing can be changed here.")
     incident = station.picture().incident
@@ -84,7 +117,7 @@ def _desk(station: Services) -> ForgettingDesk:
             "A message has not reached all to whom it goes, and would not any more: wait until it "
             "has, or its time is over.",
         )
-    station.settle()  # what still is to be stored would be stored afterwards
+    station.wait_for_projection()  # what still is to be stored would be stored afterwards
     return station.forgettings
 
 
@@ -92,12 +125,12 @@ def _is_under_way(command: CommandView) -> bool:
     return any(one.state in {"queued", "sent"} for one in command.units)
 
 
-def _require_name(confirmation: Confirmation, names: Collection[str]) -> None:
+def _require_name(confirmation: NameConfirmation, names: Collection[str]) -> None:
     if confirmation.name not in names:
         raise Problem(422, "The name is another: give it exactly as it is shown.")
 
 
-def _progress(one: Forgetting) -> Progress:
+def _progress(one: ErasureJob) -> Progress:
     return Progress(
         forgetting_id=one.forgetting_id,
         by=one.by,

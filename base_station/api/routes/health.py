@@ -1,12 +1,12 @@
-"""How the station itself is."""
+"""Health of the station itself."""
 
 from __future__ import annotations
 
 import msgspec
 from fastapi import APIRouter
 
+from base_station.api.authentication import Viewer
 from base_station.api.problems import Problem
-from base_station.api.security import Viewer
 from base_station.api.services import Station
 from base_station.views.answer import Answer, to_ms
 from base_station.views.wire import HealthView

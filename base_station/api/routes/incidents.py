@@ -10,17 +10,18 @@ from typing import Annotated
 
 import msgspec
 from fastapi import APIRouter, Depends
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
-from base_station.alarms import ALARMS
-from base_station.api.acting import Act
-from base_station.api.forms import Form, Id, Limit, Name, window
+from base_station.api.authentication import Viewer
+from base_station.api.forms import AlarmIdText, Form, Id, Limit, Name, UnitIdText, window
+from base_station.api.idempotent_request import Perform
+from base_station.api.incident_closing import closing_obstacles
 from base_station.api.problems import Problem
 from base_station.api.routes.accountability import Seconds
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.db import models
-from base_station.db.records import FOREVER_NS, Window
+from base_station.core.alarms import ALARMS
+from base_station.storage.db import models
+from base_station.storage.db.records import FOREVER_NS, Window
 from base_station.views.answer import Answer, to_ms, to_ms_or_none
 from base_station.views.station import alarm_view
 from base_station.views.wire import AlarmView
@@ -28,6 +29,8 @@ from shared.clock import NS_PER_S
 from shared.messages.station import CloseIncident, OpenIncident
 
 router = APIRouter(tags=["incidents"])
+
+MOST_NAMED = 2000
 
 _LEVELS = {rule.name: rule.levels for rule in ALARMS}
 
@@ -58,6 +61,13 @@ class NewIncident(Form):
     work_limit_s: Seconds | None = None
 
 
+class Closing(Form):
+    """Over what the incident is closed knowingly: what has come up since nobody has seen."""
+
+    despite_alarm_ids: Annotated[tuple[AlarmIdText, ...], Field(max_length=MOST_NAMED)] = ()
+    despite_unit_ids: Annotated[tuple[UnitIdText, ...], Field(max_length=MOST_NAMED)] = ()
+
+
 def incident_or_404(station: Services, incident_id: str) -> models.Incident:
     incident = station.records.incident(incident_id)
     if incident is None:
@@ -78,7 +88,7 @@ def list_incidents(
 
 
 @router.post("/incidents", status_code=201)
-def open_incident(new: NewIncident, station: Station, act: Act) -> Incident:
+def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incident:
     opened = datetime.fromtimestamp(station.clock.utc_ns() / NS_PER_S, UTC)
     incident_id = f"{opened:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
     usual = station.accountability
@@ -88,7 +98,7 @@ def open_incident(new: NewIncident, station: Station, act: Act) -> Incident:
         new.par_interval_s or usual.par_interval_s,
         new.work_limit_s or usual.work_limit_s,
     )
-    incident = station.records.incident(act(opening).made_id)
+    incident = station.records.incident(perform(opening).created_id)
     if incident is None:
         raise Problem(503, "The incident is open, but the database has not taken it yet.")
     return _incident(incident)
@@ -100,9 +110,21 @@ def get_incident(incident_id: Id, station: Station, _: Viewer) -> Incident:
 
 
 @router.post("/incidents/{incident_id}/close", status_code=204)
-def close_incident(incident_id: Id, station: Station, act: Act) -> None:
+def close_incident(
+    incident_id: Id, station: Station, perform: Perform, closing: Closing | None = None
+) -> None:
+    """Refused (409), with their names, where alarms of units are open or people are inside that
+    are not in ``closing``; the problem has all their ids as members of the same names.  Orders of
+    the incident that have no answer yet are withdrawn.
+    """
     incident_or_404(station, incident_id)
-    act(CloseIncident(incident_id))
+    despite = closing or Closing()
+    alarm_ids, unit_ids = despite.despite_alarm_ids, despite.despite_unit_ids
+    picture = station.picture()
+    running = picture.incident
+    if running is not None and running.incident_id == incident_id and running.closed_ms is None:
+        closing_obstacles(picture).require_known(alarm_ids, unit_ids)
+    perform(CloseIncident(incident_id, alarm_ids, unit_ids))
 
 
 @router.get("/incidents/{incident_id}/alarms")
@@ -121,7 +143,7 @@ def incident_alarms(
 
 
 def _past_alarm(
-    alarm: models.Alarm, life: Sequence[models.AlarmLife], was_open: Window
+    alarm: models.Alarm, life: Sequence[models.AlarmTransition], was_open: Window
 ) -> PastAlarm:
     levels = _LEVELS.get(alarm.rule, ())
     anew = (now for before, now in pairwise(life) if _is_raised_anew(before, now, levels))
@@ -133,7 +155,9 @@ def _past_alarm(
     return PastAlarm(**msgspec.structs.asdict(alarm_view(alarm)), raisings=raisings)
 
 
-def _is_raised_anew(before: models.AlarmLife, now: models.AlarmLife, levels: Sequence[str]) -> bool:
+def _is_raised_anew(
+    before: models.AlarmTransition, now: models.AlarmTransition, levels: Sequence[str]
+) -> bool:
     """It happened again, or got worse; one that nobody had acknowledged may also have eased."""
     known = before.level in levels and now.level in levels
     eased = known and levels.index(now.level) < levels.index(before.level)

@@ -10,11 +10,18 @@ import msgspec
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from starlette.concurrency import run_in_threadpool
 
+from base_station.api.authentication import (
+    CHANGE_FIRST,
+    Scope,
+    is_own_origin,
+    must_change_password,
+    principal_of,
+    scope_covers,
+)
 from base_station.api.hub import Client, Hub
-from base_station.api.security import Scope, covers, is_own_origin, principal_of
 from base_station.api.services import Services, services_of
-from base_station.program.recurring_trouble import RecurringTrouble
 from shared.errors import StoreError
+from shared.log_on_change import LogOnChange
 
 router = APIRouter(tags=[Scope.LIVE])
 
@@ -113,14 +120,14 @@ async def _listen(socket: WebSocket, client: Client) -> None:
             msgspec.json.decode(await socket.receive_text(), type=Request)
         except (msgspec.DecodeError, KeyError):
             raise Closing(NOT_UNDERSTOOD, 'all that can be asked is {"type": "snapshot"}') from None
-        client.ask_for_snapshot()
+        client.request_snapshot()
 
 
 async def _keep_checking(socket: WebSocket, services: Services) -> None:
     """A session that ended takes its WebSockets along; a disk that does not tell blinds nobody who
     was let in.
     """
-    trouble = RecurringTrouble(_log, "whether a console may look on cannot be seen")
+    trouble = LogOnChange(_log, "whether a console may look on cannot be seen")
     while True:
         await asyncio.sleep(CHECK_LOGIN_S)
         with trouble:
@@ -137,7 +144,9 @@ async def _check_login(socket: WebSocket, services: Services) -> None:
         raise StoreError("the station's disk does not answer; check it") from None
     if principal is None:
         raise Closing(NOT_LOGGED_IN, "log in first")
-    if not covers(principal, (Scope.LIVE,)):
+    if must_change_password(principal, services):
+        raise Closing(NOT_LOGGED_IN, CHANGE_FIRST)
+    if not scope_covers(principal, (Scope.LIVE,)):
         raise Closing(NOT_LOGGED_IN, "this token is not for the live picture")
 
 

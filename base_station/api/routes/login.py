@@ -9,11 +9,13 @@ from pydantic import BaseModel, StringConstraints
 
 from base_station.accounts.passwords import MAX_PASSWORD
 from base_station.accounts.principals import Principal
+from base_station.api.admission import Queue
+from base_station.api.authentication import COOKIE, Viewer, must_change_password
 from base_station.api.forms import Form, Name
+from base_station.api.login_throttle import Throttle
 from base_station.api.problems import Problem
-from base_station.api.security import COOKIE, Throttle, Viewer
 from base_station.api.services import Services, Station
-from base_station.db.accounts import HAND_OVER_S, SESSION_S
+from base_station.storage.db.accounts import HAND_OVER_S, SESSION_S
 
 router = APIRouter(tags=["login"])
 
@@ -26,10 +28,15 @@ class Credentials(Form):
 class Me(BaseModel):
     username: str
     role: str
+    must_change_password: bool
 
 
-def _me(principal: Principal) -> Me:
-    return Me(username=principal.username, role=principal.role.word)
+def _me(principal: Principal, station: Services) -> Me:
+    return Me(
+        username=principal.username,
+        role=principal.role.word,
+        must_change_password=must_change_password(principal, station),
+    )
 
 
 class Ticket(BaseModel):
@@ -44,23 +51,34 @@ class ShownTicket(Form):
 
 
 @router.post("/login")
-def log_in(
+async def log_in(
     credentials: Credentials,
     request: Request,
     response: Response,
     station: Station,
     throttle: Throttle,
+    queue: Queue,
 ) -> Me:
     address = request.client.host if request.client else ""
-    throttle.check(address, credentials.username)
+    is_known = throttle.check(address, credentials.username)
+    me = await queue.run(
+        lambda: _log_in(credentials, address, request, response, station), is_known=is_known
+    )
+    throttle.record_login(address, me.username)
+    return me
+
+
+def _log_in(
+    credentials: Credentials, address: str, request: Request, response: Response, station: Services
+) -> Me:
     secret = station.accounts.log_in(credentials.username, credentials.password)
     principal = None if secret is None else station.accounts.of_session(secret)
     if secret is None or principal is None:
         station.records.audit(credentials.username, "LoginRefused", address)
         raise Problem(401, "Name or password is wrong.")
     station.records.audit(principal.username, "LoggedIn", address)
-    _give_cookie(request, response, station, secret)
-    return _me(principal)
+    give_cookie(request, response, station, secret)
+    return _me(principal, station)
 
 
 @router.post("/login/hand-over")
@@ -69,18 +87,18 @@ def go_on(
 ) -> Me:
     """Log in with a ticket of the other station, once."""
     address = request.client.host if request.client else ""
-    throttle.check_place(address)
+    throttle.check_network(address)
     secret = station.accounts.take_over(shown.ticket)
     principal = None if secret is None else station.accounts.of_session(secret)
     if secret is None or principal is None:
-        throttle.note_refused(address)
+        throttle.record_refusal(address)
         raise Problem(401, "This ticket is of no use (any more); log in.")
     station.records.audit(principal.username, "WentOn", address)
-    _give_cookie(request, response, station, secret)
-    return _me(principal)
+    give_cookie(request, response, station, secret)
+    return _me(principal, station)
 
 
-def _give_cookie(request: Request, response: Response, station: Services, secret: str) -> None:
+def give_cookie(request: Request, response: Response, station: Services, secret: str) -> None:
     """In the place of the session that the browser had, which is over."""
     before = request.cookies.get(COOKIE)
     if before is not None:
@@ -110,5 +128,5 @@ def hand_over(request: Request, station: Station, _: Viewer) -> Ticket:
 
 
 @router.get("/me")
-def me(principal: Viewer) -> Me:
-    return _me(principal)
+def me(principal: Viewer, station: Station) -> Me:
+    return _me(principal, station)

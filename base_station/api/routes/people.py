@@ -4,27 +4,28 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Body, Response
+from fastapi import APIRouter, Body, Query, Response
 
-from base_station.api.acting import Act
-from base_station.api.forms import MOST_UPLOADED_BYTES, Form, Id, Name, Word
-from base_station.api.photos import clean_photo
+from base_station.api.authentication import AuthenticatedRoute, Commander, Viewer
+from base_station.api.document import file_response
+from base_station.api.forms import MAX_UPLOAD_BYTES, Form, Id, Name, ShortText
+from base_station.api.idempotent_request import Perform
+from base_station.api.images import normalize_photo
 from base_station.api.problems import Problem
-from base_station.api.security import AfterLogin, Commander, Viewer
 from base_station.api.services import Services, Station
-from base_station.db import models
+from base_station.storage.db import models
 from base_station.views.wire import PersonView
 from shared.messages.station import Assign
 
-router = APIRouter(tags=["people"], route_class=AfterLogin)
+router = APIRouter(tags=["people"], route_class=AuthenticatedRoute)
 
 _NO_PERSON = "There is no such person."
 
 
 class PersonForm(Form):
     name: Name
-    crew: Word = ""
-    role: Word = ""
+    crew: ShortText = ""
+    role: ShortText = ""
 
 
 def _person(person: models.Person, station: Services) -> PersonView:
@@ -43,11 +44,11 @@ def list_people(station: Station, _: Viewer) -> list[PersonView]:
 
 
 @router.post("/people", status_code=201)
-def add_person(form: PersonForm, station: Station, act: Act) -> PersonView:
-    person = station.roster.add_person(form.name, form.crew, form.role, act.row_id)
-    act.require_row(person.person_id)
+def add_person(form: PersonForm, station: Station, perform: Perform) -> PersonView:
+    person = station.roster.add_person(form.name, form.crew, form.role, perform.row_id)
+    perform.require_row(person.person_id)
     added = {f"added-{person.person_id}": ("AddedPerson", f"{person.person_id} {form.name}")}
-    station.records.audit_once(act.by, added)
+    station.records.audit_once(perform.by, added)
     return _person(person, station)
 
 
@@ -66,7 +67,7 @@ def change_person(person_id: Id, form: PersonForm, station: Station, who: Comman
     if person is None:
         raise Problem(404, _NO_PERSON)
     for unit_id in station.roster.worn_by(person_id):
-        station.act(who.username, Assign(unit_id, person_id, form.name, form.crew, form.role))
+        station.perform(who.username, Assign(unit_id, person_id, form.name, form.crew, form.role))
     station.records.audit(who.username, "ChangedPerson", f"{person_id} {form.name}")
     return _person(person, station)
 
@@ -78,7 +79,7 @@ def remove_person(person_id: Id, station: Station, who: Commander) -> None:
     station.records.audit(who.username, "RemovedPerson", person_id)
 
 
-@router.put("/people/{person_id}/photo", status_code=204, max_body_size=MOST_UPLOADED_BYTES)
+@router.put("/people/{person_id}/photo", status_code=204, max_body_size=MAX_UPLOAD_BYTES)
 def set_photo(
     person_id: Id,
     photo: Annotated[bytes, Body(media_type="image/jpeg")],
@@ -88,18 +89,24 @@ def set_photo(
     """JPEG, PNG or WebP; kept as a small square without its metadata."""
     if station.roster.person(person_id) is None:
         raise Problem(404, _NO_PERSON)
-    with station.darkroom:
-        jpeg, photo_hash = clean_photo(photo)
+    with station.image_lock:
+        jpeg, photo_hash = normalize_photo(photo)
     person = station.roster.set_photo(person_id, jpeg, photo_hash)
     if person is None:
         raise Problem(404, _NO_PERSON)
     for unit_id in station.roster.worn_by(person_id):
-        station.act(who.username, Assign(unit_id, person_id, person.name, person.crew, person.role))
+        station.perform(
+            who.username, Assign(unit_id, person_id, person.name, person.crew, person.role)
+        )
     station.records.audit(who.username, "SetPhoto", person_id)
 
 
-@router.get("/people/{person_id}/photo", response_class=Response)
-def get_photo(person_id: Id, station: Station, _: Viewer) -> Response:
+@router.get(
+    "/people/{person_id}/photo", response_class=Response, responses=file_response("image/jpeg")
+)
+def get_photo(
+    person_id: Id, station: Station, _: Viewer, _version: Annotated[str, Query(alias="v")] = ""
+) -> Response:
     found = station.roster.photo(person_id)
     if found is None:
         raise Problem(404, "There is no photo of this person.")

@@ -9,10 +9,10 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import Field
 
-from base_station.api.acting import Act
-from base_station.api.forms import LAST_MS, Form, Id, Metres, Note, UnitIdText, Word
+from base_station.api.authentication import Viewer
+from base_station.api.forms import MAX_TIME_MS, Form, Id, Metres, Note, ShortText, UnitIdText
+from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
 from base_station.views.wire import BeaconView, PinView
 from shared.clock import NS_PER_MS
@@ -30,7 +30,7 @@ router = APIRouter(tags=["pins"])
 _NO_PIN = "There is no such pin."
 _NO_BEACON = "There is no such beacon."
 
-Milliseconds = Annotated[int, Field(ge=0, le=LAST_MS)]
+Milliseconds = Annotated[int, Field(ge=0, le=MAX_TIME_MS)]
 Std = Annotated[float, Field(gt=0.0, le=1000.0)]
 Floor = Annotated[int, Field(ge=-100, le=1000)]
 Heading = Annotated[float, Field(ge=-2 * math.pi, le=2 * math.pi)]
@@ -67,7 +67,7 @@ class MeetingForm(Form):
 
 
 class BeaconForm(Form):
-    label: Word = ""
+    label: ShortText = ""
     north_m: Metres
     east_m: Metres
     floor: Floor | None = None
@@ -87,49 +87,49 @@ def list_pins(station: Station, _: Viewer) -> list[PinView]:
 
 
 @router.post("/pins", status_code=201)
-def set_pin(form: PinForm, station: Station, act: Act) -> PinView:
+def set_pin(form: PinForm, station: Station, perform: Perform) -> PinView:
     """This unit was here then: its whole past is solved again."""
-    done = act(_place_pin(station, uuid.uuid4().hex, form))
-    return _pin_or_404(station, done.made_id)
+    done = perform(_place_pin(station, uuid.uuid4().hex, form))
+    return _pin_or_404(station, done.created_id)
 
 
 @router.post("/pins/start", status_code=201)
-def start_together(form: StartForm, station: Station, act: Act) -> list[PinView]:
+def start_together(form: StartForm, station: Station, perform: Perform) -> list[PinView]:
     """These units were together here: where their paths begin, or then."""
     said = form.model_dump(exclude={"t_ms", "unit_ids"})
     unit_ids = tuple(form.unit_ids)
     action = StartTogether(uuid.uuid4().hex, unit_ids, form.t_ms * NS_PER_MS, **said)
-    made = f"{act(action).made_id}:"
+    made = f"{perform(action).created_id}:"
     return [view for view in station.picture().pins if view.pin_id.startswith(made)]
 
 
 @router.post("/pins/meeting", status_code=201)
-def set_meeting(form: MeetingForm, station: Station, act: Act) -> PinView:
+def set_meeting(form: MeetingForm, station: Station, perform: Perform) -> PinView:
     """Two people met; nobody has to know where."""
     met = uuid.uuid4().hex, form.unit_id, form.other_unit_id
     action = SetMeeting(*met, _time(station, form.t_ms), form.std_m, form.note)
-    return _pin_or_404(station, act(action).made_id)
+    return _pin_or_404(station, perform(action).created_id)
 
 
 @router.put("/pins/{pin_id}")
-def move_pin(pin_id: Id, form: PinForm, station: Station, act: Act) -> PinView:
+def move_pin(pin_id: Id, form: PinForm, station: Station, perform: Perform) -> PinView:
     """Take the pin back and set it as said now; what is left out stays as it was, the time too."""
     before = _pin_or_404(station, pin_id)
     if before.kind not in {"place", "start"}:
         raise Problem(409, f"This pin is a {before.kind}; remove it, and set another.")
     left_out = _PIN_MAY_KEEP - form.model_fields_set
     form = form.model_copy(update={name: getattr(before, name) for name in left_out})
-    act(_place_pin(station, pin_id, form))
+    perform(_place_pin(station, pin_id, form))
     return _pin_or_404(station, pin_id)
 
 
 @router.delete("/pins/{pin_id}", status_code=204)
-def remove_pin(pin_id: Id, station: Station, act: Act) -> None:
+def remove_pin(pin_id: Id, station: Station, perform: Perform) -> None:
     """Everything is then as if it had never been set."""
     pins = station.picture().pins
     if not any(pin_id in (one.pin_id, one.pin_id.partition(":")[0]) for one in pins):
         raise Problem(404, _NO_PIN)
-    act(RemovePin(pin_id))
+    perform(RemovePin(pin_id))
 
 
 @router.get("/beacons")
@@ -138,7 +138,7 @@ def list_beacons(station: Station, _: Viewer) -> list[BeaconView]:
 
 
 @router.put("/beacons/{beacon_id}")
-def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, act: Act) -> BeaconView:
+def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, perform: Perform) -> BeaconView:
     """Say where a beacon or tag hangs, or that it hangs elsewhere than was said: what is left out
     then stays as it was.
     """
@@ -146,7 +146,7 @@ def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, act: Act) ->
     if before is not None:
         left_out = _BEACON_MAY_KEEP - form.model_fields_set
         form = form.model_copy(update={name: getattr(before, name) for name in left_out})
-    act(PlaceBeacon(beacon_id, **form.model_dump()))
+    perform(PlaceBeacon(beacon_id, **form.model_dump()))
     placed = _beacon(station, beacon_id)
     if placed is None:  # somebody else has just removed it
         raise Problem(404, _NO_BEACON)
@@ -154,10 +154,10 @@ def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, act: Act) ->
 
 
 @router.delete("/beacons/{beacon_id}", status_code=204)
-def remove_beacon(beacon_id: Id, station: Station, act: Act) -> None:
+def remove_beacon(beacon_id: Id, station: Station, perform: Perform) -> None:
     if _beacon(station, beacon_id) is None:
         raise Problem(404, _NO_BEACON)
-    act(RemoveBeacon(beacon_id))
+    perform(RemoveBeacon(beacon_id))
 
 
 def _place_pin(station: Services, pin_id: str, form: PinForm) -> SetPin:

@@ -7,13 +7,13 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.api.forms import LAST_MS, Form, Id, PersonIdText, UnitIdText
+from base_station.api.authentication import Commander, Viewer
+from base_station.api.forms import MAX_TIME_MS, Form, Id, PersonIdText, UnitIdText
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
-from base_station.api.security import Commander, Viewer
 from base_station.api.services import Services, Station
-from base_station.recordings.desk import Pull, RecordingDesk
-from base_station.recordings.fetch import Wanted
+from base_station.unit_sync.recordings.transfer import TransferRequest
+from base_station.unit_sync.recordings.transfer_queue import Pull, TransferQueue
 from base_station.views.answer import to_ms
 from shared.clock import NS_PER_MS
 
@@ -25,8 +25,8 @@ class NewPull(Form):
 
     unit_id: UnitIdText
     incident_id: PersonIdText | None = None
-    from_ms: Annotated[int | None, Field(ge=0, le=LAST_MS)] = None
-    to_ms: Annotated[int | None, Field(ge=0, le=LAST_MS)] = None  # left out: now
+    from_ms: Annotated[int | None, Field(ge=0, le=MAX_TIME_MS)] = None
+    to_ms: Annotated[int | None, Field(ge=0, le=MAX_TIME_MS)] = None  # left out: now
 
 
 class Recording(BaseModel):
@@ -53,7 +53,7 @@ def fetch_recording(new: NewPull, station: Station, who: Commander) -> Recording
     desk = _desk(station)
     if new.unit_id not in station.roster.registered_units():
         raise Problem(404, f"There is no unit {new.unit_id}.")
-    pull = desk.add(who.username, Wanted(new.unit_id, *_window(station, new)))
+    pull = desk.add(who.username, TransferRequest(new.unit_id, *_window(station, new)))
     said = f"{new.unit_id} from {pull.wanted.from_ns} to {pull.wanted.to_ns}"
     station.records.audit(who.username, "FetchedRecording", said)
     return _recording(pull)
@@ -78,7 +78,7 @@ def _window(station: Services, new: NewPull) -> tuple[int, int]:
     return new.from_ms * NS_PER_MS, now_ns if new.to_ms is None else new.to_ms * NS_PER_MS
 
 
-def _desk(station: Services) -> RecordingDesk:
+def _desk(station: Services) -> TransferQueue:
     if station.recordings is None:
         raise Problem(404, "A station that only replays has no units to ask.")
     return station.recordings

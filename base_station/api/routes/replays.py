@@ -14,13 +14,13 @@ from fastapi import APIRouter, Request
 from pydantic import Field
 
 from base_station.accounts.principals import Principal, Role
-from base_station.api.forms import LAST_MS, Form, Id, PersonIdText
+from base_station.api.authentication import Viewer
+from base_station.api.forms import MAX_TIME_MS, Form, Id, PersonIdText
 from base_station.api.problems import Problem
 from base_station.api.replays import OpenReplay
 from base_station.api.routes.incidents import incident_or_404
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.past.replay import FASTEST, SLOWEST
+from base_station.replay.session import FASTEST, SLOWEST
 from base_station.views.wire import ReplayView
 from shared.clock import NS_PER_MS
 
@@ -38,7 +38,7 @@ class NewReplay(Form):
 class ReplayChange(Form):
     """What is given is changed: first the place, then the speed, then whether it plays."""
 
-    at_ms: Annotated[int, Field(ge=0, le=LAST_MS)] | None = None
+    at_ms: Annotated[int, Field(ge=0, le=MAX_TIME_MS)] | None = None
     speed: Speed | None = None
     playing: bool | None = None
 
@@ -86,7 +86,7 @@ def change_replay(replay_id: Id, change: ReplayChange, station: Station, who: Vi
 def end_replay(replay_id: Id, station: Station, who: Viewer) -> None:
     """One's own; a commander may end anybody's; nobody the one that a station was started for."""
     replay = _replay_or_404(station, replay_id)
-    if replay.lasting:
+    if replay.persistent:
         raise Problem(403, "This replay is for all; it ends with the command that shows it.")
     if not _is_own(replay, who):
         if who.role < Role.COMMANDER:

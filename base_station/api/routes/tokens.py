@@ -8,10 +8,10 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from base_station.accounts.principals import Role
+from base_station.api.authentication import Scope, Viewer
 from base_station.api.forms import Form, Id, Name
 from base_station.api.problems import Problem
 from base_station.api.routes.users import RoleWord
-from base_station.api.security import Scope, Viewer
 from base_station.api.services import Station
 from base_station.views.answer import to_ms, to_ms_or_none
 from shared.clock import NS_PER_S

@@ -1,4 +1,4 @@
-"""Where units were: one point a second, or fewer."""
+"""Tracks of units: one point a second, or fewer."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import msgspec
 from fastapi import APIRouter, Depends, Query, Response
 from starlette.concurrency import run_in_threadpool
 
+from base_station.api.authentication import Viewer
 from base_station.api.forms import Id, UnitId, window
 from base_station.api.routes.incidents import incident_or_404, window_of
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.db.records import TrackSample, Window
+from base_station.storage.db.records import TrackSample, Window
 from base_station.views.answer import Answer, to_ms
 
 router = APIRouter(tags=["tracks"])
@@ -56,7 +56,7 @@ async def incident_tracks(
     incident_id: Id, station: Station, _: Viewer, every_s: EverySeconds = 1
 ) -> Response:
     """Of every unit that moved while the incident was open."""
-    async with station.copying:
+    async with station.export_lock:
         return await run_in_threadpool(_incident_tracks, incident_id, station, every_s)
 
 

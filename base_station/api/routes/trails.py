@@ -1,22 +1,22 @@
-"""Where units were: by their own path alone, as it was shown, and as it is known afterwards."""
+"""Trails of units: raw, as they were shown, and post-processed."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, cast
 
 import msgspec
 from fastapi import APIRouter, Query, Response
 
+from base_station.api.authentication import Viewer
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.db import models
-from base_station.db.records import TrackSample
-from base_station.past.hindsight import Hindsight, Tracks
+from base_station.replay.post_processing import PostProcessor, Tracks
+from base_station.storage.db import models
+from base_station.storage.db.records import TrackSample
 from base_station.views.answer import Answer, to_ms
 from shared.clock import NS_PER_S
 
@@ -63,15 +63,20 @@ def incident_trails(
         kind,
         to_ms(made_ns),
         kind is TrailKind.FUSED or hindsight_of(station).is_newest(incident),
-        tuple(Trail(unit_id, _points(track, every_s)) for unit_id, track in tracks.items()),
+        tuple(_encoded(Trail(unit_id, _points(tracks[unit_id], every_s))) for unit_id in tracks),
     )
     return Response(msgspec.json.encode(body), media_type="application/json")
 
 
-def hindsight_of(station: Services) -> Hindsight:
-    if station.hindsight is None:
+def _encoded(trail: Trail) -> Trail:
+    """Encoded at once: the points of all units are large."""
+    return cast("Trail", msgspec.Raw(msgspec.json.encode(trail)))
+
+
+def hindsight_of(station: Services) -> PostProcessor:
+    if station.post_processor is None:
         raise Problem(503, "This station has no log to work it out from.")
-    return station.hindsight
+    return station.post_processor
 
 
 def trails_of(station: Services, incident: models.Incident, kind: TrailKind) -> tuple[int, Tracks]:
@@ -85,7 +90,7 @@ def trails_of(station: Services, incident: models.Incident, kind: TrailKind) -> 
 
 
 def _points(track: Sequence[TrackSample], every_s: int) -> tuple[Point, ...]:
-    """Of every ``every_s`` seconds the first one."""
+    """Takes the first point of every ``every_s`` seconds."""
     points: list[Point] = []
     last_s = -1
     for sample in track:

@@ -8,12 +8,12 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from base_station.api.acting import Act
-from base_station.api.forms import Form, Metres, UnitId, UnitIdOrNone, UnitIdText, Word
+from base_station.api.authentication import Viewer
+from base_station.api.forms import Form, Metres, ShortText, UnitId, UnitIdOrNone, UnitIdText
+from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
-from base_station.api.security import Viewer
 from base_station.api.services import Services, Station
-from base_station.db import models
+from base_station.storage.db import models
 from base_station.views.answer import to_ms_or_none
 from shared.channels import validate_unit_id
 from shared.messages.station import RegisterUnit, SetReference, SetStart
@@ -37,11 +37,11 @@ class Unit(BaseModel):
 
 class NewUnit(Form):
     unit_id: UnitIdText
-    label: Word = ""
+    label: ShortText = ""
 
 
 class Label(Form):
-    label: Word
+    label: ShortText
 
 
 class Start(Form):
@@ -66,38 +66,38 @@ def list_units(station: Station, _: Viewer) -> list[Unit]:
 
 
 @router.post("/units", status_code=201)
-def register_unit(new: NewUnit, station: Station, act: Act) -> Unit:
+def register_unit(new: NewUnit, station: Station, perform: Perform) -> Unit:
     """From now on messages of this unit are believed; registering again changes its label."""
     validate_unit_id(new.unit_id)
-    act(RegisterUnit(new.unit_id, new.label))
+    perform(RegisterUnit(new.unit_id, new.label))
     return _one(station, new.unit_id)
 
 
 @router.put("/units/{unit_id}")
-def label_unit(unit_id: UnitId, change: Label, station: Station, act: Act) -> Unit:
+def label_unit(unit_id: UnitId, change: Label, station: Station, perform: Perform) -> Unit:
     unit = station.roster.unit(unit_id)
     if unit is None or unit.registered_ns is None:
         raise Problem(404, f"There is no registered unit {unit_id}.")
-    act(RegisterUnit(unit_id, change.label))
+    perform(RegisterUnit(unit_id, change.label))
     return _one(station, unit_id)
 
 
 @router.put("/units/{unit_id}/start", status_code=204)
-def set_start(unit_id: UnitId, start: Start, station: Station, act: Act) -> None:
+def set_start(unit_id: UnitId, start: Start, station: Station, perform: Perform) -> None:
     if station.roster.unit(unit_id) is None:
         raise Problem(404, f"There is no unit {unit_id}.")
-    act(SetStart(unit_id, **start.model_dump()))
+    perform(SetStart(unit_id, **start.model_dump()))
 
 
 @router.put("/reference-barometer", status_code=204)
-def set_reference(reference: Reference, station: Station, act: Act) -> None:
+def set_reference(reference: Reference, station: Station, perform: Perform) -> None:
     """Whose barometer stays where it is and tells the weather for everybody; empty: nobody's.
     Where a start says where that unit stands, its satellite receiver tells what all receivers of
     the site err by.
     """
     if reference.unit_id and station.roster.unit(reference.unit_id) is None:
         raise Problem(404, f"There is no unit {reference.unit_id}.")
-    act(SetReference(reference.unit_id, reference.down_m))
+    perform(SetReference(reference.unit_id, reference.down_m))
 
 
 def _one(station: Services, unit_id: str) -> Unit:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel, StringConstraints
 
 from base_station.accounts.passwords import MAX_PASSWORD, MIN_PASSWORD
 from base_station.accounts.principals import Role
+from base_station.api.authentication import Administrator, Viewer
 from base_station.api.forms import Form, Name
+from base_station.api.login_throttle import Throttle
 from base_station.api.problems import Problem
-from base_station.api.security import Administrator, Throttle, Viewer
+from base_station.api.routes.login import give_cookie
 from base_station.api.services import Station
 from base_station.views.answer import to_ms
 
@@ -90,12 +92,21 @@ def end_sessions(username: Username, station: Station, who: Administrator) -> No
 
 @router.post("/me/password", status_code=204)
 def change_own_password(
-    change: PasswordChange, station: Station, who: Viewer, throttle: Throttle
+    change: PasswordChange,
+    station: Station,
+    who: Viewer,
+    throttle: Throttle,
+    request: Request,
+    response: Response,
 ) -> None:
-    """Ends all sessions of the user, this one too."""
-    throttle.check("own password", who.username)
+    """Ends all sessions of the user, this one too; who had to change it goes on with another."""
+    throttle.check_account(who.username)
+    if change.new_password == change.old_password:
+        raise Problem(422, "The new password is the old one; choose another.")
     if not station.accounts.is_right(who.username, change.old_password):
         station.records.audit(who.username, "PasswordRefused", "")
         raise Problem(403, "The old password is wrong.")
     station.accounts.change_user(who.username, change.new_password, None)
     station.records.audit(who.username, "ChangedOwnPassword", "")
+    if who.must_change_password:
+        give_cookie(request, response, station, station.accounts.begin_session(who.username))

@@ -1,49 +1,43 @@
 /** The station's REST API, as far as the console uses it. */
+import type * as answers from "./answers";
 import type { Assessment } from "./assessment";
 import type { Target } from "./live/commands";
-import { BASE, act, call, file, id, page, wholeList } from "./call";
-import type { AlarmView, AnchorView, BeaconView, CommandView, PinView, TrailPoint } from "./wire";
+import { BASE, act, call, file, id, page, fetchAllPages } from "./http";
+import type { AlarmView, AnchorView, BeaconView, CommandView, PinView } from "./wire";
 
 /** Each may do what those before it may. */
 export const ROLES = ["viewer", "commander", "administrator"] as const;
 export type Role = (typeof ROLES)[number];
 
-export interface Me {
-  username: string;
-  role: Role;
-}
+/** The document of the API has the role as a string. */
+type WithRole<Answer> = Omit<Answer, "role"> & { role: Role };
+export type Me = WithRole<answers.Me>;
+export type User = WithRole<answers.User>;
+export type Token = WithRole<answers.Token>;
+export type NewToken = Required<answers.NewToken>;
+export type AuditEntry = answers.AuditEntry;
+export type Person = answers.PersonView;
+export type UnitDetails = answers.Unit;
+export type Incident = answers.Incident;
+export type PastAlarm = answers.PastAlarm;
+/** What an incident is closed over knowingly. */
+export type Despite = Required<answers.Closing>;
+/** How often everybody is to be heard from, and when to send them to rest. */
+export type Times = answers.Times;
+export type RunningReplay = answers.Replay;
+export type BaseMap = answers.BaseMap;
+export type LatLon = BaseMap["upper_left"];
+export type ReplayChange = answers.ReplayChange;
+export type Forgetting = answers.Progress;
+export type ExportFormat = answers.Format;
+export type NewPin = Required<Omit<answers.PinForm, "heading_rad" | "heading_std_rad">>;
+export type Start = Required<Omit<answers.StartForm, "heading_std_rad">>;
+export type TrailsAnswer = answers.Trails;
+/** What became of a request that had no answer; the station refuses (404) what it has not done. */
+export type CarriedOut = answers.CarriedOut;
+export type CommandKind = Exclude<answers.Kind, "set_position_rate">;
 
-export interface User {
-  username: string;
-  role: Role;
-  created_ms: number;
-  sessions: number; // that are open
-}
-
-export interface Token {
-  token_id: string;
-  name: string;
-  role: Role;
-  scopes: string[]; // empty: all
-  expires_ms: number | null;
-}
-
-export interface NewToken {
-  name: string;
-  role: string;
-  scopes: string[];
-  days: number | null;
-}
-
-export interface AuditEntry {
-  entry_id: string;
-  t_ms: number;
-  by: string;
-  action: string;
-  detail: string; // JSON of an operator's action, or a sentence
-}
-
-/** Parts of the API that a token can be for (base_station/api/security.py). */
+/** Parts of the API that a token can be for (base_station/api/authentication.py). */
 export const SCOPES = [
   "accountability",
   "alarms",
@@ -65,67 +59,7 @@ export const SCOPES = [
   "tracks",
   "units",
   "users",
-] as const;
-
-export interface Person {
-  person_id: string;
-  name: string;
-  crew: string;
-  role: string;
-  photo_url: string | null;
-}
-
-export interface UnitDetails {
-  unit_id: string;
-  software_version: string;
-  sensor_name: string;
-  tracker: string;
-  calibration: string;
-  has_gps: boolean;
-}
-
-export interface Incident {
-  incident_id: string;
-  name: string;
-  opened_ms: number;
-  closed_ms: number | null;
-}
-
-export interface PastAlarm {
-  alarm_id: string;
-  unit_id: string;
-  priority: number;
-  text: string;
-  raised_ms: number;
-  raisings: { t_ms: number; text: string }[]; // at first and anew
-}
-
-export type CommandKind = "evacuate" | "par_request" | "text" | "locate";
-
-/** How often everybody is to be heard from, and when to send them to rest. */
-export interface Times {
-  par_interval_s: number;
-  work_limit_s: number;
-}
-
-export interface RunningReplay {
-  replay_id: string;
-  incident_id: string;
-  begun_by: string; // a user; empty: the station, for all
-}
-
-/** Degrees. */
-export type LatLon = readonly [number, number];
-
-/** The picture of the ground about the site; what lies between the corners goes in proportion. */
-export interface BaseMap {
-  image_url: string;
-  upper_left: LatLon;
-  upper_right: LatLon;
-  lower_left: LatLon;
-}
-
-export type ReplayChange = { playing?: boolean; speed?: number; at_ms?: number };
+] as const satisfies readonly answers.Scope[];
 
 export const login = (username: string, password: string) =>
   call<Me>("POST", "/login", { username, password });
@@ -144,19 +78,6 @@ export const setPhoto = (personId: string, photo: Blob) =>
   call<void>("PUT", `/people/${id(personId)}/photo`, photo);
 
 export const units = () => call<UnitDetails[]>("GET", "/units");
-/** A wish to forget, and how far it is (base_station/forgetting/desk.py). */
-export interface Forgetting {
-  forgetting_id: string;
-  by: string;
-  kind: "person" | "incident";
-  subject_id: string;
-  state: "waiting" | "working" | "done" | "failed";
-  problem: string;
-  share: number; // of the log that was looked through
-  records: number; // of the log that changed or went
-  files: number;
-}
-
 export const forgettings = () => call<Forgetting[]>("GET", "/forgettings");
 export const forgetPerson = (personId: string, name: string) =>
   call<Forgetting>("POST", `/people/${id(personId)}/forget`, { name });
@@ -187,16 +108,11 @@ export const openIncident = (name: string, times: Partial<Times>) =>
 export const usualTimes = () => call<Times>("GET", "/accountability/usual");
 export const setTimes = (incidentId: string, times: Times) =>
   call<void>("PUT", `/incidents/${id(incidentId)}/accountability`, times);
-export const closeIncident = (incidentId: string) =>
-  act<void>("POST", `/incidents/${id(incidentId)}/close`);
+/** Over the alarms and the people inside that are named, and nothing else. */
+export const closeIncident = (incidentId: string, despite: Despite) =>
+  act<void>("POST", `/incidents/${id(incidentId)}/close`, despite);
 export const incidentAlarms = (incidentId: string) =>
-  wholeList<PastAlarm>(`/incidents/${id(incidentId)}/alarms`, (alarm) => alarm.raised_ms);
-
-export interface ExportFormat {
-  name: string;
-  suffix: string;
-  needs_anchor: boolean;
-}
+  fetchAllPages<PastAlarm>(`/incidents/${id(incidentId)}/alarms`, (alarm) => alarm.raised_ms);
 
 export const exportFormats = () => call<ExportFormat[]>("GET", "/export-formats");
 export const exported = (incidentId: string, format: string, kind: string) =>
@@ -218,8 +134,15 @@ export const setPositionRate = (unitId: string, rateHz: number) =>
   });
 export const confirmCommand = (commandId: string, unitId: string) =>
   act<void>("POST", `/commands/${id(commandId)}/confirm`, { unit_id: unitId });
+export const undoConfirmCommand = (commandId: string, unitId: string) =>
+  act<void>("POST", `/commands/${id(commandId)}/confirm/undo`, { unit_id: unitId });
 
-export const checkIn = (target: Target) => act<void>("POST", "/check-ins", { target });
+/** PAR by radio; by the id it can be undone. */
+export const checkIn = (target: Target, checkInId: string) =>
+  act<void>("POST", "/check-ins", { target, check_in_id: checkInId });
+/** Of one member, or of all whom it confirmed. */
+export const undoCheckIn = (checkInId: string, unitId = "") =>
+  act<void>("POST", `/check-ins/${id(checkInId)}/undo`, { unit_id: unitId });
 export const setRest = (unitId: string, resting: boolean) =>
   act<void>("PUT", `/units/${id(unitId)}/rest`, { resting });
 
@@ -238,40 +161,17 @@ export const endSessions = (username: string) =>
   call<void>("DELETE", `/users/${id(username)}/sessions`);
 export const audit = (untilMs?: number) => call<AuditEntry[]>("GET", `/audit${page(untilMs)}`);
 
-/** Where somebody was. */
-export interface NewPin {
-  unit_id: string;
-  t_ms: number | null; // null: now
-  north_m: number;
-  east_m: number;
-  std_m: number;
-  floor: number | null;
-  note: string;
-}
-
 /** What is left out stays as it was. */
 export type MovedPin = Pick<NewPin, "unit_id" | "north_m" | "east_m"> & Partial<NewPin>;
 export type MovedBeacon = Pick<BeaconView, "beacon_id" | "north_m" | "east_m"> &
   Partial<Omit<BeaconView, "seen_ms">>;
-
-export interface Start extends Omit<NewPin, "unit_id" | "t_ms"> {
-  unit_ids: string[];
-  t_ms: number; // 0: where each path begins
-  heading_rad: number | null;
-}
 
 export const setPin = (pin: NewPin) => act<PinView>("POST", "/pins", pin);
 export const movePin = (pinId: string, pin: MovedPin) =>
   call<PinView>("PUT", `/pins/${id(pinId)}`, pin);
 export const removePin = (pinId: string) => call<void>("DELETE", `/pins/${id(pinId)}`);
 export const startTogether = (start: Start) => act<PinView[]>("POST", "/pins/start", start);
-export const setMeeting = (meeting: {
-  unit_id: string;
-  other_unit_id: string;
-  t_ms: number | null; // null: now
-  std_m: number;
-  note: string;
-}) => act<PinView>("POST", "/pins/meeting", meeting);
+export const setMeeting = (meeting: Required<answers.MeetingForm>) => act<PinView>("POST", "/pins/meeting", meeting);
 export const placeBeacon = (beacon: MovedBeacon) => {
   const { beacon_id, ...place } = beacon;
   return call<BeaconView>("PUT", `/beacons/${id(beacon_id)}`, place);
@@ -279,16 +179,14 @@ export const placeBeacon = (beacon: MovedBeacon) => {
 export const removeBeacon = (beaconId: string) =>
   call<void>("DELETE", `/beacons/${id(beaconId)}`);
 
-export interface TrailsAnswer {
-  trails: { unit_id: string; points: TrailPoint[] }[];
-}
-
 export const trails = (incidentId: string, kind: string) =>
   call<TrailsAnswer>("GET", `/incidents/${id(incidentId)}/trails?kind=${kind}`);
 
 /** Takes some seconds: the smoothed trails are worked out for it. */
 export const assessment = (incidentId: string) =>
   call<Assessment>("GET", `/incidents/${id(incidentId)}/assessment`);
+
+export const carriedOut = (key: string) => call<CarriedOut>("GET", `/idempotency-keys/${id(key)}`);
 
 export const takeOver = () => call<void>("POST", "/standby/take-over");
 

@@ -1,58 +1,12 @@
 /** How good an incident's positions were, as the station assesses it and as people read it. Pure. */
+import type * as answers from "./answers";
 
 /** ISO/IEC 18305: circular, vertical and spherical error in metres, of 50 and of 95 %. */
-export interface Figures {
-  ce50_m: number;
-  ce95_m: number;
-  ve50_m: number;
-  ve95_m: number;
-  se50_m: number;
-  se95_m: number;
-}
-
-export interface PinResidual {
-  pin_id: string;
-  note: string;
-  used: boolean;
-  shown_m: number | null; // from what was shown then; null: nothing was shown, or no place is known
-  trail_m: number; // from the trail as it is known since
-  sigmas: number;
-  floor_right: boolean | null;
-}
-
-/** For how long the light beside the name was which, and why it was not green. */
-export interface TrustSeconds {
-  green_s: number;
-  amber_s: number;
-  red_s: number;
-  causes: [string, number][]; // longest first
-}
-
-export interface UnitAssessment {
-  unit_id: string;
-  people: string[]; // who wore it
-  seconds: number;
-  walked_m: number;
-  stated: Figures | null; // as was promised at the time
-  against_smoothed: Figures | null; // what was shown, against what is known since
-  floor_probability: number | null; // as was promised at the time
-  floor_right: number | null; // part of the time, by what is known since
-  trust: TrustSeconds;
-  pin_residuals: PinResidual[];
-  loop_closure_m: number | null;
-  loop_closure_percent: number | null; // of the way walked
-  reentry_jumps_m: number[];
-  not_used: [string, number][]; // fixes and sightings; by reason, most first
-}
-
-export interface Assessment {
-  incident_id: string;
-  made_ms: number;
-  units: UnitAssessment[];
-  stated: Figures | null; // over all units
-  against_smoothed: Figures | null;
-  is_newest: boolean; // else more of it is coming out of a journal, and is worked out soon
-}
+export type Figures = answers.Figures;
+export type PinResidual = answers.PinResidual;
+export type TrustSeconds = answers.TrustReport;
+export type UnitAssessment = answers.UnitReport;
+export type Assessment = answers.IncidentReport;
 
 /** The terms of the standard, in a few words. */
 export const TERMS: readonly [string, string][] = [

@@ -1,10 +1,10 @@
 /** What people did, from the audit log as the station keeps it, in words and usual units.  Pure. */
-import { dateAndTime, duration, floorName } from "./words";
+import { dateAndTime, duration, floorName } from "./format";
 
 /** By number, as the station's messages have them (shared/messages/command.py). */
 const COMMANDS = ["", "evacuate", "PAR", "message", "locate", "position rate", "reset alarm"];
 /** Says nothing to a person. */
-const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "term"]);
+const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "check_in_id", "entry_id", "term"]);
 /** Where 0 is no number: what it stands for, and nothing where it was left out. */
 const ZEROS = new Map([
   ["t_ns", "where the path begins"],
@@ -16,8 +16,17 @@ const ZEROS = new Map([
 ]);
 const DEGREES = 180 / Math.PI;
 
+/** Where the name alone does not say what was entered. */
+const ACTIONS: Readonly<Record<string, string>> = {
+  CheckIn: "PAR confirmed by radio",
+  ConfirmCommand: "Order answered by radio",
+  UndoConfirmation: "Answer by radio undone",
+};
+
 /** "AcknowledgeAlarm" as "Acknowledge alarm". */
 export function actionWord(action: string): string {
+  const special = ACTIONS[action];
+  if (special !== undefined) return special;
   const words = action.replaceAll(/(?<=[a-z])(?=[A-Z])/g, " ").toLowerCase();
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
@@ -43,6 +52,7 @@ function withNames(detail: string, names: ReadonlyMap<string, string>): string {
 
 function said(name: string, value: unknown): string {
   if (WITHOUT_MEANING.has(name) || value === "" || value === null) return "";
+  if (Array.isArray(value) && value.length === 0) return "";
   if (value === 0 && ZEROS.has(name)) return ZEROS.get(name) ?? "";
   if (name === "resting") return value === true ? "to rest" : "back to work";
   if (typeof value === "boolean") return value ? spaced(name) : "";

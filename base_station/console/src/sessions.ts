@@ -1,12 +1,13 @@
 /** Who is logged in, what is live, and which replay is watched. */
 import { batch, computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
-import { ApiError, UNREACHABLE } from "./call";
-import { arrivedSilent, ticketOf, withoutTicket } from "./live/arrival";
+import { ApiError, UNREACHABLE } from "./http";
+import { arrivalSoundNotice, ticketOf, withoutTicket } from "./live/loginTransfer";
 import { NOT_LOGGED_IN } from "./live/connection";
 import { watchOver } from "./live/failover";
 import { Session } from "./live/session";
-import { notice, reset } from "./view";
+import { followUp } from "./live/unanswered";
+import { notice, reset } from "./uiState";
 import { keepBaseMap } from "./plan/baseMap";
 import { putDown } from "./plan/tools";
 import { soundBlocked, soundOn } from "./sound";
@@ -46,9 +47,11 @@ export async function resume(): Promise<void> {
   const ticket = ticketOf(location.hash);
   if (ticket !== "") history.replaceState(null, "", withoutTicket(location.hash));
   try {
-    begin(await api.me().catch((error) => (ticket === "" ? Promise.reject(error) : api.goOn(ticket))));
+    const me = await api.me().catch((error) => (ticket === "" ? Promise.reject(error) : api.goOn(ticket)));
+    if (me.must_change_password) return; // the login form asks for it
+    begin(me);
     if (ticket !== "" && soundOn.peek() && soundBlocked.peek()) {
-      notice.value = arrivedSilent(location.hash);
+      notice.value = arrivalSoundNotice(location.hash);
     }
   } catch {
     user.value = null;
@@ -148,8 +151,23 @@ export async function attempt<T>(work: Promise<T>): Promise<T | null> {
   } catch (error) {
     if (error instanceof ApiError && error.status === 401) wait();
     notice.value = error instanceof Error ? error.message : String(error);
+    if (error instanceof ApiError && error.key !== null) void resolve(error.key, notice.value);
     return null;
   }
+}
+
+/** The notice becomes what the station says was done. */
+function resolve(key: string, said: string): Promise<void> {
+  let latest = said;
+  return followUp(key, {
+    ask: api.carriedOut,
+    isHeard: () => live.peek()?.picture.link.peek().kind === "up",
+    say: (sentence) => {
+      if (notice.peek() === latest) notice.value = latest = sentence;
+    },
+    wait: (ms) => new Promise((done) => setTimeout(done, ms)),
+    nowMs: () => performance.now(),
+  });
 }
 
 /** Behind the login form, until the same person is back: the station knows nobody here any more. */

@@ -1,7 +1,7 @@
 /** Alarms and a lost station are heard, unless somebody switched that off at this console. */
 import { effect, signal } from "@preact/signals";
 import type { Picture } from "./live/picture";
-import { NOTHING_YET, toneOf, type Tone } from "./live/sounding";
+import { NO_TONES_YET, nextTone, type Tone } from "./live/alarmTones";
 
 const KEPT_AS = "muster-sound";
 
@@ -26,11 +26,11 @@ export function switchSound(on: boolean): void {
 
 /** Sound what a picture brings, until the returned function is called. */
 export function sound(picture: Picture): () => void {
-  let before = NOTHING_YET;
+  let before = NO_TONES_YET;
   return effect(() => {
     void picture.nowMs.value; // goes on without the station too
     if (picture.replay.value !== null) return;
-    const { tone, sounded } = toneOf(
+    const { tone, toneState } = nextTone(
       {
         alarms: picture.openAlarms.value,
         linkLost: picture.link.value.kind === "down",
@@ -38,7 +38,7 @@ export function sound(picture: Picture): () => void {
       },
       before,
     );
-    before = sounded;
+    before = toneState;
     if (tone !== null && soundOn.peek() && !soundBlocked.peek()) play(tone);
   });
 }

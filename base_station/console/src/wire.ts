@@ -1,11 +1,11 @@
-/** What the station says over the WebSocket: the mirror of `base_station/views/wire.py`.
+/** Messages of the station to the console, over the WebSocket.
  *
- * Times are milliseconds since 1970 in station time (in a replay, the time of the incident);
- * positions are metres north, east and down in the incident frame.
+ * Generated from `base_station/views/wire.py`, which describes every field; after a change there
+ * run `python -m tests.rig.console_types`.
  */
-import type { FeatureCollection } from "geojson";
+import type { Plan } from "./plan/planFile";
 
-export type Link = "live" | "stale" | "lost" | "never";
+export type { Plan };
 
 export interface PersonView {
   person_id: string;
@@ -15,24 +15,32 @@ export interface PersonView {
   photo_url: string | null;
 }
 
+export interface SensorTemperatureView {
+  name: string;
+  temperature_degc: number;
+}
+
 export interface StatusView {
   activity: string;
   motionless_s: number;
-  battery: number | null; // 0..1
+  battery: number | null;
   mayday: boolean;
   steps: number;
   distance_m: number;
+  battery_left_s: number | null;
+  battery_state: string;
+  electronics: SensorTemperatureView[];
 }
 
 export interface PositionView {
-  t_ms: number; // the time to which the position belongs
+  t_ms: number;
   north_m: number;
   east_m: number;
   down_m: number;
   floor: number | null;
-  ellipse_major_m: number; // semi-axes of the 95 % region
+  ellipse_major_m: number;
   ellipse_minor_m: number;
-  ellipse_heading_rad: number; // of the major axis, clockwise from north
+  ellipse_heading_rad: number;
   std_down_m: number;
   heading_rad: number;
   heading_std_rad: number;
@@ -42,63 +50,68 @@ export interface PositionView {
   lat_deg: number | null;
   lon_deg: number | null;
   floor_probability: number | null;
-  reach: [number, number][]; // [east_m, north_m]; where a silent wearer may be, by the walls
+  reach: [number, number][];
 }
 
 export interface AlarmView {
   alarm_id: string;
   rule: string;
-  unit_id: string; // empty: the station itself
+  unit_id: string;
   priority: number;
-  state: string; // raised | acknowledged | resolved
+  state: string;
   level: string;
   text: string;
   by: string;
   raised_ms: number;
-  last_raised_ms: number; // at first, or anew: it got worse, or happened again
+  last_raised_ms: number;
   changed_ms: number;
 }
 
-/** While an incident is open: when somebody vouched for the wearer, and work and rest. */
 export interface DutyView {
-  checked_in_ms: number;
+  checked_in_ms: number | null;
   checked_in_by: string;
-  due_ms: number; // of the next check-in
-  asked_ms: number | null; // a roll call was asked for, and is not answered
+  due_ms: number;
+  asked_ms: number | null;
   work_since_ms: number | null;
   rest_since_ms: number | null;
   rest_due_ms: number | null;
+  confirmed: "self" | "radio" | "not_yet";
+  on_duty_ms: number;
+  located: boolean;
+  entry_id: string;
 }
 
-/** How far the place of a unit can be trusted, as a light. */
 export interface TrustView {
   level: "green" | "amber" | "red";
-  reason: string; // empty: green
+  reason: string;
 }
 
-/** Where somebody was, as a person or a beacon told, and what became of it. */
+export interface ClockView {
+  ahead_ms: number;
+  std_ms: number;
+}
+
 export interface PinView {
   pin_id: string;
   kind: "place" | "start" | "meeting" | "beacon" | "tag";
   unit_id: string;
-  other_id: string; // the beacon or tag, or the other unit of a meeting; else empty
-  t_ms: number; // 0: where the unit's path begins
-  north_m: number | null; // null: a meeting, or a beacon that nobody has placed yet
+  other_id: string;
+  t_ms: number;
+  north_m: number | null;
   east_m: number | null;
   floor: number | null;
   std_m: number;
   heading_rad: number | null;
   heading_std_rad: number;
   note: string;
-  by: string; // who set it; the unit itself where that saw it
+  by: string;
   set_ms: number;
   state: "used" | "conflict" | "waiting";
-  residual_m: number | null; // between the pin and the trail
-  sigmas: number | null; // the same in standard deviations of what was expected
-  text: string; // for a person: what it conflicts with, or what it waits for
+  residual_m: number | null;
+  sigmas: number | null;
+  text: string;
 }
 
-/** A beacon or tag that hangs at a known place. */
 export interface BeaconView {
   beacon_id: string;
   label: string;
@@ -107,7 +120,7 @@ export interface BeaconView {
   floor: number | null;
   std_m: number;
   reach_m: number;
-  seen_ms: number | null; // when a unit last saw it
+  seen_ms: number | null;
 }
 
 export interface UnitView {
@@ -115,50 +128,37 @@ export interface UnitView {
   label: string;
   registered: boolean;
   person: PersonView | null;
-  link: Link;
+  link: "live" | "lost" | "never" | "stale";
   last_heard_ms: number | null;
   status: StatusView | null;
   status_ms: number | null;
   ambient_degc: number | null;
-  heat_level: string; // "" | caution | warning | critical
-  heat_used: number; // part of the equipment's heat budget, in this incident
+  heat_level: string;
+  heat_used: number;
   position: PositionView | null;
   inside_since_ms: number | null;
   duty: DutyView | null;
-  alarms: string[]; // ids of the alarms that are not resolved
+  alarms: string[];
   trust: TrustView;
-  clock: ClockView | null; // null: it has not heard the station's time yet
-  cloned: boolean; // two machines speak under its name; one of them is shown
-  gps: string | null; // why its last fix is not used; empty: it is; null: none has come
-  switched_off: boolean; // in order: its silence since is no loss
+  clock: ClockView | null;
+  cloned: boolean;
+  gps: string | null;
+  switched_off: boolean;
+  ambient_ms: number | null;
+  ambient_sensors: SensorTemperatureView[];
 }
 
-/** What a unit knows of the station's time. */
-export interface ClockView {
-  ahead_ms: number; // the unit's own UTC less the station's
-  std_ms: number;
-}
-
-export type DeliveryState =
-  | "queued"
-  | "sent"
-  | "received"
-  | "acknowledged"
-  | "refused"
-  | "expired";
-
-/** How far a command has got with one unit. */
 export interface DeliveryView {
   unit_id: string;
-  state: DeliveryState;
+  state: "queued" | "sent" | "received" | "acknowledged" | "refused" | "expired";
   sent_ms: number | null;
   received_ms: number | null;
   acknowledged_ms: number | null;
-  acknowledged_by: string; // the wearer, or who heard from the wearer
-  reason: string; // of a refusal
+  acknowledged_by: string;
+  reason: string;
+  acknowledged_via: "self" | "radio" | "";
 }
 
-/** What units were told. */
 export interface CommandView {
   command_id: string;
   kind: string;
@@ -166,9 +166,10 @@ export interface CommandView {
   issued_by: string;
   issued_ms: number;
   expires_ms: number;
-  asks_wearer: boolean; // done only when somebody has acknowledged it
-  open: boolean; // more is to come of it
+  asks_wearer: boolean;
+  open: boolean;
   units: DeliveryView[];
+  incident_id: string;
 }
 
 export interface IncidentView {
@@ -176,20 +177,28 @@ export interface IncidentView {
   name: string;
   opened_ms: number;
   closed_ms: number | null;
-  par_interval_s: number; // everybody is to be heard from this often
-  par_warning_s: number; // how long before it is due a check-in is announced
+  par_interval_s: number;
+  par_warning_s: number;
   work_limit_s: number;
 }
 
-/** Which of two stations this is. */
 export interface StandbyView {
   station: string;
-  role: string; // active | standby | waiting
-  url: string; // where consoles find it
-  other: string; // "" while the other has not been heard
-  other_role: string; // "" while it is not heard
+  role: string;
+  url: string;
+  other: string;
+  other_role: string;
   other_url: string;
-  in_step: boolean; // the standby has what the active station has
+  in_step: boolean;
+}
+
+export interface RecordingView {
+  fetch_id: string;
+  unit_id: string;
+  state: string;
+  problem: string;
+  done_bytes: number;
+  total_bytes: number;
 }
 
 export interface HealthView {
@@ -201,20 +210,15 @@ export interface HealthView {
   disk_free_bytes: number;
   messages_per_s: number;
   insecure: boolean;
-  standby: StandbyView | null; // null: this is the only station
+  standby: StandbyView | null;
   recordings: RecordingView[];
-  repeated: number; // messages since the station started that came again and were kept once
-  reading: number | null; // share of its log; nothing is live: what was last stored is shown
+  repeated: number;
+  reading: number | null;
 }
 
-/** A unit's raw recording that somebody asked for, on its way over the bus. */
-export interface RecordingView {
-  fetch_id: string;
-  unit_id: string;
-  state: string; // waiting | fetching | done | failed
-  problem: string; // a sentence for a person
-  done_bytes: number;
-  total_bytes: number; // 0: not known yet
+export interface GapView {
+  from_ms: number;
+  until_ms: number;
 }
 
 export interface ReplayView {
@@ -224,28 +228,24 @@ export interface ReplayView {
   at_ms: number;
   speed: number;
   playing: boolean;
-  seeking: boolean; // on the way to `at_ms`; what is shown is of another time
-  flaws: string[]; // why not all is shown as it was, in words
+  seeking: boolean;
+  flaws: string[];
+  gap: GapView | null;
 }
 
-export type TrailPoint = [t_ms: number, north_m: number, east_m: number, floor: number | null];
+export type TrailPoint = [
+  t_ms: number,
+  north_m: number,
+  east_m: number,
+  floor: number | null,
+  after_gap?: 0 | 1,
+];
 
 export interface AnchorView {
   lat_deg: number;
   lon_deg: number;
   height_m: number;
   plan_rotation_rad: number;
-}
-
-/** GeoJSON whose coordinates are `[east_m, north_m]` in the incident frame; `base_station/site/plan.py`
- * says more. */
-export interface Plan extends FeatureCollection {
-  muster: { frame: "site-m"; name?: string; floors?: PlanFloor[] };
-}
-
-export interface PlanFloor {
-  floor: number;
-  down_m: number;
 }
 
 export interface Snapshot {
@@ -255,8 +255,8 @@ export interface Snapshot {
   incident: IncidentView | null;
   units: UnitView[];
   alarms: AlarmView[];
-  commands: CommandView[]; // all that are open, and the last closed ones; oldest first
-  pins: PinView[]; // in the order of setting
+  commands: CommandView[];
+  pins: PinView[];
   beacons: BeaconView[];
   plan: Plan | null;
   anchor: AnchorView | null;
@@ -264,14 +264,12 @@ export interface Snapshot {
   replay: ReplayView | null;
 }
 
-/** Where a unit was before the last snapshot; deltas since then have gone on from there. */
 export interface Trail {
   type: "trail";
   unit_id: string;
   points: TrailPoint[];
 }
 
-/** What changed since the message before; what is absent is as it was. */
 export interface Delta {
   type: "delta";
   seq: number;
@@ -280,11 +278,13 @@ export interface Delta {
   alarms?: AlarmView[];
   commands?: CommandView[];
   trails?: Record<string, TrailPoint[]>;
-  pins?: PinView[]; // all of them, where any changed
+  pins?: PinView[];
   beacons?: BeaconView[];
   health?: HealthView;
   incident?: IncidentView;
   replay?: ReplayView;
 }
 
+export type Link = UnitView["link"];
+export type DeliveryState = DeliveryView["state"];
 export type Message = Snapshot | Trail | Delta;

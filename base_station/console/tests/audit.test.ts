@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { actionWord, detailWords } from "../src/audit";
-import { dateAndTime } from "../src/words";
+import { dateAndTime } from "../src/format";
 
 const AT_MS = Date.UTC(2026, 10, 23, 20, 35);
 const NAMES = new Map([["26ab024f9849922c", "Elena Rossi"]]);
@@ -12,6 +12,7 @@ function words(detail: object | string): string {
 describe("the audit log", () => {
   it("says what was done as a sentence begins", () => {
     expect(actionWord("AcknowledgeAlarm")).toBe("Acknowledge alarm");
+    expect(actionWord("CheckIn")).toBe("PAR confirmed by radio");
   });
 
   it.each([
@@ -45,6 +46,13 @@ describe("the audit log", () => {
     ],
     [{ name: "Mill Road", par_interval_s: 0, work_limit_s: 0 }, "name: Mill Road"],
     [{ kind: 2, unit_id: "FF-01", position_rate_hz: 0 }, "PAR, FF-01"],
+    [{ unit_id: "", crew: "", everyone: true, check_in_id: "8f" }, "everyone"],
+    [{ entry_id: "8f", unit_id: "FF-01" }, "FF-01"],
+    [{ incident_id: "i", despite_alarm_ids: [], despite_unit_ids: [] }, ""],
+    [
+      { incident_id: "i", despite_alarm_ids: ["fall:FF-01:5"], despite_unit_ids: ["FF-01", "FF-02"] },
+      "despite alarm ids: fall:FF-01:5, despite unit ids: FF-01 FF-02",
+    ],
     [{ unit_id: "FF-05", t_ns: 1e6 * AT_MS }, `FF-05, at ${dateAndTime(AT_MS)}`],
     [{ station: "engine-2", after_t_ns: 0, after_count: 0 }, "station: engine-2, after count 0"],
     [{ thresholds: { "heat.caution_degc": 0 } }, "heat caution 0 °C"],

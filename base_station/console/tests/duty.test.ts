@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { crewsOnDuty, parOf, rollCall } from "../src/live/duty";
+import { confirmationWords, crewsOnDuty, parOf, rollCall } from "../src/live/duty";
 import type { DutyView, IncidentView, UnitView } from "../src/wire";
-import { countdown } from "../src/words";
+import { countdown } from "../src/format";
 import { unit } from "./fixtures";
 
 const INCIDENT: IncidentView = {
@@ -14,7 +14,7 @@ const INCIDENT: IncidentView = {
   work_limit_s: 2400,
 };
 
-function duty(dueMs: number): DutyView {
+function duty(dueMs: number, change: Partial<DutyView> = {}): DutyView {
   return {
     checked_in_ms: 0,
     checked_in_by: "chief",
@@ -23,12 +23,17 @@ function duty(dueMs: number): DutyView {
     work_since_ms: null,
     rest_since_ms: null,
     rest_due_ms: null,
+    confirmed: "radio",
+    on_duty_ms: 0,
+    located: true,
+    entry_id: "k1",
+    ...change,
   };
 }
 
-function onDuty(unitId: string, crew: string, dueMs: number): UnitView {
+function onDuty(unitId: string, crew: string, dueMs: number, change: Partial<DutyView> = {}): UnitView {
   const person = { person_id: unitId, name: unitId, crew, role: "", photo_url: null };
-  return unit(unitId, { person, duty: duty(dueMs) });
+  return unit(unitId, { person, duty: duty(dueMs, change) });
 }
 
 describe("a check-in", () => {
@@ -43,6 +48,22 @@ describe("a check-in", () => {
     const nowMs = 5_000_000;
     const par = parOf(duty(nowMs + dueMs), INCIDENT, nowMs);
     expect(par).toEqual({ state, leftMs: dueMs });
+  });
+
+  it.each([
+    [1_200_000, "unconfirmed"],
+    [300_000, "warning"],
+    [0, "overdue"],
+  ])("of whom none was confirmed, due in %i ms, is %s and never green", (dueMs, state) => {
+    expect(parOf(duty(dueMs, { confirmed: "not_yet" }), INCIDENT, 0).state).toBe(state);
+  });
+
+  it("says who or what confirmed it", () => {
+    const at = new Date(2026, 0, 1, 18, 47, 18).getTime();
+    const words = (change: Partial<DutyView>) => confirmationWords(duty(0, { checked_in_ms: at, ...change }));
+    expect(words({})).toBe("confirmed 18:47:18 by radio, entered by chief");
+    expect(words({ confirmed: "self" })).toBe("confirmed 18:47:18 by own unit");
+    expect(words({ confirmed: "not_yet", checked_in_ms: null })).toBe("not yet confirmed");
   });
 
   it("is announced by nobody where no incident says how long before", () => {
@@ -66,6 +87,14 @@ describe("the roll call", () => {
       ["red", "warning"],
     ]);
     expect(crews[1]?.people.map((one) => one.unit.unit_id)).toEqual(["c", "a"]);
+  });
+
+  it("is green for nobody while one of them was never confirmed", () => {
+    const never = onDuty("z", "red", 950_000, { confirmed: "not_yet" });
+    const red = [onDuty("a", "red", 900_000), never];
+    expect(crewsOnDuty(red, INCIDENT, 0)[0]?.par).toEqual({ state: "unconfirmed", leftMs: 900_000 });
+    expect(rollCall(red, INCIDENT, 0)).toMatchObject({ state: "unconfirmed", unconfirmed: 1 });
+    expect(rollCall(red.slice(0, 1), INCIDENT, 0)).toMatchObject({ state: "green", unconfirmed: 0 });
   });
 
   it("counts who is overdue", () => {

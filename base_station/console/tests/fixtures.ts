@@ -33,6 +33,9 @@ export const STATUS: StatusView = {
   mayday: false,
   steps: 0,
   distance_m: 0,
+  battery_left_s: null,
+  battery_state: "unknown",
+  electronics: [],
 };
 
 export function position(change: Partial<PositionView> = {}): PositionView {
@@ -81,6 +84,8 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     cloned: false,
     gps: null,
     switched_off: false,
+    ambient_ms: 1_000,
+    ambient_sensors: [],
     ...change,
   };
 }
@@ -125,7 +130,9 @@ export function command(
       acknowledged_ms: null,
       acknowledged_by: "",
       reason: "",
+      acknowledged_via: "",
     })),
+    incident_id: "",
     ...change,
   };
 }

@@ -2,7 +2,7 @@ import { beforeEach, describe, expect, it } from "vitest";
 import { Picture } from "../src/live/picture";
 import { apply } from "../src/live/state";
 import { beginOnAFloor } from "../src/plan/floorShown";
-import { floor } from "../src/view";
+import { floor } from "../src/uiState";
 import { position, snapshot, unit } from "./fixtures";
 
 function peopleOn(picture: Picture, ...floors: number[]): void {

@@ -27,8 +27,8 @@ vi.mock("../src/api", () => ({
     }),
 }));
 
-const incident = (incident_id: string) => signal({ incident_id, closed_ms: 1 } as IncidentView);
-const follow = (id: string) => followTrails({ incident: incident(id) } as unknown as Picture);
+const follow = (incident_id: string, closed_ms: number | null = 1) =>
+  followTrails({ incident: signal({ incident_id, closed_ms } as IncidentView) } as unknown as Picture);
 const drawn = () => pastTrails.value.map(({ trails }) => [...trails.keys()].join());
 
 describe("trails that are worked out", () => {
@@ -77,5 +77,20 @@ describe("trails that are worked out", () => {
     await asked[2]?.answer("mill's");
     expect(drawn()).toEqual(["mill's"]);
     endLast();
+  });
+
+  it("of an open incident are asked for now and then, but not before the last answer", async () => {
+    let passes = (): void => undefined;
+    const window = { setInterval: (again: () => void) => ((passes = again), 1) };
+    vi.stubGlobal("window", window);
+    const end = follow("mill", null);
+    passes();
+    expect(asked.length).toBe(1);
+    await asked[0]?.answer("mill's");
+    passes();
+    expect(asked.length).toBe(2);
+    await asked[1]?.answer("mill's");
+    end();
+    vi.unstubAllGlobals();
   });
 });

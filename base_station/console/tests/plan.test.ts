@@ -5,7 +5,7 @@ import type { Colours } from "../src/plan/colours";
 import { colourOf, filling, isStrong, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
 import { placeNames, type Box, type Named, type Pixel, type Place } from "../src/plan/names";
 import { isNamed, pinWords } from "../src/plan/pins";
-import { trailLines } from "../src/plan/trail";
+import { joinedByTime, spanMs, TRAIL_MS, trailLines } from "../src/plan/trail";
 import type { PinView, Plan, TrailPoint } from "../src/wire";
 import { alarm, position, unit } from "./fixtures";
 
@@ -276,9 +276,21 @@ describe("trailLines", () => {
     [1_000, 1, 0, 0],
     [2_000, 2, 5, 1],
     [3_000, 3, 5, 1],
-    [60_000, 4, 5, 1],
+    [60_000, 4, 5, 1, 1],
     [61_000, 5, 5, 1],
   ];
+
+  it("is whole of who is chosen or in danger, and of others the last minutes", () => {
+    expect([spanMs(true), spanMs(false, "immediate")]).toEqual([Infinity, Infinity]);
+    expect([spanMs(false), spanMs(false, "soon")]).toEqual([TRAIL_MS, TRAIL_MS]);
+    expect(trailLines(walk, 3_600_000, "all", spanMs(false, "immediate"))).toHaveLength(2);
+  });
+
+  it("goes on over a line of which the station has left points out", () => {
+    const thinned = walk.map((point): TrailPoint => [point[0], point[1], point[2], point[3]]);
+    expect(trailLines(thinned, 61_000, "all")).toHaveLength(1);
+    expect(trailLines(thinned, 61_000, "all", TRAIL_MS, joinedByTime)).toHaveLength(2);
+  });
 
   it("is [east, north], broken where nobody knows the way", () => {
     expect(trailLines(walk, 61_000, "all")).toEqual([

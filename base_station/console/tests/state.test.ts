@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { apply, TRAIL_POINTS, type State } from "../src/live/state";
+import { apply, type State } from "../src/live/state";
+import { TRAIL_POINTS } from "../src/live/thinning";
 import type { Plan, Trail, TrailPoint } from "../src/wire";
 import { alarm, command, delta, position, snapshot, unit } from "./fixtures";
 
@@ -184,10 +185,16 @@ describe("trails", () => {
     expect(after(snapshot(), past("a", [[1000, 0, 0, 0]]), snapshot()).trails.size).toBe(0);
   });
 
-  it("keep a bounded number of points", () => {
+  it("keep a bounded number of points, from the very first one on", () => {
     const long = Array.from({ length: TRAIL_POINTS }, (_, i): TrailPoint => [i * 1000, i, 0, 0]);
     const state = after(snapshot(), past("a", long), walk(11, 1e7, 1e4));
-    expect(state.trails.get("a")).toHaveLength(TRAIL_POINTS);
+    expect(trail(state)?.length).toBeLessThanOrEqual(TRAIL_POINTS);
+    expect(trail(state)?.[0]).toBe(0);
     expect(trail(state)?.at(-1)).toBe(1e7);
+  });
+
+  it("say where nothing was heard", () => {
+    const state = after(snapshot(), walk(11, 1000, 0), walk(12, 2000, 1), walk(13, 23_000, 5));
+    expect(state.trails.get("a")?.map((point) => point[4])).toEqual([undefined, undefined, 1]);
   });
 });

@@ -1,9 +1,9 @@
-"""What a lift does to a height.
+"""Lift detector: rides in a lift, as a change of pressure at rest.
 
-A unit that feels the ride climbs by its barometer, and says how little it knows until its wearer
-walks again; that doubt is ours as well.  One that does not feel it stays where it was while the
-pressure changes as fast as lifts go.  That may have been a fan all the same, so nobody is moved by
-it: the height is known no better than either would have it, until a storey, a fix or a pin tells.
+A unit that detects the ride climbs by its barometer, with a larger stated deviation until its
+wearer walks again; that deviation is used. Another one stays at its height while the pressure
+changes as fast as in a lift. As a fan may do that too, the height is not moved: its variance grows
+to hold both, until a storey, a fix or a pin decides.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from statistics import median
 
 import msgspec
 
-from base_station.fusion.port import AirHeight
+from base_station.fusion.interface import BarometricHeight
 from shared.clock import NS_PER_S
 
 CLIMBED_M = 0.5  # by the own path while it rests: the unit felt the ride
@@ -24,28 +24,32 @@ OVER_NS, OVER_M = 2 * NS_PER_S, 0.6  # so long without more than this: the ride 
 JUMP = 0.6  # of the change at once: a door or a fan
 
 
-class Rides(msgspec.Struct):
-    felt: list[tuple[int, float]] = msgspec.field(default_factory=list)  # heights while it rests
+class LiftDetector(msgspec.Struct):
+    """Detector of lift rides by the barometric heights of a wearer at rest."""
 
-    def feel(self, air: AirHeight, climbed_m: float) -> float:
-        """By how much the air says that somebody who stands was lifted, and the own path, which
-        climbed by so much meanwhile, does not; 0 where it does not say so.
+    heights: list[tuple[int, float]] = msgspec.field(default_factory=list)  # heights while it rests
+
+    def update_barometer(self, air: BarometricHeight, climbed_m: float) -> float:
+        """Rise by a lift (m, down) that the pressure shows and the own path, which climbed by
+        ``climbed_m``, does not; 0 without one.
         """
-        felt, now_ns = self.felt, air.t_mono_ns
-        if felt and now_ns < felt[-1][0]:  # the unit's clock went back
-            felt.clear()
-        felt.append((now_ns, air.down_m))
-        if now_ns - felt[0][0] < BEGIN_NS + OVER_NS:
+        heights, now_ns = self.heights, air.t_mono_ns
+        if heights and now_ns < heights[-1][0]:  # the unit's clock went back
+            heights.clear()
+        heights.append((now_ns, air.down_m))
+        if now_ns - heights[0][0] < BEGIN_NS + OVER_NS:
             return 0.0
-        while now_ns - felt[0][0] > WITHIN_NS:
-            del felt[0]
-        begin_ns = felt[0][0]
-        first = [one[1] for one in takewhile(lambda one: one[0] - begin_ns <= BEGIN_NS, felt)]
-        last = [one[1] for one in takewhile(lambda one: now_ns - one[0] <= OVER_NS, reversed(felt))]
+        while now_ns - heights[0][0] > WITHIN_NS:
+            del heights[0]
+        begin_ns = heights[0][0]
+        first = [one[1] for one in takewhile(lambda one: one[0] - begin_ns <= BEGIN_NS, heights)]
+        last = [
+            one[1] for one in takewhile(lambda one: now_ns - one[0] <= OVER_NS, reversed(heights))
+        ]
         goes_on = max(last) - min(last) > OVER_M or now_ns - begin_ns < BEGIN_NS + OVER_NS
         lifted_m = median(last) - median(first)
         if goes_on or abs(lifted_m) < STOREY_M or abs(climbed_m) > CLIMBED_M:
             return 0.0
-        jump_m = max(abs(after[1] - before[1]) for before, after in pairwise(felt))
-        self.felt = [felt[-1]]
+        jump_m = max(abs(after[1] - before[1]) for before, after in pairwise(heights))
+        self.heights = [heights[-1]]
         return 0.0 if jump_m > JUMP * abs(lifted_m) else lifted_m

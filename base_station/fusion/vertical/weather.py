@@ -1,17 +1,17 @@
-"""What barometers tell, with the weather taken out of it.
+"""Barometric heights with the change of the weather removed.
 
-The change of air pressure that everybody shares is kept as the height that it feigns.  It is told
-by one barometer that stays where it is (the reference), or by those of people outside, whose own
-paths say how they climb.  Every barometer has an offset of its own, so that only changes count:
-one that joins begins at what is held already, and nobody moves by its joining or leaving.  So does
-a reference that was carried elsewhere, once it stays there.
+The change of pressure that is common to all is kept as an apparent height. It is measured by the
+reference barometer, which does not move, or by barometers of units outside, whose own paths give
+their climbs. Every barometer has its own offset, so that only changes count: one that joins begins
+at the present value, and no estimate moves when one joins or leaves. The same holds for a reference
+that was carried elsewhere, once it stays there.
 """
 
 from __future__ import annotations
 
 import msgspec
 
-from base_station.fusion.port import AirHeight
+from base_station.fusion.interface import BarometricHeight
 from shared.clock import NS_PER_S
 from shared.geo import pressure_altitude_m
 from shared.messages import Position
@@ -27,7 +27,7 @@ class _Source(msgspec.Struct):
 
 
 class Weather(msgspec.Struct):
-    """Station times."""
+    """Common change of pressure, as an apparent height; station times."""
 
     rise_m: float = 0.0  # by so much everybody's barometer reads too high since the beginning
     t_ns: int | None = None  # when that was last measured
@@ -54,12 +54,12 @@ class Weather(msgspec.Struct):
         self.t_ns = max(t_ns, self.t_ns or t_ns)
 
     def is_known(self, t_ns: int) -> bool:
-        """Whether somebody measures it now."""
+        """True while a barometer measures the weather."""
         return self.t_ns is not None and t_ns - self.t_ns <= FRESH_NS
 
 
 class Barometers(msgspec.Struct):
-    """Everybody's."""
+    """Barometers of all units, with the reference."""
 
     reference_id: str | None = None  # the unit whose barometer stays where it is
     reference_down_m: float = 0.0
@@ -67,15 +67,15 @@ class Barometers(msgspec.Struct):
     carried_ns: int | None = None  # when that grew last
     weather: Weather = msgspec.field(default_factory=Weather)
 
-    def refer_to(self, unit_id: str | None, down_m: float) -> None:
+    def set_reference(self, unit_id: str | None, down_m: float) -> None:
         self.reference_id, self.reference_down_m = unit_id, down_m
         self.reference_walked, self.carried_ns = (0, 0.0), None
         self.weather.sources.clear()
 
-    def hear(
+    def update(
         self, unit_id: str, t_ns: int, position: Position, *, is_outside: bool
-    ) -> AirHeight | None:
-        """Of a position that came; None where it has no pressure, or none that can be."""
+    ) -> BarometricHeight | None:
+        """Barometric height of a position; None without pressure, or with an impossible one."""
         pressure_pa = position.pressure_pa
         if pressure_pa is None or not LEAST_PA < pressure_pa < MOST_PA:
             return None
@@ -87,14 +87,14 @@ class Barometers(msgspec.Struct):
         elif self.reference_id is None and is_outside:
             name = f"{unit_id} {position.header.boot_id}"  # its own height begins anew with it
             self.weather.note(name, t_ns, altitude_m, position.down_m)
-        return AirHeight(
+        return BarometricHeight(
             t_mono_ns=position.header.t_mono_ns,
             down_m=self.weather.rise_m - altitude_m,
             referenced=self.weather.is_known(t_ns),
         )
 
     def _watch_reference(self, position: Position, t_ns: int) -> None:
-        """Somebody may take it along: what is then felt are stairs."""
+        """Detect that the reference is carried: its changes are then climbs."""
         walked = position.header.boot_id, position.distance_m
         if walked[0] == self.reference_walked[0] and walked[1] > self.reference_walked[1]:
             self.carried_ns = t_ns

@@ -1,6 +1,6 @@
 /** Which alarms are open, in the order in which they want a person. */
 import type { AlarmView, UnitView } from "../wire";
-import { MISSED_CHECK_IN } from "../words";
+import { alarmLabel, MISSED_CHECK_IN } from "../format";
 import { displayName } from "./urgency";
 
 export function isOpen(alarm: AlarmView): boolean {
@@ -49,6 +49,17 @@ export function needsOf(unit: UnitView, alarms: ReadonlyMap<string, AlarmView>):
     .filter((alarm) => alarm !== undefined)
     .filter((alarm) => alarm.priority === 1 && alarm.rule !== MISSED_CHECK_IN)
     .filter((alarm) => !isOfAnother(alarm, unit));
+}
+
+/** Of these, whoever has an emergency alarm open, with its alarms: "Jonas Bergman (Fall, No motion)". */
+export function inAlarm(
+  units: readonly UnitView[],
+  alarms: ReadonlyMap<string, AlarmView>,
+): string[] {
+  return units.flatMap((unit) => {
+    const needs = needsOf(unit, alarms);
+    return needs.length === 0 ? [] : [`${displayName(unit)} (${needs.map(alarmLabel).join(", ")})`];
+  });
 }
 
 /** Of Bo, Bob is not named. */

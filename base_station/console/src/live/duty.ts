@@ -1,17 +1,27 @@
-/** The roll call (PAR) as the screen needs it: who is due when, crew by crew.  Pure. */
+/** PAR as the screen needs it: who is due when, crew by crew.  Pure. */
 import type { DutyView, IncidentView, UnitView } from "../wire";
+import { clockTime } from "../format";
 
-export type ParState = "green" | "warning" | "overdue";
+export type ParState = "green" | "unconfirmed" | "warning" | "overdue";
 
 export interface Par {
   state: ParState;
-  leftMs: number; // until the check-in is due; negative: overdue
+  leftMs: number; // until the PAR is due; negative: overdue
 }
 
 export function parOf(duty: DutyView, incident: IncidentView | null, nowMs: number): Par {
   const leftMs = duty.due_ms - nowMs;
   const warningMs = (incident?.par_warning_s ?? 0) * 1000;
-  return { state: leftMs <= 0 ? "overdue" : leftMs <= warningMs ? "warning" : "green", leftMs };
+  if (leftMs <= 0) return { state: "overdue", leftMs };
+  if (leftMs <= warningMs) return { state: "warning", leftMs };
+  return { state: duty.confirmed === "not_yet" ? "unconfirmed" : "green", leftMs };
+}
+
+/** How and when the PAR was confirmed last, and who entered it. */
+export function confirmationWords({ confirmed, checked_in_ms, checked_in_by }: DutyView): string {
+  if (checked_in_ms === null || confirmed === "not_yet") return "not yet confirmed";
+  const how = confirmed === "self" ? "by own unit" : `by radio, entered by ${checked_in_by}`;
+  return `confirmed ${clockTime(checked_in_ms)} ${how}`;
 }
 
 export interface OnDuty {
@@ -22,11 +32,11 @@ export interface OnDuty {
 
 export interface CrewOnDuty {
   crew: string;
-  par: Par; // of whoever is due first
+  par: Par; // of whoever is due first; green only where everybody is confirmed
   people: OnDuty[]; // due first, first
 }
 
-/** Everybody who is to be heard from, crew by crew, the most urgent crew first. */
+/** Everybody whose PAR is to be confirmed, crew by crew, the most urgent crew first. */
 export function crewsOnDuty(
   units: Iterable<UnitView>,
   incident: IncidentView | null,
@@ -44,18 +54,20 @@ export function crewsOnDuty(
     .sort((a, b) => a.par.leftMs - b.par.leftMs || (a.crew < b.crew ? -1 : 1));
 }
 
-/** In one line: the next check-in that is due, and how many are over; null: nobody is on duty. */
+/** In one line: the next PAR that is due, how many are overdue, and how many not yet confirmed; null:
+ * nobody is on duty. */
 export function rollCall(
   units: Iterable<UnitView>,
   incident: IncidentView | null,
   nowMs: number,
-): (Par & { overdue: number; people: number }) | null {
+): (Par & { overdue: number; unconfirmed: number; people: number }) | null {
   const all = crewsOnDuty(units, incident, nowMs);
   const first = all[0];
   if (first === undefined) return null;
   const people = all.flatMap((crew) => crew.people);
   const overdue = people.filter((one) => one.par.state === "overdue").length;
-  return { ...first.par, overdue, people: people.length };
+  const unconfirmed = people.filter((one) => one.duty.confirmed === "not_yet").length;
+  return { ...earliest(people), overdue, unconfirmed, people: people.length };
 }
 
 function byDue(a: OnDuty, b: OnDuty): number {
@@ -63,5 +75,7 @@ function byDue(a: OnDuty, b: OnDuty): number {
 }
 
 function earliest(people: readonly OnDuty[]): Par {
-  return people.map((one) => one.par).reduce((a, b) => (b.leftMs < a.leftMs ? b : a));
+  const first = people.map((one) => one.par).reduce((a, b) => (b.leftMs < a.leftMs ? b : a));
+  const unconfirmed = people.some((one) => one.duty.confirmed === "not_yet");
+  return first.state === "green" && unconfirmed ? { ...first, state: "unconfirmed" } : first;
 }

@@ -4,7 +4,7 @@ import type { StandbyView } from "../wire";
 import type { LinkState } from "./picture";
 import type { Session } from "./session";
 import * as api from "../api";
-import { wayFrom } from "./arrival";
+import { transferUrl } from "./loginTransfer";
 import { Tickets } from "./tickets";
 
 export const PATIENCE_MS = 4000;
@@ -41,7 +41,7 @@ export function watchOver(session: Session, go: (url: string) => void): () => vo
     const url = wayOut({ link: link.peek(), standby, led, nowMs: performance.now() });
     if (url === null || asking) return;
     asking = true;
-    if (await leads(url)) go(wayFrom(standby?.station ?? "", url, tickets.latest));
+    if (await leads(url)) go(transferUrl(standby?.station ?? "", url, tickets.latest));
     asking = false;
   };
   const timer = window.setInterval(() => void look(), LOOK_EVERY_MS);

@@ -3,6 +3,7 @@ import { batch } from "@preact/signals";
 import type { Message } from "../wire";
 import { LocalClock, StationClock } from "./clock";
 import { Connection } from "./connection";
+import { guarded } from "./faults";
 import { Picture } from "./picture";
 import { apply, type State } from "./state";
 
@@ -32,7 +33,7 @@ export class Session {
     this.path = path;
     this.picture.link.value = { kind: "connecting" };
     this.connection = new Connection(socketUrl(this.path), {
-      message: (text) => this.hear(JSON.parse(text) as Message),
+      message: (text) => this.hearGuarded(text),
       up: () => undefined, // up means a picture: see hear
       down: () => this.lose(),
       refused: this.onRefused,
@@ -46,11 +47,16 @@ export class Session {
     this.asked = false;
   }
 
+  /** One that fails costs itself: what it would have said comes with a whole picture. */
+  private hearGuarded(text: string): void {
+    const heard = guarded("A message of the station", () => this.hear(JSON.parse(text) as Message));
+    if (!heard) this.askOnce();
+  }
+
   private hear(message: Message): void {
     const { state, missed } = apply(this.state, message);
     if (missed) {
-      if (!this.asked) this.connection?.askForSnapshot();
-      this.asked = true;
+      this.askOnce();
       return;
     }
     if (message.type === "snapshot") this.asked = false;
@@ -63,6 +69,11 @@ export class Session {
       // Everything that shows an age renders with the clock, so deltas do not drive it.
       if (message.type === "snapshot") this.tick();
     });
+  }
+
+  private askOnce(): void {
+    if (!this.asked) this.connection?.askForSnapshot();
+    this.asked = true;
   }
 
   private setClock({ replay, now_ms }: State): void {

@@ -16,6 +16,7 @@ import type {
   TrailPoint,
   UnitView,
 } from "../wire";
+import { bounded } from "./thinning";
 
 export interface State {
   seq: number;
@@ -38,11 +39,11 @@ export interface Applied {
   missed: boolean; // something did not arrive: ask for a snapshot
 }
 
-// As the station thins its own trails out (base_station/units/trail.py).
+// As the station thins its own trails out (base_station/core/units/trail.py).
 const TRAIL_STEP_MS = 1000;
 const TRAIL_STEP_M = 0.5;
 const TRAIL_REST_MS = 15_000;
-export const TRAIL_POINTS = 900;
+const TRAIL_GAP_MS = 20_000;
 const RESOLVED_KEPT = 50;
 const CLOSED_KEPT = 10;
 
@@ -102,7 +103,7 @@ function withPast(state: State, { unit_id, points }: Trail): State {
   for (const point of state.trails.get(unit_id) ?? []) {
     if (isStep(trail.at(-1), point)) trail.push(point);
   }
-  return { ...state, trails: new Map(state.trails).set(unit_id, trail.slice(-TRAIL_POINTS)) };
+  return { ...state, trails: new Map(state.trails).set(unit_id, bounded(trail)) };
 }
 
 function withUnits(units: State["units"], changed: readonly UnitView[]): State["units"] {
@@ -122,10 +123,12 @@ function withPositions(trails: State["trails"], changed: readonly UnitView[]): S
   for (const { unit_id, position } of changed) {
     if (position === null) continue;
     const trail = trails.get(unit_id) ?? [];
+    const last = trail.at(-1);
     const point: TrailPoint = [position.t_ms, position.north_m, position.east_m, position.floor];
-    if (!isStep(trail.at(-1), point)) continue;
+    if (!isStep(last, point)) continue;
+    if (last !== undefined && point[0] - last[0] > TRAIL_GAP_MS) point[4] = 1;
     next ??= new Map(trails);
-    next.set(unit_id, [...trail.slice(1 - TRAIL_POINTS), point]);
+    next.set(unit_id, bounded([...trail, point]));
   }
   return next ?? trails;
 }

@@ -1,6 +1,6 @@
 /** Who needs attention first, and a list that does not jump while somebody reads it.  Pure. */
 import type { AlarmView, UnitView } from "../wire";
-import { MISSED_CHECK_IN, SWITCHED_OFF } from "../words";
+import { MISSED_CHECK_IN, SWITCHED_OFF } from "../format";
 
 export type Urgency = "immediate" | "soon" | "watch" | "normal";
 
@@ -73,11 +73,22 @@ export function arrange(
   held: boolean,
 ): Place[] {
   const known = new Map(before.map((place) => [place.unitId, place]));
-  const places = units.map((unit) => placeOf(unit, alarms, known.get(unit.unit_id), nowMs, held));
+  const places = units.map((unit) => {
+    try {
+      return placeOf(unit, alarms, known.get(unit.unit_id), nowMs, held);
+    } catch {
+      return firstOfAll(unit.unit_id); // the card says what is wrong
+    }
+  });
   return places.sort(
     (a, b) =>
       a.rank - b.rank || a.name.localeCompare(b.name) || (a.unitId < b.unitId ? -1 : 1),
   );
+}
+
+/** Of whom nobody can tell how they are. */
+function firstOfAll(unitId: string): Place {
+  return { unitId, name: unitId, urgency: "immediate", rank: MAYDAY, calmSinceMs: null };
 }
 
 function placeOf(
@@ -89,7 +100,8 @@ function placeOf(
 ): Place {
   const urgency = urgencyOf(unit, alarms);
   const rank = rankOf(unit, alarms);
-  const place = { unitId: unit.unit_id, name: displayName(unit), urgency, rank, calmSinceMs: null };
+  const name = String(displayName(unit)); // else one odd name would leave nobody in order
+  const place = { unitId: unit.unit_id, name, urgency, rank, calmSinceMs: null };
   if (before === undefined || rank <= before.rank) return place;
   const calmSinceMs = before.calmSinceMs ?? nowMs;
   if (!held && nowMs - calmSinceMs >= CALMING_MS) return place;

@@ -5,7 +5,8 @@ import VectorLayer from "ol/layer/Vector";
 import VectorSource from "ol/source/Vector";
 import { Fill, Stroke, Style, Text } from "ol/style";
 import type { FeatureLike } from "ol/Feature";
-import type { FloorChoice } from "../view";
+import { guarded } from "../live/faults";
+import type { FloorChoice } from "../uiState";
 import type { Plan } from "../wire";
 import type { Colours } from "./colours";
 import { SITE } from "./site";
@@ -27,7 +28,11 @@ export class Building {
     this.source.clear(true);
     if (plan === null) return;
     const format = new GeoJSON({ dataProjection: SITE, featureProjection: SITE });
-    this.source.addFeatures(format.readFeatures(plan));
+    plan.features.forEach((feature, number) =>
+      guarded(`Feature ${number} of the plan`, () => {
+        this.source.addFeatures(format.readFeatures(feature));
+      }),
+    );
   }
 
   choose(floor: FloorChoice, colours: Colours): void {

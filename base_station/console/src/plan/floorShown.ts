@@ -1,6 +1,6 @@
 /** Which floor is shown when somebody begins to look at a picture. */
 import { effect } from "@preact/signals";
-import { floor, type FloorChoice } from "../view";
+import { floor, type FloorChoice } from "../uiState";
 import type { Picture } from "../live/picture";
 import { firstFloor, floorsOf } from "./floors";
 

@@ -1,8 +1,8 @@
 /** Which floors there are and who is on each.  Pure. */
 import { urgencyOf } from "../live/urgency";
-import type { FloorChoice } from "../view";
+import type { FloorChoice } from "../uiState";
 import type { AlarmView, Plan, PositionView, UnitView } from "../wire";
-import { floorName, floorOf, isFloorLikely } from "../words";
+import { floorName, floorOf, isFloorLikely } from "../format";
 
 export interface Floor {
   floor: number;

@@ -1,6 +1,7 @@
 /** Keeps the plan as the picture is, a few times a second at most. */
 import { effect } from "@preact/signals";
-import { floor, selectedUnit } from "../view";
+import { guarded } from "../live/faults";
+import { floor, selectedUnit } from "../uiState";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
 import type { TrailPoint } from "../wire";
@@ -16,16 +17,17 @@ const NO_TRAILS = new Map<string, readonly TrailPoint[]>();
 /** Begin to follow; the result ends it. */
 export function follow(map: PlanMap, picture: Picture): () => void {
   const redraw = atMostEvery(REDRAW_MS, () =>
-    map.showPeople({
-      units: picture.allUnits(),
-      alarms: picture.alarms.peek(),
-      trails: shownKinds.peek().has("fused") ? picture.trails.peek() : NO_TRAILS,
-      compared: pastTrails.peek().length > 0,
-      nowMs: picture.nowMs.peek(),
-      silentMs: picture.silentMs.peek(),
-      floor: floor.peek(),
-      chosen: selectedUnit.peek(),
-    }),
+    guarded("The plan", () =>
+      map.showPeople({
+        units: picture.allUnits(),
+        alarms: picture.alarms.peek(),
+        trails: shownKinds.peek().has("fused") ? picture.trails.peek() : NO_TRAILS,
+        nowMs: picture.nowMs.peek(),
+        silentMs: picture.silentMs.peek(),
+        floor: floor.peek(),
+        chosen: selectedUnit.peek(),
+      }),
+    ),
   );
   const drawPins = () =>
     map.showPins({
@@ -46,7 +48,7 @@ export function follow(map: PlanMap, picture: Picture): () => void {
   const ends = [
     () => theme.removeEventListener("change", recolour),
     () => redraw.cancel(),
-    effect(() => map.showPlan(picture.plan.value)),
+    following("The building", () => map.showPlan(picture.plan.value)),
     followBaseMap(map.ground, () => picture.anchor.value),
     effect(() => {
       void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value];
@@ -54,8 +56,8 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       void pastTrails.value;
       redraw.ask();
     }),
-    effect(drawPins),
-    effect(() =>
+    following("The pins on the plan", drawPins),
+    following("The trails on the plan", () =>
       map.showPast({
         past: pastTrails.value,
         shown: picture.trails.peek(),
@@ -68,6 +70,13 @@ export function follow(map: PlanMap, picture: Picture): () => void {
     beginOnAFloor(picture),
   ];
   return () => ends.forEach((end) => end());
+}
+
+/** An effect that fails costs itself, and is tried again with the next change. */
+function following(what: string, work: () => void): () => void {
+  return effect(() => {
+    guarded(what, work);
+  });
 }
 
 /** The pin or beacon that is being looked at. */

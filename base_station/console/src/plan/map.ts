@@ -11,7 +11,7 @@ import type { Plan } from "../wire";
 import { BaseMapLayer } from "./baseMap";
 import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
-import { Crowd, type Scene } from "./crowd";
+import { PeopleLayer, type Scene } from "./peopleLayer";
 import { Grid } from "./grid";
 import { fitMargins, leastMargins } from "./margins";
 import type { Box, Pixel } from "./names";
@@ -42,7 +42,7 @@ export class PlanMap {
   private readonly grid = new Grid(this.colours);
   readonly ground = new BaseMapLayer();
   private readonly building = new Building(this.colours);
-  private readonly crowd = new Crowd();
+  private readonly peopleLayer = new PeopleLayer();
   private readonly pins = new PinLayer();
   private readonly past = new PastLayer();
   private readonly view = new View({
@@ -73,7 +73,7 @@ export class PlanMap {
         this.building.layer,
         this.past.layer,
         this.pins.labelLayer,
-        ...this.crowd.layers,
+        ...this.peopleLayer.layers,
         this.pins.layer,
       ],
       interactions: defaults().extend([this.dragging()]),
@@ -107,7 +107,7 @@ export class PlanMap {
   }
 
   private selectNear(coordinate: number[], clicked: number[]): void {
-    const hit = this.crowd.nearest(coordinate);
+    const hit = this.peopleLayer.nearest(coordinate);
     if (hit === null) return;
     const pixel = this.map.getPixelFromCoordinate(hit.at);
     const apart = Math.hypot(
@@ -165,7 +165,7 @@ export class PlanMap {
     const pixelOf = (at: number[]) => this.pixelOf(at);
     const [covered, standing] = [this.covered(), this.standing()];
     const screen = { size: [right, down], covered, standing, pixelOf } as const;
-    const taken = this.crowd.show({ ...this.people, colours: this.colours, screen });
+    const taken = this.peopleLayer.show({ ...this.people, colours: this.colours, screen });
     this.pins.name({ ...screen, standing: [...standing, ...taken] }, this.colours);
   }
 
@@ -201,12 +201,12 @@ export class PlanMap {
   }
 
   private showsEverybody(): boolean {
-    const crowd = this.crowd.extent();
-    if (crowd === null || !crowd.every(Number.isFinite)) return true;
+    const extent = this.peopleLayer.extent();
+    if (extent === null || !extent.every(Number.isFinite)) return true;
     const size = this.map.getSize();
     const mPerPx = this.view.getResolution() ?? 0;
     const [top, right, bottom, left] = leastMargins(size ?? []);
-    const [west = 0, south = 0, east = 0, north = 0] = crowd;
+    const [west = 0, south = 0, east = 0, north = 0] = extent;
     const needed = [
       west - left * mPerPx,
       south - bottom * mPerPx,
@@ -219,7 +219,7 @@ export class PlanMap {
   /** Show everything there is; false where there is nothing yet. */
   fit(smoothly = true): boolean {
     const all = createEmpty();
-    for (const part of [this.building.extent(), this.crowd.extent()]) {
+    for (const part of [this.building.extent(), this.peopleLayer.extent()]) {
       if (part !== null) extend(all, part);
     }
     if (!all.every(Number.isFinite)) return false;

@@ -2,7 +2,7 @@
 import { Fill, Stroke, Style, Text } from "ol/style";
 import type { State as RenderState } from "ol/render";
 import type { Urgency } from "../live/urgency";
-import { age, onPlan } from "../words";
+import { age, planLabel } from "../format";
 import { faint, type Colours } from "./colours";
 import type { Pixel } from "./names";
 
@@ -69,7 +69,7 @@ export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Styl
 }
 
 export function labelOf(mark: Mark): string {
-  const words = [onPlan(mark.name), mark.floor, mark.old ? `${age(mark.ageMs)} old` : ""];
+  const words = [planLabel(mark.name), mark.floor, mark.old ? `${age(mark.ageMs)} old` : ""];
   return words.filter((word) => word !== "").join(", ");
 }
 

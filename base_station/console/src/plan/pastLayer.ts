@@ -4,11 +4,11 @@ import MultiLineString from "ol/geom/MultiLineString";
 import VectorLayer from "ol/layer/Vector";
 import VectorSource from "ol/source/Vector";
 import { Stroke, Style } from "ol/style";
-import type { FloorChoice } from "../view";
+import type { FloorChoice } from "../uiState";
 import type { Colours } from "./colours";
 import type { PastTrails, TrailKind } from "./pastTrails";
 import type { TrailPoint } from "../wire";
-import { spanMs, trailLines } from "./trail";
+import { joinedByTime, spanMs, trailLines } from "./trail";
 
 export interface PastScene {
   past: readonly PastTrails[];
@@ -31,7 +31,7 @@ export class PastLayer {
         if (chosen !== null && unitId !== chosen) continue;
         const endMs = kind === "fused" ? (shown.get(unitId)?.[0]?.[0] ?? nowMs) : nowMs;
         const until = points.filter(([tMs]) => tMs <= endMs);
-        const lines = trailLines(until, nowMs, floor, spanMs(chosen !== null, true));
+        const lines = trailLines(until, nowMs, floor, spanMs(chosen !== null), joinedByTime);
         const feature = new Feature(new MultiLineString(lines));
         feature.setStyle(new Style({ stroke }));
         this.source.addFeature(feature);

@@ -50,9 +50,12 @@ export function followTrails(picture: Picture): () => void {
     followed = incident?.incident_id ?? null;
     pastTrails.value = before.filter((one) => kinds.includes(one.kind));
     if (incident === null || kinds.length === 0) return;
-    const load = () => kinds.forEach((kind) => void ask(incident.incident_id, kind));
-    load();
-    if (incident.closed_ms === null) timer = window.setInterval(load, AGAIN_MS);
+    const load = (some: readonly TrailKind[]) =>
+      some.forEach((kind) => void ask(incident.incident_id, kind));
+    load(kinds);
+    // A station that takes longer than that is not asked for more and more of the same.
+    const again = () => load(kinds.filter((kind) => !loadingKinds.peek().has(kind)));
+    if (incident.closed_ms === null) timer = window.setInterval(again, AGAIN_MS);
   });
   return () => {
     stop();

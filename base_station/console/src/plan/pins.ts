@@ -7,9 +7,9 @@ import VectorSource from "ol/source/Vector";
 import { Fill, Stroke, Style, Text } from "ol/style";
 import type { State as RenderState } from "ol/render";
 import { measureTextWidth } from "ol/render/canvas";
-import type { FloorChoice } from "../view";
+import type { FloorChoice } from "../uiState";
 import type { BeaconView, PinView } from "../wire";
-import { clockTime, onPlan } from "../words";
+import { clockTime, planLabel } from "../format";
 import { faint, type Colours } from "./colours";
 import { BESIDE, placeNames, type Named, type Pixel, type Screen, type Side } from "./names";
 import { siteCoordinate } from "./site";
@@ -145,7 +145,7 @@ export class PinLayer {
         zIndex: chosen ? 3 : 1,
         renderer: (where, state) => drawDiamond(where as number[], state, colour, scene.colours),
       }),
-      textStyle(onPlan(beacon.label || beacon.beacon_id), [0, 17], scene.colours),
+      textStyle(planLabel(beacon.label || beacon.beacon_id), [0, 17], scene.colours),
     ]);
     this.source.addFeature(mark);
   }
@@ -193,7 +193,7 @@ export function isNamed({ state, t_ms }: PinView): boolean {
 /** Nobody is there now: it says that it is a pin. */
 export function pinWords(pin: PinView, name: string): string {
   const when = pin.t_ms === 0 ? "start" : clockTime(pin.t_ms).slice(0, 5);
-  return `Pin: ${onPlan(name)}, ${when}`;
+  return `Pin: ${planLabel(name)}, ${when}`;
 }
 
 function textStyle(

@@ -6,13 +6,13 @@ import { siteCoordinate } from "./site";
 
 /** A region wider than this is in no room. */
 const WIDEST_M = 10;
-const SURE_OF_FLOOR = 0.95;
+const FLOOR_CERTAIN = 0.95;
 
 /** "in store" where all of the region lies in the room, "near store" where only its middle does; empty
  * where the plan, the floor or the place is not known well enough. */
 export function roomWord(plan: Plan | null, position: PositionView, region: Region): string {
   if (plan === null || position.floor === null || region.major_m > WIDEST_M) return "";
-  if ((position.floor_probability ?? 1) < SURE_OF_FLOOR) return "";
+  if ((position.floor_probability ?? 1) < FLOOR_CERTAIN) return "";
   const centre = siteCoordinate(position);
   const room = plan.features.find(
     ({ properties, geometry }) =>
@@ -26,9 +26,10 @@ export function roomWord(plan: Plan | null, position: PositionView, region: Regi
   return `${whole ? "in" : "near"} ${name}`;
 }
 
-/** Whether a place lies in an area, by counting the borders east of it; holes count by themselves. */
-function holds(area: Geometry, at: readonly [number, number]): boolean {
-  return ringsOf(area).filter((border) => isInside(border, at)).length % 2 === 1;
+/** Whether a place lies in an area, by counting the borders east of it; holes count by themselves.  What
+ * has no place (RFC 7946) holds nobody. */
+function holds(area: Geometry | null, at: readonly [number, number]): boolean {
+  return area !== null && ringsOf(area).filter((border) => isInside(border, at)).length % 2 === 1;
 }
 
 function ringsOf(area: Geometry): number[][][] {

@@ -1,6 +1,6 @@
 /** What is being done on the plan: one thing at a time, begun with a button, ended with Escape. */
 import { signal } from "@preact/signals";
-import { half } from "../view";
+import { pane } from "../uiState";
 
 /** Metres in the incident frame. */
 export interface Place {
@@ -26,7 +26,7 @@ export const clicked = signal<readonly Place[]>([]);
 export function take(next: Tool): void {
   clicked.value = [];
   tool.value = next;
-  half.value = "plan";
+  pane.value = "plan";
 }
 
 export function putDown(): void {

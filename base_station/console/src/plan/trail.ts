@@ -1,15 +1,23 @@
-/** The way walked in the last minutes, on one floor or on all.  Pure. */
-import type { FloorChoice } from "../view";
+/** The way walked, on one floor or on all: of everybody in the last minutes, of some from the beginning.
+ * Pure. */
+import type { Urgency } from "../live/urgency";
+import type { FloorChoice } from "../uiState";
 import type { TrailPoint } from "../wire";
 
 export const TRAIL_MS = 5 * 60_000;
-/** While trails are compared, of a chosen person all of it is drawn; of everybody that would hide the
- * plan. */
-export function spanMs(isChosen: boolean, compared: boolean): number {
-  return isChosen && compared ? Infinity : TRAIL_MS;
+/** Of who is chosen, and of who is in danger until that is resolved, all of it is drawn: it is the way to
+ * them.  Of everybody that would hide the plan. */
+export function spanMs(chosen: boolean, urgency: Urgency = "normal"): number {
+  return chosen || urgency === "immediate" ? Infinity : TRAIL_MS;
 }
 /** Somebody at rest leaves a point every 15 s; over a longer gap nobody knows the way. */
-const BREAK_MS = 20_000;
+export const GAP_MS = 20_000;
+
+type Joined = (before: TrailPoint, point: TrailPoint) => boolean;
+/** Of a trail as the station keeps it, which says where its gaps are. */
+export const joinedAsSaid: Joined = (_, point) => point[4] !== 1;
+/** Of one with all its points. */
+export const joinedByTime: Joined = (before, point) => point[0] - before[0] <= GAP_MS;
 
 /** Lines of `[east_m, north_m]`, broken where the floor changes or nothing was heard. */
 export function trailLines(
@@ -17,22 +25,24 @@ export function trailLines(
   nowMs: number,
   floor: FloorChoice,
   spanMs = TRAIL_MS,
+  joined = joinedAsSaid,
 ): [number, number][][] {
   const lines: [number, number][][] = [];
   let line: [number, number][] = [];
-  let lastMs = -Infinity;
-  for (const [tMs, northM, eastM, on] of points) {
+  let last: TrailPoint | null = null;
+  for (const point of points) {
+    const [tMs, northM, eastM, on] = point;
     const shown = tMs >= nowMs - spanMs && (floor === "all" || on === null || on === floor);
     if (!shown) {
-      lastMs = -Infinity;
+      last = null;
       continue;
     }
-    if (tMs - lastMs > BREAK_MS) {
+    if (last === null || !joined(last, point)) {
       line = [];
       lines.push(line);
     }
     line.push([eastM, northM]);
-    lastMs = tMs;
+    last = point;
   }
   return lines.filter((one) => one.length > 1);
 }

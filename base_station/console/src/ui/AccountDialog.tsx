@@ -1,8 +1,8 @@
 import { useSignal } from "@preact/signals";
 import { attempt, leave, user } from "../sessions";
-import { notice, openDialog } from "../view";
+import { notice, openDialog } from "../uiState";
 import * as api from "../api";
-import { dateAndTime } from "../words";
+import { dateAndTime } from "../format";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -77,7 +77,13 @@ function Tokens({ role }: { role: api.Role }) {
           const form = event.currentTarget;
           const scopes = new FormData(form).getAll("scopes").map(String);
           const { name = "", role: chosen = "viewer", days = "" } = fields(event);
-          const wanted = { name, role: chosen, scopes, days: days === "" ? null : Number(days) };
+          // The form offers no other roles and scopes.
+          const wanted = {
+            name,
+            role: chosen,
+            scopes,
+            days: days === "" ? null : Number(days),
+          } as api.NewToken;
           void attempt(api.addToken(wanted)).then((token) => {
             if (token === null) return;
             made.value = token.token;

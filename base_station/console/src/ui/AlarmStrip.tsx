@@ -1,14 +1,15 @@
 import { useRef } from "preact/hooks";
 import { attempt, isPast, mayAct } from "../sessions";
-import { find } from "../view";
+import { find } from "../uiState";
 import * as api from "../api";
 import { handedTo, sinceMs } from "../live/alarms";
-import { figureNow } from "../live/figureNow";
+import { alarmCurrentValue } from "../live/alarmCurrentValue";
 import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
-import { duration } from "../words";
+import { duration } from "../format";
 import { ConfirmButton } from "./ConfirmButton";
-import { useSteady } from "./haste";
+import { ErrorBoundary } from "./ErrorBoundary";
+import { useGuardedPress } from "./useGuardedPress";
 import { Icon } from "./Icon";
 import { SoundButton } from "./SoundButton";
 
@@ -24,7 +25,9 @@ export function AlarmStrip({ picture }: { picture: Picture }) {
       </div>
       <ul aria-live="assertive" aria-relevant="additions">
         {alarms.map((alarm, place) => (
-          <AlarmRow key={alarm.alarm_id} alarm={alarm} place={place} picture={picture} />
+          <ErrorBoundary as="li" key={alarm.alarm_id} what={`The alarm "${alarm.text}"`}>
+            <AlarmRow alarm={alarm} place={place} picture={picture} />
+          </ErrorBoundary>
         ))}
       </ul>
     </section>
@@ -43,7 +46,7 @@ function AlarmRow({ alarm, place, picture }: RowProps) {
   const handed = unit === undefined ? "" : handedTo(alarm, unit.value);
   const nowMs = picture.nowMs.value;
   const figure =
-    unit === undefined ? "" : figureNow(alarm, unit.value, nowMs, picture.silentMs.value > 0);
+    unit === undefined ? "" : alarmCurrentValue(alarm, unit.value, nowMs, picture.silentMs.value > 0);
   return (
     <li class={`alarm p${alarm.priority} ${taken ? "taken" : ""}`} data-alarm={alarm.alarm_id}>
       <Icon name={taken ? "check" : "alarm"} />
@@ -85,7 +88,7 @@ function stateOf(alarm: AlarmView, hasButton: boolean): string {
 
 /** To resolve asks first: it stands where the button to acknowledge was a moment ago. */
 function AlarmAction({ alarm, place }: Omit<RowProps, "picture">) {
-  const steady = useSteady(place);
+  const steady = useGuardedPress(place);
   const pressed = useRef(false);
   if (alarm.state === "acknowledged") {
     return (

@@ -7,8 +7,8 @@ import { anchorThrough, changeOf, doubtOf, type Fit, type Known } from "../plan/
 import { baseMap } from "../plan/baseMap";
 import { clicked, putDown, type Place } from "../plan/tools";
 import type { AnchorView } from "../wire";
-import { place as inWords } from "../words";
-import { Ends } from "./Ends";
+import { place as inWords } from "../format";
+import { PanelActions } from "./PanelActions";
 import { MapPicker } from "./MapPicker";
 import { ReplacePlace } from "./ReplacePlace";
 import { fields } from "./useLoaded";
@@ -67,7 +67,7 @@ export function AnchorPanel({ picture }: { picture: Picture }) {
           ? "A map or a GPS receiver tells where they are."
           : "Click the same two, in the same order, on the plan and on the map."}
       </p>
-      <Ends
+      <PanelActions
         label={one !== undefined && other !== undefined ? "Set place" : null}
         question={question || null}
       />

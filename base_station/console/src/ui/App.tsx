@@ -3,10 +3,12 @@ import { isPast, live, picture, replay, user, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { sound } from "../sound";
 import { entitle } from "../title";
-import { dialog, half } from "../view";
+import { dialog, pane } from "../uiState";
 import { AlarmStrip } from "./AlarmStrip";
 import { Dialogs } from "./Dialogs";
-import { Halves } from "./Halves";
+import { PaneSwitch } from "./PaneSwitch";
+import { Faults } from "./Faults";
+import { ErrorBoundary } from "./ErrorBoundary";
 import { Header } from "./Header";
 import { LinkBanner } from "./LinkBanner";
 import { Login } from "./Login";
@@ -15,6 +17,7 @@ import { People } from "./People";
 import { PlanPanel } from "./PlanPanel";
 import { ReplayBar } from "./ReplayBar";
 import { StandbyBar } from "./StandbyBar";
+import { UndoBar } from "./UndoBar";
 import { Sending } from "./Waiting";
 
 export function App() {
@@ -36,22 +39,41 @@ function Console({ shown }: { shown: Picture }) {
   const kind = isPast.value ? "replay" : "live";
   const link = shown.link.value.kind;
   const stored = (shown.health.value?.reading ?? null) !== null;
-  const notNow = stored || link === "down" || (link === "connecting" && shown.ready.value);
+  const unrecorded = (shown.replay.value?.gap ?? null) !== null;
+  const notNow =
+    stored || unrecorded || link === "down" || (link === "connecting" && shown.ready.value);
   return (
     <div
       class={`console ${kind} ${link === "down" ? "stopped" : ""} ${notNow ? "not-now" : ""}`}
       hidden={waiting.value}
     >
-      <LinkBanner picture={shown} />
-      <StandbyBar picture={shown} />
-      {replay.value && live.value && <ReplayBar replay={replay.value} live={live.value.picture} />}
-      <Header picture={shown} />
-      <AlarmStrip picture={shown} />
+      <ErrorBoundary what="The state of the connection">
+        <LinkBanner picture={shown} />
+      </ErrorBoundary>
+      <ErrorBoundary what="The state of the two stations">
+        <StandbyBar picture={shown} />
+      </ErrorBoundary>
+      {replay.value && live.value && (
+        <ErrorBoundary what="The replay">
+          <ReplayBar replay={replay.value} live={live.value.picture} />
+        </ErrorBoundary>
+      )}
+      <ErrorBoundary what="The header">
+        <Header picture={shown} />
+      </ErrorBoundary>
+      <Faults />
+      <ErrorBoundary what="The list of alarms">
+        <AlarmStrip picture={shown} />
+      </ErrorBoundary>
       <main class="main">
-        <Halves />
-        <div class={`columns with-${half.value}`}>
-          <People picture={shown} key={kind} />
-          <PlanPanel picture={shown} />
+        <PaneSwitch />
+        <div class={`columns with-${pane.value}`}>
+          <ErrorBoundary what="The list of people" key={kind}>
+            <People picture={shown} />
+          </ErrorBoundary>
+          <ErrorBoundary what="The plan">
+            <PlanPanel picture={shown} />
+          </ErrorBoundary>
         </div>
       </main>
       <footer class="footer">
@@ -60,6 +82,7 @@ function Console({ shown }: { shown: Picture }) {
       </footer>
       {dialog.value === null && <Sending />}
       {dialog.value === null && <Notice />}
+      {dialog.value === null && <UndoBar />}
       <Dialogs />
     </div>
   );

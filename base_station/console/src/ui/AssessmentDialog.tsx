@@ -1,7 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { attempt } from "../sessions";
-import { assessed, openDialog } from "../view";
+import { assessed, openDialog } from "../uiState";
 import * as api from "../api";
 import {
   cells,
@@ -17,7 +17,7 @@ import {
   type Figures,
   type TrustSeconds,
 } from "../assessment";
-import { duration, percent } from "../words";
+import { duration, percent } from "../format";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 

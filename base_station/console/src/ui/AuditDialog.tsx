@@ -1,6 +1,6 @@
 import * as api from "../api";
 import { actionWord, detailWords } from "../audit";
-import { clockTime, dateAndTime } from "../words";
+import { clockTime, dateAndTime } from "../format";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useLoaded } from "./useLoaded";

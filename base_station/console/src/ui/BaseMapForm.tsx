@@ -1,6 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { removeBaseMap, setBaseMap } from "../api";
-import { ApiError } from "../call";
+import { ApiError } from "../http";
 import { baseMap, crsOf, worldOf } from "../plan/baseMap";
 import { attempt, user } from "../sessions";
 import { ConfirmButton } from "./ConfirmButton";

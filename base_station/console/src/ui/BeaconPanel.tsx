@@ -3,9 +3,9 @@ import * as api from "../api";
 import type { Picture } from "../live/picture";
 import { putDown } from "../plan/tools";
 import type { BeaconView } from "../wire";
-import { age } from "../words";
+import { age } from "../format";
 import { ConfirmButton } from "./ConfirmButton";
-import { Ends } from "./Ends";
+import { PanelActions } from "./PanelActions";
 import { FloorField, placeOf, PlaceFields, WithinField } from "./PlaceFields";
 import { fields } from "./useLoaded";
 
@@ -61,7 +61,7 @@ export function BeaconPanel({ picture, beacon }: Props) {
         />
       </label>
       <FloorField picture={picture} start={beacon?.floor} />
-      <Ends label={beacon === null ? "Place beacon" : "Change beacon"}>
+      <PanelActions label={beacon === null ? "Place beacon" : "Change beacon"}>
         {beacon !== null && (
           <ConfirmButton
             label="Remove beacon"
@@ -69,7 +69,7 @@ export function BeaconPanel({ picture, beacon }: Props) {
             onConfirm={() => void attempt(api.removeBeacon(beacon.beacon_id)).then(putDown)}
           />
         )}
-      </Ends>
+      </PanelActions>
     </form>
   );
 }

@@ -3,13 +3,13 @@ import { memo } from "preact/compat";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
-import { centring, half, select, selectedUnit } from "../view";
+import { centring, pane, select, selectedUnit } from "../uiState";
 import { isOfAnother } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
 import { OLD_MS } from "../plan/ellipse";
 import type { AlarmView, UnitView } from "../wire";
-import * as words from "../words";
+import * as format from "../format";
 import { CardActions } from "./CardActions";
 import { OpenCommands } from "./CommandState";
 import { BriefFacts, Facts } from "./Facts";
@@ -76,7 +76,7 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
  * cards.  There, Escape leads back (`PlanPanel.tsx`). */
 function ToPlan() {
   const go = () => {
-    half.value = "plan";
+    pane.value = "plan";
     requestAnimationFrame(() => document.querySelector<HTMLElement>(".map")?.focus());
   };
   return (
@@ -121,8 +121,8 @@ function Activity({ unit, picture }: { unit: UnitView; picture: Picture }) {
   return (
     <span class={`activity ${mayday ? "mayday" : ""}`}>
       <Icon name={mayday ? "alarm" : activityOrNone(unit)} />
-      {words.activityOf(unit)}
-      {oldMs >= OLD_MS && <small class="old-mark">{words.age(oldMs)} old</small>}
+      {format.activityOf(unit)}
+      {oldMs >= OLD_MS && <small class="old-mark">{format.age(oldMs)} old</small>}
     </span>
   );
 }
@@ -143,7 +143,7 @@ function OpenAlarms({ unit, picture }: { unit: UnitView; picture: Picture }) {
       {open.map((alarm) => (
         <li key={alarm.alarm_id} class={`p${alarm.priority}`}>
           <Icon name="alarm" />
-          {words.alarmWord(alarm)}
+          {format.alarmLabel(alarm)}
           {isOfAnother(alarm, unit) && <small>(who wore it before)</small>}
         </li>
       ))}
@@ -153,7 +153,7 @@ function OpenAlarms({ unit, picture }: { unit: UnitView; picture: Picture }) {
 
 /** Which the mark beside the name says already, and by how much. */
 function saysOverdue(alarm: AlarmView, unit: UnitView): boolean {
-  return alarm.rule === words.MISSED_CHECK_IN && !isOfAnother(alarm, unit);
+  return alarm.rule === format.MISSED_CHECK_IN && !isOfAnother(alarm, unit);
 }
 
 /** How far the position can be trusted: nothing to say while that is well.  That nothing is heard of a
@@ -176,7 +176,7 @@ function TwoMachines() {
   return (
     <p class="trust red">
       <Icon name="people" />
-      Somebody may be unseen: {words.TWO_MACHINES}
+      Somebody may be unseen: {format.DUPLICATE_DEVICE}
     </p>
   );
 }

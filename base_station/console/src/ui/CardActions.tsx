@@ -1,25 +1,29 @@
 import { attempt } from "../sessions";
-import { openDialog } from "../view";
+import { openDialog } from "../uiState";
 import * as api from "../api";
 import { take } from "../plan/tools";
+import { LOCATE_HINT } from "../live/commands";
 import { displayName } from "../live/urgency";
+import { confirmPar } from "../undo";
 import type { UnitView } from "../wire";
+import { ByRadio } from "./ByRadio";
 
 /** What can be done for one person; only on the card that was chosen, so that cards stay calm. */
 export function CardActions({ unit }: { unit: UnitView }) {
   const { unit_id: unitId, duty } = unit;
+  const name = displayName(unit);
   const resting = duty !== null && duty.rest_since_ms !== null;
   return (
-    <div class="card-actions" role="group" aria-label={`For ${displayName(unit)}`}>
+    <div class="card-actions" role="group" aria-label={`For ${name}`}>
       {duty !== null && (
         <>
-          <button
-            type="button"
-            class="primary"
-            onClick={() => void attempt(api.checkIn({ unit_id: unitId }))}
-          >
-            Heard
-          </button>
+          <ByRadio
+            label="PAR by radio"
+            members={[unit]}
+            question={`Has ${name} answered by radio?`}
+            kind="primary"
+            onConfirm={() => void confirmPar({ unit_id: unitId }, name)}
+          />
           <button type="button" onClick={() => void attempt(api.setRest(unitId, !resting))}>
             {resting ? "Back to work" : "To rest"}
           </button>
@@ -33,7 +37,7 @@ export function CardActions({ unit }: { unit: UnitView }) {
       </button>
       <button
         type="button"
-        title="The unit makes itself heard and seen"
+        title={LOCATE_HINT}
         onClick={() => void attempt(api.sendCommand("locate", { unit_id: unitId }, ""))}
       >
         Locate

@@ -1,6 +1,6 @@
 import { mayAct } from "../sessions";
-import { openDialog } from "../view";
-import { answered, commandWord, newestFirst } from "../live/commands";
+import { openDialog } from "../uiState";
+import { commandWord, newestFirst, progress } from "../live/commands";
 import type { Picture } from "../live/picture";
 
 /** What a commander can tell everyone with two presses, and how far that has got. */
@@ -23,15 +23,11 @@ export function CommandBar({ picture }: { picture: Picture }) {
         </>
       )}
       <ul aria-label="Open commands">
-        {open.map((command) => {
-          const [done, all] = answered(command);
-          return (
-            <li key={command.command_id}>
-              <strong>{commandWord(command)}</strong> {done} of {all}
-              {command.asks_wearer ? " acknowledged" : " received"}
-            </li>
-          );
-        })}
+        {open.map((command) => (
+          <li key={command.command_id}>
+            <strong>{commandWord(command)}</strong> {progress(command)}
+          </li>
+        ))}
       </ul>
     </div>
   );

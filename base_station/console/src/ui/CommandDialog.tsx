@@ -1,44 +1,68 @@
 import { useSignal } from "@preact/signals";
 import { attempt, live, mayAct } from "../sessions";
-import { dialogUnit } from "../view";
+import { dialogUnit } from "../uiState";
 import * as api from "../api";
-import { commandWord, crewsOf, kindWord, newestFirst, type Target } from "../live/commands";
+import { crewsOf, current, kindWord, LOCATE_HINT, newestFirst, type Target } from "../live/commands";
 import type { Picture } from "../live/picture";
 import { nameAmong } from "../live/urgency";
-import type { CommandView, DeliveryView } from "../wire";
-import { clockTime } from "../words";
-import { CommandState } from "./CommandState";
+import type { CommandView } from "../wire";
+import { Deliveries } from "./Deliveries";
 import { Dialog } from "./Dialog";
-import { useOnce } from "./haste";
+import { useSinglePress } from "./useGuardedPress";
 import { fields } from "./useLoaded";
 
 const SAYS: Record<api.CommandKind, string> = {
-  evacuate: "Tells them to get out at once. Each wearer is asked to acknowledge it.",
-  par_request: "Asks each wearer to answer. Nothing but a person’s answer completes it.",
-  text: "Each wearer is asked to acknowledge it.",
-  locate: "The unit makes itself heard and seen.",
+  evacuate: "Orders everyone out at once. Each member is asked to acknowledge it.",
+  par_request: "Asks each member to answer. Only a person’s answer confirms a PAR.",
+  text: "Each member is asked to acknowledge it.",
+  locate: LOCATE_HINT,
 };
 
 const EVERYONE = "everyone";
 
 /** Asks whom it is for before anything is sent, and shows what became of it. */
 export function CommandDialog({ kind }: { kind: api.CommandKind }) {
+  const sentHere = useSignal<readonly string[]>([]);
   const picture = live.value?.picture;
   if (picture === undefined) return null;
+  const orders = current(picture.commands.value.values(), picture.incident.value);
   return (
     <Dialog title={kindWord(kind)}>
-      {mayAct.value && <CommandForm kind={kind} picture={picture} />}
-      {newestFirst(picture.commands.value.values()).map((command) => (
-        <Deliveries key={command.command_id} command={command} picture={picture} />
-      ))}
+      {mayAct.value && (
+        <CommandForm
+          kind={kind}
+          picture={picture}
+          sent={({ command_id }) => (sentHere.value = [...sentHere.peek(), command_id])}
+        />
+      )}
+      {newestFirst(orders)
+        .filter((command) => isShown(command, kind, sentHere.value))
+        .map((command) => (
+          <Deliveries key={command.command_id} command={command} picture={picture} />
+        ))}
     </Dialog>
   );
 }
 
-function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Picture }) {
+/** Under *Evacuate now* the ticks of another order, or of an evacuation that is over, would be taken
+ * for this one's.  All orders of the incident stand under *Message*. */
+function isShown(command: CommandView, kind: api.CommandKind, sentHere: readonly string[]): boolean {
+  if (kind === "evacuate") {
+    return command.kind === kind && (command.open || sentHere.includes(command.command_id));
+  }
+  return kind === "text" || command.kind === kind;
+}
+
+interface FormProps {
+  kind: api.CommandKind;
+  picture: Picture;
+  sent: (command: CommandView) => void;
+}
+
+function CommandForm({ kind, picture, sent }: FormProps) {
   const about = dialogUnit.peek();
   const to = useSignal(about === null ? EVERYONE : `unit:${about}`);
-  const once = useOnce();
+  const once = useSinglePress();
   const units = picture.unitIds.value
     .map((unitId) => picture.unit(unitId)?.value)
     .filter((unit) => unit !== undefined)
@@ -58,7 +82,11 @@ function CommandForm({ kind, picture }: { kind: api.CommandKind; picture: Pictur
         const { text = "" } = fields(event);
         once(() =>
           attempt(api.sendCommand(kind, targetOf(to.peek()), text)).then(
-            (command) => command && clearText(form),
+            (command) => {
+              if (!command) return;
+              sent(command);
+              clearText(form);
+            },
           ),
         );
       }}
@@ -104,59 +132,4 @@ function targetOf(value: string): Target {
 
 function nameIn(target: string): string {
   return target.slice(target.indexOf(":") + 1);
-}
-
-function Deliveries({ command, picture }: { command: CommandView; picture: Picture }) {
-  return (
-    <table class="deliveries stacked">
-      <caption>
-        {commandWord(command)} ({clockTime(command.issued_ms)}, {command.issued_by})
-      </caption>
-      <thead class="spoken">
-        <tr>
-          <th scope="col">Who</th>
-          <th scope="col">State</th>
-          <th scope="col">By whom and when</th>
-        </tr>
-      </thead>
-      <tbody>
-        {command.units.map((delivery) => (
-          <tr key={delivery.unit_id}>
-            <th scope="row">{nameOf(delivery.unit_id, picture)}</th>
-            <td>
-              <CommandState state={delivery.state} />
-            </td>
-            <td>
-              <Answer command={command} delivery={delivery} />
-            </td>
-          </tr>
-        ))}
-      </tbody>
-    </table>
-  );
-}
-
-function nameOf(unitId: string, picture: Picture): string {
-  const unit = picture.unit(unitId)?.value;
-  return unit === undefined ? unitId : nameAmong(unit, picture.allUnits());
-}
-
-function Answer({ command, delivery }: { command: CommandView; delivery: DeliveryView }) {
-  if (delivery.acknowledged_ms !== null) {
-    return (
-      <>
-        {delivery.acknowledged_by}, {clockTime(delivery.acknowledged_ms)}
-      </>
-    );
-  }
-  if (delivery.state === "refused") return <>{delivery.reason}</>;
-  if (!command.asks_wearer || !mayAct.value) return null;
-  return (
-    <button
-      type="button"
-      onClick={() => void attempt(api.confirmCommand(command.command_id, delivery.unit_id))}
-    >
-      Answered by voice
-    </button>
-  );
 }

@@ -1,6 +1,6 @@
 import type { RefObject } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { HASTE_MS } from "./haste";
+import { GUARD_MS } from "./useGuardedPress";
 
 interface Props {
   question: string;
@@ -16,7 +16,7 @@ export function Confirm({ question, yes, onYes, onNo }: Props) {
   const no = useRef<HTMLButtonElement>(null);
   useEffect(() => no.current?.focus(), []);
   const confirm = (press: MouseEvent) => {
-    if (performance.now() - askedMs.current > HASTE_MS) onYes(press);
+    if (performance.now() - askedMs.current > GUARD_MS) onYes(press);
   };
   return (
     <span class="confirm" role="group" aria-label={question}>

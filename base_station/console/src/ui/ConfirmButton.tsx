@@ -28,6 +28,7 @@ export function ConfirmButton({
   if (asked.value) {
     return (
       <Confirm
+        key={question} // what has changed since is another question
         question={question}
         yes={yes}
         onYes={(press) => {

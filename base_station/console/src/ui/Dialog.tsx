@@ -1,9 +1,10 @@
 import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { waiting } from "../sessions";
-import { dialog } from "../view";
+import { dialog } from "../uiState";
 import { LinkLost } from "./LinkBanner";
 import { Notice } from "./Notice";
+import { UndoBar } from "./UndoBar";
 import { UrgentNow } from "./UrgentNow";
 import { Sending } from "./Waiting";
 
@@ -35,6 +36,7 @@ export function Dialog({ title, wide = false, children }: Props) {
         <LinkLost />
         <UrgentNow />
         <Notice />
+        <UndoBar />
       </header>
       {children}
     </dialog>

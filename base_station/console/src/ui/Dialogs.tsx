@@ -1,10 +1,12 @@
 import { useLayoutEffect } from "preact/hooks";
-import { dialog } from "../view";
+import { report } from "../live/faults";
+import { dialog } from "../uiState";
 import { AccountDialog } from "./AccountDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
 import { CommandDialog } from "./CommandDialog";
 import { FlawsDialog } from "./FlawsDialog";
+import { ErrorBoundary } from "./ErrorBoundary";
 import { HealthDialog } from "./HealthDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
@@ -15,6 +17,20 @@ import { UsersDialog } from "./UsersDialog";
 
 export function Dialogs() {
   useFocusBack(dialog.value !== null);
+  return (
+    <ErrorBoundary what="This dialog" key={dialog.value ?? ""} onFault={closeWith}>
+      <Opened />
+    </ErrorBoundary>
+  );
+}
+
+/** It would lie over everything else. */
+function closeWith(fault: string): void {
+  dialog.value = null;
+  report(fault);
+}
+
+function Opened() {
   switch (dialog.value) {
     case "incidents":
       return <IncidentsDialog />;

@@ -3,8 +3,8 @@ import { hasAlarm } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { isOld, regionAt } from "../plan/ellipse";
 import { roomWord } from "../plan/rooms";
-import type { Link, PositionView, UnitView } from "../wire";
-import * as words from "../words";
+import type { Link, PositionView, StatusView, UnitView } from "../wire";
+import * as format from "../format";
 import { Icon, type IconName } from "./Icon";
 
 interface Props {
@@ -26,14 +26,9 @@ export function Facts({ unit, picture }: Props) {
     <dl class="facts">
       <Where unit={unit} picture={picture} />
       <Heard unit={unit} now={now} silent={picture.silentMs.value > 0} />
-      <Fact icon="heat" label="Environment" level={unit.heat_level}>
-        {words.temperature(unit.ambient_degc)}
-        {unit.ambient_degc !== null && <Remark>{words.heatWord(unit.heat_level)}</Remark>}
-      </Fact>
-      <Battery
-        part={unit.status?.battery ?? null}
-        low={hasAlarm(unit, "battery", picture.alarms.value)}
-      />
+      <Environment unit={unit} now={now} />
+      <Electronics status={unit.status} />
+      <Battery status={unit.status} low={hasAlarm(unit, "battery", picture.alarms.value)} />
       <Inside unit={unit} now={now} />
     </dl>
   );
@@ -41,16 +36,19 @@ export function Facts({ unit, picture }: Props) {
 
 /** The same of somebody who is well, in one line. */
 export function BriefFacts({ unit, picture }: Props) {
-  const { position, ambient_degc } = unit;
+  const { position, ambient_degc, ambient_ms } = unit;
   if (position === null) return null;
   const now = picture.nowMs.value;
   const old = isOld(position, now) || picture.silentMs.value > 0;
   return (
     <p class={`brief-facts ${old ? "old" : ""}`}>
       {placeWords(position, picture, old)}
-      <span class="spoken">, {words.place(position)}</span>
-      {ambient_degc !== null && ` · ${words.temperature(ambient_degc)}`}
-      {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
+      <span class="spoken">, {format.place(position)}</span>
+      {ambient_degc !== null && ` · ${format.temperature(ambient_degc)}`}
+      {format.isReadingOld(ambient_ms, now) && ambient_ms !== null && (
+        <small class="old-mark">{format.age(now - ambient_ms)} old</small>
+      )}
+      {old && <small class="old-mark">{format.age(now - position.t_ms)} old</small>}
     </p>
   );
 }
@@ -59,7 +57,7 @@ export function BriefFacts({ unit, picture }: Props) {
 function placeWords(position: PositionView, picture: Picture, old: boolean): string {
   const region = regionAt(position, picture.silentMs.value);
   const room = roomWord(picture.plan.value, position, region);
-  const parts = [words.floorOf(position, old), room, words.plusMinus(region.major_m)];
+  const parts = [format.floorOf(position, old), room, format.plusMinus(region.major_m)];
   return parts.filter((part) => part !== "").join(", ");
 }
 
@@ -69,7 +67,7 @@ function Where({ unit, picture }: Props) {
   if (position === null) {
     return (
       <Fact icon="floor" label="Position" wide>
-        no position yet
+        {unit.duty !== null && !unit.duty.located ? "not located" : "no position yet"}
       </Fact>
     );
   }
@@ -77,8 +75,8 @@ function Where({ unit, picture }: Props) {
   return (
     <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
       {placeWords(position, picture, old)}
-      <span class="spoken">, {words.place(position)}</span>
-      {old && <small class="old-mark">{words.age(now - position.t_ms)} old</small>}
+      <span class="spoken">, {format.place(position)}</span>
+      {old && <small class="old-mark">{format.age(now - position.t_ms)} old</small>}
     </Fact>
   );
 }
@@ -95,19 +93,48 @@ function Heard({ unit, now, silent }: HeardProps) {
   return (
     <Fact
       icon={good ? "linkGood" : "linkLost"}
-      label={silent ? "Not updated" : words.linkWord(unit)}
+      label={silent ? "Not updated" : format.linkText(unit)}
       level={silent ? "critical" : level}
     >
-      {unit.last_heard_ms === null ? "—" : `${words.age(now - unit.last_heard_ms)} ago`}
+      {unit.last_heard_ms === null ? "—" : `${format.age(now - unit.last_heard_ms)} ago`}
     </Fact>
   );
 }
 
-function Battery({ part, low }: { part: number | null; low: boolean }) {
+function Environment({ unit, now }: { unit: UnitView; now: number }) {
+  const { ambient_degc, ambient_ms } = unit;
+  const old = format.isReadingOld(ambient_ms, now);
+  const sensors = format.sensorsText(unit.ambient_sensors);
+  return (
+    <Fact icon="heat" label="Environment" level={unit.heat_level || (old ? "old" : "")}>
+      {format.temperature(ambient_degc)}
+      {ambient_degc !== null && <Remark>{format.heatText(unit.heat_level)}</Remark>}
+      {sensors !== "" && <Remark>{sensors}</Remark>}
+      {old && ambient_ms !== null && (
+        <small class="old-mark">{format.age(now - ambient_ms)} old</small>
+      )}
+    </Fact>
+  );
+}
+
+/** Inside the unit: nothing where it has no such sensor. */
+function Electronics({ status }: { status: StatusView | null }) {
+  const degc = format.hottest(status?.electronics ?? []);
+  if (degc === null) return null;
+  return (
+    <Fact icon="heat" label="Electronics">
+      {format.temperature(degc)}
+    </Fact>
+  );
+}
+
+function Battery({ status, low }: { status: StatusView | null; low: boolean }) {
+  const state = status === null ? "" : format.batteryText(status);
   return (
     <Fact icon="battery" label="Battery" level={low ? "warning" : ""}>
-      {words.percent(part)}
+      {format.percent(status?.battery ?? null)}
       {low && <Remark>low</Remark>}
+      {state !== "" && <Remark>{state}</Remark>}
     </Fact>
   );
 }
@@ -117,14 +144,14 @@ function Inside({ unit, now }: { unit: UnitView; now: number }) {
   if (restSinceMs !== null) {
     return (
       <Fact icon="clock" label="Resting for">
-        {words.minutes(now - restSinceMs)}
+        {format.minutes(now - restSinceMs)}
       </Fact>
     );
   }
-  const insideMs = words.insideMs(unit, now);
+  const insideMs = format.insideMs(unit, now);
   return (
-    <Fact icon="inside" label={words.insideWord(unit)}>
-      {insideMs === null ? "—" : words.minutes(insideMs)}
+    <Fact icon="inside" label={format.insideText(unit)}>
+      {insideMs === null ? "—" : format.minutes(insideMs)}
     </Fact>
   );
 }

@@ -1,4 +1,4 @@
-import { floor, type FloorChoice } from "../view";
+import { floor, type FloorChoice } from "../uiState";
 import type { Picture } from "../live/picture";
 import { floorsOf } from "../plan/floors";
 import { Icon } from "./Icon";

@@ -1,7 +1,7 @@
 import { isPast } from "../sessions";
-import { openDialog } from "../view";
+import { openDialog } from "../uiState";
 import type { Picture } from "../live/picture";
-import { clockTime, minutes, problemsOf, timeSince, zone } from "../words";
+import { clockTime, minutes, problemsOf, timeSince, zone } from "../format";
 import { Icon } from "./Icon";
 import { Menu } from "./Menu";
 import { ParClock } from "./ParClock";
@@ -51,10 +51,14 @@ function Clock({ picture }: { picture: Picture }) {
   );
 }
 
+/** What it said last may be over. */
+const UNKNOWN = "Station state unknown";
+
 function HealthLight({ picture }: { picture: Picture }) {
   const health = picture.health.value;
   if (health === null) return null;
-  const [first, ...more] = problemsOf(health);
+  const lost = picture.link.value.kind !== "up";
+  const [first, ...more] = lost ? [UNKNOWN] : problemsOf(health);
   const sentence = first ?? "Station is well";
   const others = more.length === 0 ? "" : `+${more.length}`;
   return (

@@ -1,5 +1,5 @@
 import { picture } from "../sessions";
-import { bytes, problemsOf } from "../words";
+import { bytes, problemsOf } from "../format";
 import { Dialog } from "./Dialog";
 import { Recordings } from "./Recording";
 

@@ -1,16 +1,17 @@
 import { useSignal } from "@preact/signals";
 import { attempt, live, liveIsPast, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
+import { unfinished } from "../live/closing";
 import { KINDS, type TrailKind } from "../plan/pastTrails";
-import { assess } from "../view";
+import { assess } from "../uiState";
 import type { IncidentView } from "../wire";
-import { dateAndTime, minutes, zone } from "../words";
+import { dateAndTime, minutes, zone } from "../format";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { useDone } from "./Done";
-import { Forget } from "./Forget";
-import { useOnce } from "./haste";
+import { EraseForm } from "./EraseForm";
+import { useSinglePress } from "./useGuardedPress";
 import { OpenReplays } from "./OpenReplays";
 import { useChosen } from "./useChosen";
 import { fields, useLoaded } from "./useLoaded";
@@ -33,11 +34,7 @@ export function IncidentsDialog() {
           <span>
             <strong>{running.name}</strong> is open.
           </span>
-          <ConfirmButton
-            label="Close this incident"
-            question="It cannot be opened again."
-            onConfirm={() => void attempt(api.closeIncident(running.incident_id)).then(again)}
-          />
+          <CloseButton incident={running} done={again} />
         </p>
       )}
       {mayAct.value && running !== null && <TimesForm incident={running} />}
@@ -84,7 +81,7 @@ export function IncidentsDialog() {
               {forgets && (
                 <td>
                   {incident.closed_ms !== null && (
-                    <Forget
+                    <EraseForm
                       name={incident.name}
                       warning="Who was there and where is deleted."
                       subjectId={incident.incident_id}
@@ -112,9 +109,25 @@ export function IncidentsDialog() {
   );
 }
 
+/** Over open alarms or people inside, only by their names. */
+function CloseButton({ incident, done }: { incident: IncidentView; done: () => void }) {
+  const picture = live.value?.picture;
+  if (picture === undefined) return null;
+  void picture.unitsChanged.value;
+  const { words, ...despite } = unfinished(picture.allUnits(), picture.alarms.value.values());
+  const over = words === "" ? "" : `${words} Close it all the same? Orders without an answer end. `;
+  return (
+    <ConfirmButton
+      label="Close this incident"
+      question={`${over}It cannot be opened again.`}
+      onConfirm={() => void attempt(api.closeIncident(incident.incident_id, despite)).then(done)}
+    />
+  );
+}
+
 function OpenForm({ done }: { done: () => void }) {
   const [usual] = useLoaded(api.usualTimes);
-  const once = useOnce();
+  const once = useSinglePress();
   return (
     <form
       class="row"

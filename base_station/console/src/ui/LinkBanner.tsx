@@ -3,7 +3,7 @@ import { useEffect } from "preact/hooks";
 import { useSignal } from "@preact/signals";
 import type { Picture } from "../live/picture";
 import { live } from "../sessions";
-import { clockTime, duration } from "../words";
+import { clockTime, duration } from "../format";
 import { Icon } from "./Icon";
 import { OtherConsole } from "./StandbyBar";
 

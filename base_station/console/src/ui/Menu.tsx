@@ -1,7 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { mayAct, user } from "../sessions";
-import { openDialog, type DialogName } from "../view";
+import { openDialog, type DialogName } from "../uiState";
 
 const FOR_EVERYBODY: readonly [DialogName, string][] = [["incidents", "Incidents"]];
 const FOR_COMMANDERS: readonly [DialogName, string][] = [

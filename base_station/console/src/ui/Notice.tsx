@@ -1,4 +1,4 @@
-import { notice } from "../view";
+import { notice } from "../uiState";
 
 /** What was last said; in a dialog it stands in it, as nothing behind a dialog can be read or pressed. */
 export function Notice() {

@@ -1,9 +1,11 @@
 import { untracked, useComputed, useSignal, useSignalEffect } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import type { Picture } from "../live/picture";
+import { guarded } from "../live/faults";
 import { arrange, isJump, samePlaces, type Place } from "../live/urgency";
 import { Card } from "./Card";
 import { CommandBar } from "./CommandBar";
+import { ErrorBoundary } from "./ErrorBoundary";
 
 /** With more than this, whoever is well is said in short, so that who is not is seen. */
 const MANY = 6;
@@ -16,13 +18,13 @@ export function People({ picture }: { picture: Picture }) {
   const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
   useSignalEffect(() => {
     void [picture.unitIds.value, picture.alarms.value, second.value, held.value];
-    untracked(() => {
+    guarded("The list of people", () => untracked(() => {
       const nowMs = picture.nowMs.value;
       const before = isJump(seenMs.current, nowMs) ? [] : places.value;
       seenMs.current = nowMs;
       const next = arrange(before, picture.allUnits(), picture.alarms.value, nowMs, held.value);
       if (!samePlaces(next, places.value)) places.value = next;
-    });
+    }));
   });
   return (
     <section
@@ -31,7 +33,9 @@ export function People({ picture }: { picture: Picture }) {
       onPointerEnter={() => (held.value = true)}
       onPointerLeave={() => (held.value = false)}
     >
-      <CommandBar picture={picture} />
+      <ErrorBoundary what="The bar of orders">
+        <CommandBar picture={picture} />
+      </ErrorBoundary>
       {places.value.length === 0 ? (
         <p class="nobody">
           {picture.ready.value
@@ -41,13 +45,14 @@ export function People({ picture }: { picture: Picture }) {
       ) : (
         <ul class="cards">
           {places.value.map((place) => (
-            <Card
-              key={place.unitId}
-              unitId={place.unitId}
-              urgency={place.urgency}
-              brief={places.value.length > MANY}
-              picture={picture}
-            />
+            <ErrorBoundary as="li" key={place.unitId} what={`The card of ${place.name}`}>
+              <Card
+                unitId={place.unitId}
+                urgency={place.urgency}
+                brief={places.value.length > MANY}
+                picture={picture}
+              />
+            </ErrorBoundary>
           ))}
         </ul>
       )}

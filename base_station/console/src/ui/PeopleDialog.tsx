@@ -4,8 +4,8 @@ import * as api from "../api";
 import { Columns } from "./Columns";
 import { useFirstField, useFocusBack } from "./Confirm";
 import { Dialog } from "./Dialog";
-import { Forget } from "./Forget";
-import { useOnce } from "./haste";
+import { EraseForm } from "./EraseForm";
+import { useSinglePress } from "./useGuardedPress";
 import { Photo } from "./Photo";
 import { fields, useLoaded } from "./useLoaded";
 import { Waiting } from "./Waiting";
@@ -82,7 +82,7 @@ function PersonRow({ person, done }: RowProps) {
             Change
           </button>
           {user.value?.role === "administrator" && (
-            <Forget
+            <EraseForm
               name={person.name}
               warning="Name, photo and everywhere this person was are deleted."
               subjectId={person.person_id}
@@ -150,7 +150,7 @@ async function add(form: HTMLFormElement): Promise<void> {
 }
 
 function PersonForm({ done }: { done: () => void }) {
-  const once = useOnce();
+  const once = useSinglePress();
   return (
     <form
       class="row"

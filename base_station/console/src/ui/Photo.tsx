@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import { initials } from "../words";
+import { initials } from "../format";
 
 /** A person's photo, or the initials where there is none (any more). */
 export function Photo({ name, url }: { name: string; url: string | null }) {

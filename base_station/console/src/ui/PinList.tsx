@@ -4,8 +4,8 @@ import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
 import { take, type Tool } from "../plan/tools";
 import type { PinView } from "../wire";
-import { clockTime, floorName } from "../words";
-import { Ends } from "./Ends";
+import { clockTime, floorName } from "../format";
+import { PanelActions } from "./PanelActions";
 
 /** All pins and beacons in words: meetings stand nowhere on the plan, and not everybody has a pointer. */
 export function PinList({ picture }: { picture: Picture }) {
@@ -30,7 +30,7 @@ export function PinList({ picture }: { picture: Picture }) {
           </li>
         ))}
       </ul>
-      <Ends />
+      <PanelActions />
     </section>
   );
 }

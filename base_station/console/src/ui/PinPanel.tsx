@@ -5,10 +5,10 @@ import type { Picture } from "../live/picture";
 import { displayName, nameAmong } from "../live/urgency";
 import { putDown } from "../plan/tools";
 import type { PinView, UnitView } from "../wire";
-import { clockTime } from "../words";
+import { clockTime } from "../format";
 import { ConfirmButton } from "./ConfirmButton";
-import { Ends } from "./Ends";
-import { useOnce } from "./haste";
+import { PanelActions } from "./PanelActions";
+import { useSinglePress } from "./useGuardedPress";
 import { FloorField, placeOf, PlaceFields, WithinField } from "./PlaceFields";
 import { fields } from "./useLoaded";
 
@@ -21,7 +21,7 @@ interface Props {
 /** "This person was here then": it corrects the whole trail, not only the place now. */
 export function PinPanel({ picture, unitId, pin }: Props) {
   const name = nameOf(picture, unitId);
-  const once = useOnce();
+  const once = useSinglePress();
   const fixed = pin !== null && pin.kind !== "place"; // it can only be removed
   const at =
     pin === null || pin.north_m === null || pin.east_m === null
@@ -55,7 +55,7 @@ export function PinPanel({ picture, unitId, pin }: Props) {
           </label>
         </>
       )}
-      <Ends label={fixed ? null : pin === null ? "Set pin" : "Move pin"}>
+      <PanelActions label={fixed ? null : pin === null ? "Set pin" : "Move pin"}>
         {pin !== null && (
           <ConfirmButton
             label="Remove pin"
@@ -63,7 +63,7 @@ export function PinPanel({ picture, unitId, pin }: Props) {
             onConfirm={() => void attempt(api.removePin(pin.pin_id)).then(putDown)}
           />
         )}
-      </Ends>
+      </PanelActions>
     </form>
   );
 }
@@ -95,7 +95,7 @@ function Verdict({ pin }: { pin: PinView }) {
  */
 export function StartPanel({ picture }: { picture: Picture }) {
   const units = onDuty(picture);
-  const once = useOnce();
+  const once = useSinglePress();
   const send = (event: SubmitEvent) => {
     const given = fields(event);
     const facing = given["facing"] ?? "";
@@ -127,7 +127,7 @@ export function StartPanel({ picture }: { picture: Picture }) {
         </select>
       </label>
       <FloorField picture={picture} start={undefined} />
-      <Ends label="Set start" />
+      <PanelActions label="Set start" />
     </form>
   );
 }
@@ -165,7 +165,7 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
   const others = registered(picture).filter(
     (unit) => unit.unit_id !== unitId && (unit.person !== null || unit.unit_id === whom.value),
   );
-  const once = useOnce();
+  const once = useSinglePress();
   const send = (event: SubmitEvent) => {
     const given = fields(event);
     const meeting = {
@@ -197,7 +197,7 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
       </label>
       <WhenField set={null} />
       <WithinField startM={2} />
-      <Ends label="They met" />
+      <PanelActions label="They met" />
     </form>
   );
 }

@@ -1,8 +1,8 @@
 import { clicked, type Place } from "../plan/tools";
-import { floor } from "../view";
+import { floor } from "../uiState";
 import type { Picture } from "../live/picture";
 import { floorsOf } from "../plan/floors";
-import { floorName } from "../words";
+import { floorName } from "../format";
 
 /** Where on the plan: clicked, or typed by who has no pointer. */
 export function PlaceFields({ start }: { start?: Place }) {

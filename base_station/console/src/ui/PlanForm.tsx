@@ -1,9 +1,9 @@
 import { useSignal } from "@preact/signals";
 import { setPlan } from "../api";
-import { ApiError } from "../call";
+import { ApiError } from "../http";
 import { contents } from "../plan/contents";
 import { attempt } from "../sessions";
-import { dialog } from "../view";
+import { dialog } from "../uiState";
 import type { Plan } from "../wire";
 import { ConfirmButton } from "./ConfirmButton";
 

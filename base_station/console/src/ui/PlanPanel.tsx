@@ -1,7 +1,7 @@
 import { useSignalEffect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
-import { centring, half, notice, select, selectedUnit } from "../view";
+import { centring, pane, notice, select, selectedUnit } from "../uiState";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
 import { follow } from "../plan/follow";
@@ -10,6 +10,7 @@ import type { Standing } from "../plan/pins";
 import { siteCoordinate } from "../plan/site";
 import { click, clicked, take, tool, wantsPlaces, type Place } from "../plan/tools";
 import { Floors } from "./Floors";
+import { ErrorBoundary } from "./ErrorBoundary";
 import { PlanTools, ToolPanel } from "./PlanTools";
 
 export function PlanPanel({ picture }: { picture: Picture }) {
@@ -36,8 +37,13 @@ export function PlanPanel({ picture }: { picture: Picture }) {
 
   return (
     <section class="plan" aria-label="Plan">
-      <PlanTools picture={picture} />
-      <Floors picture={picture} />
+      <ErrorBoundary what="The tools of the plan">
+        <PlanTools picture={picture} />
+      </ErrorBoundary>
+      <ErrorBoundary what="The list of floors">
+        <Floors picture={picture} />
+      </ErrorBoundary>
+      <Damage picture={picture} />
       <div
         class={`map ${wantsPlaces(tool.value) ? "placing" : ""}`}
         ref={target}
@@ -61,14 +67,22 @@ export function PlanPanel({ picture }: { picture: Picture }) {
       <div class="north" aria-hidden="true">
         N
       </div>
-      <ToolPanel picture={picture} />
+      <ErrorBoundary what="This tool of the plan">
+        <ToolPanel picture={picture} />
+      </ErrorBoundary>
     </section>
   );
 }
 
+/** What of the plan the station could not read, and leaves out. */
+function Damage({ picture }: { picture: Picture }) {
+  const damage = picture.plan.value?.muster.damage ?? "";
+  return damage === "" ? null : <p class="cannot-show plan-damage">{damage}.</p>;
+}
+
 /** To the card that led here, or that of whoever was chosen here. */
 function backToCard(): void {
-  half.value = "people";
+  pane.value = "people";
   requestAnimationFrame(() => document.querySelector<HTMLElement>(".chosen .card-head")?.focus());
 }
 

@@ -2,7 +2,7 @@ import type { ComponentChildren, JSX } from "preact";
 import { useLayoutEffect } from "preact/hooks";
 import { mayAct, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
-import { dialog } from "../view";
+import { dialog } from "../uiState";
 import { putDown, toggle, tool, type Tool } from "../plan/tools";
 import { AnchorPanel } from "./AnchorPanel";
 import { BeaconPanel } from "./BeaconPanel";

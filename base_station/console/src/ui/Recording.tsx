@@ -1,7 +1,7 @@
 import { attempt, live, mayAct } from "../sessions";
 import * as api from "../api";
 import type { RecordingView } from "../wire";
-import { bytes } from "../words";
+import { bytes } from "../format";
 
 const HOUR_MS = 3_600_000;
 

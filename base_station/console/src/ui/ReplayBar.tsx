@@ -1,7 +1,8 @@
 import { besideLive, liveIsPast, stopReplay, type Replay } from "../sessions";
-import { assess, openDialog } from "../view";
+import { assess, openDialog } from "../uiState";
 import type { Picture } from "../live/picture";
-import { dateAndTime, problemsOf, zone } from "../words";
+import { dateAndTime, problemsOf, timeSince, zone } from "../format";
+import type { GapView } from "../wire";
 import { Icon } from "./Icon";
 import { Transport } from "./Transport";
 
@@ -21,6 +22,7 @@ export function ReplayBar({ replay, live }: Props) {
         {zone(replay.incident.opened_ms)}. This is the past.
       </span>
       {state && <Flaws flaws={state.flaws} />}
+      {state?.gap && <Gap gap={state.gap} startMs={state.start_ms} />}
       <button
         type="button"
         class="about-positions"
@@ -56,6 +58,17 @@ function Flaws({ flaws }: { flaws: readonly string[] }) {
     <button type="button" class="flaws" title={flaws.join("\n")} onClick={() => openDialog("flaws")}>
       <Icon name="alarm" /> Not all is as it was: {flaws.length}
     </button>
+  );
+}
+
+/** What is shown in it is the last that was recorded before it. */
+function Gap({ gap, startMs }: { gap: GapView; startMs: number }) {
+  return (
+    <span class="replay-live alarmed" role="alert">
+      <Icon name="linkLost" /> No record from {timeSince(startMs, gap.from_ms)} to{" "}
+      {timeSince(startMs, gap.until_ms)}
+      <span class="gap-shown">The last positions before it are shown.</span>
+    </span>
   );
 }
 

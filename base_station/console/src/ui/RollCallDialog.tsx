@@ -1,18 +1,20 @@
 import { attempt, mayAct, picture as shown } from "../sessions";
-import { openDialog } from "../view";
+import { openDialog } from "../uiState";
 import * as api from "../api";
 import { needsOf } from "../live/alarms";
-import type { Target } from "../live/commands";
-import { crewsOnDuty, type CrewOnDuty, type OnDuty } from "../live/duty";
+import { confirmationWords, crewsOnDuty, type CrewOnDuty, type OnDuty } from "../live/duty";
 import { displayName } from "../live/urgency";
-import { alarmWord, clockTime, minutes } from "../words";
+import { confirmPar } from "../undo";
+import type { UnitView } from "../wire";
+import { alarmLabel, minutes } from "../format";
+import { ByRadio } from "./ByRadio";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
-import { useSteady } from "./haste";
+import { useGuardedPress } from "./useGuardedPress";
 import { Icon } from "./Icon";
 import { ParMark } from "./ParClock";
 
-/** Ticking people off: one press for each, or for a crew, or for everyone. */
+/** PAR of each member: by own unit, by radio, or not yet; one press enters an answer by radio. */
 export function RollCallDialog() {
   const picture = shown.value;
   if (picture === null) return null;
@@ -26,14 +28,18 @@ export function RollCallDialog() {
       )}
       {mayAct.value && crews.length > 0 && (
         <p class="row roll-all">
-          <span>Tick off whom you have heard. Nothing that a unit measures does it for you.</span>
+          <span>
+            Confirm each member who has answered by radio. Nothing that a unit measures confirms a PAR.
+          </span>
           <button type="button" onClick={() => openDialog("par_request")}>
-            Ask by radio
+            Send PAR request
           </button>
-          <ConfirmButton
-            label="All heard"
-            question={`Has everybody answered${named(inNeed(crews, picture))}?`}
-            onConfirm={() => tick({ everyone: true })}
+          <ByRadio
+            label="Confirm all"
+            members={unitsIn(crews)}
+            question="Has everybody answered by radio?"
+            always
+            onConfirm={() => void confirmPar({ everyone: true }, "everybody")}
           />
         </p>
       )}
@@ -53,26 +59,20 @@ interface CrewProps {
 }
 
 function Crew({ crew, place, picture }: CrewProps) {
-  const steady = useSteady(place);
+  const steady = useGuardedPress(place);
   const name = crew.crew === "" ? "Without a crew" : crew.crew;
-  const all = () => tick({ crew: crew.crew });
-  const needy = inNeed([crew], picture);
+  const all = () => void confirmPar({ crew: crew.crew }, name);
   return (
     <section class={`roll-crew ${crew.par.state}`} aria-label={name}>
       <header>
         <h3>
           {name} <span class="quiet">{crew.people.length} on duty</span>
         </h3>
-        {mayAct.value && crew.crew !== "" && crew.people.length > 1 && needy.length === 0 && (
-          <button type="button" onClick={steady(all)}>
-            {name}: all heard
-          </button>
-        )}
-        {mayAct.value && crew.crew !== "" && crew.people.length > 1 && needy.length > 0 && (
-          <ConfirmButton
-            label={`${name}: all heard`}
-            yes="Yes, all heard"
-            question={`Have all answered${named(needy)}?`}
+        {mayAct.value && crew.crew !== "" && crew.people.length > 1 && (
+          <ByRadio
+            label={`${name}: confirm all`}
+            members={unitsIn([crew])}
+            question="Have all answered by radio?"
             onConfirm={steady(all)}
           />
         )}
@@ -87,7 +87,7 @@ function Crew({ crew, place, picture }: CrewProps) {
 }
 
 function Row({ one, place, picture }: { one: OnDuty; place: number; picture: Shown }) {
-  const steady = useSteady(place);
+  const steady = useGuardedPress(place);
   const { unit, duty } = one;
   const needs = needsOf(unit, picture.alarms.value);
   const name = displayName(unit);
@@ -98,47 +98,47 @@ function Row({ one, place, picture }: { one: OnDuty; place: number; picture: Sho
         {needs.length > 0 && (
           <span class="in-need">
             <Icon name="alarm" />
-            {needs.map(alarmWord).join(", ")}
+            {needs.map(alarmLabel).join(", ")}
           </span>
         )}
       </span>
-      <ParMark unit={unit} picture={picture} />
-      <span class="quiet">
-        last heard {clockTime(duty.checked_in_ms)} by {duty.checked_in_by}
+      <ParMark unit={unit} picture={picture} brief />
+      <span class="quiet roll-words">
+        {confirmationWords(duty)}
+        {!duty.located && ", not located"}
         {duty.rest_since_ms !== null &&
           `, resting for ${minutes(picture.nowMs.value - duty.rest_since_ms)}`}
         {duty.work_since_ms !== null &&
           `, at work for ${minutes(picture.nowMs.value - duty.work_since_ms)}`}
       </span>
       {mayAct.value && (
-        <button
-          type="button"
-          class="primary tick"
-          aria-label={`Heard ${name}`}
-          onClick={steady(() => tick({ unit_id: unit.unit_id }))}
-        >
-          Heard
-        </button>
+        <span class="roll-acts">
+          {duty.entry_id !== "" && (
+            <ConfirmButton
+              label="Undo"
+              about={`PAR of ${name} by radio`}
+              question={`PAR of ${name} counts as not answered by radio?`}
+              onConfirm={() => void attempt(api.undoCheckIn(duty.entry_id, unit.unit_id))}
+            />
+          )}
+          <ByRadio
+            label="Confirm by radio"
+            about={name}
+            members={[unit]}
+            question={`Has ${name} answered by radio?`}
+            kind="primary tick"
+            onConfirm={steady(() => void confirmPar({ unit_id: unit.unit_id }, name))}
+          />
+        </span>
       )}
     </li>
   );
 }
 
-/** Whose answer nobody should take for granted. */
-function inNeed(crews: readonly CrewOnDuty[], picture: Shown): string[] {
-  const people = crews.flatMap((crew) => crew.people);
-  const needy = people.filter(({ unit }) => needsOf(unit, picture.alarms.value).length > 0);
-  return needy.map(({ unit }) => displayName(unit));
-}
-
-function named(names: readonly string[]): string {
-  return names.length === 0 ? "" : `, ${names.join(" and ")} too`;
+function unitsIn(crews: readonly CrewOnDuty[]): UnitView[] {
+  return crews.flatMap((crew) => crew.people.map((one) => one.unit));
 }
 
 function peopleIn(crews: readonly CrewOnDuty[]): number {
-  return crews.reduce((sum, crew) => sum + crew.people.length, 0);
-}
-
-function tick(target: Target): void {
-  void attempt(api.checkIn(target));
+  return unitsIn(crews).length;
 }

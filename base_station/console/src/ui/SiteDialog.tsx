@@ -1,7 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { setAnchor } from "../api";
 import { attempt, live } from "../sessions";
-import { dialog } from "../view";
+import { dialog } from "../uiState";
 import { changeOf, placeWords } from "../plan/anchor";
 import { take } from "../plan/tools";
 import type { AnchorView } from "../wire";

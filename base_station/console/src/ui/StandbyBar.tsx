@@ -1,6 +1,6 @@
 import { attempt, user } from "../sessions";
 import * as api from "../api";
-import { wayFrom } from "../live/arrival";
+import { transferUrl } from "../live/loginTransfer";
 import type { Picture } from "../live/picture";
 import type { StandbyView } from "../wire";
 import { ConfirmButton } from "./ConfirmButton";
@@ -45,7 +45,7 @@ function ReadingBar({ share }: { share: number }) {
 /** The way to the other station's console, where it has said it. */
 export function OtherConsole({ standby }: { standby: StandbyView }) {
   if (!/^https?:/.test(standby.other_url)) return null;
-  const way = wayFrom(standby.station, standby.other_url);
+  const way = transferUrl(standby.station, standby.other_url);
   return <a href={way}>Open the console of {standby.other}</a>;
 }
 

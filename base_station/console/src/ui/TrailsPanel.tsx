@@ -1,6 +1,6 @@
 import { KINDS, loadingKinds, shownKinds, toggle } from "../plan/pastTrails";
-import { selectedUnit } from "../view";
-import { Ends } from "./Ends";
+import { selectedUnit } from "../uiState";
+import { PanelActions } from "./PanelActions";
 
 /** Which trails are drawn, with the lines they are drawn in. */
 export function TrailsPanel() {
@@ -25,7 +25,7 @@ export function TrailsPanel() {
           ? "The last five minutes. Choose a person to compare all of that person’s."
           : "The chosen person’s from the beginning, where more than the first is drawn."}
       </p>
-      <Ends />
+      <PanelActions />
     </section>
   );
 }

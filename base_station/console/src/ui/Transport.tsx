@@ -3,7 +3,7 @@ import { steer, type Replay } from "../sessions";
 import * as api from "../api";
 import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../live/replaying";
 import type { ReplayView } from "../wire";
-import { countdown, timeSince } from "../words";
+import { countdown, timeSince } from "../format";
 import { Icon, type IconName } from "./Icon";
 import { useChosen } from "./useChosen";
 import { useLoaded } from "./useLoaded";

@@ -2,7 +2,7 @@ import { useSignal } from "@preact/signals";
 import { attempt, live } from "../sessions";
 import * as api from "../api";
 import type { ClockView, UnitView } from "../wire";
-import { alarmWord, clockOffset, gpsWord, isSetWrong, linkWord, TWO_MACHINES } from "../words";
+import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, DUPLICATE_DEVICE } from "../format";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useDone } from "./Done";
@@ -70,13 +70,13 @@ function UnitRow({ unit, people, calibration }: RowProps) {
     <tr>
       <th scope="row">{labelled ? `${unit.label} (${unit.unit_id})` : unit.unit_id}</th>
       <td>
-        {linkWord(unit)}
-        {unit.cloned && <small class="warned"> {TWO_MACHINES}</small>}
+        {linkText(unit)}
+        {unit.cloned && <small class="warned"> {DUPLICATE_DEVICE}</small>}
       </td>
       <td data-label="Clock">
         <UnitClock clock={unit.clock} />
       </td>
-      <td data-label="GPS">{gpsWord(unit.gps)}</td>
+      <td data-label="GPS">{gpsText(unit.gps)}</td>
       <td data-label="Worn by">
         {unit.registered ? <Wearer unit={unit} people={people} /> : <Register unit={unit} />}
       </td>
@@ -92,7 +92,7 @@ function UnitRow({ unit, people, calibration }: RowProps) {
 /** By which the unit names its black box; nothing that is shown here goes by it. */
 function UnitClock({ clock }: { clock: ClockView | null }) {
   if (clock === null) return <>not known</>;
-  return <span class={isSetWrong(clock) ? "warned" : ""}>{clockOffset(clock)}</span>;
+  return <span class={isClockWrong(clock) ? "warned" : ""}>{clockOffset(clock)}</span>;
 }
 
 /** Its name, and what the station has to say against it. */
@@ -104,7 +104,7 @@ function Calibration({ unit, calibration }: { unit: UnitView; calibration: strin
   return (
     <>
       {calibration === "" ? "none" : calibration}
-      {warning && <small class="warned"> {alarmWord(warning)}</small>}
+      {warning && <small class="warned"> {alarmLabel(warning)}</small>}
     </>
   );
 }

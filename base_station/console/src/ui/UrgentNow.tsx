@@ -1,5 +1,5 @@
 import { isPast, live, stopReplay } from "../sessions";
-import { dialog, find } from "../view";
+import { dialog, find } from "../uiState";
 import { Icon } from "./Icon";
 
 /** In a dialog, which covers the alarms: those that nobody has taken and that cannot wait.  Over a

@@ -1,4 +1,4 @@
-import { unanswered } from "../call";
+import { unanswered } from "../http";
 
 /** In the place of a list that the station has not given yet: an empty one would look as if there were
  * nothing. */

@@ -1,6 +1,6 @@
 import { useSignal, type ReadonlySignal } from "@preact/signals";
 import { attempt } from "../sessions";
-import { PAGE } from "../call";
+import { PAGE } from "../http";
 import { useAsked } from "./useLoaded";
 
 export interface Pages<T> {

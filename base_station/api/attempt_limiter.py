@@ -1,0 +1,44 @@
+"""Limits of attempts.  By a clock that nobody sets: a machine whose time was put right
+locks nobody out, and lets nobody try anew.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Hashable
+
+
+class AttemptLimiter:
+    """Limits the attempts of the last ``within_s`` under each key; older ones are not kept."""
+
+    def __init__(
+        self, max_attempts: int, within_s: float, monotonic_s: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._max_size = max_attempts
+        self._within_s = within_s
+        self._monotonic_s = monotonic_s
+        self._attempts_s: dict[Hashable, deque[float]] = {}  # who tried last is the last here
+
+    def __len__(self) -> int:
+        """Number of keys with attempts."""
+        return len(self._attempts_s)
+
+    def allows(self, key: Hashable) -> bool:
+        """True while there were fewer than ``max_attempts``."""
+        attempts_s = self._attempts_s.get(key)
+        return (
+            attempts_s is None
+            or len(attempts_s) < self._max_size
+            or self._is_expired(attempts_s[0])
+        )
+
+    def record(self, key: Hashable) -> None:
+        while self._attempts_s and self._is_expired(next(iter(self._attempts_s.values()))[-1]):
+            del self._attempts_s[next(iter(self._attempts_s))]
+        attempts_s = self._attempts_s.pop(key, None) or deque(maxlen=self._max_size)
+        attempts_s.append(self._monotonic_s())
+        self._attempts_s[key] = attempts_s
+
+    def _is_expired(self, attempts_s: float) -> bool:
+        return self._monotonic_s() - attempts_s >= self._within_s

@@ -1,0 +1,191 @@
+"""Authentication and authorization of requests.
+
+A browser has a session cookie; a program has an API token (``Authorization: Bearer``).  A page
+of another origin can do nothing with the cookie: it is ``SameSite=Strict``, and what changes
+something must come with the station's own ``Origin``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Coroutine
+from enum import StrEnum
+from typing import Annotated, Any
+from urllib.parse import urlsplit
+
+from fastapi import Depends, Request, Response
+from fastapi.routing import APIRoute
+from fastapi.security import APIKeyCookie, HTTPBearer
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import HTTPConnection
+
+from base_station.accounts.principals import Principal, Role
+from base_station.api.problems import Problem
+from base_station.api.services import Services, Station, services_of
+
+COOKIE = "muster_session"
+CHANGE_FIRST = "Change your password first: this one was generated, and is written in a file."
+_SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+# What a station that changes nothing lets people do all the same: log in, look, and make it lead.
+_ALLOWED_READ_ONLY = ("login", "logout", "replays", "standby")
+
+# They declare the schemes in the OpenAPI document; ``principal_of`` reads the headers itself.
+_cookie_scheme = APIKeyCookie(name=COOKIE, auto_error=False)
+_token_scheme = HTTPBearer(auto_error=False)
+
+
+def principal_of(connection: HTTPConnection, services: Services) -> Principal | None:
+    """Gives the principal of the cookie or the token; from then on its network is known."""
+    token = _token_of(connection)
+    if token is not None:
+        principal = services.accounts.of_token(token)
+    else:
+        cookie = connection.cookies.get(COOKIE)
+        principal = None if cookie is None else services.accounts.of_session(cookie)
+    if principal is not None and connection.client is not None:
+        connection.app.state.known_networks.add(connection.client.host)
+    return principal
+
+
+def _token_of(connection: HTTPConnection) -> str | None:
+    """Gives the API token of a request; a cookie beside it is ignored."""
+    kind, _, secret = connection.headers.get("authorization", "").partition(" ")
+    return secret.strip() if kind.lower() == "bearer" else None
+
+
+def is_own_origin(connection: HTTPConnection) -> bool:
+    """True where the page that asks was served by this station, or no origin is named.
+
+    Over TLS a page that was not is another one, whatever its host.
+    """
+    origin = connection.headers.get("origin")
+    if origin is None:
+        return True
+    host, page = connection.headers.get("host", ""), urlsplit(origin)
+    schemes = {"https"} if services_of(connection).secure else {"http", "https"}  # behind a proxy
+    return page.scheme in schemes and page.netloc == host and host != ""
+
+
+def check_origin(connection: HTTPConnection) -> None:
+    """Dependency of every route: nothing is changed at the wish of another site.
+
+    WebSockets check theirs in the handshake.
+    """
+    if connection.scope.get("method", "GET") in _SAFE_METHODS:
+        return
+    if not is_own_origin(connection):
+        raise Problem(403, "This was asked by a page that is not the station's own.")
+    is_by_cookie = COOKIE in connection.cookies and _token_of(connection) is None
+    if is_by_cookie and "origin" not in connection.headers:
+        raise Problem(403, "A browser's request must name its origin; programs use an API token.")
+
+
+def check_leads(connection: HTTPConnection) -> None:
+    """Dependency of every route: of two stations, things are changed at the one that leads, and at
+    one that only replays nothing is.
+    """
+    services = services_of(connection)
+    if connection.scope.get("method", "GET") in _SAFE_METHODS:
+        return
+    resource = connection.scope["path"].removeprefix("/api/v1/").partition("/")[0]
+    if resource in _ALLOWED_READ_ONLY:
+        return
+    if services.is_replay_only:
+        raise Problem(409, "This station only replays; nothing can be changed here.")
+    refusal = None if services.ha_status is None else services.ha_status.refusal()
+    if refusal is not None:
+        raise Problem(503, f"Nothing was changed: {refusal}.")
+
+
+def _authenticated(
+    request: Request,
+    services: Station,
+    _cookie: Annotated[object, Depends(_cookie_scheme)],
+    _token: Annotated[object, Depends(_token_scheme)],
+) -> Principal:
+    principal = principal_of(request, services)
+    if principal is None:
+        raise _unauthenticated()
+    tags = request.scope["route"].tags
+    if not scope_covers(principal, tags):
+        allowed = ", ".join(sorted(principal.scopes))
+        raise Problem(403, f"This token is for {allowed}, not for {', '.join(tags)}.")
+    is_password_change = "login" in tags or request.scope["route"].path == "/me/password"
+    if must_change_password(principal, services) and not is_password_change:
+        raise Problem(403, CHANGE_FIRST)
+    return principal
+
+
+def must_change_password(principal: Principal, services: Services) -> bool:
+    """True for a generated password; a station that only replays cannot keep another."""
+    return principal.must_change_password and not services.is_replay_only
+
+
+def _unauthenticated() -> Problem:
+    return Problem(401, "Log in first.", {"WWW-Authenticate": "Bearer"})
+
+
+Viewer = Annotated[Principal, Depends(_authenticated)]
+
+
+def _commander(principal: Viewer) -> Principal:
+    return _require_role(principal, Role.COMMANDER)
+
+
+def _administrator(principal: Viewer) -> Principal:
+    return _require_role(principal, Role.ADMINISTRATOR)
+
+
+Commander = Annotated[Principal, Depends(_commander)]
+Administrator = Annotated[Principal, Depends(_administrator)]
+
+
+def _require_role(principal: Principal, role: Role) -> Principal:
+    if principal.role < role:
+        raise Problem(
+            403, f"This needs the role {role.word}; {principal.username} is {principal.role.word}."
+        )
+    return principal
+
+
+class AuthenticatedRoute(APIRoute):
+    """Route with a large body, which is read only after authentication."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        handle = super().get_route_handler()
+
+        async def checked(request: Request) -> Response:
+            if await run_in_threadpool(principal_of, request, services_of(request)) is None:
+                raise _unauthenticated()
+            return await handle(request)
+
+        return checked
+
+
+class Scope(StrEnum):
+    """Parts of the API that a token can be for: the tags of the routers."""
+
+    ACCOUNTABILITY = "accountability"
+    ALARMS = "alarms"
+    ASSIGNMENTS = "assignments"
+    AUDIT = "audit"
+    COMMANDS = "commands"
+    EXPORTS = "exports"
+    FORGETTING = "forgetting"
+    HEALTH = "health"
+    INCIDENTS = "incidents"
+    LIVE = "live"
+    PEOPLE = "people"
+    PINS = "pins"
+    RECORDINGS = "recordings"
+    REPLAYS = "replays"
+    SITE = "site"
+    STANDBY = "standby"
+    TOKENS = "tokens"
+    TRACKS = "tracks"
+    UNITS = "units"
+    USERS = "users"
+
+
+def scope_covers(principal: Principal, tags: Collection[str]) -> bool:
+    """True where a token is for this part of the API; its own user may always be asked."""
+    return not principal.scopes or "login" in tags or not principal.scopes.isdisjoint(tags)

@@ -1,0 +1,79 @@
+"""The API's OpenAPI document: what FastAPI makes of the routes, with descriptions and problems."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.routing import APIRoute
+
+from base_station.api.field_descriptions import describe_field, describe_parameter
+from base_station.api.problems import PROBLEM_MEDIA_TYPE, ProblemDocument
+
+_PROBLEMS = (400, 401, 403, 404, 409, 413, 422, 429, 500, 503)
+_FILE = {"type": "string", "format": "binary"}
+_PROBLEM = {"$ref": f"#/components/schemas/{ProblemDocument.__name__}"}
+
+
+def operation_id(route: APIRoute) -> str:
+    """A client's name for a route: that of the function behind it."""
+    return route.name
+
+
+def file_response(*media_types: str) -> dict[int | str, dict[str, Any]]:
+    """For ``responses`` of a route that answers with a file."""
+    return {200: {"content": {media_type: {"schema": _FILE} for media_type in media_types}}}
+
+
+def complete_document(app: FastAPI) -> None:
+    """Have the application's document say what FastAPI leaves out of it."""
+    make = app.openapi
+
+    def document() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            _complete(make())  # which keeps it in ``app.openapi_schema``
+        assert app.openapi_schema is not None
+        return app.openapi_schema
+
+    app.openapi = document  # type: ignore[method-assign]  # as the framework's own manual has it
+
+
+def _complete(document: dict[str, Any]) -> None:
+    schemas = document["components"]["schemas"]
+    for unused in ("HTTPValidationError", "ValidationError"):  # the framework's own problems
+        schemas.pop(unused, None)
+    schemas[ProblemDocument.__name__] = ProblemDocument.model_json_schema()
+    for name, schema in schemas.items():
+        for field, json_schema in schema.get("properties", {}).items():
+            _add_description(json_schema, describe_field(name, field))
+    for operation in _operations(document):
+        operation["responses"] |= _problem_responses()
+        for media_type, body in operation.get("requestBody", {}).get("content", {}).items():
+            if media_type != "application/json":
+                body["schema"] = _FILE  # a client would take FastAPI's own words for text
+        for parameter in operation.get("parameters", ()):
+            _add_description(parameter, describe_parameter(parameter["name"]))
+
+
+def _add_description(json_schema: dict[str, Any], description: str | None) -> None:
+    """Keeps a description that the code itself gives."""
+    if description is not None:
+        json_schema.setdefault("description", description)
+
+
+def _operations(document: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    for methods in document["paths"].values():
+        yield from methods.values()
+
+
+def _problem_responses() -> dict[str, Any]:
+    """Every route's: with the media type that is sent, so that a client reads them."""
+    return {
+        str(status): {
+            "description": HTTPStatus(status).phrase,
+            "content": {PROBLEM_MEDIA_TYPE: {"schema": _PROBLEM}},
+        }
+        for status in _PROBLEMS
+    }

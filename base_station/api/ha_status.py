@@ -1,0 +1,19 @@
+"""State of a pair of stations, as the API needs it."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from base_station.views.wire import StandbyView
+
+
+class HaStatus(Protocol):
+    def view(self) -> StandbyView: ...
+
+    def refusal(self) -> str | None:
+        """Reason why nothing can be changed here, as a sentence; None: this station leads."""
+        ...
+
+    def take_over(self) -> None:
+        """Soon."""
+        ...

@@ -1,0 +1,98 @@
+"""People's photos and the site's base map: whatever came is decoded, cut to size and written anew,
+so that nothing but the picture is left (no place, no camera, no trailing bytes).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import warnings
+
+from PIL import ExifTags, Image, ImageOps, UnidentifiedImageError
+
+from shared.errors import ConfigError
+
+MAX_BYTES = 10_000_000
+_MAX_PIXELS = {"JPEG": 50_000_000, "PNG": 24_000_000, "WEBP": 12_000_000}  # each takes 200 MB
+_MAX_PIXELS_PROGRESSIVE = 24_000_000  # held whole while it is decoded, however small
+SIDE_PX = 320
+MAX_MAP_BYTES = 10_000_000
+MAP_SIDE_PX = 4096
+_FORMATS = ("JPEG", "PNG", "WEBP")
+_EXIF_TRANSPOSITIONS: dict[
+    object, Image.Transpose
+] = {  # by EXIF's orientation, of which 1 is upright already
+    2: Image.Transpose.FLIP_LEFT_RIGHT,
+    3: Image.Transpose.ROTATE_180,
+    4: Image.Transpose.FLIP_TOP_BOTTOM,
+    5: Image.Transpose.TRANSPOSE,
+    6: Image.Transpose.ROTATE_270,
+    7: Image.Transpose.TRANSVERSE,
+    8: Image.Transpose.ROTATE_90,
+}
+
+
+def normalize_photo(upload: bytes) -> tuple[bytes, str]:
+    """A square JPEG and its hash.  Raises ConfigError, which says what is wrong with the upload."""
+    if len(upload) > MAX_BYTES:
+        raise ConfigError(f"the photo is larger than {MAX_BYTES // 1_000_000} MB")
+    try:
+        with warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning):
+            picture = _square(upload)
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
+        raise ConfigError(_too_many_pixels()) from None
+    except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
+        raise ConfigError("the photo cannot be read; send a JPEG, PNG or WebP file") from error
+    written = io.BytesIO()
+    picture.save(written, "JPEG", quality=85)
+    jpeg = written.getvalue()
+    return jpeg, hashlib.sha256(jpeg).hexdigest()[:16]
+
+
+def normalize_map(upload: bytes) -> tuple[bytes, str, tuple[int, int], float]:
+    """A WebP no larger than ``MAP_SIDE_PX``, its hash, its width and height, and by how much it is
+    smaller than the upload.  Raises ConfigError, which says what is wrong with that.
+    """
+    if len(upload) > MAX_MAP_BYTES:
+        raise ConfigError(f"the map is larger than {MAX_MAP_BYTES // 1_000_000} MB")
+    try:
+        with (
+            warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning),
+            Image.open(io.BytesIO(upload), formats=_FORMATS) as opened,
+        ):
+            _require_pixel_limit(opened, "map")
+            picture, width_px = opened.convert("RGB"), opened.width
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
+        raise ConfigError(_too_many_pixels("map")) from None
+    except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
+        raise ConfigError("the map cannot be read; send a JPEG, PNG or WebP file") from error
+    picture.thumbnail((MAP_SIDE_PX, MAP_SIDE_PX), Image.Resampling.LANCZOS)
+    written = io.BytesIO()
+    picture.save(written, "WEBP", quality=85)
+    webp = written.getvalue()
+    return webp, hashlib.sha256(webp).hexdigest()[:16], picture.size, width_px / picture.width
+
+
+def _square(upload: bytes) -> Image.Image:
+    with Image.open(io.BytesIO(upload), formats=_FORMATS) as opened:
+        _require_pixel_limit(opened, "photo")
+        opened.draft("RGB", (2 * SIDE_PX, 2 * SIDE_PX))
+        # Not ``ImageOps.exif_transpose``: it writes all metadata anew, and fails where that is odd.
+        transposition = _EXIF_TRANSPOSITIONS.get(opened.getexif().get(ExifTags.Base.Orientation))
+        picture = ImageOps.fit(opened.convert("RGB"), (SIDE_PX, SIDE_PX), Image.Resampling.LANCZOS)
+        return picture if transposition is None else picture.transpose(transposition)
+
+
+def _require_pixel_limit(opened: Image.Image, kind: str) -> None:
+    most_pixels = _MAX_PIXELS[opened.format or "WEBP"]
+    if opened.info.get("progressive"):
+        most_pixels = _MAX_PIXELS_PROGRESSIVE
+    if opened.width * opened.height > most_pixels:
+        raise ConfigError(_too_many_pixels(kind, most_pixels))
+
+
+def _too_many_pixels(kind: str = "photo", most_pixels: int = _MAX_PIXELS["JPEG"]) -> str:
+    return (
+        f"the {kind} has more than {most_pixels // 1_000_000} million pixels; "
+        "make it smaller and send it again"
+    )

@@ -1,0 +1,63 @@
+"""Open alarms of units and people inside, over which an incident would be closed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import msgspec
+
+from base_station.api.problems import Problem
+from base_station.views.wire import AlarmView, Snapshot, UnitView
+
+MAX_NAMED = 20  # of each kind, in the sentence; for programs all ids stand beside it
+
+
+class ClosingObstacles(msgspec.Struct, frozen=True):
+    """State at the moment at which an incident is closed."""
+
+    alarms: tuple[AlarmView, ...]
+    inside: tuple[UnitView, ...]
+
+    def require_known(self, alarm_ids: Collection[str], unit_ids: Collection[str]) -> None:
+        """Problem 409 with their names where whoever closes the incident has not named them all;
+        with its ``despite_...`` members the request can be repeated.
+        """
+        alarms = [one for one in self.alarms if one.alarm_id not in alarm_ids]
+        inside = [one for one in self.inside if one.unit_id not in unit_ids]
+        if not (alarms or inside):
+            return
+        parts = []
+        if alarms:
+            parts.append(f"Open alarms: {_joined([alarm.text for alarm in alarms])}.")
+        if inside:
+            parts.append(f"Inside: {_joined([_name(unit) for unit in inside])}.")
+        detail = (
+            f"The incident is not closed. {' '.join(parts)} To close it all the same, name them in "
+            "despite_alarm_ids and despite_unit_ids."
+        )
+        members = {
+            "despite_alarm_ids": [alarm.alarm_id for alarm in self.alarms],
+            "despite_unit_ids": [unit.unit_id for unit in self.inside],
+        }
+        raise Problem(409, detail, members=members)
+
+
+def closing_obstacles(picture: Snapshot) -> ClosingObstacles:
+    """An alarm about the station itself is no matter of the incident.  Who was inside when the unit
+    was switched off, or fell silent, is inside as far as is known.
+    """
+    return ClosingObstacles(
+        alarms=tuple(one for one in picture.alarms if one.unit_id and one.state != "resolved"),
+        inside=tuple(
+            one for one in picture.units if one.person and one.inside_since_ms is not None
+        ),
+    )
+
+
+def _joined(texts: Sequence[str]) -> str:
+    rest = len(texts) - MAX_NAMED
+    return "; ".join([*texts[:MAX_NAMED], *([f"{rest} more"] if rest > 0 else [])])
+
+
+def _name(unit: UnitView) -> str:
+    return unit.person.name if unit.person else unit.unit_id

@@ -1,0 +1,109 @@
+"""Limits of how often passwords may be tried, counted before anything is done for a try."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Hashable
+from threading import Lock
+from typing import Annotated
+
+from fastapi import Depends, Request
+
+from base_station.api.attempt_limiter import AttemptLimiter
+from base_station.api.problems import Problem
+from base_station.security.networks import network_of
+
+_MAX_PER_ACCOUNT_AND_NETWORK = 10  # a minute: one name from one place
+_MAX_PER_NETWORK = 60  # any name from one place
+_MAX_PER_ACCOUNT = 30  # one name from any place
+_MINUTE_S = 60.0
+_MAX_KNOWN = 1000
+
+
+class LoginThrottle:
+    """Thread-safe.
+
+    What is refused here is not counted: who tries one name again and again locks out nobody else
+    of the same place, which may be all consoles behind one router.  Who has logged in from a place
+    before does so again while others try that name from elsewhere: only the limits of the place
+    hold.  How many tries are worked on in all is limited by ``LoginQueue``.
+    """
+
+    def __init__(self, monotonic_s: Callable[[], float] = time.monotonic) -> None:
+        self._lock = Lock()
+        self._per_account_and_network = AttemptLimiter(
+            _MAX_PER_ACCOUNT_AND_NETWORK, _MINUTE_S, monotonic_s
+        )
+        self._per_network = AttemptLimiter(_MAX_PER_NETWORK, _MINUTE_S, monotonic_s)
+        self._per_account = AttemptLimiter(_MAX_PER_ACCOUNT, _MINUTE_S, monotonic_s)
+        self._known: dict[tuple[str, str], None] = {}  # who has logged in last is the last here
+
+    def check(self, address: str, username: str) -> bool:
+        """Count a try; True where this name has logged in from there.  Problem 429 where there
+        were too many tries.
+        """
+        network = network_of(address)
+        one = network, username
+        with self._lock:
+            limits: list[tuple[AttemptLimiter, Hashable]] = [
+                (self._per_network, network),
+                (self._per_account_and_network, one),
+            ]
+            is_known = one in self._known
+            if not is_known:
+                limits.append((self._per_account, username))
+            if not all(limit.allows(key) for limit, key in limits):
+                raise too_many_attempts()
+            for limit, key in limits:
+                limit.record(key)
+        return is_known
+
+    def check_account(self, username: str) -> None:
+        """Count a try of who has logged in and has to give the password again."""
+        with self._lock:
+            if not self._per_account_and_network.allows(("", username)):
+                raise too_many_attempts()
+            self._per_account_and_network.record(("", username))
+
+    def check_network(self, address: str) -> None:
+        """Problem 429 where there were too many tries; counts none."""
+        if not self.allows(address):
+            raise too_many_attempts()
+
+    def allows(self, address: str) -> bool:
+        """True where the place itself does not forbid a try."""
+        with self._lock:
+            return self._per_network.allows(network_of(address))
+
+    def has_logged_in(self, address: str) -> bool:
+        """True once there was a login from there."""
+        network = network_of(address)
+        with self._lock:
+            return any(one == network for one, _ in self._known)
+
+    def record_login(self, address: str, username: str) -> None:
+        one = network_of(address), username
+        with self._lock:
+            self._known.pop(one, None)
+            self._known[one] = None
+            if len(self._known) > _MAX_KNOWN:
+                del self._known[next(iter(self._known))]
+
+    def record_refusal(self, address: str) -> None:
+        """Count a ticket that was of no use.  Good ones are not counted: nobody guesses one, and
+        all consoles of a place go on at once.
+        """
+        with self._lock:
+            self._per_network.record(network_of(address))
+
+
+def too_many_attempts() -> Problem:
+    return Problem(429, "Too many tries to log in; wait a minute.", {"Retry-After": "60"})
+
+
+def throttle_of(request: Request) -> LoginThrottle:
+    throttle: LoginThrottle = request.app.state.login_throttle
+    return throttle
+
+
+Throttle = Annotated[LoginThrottle, Depends(throttle_of)]

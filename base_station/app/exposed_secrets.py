@@ -1,0 +1,56 @@
+"""Secrets of a station that others than its user could read: closed to them when it starts, and
+named until it ends, as somebody may have read them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from base_station.security.pki.folder import PkiFolder
+from base_station.storage.data_folder import DataFolder
+from shared.secret_files import ALL_BUT_OWNER, OTHERS, close_to_others, exposed
+
+_ADVICE = {
+    "authority.key": "with it anybody can be enrolled: if strangers use this machine, make a new "
+    "authority and enrol everybody anew",
+    "station.key": "with it a machine can pose as this station: if strangers use this one, make a "
+    "new authority and enrol everybody anew",
+    "first-login.txt": "give the administrator another password",
+}
+_OTHERWISE = "if strangers use this machine, make another key"
+_ACCOUNTS = "if strangers use this machine, give every user another password"
+
+
+class ExposedSecrets:
+    def __init__(self, folder: DataFolder, console_key: Path | None) -> None:
+        """Closes them; ``console_key`` may be one that other programs of its group use, too."""
+        self._problems = tuple(_sentences(folder, console_key))
+
+    def problems(self) -> tuple[str, ...]:
+        """Sentences for the console."""
+        return self._problems
+
+
+def _sentences(folder: DataFolder, console_key: Path | None) -> Iterator[str]:
+    pki = PkiFolder(folder.path).path
+    for path in (*sorted(pki.glob("*.key")), folder.first_login, folder.database):
+        remedy = _ACCOUNTS if path == folder.database else _ADVICE.get(path.name, _OTHERWISE)
+        yield from _closed(path, ALL_BUT_OWNER, remedy)
+    if console_key is not None and console_key.parent.resolve() != pki.resolve():
+        yield from _closed(console_key, OTHERS, _OTHERWISE)
+
+
+def _closed(path: Path, whom: int, remedy: str) -> Iterator[str]:
+    try:
+        mode = close_to_others(path, whom)
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        yield (
+            f"{path} can be read or changed by others, and that cannot be taken away "
+            f"({error.strerror}): give it to the station's user with mode 0600; {remedy}"
+        )
+        return
+    if mode:
+        yield f"{exposed(path, mode)}; {remedy}"

@@ -1,0 +1,95 @@
+"""Parts of more than one composition root."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from pathlib import Path
+
+from base_station.api.hub import Hub
+from base_station.api.replays import StartReplay
+from base_station.app.first_login import USERNAME, ensure_administrator
+from base_station.app.pipeline_factory import past_pipeline
+from base_station.engine.feed import LogFeed
+from base_station.replay.playback import Archive
+from base_station.replay.processes.replay_process import ReplayContext, ReplayProcess
+from base_station.replay.rebuild import project_log
+from base_station.replay.session import ReplaySession, Window
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.models import Incident
+from base_station.storage.db.projecting import project_into
+from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.store import Store
+from base_station.storage.projection import Projection
+from base_station.storage.segment_index import SegmentIndex
+from shared.clock import Clock, SystemClock
+from shared.mcap_log import SegmentReader, segment_paths
+
+_log = logging.getLogger(__name__)
+Announce = Callable[[str], None]
+
+
+def replay_starter(
+    archive: Archive, roster: Roster, clock: Clock, recorded_until_ns: Callable[[], int]
+) -> StartReplay:
+    """In threads of this process.  ``recorded_until_ns``, in station time, is where an incident
+    ends that is open.
+    """
+
+    def start(incident: Incident, speed: float, hub: Hub) -> ReplaySession:
+        window = _window_of(incident, recorded_until_ns)
+        return ReplaySession(archive, window, speed, hub, roster.photo_url, clock)
+
+    return start
+
+
+def replay_process_starter(
+    place: ReplayContext, recorded_until_ns: Callable[[], int]
+) -> StartReplay:
+    """In processes of their own."""
+
+    def start(incident: Incident, speed: float, hub: Hub) -> ReplayProcess:
+        return ReplayProcess(place, _window_of(incident, recorded_until_ns), speed, hub)
+
+    return start
+
+
+def _window_of(incident: Incident, recorded_until_ns: Callable[[], int]) -> Window:
+    end_ns = incident.closed_ns or max(recorded_until_ns(), incident.opened_ns)
+    return Window(incident.incident_id, incident.opened_ns, end_ns)
+
+
+def announce_first_login(accounts: Accounts, note: Path | None, announce: Announce) -> None:
+    """``note``: None where the disk takes none."""
+    password = ensure_administrator(accounts, note)
+    if password is not None:
+        where = "only here: the disk takes nothing" if note is None else f"also in {note}"
+        announce(f"first login: {USERNAME}  password: {password}  ({where})")
+
+
+def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], None]) -> int:
+    """Cut short, it leaves a database that knows no segment of the log."""
+    records = Records(store, SystemClock())
+    records.forget_projections()
+    segments = []
+    for path in segment_paths(log):
+        with SegmentReader(path) as reader:
+            segments.append(reader.info())
+    start_ns = min((one.start_ns for one in segments if one.messages), default=0)
+    span_ns = max(max((one.end_ns for one in segments), default=0) - start_ns, 1)
+
+    def write(projection: Projection) -> None:
+        with store.write() as session:
+            left_out = project_into(session, (projection,))
+        if left_out:
+            _log.warning("%d places of units are no numbers and are left out", left_out)
+
+    count = project_log(
+        LogFeed(log).records(),
+        past_pipeline(None),
+        write,
+        lambda t_ns: on_progress(min(max((t_ns - start_ns) / span_ns, 0.0), 1.0)),
+    )
+    SegmentIndex(records, {}).update(segments)
+    return count

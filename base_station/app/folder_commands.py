@@ -1,0 +1,215 @@
+"""Commands on a station's folder, beside a running station or without one."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from base_station.app.factories import project_whole_log
+from base_station.app.logged_action import log_action
+from base_station.app.offline_log import open_offline_log
+from base_station.core.log_position import LogPosition
+from base_station.fusion.smoothing import SMOOTHERS
+from base_station.privacy.erasure_queue import erase_now
+from base_station.privacy.erasure_service import ClosedLog, ErasureResult, ErasureService
+from base_station.privacy.requests import hand_over
+from base_station.replay.assessment.wearers import wearers
+from base_station.replay.post_processing import PostProcessor
+from base_station.standby.log_truncation import set_aside
+from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.erasure import ids_of
+from base_station.storage.db.models import Incident
+from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.salvage import salvage_if_damaged
+from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.db.store import Store
+from base_station.unit_sync.recordings.transfer_queue import TransferQueue
+from shared.clock import SystemClock
+from shared.errors import UserError
+from shared.folder_lock import FolderLock
+from shared.mcap_log import recover_log
+from shared.messages.station import Unassign
+
+_log = logging.getLogger(__name__)
+FORGET_COMMAND = "muster base forget"  # in the audit
+
+
+@dataclass(frozen=True)
+class PostProcessingContext:
+    """Inputs of commands about a closed incident."""
+
+    post_processor: PostProcessor
+    records: Records
+    incident: Incident
+    people: Mapping[str, Sequence[str]]  # who wore each unit
+    keeps_result: bool  # what is worked out; else it is gone with the command
+
+
+def rebuild(
+    data: Path, on_progress: Callable[[float], None], report: Callable[[str], None] = _log.warning
+) -> int:
+    """Make the projections of a folder again; no station may be running on it.
+
+    ``on_progress`` hears the fraction done, ``report`` what of a damaged database is lost.  Gives
+    the number of log records.
+    """
+    folder = DataFolder(data)
+    folder.require()
+    lock = folder.lock()
+    try:
+        salvage = salvage_if_damaged(folder.database, math.inf)
+        if salvage is not None:
+            report(str(salvage))
+        with Store(folder.database) as store:
+            return project_whole_log(store, folder.log, on_progress)
+    finally:
+        lock.close()
+
+
+def cut_log(data: Path, place: LogPosition, on_progress: Callable[[float], None]) -> None:
+    """Set aside what the log has behind a place, and make the projections again without it."""
+    folder = DataFolder(data)
+    lock = folder.lock()
+    try:
+        with Store(folder.database) as store:  # it must not know what is cut, however this ends
+            Records(store, SystemClock()).forget_projections()
+        set_aside(folder, place)
+    finally:
+        lock.close()
+    rebuild(data, on_progress)
+
+
+def forget(
+    data: Path,
+    subject_name: str,
+    confirm: Callable[[str], None],
+    on_progress: Callable[[float], None],
+) -> ErasureResult:
+    """Forget a person (id or name) or an incident (id).  A station that runs on the folder does it
+    itself.  What a person wears is unassigned first.
+
+    ``confirm`` gets what it will be about and may raise.  Cut short, the station goes on with it
+    when it is started.
+    """
+    folder = DataFolder(data)
+    folder.require()
+    if FolderLock.is_held(data):
+        with Store(folder.require_database()) as store:
+            subject = _subject(subject_name, store)
+        confirm(subject.description)
+        return hand_over(folder, subject.kind, subject.subject_id, on_progress)
+    lock = folder.lock()
+    try:
+        recover_log(folder.log)
+        with Store(folder.database) as store:
+            subject = _subject(subject_name, store)
+            forgetter = _forgetter(folder, store)
+            if subject.kind == "person":
+                forgetter.require_person(subject.subject_id)
+            confirm(subject.description)
+            for unit_id in subject.worn:
+                log_action(folder, store, FORGET_COMMAND, Unassign(unit_id))
+            return erase_now(
+                forgetter,
+                folder.forgettings,
+                FORGET_COMMAND,
+                subject.kind,
+                subject.subject_id,
+                on_progress,
+            )
+    finally:
+        lock.close()
+
+
+def _forgetter(folder: DataFolder, store: Store) -> ErasureService:
+    clock = SystemClock()
+    return ErasureService(
+        ClosedLog(folder.log),
+        store,
+        Checkpoints(folder.checkpoints),
+        Records(store, clock),
+        clock,
+        TransferQueue(_no_query, folder.recordings, clock),
+    )
+
+
+@dataclass(frozen=True)
+class _Subject:
+    """A person or an incident that is to be forgotten."""
+
+    kind: str
+    subject_id: str
+    description: str  # in words
+    worn: Sequence[str] = ()  # units that the person wears
+
+
+def _subject(subject_name: str, store: Store) -> _Subject:
+    """UserError where it is not one person, or an incident is open."""
+    records = Records(store, SystemClock())
+    _require_no_open_incident(records)
+    incident = records.incident(subject_name)
+    if incident is not None:
+        return _Subject("incident", subject_name, f"incident {incident.name!r} of {subject_name}")
+    person_id = _person_id(subject_name, store)
+    worn = Roster(store, SystemClock()).worn_by(person_id)
+    wears = f", who wears {', '.join(worn)} and is unassigned first" if worn else ""
+    return _Subject("person", person_id, f"person {subject_name}{wears}", worn)
+
+
+def _person_id(subject_name: str, store: Store) -> str:
+    """The id, whether or not the person is on the roster still."""
+    with store.read() as session:
+        named = sorted(ids_of(session, subject_name))
+    if len(named) > 1:
+        raise UserError(
+            f"{len(named)} people are or were called {subject_name}: give one of {named}"
+        )
+    return named[0] if named else subject_name
+
+
+def _require_no_open_incident(records: Records) -> None:
+    for incident in records.incidents():
+        if incident.closed_ns is None:
+            raise UserError(f"the incident {incident.name} is open; close it first")
+
+
+def _no_query(_unit_id: str, _question: str) -> None:
+    return None
+
+
+def open_post_processing(
+    data: Path,
+    incident_id: str,
+    closing: ExitStack,
+    report: Callable[[str], None],
+    on_progress: Callable[[float], None],
+) -> PostProcessingContext:
+    """A past incident, beside a running station or without one; also of what somebody gave.
+
+    ``report`` hears in words of what of it cannot be read, ``on_progress`` the fraction done where
+    the log must be read first.
+    """
+    offline_log = open_offline_log(data, incident_id, closing, report, on_progress, in_place=True)
+    clock = SystemClock()
+    records = Records(offline_log.store, clock)
+    incident = records.require_incident(incident_id)
+    post_processor = PostProcessor(
+        offline_log.archive(), SMOOTHERS[0], SmoothedTracks(offline_log.store), clock
+    )
+    people = wearers(Roster(offline_log.store, clock), incident)
+    return PostProcessingContext(
+        post_processor, records, incident, people, offline_log.keeps_result
+    )
+
+
+def open_accounts(data: Path, closing: ExitStack) -> tuple[Accounts, Records]:
+    """Accounts and audit of a folder's database, beside a running station or without one."""
+    store = closing.enter_context(Store(DataFolder(data).require_database()))
+    return Accounts(store, SystemClock()), Records(store, SystemClock())

@@ -1,0 +1,43 @@
+"""Health facts of the station's surroundings, which are not in its log."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Protocol
+
+from base_station.app.resources import Resources
+from base_station.engine.station_clock import SteadyClock
+from base_station.standby.mode import HaMode
+from base_station.views.station import StationFacts
+
+
+class ReportsProblems(Protocol):
+    """Part of the station that may report problems."""
+
+    def problems(self) -> Iterable[str]: ...
+
+
+def health_facts(
+    resources: Resources, clock: SteadyClock, side: HaMode, others: Sequence[ReportsProblems]
+) -> StationFacts:
+    certificates = resources.expiry, resources.console_expiry, resources.renewal
+    machine = resources.exposed, resources.router
+    parts: tuple[ReportsProblems, ...] = (clock, *certificates, *machine, side, *others)
+    problems = [
+        *resources.config.configuration_problems(),
+        *(problem for part in parts for problem in part.problems()),
+    ]
+    if resources.feed.overflows:
+        left_out = resources.feed.overflowed
+        problems.append(
+            f"Messages come faster than this machine can take them; {left_out} were left out, and "
+            "are fetched from the units' journals"
+        )
+    return StationFacts(
+        problems=tuple(problems),
+        log_bytes=resources.recorder.log_bytes,
+        disk_free_bytes=resources.recorder.disk_free_bytes,
+        insecure=bool(resources.config.unencrypted_endpoints()),
+        standby=None if side.ha_status is None else side.ha_status.view(),
+        recordings=resources.recordings.views(),
+    )

@@ -1,0 +1,37 @@
+"""Logs an action of a command in a folder that no station runs on, as the station would have."""
+
+from __future__ import annotations
+
+import secrets
+
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.projecting import project_into
+from base_station.storage.db.store import Store
+from base_station.storage.projection import Projection
+from shared.channels import OPERATOR
+from shared.clock import SystemClock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.errors import LogError
+from shared.mcap_log import SegmentWriter
+from shared.messages import STATION_ID, OperatorAction
+from shared.messages.station import Action
+
+
+def log_action(folder: DataFolder, store: Store, by: str, action: Action) -> None:
+    """In a segment of its own behind all others, and in the tables.  The folder is locked.
+
+    Raises LogError where the disk does not take it.
+    """
+    clock = SystemClock()
+    behind_all = max((one.end_ns for one in folder.segments()), default=0) + 1
+    t_ns = max(clock.utc_ns(), behind_all)  # station time never goes back
+    header = Stamper(STATION_ID, secrets.randbits(63), clock).header()
+    done = OperatorAction(header, f"{header.boot_id:016x}-{header.seq}", by, action)
+    writer = SegmentWriter(folder.log)
+    writer.write(t_ns, OPERATOR.key(STATION_ID), encode(done), urgent=True)
+    writer.close()
+    if writer.problem:
+        raise LogError(writer.problem)
+    with store.write() as session:
+        project_into(session, (Projection(t_ns, actions=(done,)),))

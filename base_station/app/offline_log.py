@@ -1,0 +1,177 @@
+"""Offline log, for replay and export: a station's folder, its log alone, or files of that.
+
+It may be on a medium that nobody can write to, or of a station that nobody here has an account of.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from base_station.app.factories import project_whole_log
+from base_station.app.pipeline_factory import past_pipeline
+from base_station.engine.feed import LogFeed
+from base_station.replay.playback import Archive
+from base_station.replay.version_check import decisions_differ
+from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.copying import copy_database
+from base_station.storage.db.records import Records
+from base_station.storage.db.salvage import damage_of
+from base_station.storage.db.store import Store
+from base_station.storage.log_defects import LogDefects
+from base_station.storage.segment_index import known_segments_of
+from shared.clock import SystemClock
+from shared.errors import LogError
+from shared.folder_lock import FolderLock
+from shared.mcap_log import (
+    SegmentInfo,
+    SegmentReader,
+    segment_number,
+    segment_path,
+    segment_paths,
+)
+
+Report = Callable[[str], None]
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class OfflineLog:
+    """Nothing is written to ``folder`` but to its database, where ``keeps_result``."""
+
+    folder: DataFolder
+    store: Store
+    keeps_result: bool  # what is worked out; else it is gone with the command
+    scratch: Path
+    log: LogFeed
+    defects: LogDefects
+    report: Report
+
+    def archive(self) -> Archive:
+        """Uses the station's checkpoints where there are any that fit this program; what is come by
+        is saved elsewhere: to go back is not to step an hour again.
+        """
+        own = Checkpoints(self.scratch / "checkpoints", self.report)
+        saved = self.folder.checkpoints
+        theirs = Checkpoints(saved) if saved.is_dir() else own
+        log = self.log
+        defects = self.defects
+        return Archive(log.records, theirs, past_pipeline, log.watch, own, defects, defects.look)
+
+
+def open_offline_log(
+    path: Path,
+    incident_id: str,
+    closing: ExitStack,
+    report: Report,
+    on_progress: Progress,
+    *,
+    in_place: bool,
+) -> OfflineLog:
+    """``in_place``: with the database that is there, where it can be written; else with a copy.
+
+    A database that is missing, or older than the incident, is made of the log.  ``report`` hears in
+    words of that and of what cannot be read, ``on_progress`` the fraction done.
+    """
+    scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-past-")))
+    folder = _folder_with_log(path, scratch)
+    damage = damage_of(folder.database)
+    if damage:
+        report(f"the database is damaged ({damage}); the log is read instead")
+    elif in_place and _is_writable(folder):
+        store = closing.enter_context(Store(folder.database))
+        if not _lacks_incident(store, folder, incident_id):
+            log, defects = _open_log(folder, store, report)
+            return OfflineLog(
+                folder,
+                store,
+                keeps_result=True,
+                scratch=scratch,
+                log=log,
+                defects=defects,
+                report=report,
+            )
+    copy = scratch / "station.sqlite"
+    if not damage:
+        copy_database(folder.database, copy)
+    store = closing.enter_context(Store(copy))
+    log, defects = _open_log(folder, store, report)
+    if _lacks_incident(store, folder, incident_id):
+        report("the database does not have this incident; the log is read instead")
+        project_whole_log(store, folder.log, on_progress)
+    return OfflineLog(
+        folder, store, keeps_result=False, scratch=scratch, log=log, defects=defects, report=report
+    )
+
+
+def _open_log(folder: DataFolder, store: Store, report: Report) -> tuple[LogFeed, LogDefects]:
+    """Opens the log with its known defects, which are reported."""
+    known = known_segments_of(Records(store, SystemClock()))
+    defects = LogDefects(folder.log, known, is_written=FolderLock.is_held(folder.path), tell=report)
+    defects.look_at_files()
+    log = LogFeed(folder.log, on_damage=defects.note_damage)
+    if not defects() and decisions_differ(log.records(), past_pipeline(None)):
+        defects.note(
+            "this version of Muster decides otherwise than the station did: places and alarms of a "
+            "replay may differ from what was shown then, which is in the log"
+        )
+    return log, defects
+
+
+def _folder_with_log(path: Path, scratch: Path) -> DataFolder:
+    """Files of a log, whatever they are called now, are put in order beside each other."""
+    folder = DataFolder(path)
+    if segment_paths(folder.log):
+        return folder
+    source = folder.log if folder.log.is_dir() else path
+    files = [path] if path.is_file() else sorted(source.glob("*.mcap"))
+    if not files:
+        raise LogError(
+            f"there is no station's log in {path}; give the station's folder, its log/ or .mcap "
+            "files of that with --data"
+        )
+    segments = sorted(_readable_segments(files), key=lambda one: one.start_ns)
+    if not segments:
+        names = ", ".join(file.name for file in files)
+        raise LogError(f"nothing in {names} can be read as a station's log: no MCAP file, or empty")
+    for one, following in pairwise(segments):
+        if following.start_ns < one.end_ns:
+            raise LogError(
+                f"{one.path.name} and {following.path.name} are of the same time, and so not of "
+                "one log: give only files of one station's log, each once"
+            )
+    log_folder = DataFolder(scratch / "given")
+    log_folder.log.mkdir(parents=True)
+    are_named = all(segment_number(one.path) for one in segments)
+    for number, one in enumerate(segments, 1):
+        name = one.path.name if are_named else segment_path(Path(), number, one.start_ns).name
+        (log_folder.log / name).symlink_to(one.path.absolute())
+    return log_folder
+
+
+def _readable_segments(files: Iterable[Path]) -> Iterator[SegmentInfo]:
+    for file in files:
+        with SegmentReader(file) as reader:
+            info = reader.info()
+        if info.messages:
+            yield info
+
+
+def _is_writable(folder: DataFolder) -> bool:
+    """SQLite makes files beside a database, too."""
+    return os.access(folder.database, os.W_OK) and os.access(folder.path, os.W_OK)
+
+
+def _lacks_incident(store: Store, folder: DataFolder, incident_id: str) -> bool:
+    """True where the log may have an incident that the database does not have."""
+    records = Records(store, SystemClock())
+    if records.incident(incident_id) is not None:
+        return False
+    known = {segment.name for segment in records.segments()}
+    return any(path.name not in known for path in segment_paths(folder.log))

@@ -1,0 +1,83 @@
+"""Puts together what pulls one recording beside a running station, whose router it uses."""
+
+from __future__ import annotations
+
+import getpass
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+
+from base_station.config import StationConfig
+from base_station.engine.station_clock import SteadyClock
+from base_station.security.router.router import station_endpoint
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.store import Store
+from base_station.unit_sync.recordings.transfer import (
+    Transfer,
+    TransferRequest,
+    TransferState,
+    ask_over,
+)
+from shared.bus_zenoh import ZenohBus
+from shared.clock import SystemClock
+from shared.errors import UserError
+
+Show = Callable[[Transfer], None]
+_REST_S = 0.5  # when the unit does not answer
+
+
+def window_of(config: StationConfig, incident_id: str) -> tuple[int, int]:
+    """Station times of an incident, one that is open until now.  Raises UserError."""
+    with ExitStack() as closing:
+        records = Records(_store(config, closing), SystemClock())
+        incident = records.require_incident(incident_id)
+        return incident.opened_ns, incident.closed_ns or _now_ns(records)
+
+
+def since(config: StationConfig, from_ns: int) -> tuple[int, int]:
+    """Station times from then until now."""
+    with ExitStack() as closing:
+        return from_ns, _now_ns(Records(_store(config, closing), SystemClock()))
+
+
+def pull(config: StationConfig, wanted: TransferRequest, show: Show) -> tuple[Path, str]:
+    """Pull a recording; ``show`` hears of every step.  Gives the folder in which it is, and what is
+    not there of it, as a sentence.
+
+    Raises MusterError, one sentence, where it comes to nothing.
+    """
+    clock = SystemClock()
+    with ExitStack() as closing:
+        store = _store(config, closing)
+        known = Roster(store, clock).registered_units()
+        if wanted.unit_id not in known:
+            names = ", ".join(sorted(known)) or "none"
+            raise UserError(f"there is no unit {wanted.unit_id}; known are: {names}")
+        bus = ZenohBus(station_endpoint(config.data, config.bus.listen))
+        closing.callback(bus.close)
+        folder = DataFolder(config.data).recordings
+        fetch = Transfer(ask_over(bus), folder, wanted, clock)
+        closing.callback(fetch.close)
+        said = f"{wanted.unit_id} from {wanted.from_ns} to {wanted.to_ns}"
+        Records(store, clock).audit(getpass.getuser(), "FetchedRecording", said)
+        while not fetch.state.is_over:
+            fetch.step()
+            show(fetch)
+            if fetch.state is TransferState.WAITING:
+                time.sleep(_REST_S)
+        if fetch.state is TransferState.FAILED:
+            raise UserError(fetch.problem)
+        return fetch.folder, fetch.problem
+
+
+def _now_ns(records: Records) -> int:
+    """Station time, which goes on from what was recorded where a clock was set back."""
+    recorded_ns = max((one.last_ns for one in records.segments()), default=0)
+    return SteadyClock(SystemClock(), recorded_ns).utc_ns()
+
+
+def _store(config: StationConfig, closing: ExitStack) -> Store:
+    return closing.enter_context(Store(DataFolder(config.data).require_database()))

@@ -1,0 +1,74 @@
+"""Work of a process for replays and post-processing (``base_station.replay.processes``)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from base_station.app.pipeline_factory import past_pipeline
+from base_station.engine.feed import LogFeed
+from base_station.fusion.smoothing import SMOOTHERS
+from base_station.replay.playback import Archive
+from base_station.replay.post_processing import PostProcessor
+from base_station.replay.processes.post_processing_work import (
+    StationTime,
+    bounded,
+    incident_of,
+    post_process,
+    stand_back,
+)
+from base_station.replay.processes.replay_work import replay
+from base_station.replay.processes.wire import (
+    Damage,
+    Job,
+    Line,
+    PostProcessingJob,
+    ReplayJob,
+    read_job,
+)
+from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.db.records import Records
+from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.db.store import Store
+from base_station.storage.log_defects import LogDefects
+from shared.clock import SystemClock
+
+
+def work(line: Line) -> None:
+    """The job that comes first, until it is done or the line is closed."""
+    encoded = line.receive()
+    if encoded is None:
+        return  # nobody wants it any more
+    job = read_job(encoded)
+    flaws = _flaws_of(job)
+
+    def note_damage(what: str) -> None:
+        if flaws.note_damage(what):
+            line.send(Damage(what))
+
+    log = LogFeed(Path(job.log), on_damage=note_damage)
+    checkpoints = Checkpoints(Path(job.checkpoints))
+    archive = Archive(
+        log.records, checkpoints, past_pipeline, log.watch, flaws=flaws, look=flaws.look
+    )
+    match job:
+        case ReplayJob():
+            replay(job, archive, SystemClock(), line)
+        case PostProcessingJob():
+            _look_back(job, archive, line)
+
+
+def _flaws_of(job: Job) -> LogDefects:
+    log = Path(job.log)
+    match job:
+        case ReplayJob():
+            return LogDefects(log, job.known_segments, is_written=True, until_ns=job.end_ns)
+        case PostProcessingJob():
+            return LogDefects(log, is_written=True)
+
+
+def _look_back(job: PostProcessingJob, archive: Archive, line: Line) -> None:
+    stand_back(line)
+    with bounded(job, line), Store(Path(job.database)) as store:
+        clock = StationTime(job.now_ns, SystemClock())
+        post_processor = PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
+        post_process(job, post_processor, Records(store, clock).tracks_of(incident_of(job)), line)

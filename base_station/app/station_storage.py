@@ -1,0 +1,214 @@
+"""Storage of a live station: the log, the database, and what is made from both."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from base_station.app.factories import Announce, project_whole_log
+from base_station.app.pipeline_factory import past_pipeline
+from base_station.engine.feed import LogFeed
+from base_station.engine.station_clock import SteadyClock
+from base_station.fusion.smoothing import SMOOTHERS
+from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue
+from base_station.privacy.erasure_service import Act, ErasureService, RecordingTransfers
+from base_station.replay.playback import Archive
+from base_station.replay.processes.post_processing_process import (
+    PostProcessingContext,
+    PostProcessingProcess,
+)
+from base_station.replay.processes.server import ReplayProcesses
+from base_station.storage.checkpoints import Checkpoints, SavedState
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.projection import SqlProjection
+from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.salvage import GONE, salvage_if_damaged
+from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.db.store import Store
+from base_station.storage.integrity_checker import IntegrityChecker
+from base_station.storage.missing_segments import KnownSegment, log_gaps
+from base_station.storage.recorder import Recorder
+from base_station.storage.segment_index import known_segments_of
+from base_station.unit_sync.log_gap_detector import LogGapDetector, Lost
+from shared.clock import Clock
+from shared.errors import StoreError
+from shared.mcap_log import segment_number
+from shared.messages import STATION_ID
+
+_RESTORE = (
+    "What units said is fetched again from their journals; for the rest, restore the file from a "
+    "backup"
+)
+REPAIR_RETENTION = 12  # tries to forget: two minutes for what takes some seconds
+_MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is heard"
+
+
+@dataclass(frozen=True)
+class StationStorage:
+    folder: DataFolder
+    recorder: Recorder
+    store: Store
+    accounts: Accounts
+    records: Records
+    roster: Roster
+    projection: SqlProjection
+    checkpoints: Checkpoints
+    clock: SteadyClock  # station time, behind all that is in the log
+    check: IntegrityChecker
+
+    @property
+    def log(self) -> LogFeed:
+        """Feed of what is written up to the moment of reading."""
+        return LogFeed(self.folder.log, self.recorder.flush, self.check.recheck)
+
+    @property
+    def archive(self) -> Archive:
+        return Archive(self.log.records, self.checkpoints, past_pipeline, self.log.watch)
+
+    def latest_state(self) -> SavedState | None:
+        """To go on from: also one whose place in the log was lost since.  What people did until
+        then is in it, and what came, so that it is known to be missing.
+        """
+        return replace(self.archive, has_lost=self.check.has_lost).latest()
+
+    def lost_from_log(self, take_back: Callable[[Lost], None]) -> LogGapDetector:
+        return LogGapDetector(
+            lambda: (*self.check.damaged, *self.check.missing),
+            lambda after_ns: self.archive.latest(after_ns=after_ns),
+            self.log.records,
+            self.clock,
+            take_back,
+        )
+
+    def post_processor(self, processes: ReplayProcesses) -> PostProcessingProcess:
+        place = PostProcessingContext(
+            processes=processes,
+            log=str(self.folder.log),
+            checkpoints=str(self.folder.checkpoints),
+            database=str(self.folder.database),
+            prepare=self.recorder.flush,
+            note_damage=self.check.recheck,
+        )
+        kept = SmoothedTracks(self.store)
+        return PostProcessingProcess(place, self.archive, SMOOTHERS[0], kept, self.clock)
+
+    def forgetting_desk(
+        self,
+        pulls: RecordingTransfers,
+        act: Act,
+        save_soon: Callable[[], None],
+        leads: Callable[[], bool],
+        other_there: Callable[[], bool],
+    ) -> ErasureQueue:
+        """``act`` has the running station forget what it holds in memory, ``save_soon`` save its
+        state, which forgetting has removed.  ``other_there``: the other one of two is heard.
+        """
+
+        def record_result(done: ErasureJob) -> None:
+            if done.kind == "person":
+                self.roster.forget_photo(done.subject_id)
+            save_soon()
+
+        def obstacle(job: ErasureJob) -> str:
+            if not job.told and not leads():
+                return "this station is the standby; ask the one that leads"
+            # One may have opened since it was wished; of what it follows, the other one has asked.
+            is_open = leads() and any(one.closed_ns is None for one in self.records.incidents())
+            return "an incident is open; it is done when that is closed" if is_open else ""
+
+        waited: Counter[Path] = Counter()
+
+        def mended_first(path: Path, damage: str) -> bool:
+            waited[path] += 1
+            if not other_there() or waited[path] > REPAIR_RETENTION:
+                return False
+            self.check.note_damaged(path, damage)
+            return True
+
+        forgetter = ErasureService(
+            self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act,
+            mended_first,
+        )  # fmt: skip
+        return ErasureQueue(forgetter, self.folder.forgettings, obstacle, record_result)
+
+
+def open_storage(
+    folder: DataFolder,
+    recorder: Recorder,
+    clock: Clock,
+    announce: Announce,
+    closing: ExitStack,
+    *,
+    alone: bool = True,
+) -> StationStorage:
+    """The database is made from the log where it is damaged, or lacks what that knows.  ``alone``:
+    no other station has a copy of that.
+
+    Raises StoreError where the database cannot be used, or is of another log.
+    """
+    salvage = salvage_if_damaged(folder.database)
+    store = closing.enter_context(
+        Store(folder.database, lambda: recorder.hangs, memory_fallback=True)
+    )
+    known = known_segments_of(Records(store, clock))
+    if _lacks_records(store, recorder, known):
+        announce("the database lacks what the log knows: it is made again from the log")
+        project_whole_log(store, folder.log, lambda _: None)
+        if salvage is None and not Accounts(store, clock).users():
+            store.loss = GONE
+    if salvage is not None:
+        store.loss = str(salvage)
+    if store.loss:
+        announce(store.loss)
+        Records(store, clock).audit(STATION_ID, "MadeDatabaseAgain", store.loss)
+    projection = SqlProjection(store)
+    closing.callback(projection.close)
+    check = IntegrityChecker(_RESTORE if alone else _MENDED_FROM_THE_OTHER)
+    newest = max((one.path for one in recorder.segments()), default=None)
+    for recovery in recorder.recoveries:
+        # Of the newest one a kill costs the last half second, and nothing that was promised.
+        if recovery.damage or (recovery.bytes_lost and recovery.path != newest):
+            check.note_damaged(recovery.path, str(recovery), is_cut=True)
+    check.note_foreign(recorder.foreign)
+    check.note_lacks(folder.log, log_gaps(recorder.segments(), known))
+    recorder.number_after(max(_numbers(one.name for one in known), default=0))
+    ends_ns = [one.end_ns for one in recorder.segments()] + [one.last_ns for one in known]
+    steady = SteadyClock(clock, max(ends_ns, default=0))
+    return StationStorage(
+        folder=folder,
+        recorder=recorder,
+        store=store,
+        accounts=Accounts(store, steady),
+        records=Records(store, steady),
+        roster=Roster(store, steady),
+        projection=projection,
+        checkpoints=Checkpoints(folder.checkpoints),
+        clock=steady,
+        check=check,
+    )
+
+
+def _numbers(names: Iterable[str]) -> list[int]:
+    return sorted(segment_number(Path(name)) for name in names)
+
+
+def _lacks_records(store: Store, recorder: Recorder, segments: Sequence[KnownSegment]) -> bool:
+    """True where it is new, or was not made from the log to its end.  Raises StoreError
+    where it has another log's: two incidents would be one.  One that goes on behind a log that is
+    gone begins with a higher number.
+    """
+    logged = {one.path.name for one in recorder.segments() if one.messages}
+    known = {one.name for one in segments}
+    goes_on = _numbers(logged)[:1] > _numbers(known)[-1:]
+    if known and logged and not known & logged and not goes_on:
+        raise StoreError(
+            f"the database {store.path} is of another log than the one beside it "
+            f"(it knows {max(known)}, here is {max(logged)}); put the right one there, or move it "
+            "away: what the log knows is then made again, and people and users are not"
+        )
+    return bool(logged) and not known

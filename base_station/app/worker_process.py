@@ -1,0 +1,78 @@
+"""The process that has loaded the program, of which copies look at the past (``server``)."""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import socket
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import NoReturn
+
+from base_station.process import compiled_core, gc_tuning
+from base_station.replay.processes.wire import Line
+from shared.log import set_up_logging
+
+_NICE = 10  # of copies: what is live goes before; loading is soon over
+_OOM_SCORE = 500  # of 1,000: where memory ends, it is these that the system ends
+_log = logging.getLogger(__package__)
+
+
+def serve(control: socket.socket) -> None:
+    """A copy for every socket that comes, until no more can."""
+    while True:
+        try:
+            message, fds, _, _ = socket.recv_fds(control, 1, 1)
+        except OSError:
+            return
+        if not message:
+            return
+        if os.fork() == 0:
+            control.close()
+            _run_copy(fds[0])
+        os.close(fds[0])
+
+
+def _run_copy(fd: int) -> NoReturn:
+    """Not a way back into what it is a copy of, however it ends."""
+    from base_station.app.replay_worker import work  # noqa: PLC0415  # loaded already
+
+    code = 1
+    try:
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        os.nice(_NICE)
+        work(Line(socket.socket(fileno=fd)))
+        code = 0
+    except Exception:  # noqa: BLE001  # said here: there is nobody to hand it to
+        _log.exception("a process that looks at the past broke off")
+    finally:
+        logging.shutdown()
+        os._exit(code)
+
+
+def _prefer_for_oom_kill() -> None:
+    """Makes this process the first that the kernel ends where memory runs out."""
+    with suppress(OSError):  # not every system has it
+        Path("/proc/self/oom_score_adj").write_text(str(_OOM_SCORE), encoding="ascii")
+
+
+def main() -> None:
+    # What is to end the station may reach all of its processes; this one ends with the station.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for copies
+    set_up_logging()
+    _prefer_for_oom_kill()
+    gc_tuning.configure()
+    if len(sys.argv) > 2:
+        compiled_core.use(Path(sys.argv[2]))
+    with gc_tuning.paused():
+        from base_station.app import replay_worker  # noqa: F401, PLC0415  # for all copies
+    with socket.socket(fileno=int(sys.argv[1])) as control:
+        serve(control)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,1 +1,0 @@
-"""Station time: kept, and told to the units that ask (see docs/clocks.md)."""

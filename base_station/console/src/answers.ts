@@ -1,0 +1,634 @@
+/** Requests and answers of the station's API.
+ *
+ * Generated from its OpenAPI document, which describes every field; after a change there run
+ * `python -m tests.rig.console_types`.
+ */
+
+export interface Acknowledgement {
+  last_raised_ms: number;
+}
+
+export interface AlarmView {
+  alarm_id: string;
+  rule: string;
+  unit_id: string;
+  priority: number;
+  state: string;
+  level: string;
+  text: string;
+  by: string;
+  raised_ms: number;
+  last_raised_ms: number;
+  changed_ms: number;
+}
+
+export interface AlarmWithLife {
+  alarm_id: string;
+  rule: string;
+  unit_id: string;
+  priority: number;
+  state: string;
+  level: string;
+  text: string;
+  by: string;
+  raised_ms: number;
+  last_raised_ms: number;
+  changed_ms: number;
+  changes: Change[];
+}
+
+export interface AnchorForm {
+  lat_deg: number;
+  lon_deg: number;
+  height_m?: number;
+  plan_rotation_rad?: number;
+}
+
+export interface AnchorView {
+  lat_deg: number;
+  lon_deg: number;
+  height_m: number;
+  plan_rotation_rad: number;
+}
+
+export interface Assignment {
+  unit_id: string;
+  person_id: string;
+  person_name: string;
+  crew: string;
+  role: string;
+  from_ms: number;
+  until_ms: number | null;
+}
+
+export interface AuditEntry {
+  entry_id: string;
+  t_ms: number;
+  by: string;
+  action: string;
+  detail: string;
+}
+
+export interface BaseMap {
+  image_url: string;
+  upper_left: [number, number];
+  upper_right: [number, number];
+  lower_left: [number, number];
+}
+
+export interface BeaconForm {
+  label?: string;
+  north_m: number;
+  east_m: number;
+  floor?: number | null;
+  std_m?: number;
+  reach_m?: number;
+}
+
+export interface BeaconView {
+  beacon_id: string;
+  label: string;
+  north_m: number;
+  east_m: number;
+  floor: number | null;
+  std_m: number;
+  reach_m: number;
+  seen_ms: number | null;
+}
+
+export interface CarriedOut {
+  action: string;
+  t_ms: number;
+}
+
+export interface Change {
+  t_ms: number;
+  state: string;
+  level: string;
+  text: string;
+  by: string;
+}
+
+export interface Closing {
+  despite_alarm_ids?: string[];
+  despite_unit_ids?: string[];
+}
+
+export interface CommandView {
+  command_id: string;
+  kind: string;
+  text: string;
+  issued_by: string;
+  issued_ms: number;
+  expires_ms: number;
+  asks_wearer: boolean;
+  open: boolean;
+  units: DeliveryView[];
+  incident_id: string;
+}
+
+export interface Confirmation {
+  unit_id: string;
+}
+
+export interface Credentials {
+  username: string;
+  password: string;
+}
+
+export interface CrewTarget {
+  crew: string;
+}
+
+export interface DeliveryView {
+  unit_id: string;
+  state: string;
+  sent_ms: number | null;
+  received_ms: number | null;
+  acknowledged_ms: number | null;
+  acknowledged_by: string;
+  reason: string;
+  acknowledged_via: string;
+}
+
+export interface EveryoneTarget {
+  everyone: true;
+}
+
+export interface Figures {
+  ce50_m: number;
+  ce95_m: number;
+  ve50_m: number;
+  ve95_m: number;
+  se50_m: number;
+  se95_m: number;
+}
+
+export interface Format {
+  name: string;
+  suffix: string;
+  needs_anchor: boolean;
+}
+
+export interface GapView {
+  from_ms: number;
+  until_ms: number;
+}
+
+export interface Health {
+  problems: string[];
+  messages: number;
+  undecodable: number;
+  unknown_units: number;
+  log_bytes: number;
+  disk_free_bytes: number;
+  messages_per_s: number;
+  insecure: boolean;
+  standby: StandbyView | null;
+  recordings: RecordingView[];
+  repeated: number;
+  reading: number | null;
+  consoles: number;
+  segments: Segment[];
+}
+
+export interface Incident {
+  incident_id: string;
+  name: string;
+  opened_ms: number;
+  opened_by: string;
+  closed_ms: number | null;
+  closed_by: string;
+}
+
+export interface IncidentReport {
+  incident_id: string;
+  smoother: string;
+  made_ms: number;
+  units: UnitReport[];
+  stated: Figures | null;
+  against_smoothed: Figures | null;
+  is_newest: boolean;
+}
+
+export type Kind = "evacuate" | "par_request" | "text" | "locate" | "set_position_rate";
+
+export interface Label {
+  label: string;
+}
+
+export interface Leads {
+  leads: boolean;
+}
+
+export interface Me {
+  username: string;
+  role: string;
+  must_change_password: boolean;
+}
+
+export interface MeetingForm {
+  unit_id: string;
+  other_unit_id: string;
+  t_ms?: number | null;
+  std_m?: number;
+  note?: string;
+}
+
+export interface NameConfirmation {
+  name: string;
+}
+
+export interface NewAssignment {
+  unit_id: string;
+  person_id: string;
+}
+
+export interface NewCheckIn {
+  target: UnitTarget | CrewTarget | EveryoneTarget;
+  check_in_id?: string | null;
+}
+
+export interface NewCommand {
+  kind: Kind;
+  target: UnitTarget | CrewTarget | EveryoneTarget;
+  text?: string;
+  position_rate_hz?: number;
+  expires_s?: number;
+}
+
+export interface NewIncident {
+  name: string;
+  par_interval_s?: number | null;
+  work_limit_s?: number | null;
+}
+
+export interface NewPull {
+  unit_id: string;
+  incident_id?: string | null;
+  from_ms?: number | null;
+  to_ms?: number | null;
+}
+
+export interface NewReplay {
+  incident_id: string;
+  speed?: number;
+}
+
+export interface NewToken {
+  name: string;
+  role: "viewer" | "commander" | "administrator";
+  scopes?: Scope[];
+  days?: number | null;
+}
+
+export interface NewUnit {
+  unit_id: string;
+  label?: string;
+}
+
+export interface NewUser {
+  username: string;
+  password: string;
+  role: "viewer" | "commander" | "administrator";
+}
+
+export interface OnDuty {
+  unit_id: string;
+  person_id: string;
+  name: string;
+  crew: string;
+  state: string;
+  left_s: number;
+  checked_in_ms: number | null;
+  checked_in_by: string;
+  asked_ms: number | null;
+  work_since_ms: number | null;
+  rest_since_ms: number | null;
+  confirmed: string;
+  on_duty_ms: number;
+  located: boolean;
+  entry_id: string;
+}
+
+export interface PasswordChange {
+  old_password: string;
+  new_password: string;
+}
+
+export interface PastAlarm {
+  alarm_id: string;
+  rule: string;
+  unit_id: string;
+  priority: number;
+  state: string;
+  level: string;
+  text: string;
+  by: string;
+  raised_ms: number;
+  last_raised_ms: number;
+  changed_ms: number;
+  raisings: Raising[];
+}
+
+export interface PersonConfirmation {
+  name: string;
+  unassign?: boolean;
+}
+
+export interface PersonForm {
+  name: string;
+  crew?: string;
+  role?: string;
+}
+
+export interface PersonView {
+  person_id: string;
+  name: string;
+  crew: string;
+  role: string;
+  photo_url: string | null;
+}
+
+export interface PinForm {
+  north_m: number;
+  east_m: number;
+  std_m?: number;
+  floor?: number | null;
+  heading_rad?: number | null;
+  heading_std_rad?: number;
+  note?: string;
+  unit_id: string;
+  t_ms?: number | null;
+}
+
+export interface PinResidual {
+  pin_id: string;
+  note: string;
+  used: boolean;
+  shown_m: number | null;
+  trail_m: number;
+  sigmas: number;
+  floor_right: boolean | null;
+}
+
+export interface PinView {
+  pin_id: string;
+  kind: string;
+  unit_id: string;
+  other_id: string;
+  t_ms: number;
+  north_m: number | null;
+  east_m: number | null;
+  floor: number | null;
+  std_m: number;
+  heading_rad: number | null;
+  heading_std_rad: number;
+  note: string;
+  by: string;
+  set_ms: number;
+  state: string;
+  residual_m: number | null;
+  sigmas: number | null;
+  text: string;
+}
+
+export interface ProblemDocument {
+  type: string;
+  title: string;
+  status: number;
+  detail: string;
+}
+
+export interface Progress {
+  forgetting_id: string;
+  by: string;
+  kind: string;
+  subject_id: string;
+  state: string;
+  problem: string;
+  share: number;
+  records: number;
+  files: number;
+}
+
+export interface Raising {
+  t_ms: number;
+  text: string;
+}
+
+export interface Recording {
+  fetch_id: string;
+  unit_id: string;
+  by: string;
+  from_ms: number;
+  to_ms: number;
+  state: string;
+  problem: string;
+  done_bytes: number;
+  total_bytes: number;
+}
+
+export interface RecordingView {
+  fetch_id: string;
+  unit_id: string;
+  state: string;
+  problem: string;
+  done_bytes: number;
+  total_bytes: number;
+}
+
+export interface Reference {
+  unit_id: string;
+  down_m?: number;
+}
+
+export interface Replay {
+  incident_id: string;
+  start_ms: number;
+  end_ms: number;
+  at_ms: number;
+  speed: number;
+  playing: boolean;
+  seeking: boolean;
+  flaws: string[];
+  gap: GapView | null;
+  replay_id: string;
+  begun_by: string;
+}
+
+export interface ReplayChange {
+  at_ms?: number | null;
+  speed?: number | null;
+  playing?: boolean | null;
+}
+
+export interface Resolution {
+  last_raised_ms: number;
+  note?: string;
+}
+
+export interface Rest {
+  resting: boolean;
+}
+
+export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
+
+export interface Segment {
+  name: string;
+  first_ms: number;
+  last_ms: number;
+  messages: number;
+  size_bytes: number;
+  note: string;
+}
+
+export interface ShownTicket {
+  ticket: string;
+}
+
+export interface StandbyView {
+  station: string;
+  role: string;
+  url: string;
+  other: string;
+  other_role: string;
+  other_url: string;
+  in_step: boolean;
+}
+
+export interface Start {
+  north_m: number;
+  east_m: number;
+  down_m?: number;
+  heading_rad?: number;
+  std_m?: number;
+  heading_std_rad?: number;
+}
+
+export interface StartForm {
+  north_m: number;
+  east_m: number;
+  std_m?: number;
+  floor?: number | null;
+  heading_rad?: number | null;
+  heading_std_rad?: number;
+  note?: string;
+  unit_ids: string[];
+  t_ms?: number;
+}
+
+export interface Ticket {
+  ticket: string;
+  lasts_s: number;
+}
+
+export interface Times {
+  par_interval_s: number;
+  work_limit_s: number;
+}
+
+export interface Token {
+  token_id: string;
+  name: string;
+  role: string;
+  scopes: string[];
+  created_ms: number;
+  expires_ms: number | null;
+}
+
+export interface TokenSecret {
+  token_id: string;
+  token: string;
+}
+
+export interface Track {
+  unit_id: string;
+  points: TrackPoint[];
+}
+
+export interface TrackPoint {
+  t_ms: number;
+  north_m: number;
+  east_m: number;
+  down_m: number;
+  std_north_m: number;
+  std_east_m: number;
+  std_down_m: number;
+  heading_rad: number;
+  floor: number | null;
+  quality: string;
+}
+
+export interface Trail {
+  unit_id: string;
+  points: [number, number, number, number | null][];
+}
+
+export type TrailKind = "raw" | "fused" | "smoothed";
+
+export interface Trails {
+  incident_id: string;
+  kind: TrailKind;
+  made_ms: number;
+  is_newest: boolean;
+  trails: Trail[];
+}
+
+export interface TrustReport {
+  green_s: number;
+  amber_s: number;
+  red_s: number;
+  causes: [string, number][];
+}
+
+export interface UndoCheckIn {
+  unit_id?: string;
+}
+
+export interface Unit {
+  unit_id: string;
+  label: string;
+  registered: boolean;
+  person_id: string | null;
+  last_heard_ms: number | null;
+  software_version: string;
+  source: string;
+  sensor_name: string;
+  tracker: string;
+  calibration: string;
+  has_gps: boolean;
+}
+
+export interface UnitReport {
+  unit_id: string;
+  seconds: number;
+  walked_m: number;
+  stated: Figures | null;
+  against_smoothed: Figures | null;
+  floor_probability: number | null;
+  floor_right: number | null;
+  trust: TrustReport;
+  pin_residuals: PinResidual[];
+  loop_closure_m: number | null;
+  loop_closure_percent: number | null;
+  reentry_jumps_m: number[];
+  not_used: [string, number][];
+  people: string[];
+}
+
+export interface UnitTarget {
+  unit_id: string;
+}
+
+export interface User {
+  username: string;
+  role: string;
+  created_ms: number;
+  sessions: number;
+}
+
+export interface UserChange {
+  password?: string | null;
+  role?: "viewer" | "commander" | "administrator" | null;
+}

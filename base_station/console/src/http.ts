@@ -1,0 +1,150 @@
+/** How the station is asked over HTTP, and how it refuses. */
+import { signal } from "@preact/signals";
+
+/** The station refused or could not be reached; the text is for a person. */
+export class ApiError extends Error {
+  constructor(
+    message: string,
+    readonly status: number,
+    /** Of a request that may have been carried out though the answer is lost. */
+    readonly key: string | null = null,
+  ) {
+    super(message);
+  }
+}
+
+/** Nothing was to be done: that is over once the station is heard again. */
+export const UNREACHABLE = "The station cannot be reached.";
+/** The answer may be what was lost, and not what was asked for. */
+const OUTCOME_UNKNOWN = "The station cannot be reached: look whether it was done before you do it again.";
+
+export const BASE = "/api/v1";
+
+/** How long somebody waits before the same is asked again: a connection may have died unnoticed. */
+const RETRY_AFTER_MS = 5_000;
+/** And then: the station itself gives up before. */
+const RETRY_TIMEOUT_MS = 15_000;
+/** After this an action has been answered, or is given up. */
+export const MAX_ACT_MS = RETRY_AFTER_MS + RETRY_TIMEOUT_MS;
+
+/** Longer than this, somebody who pressed something would think that it was not noticed. */
+const SLOW_AFTER_MS = 700;
+/** How many things the station was told to do for so long without an answer. */
+export const unanswered = signal(0);
+
+async function countWhileSlow<T>(work: Promise<T>): Promise<T> {
+  let counted = 0;
+  const timer = setTimeout(() => (unanswered.value += counted = 1), SLOW_AFTER_MS);
+  try {
+    return await work;
+  } finally {
+    clearTimeout(timer);
+    unanswered.value -= counted;
+  }
+}
+
+export async function call<T>(method: string, path: string, body?: object | Blob): Promise<T> {
+  const work = answer(path, request(method, body)).then((response) => read<T>(response));
+  return method === "GET" ? work : countWhileSlow(work);
+}
+
+/** Have the station do something.  Without an answer it is asked once more, and does it once all the
+ * same: both requests bear one key. */
+export async function act<T>(method: "POST" | "PUT", path: string, body?: object): Promise<T> {
+  const init = request(method, body);
+  const key = newKey();
+  init.headers = { ...init.headers, "idempotency-key": key };
+  return countWhileSlow(withRetry<T>(path, init)).catch((error: unknown) => {
+    throw isOutcomeUnknown(error) ? new ApiError(messageOf(error), statusOf(error), key) : error;
+  });
+}
+
+/** Nobody answered, or a station that was too busy to say more. */
+function isOutcomeUnknown(error: unknown): boolean {
+  return isUnanswered(error) || statusOf(error) === 503;
+}
+
+function statusOf(error: unknown): number {
+  return error instanceof ApiError ? error.status : 0;
+}
+
+function messageOf(error: unknown): string {
+  return error instanceof ApiError ? error.message : OUTCOME_UNKNOWN;
+}
+
+async function withRetry<T>(path: string, init: RequestInit): Promise<T> {
+  const first = await withTimeout<T>(RETRY_AFTER_MS, path, init).catch(noAnswer);
+  return first === null ? withTimeout<T>(RETRY_TIMEOUT_MS, path, init) : first;
+}
+
+async function withTimeout<T>(ms: number, path: string, init: RequestInit): Promise<T> {
+  return read<T>(await answer(path, { ...init, signal: AbortSignal.timeout(ms) }));
+}
+
+/** A refusal is an answer. */
+function noAnswer(error: unknown): null {
+  if (!isUnanswered(error)) throw error;
+  return null;
+}
+
+export function isUnanswered(error: unknown): boolean {
+  return !(error instanceof ApiError) || error.status === 0;
+}
+
+/** No other one is like it.  `randomUUID` is there over TLS only. */
+export function newKey(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
+function request(method: string, body?: object | Blob): RequestInit {
+  if (body === undefined || body instanceof Blob) return { method, body: body ?? null };
+  const headers = { "content-type": "application/json" };
+  return { method, body: JSON.stringify(body), headers };
+}
+
+async function read<T>(response: Response): Promise<T> {
+  return response.status === 204 ? (undefined as T) : ((await response.json()) as T);
+}
+
+/** What is no JSON. */
+export async function file(path: string): Promise<Blob> {
+  return (await answer(path, {})).blob();
+}
+
+async function answer(path: string, init: RequestInit): Promise<Response> {
+  const response = await fetch(BASE + path, { ...init, credentials: "same-origin" }).catch(() => {
+    throw new ApiError((init.method ?? "GET") === "GET" ? UNREACHABLE : OUTCOME_UNKNOWN, 0);
+  });
+  if (!response.ok) throw new ApiError(await reason(response), response.status);
+  return response;
+}
+
+/** The sentence of a problem document (RFC 9457). */
+async function reason(response: Response): Promise<string> {
+  const body: unknown = await response.json().catch(() => null);
+  const detail = (body as { detail?: unknown } | null)?.detail;
+  return typeof detail === "string" ? detail : `The station answered ${response.status}.`;
+}
+
+export const id = encodeURIComponent;
+
+/** Lists that grow come page by page, the newest first; the page before is what was until then. */
+export const PAGE = 100;
+const MAX_PAGE = 1000;
+
+export function page(untilMs: number | undefined, limit = PAGE): string {
+  return `?limit=${limit}${untilMs === undefined ? "" : `&until_ms=${untilMs}`}`;
+}
+
+/** All pages of a list that is shown whole. */
+export async function fetchAllPages<T>(path: string, timeOf: (entry: T) => number): Promise<T[]> {
+  const all: T[] = [];
+  for (;;) {
+    const last = all.at(-1);
+    const query = page(last && timeOf(last), MAX_PAGE);
+    const older = await call<T[]>("GET", path + query);
+    all.push(...older);
+    if (older.length < MAX_PAGE) return all;
+  }
+}

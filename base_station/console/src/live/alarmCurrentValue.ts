@@ -1,0 +1,47 @@
+/** What an alarm's text says by a figure, as it is now: the text keeps that of when it was raised.
+ * Pure. */
+import type { AlarmView, UnitView } from "../wire";
+import * as format from "../format";
+import { isOfAnother } from "./alarms";
+
+/** "now 4 %", or "last 4 %" where nothing newer is heard; empty where there is no figure.
+ * `silent`: the station itself is not heard. */
+export function alarmCurrentValue(
+  alarm: AlarmView,
+  unit: UnitView,
+  nowMs: number,
+  silent: boolean,
+): string {
+  if (alarm.level === format.SWITCHED_OFF || isOfAnother(alarm, unit)) return "";
+  const counted = (fromMs: number | null, inWords: (ms: number) => string) =>
+    fromMs === null || silent ? "" : `now ${inWords(nowMs - fromMs)}`;
+  const told = (figure: string) =>
+    `${unit.link === "live" && !silent ? "now" : "last"} ${figure}`;
+  switch (alarm.rule) {
+    case "heat":
+    case "heat-dose": {
+      if (unit.ambient_degc === null) return "";
+      const used = format.percent(unit.heat_used); // as the words say it: of the heat budget
+      if (alarm.rule === "heat-dose") return told(used);
+      return told(`${format.temperature(unit.ambient_degc)}, ${used}`);
+    }
+    case "battery": {
+      const part = unit.status?.battery ?? null;
+      return part === null ? "" : told(format.percent(part));
+    }
+    case "no-motion": {
+      const stillS = unit.status?.motionless_s ?? null;
+      if (stillS === null) return "";
+      if (stillS < format.MOTIONLESS_SHOWN_S) return "has moved since";
+      return told(format.duration(stillS * 1000));
+    }
+    case "link-lost":
+      return counted(unit.last_heard_ms, format.duration);
+    case format.MISSED_CHECK_IN:
+      return counted(unit.duty?.checked_in_ms ?? unit.duty?.on_duty_ms ?? null, format.minutes);
+    case "rest-due":
+      return counted(unit.duty?.work_since_ms ?? null, format.minutes);
+    default:
+      return "";
+  }
+}

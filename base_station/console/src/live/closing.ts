@@ -1,0 +1,40 @@
+/** What an incident would be closed over: open alarms of units, and people inside.  Pure. */
+import type { Despite } from "../api";
+import type { AlarmView, UnitView } from "../wire";
+import { alarmLabel } from "../format";
+import { isOpen } from "./alarms";
+import { displayName } from "./urgency";
+
+/** With their ids, which the station wants to be told, and in words. */
+export function unfinished(
+  units: readonly UnitView[],
+  alarms: Iterable<AlarmView>,
+): Despite & { words: string } {
+  const open = [...alarms].filter((alarm) => isOpen(alarm) && alarm.unit_id !== "");
+  const inside = units.filter((unit) => unit.person !== null && unit.inside_since_ms !== null);
+  const parts = [
+    listed("Open alarms", byUnit(open, units)),
+    listed("Inside", inside.map(displayName)),
+  ];
+  return {
+    despite_alarm_ids: open.map((alarm) => alarm.alarm_id),
+    despite_unit_ids: inside.map((unit) => unit.unit_id),
+    words: parts.filter((part) => part !== "").join(" "),
+  };
+}
+
+/** "Jonas Bergman (Fall, No motion)". */
+function byUnit(alarms: readonly AlarmView[], units: readonly UnitView[]): string[] {
+  const words = new Map<string, string[]>();
+  for (const alarm of alarms) {
+    words.set(alarm.unit_id, [...(words.get(alarm.unit_id) ?? []), alarmLabel(alarm)]);
+  }
+  return [...words].map(([unitId, of]) => {
+    const unit = units.find((one) => one.unit_id === unitId);
+    return `${unit === undefined ? unitId : displayName(unit)} (${of.join(", ")})`;
+  });
+}
+
+function listed(what: string, names: readonly string[]): string {
+  return names.length === 0 ? "" : `${what}: ${names.join("; ")}.`;
+}

@@ -1,0 +1,28 @@
+/** What cannot be shown, though the station said it: a part that fails takes no other along, and says
+ * so where it would stand, or here where it stands nowhere. */
+import { signal } from "@preact/signals";
+
+/** Sentences; the same one once. */
+export const faults = signal<readonly string[]>([]);
+const KEPT = 5;
+
+export function cannotShow(what: string, error: unknown): string {
+  return `${what} cannot be shown: ${error instanceof Error ? error.message : String(error)}`;
+}
+
+/** Do it; that it fails is said on the screen. */
+export function guarded(what: string, work: () => void): boolean {
+  try {
+    work();
+    return true;
+  } catch (error) {
+    console.error(error);
+    report(cannotShow(what, error));
+    return false;
+  }
+}
+
+export function report(sentence: string): void {
+  if (faults.peek().includes(sentence)) return;
+  faults.value = [...faults.peek(), sentence].slice(-KEPT);
+}

@@ -1,0 +1,49 @@
+/** Who comes from the console of the other station goes on there with the ticket that the address
+ * carries.  It is another address, and browsers keep logins apart by address: without a ticket that is
+ * still good they log in again, and are told why. */
+
+const FROM = "#from=";
+const TICKET = "&ticket=";
+const MAX_NAME_LENGTH = 40;
+
+/** The other console's address, with a word for its login page; what is behind # is sent to nobody. */
+export function transferUrl(station: string, url: string, ticket = ""): string {
+  const shown = ticket === "" ? "" : TICKET + encodeURIComponent(ticket);
+  return `${url}/${FROM}${encodeURIComponent(station)}${shown}`;
+}
+
+/** What the login page says to who came that way; empty: nobody did. */
+export function arrivalNotice(hash: string): string {
+  const from = originSentence(hash);
+  return from === "" ? "" : `${from} The same user and password hold here.`;
+}
+
+/** To who went on by a ticket, where the browser plays nothing yet: nobody need have pressed anything. */
+export function arrivalSoundNotice(hash: string): string {
+  return `${originSentence(hash)} Press OK: no alarm is heard here before.`.trim();
+}
+
+function originSentence(hash: string): string {
+  if (!hash.startsWith(FROM)) return "";
+  const [station] = hash.slice(FROM.length).split(TICKET);
+  const name = decoded(station).slice(0, MAX_NAME_LENGTH);
+  return name === "" ? "" : `You come from the console of the station “${name}”.`;
+}
+
+/** What lets go on who came that way; empty: nothing does. */
+export function ticketOf(hash: string): string {
+  return hash.startsWith(FROM) ? decoded(hash.split(TICKET)[1]) : "";
+}
+
+/** The address without the ticket, which is good once. */
+export function withoutTicket(hash: string): string {
+  return hash.startsWith(FROM) ? (hash.split(TICKET)[0] ?? "") : hash;
+}
+
+function decoded(text: string | undefined): string {
+  try {
+    return decodeURIComponent(text ?? "");
+  } catch {
+    return ""; // somebody changed the address
+  }
+}

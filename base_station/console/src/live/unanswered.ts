@@ -1,0 +1,42 @@
+/** Orders that had no answer: once the station is heard again it is asked what became of each, and the
+ * notice says that. */
+import type { CarriedOut } from "../api";
+import { ApiError } from "../http";
+import { clockTime } from "../format";
+
+const ASK_EVERY_MS = 2_000;
+/** What waits in a station that was busy or hung is carried out soon after it is heard again. */
+const PATIENCE_MS = 30_000;
+
+export interface Around {
+  ask(key: string): Promise<CarriedOut>;
+  isHeard(): boolean;
+  /** The notice, while it is still the one that the order left. */
+  say(sentence: string): void;
+  wait(ms: number): Promise<void>;
+  nowMs(): number;
+}
+
+/** Follow one order until it is known what became of it. */
+export async function followUp(key: string, around: Around): Promise<void> {
+  let heardSinceMs: number | null = null;
+  for (;;) {
+    await around.wait(ASK_EVERY_MS);
+    if (!around.isHeard()) {
+      heardSinceMs = null;
+      continue;
+    }
+    heardSinceMs ??= around.nowMs();
+    try {
+      const { t_ms } = await around.ask(key);
+      around.say(`What had no answer was carried out at ${clockTime(t_ms)}.`);
+      return;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 401) return;
+      if (error.status === 0 || around.nowMs() - heardSinceMs < PATIENCE_MS) continue;
+      around.say("What had no answer was not carried out. Give the order again if it is still wanted.");
+      return;
+    }
+  }
+}

@@ -1,0 +1,37 @@
+import { picture as shown } from "../sessions";
+import { inAlarm } from "../live/alarms";
+import type { UnitView } from "../wire";
+import { ConfirmButton } from "./ConfirmButton";
+
+interface Props {
+  label: string;
+  about?: string; // read aloud, where the label alone could be anybody's
+  members: readonly UnitView[]; // whose answers it enters
+  question: string;
+  always?: boolean; // it asks though nobody is in alarm
+  kind?: string; // of button
+  onConfirm: (press: MouseEvent) => void;
+}
+
+/** Enters an answer by radio.  Over somebody in alarm it asks first, and names the alarms. */
+export function ByRadio({ label, about, members, question, always = false, kind, onConfirm }: Props) {
+  const needy = inAlarm(members, shown.value?.alarms.value ?? new Map());
+  if (needy.length > 0 || always) {
+    const alarms = needy.length === 0 ? "" : `In alarm: ${needy.join("; ")}. `;
+    return (
+      <ConfirmButton
+        label={label}
+        {...(about === undefined ? {} : { about })}
+        question={`${alarms}${question}`}
+        yes="Yes, answered by radio"
+        onConfirm={onConfirm}
+      />
+    );
+  }
+  const spoken = about === undefined ? {} : { "aria-label": `${label}: ${about}` };
+  return (
+    <button type="button" class={kind} {...spoken} onClick={onConfirm}>
+      {label}
+    </button>
+  );
+}

@@ -1,0 +1,100 @@
+import { attempt, mayAct } from "../sessions";
+import * as api from "../api";
+import { commandWord, progress, unansweredFirst } from "../live/commands";
+import type { Picture } from "../live/picture";
+import { displayName, nameAmong } from "../live/urgency";
+import { confirmAnswer } from "../undo";
+import type { CommandView, DeliveryView } from "../wire";
+import { clockTime } from "../format";
+import { ByRadio } from "./ByRadio";
+import { CommandState } from "./CommandState";
+import { ConfirmButton } from "./ConfirmButton";
+import { useGuardedPress } from "./useGuardedPress";
+
+interface Props {
+  command: CommandView;
+  picture: Picture;
+}
+
+/** How far an order has got: how many have answered, and first those who have not. */
+export function Deliveries({ command, picture }: Props) {
+  return (
+    <table class="deliveries stacked">
+      <caption>
+        {commandWord(command)} ({clockTime(command.issued_ms)}, {command.issued_by}):{" "}
+        <strong>{progress(command)}</strong>
+      </caption>
+      <thead class="spoken">
+        <tr>
+          <th scope="col">Who</th>
+          <th scope="col">State</th>
+          <th scope="col">By whom and when</th>
+        </tr>
+      </thead>
+      <tbody>
+        {unansweredFirst(command).map((delivery, place) => (
+          <tr key={delivery.unit_id}>
+            <th scope="row">{nameOf(delivery.unit_id, picture)}</th>
+            <td>
+              <CommandState state={delivery.state} />
+            </td>
+            <td>
+              <Answer command={command} delivery={delivery} place={place} picture={picture} />
+            </td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function nameOf(unitId: string, picture: Picture): string {
+  const unit = picture.unit(unitId)?.value;
+  return unit === undefined ? unitId : nameAmong(unit, picture.allUnits());
+}
+
+interface AnswerProps extends Props {
+  delivery: DeliveryView;
+  place: number; // of the row: others answer, and move it
+}
+
+function Answer({ command, delivery, place, picture }: AnswerProps) {
+  const steady = useGuardedPress(place);
+  const { unit_id: unitId, reason } = delivery;
+  const unit = picture.unit(unitId)?.value;
+  const name = unit === undefined ? unitId : displayName(unit);
+  if (delivery.acknowledged_ms !== null) {
+    return <Acknowledged command={command} delivery={delivery} name={name} />;
+  }
+  if (reason !== "") return <>{reason}</>;
+  if (!command.asks_wearer || !mayAct.value) return null;
+  return (
+    <ByRadio
+      label="Answered by radio"
+      about={name}
+      members={unit === undefined ? [] : [unit]}
+      question={`Has ${name} answered by radio?`}
+      onConfirm={steady(() => void confirmAnswer(command.command_id, unitId, name))}
+    />
+  );
+}
+
+function Acknowledged({ command, delivery, name }: Omit<Props, "picture"> & { delivery: DeliveryView; name: string }) {
+  const { acknowledged_by: by, acknowledged_ms: atMs, acknowledged_via: via } = delivery;
+  const radio = via === "radio";
+  return (
+    <span class="answered">
+      {radio ? `by radio, ${by}` : `${by}, own unit`}, {clockTime(atMs ?? 0)}
+      {radio && mayAct.value && (
+        <ConfirmButton
+          label="Undo"
+          about={`answer of ${name} by radio`}
+          question={`${name} has not answered?`}
+          onConfirm={() =>
+            void attempt(api.undoConfirmCommand(command.command_id, delivery.unit_id))
+          }
+        />
+      )}
+    </span>
+  );
+}

@@ -1,0 +1,94 @@
+import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import { attempt } from "../sessions";
+import { notice } from "../uiState";
+import * as api from "../api";
+import { useFirstField, useFocusBack } from "./Confirm";
+import { fields } from "./useLoaded";
+
+const POLL_EVERY_MS = 500;
+
+interface Props {
+  name: string;
+  subjectId: string;
+  warning: string;
+  forget: (name: string) => Promise<api.Forgetting>;
+  done: () => void;
+}
+
+/** Deletes what is stored, for good: whoever wants that writes the name. It takes a while where the
+ * log is long, and goes on without this page. */
+export function EraseForm({ name, subjectId, warning, forget, done }: Props) {
+  const asked = useSignal(false);
+  const button = useFocusBack(asked.value);
+  const form = useFirstField(asked.value);
+  const underWay = useSignal<api.Forgetting | null>(null);
+  const look = async () => {
+    const all = await api.forgettings().catch(() => null); // away: it is asked again
+    const mine = all?.filter((one) => one.subject_id === subjectId).at(-1);
+    if (mine === undefined) return;
+    const wasUnderWay = underWay.peek() !== null;
+    underWay.value = isOver(mine) ? null : mine;
+    if (!wasUnderWay || !isOver(mine)) return;
+    asked.value = false;
+    notice.value = outcome(mine);
+    done();
+  };
+  useEffect(() => {
+    if (asked.value) void look(); // somebody may have wished it already
+  }, [asked.value]);
+  const working = underWay.value !== null;
+  useEffect(() => {
+    if (!working) return undefined;
+    const timer = setInterval(() => void look(), POLL_EVERY_MS);
+    return () => clearInterval(timer);
+  }, [working]);
+  if (underWay.value !== null) return <ErasureProgress name={name} one={underWay.value} />;
+  if (!asked.value) {
+    return (
+      <button type="button" ref={button} aria-label={`Forget ${name}`} onClick={() => (asked.value = true)}>
+        Forget
+      </button>
+    );
+  }
+  return (
+    <form
+      class="forget"
+      ref={form}
+      onSubmit={(event) => {
+        const { typed = "" } = fields(event);
+        void attempt(forget(typed)).then((begun) => (underWay.value = begun));
+      }}
+    >
+      <p>{warning} It cannot be undone; the audit log keeps that it was done.</p>
+      <label>
+        Write “{name}” to go on
+        <input name="typed" required autocomplete="off" />
+      </label>
+      <button class="danger">Forget for good</button>
+      <button type="button" onClick={() => (asked.value = false)}>
+        No
+      </button>
+    </form>
+  );
+}
+
+function ErasureProgress({ name, one }: { name: string; one: api.Forgetting }) {
+  return (
+    <label class="under-way">
+      Forgetting {name}
+      <progress value={one.share} max={1} />
+      {one.problem !== "" && <small>{one.problem}</small>}
+    </label>
+  );
+}
+
+function isOver(one: api.Forgetting): boolean {
+  return one.state === "done" || one.state === "failed";
+}
+
+function outcome(one: api.Forgetting): string {
+  if (one.state !== "done") return `Nothing was forgotten: ${one.problem}.`;
+  const done = `${one.records} records were taken out of the log.`;
+  return one.problem === "" ? done : `${done} ${one.problem}.`;
+}

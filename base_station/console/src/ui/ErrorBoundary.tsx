@@ -1,0 +1,46 @@
+import { Component, type ComponentChildren } from "preact";
+import { cannotShow } from "../live/faults";
+import { Icon } from "./Icon";
+
+interface Props {
+  /** A card, panel or dialog, as a person calls it. */
+  what: string;
+  /** A list holds nothing but entries. */
+  as?: "div" | "li";
+  /** Is told in place of being shown here. */
+  onFault?: (fault: string) => void;
+  children: ComponentChildren;
+}
+
+/** How long after it failed it is tried again: what it shows may have changed. */
+const AGAIN_MS = 5_000;
+
+/** What fails within is named on the screen in its place, and takes nothing beside it along. */
+export class ErrorBoundary extends Component<Props, { fault: string | null }> {
+  override state = { fault: null };
+  private timer = 0;
+
+  override componentDidCatch(error: unknown): void {
+    console.error(error);
+    const fault = cannotShow(this.props.what, error);
+    this.setState({ fault });
+    this.props.onFault?.(fault);
+    clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => this.setState({ fault: null }), AGAIN_MS);
+  }
+
+  override componentWillUnmount(): void {
+    clearTimeout(this.timer);
+  }
+
+  override render({ as: As = "div", onFault, children }: Props, { fault }: { fault: string | null }) {
+    if (fault === null) return children;
+    if (onFault !== undefined) return null;
+    return (
+      <As class="cannot-show" role="alert">
+        <Icon name="alarm" />
+        {fault}
+      </As>
+    );
+  }
+}

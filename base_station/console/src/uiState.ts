@@ -1,0 +1,70 @@
+/** What the person looks at: the chosen unit and floor, the open dialog, what was last said. */
+import { signal } from "@preact/signals";
+
+export const selectedUnit = signal<string | null>(null);
+/** Counts up when somebody asks to see the selected unit on the plan. */
+export const centring = signal(0);
+
+export type FloorChoice = number | "all";
+export const floor = signal<FloorChoice>("all");
+
+export type DialogName =
+  | "incidents"
+  | "assessment"
+  | "people"
+  | "units"
+  | "site"
+  | "health"
+  | "flaws"
+  | "roll_call"
+  | "account"
+  | "users"
+  | "audit"
+  | "evacuate"
+  | "par_request"
+  | "text";
+export const dialog = signal<DialogName | null>(null);
+/** The unit that the dialog is about, where it is about one. */
+export const dialogUnit = signal<string | null>(null);
+
+interface AssessedIncident {
+  incident_id: string;
+  name: string;
+}
+/** The incident that is assessed. */
+export const assessed = signal<AssessedIncident | null>(null);
+
+export const notice = signal<string | null>(null);
+
+/** What a small screen shows; a large one has room for both. */
+export type Pane = "people" | "plan";
+export const pane = signal<Pane>("people");
+
+/** Show a unit on the plan; `on` is the floor where it is, as far as that is known. */
+export function select(unitId: string, on: number | null): void {
+  selectedUnit.value = unitId;
+  if (on !== null && floor.peek() !== "all") floor.value = on;
+  centring.value += 1;
+}
+
+/** The same, and turn to the plan where the screen has no room for it beside the list. */
+export function find(unitId: string, on: number | null): void {
+  select(unitId, on);
+  pane.value = "plan";
+}
+
+export function openDialog(name: DialogName, unitId: string | null = null): void {
+  dialogUnit.value = unitId;
+  dialog.value = name;
+}
+
+export function assess(incident: AssessedIncident): void {
+  assessed.value = incident;
+  openDialog("assessment");
+}
+
+/** As at the beginning, but for the floor. */
+export function reset(): void {
+  selectedUnit.value = null;
+  dialog.value = null;
+}

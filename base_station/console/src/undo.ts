@@ -1,0 +1,47 @@
+/** What was just entered by radio, and can be undone with one press for a while. */
+import { signal } from "@preact/signals";
+import * as api from "./api";
+import { newKey } from "./http";
+import type { Target } from "./live/commands";
+import { attempt } from "./sessions";
+
+export interface Undoable {
+  words: string;
+  undo: () => Promise<unknown>;
+}
+
+export const undoable = signal<Undoable | null>(null);
+
+/** Later it is undone where the confirmation is listed. */
+export const UNDO_MS = 10_000;
+
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+/** Have PAR confirmed by radio. */
+export async function confirmPar(target: Target, whom: string): Promise<void> {
+  const checkInId = newKey();
+  await enter(api.checkIn(target, checkInId), {
+    words: `PAR of ${whom}: confirmed by radio`,
+    undo: () => api.undoCheckIn(checkInId),
+  });
+}
+
+/** Have a command answered by radio. */
+export async function confirmAnswer(commandId: string, unitId: string, whom: string): Promise<void> {
+  await enter(api.confirmCommand(commandId, unitId), {
+    words: `${whom}: answered by radio`,
+    undo: () => api.undoConfirmCommand(commandId, unitId),
+  });
+}
+
+export function undoNow(one: Undoable): void {
+  undoable.value = null;
+  void attempt(one.undo());
+}
+
+async function enter(work: Promise<void>, entered: Undoable): Promise<void> {
+  if ((await attempt(work)) === null) return; // refused, which is shown
+  clearTimeout(timer);
+  undoable.value = entered;
+  timer = setTimeout(() => (undoable.value = null), UNDO_MS);
+}

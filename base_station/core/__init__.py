@@ -1,0 +1,1 @@
+"""Pure core: events step the pipeline, which changes the state and gives outputs."""

@@ -1,0 +1,199 @@
+"""Accountability (PAR) and working time of members.
+
+While an incident is open, each wearer of a unit is to be confirmed again and again: by the button
+of the own unit, or by radio, which an operator enters at the console.  Assigning a unit or opening
+an incident confirms nobody, and neither does any measurement.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import msgspec
+
+from base_station.core.state import Incident, StationState, UnitState
+from base_station.core.state.command import SentCommand
+from base_station.core.state.duty import Duty, ParConfirmation, Source
+from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from shared.clock import NS_PER_S
+from shared.errors import UserError
+from shared.messages import CommandKind
+from shared.messages.station import CheckIn, OpenIncident, SetAccountability, UndoConfirmation
+
+ANSWER_NS = 180 * NS_PER_S  # for a roll call that somebody asks for, or an evacuation (ours)
+SHORTEST_S, LONGEST_S = 30.0, 12 * 3600.0
+PAR_REQUESTS = frozenset({CommandKind.PAR_REQUEST, CommandKind.EVACUATE})  # to be answered
+
+
+def new_incident(state: StationState, action: OpenIncident) -> Incident:
+    """New incident, with the usual intervals where none are given."""
+    par_s = action.par_interval_s or PAR_INTERVAL_S
+    work_s = action.work_limit_s or WORK_LIMIT_S
+    _check(par_s, work_s)
+    return Incident(action.incident_id, action.name, state.t_ns, None, par_s, work_s)
+
+
+def change_intervals(state: StationState, action: SetAccountability) -> Iterator[UnitState]:
+    """Set other intervals for the open incident, from now on and for all members."""
+    incident = _open_incident(state)
+    _check(action.par_interval_s, action.work_limit_s)
+    state.incident = msgspec.structs.replace(
+        incident, par_interval_s=action.par_interval_s, work_limit_s=action.work_limit_s
+    )
+    for unit in state.units.values():
+        if unit.duty is not None:
+            _update_due(state, unit.duty)
+            yield unit
+
+
+def begin(state: StationState, unit: UnitState) -> None:
+    """Put the wearer of this unit on duty, where an incident is open."""
+    incident = state.incident
+    if incident is not None and incident.closed_ns is None and unit.person is not None:
+        unit.duty = Duty(state.t_ns, ready_ns=state.t_ns)
+        _update_due(state, unit.duty)
+
+
+def end(state: StationState, unit: UnitState) -> None:
+    """Take the wearer of this unit off duty."""
+    if unit.duty is not None:
+        unit.duty, unit.off_duty_ns = None, state.t_ns
+
+
+def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
+    """PARs confirmed by radio.  UserError where nobody is on duty."""
+    if sum(map(bool, (action.unit_id, action.crew, action.everyone))) != 1:
+        raise UserError("say one of: a unit, a crew, everyone")
+    if action.check_in_id and _is_taken(state, action.check_in_id):
+        raise UserError(f"a check-in needs an id of its own, not {action.check_in_id!r}")
+    found = [unit for unit in state.units.values() if _is_addressed(unit, action)]
+    if not found:
+        whom = action.unit_id or action.crew or "everyone"
+        raise UserError(f"nobody of {whom} is on duty in an open incident")
+    for unit in found:
+        _confirm(state, unit, ParConfirmation(state.t_ns, "radio", by, action.check_in_id))
+    return found
+
+
+def undo(state: StationState, action: UndoConfirmation) -> list[UnitState]:
+    """Take back radio confirmations with this id; gives the units concerned."""
+    return [unit for unit in state.units.values() if _is_undone(state, unit, action)]
+
+
+def ask(state: StationState, command: SentCommand) -> Iterator[UnitState]:
+    """After a roll call or an evacuation: who was told is to be heard from soon."""
+    if command.kind not in PAR_REQUESTS:
+        return
+    for unit_id in command.deliveries:
+        unit = state.units[unit_id]
+        if unit.duty is not None:
+            unit.duty.requests_ns.append(state.t_ns)
+            _update_due(state, unit.duty)
+            yield unit
+
+
+def record_answer(
+    state: StationState,
+    unit: UnitState,
+    command: SentCommand,
+    source: Source,
+    by: str,
+    answered_ns: int | None,
+) -> list[UnitState]:
+    """A person answered a command, at some time since it was given, where nobody can tell when as
+    long ago as that; who has heard of an evacuation is not out by that.
+    """
+    if command.kind is not CommandKind.PAR_REQUEST or unit.duty is None:
+        return []
+    t_ns = max(answered_ns or 0, command.issued_ns)
+    entry_id = command.command_id if source == "radio" else ""
+    _confirm(state, unit, ParConfirmation(t_ns, source, by, entry_id))
+    return [unit]
+
+
+def set_rest(state: StationState, unit: UnitState, resting: bool) -> None:
+    """Send the wearer to rest, or back to work.  UserError where that is so already."""
+    duty = unit.duty
+    if duty is None:
+        raise UserError(f"{unit.name} is not on duty in an open incident")
+    if resting == (duty.rest_since_ns is not None):
+        raise UserError(f"{unit.name} is {'resting' if resting else 'at work'} already")
+    duty.rest_since_ns = state.t_ns if resting else None
+    duty.ready_ns = state.t_ns
+    duty.work_since_ns = None
+    _update_due(state, duty)
+
+
+def update_work(state: StationState, unit: UnitState) -> bool:
+    """At a tick, begin the working time of a wearer who is inside; it lasts until the rest."""
+    duty = unit.duty
+    if duty is None or duty.rest_since_ns is not None or duty.work_since_ns is not None:
+        return False
+    if unit.inside_since_ns is None:
+        return False
+    duty.work_since_ns = max(unit.inside_since_ns, duty.ready_ns)
+    _update_due(state, duty)
+    return True
+
+
+def warning_s(incident: Incident) -> float:
+    """Time before a PAR is due at which it is announced."""
+    return min(5 * 60.0, incident.par_interval_s / 4)
+
+
+def _confirm(state: StationState, unit: UnitState, confirmation: ParConfirmation) -> None:
+    """Record a confirmation; one from before this duty concerns another member or incident."""
+    duty = unit.duty
+    if duty is not None and confirmation.t_ns >= duty.since_ns:
+        duty.confirm(confirmation)
+        _update_due(state, duty)
+
+
+def _is_undone(state: StationState, unit: UnitState, action: UndoConfirmation) -> bool:
+    duty = unit.duty
+    if duty is None or action.unit_id not in ("", unit.unit_id):
+        return False
+    if not duty.undo(action.entry_id):
+        return False
+    _update_due(state, duty)
+    return True
+
+
+def _is_taken(state: StationState, entry_id: str) -> bool:
+    on_duty = (unit.duty for unit in state.units.values() if unit.duty is not None)
+    entered = (one.entry_id for duty in on_duty for one in duty.confirmations)
+    return entry_id in state.commands or entry_id in entered
+
+
+def _update_due(state: StationState, duty: Duty) -> None:
+    """Set when the next PAR and the next rest are due, for the alarm rules."""
+    incident = _open_incident(state)
+    duty.due_ns = duty.counts_from_ns + round(incident.par_interval_s * NS_PER_S)
+    if duty.open_request_ns is not None:
+        duty.due_ns = min(duty.due_ns, duty.open_request_ns + ANSWER_NS)
+    duty.rest_due_ns = None
+    if duty.work_since_ns is not None:
+        duty.rest_due_ns = duty.work_since_ns + round(incident.work_limit_s * NS_PER_S)
+
+
+def _is_addressed(unit: UnitState, action: CheckIn) -> bool:
+    if unit.duty is None or unit.person is None:
+        return False
+    if action.unit_id:
+        return action.unit_id == unit.unit_id
+    return action.everyone or action.crew == unit.person.crew
+
+
+def _open_incident(state: StationState) -> Incident:
+    if state.incident is None or state.incident.closed_ns is not None:
+        raise UserError("no incident is open")
+    return state.incident
+
+
+def _check(par_interval_s: float, work_limit_s: float) -> None:
+    for what, time_s in (("roll call", par_interval_s), ("rest", work_limit_s)):
+        if not (math.isfinite(time_s) and SHORTEST_S <= time_s <= LONGEST_S):
+            raise UserError(
+                f"the time until the next {what} is {SHORTEST_S:.0f} s to {LONGEST_S / 3600:.0f} h"
+            )

@@ -1,0 +1,51 @@
+"""A unit's sensors were calibrated long ago, or badly: its tracker does worse than it could."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Annotated
+
+from base_station.core.alarms.interface import ADVISORY, Clear, Finding, Verdict
+from base_station.core.state import UnitState
+from shared.clock import NS_PER_S
+from shared.config import Within
+from shared.messages import Message
+
+_DAY_S = 86_400
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """A unit without any calibration is left alone: not every sensor needs one."""
+
+    old_after_days: Annotated[float, Within(1.0, 3650.0)] = 180.0
+    name: str = "calibration"
+    levels: tuple[str, ...] = ("old", "poor")
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        description = unit.description
+        if description is None or unit.heard_ns is None:
+            return None
+        made_s = description.calibrated_s
+        if made_s is None:
+            return Clear(unit.heard_ns, "the unit uses no calibration")
+        if description.calibration_faults:
+            said = f"is poor ({description.calibration_faults})"
+            return self._finding("poor", said, unit.name, unit.heard_ns)
+        if unit.heard_ns / NS_PER_S - made_s > self.old_after_days * _DAY_S:
+            said = f"is of {datetime.fromtimestamp(made_s, UTC):%-d %B %Y}"
+            return self._finding("old", said, unit.name, unit.heard_ns)
+        return Clear(unit.heard_ns, "the unit uses a good calibration")
+
+    def _finding(self, level: str, said: str, name: str, seen_ns: int) -> Finding:
+        return Finding(
+            level,
+            ADVISORY,
+            f"The calibration of {name}'s unit {said}; calibrate it anew when it is back",
+            seen_ns=seen_ns,
+        )

@@ -1,0 +1,43 @@
+"""Duplicate device: a copied enrolment, or a spare that was given a name in use.
+
+The wearer of one of them is not seen: only one path is shown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict
+from base_station.core.state import UnitState
+from shared.clock import NS_PER_S
+from shared.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class ClonedUnit:
+    gone_after_s: float = 30.0  # without a message of one of the two
+    name: str = "cloned-unit"
+    levels: tuple[str, ...] = ("cloned",)
+    clear_after_s: float = 3.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = True
+    triggered_by: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        speakers = (unit, unit.tracker) if unit.tracker is not None else (unit,)
+        for sender in speakers:
+            other = sender.duplicate_device
+            if other is None or sender.heard_ns is None:
+                continue
+            seen_ns = min(other.last_live_ns, sender.boots[-1].last_live_ns)
+            if (sender.heard_ns - seen_ns) / NS_PER_S < self.gone_after_s:
+                what = "unit" if sender is unit else "tracking agent"
+                return Finding(
+                    "cloned",
+                    WARNING,
+                    f"Two machines speak as {unit.name}'s {what}; only one is shown: find the "
+                    f"other and switch it off, or revoke {unit.unit_id}",
+                    seen_ns=seen_ns,
+                    onset_ns=max(other.first_live_ns, sender.boots[-1].first_live_ns),
+                )
+        return None if unit.heard_ns is None else Clear(unit.heard_ns, "only one speaks")

@@ -1,0 +1,33 @@
+"""The unit felt a fall; a person at the station has to find out what became of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.core.alarms.interface import EMERGENCY, Finding, Verdict
+from base_station.core.state import UnitState
+from shared.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class Fall:
+    name: str = "fall"
+    levels: tuple[str, ...] = ("fall",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.fall_ns is None:
+            return None
+        event_ns = unit.fall_event_ns if unit.fall_is_dated else None
+        return Finding(
+            "fall",
+            EMERGENCY,
+            f"{unit.name_at(event_ns)} may have fallen",
+            seen_ns=unit.fall_ns,
+            onset_ns=unit.fall_ns,
+            latched=True,
+            about=unit.worn_from_ns(event_ns),
+        )

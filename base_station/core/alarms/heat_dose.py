@@ -1,0 +1,39 @@
+"""The equipment has been hot for so long in this incident that it may fail, however cool it is now.
+
+Thermal classes and the dose: ``base_station.core.units.thermal_dose``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict
+from base_station.core.state import UnitState
+from shared.config import Within
+from shared.messages import Message, Temperature
+
+
+@dataclass(frozen=True, slots=True)
+class HeatDose:
+    used_up: Annotated[float, Within(0.1, 10.0)] = 1.0
+    name: str = "heat-dose"
+    levels: tuple[str, ...] = ("used up",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = (Temperature,)
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.temperature is None:
+            return None
+        if unit.heat_dose < self.used_up:
+            return Clear(unit.temperature_ns, "another incident")
+        is_late = unit.heat_dose - unit.late_heat_dose < self.used_up
+        told = ", as only its journal told, so some time ago" if is_late else ""
+        return Finding(
+            "used up",
+            WARNING,
+            f"The equipment of {unit.name} has used up its heat budget{told}: it may fail",
+            seen_ns=unit.temperature_ns,
+        )

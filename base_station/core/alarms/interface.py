@@ -1,0 +1,92 @@
+"""Interface of an alarm rule: a pure judgement of one unit at one instant."""
+
+from __future__ import annotations
+
+import re
+from typing import Protocol
+
+import msgspec
+
+from base_station.core.state import UnitState
+from shared.messages import Message
+
+EMERGENCY, WARNING, ADVISORY = 1, 2, 3  # priorities
+
+
+class Finding(msgspec.Struct, frozen=True):
+    """Finding that the unit's state calls for an alarm."""
+
+    level: str  # one of the rule's levels
+    priority: int
+    text: str  # a sentence for a person
+    seen_ns: int  # station time of the evidence
+    onset_ns: int = 0  # when it began; begun after an alarm was resolved, it is a new one
+    latched: bool = False  # only a person resolves it
+    about: int | str | None = None  # which of several of one unit: whose, or which fault
+
+
+class Clear(msgspec.Struct, frozen=True):
+    """There is evidence that nothing is the matter."""
+
+    seen_ns: int  # station time of the evidence: time passing without news clears nothing
+    by: str  # what it was that resolved the alarm
+    at_once: bool = False  # a word that settles it, and does not have to stay so
+    about: int | None = None  # of whose matter it is evidence, where that counts
+
+
+def switched_off(unit: UnitState) -> Clear | None:
+    """Of a unit that was switched off in order nobody expects what its alarm is about."""
+    if unit.stopped_ns is None:
+        return None
+    return Clear(unit.stopped_ns, "the unit was switched off", at_once=True)
+
+
+Verdict = Finding | Clear | None  # None: nothing is known either way
+_NUMBER = re.compile(r"\d+")
+
+
+def without_numbers(text: str) -> str:
+    """Text without its numbers, to compare problems that differ only in an amount."""
+    return _NUMBER.sub("", text)
+
+
+class AlarmRule(Protocol):
+    """A frozen dataclass without state of its own; its fields are its thresholds."""
+
+    @property
+    def name(self) -> str:
+        """Short, lower case, with hyphens: it is in the log for ever."""
+        ...
+
+    @property
+    def levels(self) -> tuple[str, ...]:
+        """From least to worst."""
+        ...
+
+    @property
+    def clear_after_s(self) -> float:
+        """Time for which the evidence must stay clear, or lower, before the alarm follows it."""
+        ...
+
+    @property
+    def rearm_after_s(self) -> float | None:
+        """An alarm that a person resolved while its cause goes on is raised again after this
+        time; None: only once the cause was gone in between, or is worse.
+        """
+        ...
+
+    @property
+    def applies_to_unregistered(self) -> bool:
+        """True for a rule that also judges units that are not registered."""
+        ...
+
+    @property
+    def triggered_by(self) -> tuple[type[Message], ...]:
+        """Messages that come all the time and are judged as they come.  Besides, every rule
+        judges at every tick, and whenever something comes that does not come all the time.
+        """
+        ...
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:
+        """``t_ns`` station time now; ``level`` that of the open alarm, empty without one."""
+        ...

@@ -1,0 +1,42 @@
+"""No message of a unit for too long.  It tells nothing about the wearer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.core.alarms.interface import ADVISORY, WARNING, Clear, Finding, Verdict
+from base_station.core.state import UnitState
+from base_station.core.state.message_stream import LOST_AFTER_S, STALE_AFTER_S
+from shared.clock import NS_PER_S
+from shared.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class LinkLost:
+    lost_after_s: float = LOST_AFTER_S
+    live_within_s: float = STALE_AFTER_S
+    name: str = "link-lost"
+    levels: tuple[str, ...] = ("switched off", "lost")
+    clear_after_s: float = 3.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.heard_ns is None:
+            return None
+        silent_s = (t_ns - unit.heard_ns) / NS_PER_S
+        if silent_s < self.live_within_s:
+            return Clear(unit.heard_ns, "messages return")
+        if silent_s < self.lost_after_s:
+            return None
+        stopped = unit.stopped_ns is not None
+        return Finding(
+            "switched off" if stopped else "lost",
+            ADVISORY if stopped else WARNING,
+            f"{unit.name}'s unit was switched off"
+            if stopped
+            else f"Nothing heard of {unit.name}'s unit for {silent_s:.0f} s",
+            seen_ns=unit.heard_ns,
+            onset_ns=unit.heard_ns,
+        )

@@ -1,0 +1,35 @@
+"""The wearer pressed the mayday button: at once, until a person at the station resolves it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.core.alarms.interface import EMERGENCY, Clear, Finding, Verdict
+from base_station.core.state import UnitState
+from shared.messages import Message, Status
+
+
+@dataclass(frozen=True, slots=True)
+class Mayday:
+    name: str = "mayday"
+    levels: tuple[str, ...] = ("mayday",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = (Status,)
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.mayday_ns is None:
+            return None
+        if unit.mayday_cancelled_ns is not None:
+            return Clear(unit.mayday_cancelled_ns, "cancelled by the wearer")
+        event_ns = unit.mayday_event_ns if unit.mayday_is_dated else None
+        return Finding(
+            "mayday",
+            EMERGENCY,
+            f"Mayday from {unit.name_at(event_ns)}",
+            seen_ns=unit.mayday_ns,
+            onset_ns=unit.mayday_ns,
+            latched=True,
+            about=unit.worn_from_ns(event_ns),
+        )

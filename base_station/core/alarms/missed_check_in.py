@@ -1,0 +1,53 @@
+"""A member's PAR has not been confirmed in time.
+
+Only a confirmation ends it: by the button of the own unit, or by radio.  Raised once; the next
+confirmation arms it again, and so does a PAR request that is not answered in its turn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.core.accountability import ANSWER_NS
+from base_station.core.alarms.interface import EMERGENCY, Clear, Finding, Verdict
+from base_station.core.state import UnitState
+from base_station.core.state.duty import Duty
+from shared.clock import NS_PER_S
+from shared.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class MissedCheckIn:
+    name: str = "missed-check-in"
+    levels: tuple[str, ...] = ("overdue",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        duty = unit.duty
+        if duty is None:
+            return Clear(unit.off_duty_ns, "off duty")
+        if t_ns < duty.due_ns:
+            why = f"not overdue; {duty.confirmation_text}"
+            return Clear(duty.counts_from_ns, why, about=unit.worn_from_ns(t_ns))
+        answers_due_ns = [open_request_ns + ANSWER_NS for open_request_ns in duty.open_requests_ns]
+        onset_ns = max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns)
+        return Finding(
+            "overdue",
+            EMERGENCY,
+            f"{unit.name}: PAR overdue, {_words(duty, onset_ns)}",
+            seen_ns=duty.counts_from_ns,
+            onset_ns=onset_ns,
+            about=unit.worn_from_ns(t_ns),
+        )
+
+
+def _words(duty: Duty, onset_ns: int) -> str:
+    silent_min = (onset_ns - duty.counts_from_ns) / NS_PER_S / 60.0
+    if duty.confirmation is None:
+        asked = "asked, " if duty.open_request_ns is not None else ""
+        return f"{asked}not yet confirmed, on duty for {silent_min:.0f} min"
+    asked = "asked and " if duty.open_request_ns is not None else ""
+    return f"{asked}not heard from for {silent_min:.0f} min"

@@ -1,0 +1,89 @@
+"""The thresholds of alarm rules that a station's settings may change.
+
+A field of a rule that is ``Annotated`` with its limits is one.  A set of thresholds goes by
+``rule.field``, as in ``no-motion.alarm_s``; whatever is not in it has its default.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from functools import cache
+from typing import Any, cast, get_type_hints
+
+import msgspec
+
+from base_station.core.alarms.interface import AlarmRule
+from shared.config import nearest
+from shared.errors import ConfigError
+
+Thresholds = dict[str, float]
+
+
+def thresholds_of(
+    rules: Sequence[AlarmRule], settings: Mapping[str, Mapping[str, float]]
+) -> Thresholds:
+    """Those of a station's settings that are not the defaults.
+
+    Raises ConfigError where no rule has such a threshold, or cannot have such a value.
+    """
+    by_name = {rule.name: rule for rule in rules}
+    found = {}
+    for rule_name, values in settings.items():
+        if rule_name not in by_name:
+            raise ConfigError(
+                f"alarms.{rule_name} is no alarm; {nearest(rule_name, by_name, by_name)}"
+            )
+        rule = by_name[rule_name]
+        limits = limits_of(rule)
+        for name, value in values.items():
+            where = f"alarms.{rule_name}.{name}"
+            if name not in limits:
+                known = nearest(name, limits, limits) if limits else f"{rule_name} has none"
+                raise ConfigError(f"{where} is not a setting; {known}")
+            try:
+                msgspec.convert(value, limits[name])
+            except msgspec.ValidationError as error:
+                raise ConfigError(f"{where}: {error}") from error
+            if value != getattr(rule, name):
+                found[f"{rule_name}.{name}"] = value
+        try:
+            _changed(rule, found)
+        except ConfigError as error:
+            raise ConfigError(f"alarms.{rule_name}: {error}") from error
+    return found
+
+
+def with_thresholds(rules: Sequence[AlarmRule], thresholds: Thresholds) -> tuple[AlarmRule, ...]:
+    """What a log says may be another version's: a rule that cannot have it keeps its defaults."""
+    return tuple(_changed_or_as_it_was(rule, thresholds) for rule in rules)
+
+
+def _changed_or_as_it_was(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
+    try:
+        return _changed(rule, thresholds)
+    except (ConfigError, msgspec.ValidationError):
+        return rule
+
+
+def _changed(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
+    """Raises ValidationError where one is beyond its limits, ConfigError where they do not go
+    together.
+    """
+    changes = {
+        name: msgspec.convert(thresholds[key], limits)
+        for name, limits in limits_of(rule).items()
+        if (key := f"{rule.name}.{name}") in thresholds
+    }
+    return cast("AlarmRule", dataclasses.replace(cast("Any", rule), **changes)) if changes else rule
+
+
+def limits_of(rule: AlarmRule) -> Mapping[str, Any]:
+    """Type and limits of each threshold."""
+    return _limits_of(type(rule))
+
+
+@cache
+def _limits_of(kind: type[AlarmRule]) -> Mapping[str, Any]:
+    hints = get_type_hints(kind, include_extras=True)
+    return {name: hint for name, hint in hints.items() if hasattr(hint, "__metadata__")}

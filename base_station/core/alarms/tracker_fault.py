@@ -1,0 +1,37 @@
+"""The agent that tracks for a unit says that something of its own fails, as its disk.
+
+The unit is well: who stands before it looks in vain.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.core.alarms.interface import WARNING, Finding, Verdict, without_numbers
+from base_station.core.state import UnitState
+from shared.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerFault:
+    name: str = "tracker-fault"
+    levels: tuple[str, ...] = ("fault",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        agent = unit.tracker
+        if agent is None or agent.fault is None or not unit.is_tracked_remotely:
+            return None
+        fault = agent.fault
+        return Finding(
+            "fault",
+            WARNING,
+            f"The agent that tracks for {unit.name} ({agent.unit_id}): {fault.text}",
+            seen_ns=fault.t_ns,
+            onset_ns=fault.t_ns,
+            latched=True,
+            about=without_numbers(fault.text),
+        )

@@ -1,0 +1,50 @@
+"""A unit too weak to track sends its samples, and the agent that should track for it is silent.
+
+The wearer stands still on the screen, however far he walks.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict, switched_off
+from base_station.core.state import UnitState
+from base_station.core.state.message_stream import LOST_AFTER_S, STALE_AFTER_S
+from shared.clock import NS_PER_S
+from shared.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerGone:
+    gone_after_s: float = LOST_AFTER_S
+    live_within_s: float = STALE_AFTER_S
+    name: str = "tracker-gone"
+    levels: tuple[str, ...] = ("gone",)
+    clear_after_s: float = 3.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.heard_ns is None:
+            return None
+        if not unit.is_tracked_remotely:
+            return Clear(unit.heard_ns, "the unit tracks itself")
+        off = switched_off(unit)
+        if off is not None:
+            return off
+        heard_ns = None if unit.tracker is None else unit.tracker.heard_ns
+        if heard_ns is not None and (t_ns - heard_ns) / NS_PER_S < self.live_within_s:
+            return Clear(heard_ns, "its tracking agent speaks again")
+        what = "never spoke" if heard_ns is None else "is silent"
+        since_ns = max(heard_ns or 0, unit.boots[-1].first_live_ns)  # it may start with the unit
+        if (t_ns - since_ns) / NS_PER_S < self.gone_after_s:
+            return None
+        return Finding(
+            "gone",
+            WARNING,
+            f"Nobody tracks {unit.name}: the agent for {unit.unit_id} {what}; start it, "
+            "the position shown is old",
+            seen_ns=since_ns,
+            onset_ns=since_ns,
+        )

@@ -1,0 +1,32 @@
+"""A unit says that a sensor or its storage fails."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from base_station.core.alarms.interface import WARNING, Finding, Verdict, without_numbers
+from base_station.core.state import UnitState
+from shared.messages import Message
+
+
+@dataclass(frozen=True, slots=True)
+class UnitFault:
+    name: str = "unit-fault"
+    levels: tuple[str, ...] = ("fault",)
+    clear_after_s: float = 0.0
+    rearm_after_s: float | None = None
+    applies_to_unregistered: bool = False
+    triggered_by: tuple[type[Message], ...] = ()
+
+    def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
+        if unit.fault is None:
+            return None
+        return Finding(
+            "fault",
+            WARNING,
+            f"{unit.name}'s unit: {unit.fault.text}",
+            seen_ns=unit.fault.t_ns,
+            onset_ns=unit.fault.t_ns,
+            latched=True,
+            about=without_numbers(unit.fault.text),
+        )

@@ -1,0 +1,27 @@
+"""Checkpoint of a pipeline: encoding and decoding of all that it keeps."""
+
+from __future__ import annotations
+
+import msgspec
+
+from base_station.core.state import StationState
+
+
+class Checkpoint(msgspec.Struct, frozen=True):
+    """All that the pipeline keeps."""
+
+    state: StationState
+    fuser: str
+    fusers: dict[str, bytes]
+    pinned: dict[str, bytes]
+
+    def to_bytes(self) -> bytes:
+        return msgspec.msgpack.encode(self)
+
+
+def read_checkpoint(saved: bytes) -> Checkpoint | None:
+    """Decode a checkpoint; None for one of another version: the log has all that matters."""
+    try:
+        return msgspec.msgpack.decode(saved, type=Checkpoint)
+    except (msgspec.MsgspecError, UnicodeDecodeError):
+        return None

@@ -1,0 +1,260 @@
+"""Command tracker: queued, sent, received, acknowledged, refused or expired.
+
+Every change follows from an event in the log: an operator action, the station's own ``Command``
+as it went out on the bus, a unit's reply, or a tick.  Only a reply that the wearer asked for, or a
+person at the console, acknowledges a command.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from base_station.core.state import ERASED_TEXT, StationState, UnitState
+from base_station.core.state.command import (
+    AnsweredBy,
+    Delivery,
+    DeliveryState,
+    Order,
+    SentCommand,
+)
+from shared.clock import NS_PER_S
+from shared.errors import UserError
+from shared.messages import Command, CommandKind, CommandReply, CommandState
+from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmation
+
+MAX_OPEN = 50  # and as many again for evacuations, which wait for nothing
+CLOSED_KEPT = 10  # at hand; the log has all of them
+REPLACED = "a later rate replaces it"
+WITHDRAWN = "its incident was closed"
+_NOT_RECEIVED: frozenset[DeliveryState] = frozenset({"queued", "sent"})
+
+
+def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
+    """Create a command.  Raises UserError where it makes no sense or reaches nobody."""
+    _check(state, action)
+    command = SentCommand(
+        command_id=action.command_id,
+        kind=action.kind,
+        text=action.text,
+        position_rate_hz=action.position_rate_hz,
+        issued_by=by,
+        issued_ns=state.t_ns,
+        expires_ns=state.t_ns + round(action.lasts_s * NS_PER_S),
+        deliveries={unit.unit_id: Delivery(unit.unit_id) for unit in _recipients(state, action)},
+        incident_id=_open_incident_id(state),
+    )
+    _drop_oldest_closed(state)
+    state.commands[action.command_id] = command
+    return command
+
+
+def replace(state: StationState, later: SentCommand) -> Iterator[SentCommand]:
+    """Of two rates the one that was given last holds: where the other is still on its way, its
+    repeat would be applied behind it.
+    """
+    if later.kind is not CommandKind.SET_POSITION_RATE:
+        return
+    for command in state.commands.values():
+        if command is later or command.kind is not later.kind:
+            continue
+        replaced = [one for one in _undelivered(command) if one.unit_id in later.deliveries]
+        for delivery in replaced:
+            delivery.refused_ns, delivery.reason = state.t_ns, REPLACED
+        if replaced:
+            yield command
+
+
+def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand:
+    """Acknowledge by radio.  Raises UserError where there is nothing to confirm."""
+    found = _delivery(state, action.unit_id, action.command_id)
+    if found is None:
+        raise UserError(f"no command {action.command_id} to {action.unit_id}")
+    command, delivery = found
+    if not command.asks_wearer:
+        raise UserError("nobody has to acknowledge such a command")
+    if delivery.acknowledged_ns is not None:
+        raise UserError(f"{delivery.acknowledged_by} has acknowledged it already")
+    _acknowledge(delivery, state.t_ns, "radio", by)
+    return command
+
+
+def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
+    """It waits again for the members whose answers were entered by radio; None: for nobody.
+
+    Raises UserError where the incident of the command is closed.
+    """
+    command = state.commands.get(action.entry_id)
+    if command is None:
+        return None
+    entered = [
+        delivery
+        for delivery in command.deliveries.values()
+        if delivery.acknowledged_via == "radio" and action.unit_id in ("", delivery.unit_id)
+    ]
+    if entered and command.incident_id != _open_incident_id(state):
+        raise UserError("its incident is closed: what was entered in it stays as it is")
+    for delivery in entered:
+        delivery.acknowledged_ns, delivery.acknowledged_by = None, ""
+        delivery.acknowledged_via = ""
+    return command if entered else None
+
+
+def withdraw(state: StationState, incident_id: str) -> Iterator[SentCommand]:
+    """The orders of an incident end with it: the unit of a member who comes to the next one is not
+    told of them.  How often a unit sends its position is no order to a member, and stays.
+    """
+    for command in state.commands.values():
+        if command.incident_id != incident_id or command.kind is CommandKind.SET_POSITION_RATE:
+            continue
+        open_ones = [one for one in command.deliveries.values() if command.awaits(one)]
+        for delivery in open_ones:
+            delivery.expired_ns, delivery.reason = state.t_ns, WITHDRAWN
+        if open_ones:
+            yield command
+
+
+def note_sent(state: StationState, unit_id: str, sent: Command) -> SentCommand | None:
+    """Record that the station sent it on the bus; None where that changes nothing."""
+    found = _delivery(state, unit_id, sent.command_id)
+    if found is None or found[1].sent_ns is not None:
+        return None
+    command, delivery = found
+    delivery.sent_ns = state.t_ns
+    return command
+
+
+def note_reply(
+    state: StationState, unit: UnitState, reply: CommandReply, event_ns: int | None
+) -> SentCommand | None:
+    """What a unit answered at ``event_ns``, None: nobody can tell when.  None where that changes
+    nothing.
+    """
+    found = _delivery(state, unit.unit_id, reply.command_id)
+    if found is None:
+        return None
+    command, delivery = found
+    match reply.state:
+        case CommandState.RECEIVED if delivery.received_ns is None:
+            delivery.received_ns = state.t_ns
+        case CommandState.ACKNOWLEDGED if delivery.acknowledged_via != "self":
+            delivery.received_ns = delivery.received_ns or state.t_ns
+            _acknowledge(delivery, state.t_ns, "self", unit.name_at(event_ns))
+        case CommandState.REFUSED if delivery.refused_ns is None:
+            delivery.refused_ns, delivery.reason = state.t_ns, reply.detail
+        case _:
+            return None
+    return command
+
+
+def expire(state: StationState) -> Iterator[SentCommand]:
+    """At a tick, expire the commands whose time is over."""
+    for command in state.commands.values():
+        if state.t_ns < command.expires_ns or not command.is_open:
+            continue
+        for delivery in command.deliveries.values():
+            if command.awaits(delivery):
+                delivery.expired_ns = state.t_ns
+        yield command
+
+
+def erase_names(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
+    """Who of this unit's wearers acknowledged what, and texts to them.  Of a message nothing is
+    left then: for whom it has not reached its time is over.  Texts to others may name them: the
+    words go of what has reached all whom it goes to.
+    """
+    for command in state.commands.values():
+        delivery, not_reached = command.deliveries.get(unit.unit_id), _undelivered(command)
+        if delivery is None and (not_reached or not command.text):
+            continue
+        if delivery is not None:
+            delivery.acknowledged_by = ERASED_TEXT if delivery.acknowledged_by else ""
+        command.text = ERASED_TEXT if command.text else ""
+        if command.kind is CommandKind.TEXT:
+            for one in not_reached:
+                one.expired_ns = state.t_ns
+        yield command
+
+
+def open_orders(state: StationState) -> tuple[Order, ...]:
+    """Orders to send, and to repeat, until the units answer."""
+    return tuple(
+        Order(
+            unit_id=delivery.unit_id,
+            command_id=command.command_id,
+            kind=command.kind,
+            issued_by=command.issued_by,
+            expires_ns=command.expires_ns,
+            text="" if command.text == ERASED_TEXT else command.text,
+            position_rate_hz=command.position_rate_hz,
+        )
+        for command in state.commands.values()
+        for delivery in _undelivered(command)
+    )
+
+
+def _acknowledge(delivery: Delivery, t_ns: int, via: AnsweredBy, by: str) -> None:
+    delivery.acknowledged_ns, delivery.acknowledged_via, delivery.acknowledged_by = t_ns, via, by
+
+
+def _open_incident_id(state: StationState) -> str:
+    incident = state.incident
+    return "" if incident is None or incident.closed_ns is not None else incident.incident_id
+
+
+def _check(state: StationState, action: SendCommand) -> None:
+    if not action.command_id or action.command_id in state.commands:
+        raise UserError(f"a command needs an id of its own, not {action.command_id!r}")
+    if action.kind is CommandKind.UNKNOWN:
+        raise UserError("this station does not know this kind of command")
+    if action.kind is CommandKind.TEXT and not action.text.strip():
+        raise UserError("a message needs a text")
+    if not (math.isfinite(action.lasts_s) and 0.0 < action.lasts_s <= 86_400.0):
+        raise UserError(f"a command lasts up to a day, not {action.lasts_s} s")
+    if not math.isfinite(action.position_rate_hz):
+        raise UserError("a position rate is no finite number")
+    if sum(map(bool, (action.unit_id, action.crew, action.everyone))) != 1:
+        raise UserError("say one of: a unit, a crew, everyone")
+    most = 2 * MAX_OPEN if action.kind is CommandKind.EVACUATE else MAX_OPEN
+    if sum(command.is_open for command in state.commands.values()) >= most:
+        raise UserError(f"{most} commands are open; wait until some are answered")
+
+
+def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
+    """Everyone is whoever wears a unit, and every unit of ours that was heard and not switched off
+    since.
+    """
+    ours = [unit for unit in state.units.values() if unit.registered]
+    if action.unit_id:
+        found = [unit for unit in ours if unit.unit_id == action.unit_id]
+    elif action.crew:
+        found = [unit for unit in ours if unit.person and unit.person.crew == action.crew]
+    else:
+        found = [unit for unit in ours if unit.person or _is_in_use(unit)]
+    if not found:
+        whom = action.unit_id or action.crew or "everyone"
+        raise UserError(f"no registered unit can be told: {whom}")
+    return found
+
+
+def _is_in_use(unit: UnitState) -> bool:
+    return unit.heard_ns is not None and unit.stopped_ns is None
+
+
+def _delivery(
+    state: StationState, unit_id: str, command_id: str
+) -> tuple[SentCommand, Delivery] | None:
+    command = state.commands.get(command_id)
+    delivery = command.deliveries.get(unit_id) if command is not None else None
+    return None if command is None or delivery is None else (command, delivery)
+
+
+def _undelivered(command: SentCommand) -> list[Delivery]:
+    """To whom it is still on its way, as far as is known."""
+    return [one for one in command.deliveries.values() if command.state_of(one) in _NOT_RECEIVED]
+
+
+def _drop_oldest_closed(state: StationState) -> None:
+    closed = [one.command_id for one in state.commands.values() if not one.is_open]
+    for command_id in closed[: max(0, len(closed) - CLOSED_KEPT + 1)]:
+        del state.commands[command_id]

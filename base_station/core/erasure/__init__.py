@@ -1,0 +1,1 @@
+"""Erasure of persons and incidents from the state and from log records."""

@@ -1,0 +1,285 @@
+"""Takes what is to be forgotten out of a log, record by record.  Pure.
+
+What a unit said while somebody wore it who is to be forgotten becomes a bare sign of life with the
+same header: that a message came is kept, so that a station does not fetch it from the unit's
+journal again, and nothing of what it said.  Names become ``(forgotten)``.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import msgspec
+from google.protobuf.message import Message as WireMessage
+
+from base_station.core.erasure.erasure import CaptureClocks, Erasure, Record, inserted_action_id
+from base_station.core.events import Received, Rejected, event_of
+from base_station.core.state import ERASED_TEXT
+from shared.channels import (
+    DESCRIPTION,
+    HEARTBEAT,
+    OPERATOR,
+    Direction,
+    backfilled_key,
+    is_backfilled,
+    parse_key,
+    parse_unread_key,
+    tracked_unit,
+)
+from shared.codec import encode
+from shared.errors import UnknownChannelError
+from shared.mcap_log.schemas import is_derived, wire_type_of
+from shared.messages import (
+    STATION_ID,
+    AlarmChange,
+    FusedPosition,
+    Header,
+    Heartbeat,
+    OperatorAction,
+)
+from shared.messages.pins import SetMeeting, SetPin, StartTogether
+from shared.messages.station import (
+    Assign,
+    CloseIncident,
+    DoneApart,
+    OpenIncident,
+    ResolveAlarm,
+    SetStart,
+    Unassign,
+)
+
+# The program's own, whoever is called Heat or Fall, and who did something.
+_PROGRAM_FIELDS = frozenset({"rule", "level", "part", "thresholds", "station", "who"})
+
+
+class Redactor:
+    """Call it with every record of the log; gives what is to stand in its place."""
+
+    def __init__(self, erasure: Erasure, clocks: CaptureClocks) -> None:
+        self._erasure = erasure
+        self._clocks = clocks
+        self._names = name_pattern(erasure.names)
+        self._letters = re.compile(_any_of(erasure.names), re.IGNORECASE)
+
+    def __call__(self, record: Record) -> list[Record]:
+        t_ns, key, payload = record
+        if is_derived(key):
+            return self._derived(record)
+        if self._is_of_others(key) and not self._holds_a_name(payload):
+            return [record]
+        event = event_of(t_ns, key, payload)
+        if not isinstance(event, Received):
+            return self._unread(record, event)
+        return self._received(record, event)
+
+    def _unread(self, record: Record, event: Rejected) -> list[Record]:
+        """Nobody knows what is in it.  Of what may be of somebody who is to be forgotten, a sign of
+        life is left, so that it is not missing and fetched again; out of a journal, nobody can tell
+        when it was said.
+        """
+        t_ns, key, payload = record
+        if event.number is None:
+            return [] if self._holds_a_name(payload) else [record]
+        sender, boot_id, seq = event.number
+        wearer = tracked_unit(sender) or sender
+        came_late = is_backfilled(key) or parse_unread_key(key) is not None
+        at_any_time = came_late and wearer in self._erasure.unit_ids
+        if not (at_any_time or self._erasure.covers(wearer, t_ns) or self._holds_a_name(payload)):
+            return [record]
+        alive = Heartbeat(Header(sender, boot_id, seq, 0), 0, 0)
+        return [(t_ns, backfilled_key(sender, HEARTBEAT.suffix), encode(alive))]
+
+    def _received(self, record: Record, event: Received) -> list[Record]:
+        match event.message:
+            case OperatorAction() as action:
+                done = action.action
+                about = isinstance(done, ResolveAlarm) and self._erasure.is_about_alarm(
+                    done.alarm_id
+                )
+                return [self._renamed(one, about) for one in self._actions(record, action)]
+            case FusedPosition() as fused:
+                gone = self._erasure.covers(fused.unit_id, fused.t_meas_ns)
+                return [] if gone else [record]
+            case AlarmChange() as change:
+                return [self._alarm(record, change)]
+            case _ if parse_key(record[1])[1].direction is Direction.UP:
+                return [self._unit(record, event)]
+            case _:
+                return [self._renamed(record)]
+
+    def _is_of_others(self, key: str) -> bool:
+        """Whether it comes from a unit that nobody wore who is to be forgotten."""
+        try:
+            unit_id, channel = parse_key(key)
+        except UnknownChannelError:
+            return False
+        wearer = tracked_unit(unit_id) or unit_id
+        return channel.direction is Direction.UP and wearer not in self._erasure.unit_ids
+
+    def _unit(self, record: Record, event: Received) -> Record:
+        """A unit's message, or the sign of life that is left of it; out of a journal, where nobody
+        can tell when it was said, that too.
+        """
+        t_ns, key, _ = record
+        sender, channel = parse_key(key)
+        header = event.message.header
+        captured_ns = self._clocks.captured_ns(header)
+        times_ns = [] if event.backfilled else [t_ns]
+        if captured_ns is not None:
+            times_ns.append(captured_ns)
+        wearer = tracked_unit(sender) or sender
+        at_any_time = not times_ns and wearer in self._erasure.unit_ids
+        covered = at_any_time or any(self._erasure.covers(wearer, one) for one in times_ns)
+        if channel in (DESCRIPTION, HEARTBEAT) or not covered:
+            return self._renamed(record)
+        alive = HEARTBEAT.key(sender)
+        if event.backfilled:
+            alive = backfilled_key(sender, HEARTBEAT.suffix)
+        return t_ns, alive, encode(Heartbeat(header, 0, 0))
+
+    def _alarm(self, record: Record, change: AlarmChange) -> Record:
+        t_ns, key, _ = record
+        if not self._erasure.covers(change.unit_id, change.raised_ns):
+            return self._renamed(record, self._erasure.is_about(change.unit_id, change.raised_ns))
+        by = self._names.sub(ERASED_TEXT, change.by)
+        return t_ns, key, encode(msgspec.structs.replace(change, text=ERASED_TEXT, by=by))
+
+    def _derived(self, record: Record) -> list[Record]:
+        """What only repeats other records for Foxglove."""
+        t_ns, key, _ = record
+        if self._erasure.covers(key.split("/")[1], t_ns):
+            return []
+        return [self._renamed(record)]
+
+    def _actions(self, record: Record, message: OperatorAction) -> list[Record]:
+        t_ns, key, _ = record
+        erasure = self._erasure
+        instead = _in_incident(t_ns, message, erasure) if erasure.incident_id else [message]
+        records = []
+        for one in instead:
+            kept = self._without_places(t_ns, self._without_person(one))
+            if kept is message:
+                records.append(record)
+            elif kept is not None:
+                records.append((t_ns, key, encode(kept)))
+        return records
+
+    def _without_person(self, message: OperatorAction) -> OperatorAction:
+        assign = message.action
+        if not isinstance(assign, Assign) or assign.person_id != self._erasure.person_id:
+            return message
+        nobody = msgspec.structs.replace(assign, person_name=ERASED_TEXT, crew="", role="")
+        return msgspec.structs.replace(message, action=nobody)
+
+    def _without_places(self, t_ns: int, message: OperatorAction) -> OperatorAction | None:
+        """None where all that it says is where somebody was who is to be forgotten."""
+        action, covers = message.action, self._erasure.covers
+        match action:
+            case SetStart(unit_id=unit_id):
+                return None if covers(unit_id, t_ns) else message
+            case SetPin(unit_id=unit_id) | SetMeeting(unit_id=unit_id):
+                other = action.other_unit_id if isinstance(action, SetMeeting) else unit_id
+                at_ns = action.t_ns or t_ns
+                gone = any(covers(one, at) for one in (unit_id, other) for at in (t_ns, at_ns))
+                return None if gone else message
+            case StartTogether(unit_ids=unit_ids):
+                at_ns = action.t_ns or t_ns
+                kept = tuple(
+                    one for one in unit_ids if not any(covers(one, at) for at in (t_ns, at_ns))
+                )
+                if kept == unit_ids:
+                    return message
+                fewer = msgspec.structs.replace(action, unit_ids=kept)
+                return msgspec.structs.replace(message, action=fewer) if kept else None
+            case DoneApart(what=what):
+                left = remaining_text(action, t_ns, self._erasure, self._names)
+                untold = msgspec.structs.replace(action, what=left)
+                return message if left == what else msgspec.structs.replace(message, action=untold)
+            case _:
+                return message
+
+    def _renamed(self, record: Record, about: bool = False) -> Record:
+        """With every name replaced, wherever in the record it stands; who did something stays.
+        ``about``: also of a record of another time.
+        """
+        t_ns, key, payload = record
+        inside = self._erasure.from_ns <= t_ns < self._erasure.until_ns
+        if not (inside or about) or not self._holds_a_name(payload):
+            return record
+        wire_type = wire_type_of(key)
+        assert wire_type is not None  # it could be read
+        wire = wire_type.FromString(payload)
+        by = wire.by if key == OPERATOR.key(STATION_ID) else None
+        _rename(wire, self._names)
+        if by is not None:
+            wire.by = by
+        return t_ns, key, wire.SerializeToString()
+
+    def _holds_a_name(self, payload: bytes) -> bool:
+        """Or may: in bytes nothing tells where a word begins."""
+        return self._letters.search(payload.decode("utf-8", "replace")) is not None
+
+
+def name_pattern(names: tuple[str, ...]) -> re.Pattern[str]:
+    """Matches any of the names, in whatever case; nothing where there are none.
+
+    A name is a word, or one with an s behind it: of Al and Ana, neither alarms nor Anabel are
+    forgotten.
+    """
+    return re.compile(rf"(?<!\w)(?:{_any_of(names)})(?=s?(?!\w))", re.IGNORECASE)
+
+
+def remaining_text(apart: DoneApart, t_ns: int, erasure: Erasure, names: re.Pattern[str]) -> str:
+    """Of what was done apart, and written down at ``t_ns``."""
+    if erasure.covers_separate_action(t_ns, apart):
+        return ERASED_TEXT
+    inside = any(erasure.from_ns <= one < erasure.until_ns for one in (t_ns, apart.t_ns))
+    return names.sub(ERASED_TEXT, apart.what) if inside else apart.what
+
+
+def _any_of(names: tuple[str, ...]) -> str:
+    return "|".join(map(re.escape, names)) or r"(?!)"
+
+
+def _in_incident(t_ns: int, message: OperatorAction, erasure: Erasure) -> list[OperatorAction]:
+    """While it was open nobody wears anything; afterwards they wear what they did."""
+    match message.action:
+        case OpenIncident(incident_id=erasure.incident_id):
+            returned_units = [Unassign(unit_id) for unit_id in erasure.returned_units]
+            return [*_replacement(message, returned_units), message]
+        case CloseIncident(incident_id=erasure.incident_id):
+            return [message, *_replacement(message, erasure.assigned_after)]
+        case Assign() | Unassign() if erasure.from_ns <= t_ns < erasure.until_ns:
+            return [message] if erasure.is_inserted(message.action_id) else []
+        case _:
+            return [message]
+
+
+def _replacement(message: OperatorAction, actions: Any) -> list[OperatorAction]:
+    """Actions at the time of another, each with an id of its own."""
+    return [
+        msgspec.structs.replace(
+            message, action_id=inserted_action_id(message.action_id, action.unit_id), action=action
+        )
+        for action in actions
+    ]
+
+
+def is_program_text(field: str) -> bool:
+    """Whether what is in a field of this name is what the program goes by, and nobody's name."""
+    return field in _PROGRAM_FIELDS or field.endswith(("_id", "_ids"))
+
+
+def _rename(wire: WireMessage, names: re.Pattern[str]) -> None:
+    """In every text of a message and of what is in it, but for what the program goes by."""
+    for field, value in wire.ListFields():
+        if is_program_text(field.name):
+            continue
+        if field.message_type is not None:
+            for part in value if field.is_repeated else [value]:
+                _rename(part, names)
+        elif field.type == field.TYPE_STRING and field.is_repeated:
+            value[:] = [names.sub(ERASED_TEXT, one) for one in value]
+        elif field.type == field.TYPE_STRING:
+            setattr(wire, field.name, names.sub(ERASED_TEXT, value))

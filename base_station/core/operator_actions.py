@@ -1,0 +1,381 @@
+"""Operator actions: each changes the live state, or is refused with a reason."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import assert_never
+
+import msgspec
+
+from base_station.core import accountability, idempotency
+from base_station.core.alarms.alarm_manager import AlarmManager
+from base_station.core.closed_incidents import add_closed_incident
+from base_station.core.commands import command_tracker
+from base_station.core.events import (
+    ClosedIncidentChanged,
+    NamesErased,
+    PinsChanged,
+    TrailBackfilled,
+)
+from base_station.core.pins import pin_registry
+from base_station.core.pins.incident_scope import concerns_closed_incident
+from base_station.core.pins.pin_registry import PinAction, change_pins, units_of
+from base_station.core.positioning.positioning import Positioning
+from base_station.core.state import Alarm, Person, StationState, UnitState
+from base_station.core.state.command import SentCommand
+from base_station.core.state.resolve_queue import request_resolve
+from base_station.core.state.trust_tally import TrustTally
+from base_station.core.units import thermal_dose
+from base_station.fusion.gnss.common_mode_error import CommonModeError
+from base_station.fusion.interface import Start
+from base_station.site.plan_reader import PlanReader
+from shared.errors import UserError
+from shared.geo import Anchor
+from shared.messages.pins import PlaceBeacon, SetPin, StartTogether
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    Action,
+    Assign,
+    CheckIn,
+    CloseIncident,
+    ConfirmCommand,
+    DoneApart,
+    ForgetWearers,
+    OpenIncident,
+    RegisterUnit,
+    ReportProblem,
+    ResolveAlarm,
+    SendCommand,
+    SetAccountability,
+    SetAnchor,
+    SetPlan,
+    SetReference,
+    SetRest,
+    SetStart,
+    SetThresholds,
+    TakeOver,
+    Unassign,
+    UndoConfirmation,
+)
+
+# What an action changed.
+StateChange = (
+    Alarm
+    | UnitState
+    | SentCommand
+    | PinsChanged
+    | ClosedIncidentChanged
+    | TrailBackfilled
+    | NamesErased
+)
+
+
+class ActionHandler:
+    """Applies operators' actions to the live state."""
+
+    def __init__(self, alarms: AlarmManager, positioning: Positioning, plans: PlanReader) -> None:
+        self._alarms = alarms
+        self._positioning = positioning
+        self._plans = plans
+
+    def apply(self, state: StationState, by: str, action: Action) -> list[StateChange]:
+        """Apply an action: gives the changes.  UserError where it can have no effect."""
+        return list(self._state_changes(state, by, action))
+
+    def _state_changes(self, state: StationState, by: str, action: Action) -> Iterable[StateChange]:
+        if isinstance(action, PinAction):
+            return self._pin(state, by, action)
+        if isinstance(action, PeopleAction):
+            return self._people_action(state, by, action)
+        changes: Iterable[StateChange] = state.units.values()
+        match action:
+            case AcknowledgeAlarm() | ResolveAlarm():
+                changes = [self._alarm(state, by, action)]
+            case ReportProblem() | SetThresholds() | DoneApart():
+                changes = self._station_action(state, action)
+            case RegisterUnit():
+                changes = self._register(state, action)
+            case SetStart():
+                changes = self._start(state, action)
+            case SetAnchor() | SetPlan() | SetReference():
+                self._site(state, action)
+            case TakeOver():
+                state.take_overs.append(action)
+            case SendCommand() | ConfirmCommand():
+                changes = self._command(state, by, action)
+            case UndoConfirmation():
+                changes = self._undo(state, action)
+            case ForgetWearers():
+                changes = self._forget(state, action)
+            case _:
+                assert_never(action)
+        return changes
+
+    def _people_action(
+        self, state: StationState, by: str, action: PeopleAction
+    ) -> Iterable[StateChange]:
+        match action:
+            case OpenIncident():
+                return self._open(state, by, action)
+            case CloseIncident():
+                return self._close(state, by, action)
+            case _:
+                return self._with_alarms(state, _apply_people_action(state, by, action))
+
+    def _site(self, state: StationState, action: SetAnchor | SetPlan | SetReference) -> None:
+        if isinstance(action, SetAnchor):
+            self._positioning.set_anchor(state, _anchor(action))
+        elif isinstance(action, SetReference):
+            _require_finite(action.down_m)
+            unit_id = _registered(state, action.unit_id).unit_id if action.unit_id else None
+            state.barometers.set_reference(unit_id, action.down_m)
+            state.common_mode_error = CommonModeError()
+        else:
+            state.plan = self._plans.plan(action.geojson)
+            self._positioning.replace_map(state)
+            for unit_id in sorted(set().union(*map(units_of, state.pins.values()))):
+                request_resolve(state.late, unit_id, state.t_ns)  # one by one: live goes first
+
+    def _pin(self, state: StationState, by: str, action: PinAction) -> Iterator[StateChange]:
+        is_first = isinstance(
+            action, SetPin | StartTogether | PlaceBeacon
+        ) and _is_first_known_place(state)
+        running = state.incident
+        closed_ns = None if running is None else running.closed_ns
+        is_of_past = closed_ns is not None and concerns_closed_incident(state, action, closed_ns)
+        changed = change_pins(state, by, action)
+        if is_of_past and running is not None:
+            yield ClosedIncidentChanged(running.incident_id)
+        if is_first:
+            yield from map(
+                TrailBackfilled, moved := sorted(self._positioning.switch_to_plan_frame(state))
+            )
+            changed |= set(moved)
+        yield _pins_changed(changed)
+
+    def _alarm(
+        self, state: StationState, by: str, action: AcknowledgeAlarm | ResolveAlarm
+    ) -> Alarm:
+        if isinstance(action, AcknowledgeAlarm):
+            return _or_raise(self._alarms.acknowledge(state, by, action))
+        return _or_raise(self._alarms.resolve(state, by, action))
+
+    def _station_action(
+        self, state: StationState, action: ReportProblem | SetThresholds | DoneApart
+    ) -> Iterator[StateChange]:
+        """Apply an action of the station itself."""
+        if isinstance(action, ReportProblem):
+            yield from self._alarms.report_problem(state, action.part, action.text)
+        elif isinstance(action, SetThresholds):
+            state.thresholds = action.thresholds
+            self._alarms.use_thresholds(action.thresholds)
+            yield from self._with_alarms(state, state.units.values())
+
+    def _register(self, state: StationState, action: RegisterUnit) -> Iterator[StateChange]:
+        unit = state.units.get(action.unit_id)
+        if unit is None:
+            unit = state.units[action.unit_id] = UnitState(action.unit_id)
+        unit.registered, unit.label = True, action.label
+        yield from self._with_alarms(state, [unit])
+
+    def _with_alarms(
+        self, state: StationState, units: Iterable[UnitState]
+    ) -> Iterator[StateChange]:
+        """Units that changed, and the alarms that this raises or resolves."""
+        for unit in units:
+            yield unit
+            yield from self._alarms.review(state, unit)
+
+    def _command(
+        self, state: StationState, by: str, action: SendCommand | ConfirmCommand
+    ) -> Iterator[StateChange]:
+        if isinstance(action, SendCommand):
+            command = command_tracker.send(state, by, action)
+            yield from command_tracker.replace(state, command)
+            touched = list(accountability.ask(state, command))
+        else:
+            command = command_tracker.confirm(state, by, action)
+            unit = state.units[action.unit_id]
+            touched = accountability.record_answer(state, unit, command, "radio", by, state.t_ns)
+        yield command
+        yield from self._with_alarms(state, touched)
+
+    def _undo(self, state: StationState, action: UndoConfirmation) -> Iterator[StateChange]:
+        command = command_tracker.undo(state, action)
+        units = accountability.undo(state, action)
+        if command is None and not units:
+            raise UserError("there is no confirmation by radio under this id to undo")
+        if command is not None:
+            yield command
+        yield from self._with_alarms(state, units)
+
+    def _close(self, state: StationState, by: str, action: CloseIncident) -> Iterator[StateChange]:
+        units = list(_apply_people_action(state, by, action))
+        yield from command_tracker.withdraw(state, action.incident_id)
+        yield from self._with_alarms(state, units)
+
+    def _open(self, state: StationState, by: str, action: OpenIncident) -> Iterator[StateChange]:
+        before = state.incident
+        units = list(_apply_people_action(state, by, action))
+        before_ns = 0 if before is None else before.closed_ns or 0
+        yield _pins_changed(self._positioning.begin_incident(state, before_ns))
+        yield from self._with_alarms(state, units)
+
+    def _forget(self, state: StationState, action: ForgetWearers) -> list[StateChange]:
+        unit = _registered(state, action.unit_id)
+        if state.incident is not None and state.incident.closed_ns is None:
+            raise UserError("an incident is open; close it first")
+        self._positioning.forget(state, unit)
+        met = pin_registry.forget(state, unit.unit_id)
+        self._alarms.erase_names(state, unit)
+        idempotency.erase_reasons(state)
+        unit.forget_wearers()
+        told = command_tracker.erase_names(state, unit)
+        return [unit, TrailBackfilled(unit.unit_id), *told, _pins_changed(met), NamesErased()]
+
+    def _start(self, state: StationState, action: SetStart) -> Iterator[StateChange]:
+        unit = _registered(state, action.unit_id)
+        _require_finite(action.north_m, action.east_m, action.down_m, action.heading_rad)
+        _require_finite(action.std_m, action.heading_std_rad)
+        if action.std_m < 0.0 or action.heading_std_rad < 0.0:
+            raise UserError("a start needs uncertainties that are not negative")
+        start = Start(
+            action.north_m,
+            action.east_m,
+            action.down_m,
+            action.heading_rad,
+            action.std_m,
+            action.heading_std_rad,
+        )
+        touched = {unit.unit_id}
+        if _is_first_known_place(state):
+            touched |= self._positioning.switch_to_plan_frame(state)
+        self._positioning.start(state, unit, start)
+        yield _pins_changed(touched)
+        yield from map(TrailBackfilled, sorted(touched))
+
+
+PeopleAction = (
+    OpenIncident | CloseIncident | Assign | Unassign | CheckIn | SetAccountability | SetRest
+)
+
+
+def _apply_people_action(state: StationState, by: str, action: PeopleAction) -> Iterable[UnitState]:
+    """Apply an action about who is there and accounted for."""
+    changed: Iterable[UnitState]
+    match action:
+        case OpenIncident():
+            changed = _open(state, action)
+        case CloseIncident():
+            changed = _close(state, action)
+        case Assign():
+            changed = _assign(state, action)
+        case Unassign():
+            changed = [_unassign(state, _registered(state, action.unit_id))]
+        case CheckIn():
+            changed = accountability.check_in(state, by, action)
+        case SetAccountability():
+            changed = accountability.change_intervals(state, action)
+        case SetRest():
+            unit = _registered(state, action.unit_id)
+            accountability.set_rest(state, unit, action.resting)
+            changed = [unit]
+        case _:
+            assert_never(action)
+    return changed
+
+
+def _open(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
+    running = state.incident
+    if running is not None and running.closed_ns is None:
+        raise UserError(f"the incident {running.name!r} is open; close it first")
+    state.incident = accountability.new_incident(state, action)
+    for unit in state.units.values():
+        unit.trail.clear()
+        unit.trust = TrustTally()
+        unit.inside_since_ns = None
+        unit.heat_dose = unit.late_heat_dose = 0.0
+        thermal_dose.restart_intervals(unit.exposures)
+        unit.rejected_counts.clear()
+        accountability.begin(state, unit)
+    return state.units.values()
+
+
+def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
+    running = state.incident
+    if (
+        running is None
+        or running.incident_id != action.incident_id
+        or running.closed_ns is not None
+    ):
+        raise UserError(f"no open incident {action.incident_id}")
+    state.incident = msgspec.structs.replace(running, closed_ns=state.t_ns)
+    add_closed_incident(state, state.incident)
+    for unit in state.units.values():
+        accountability.end(state, unit)
+    return state.units.values()
+
+
+def _assign(state: StationState, action: Assign) -> Iterator[UnitState]:
+    unit = _registered(state, action.unit_id)
+    before, duty = unit.person, None
+    for other in state.units.values():
+        if other is not unit and other.person and other.person.person_id == action.person_id:
+            duty = other.duty
+            yield _unassign(state, other)
+    same = before is not None and before.person_id == action.person_id
+    if before is not None and not same:
+        unit.end_wearing(state.t_ns)
+    unit.person = Person(action.person_id, action.person_name, action.crew, action.role)
+    if not same:
+        unit.worn_since_ns = state.t_ns
+        if duty is None:
+            accountability.begin(state, unit)
+        else:  # with another unit, which is no word of theirs, and no rest
+            unit.duty = duty
+    yield unit
+
+
+def _unassign(state: StationState, unit: UnitState) -> UnitState:
+    unit.end_wearing(state.t_ns)
+    accountability.end(state, unit)
+    return unit
+
+
+def _is_first_known_place(state: StationState) -> bool:
+    """Whether a place that is said now is the first one that is said on a plan, of which nobody
+    knows where it lies: people are where satellites have them.
+    """
+    pinned = any(pin.kind in {"place", "start"} for pin in state.pins.values())
+    said = state.start_set or pinned or bool(state.beacons)
+    return state.plan is not state.placed_plan and not said
+
+
+def _anchor(action: SetAnchor) -> Anchor:
+    _require_finite(action.lat_deg, action.lon_deg, action.height_m, action.plan_rotation_rad)
+    if abs(action.lat_deg) > 90.0 or abs(action.lon_deg) > 180.0:
+        raise UserError(f"{action.lat_deg}, {action.lon_deg} is no latitude and longitude")
+    return Anchor(action.lat_deg, action.lon_deg, action.height_m, action.plan_rotation_rad)
+
+
+def _pins_changed(unit_ids: set[str]) -> PinsChanged:
+    return PinsChanged(tuple(sorted(unit_ids)))
+
+
+def _or_raise(outcome: Alarm | str) -> Alarm:
+    if isinstance(outcome, str):
+        raise UserError(outcome)
+    return outcome
+
+
+def _registered(state: StationState, unit_id: str) -> UnitState:
+    unit = state.units.get(unit_id)
+    if unit is None or not unit.registered:
+        raise UserError(f"no registered unit {unit_id!r}; register it first")
+    return unit
+
+
+def _require_finite(*values: float) -> None:
+    if not all(math.isfinite(value) for value in values):
+        raise UserError("a coordinate or angle is no finite number")

@@ -1,0 +1,3 @@
+"""Pins: constraints on units' paths from people, beacons and encounters, and the paths solved with
+them.
+"""

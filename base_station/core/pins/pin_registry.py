@@ -1,0 +1,269 @@
+"""Sets, moves and removes pins and beacons; ``pin_solver`` solves trails with them.
+
+Every check says in a sentence why a pin cannot be taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import msgspec
+
+from base_station.core.durations import format_duration
+from base_station.core.state import StationState
+from base_station.core.state.pin import WAITING, Beacon, Pin, reach_std_m
+from base_station.core.state.resolve_queue import request_resolve
+from base_station.site.plan import Plan
+from shared.clock import NS_PER_S
+from shared.errors import UserError
+from shared.geo import rotate
+from shared.messages.pins import (
+    PlaceBeacon,
+    RemoveBeacon,
+    RemovePin,
+    SetMeeting,
+    SetPin,
+    StartTogether,
+)
+
+PinAction = SetPin | StartTogether | SetMeeting | RemovePin | PlaceBeacon | RemoveBeacon
+MAX_PINS = 1000
+FURTHEST_M = 1000.0  # from the plan's outlines
+FUTURE_NS = NS_PER_S
+BEFORE_NS = 10 * NS_PER_S  # of a path's beginning: that is where it is pinned
+LARGEST_STD_M = 1000.0
+DEEPEST, HIGHEST = -20, 200  # floors
+
+
+def change_pins(state: StationState, by: str, action: PinAction) -> set[str]:
+    """The units whose past this changes; UserError where it can have no effect."""
+    match action:
+        case SetPin():
+            return _set(state, [_place_pin(state, by, action)])
+        case StartTogether():
+            return _set(state, _start_pins(state, by, action))
+        case SetMeeting():
+            return _set(state, [_meeting_pin(state, by, action)])
+        case RemovePin():
+            return _remove(state, action.pin_id)
+        case PlaceBeacon():
+            return _place_beacon(state, by, action)
+        case RemoveBeacon():
+            return _remove_beacon(state, action.beacon_id)
+
+
+def forget(state: StationState, unit_id: str) -> set[str]:
+    """Remove every pin that constrains this unit; returns the other units whose paths change."""
+    return drop(state, lambda pin: unit_id in units_of(pin)) - {unit_id}
+
+
+def drop(state: StationState, unwanted: Callable[[Pin], bool]) -> set[str]:
+    """Gives whose past the pins were about."""
+    changed: set[str] = set()
+    for pin_id in [one for one, pin in state.pins.items() if unwanted(pin)]:
+        changed |= units_of(state.pins.pop(pin_id))
+        state.pin_verdicts.pop(pin_id, None)
+    return changed
+
+
+def reframe_pins(state: StationState, turn_rad: float, north_m: float, east_m: float) -> None:
+    """The incident frame was moved: turned clockwise, then shifted."""
+    for pin_id, pin in state.pins.items():
+        heading_rad = None if pin.heading_rad is None else pin.heading_rad + turn_rad
+        if pin.north_m is not None and pin.east_m is not None:
+            north, east = rotate(pin.north_m, pin.east_m, turn_rad)
+            state.pins[pin_id] = msgspec.structs.replace(
+                pin, north_m=north + north_m, east_m=east + east_m, heading_rad=heading_rad
+            )
+    for beacon in state.beacons.values():
+        north, east = rotate(beacon.north_m, beacon.east_m, turn_rad)
+        beacon.north_m, beacon.east_m = north + north_m, east + east_m
+
+
+def has_pins(state: StationState, unit_id: str) -> bool:
+    """True where a pin concerns this unit's path."""
+    return any(unit_id in units_of(pin) for pin in state.pins.values())
+
+
+def resolve_later(state: StationState, unit_id: str) -> None:
+    """Request that the past of a unit is solved again, where a pin concerns it."""
+    if has_pins(state, unit_id):
+        request_resolve(state.late, unit_id, state.t_ns)
+
+
+def units_of(pin: Pin) -> set[str]:
+    """Units whose paths a pin concerns."""
+    return {pin.unit_id, pin.other_id} if pin.kind == "meeting" else {pin.unit_id}
+
+
+def put(state: StationState, pin: Pin) -> None:
+    """Keep a pin that was checked, in the place of an earlier one with its id."""
+    state.pins[pin.pin_id] = pin
+    state.pin_verdicts[pin.pin_id] = WAITING
+
+
+def _set(state: StationState, pins: Sequence[Pin]) -> set[str]:
+    new = sum(pin.pin_id not in state.pins for pin in pins)
+    if new and len(state.pins) + new > MAX_PINS:
+        there = len(state.pins)
+        raise UserError(f"there is room for {MAX_PINS} pins, not {there + new}; remove some first")
+    changed: set[str] = set()
+    for pin in pins:
+        earlier = state.pins.get(pin.pin_id)
+        changed |= units_of(pin) | (units_of(earlier) if earlier is not None else set())
+        put(state, pin)
+    return changed
+
+
+def _place_pin(state: StationState, by: str, action: SetPin) -> Pin:
+    _check_unit(state, action.unit_id)
+    _check_time(state, action.unit_id, action.t_ns)
+    _check_place(state, action)
+    return Pin(kind="place", set_ns=state.t_ns, by=by, **msgspec.structs.asdict(action))
+
+
+def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin]:
+    """Pins of a common start position, for the units that were switched on after its time."""
+    if not action.unit_ids:
+        raise UserError("nobody to place: name at least one unit")
+    _check_place(state, action)
+    common = msgspec.structs.asdict(action)
+    del common["pin_id"], common["unit_ids"], common["t_ns"]
+    pins = []
+    for unit_id in dict.fromkeys(action.unit_ids):
+        _check_unit(state, unit_id)
+        t_ns = 0 if _early_s(state, unit_id, action.t_ns) else action.t_ns
+        _check_time(state, unit_id, t_ns)
+        pin_id = f"{action.pin_id}:{unit_id}"
+        pins.append(Pin(pin_id, "start", unit_id, t_ns, set_ns=state.t_ns, by=by, **common))
+    return pins
+
+
+def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
+    if action.unit_id == action.other_unit_id:
+        raise UserError("a unit cannot meet itself: name two units")
+    for unit_id in (action.unit_id, action.other_unit_id):
+        _check_unit(state, unit_id)
+        _check_time(state, unit_id, action.t_ns)
+    _check_std(action.std_m)
+    return Pin(
+        pin_id=action.pin_id,
+        kind="meeting",
+        unit_id=action.unit_id,
+        t_ns=action.t_ns,
+        std_m=action.std_m,
+        set_ns=state.t_ns,
+        by=by,
+        note=action.note,
+        other_id=action.other_unit_id,
+    )
+
+
+def _remove(state: StationState, pin_id: str) -> set[str]:
+    group = f"{pin_id}:"
+    changed = drop(state, lambda pin: pin.pin_id == pin_id or pin.pin_id.startswith(group))
+    if not changed:
+        raise UserError(f"there is no pin {pin_id}; it may have been removed already")
+    return changed
+
+
+def _place_beacon(state: StationState, by: str, action: PlaceBeacon) -> set[str]:
+    _check_place(state, action)
+    if not (math.isfinite(action.reach_m) and action.reach_m >= 0.0):
+        raise UserError("how far a beacon reaches is a number of metres, 0 or more")
+    earlier = state.beacons.get(action.beacon_id)
+    for pin in _sightings_of(state, action.beacon_id):
+        if not pin.is_ranged:
+            std_m = reach_std_m(action.reach_m)
+            state.pins[pin.pin_id] = msgspec.structs.replace(pin, std_m=std_m)
+    state.beacons[action.beacon_id] = Beacon(
+        **msgspec.structs.asdict(action),
+        placed_ns=state.t_ns,
+        by=by,
+        seen_ns=earlier.seen_ns if earlier is not None else None,
+    )
+    return {pin.unit_id for pin in _sightings_of(state, action.beacon_id)}
+
+
+def _remove_beacon(state: StationState, beacon_id: str) -> set[str]:
+    if state.beacons.pop(beacon_id, None) is None:
+        raise UserError(f"there is no beacon {beacon_id}; it may have been removed already")
+    return {pin.unit_id for pin in _sightings_of(state, beacon_id)}
+
+
+def _sightings_of(state: StationState, beacon_id: str) -> list[Pin]:
+    return [
+        pin
+        for pin in state.pins.values()
+        if pin.kind in {"beacon", "tag"} and pin.other_id == beacon_id
+    ]
+
+
+def _check_unit(state: StationState, unit_id: str) -> None:
+    unit = state.units.get(unit_id)
+    if unit is None or not unit.registered:
+        raise UserError(f"no registered unit {unit_id!r}; register it first")
+
+
+def _check_time(state: StationState, unit_id: str, t_ns: int) -> None:
+    if t_ns > state.t_ns + FUTURE_NS:
+        ahead = format_duration((t_ns - state.t_ns) / NS_PER_S)
+        raise UserError(f"the pin's time is {ahead} in the future; say when it was")
+    if early_s := _early_s(state, unit_id, t_ns):
+        raise UserError(
+            f"the pin's time is {format_duration(early_s)} before the path of {unit_id} begins; "
+            "there is nothing to pin there"
+        )
+
+
+def _early_s(state: StationState, unit_id: str, t_ns: int) -> float:
+    """Seconds from a time to the begin of a unit's path; 0 where the path began earlier."""
+    history = state.paths.get(unit_id)
+    begin_ns = None if history is None else history.begin_ns
+    if t_ns == 0 or begin_ns is None or t_ns >= begin_ns - BEFORE_NS:
+        return 0.0
+    return (begin_ns - t_ns) / NS_PER_S
+
+
+def _check_place(state: StationState, action: SetPin | StartTogether | PlaceBeacon) -> None:
+    if not (math.isfinite(action.north_m) and math.isfinite(action.east_m)):
+        raise UserError("the place is no pair of numbers")
+    _check_std(action.std_m)
+    if not isinstance(action, PlaceBeacon) and action.heading_rad is not None:
+        _check_heading(action.heading_rad, action.heading_std_rad)
+    plan = state.plan
+    if action.floor is not None:
+        _check_floor(plan, action.floor)
+    if plan is not None and plan.outlines:
+        away_m = plan.away_m(action.north_m, action.east_m)
+        if away_m > FURTHEST_M:
+            raise UserError(
+                f"the place is {away_m:.0f} m from the plan's building; at most {FURTHEST_M:.0f} m "
+                "make sense"
+            )
+
+
+def _check_floor(plan: Plan | None, floor: int) -> None:
+    """Check a floor against the plan; without a plan's storeys any number is accepted, as it
+    numbers the learnt ones.
+    """
+    floors = () if plan is None else [storey.floor for storey in plan.storeys]
+    if floors and floor not in floors:
+        known = ", ".join(map(str, floors))
+        raise UserError(f"the plan has no floor {floor}; it has: {known}")
+    if not DEEPEST <= floor <= HIGHEST:
+        raise UserError(f"no building has a floor {floor}; from {DEEPEST} to {HIGHEST} make sense")
+
+
+def _check_std(std_m: float) -> None:
+    if not (math.isfinite(std_m) and 0.0 < std_m <= LARGEST_STD_M):
+        raise UserError(
+            f"an uncertainty of {std_m} m cannot be weighed; say how many metres it may be off, "
+            "more than 0"
+        )
+
+
+def _check_heading(heading_rad: float, std_rad: float) -> None:
+    if not (math.isfinite(heading_rad) and math.isfinite(std_rad) and std_rad > 0.0):
+        raise UserError("a heading needs an angle, and an uncertainty of more than 0")

@@ -1,0 +1,68 @@
+"""Units whose past has pins: a second fuser beside the first, which knows of the pins.
+
+The first fuser goes on as if there were no pin, so that taking the last one away leaves exactly
+what would have been without.  The second begins where the solution of the whole past ends, again
+at every change of a pin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+
+from base_station.core.pins.pin_solver import PathSolver, SolvedUnit, solve_pins, with_partners
+from base_station.core.state import StationState, UnitState
+from base_station.fusion.interface import Fuser, FuserKind
+from base_station.fusion.smoothing.interface import Smoother
+from base_station.site.floor_grid import FloorGrid
+
+
+class PinnedUnits:
+    """The fusers that know of pins, by unit."""
+
+    def __init__(self, kind: FuserKind, smoother: Smoother, saved: Mapping[str, bytes]) -> None:
+        self._kind = kind
+        self._smoother = smoother
+        self.grid: FloorGrid | None = None  # what stands in everybody's way
+        self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
+
+    def save(self) -> dict[str, bytes]:
+        return {unit_id: fuser.save() for unit_id, fuser in self._fusers.items()}
+
+    def get(self, unit_id: str) -> Fuser | None:
+        """Fuser of a unit with a pin in use, else None."""
+        return self._fusers.get(unit_id)
+
+    def forget(self, unit: UnitState) -> None:
+        self._fusers.pop(unit.unit_id, None)
+        unit.unpinned_trail = None
+
+    def all(self) -> Iterable[Fuser]:
+        return self._fusers.values()
+
+    def solver(self) -> PathSolver:
+        """Solver for the evidence as it is now; a new one is needed after a change."""
+        return PathSolver(self._smoother, self.grid)
+
+    def solve(
+        self, state: StationState, unit_ids: Iterable[str], plain: Callable[[str], Fuser]
+    ) -> dict[str, bool]:
+        """Solve the past of these units, and of whom they met: all of them, and whether the trail
+        is another now.  ``plain`` gives the fuser that knows of no pin.
+        """
+        known = [one for one in with_partners(state, unit_ids) if one in state.units]
+        solved = solve_pins(state, self.solver(), known)
+        return {
+            unit_id: self._take(state.units[unit_id], result, plain)
+            for unit_id, result in solved.items()
+        }
+
+    def _take(self, unit: UnitState, result: SolvedUnit, plain: Callable[[str], Fuser]) -> bool:
+        if result.path is None:
+            self._fusers.pop(unit.unit_id, None)
+            return unit.restore_unpinned_trail()
+        fuser = self._kind.restore(plain(unit.unit_id).save())
+        fuser.set_map(self.grid)
+        fuser.set_posterior(result.path.posterior)
+        self._fusers[unit.unit_id] = fuser
+        unit.show_solved_trail(result.trail)
+        return True

@@ -1,0 +1,175 @@
+"""The station's pure core: an event in, what follows from it out.
+
+Live and replay step the very same pipeline.  It has no clock (time comes with the events), asks
+nobody anything, and numbers its own outputs, so that the same events give the same outputs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import assert_never
+
+from base_station.core import accountability, idempotency
+from base_station.core.alarms.alarm_manager import AlarmManager
+from base_station.core.alarms.interface import AlarmRule
+from base_station.core.checkpoint import Checkpoint
+from base_station.core.commands import command_tracker
+from base_station.core.events import (
+    ClosedIncidentChanged,
+    CommandChanged,
+    NamesErased,
+    Output,
+    PinsChanged,
+    Received,
+    Refused,
+    Rejected,
+    StationEvent,
+    TrailBackfilled,
+    UnitChanged,
+)
+from base_station.core.operator_actions import ActionHandler
+from base_station.core.positioning.positioning import Positioning
+from base_station.core.state import Alarm, StationState, UnitState
+from base_station.core.state.command import SentCommand
+from base_station.core.state.resolve_queue import pop_due
+from base_station.core.trust.trust import update_trust_tallies
+from base_station.core.unit_messages import UnitMessages
+from base_station.fusion.interface import FuserKind
+from base_station.fusion.smoothing import SMOOTHERS
+from base_station.fusion.smoothing.interface import Smoother
+from base_station.site.plan_reader import PlanReader
+from shared.channels import Direction, channel_of
+from shared.errors import UserError
+from shared.messages import (
+    Command,
+    OperatorAction,
+    Tick,
+)
+from shared.messages.station import SetAnchor, SetPlan
+
+
+class StationPipeline:
+    """``step`` it with events in the order of the log."""
+
+    def __init__(
+        self,
+        rules: Sequence[AlarmRule],
+        fuser_kind: FuserKind,
+        checkpoint: Checkpoint | None = None,
+        smoother: Smoother = SMOOTHERS[0],
+        plans: PlanReader | None = None,
+    ) -> None:
+        """``plans``: for who has them read beforehand."""
+        self._fuser_kind = fuser_kind
+        usable = checkpoint is not None and checkpoint.fuser == fuser_kind.name
+        self.state = checkpoint.state if checkpoint is not None else StationState()
+        plans = plans or PlanReader()
+        plan = self.state.plan
+        if plan is not None and not plan.read_whole:  # by another version, which looked at less
+            self.state.plan = plans.plan(plan.geojson)
+        self._positioning = Positioning(
+            fuser_kind,
+            smoother,
+            plans,
+            checkpoint.fusers if checkpoint is not None and usable else {},
+            checkpoint.pinned if checkpoint is not None and usable else {},
+        )
+        self._positioning.set_map(self.state.placed_plan)
+        self._alarms = AlarmManager(rules)
+        self._alarms.use_thresholds(self.state.thresholds)
+        self._unit_messages = UnitMessages(self._alarms, self._positioning)
+        self._actions = ActionHandler(self._alarms, self._positioning, plans)
+
+    def checkpoint(self) -> bytes:
+        """To start again from here; ``read_checkpoint`` reads it."""
+        saved, pinned = self._positioning.save()
+        return Checkpoint(self.state, self._fuser_kind.name, saved, pinned).to_bytes()
+
+    def step(self, event: StationEvent) -> list[Output]:
+        """What follows from one event.  Never raises for what a sender or a person may do."""
+        state = self.state
+        state.t_ns = max(state.t_ns, event.t_ns)
+        state.boot_id = state.boot_id or state.t_ns
+        if isinstance(event, Received):
+            message = event.message
+            channel = channel_of(message)
+            if channel.direction is Direction.UP:
+                return self._unit_messages.step(state, event, channel)
+            if isinstance(message, Tick):
+                return self._tick(message)
+            if isinstance(message, OperatorAction):
+                return self._apply_action(message)
+            if isinstance(message, Command):
+                return _command_changed(command_tracker.note_sent(state, event.unit_id, message))
+            return []  # what the station itself had decided, in a log that is stepped again
+        if isinstance(event, Rejected):
+            state.counts.undecodable += 1
+            state.counts.last_undecodable = f"{event.key}: {event.reason}"
+            if event.number is not None:
+                unit_id, *which = event.number
+                sender = state.sender(unit_id)
+                if sender is not None:
+                    sender.accept_backfilled(*which)
+            return []
+        assert_never(event)
+
+    def advance_time(self, t_ns: int) -> list[Output]:
+        """Let time go by of which nothing is recorded: links and places get older, and nothing is
+        decided.
+        """
+        self.state.t_ns = max(self.state.t_ns, t_ns)
+        return [output for unit in self.state.units.values() for output in self._update_link(unit)]
+
+    def _tick(self, tick: Tick) -> list[Output]:
+        state = self.state
+        outputs: list[Output] = []
+        for unit in state.units.values():
+            unit.is_unlinked = unit.unit_id in tick.unlinked
+            outputs.extend(self._update_link(unit))
+            if accountability.update_work(state, unit):
+                outputs.append(UnitChanged(unit.unit_id))
+            alarms = self._alarms.review(state, unit)
+            outputs.extend(alarm.change(state.next_header()) for alarm in alarms)
+        outputs.extend(CommandChanged(one.command_id) for one in command_tracker.expire(state))
+        update_trust_tallies(state)
+        late = pop_due(state.late, state.t_ns)
+        if late is not None:
+            return [*outputs, *self._positioning.solve_pins(state, [late])]
+        return [*outputs, *self._positioning.renumber_next_trail(state)]
+
+    def _update_link(self, unit: UnitState) -> list[Output]:
+        link = unit.link_at(self.state.t_ns)
+        if link == unit.link and link not in {"stale", "lost"}:  # an old position looks older
+            return []
+        unit.link = link
+        unit.reach = self._positioning.reach(self.state, unit)
+        return [UnitChanged(unit.unit_id)]
+
+    def _apply_action(self, message: OperatorAction) -> list[Output]:
+        try:
+            effects = self._actions.apply(self.state, message.by, message.action)
+        except UserError as error:
+            idempotency.record_result(self.state, message, str(error))
+            return [Refused(message.action_id, str(error))]
+        idempotency.record_result(self.state, message, refused="")
+        outputs: list[Output] = []
+        for effect in effects:
+            if isinstance(effect, Alarm):
+                outputs.append(effect.change(self.state.next_header()))
+            elif isinstance(effect, SentCommand):
+                outputs.append(CommandChanged(effect.command_id))
+            elif isinstance(effect, PinsChanged):
+                outputs.extend(self._positioning.solve_pins(self.state, effect.unit_ids))
+            elif isinstance(effect, TrailBackfilled | NamesErased | ClosedIncidentChanged):
+                outputs.append(effect)
+            else:
+                outputs.append(UnitChanged(effect.unit_id))
+        if isinstance(message.action, SetAnchor | SetPlan):  # who is silent was seen there too
+            shown = [unit for unit in self.state.units.values() if unit.fused is not None]
+            for unit in shown:
+                outputs.extend(self._positioning.locate(self.state, unit))
+        return outputs
+
+
+def _command_changed(command: SentCommand | None) -> list[Output]:
+    return [] if command is None else [CommandChanged(command.command_id)]

@@ -1,0 +1,41 @@
+"""Entry into the building: members inside, and barometers in outside air."""
+
+from __future__ import annotations
+
+from base_station.core.state import StationState, UnitState
+from base_station.fusion.odometry.path_history import PathHistory
+from base_station.site.plan import Plan
+
+OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
+OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
+WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no plan can tell
+
+
+def is_outside(plan: Plan | None, history: PathHistory) -> bool:
+    """True where a unit's barometer is in outside air. Estimated without pins, so that a pin does
+    not change the state that is kept without pins.
+    """
+    if history.shown_m is None:
+        return False
+    if plan is not None and plan.outlines:
+        return plan.depth_m(*history.shown_m) < -OUTSIDE_M
+    return history.since_gps_s is not None and history.since_gps_s < OUTSIDE_FIX_S
+
+
+def note_inside(state: StationState, unit: UnitState) -> None:
+    """Since when the wearer is in the building; without an outline, since work began."""
+    fused = unit.fused
+    if fused is None:
+        return
+    plan = state.placed_plan
+    if plan is not None and plan.outlines:
+        was_inside = unit.inside_since_ns is not None
+        is_inside = plan.is_inside(fused.north_m, fused.east_m, was_inside)
+    else:
+        at_work = state.incident is not None and state.incident.closed_ns is None
+        walked_m = unit.position.distance_m if unit.position else 0.0
+        is_inside = at_work and (unit.inside_since_ns is not None or walked_m > WORK_BEGINS_M)
+    if not is_inside:
+        unit.inside_since_ns = None
+    elif unit.inside_since_ns is None:
+        unit.inside_since_ns = state.t_ns

@@ -1,0 +1,59 @@
+"""Fusers of all units, by unit: one that ignores pins, and beside it one that follows them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from base_station.core.pins.pinned_units import PinnedUnits
+from base_station.core.state import UnitState
+from base_station.fusion.interface import Fuser, FuserKind
+from base_station.fusion.smoothing.interface import Smoother
+from base_station.site.floor_grid import FloorGrid
+
+
+class UnitFusers:
+    """Fusers of one kind; each is made at the first message that needs it."""
+
+    def __init__(
+        self,
+        kind: FuserKind,
+        smoother: Smoother,
+        saved: Mapping[str, bytes],
+        saved_pinned: Mapping[str, bytes],
+    ) -> None:
+        self.kind = kind
+        self.grid: FloorGrid | None = None  # walls and storeys of the plan
+        self.pinned = PinnedUnits(kind, smoother, saved_pinned)
+        self._plain = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
+
+    def __iter__(self) -> Iterator[Fuser]:
+        yield from self._plain.values()
+        yield from self.pinned.all()
+
+    def set_map(self, grid: FloorGrid | None) -> None:
+        """Set the walls that all fusers use."""
+        self.grid = self.pinned.grid = grid
+        for fuser in self:
+            fuser.set_map(grid)
+
+    def plain(self, unit: UnitState) -> Fuser:
+        """Fuser of a unit that ignores pins."""
+        fuser = self._plain.get(unit.unit_id)
+        if fuser is None:
+            fuser = self._plain[unit.unit_id] = self.kind.new()
+            fuser.set_map(self.grid)
+        return fuser
+
+    def of(self, unit: UnitState) -> tuple[Fuser, ...]:
+        """Fusers of a unit: the one without pins, then the one with pins if there is one."""
+        pinned = self.pinned.get(unit.unit_id)
+        return (self.plain(unit),) if pinned is None else (self.plain(unit), pinned)
+
+    def forget(self, unit: UnitState) -> Fuser | None:
+        """Delete the fusers of a unit; gives the one that ignored pins."""
+        self.pinned.forget(unit)
+        return self._plain.pop(unit.unit_id, None)
+
+    def save(self) -> dict[str, bytes]:
+        """Saved states of the fusers that ignore pins."""
+        return {unit_id: fuser.save() for unit_id, fuser in self._plain.items()}

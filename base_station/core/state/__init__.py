@@ -1,0 +1,36 @@
+"""Data of the pipeline: state of the station, its units, alarms, commands, pins and incidents.
+
+Only the pipeline changes it.  All of it can be encoded and decoded again, so that a station starts
+from a checkpoint and not from the beginning of the log.  Nothing here imports another package of
+the core.
+"""
+
+from base_station.core.state.alarm import Alarm
+from base_station.core.state.incident import Incident
+from base_station.core.state.station import Counts, IdempotencyRecord, StationState
+from base_station.core.state.unit import (
+    ERASED_TEXT,
+    STILL_NS,
+    WEARERS_KEPT,
+    Fault,
+    FormerWearer,
+    GpsUse,
+    Person,
+    UnitState,
+)
+
+__all__ = [
+    "ERASED_TEXT",
+    "STILL_NS",
+    "WEARERS_KEPT",
+    "Alarm",
+    "Counts",
+    "Fault",
+    "FormerWearer",
+    "GpsUse",
+    "IdempotencyRecord",
+    "Incident",
+    "Person",
+    "StationState",
+    "UnitState",
+]

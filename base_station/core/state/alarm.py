@@ -1,0 +1,48 @@
+"""An alarm, as the pipeline keeps it."""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.messages import AlarmChange, AlarmState, Header
+
+
+class Alarm(msgspec.Struct):
+    """Alarm, open or resolved."""
+
+    alarm_id: str
+    rule: str
+    unit_id: str  # empty: the station itself
+    priority: int
+    state: AlarmState
+    level: str
+    text: str
+    by: str
+    latched: bool  # only a person resolves it
+    raised_ns: int
+    about: int | str | None  # as its ``Finding`` says; None: its rule finds one at a time
+    last_raised_ns: int  # at first, or anew: it got worse, or happened again
+    changed_ns: int
+    resolved_while_active: bool = False  # resolved by a person while the condition went on
+    clear_since_ns: int | None = None  # time of the first evidence that it is over
+    lower_since_ns: int | None = None  # time of the first evidence of a lower level
+
+    @property
+    def is_open(self) -> bool:
+        return self.state is not AlarmState.RESOLVED
+
+    def change(self, header: Header) -> AlarmChange:
+        """Message of the alarm as it is now."""
+        return AlarmChange(
+            header=header,
+            alarm_id=self.alarm_id,
+            rule=self.rule,
+            unit_id=self.unit_id,
+            priority=self.priority,
+            state=self.state,
+            level=self.level,
+            text=self.text,
+            by=self.by,
+            raised_ns=self.raised_ns,
+            last_raised_ns=self.last_raised_ns,
+        )

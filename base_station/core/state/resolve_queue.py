@@ -1,0 +1,41 @@
+"""What came out of a journal for a unit whose past has pins: its trail is to be solved again.
+
+A journal brings hundreds of messages; the trail is solved once they stop coming, or now and then
+while they go on, and never for more than one unit at a tick.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from shared.clock import NS_PER_S
+
+QUIET_NS = 2 * NS_PER_S  # nothing more has come for so long
+MOST_NS = 10 * NS_PER_S  # waited for it
+
+
+class PendingResolve(msgspec.Struct):
+    """Station times at which the first and the last of it came."""
+
+    first_ns: int
+    last_ns: int
+
+    def is_due(self, now_ns: int) -> bool:
+        return now_ns - self.last_ns >= QUIET_NS or now_ns - self.first_ns >= MOST_NS
+
+
+def request_resolve(late: dict[str, PendingResolve], unit_id: str, now_ns: int) -> None:
+    waiting = late.setdefault(unit_id, PendingResolve(now_ns, now_ns))
+    waiting.last_ns = now_ns
+
+
+def pop_due(late: dict[str, PendingResolve], now_ns: int) -> str | None:
+    """The unit that has waited longest, taken out; None where nothing is due."""
+    due = [
+        (waiting.first_ns, unit_id) for unit_id, waiting in late.items() if waiting.is_due(now_ns)
+    ]
+    if not due:
+        return None
+    _, unit_id = min(due)
+    del late[unit_id]
+    return unit_id

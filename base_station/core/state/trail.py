@@ -1,0 +1,143 @@
+"""The way that the console draws behind a unit: whole since the incident began, and bounded in
+length.
+
+Its older part is thinned by Douglas and Peucker (1973) and stays within a stated distance of what
+it was. What is drawn of everybody, the last minutes, stays point by point.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from itertools import pairwise
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.clock import NS_PER_S
+from shared.messages import FusedPosition
+
+TRAIL_POINTS = 900  # a unit's trail in the console, at most; the log has all of it
+TRAIL_STEP_M = 0.5
+TRAIL_STEP_NS = NS_PER_S
+TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
+TRAIL_GAP_NS = 20 * NS_PER_S  # over more than this nobody knows the way
+TOLERANCE_M = 0.5  # of thinning, at first; doubled while too many points are left
+RECENT_POINTS = 300  # five minutes of walking
+OLDER_POINTS = 500  # at most, of all that was before
+_DOUBLINGS = 10  # 512 m: what is left then are floors and gaps
+
+
+class TrailStep(msgspec.Struct, frozen=True, array_like=True):
+    t_ns: int
+    north_m: float
+    east_m: float
+    floor: int | None
+    after_gap: bool = False  # nothing tells the way from the step before
+
+
+def extend_trail(trail: list[TrailStep], fused: FusedPosition) -> bool:
+    """Add a point where the wearer moved, at most one a second; True where one was added."""
+    after_gap = False
+    if trail:
+        last = trail[-1]
+        age_ns = fused.t_meas_ns - last.t_ns
+        if age_ns < TRAIL_STEP_NS:
+            return False
+        moved_m2 = (fused.north_m - last.north_m) ** 2 + (fused.east_m - last.east_m) ** 2
+        moved = moved_m2 >= TRAIL_STEP_M**2 or fused.floor != last.floor
+        if not moved and age_ns < TRAIL_REST_NS:
+            return False
+        after_gap = age_ns > TRAIL_GAP_NS
+    step = TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor, after_gap)
+    trail.append(step)
+    bound(trail)
+    return True
+
+
+def insert_into_trail(trail: list[TrailStep], fused: FusedPosition) -> bool:
+    """Put a point that came late in its place, where none is near in time."""
+    place = bisect_left(trail, fused.t_meas_ns, key=lambda step: step.t_ns)
+    before, after = trail[max(place - 1, 0) : place], trail[place : place + 1]
+    if any(abs(step.t_ns - fused.t_meas_ns) < TRAIL_STEP_NS for step in before + after):
+        return False
+    after_gap = False
+    if before and after and not after[0].after_gap:
+        if after[0].t_ns - before[0].t_ns > TRAIL_GAP_NS:
+            return False  # the way between is known, and was thinned
+    else:
+        after_gap = any(fused.t_meas_ns - step.t_ns > TRAIL_GAP_NS for step in before)
+        trail[place : place + 1] = [
+            msgspec.structs.replace(step, after_gap=step.t_ns - fused.t_meas_ns > TRAIL_GAP_NS)
+            for step in after
+        ]
+    step = TrailStep(fused.t_meas_ns, fused.north_m, fused.east_m, fused.floor, after_gap)
+    trail.insert(place, step)
+    bound(trail)
+    return True
+
+
+def bound(trail: list[TrailStep]) -> None:
+    """Thin it where it has become too long."""
+    if len(trail) > TRAIL_POINTS:
+        trail[:] = _thinned(trail)
+
+
+def _thinned(trail: list[TrailStep]) -> list[TrailStep]:
+    """At most ``RECENT_POINTS`` and ``OLDER_POINTS``.  Where the floor changes and where nothing
+    was heard stays; of so many of these that they are too many by themselves, the oldest go.
+    """
+    older, recent = trail[:-RECENT_POINTS], trail[-RECENT_POINTS:]
+    tolerance_m = TOLERANCE_M
+    for _ in range(_DOUBLINGS):
+        older = _simplified(older, tolerance_m)
+        if len(older) <= OLDER_POINTS:
+            break
+        tolerance_m *= 2.0
+    return older[-OLDER_POINTS:] + recent
+
+
+def _simplified(steps: list[TrailStep], tolerance_m: float) -> list[TrailStep]:
+    places_m = np.array([(step.north_m, step.east_m) for step in steps])
+    begins = [
+        number
+        for number, (before, step) in enumerate(pairwise(steps), 1)
+        if step.after_gap or step.floor != before.floor
+    ]
+    kept = np.zeros(len(steps), dtype=np.bool_)
+    for begin, end in pairwise([0, *begins, len(steps)]):
+        _keep(places_m, begin, end - 1, tolerance_m, kept)
+    return [step for step, keep in zip(steps, kept.tolist(), strict=True) if keep]
+
+
+def _keep(
+    places_m: NDArray[np.float64],
+    first: int,
+    last: int,
+    tolerance_m: float,
+    kept: NDArray[np.bool_],
+) -> None:
+    """Mark both ends, and between them whatever lies off what is marked."""
+    kept[[first, last]] = True
+    parts = [(first, last)]
+    while parts:
+        begin, end = parts.pop()
+        if end - begin < 2:
+            continue
+        off_m = _distances_m(places_m[begin + 1 : end], places_m[begin], places_m[end])
+        worst = int(off_m.argmax())
+        if off_m[worst] > tolerance_m:
+            middle = begin + 1 + worst
+            kept[middle] = True
+            parts += [(begin, middle), (middle, end)]
+
+
+def _distances_m(
+    places_m: NDArray[np.float64], begin_m: NDArray[np.float64], end_m: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """How far places (n, 2) lie from a straight line between two."""
+    way_m, from_begin_m = end_m - begin_m, places_m - begin_m
+    length2_m2 = float(way_m @ way_m)
+    along = (from_begin_m @ way_m) / length2_m2 if length2_m2 > 0.0 else np.zeros(len(places_m))
+    off_m: NDArray[np.float64] = from_begin_m - np.clip(along, 0.0, 1.0)[:, None] * way_m
+    return np.asarray(np.hypot(off_m[:, 0], off_m[:, 1]))

@@ -1,0 +1,133 @@
+"""Trust light of a unit's position, with the reason as text."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+from typing import Literal
+
+import msgspec
+
+from base_station.core.pins.pin_registry import units_of
+from base_station.core.state import StationState, UnitState
+from base_station.core.state.trust_tally import LONGEST_S
+from base_station.site.max_travel import RADII_95
+from shared.clock import NS_PER_S
+from shared.messages import FusedPosition
+from shared.quality import Quality
+
+Level = Literal["green", "amber", "red"]
+
+AMBER_M = 5.0  # radius that holds the wearer with 95 % probability
+RED_M = 20.0
+AMBER_DOWN_M = 1.5  # half a storey
+AMBER_FLOOR = 0.7  # probability of the floor shown
+_AMBER_M2 = (AMBER_M / RADII_95) ** 2  # variance
+
+
+class Trust(msgspec.Struct, frozen=True):
+    level: Level
+    reason: str = ""  # for a person; empty: green
+    cause: str = ""  # the same without figures, to be counted
+
+
+_GREEN = Trust("green")
+
+
+def trust_of(unit: UnitState, conflicts: int) -> Trust:
+    """Worst reason against the shown position, where this many pins contradict the trail."""
+    return next(_red_causes(unit), None) or next(_amber_causes(unit, conflicts), _GREEN)
+
+
+def update_trust_tallies(state: StationState) -> None:
+    """Time went by for the lights of all that an open incident has heard of; one that was switched
+    off in order has none.
+    """
+    lasted_s = (state.t_ns - state.trust_ns) / NS_PER_S
+    state.trust_ns = state.t_ns
+    if state.incident is None or state.incident.closed_ns is not None or lasted_s > LONGEST_S:
+        return
+    conflicts = conflicts_of(state)
+    for unit in state.units.values():
+        if not unit.registered or unit.stopped_ns is not None:
+            continue
+        if unit.fused is not None or unit.person is not None:
+            trust = trust_of(unit, conflicts.get(unit.unit_id, 0))
+            unit.trust.note(trust.level, trust.cause, lasted_s)
+
+
+def conflicts_of(state: StationState) -> Counter[str]:
+    """Number of pins that contradict each unit's trail."""
+    return Counter(
+        unit_id
+        for pin_id, verdict in state.pin_verdicts.items()
+        if verdict.state == "conflict" and pin_id in state.pins
+        for unit_id in units_of(state.pins[pin_id])
+    )
+
+
+def _red_causes(unit: UnitState) -> Iterator[Trust]:
+    if not unit.registered:
+        yield Trust("red", "not a registered unit: not believed", "not a registered unit")
+    fused = unit.fused
+    if fused is None:
+        yield Trust("red", "no position yet", "no position yet")
+        return
+    if unit.link == "lost":
+        yield _no_contact("red")
+    if fused.quality is Quality.LOST:
+        yield Trust("red", fused.quality_reason, _cause_of(fused.quality_reason))
+    within_m = _within_m(fused)
+    if within_m > RED_M:
+        yield _imprecise("red", within_m)
+
+
+def _amber_causes(unit: UnitState, conflicts: int) -> Iterator[Trust]:
+    """Amber causes of a unit that has a position."""
+    fused = unit.fused
+    assert fused is not None
+    if unit.link == "stale":
+        yield _no_contact("amber")
+    within_m = _within_m(fused)
+    if within_m > AMBER_M:
+        yield _imprecise("amber", within_m)
+    if conflicts:
+        which = "a pin contradicts" if conflicts == 1 else f"{conflicts} pins contradict"
+        yield Trust("amber", f"{which} the trail", "a pin contradicts the trail")
+    if fused.quality is Quality.DEGRADED:
+        yield Trust("amber", fused.quality_reason, _cause_of(fused.quality_reason))
+    if fused.floor_probability is not None and fused.floor_probability < AMBER_FLOOR:
+        text = f"the floor is only {fused.floor_probability:.0%} sure"
+        yield Trust("amber", text, "floor not sure")
+    if fused.std_down_m > AMBER_DOWN_M:
+        text = f"height only known to {2.0 * fused.std_down_m:.0f} m"
+        yield Trust("amber", text, "height only roughly known")
+
+
+def _no_contact(level: Level) -> Trust:
+    return Trust(level, "not heard: shown where it was known last", "not heard")
+
+
+def _imprecise(level: Level, within_m: float) -> Trust:
+    return Trust(level, f"only known to {within_m:.0f} m", "place only roughly known")
+
+
+def _within_m(fused: FusedPosition) -> float:
+    """The radius that holds the wearer; 0 where that is near enough along any axis."""
+    if fused.std_north_m**2 + fused.std_east_m**2 <= _AMBER_M2:
+        return 0.0
+    return RADII_95 * math.sqrt(_largest_var_m2(fused))
+
+
+def _cause_of(reason: str) -> str:
+    """A fuser may say how far, and why or what to do behind a colon; that is one cause."""
+    return "place only roughly known" if reason.startswith("within ") else reason.partition(":")[0]
+
+
+def _largest_var_m2(fused: FusedPosition) -> float:
+    """Variance along the longest axis of the region."""
+    north_var, east_var = fused.std_north_m**2, fused.std_east_m**2
+    product = fused.correlation_ne * fused.std_north_m * fused.std_east_m
+    middle = (north_var + east_var) / 2.0
+    return middle + math.hypot((north_var - east_var) / 2.0, product)

@@ -1,0 +1,1 @@
+"""Messages of units, applied to the state: readings, alerts, exposure to heat, unkept messages."""

@@ -1,0 +1,139 @@
+"""Application of a unit's message to its own state, where nothing else is needed."""
+
+from __future__ import annotations
+
+from base_station.core.state import Fault, UnitState
+from base_station.core.state.boot_state import event_time_ns
+from base_station.core.units import thermal_dose
+from shared.messages import (
+    EventKind,
+    Header,
+    Heartbeat,
+    Message,
+    Position,
+    Status,
+    Temperature,
+    UnitDescription,
+    UnitEvent,
+)
+from shared.quality import Quality
+
+_FAULTS = frozenset({EventKind.SENSOR_FAULT, EventKind.STORAGE_FAULT})
+
+
+def apply(unit: UnitState, message: Message, t_ns: int) -> None:
+    """Apply a message of a unit; ``t_ns`` is station time."""
+    match message:
+        case Position():
+            _apply_position(unit, message, t_ns)
+        case Status():
+            _apply_status(unit, message, t_ns)
+        case Temperature():
+            _apply_temperature(unit, message, t_ns)
+        case UnitDescription():
+            unit.description = message
+        case Heartbeat():
+            unit.heartbeat = message
+        case UnitEvent():
+            _apply_event(unit, message, t_ns)
+        case _:
+            pass  # raw samples and signs of life: that they came is all that counts here
+
+
+def _apply_position(unit: UnitState, position: Position, t_ns: int) -> None:
+    unit.position, unit.position_ns = position, t_ns
+    if position.path_quality is Quality.GOOD:
+        unit.degraded_since_ns = None
+    elif unit.degraded_since_ns is None:
+        unit.degraded_since_ns = t_ns
+
+
+def _apply_status(unit: UnitState, status: Status, t_ns: int) -> None:
+    """A press and its taking back are alerts, which overtake what the unit said before them."""
+    unit.status, unit.status_ns = status, t_ns
+    if status.mayday == _is_pressed(unit):
+        return
+    event_ns = _event_time_ns(unit, status.header, t_ns) or t_ns
+    if status.mayday and event_ns > unit.mayday_cancelled_event_ns:  # the press itself may be lost
+        _press(unit, t_ns, event_ns)
+    elif not status.mayday and event_ns > unit.mayday_event_ns:
+        unit.mayday_cancelled_ns, unit.mayday_cancelled_event_ns = t_ns, event_ns
+
+
+def _press(unit: UnitState, t_ns: int, event_ns: int, is_dated: bool = True) -> None:
+    unit.mayday_ns, unit.mayday_event_ns, unit.mayday_is_dated = t_ns, event_ns, is_dated
+    unit.mayday_cancelled_ns = None
+
+
+def _is_pressed(unit: UnitState) -> bool:
+    """True for a mayday that was not cancelled."""
+    return unit.mayday_ns is not None and unit.mayday_cancelled_ns is None
+
+
+def _apply_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
+    header = temperature.header
+    unit.heat_dose += thermal_dose.add_live(
+        unit.exposures, header.boot_id, header.t_mono_ns, temperature.ambient_degc
+    )
+    unit.temperature, unit.temperature_ns = temperature, t_ns
+
+
+def apply_late_temperature(
+    unit: UnitState, temperature: Temperature, since_ns: int, t_ns: int
+) -> None:
+    """Out of the journal: it says nothing of now, and what the equipment took at its time counts
+    from ``since_ns`` on.
+    """
+    header = temperature.header
+    event_ns = event_time_ns(unit.boots, header, t_ns)
+    if event_ns is None or event_ns < since_ns:
+        return
+    added = thermal_dose.add_late(
+        unit.exposures, header.boot_id, header.t_mono_ns, temperature.ambient_degc
+    )
+    unit.heat_dose += added
+    unit.late_heat_dose += added
+
+
+def _apply_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
+    event_time_ns = _event_time_ns(unit, event.header, t_ns)
+    is_dated, event_ns = event_time_ns is not None, event_time_ns or t_ns
+    match event.kind:
+        case EventKind.MAYDAY:
+            # Of one that stands a status may have told before, where the radio lost the press.
+            stands = _is_pressed(unit) and unit.worn_from_ns(event_ns) == unit.worn_from_ns(
+                unit.mayday_event_ns
+            )
+            if not stands or event_ns > unit.mayday_event_ns:
+                _press(unit, t_ns, event_ns, is_dated)
+        case EventKind.MAYDAY_CANCELLED:
+            if event_ns >= unit.mayday_event_ns:  # else it was pressed again since
+                unit.mayday_cancelled_ns, unit.mayday_cancelled_event_ns = t_ns, event_ns
+        case EventKind.FALL:
+            unit.fall_ns, unit.fall_event_ns, unit.fall_is_dated = t_ns, event_ns, is_dated
+        case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
+            apply_fault(unit, event, t_ns)
+        case EventKind.STOPPED:
+            # One that has failed is missing; and it may come out of the journal of a run before.
+            if event.is_stop_in_order and _is_last_message(unit, event.header):
+                unit.stopped_ns = t_ns
+        case _:
+            pass
+
+
+def apply_fault(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
+    """Record a fault that the unit reports; other events are ignored."""
+    if event.kind in _FAULTS:
+        unit.fault = Fault(t_ns, event.detail or event.kind.name.lower().replace("_", " "))
+
+
+def _event_time_ns(unit: UnitState, header: Header, t_ns: int) -> int | None:
+    """Station time at which the unit or its tracking agent sent a message; None: unknown."""
+    agent = unit.tracker
+    sender = agent if agent is not None and agent.unit_id == header.unit_id else unit
+    return event_time_ns(sender.boots, header, t_ns)
+
+
+def _is_last_message(unit: UnitState, header: Header) -> bool:
+    running = unit.boots[-1]
+    return header.boot_id == running.boot_id and header.seq >= running.seen.lasts[-1]

@@ -1,0 +1,18 @@
+"""Messages that units could not keep: where the link lost them too, they are in no log."""
+
+from __future__ import annotations
+
+from base_station.core.state import StationState
+
+
+def unkept_problem(state: StationState) -> str:
+    """Problem as a sentence for a person; empty: every unit has kept all its messages."""
+    beats = ((unit.name, unit.heartbeat) for unit in state.units.values())
+    counts = {name: beat.never_saved + beat.given_up for name, beat in beats if beat is not None}
+    said = ", ".join(f"{name} {count}" for name, count in counts.items() if count)
+    if not said:
+        return ""
+    return (
+        f"Messages that a unit's journal had no room for, since the unit started: {said}. Where "
+        "the link lost them too they are gone: free or replace the unit's disk"
+    )

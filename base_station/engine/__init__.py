@@ -1,0 +1,1 @@
+"""Engine: the one thread that takes events, logs and applies them, and publishes."""

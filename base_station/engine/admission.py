@@ -1,0 +1,66 @@
+"""Admission: decides which messages from the bus go into the log and the pipeline."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from base_station.core.events import MessageNumber, Received, StationEvent, number_of
+from base_station.core.state import StationState
+from shared.channels import Direction, Qos, parse_key
+from shared.errors import UnknownChannelError
+
+
+class Admission(Enum):
+    """Decision about a record from the bus."""
+
+    IGNORE = "leave"  # it is not logged
+    DUPLICATE = "repeated"  # it is in the log, live or out of the unit's journal
+    ACCEPT = "keep"
+    ACCEPT_URGENT = "urgent"  # keep it, and bring it to the disk before anybody hears of it
+    FORGED = "forged"  # somebody speaks as the station
+    RESTART_STORM = "wild"  # of a program that starts again and again, as none does
+
+
+def classify(key: str, event: StationEvent, state: StationState) -> Admission:
+    """``event`` is what the record under ``key`` stands for.  What cannot be read is kept,
+    counted and shown.
+    """
+    try:
+        channel = parse_key(key)[1]
+    except UnknownChannelError:
+        return _reason_to_drop(event, state) or Admission.ACCEPT
+    if not channel.logged:
+        return Admission.IGNORE
+    if channel.direction is Direction.STATION:
+        return Admission.FORGED
+    reason = _reason_to_drop(event, state) if channel.direction is Direction.UP else None
+    return reason or (Admission.ACCEPT_URGENT if channel.qos is Qos.ALERT else Admission.ACCEPT)
+
+
+def mark_missing(number: MessageNumber | None, state: StationState) -> None:
+    """Mark a message as missing that the log did not take or has lost: its unit keeps it, and it is
+    fetched when there is room.
+    """
+    if number is not None and (sender := state.sender(number[0])) is not None:
+        sender.mark_missing(*number[1:])
+
+
+def _reason_to_drop(event: StationEvent, state: StationState) -> Admission | None:
+    """``DUPLICATE`` where the message came before: on two ways, sent again by the network, or
+    replayed; ``RESTART_STORM`` where there are more starts of its sender than can be.
+    """
+    number = number_of(event)
+    if number is None:
+        return None
+    unit_id, boot_id, seq = number
+    sender = state.sender(unit_id)
+    if sender is None:
+        return None
+    if sender.has(boot_id, seq):
+        return Admission.DUPLICATE
+    is_live = isinstance(event, Received) and not event.backfilled
+    return (
+        Admission.RESTART_STORM
+        if is_live and sender.is_restart_storm(boot_id, event.t_ns)
+        else None
+    )

@@ -1,0 +1,375 @@
+"""Engine: the thread that runs the live station, with feed, log, pipeline and publishing.
+
+A record is written to the log first and applied second (``write_ahead``).  Time (ticks) and
+operator actions become log records like any other.  Nothing in here waits for the network, the
+database or a console.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future
+from dataclasses import dataclass
+
+import msgspec
+
+from base_station.core import idempotency
+from base_station.core.commands import command_tracker
+from base_station.core.events import Refused
+from base_station.core.pipeline import StationPipeline
+from base_station.engine.admission import Admission, classify, mark_missing
+from base_station.engine.checkpoint_writer import CheckpointWriter
+from base_station.engine.console_publisher import ConsolePublisher
+from base_station.engine.health_monitor import HealthMonitor
+from base_station.engine.ports import ActionResult, EnginePorts, Record, Trails
+from base_station.engine.projector import Projector
+from base_station.engine.write_ahead import WriteAhead
+from base_station.unit_sync.backfill import Report
+from base_station.unit_sync.journal_client import Held
+from base_station.unit_sync.log_gap_detector import Lost
+from base_station.views.wire import Snapshot
+from shared.channels import OPERATOR, TICK
+from shared.clock import NS_PER_S
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.errors import StoreError
+from shared.messages import STATION_ID, OperatorAction, Tick
+from shared.messages.station import Action, ForgetWearers, ReportProblem, SendCommand
+
+TICK_NS = NS_PER_S
+SOONER_TICK_NS = TICK_NS // 4  # at most, where links come and go all the time
+STALLED_NS = 5 * NS_PER_S  # between two turns: nobody let the station run
+RECEIVE_FIRST_NS = 2 * NS_PER_S  # then, until its links are back
+DELTA_NS = NS_PER_S // 10  # twice as often as units say where they are
+URGENT_SOONER_NS = DELTA_NS // 2  # alarms and commands wait for half of that
+DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
+CHECKPOINT_NS = 15 * NS_PER_S  # what a restart steps at most; at 1,000 events/s a second's work
+CHECKPOINTS_SHARE = 100  # of the drive's time at most a hundredth goes into saving
+REBUILT_NS = 5 * 60 * NS_PER_S  # of a log that is read; a kill meanwhile costs no more
+MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
+FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
+STOP_TIMEOUT_S = 10.0
+
+_OPERATOR_KEY = OPERATOR.key(STATION_ID)
+_APPLIED_WITHOUT_LOG = (SendCommand, ReportProblem)  # an evacuation waits for no disk
+
+log = logging.getLogger(__name__)
+
+
+@dataclass
+class _Due:
+    """Monotonic times at which something is to be done next."""
+
+    tick_ns: int
+    sooner_tick_ns: int  # where there is something to tell
+    delta_ns: int
+    checkpoint_ns: int
+
+
+class StationEngine:
+    """``OperatorGate`` and ``LiveSource`` of the live station."""
+
+    def __init__(self, pipeline: StationPipeline, ports: EnginePorts) -> None:
+        self._pipeline = pipeline
+        self._ports = ports
+        self._stamper = Stamper(STATION_ID, ports.boot_id, ports.clock)
+        self._health = HealthMonitor()
+        self._publisher = ConsolePublisher(pipeline, ports.live, ports.photo_urls)
+        self._projector = Projector()
+        self._write_ahead = WriteAhead(
+            pipeline, ports.log, self._publisher, self._projector, self._health
+        )
+        self._checkpoint_writer = CheckpointWriter(ports.log, ports.checkpoints, self._health)
+        self._inbox: deque[tuple[str, Action, str, Future[ActionResult]]] = deque()
+        self._lost: deque[Lost] = deque()
+        self._snapshot_requests: deque[Callable[[Snapshot, Trails], None]] = deque()
+        self._stopping = threading.Event()
+        self._unlinked: frozenset[str] = frozenset()  # as was told last
+        self._receives_first = False
+        self._thread = threading.Thread(target=self._run, name="station-drive")
+        now_ns = self._last_run_ns = ports.clock.monotonic_ns()
+        self._due = _Due(now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
+        self._messages_before = 0
+        self._repeated = 0  # messages that were in the log already
+        # What waited while somebody acted is news to that person, and so it is later by the log.
+        self._not_before_ns = 0
+        self._health_due = False  # consoles hear of the station's health with the next delta
+
+    # ---- from any thread
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Finish what was taken, and end."""
+        self._stopping.set()
+        self._ports.feed.wake()
+        self._thread.join(STOP_TIMEOUT_S)
+
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
+        future: Future[ActionResult] = Future()
+        self._inbox.append((by, action, action_id, future))
+        self._ports.feed.wake()
+        if self._stopping.is_set() and not self._thread.is_alive():
+            self._refuse_waiting()
+        return future
+
+    def save_soon(self) -> None:
+        """Write a checkpoint at once: those on the disk are gone."""
+        self._due.checkpoint_ns = 0
+        self._ports.feed.wake()
+
+    def mark_missing(self, lost: Lost) -> None:
+        """Mark messages as missing that the log has lost."""
+        self._lost.append(lost)
+        self._ports.feed.wake()
+
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
+        self._snapshot_requests.append(deliver)
+        self._ports.feed.wake()
+
+    # ---- before the thread runs
+
+    @property
+    def log_position(self) -> tuple[int, int]:
+        """Position in the log: time of the last event, and number of events with that time."""
+        return self._write_ahead.log_position
+
+    def rebuild(self, records: Iterable[Record], after: tuple[int, int] = (0, 0)) -> int:
+        """Step what a log says happened; gives the number of events stepped.
+
+        ``after`` is the place (time, events at that time) of the checkpoint with which the
+        pipeline was made.
+        """
+        stepped = self._write_ahead.rebuild(self._with_checkpoints(records), after)
+        self._flush_urgent()
+        if stepped >= MANY_STEPPED:  # killed sooner than it saves, it would step more every time
+            self._due.checkpoint_ns = 0
+        return stepped
+
+    def _with_checkpoints(self, records: Iterable[Record]) -> Iterator[Record]:
+        """Records, with checkpoints on the way, so that a killed start does not apply all again."""
+        due_ns = 0
+        for record in records:
+            if record[0] >= due_ns:
+                if due_ns:
+                    self._save_checkpoint()
+                due_ns = record[0] + REBUILT_NS
+            yield record
+
+    # ---- in the thread
+
+    def _run(self) -> None:
+        self._last_run_ns = self._ports.clock.monotonic_ns()
+        while not self._stopping.is_set():
+            with self._health.guard("drive"):
+                self._run_once()
+        self._finish()
+
+    def _run_once(self) -> bool:
+        """Take what came, then do whatever is due; whether anything came."""
+        clock, due = self._ports.clock, self._due
+        wait_ns = min(due.tick_ns, due.delta_ns) - clock.monotonic_ns()
+        records = self._ports.feed.take(max(wait_ns, 0) / NS_PER_S)
+        follows = self._ports.feed.follows
+        for t_ns, key, payload in records:
+            try:
+                if follows:
+                    self._write_ahead.append_and_apply(t_ns, key, payload)
+                else:
+                    self._admit(t_ns, key, payload)
+            except Exception as error:  # noqa: BLE001  # costs this record, not those behind it
+                self._health.report_bug("drive", error)
+        if not follows:  # of half a log nobody can tell what an action does
+            self._take_actions()
+        self._mark_missing()
+        now_ns = clock.monotonic_ns()
+        self._advance_time(now_ns, follows=follows)
+        if now_ns >= due.checkpoint_ns and not self._checkpoint_writer.is_under_way:
+            self._save_checkpoint()
+            spent_ns = clock.monotonic_ns() - now_ns
+            due.checkpoint_ns = now_ns + max(CHECKPOINT_NS, spent_ns * CHECKPOINTS_SHARE)
+        self._flush_urgent()
+        sooner_ns = URGENT_SOONER_NS if self._publisher.is_urgent else 0
+        if now_ns >= due.delta_ns - sooner_ns:
+            due.delta_ns = now_ns + DELTA_NS  # where it cannot be told, too
+            before_ns = time.thread_time_ns()
+            self._publish()
+            spent_ns = time.thread_time_ns() - before_ns
+            due.delta_ns = now_ns + max(DELTA_NS, spent_ns * DELTAS_SHARE)
+        while self._snapshot_requests:
+            snapshot = (
+                self._publisher.snapshot()
+            )  # where it cannot be made, who asked goes on waiting
+            self._snapshot_requests.popleft()(*snapshot)
+        return bool(records)
+
+    def _advance_time(self, now_ns: int, *, follows: bool) -> None:
+        """Tick once a second, and sooner where a link is gone."""
+        due, unlinked = self._due, self._ports.unlinked()
+        last_run_ns, self._last_run_ns = self._last_run_ns, now_ns
+        if now_ns - last_run_ns > STALLED_NS and not self._receives_first:
+            # Else everybody would be lost, of whom nothing could be heard.
+            due.tick_ns = due.sooner_tick_ns = now_ns + RECEIVE_FIRST_NS
+            self._receives_first = True  # once: time goes on, however slow each turn is
+        is_due = now_ns >= due.tick_ns
+        if is_due:
+            due.tick_ns = max(due.tick_ns + TICK_NS, now_ns)
+            self._receives_first = False
+        if is_due or (unlinked - self._unlinked and now_ns >= due.sooner_tick_ns):
+            self._unlinked = unlinked
+            due.sooner_tick_ns = now_ns + SOONER_TICK_NS
+            if not follows:  # else time passes by the other station's ticks
+                self._tick()
+        if is_due:
+            self._update_health()
+
+    def _admit(self, t_ns: int, key: str, payload: bytes) -> None:
+        """Classify a record from the bus, and log and apply it."""
+        event = self._write_ahead.event_of(max(t_ns, self._not_before_ns), key, payload)
+        admission = classify(key, event, self._pipeline.state)
+        if admission is Admission.FORGED:
+            text = f"Somebody on the bus speaks as the station ({key}): not believed"
+            self._health.report("bus", text)
+        elif admission is Admission.RESTART_STORM:
+            text = f"More starts of a unit's program are said than can be ({key}): left out"
+            self._health.report("bus", text)
+        elif admission is Admission.DUPLICATE:
+            self._repeated += 1
+        elif admission is not Admission.IGNORE:
+            self._write_ahead.append(
+                event, key, payload, urgent=admission is Admission.ACCEPT_URGENT
+            )
+
+    def _take_actions(self) -> None:
+        for _ in range(len(self._inbox)):
+            by, action, action_id, future = self._inbox.popleft()
+            if isinstance(action, ForgetWearers) and self._checkpoint_writer.is_under_way:
+                # What is being saved has them in it.
+                self._inbox.append((by, action, action_id, future))
+                continue
+            before = ActionResult.before(self._pipeline.state, action_id)
+            try:
+                done = before or self._perform(by, action, action_id)
+            except StoreError as error:
+                if future.set_running_or_notify_cancel():
+                    future.set_exception(error)
+                continue
+            self._flush_urgent()
+            if isinstance(action, SendCommand):
+                self._ports.say(command_tracker.open_orders(self._pipeline.state))
+            if future.set_running_or_notify_cancel():
+                future.set_result(done)
+            self._due.delta_ns = 0  # who did something sees it at once
+
+    def _mark_missing(self) -> None:
+        for _ in range(len(self._lost)):
+            for (sender_id, boot_id), runs in self._lost.popleft().items():
+                for seq in (seq for run in runs for seq in range(run.first, run.last + 1)):
+                    mark_missing((sender_id, boot_id, seq), self._pipeline.state)
+
+    def _perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
+        """Raises StoreError where the log does not take it: it is not done then, but for what
+        people are to hear in any case.
+        """
+        header = self._stamper.header()
+        action_id = action_id or f"{header.boot_id:016x}-{header.seq}"
+        payload = encode(OperatorAction(header, action_id, by, action))
+        t_ns = max(header.t_utc_ns, self._not_before_ns)
+        if isinstance(action, _APPLIED_WITHOUT_LOG):
+            outputs = self._write_ahead.append_and_apply(t_ns, _OPERATOR_KEY, payload, urgent=True)
+        else:
+            outputs = self._write_ahead.append_or_fail(t_ns, _OPERATOR_KEY, payload)
+        self._not_before_ns = self._pipeline.state.t_ns + 1
+        refused = next((output for output in outputs if isinstance(output, Refused)), None)
+        return ActionResult(
+            action_id, self._pipeline.state.t_ns, refused, idempotency.created_id_of(action)
+        )
+
+    def _tick(self) -> None:
+        header = self._stamper.header()
+        t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns, self._not_before_ns)
+        tick = Tick(header, t_ns, tuple(sorted(self._unlinked & self._pipeline.state.units.keys())))
+        self._write_ahead.append_and_apply(t_ns, TICK.key(STATION_ID), encode(tick))
+        self._report_problems()
+        is_behind = self._ports.log.is_behind  # and what is reported perhaps in memory only
+        if not (is_behind and self._ports.log.refuses):  # else what is fetched would be lost
+            self._ports.report(self._message_report(), is_behind)
+        self._ports.say(command_tracker.open_orders(self._pipeline.state))
+
+    def _update_health(self) -> None:
+        messages = self._pipeline.state.counts.messages
+        self._publisher.facts = msgspec.structs.replace(
+            self._ports.facts(),
+            messages_per_s=float(messages - self._messages_before),
+            repeated=self._repeated,
+        )
+        self._messages_before = messages
+        self._health_due = True
+
+    def _flush_urgent(self) -> None:
+        """Bring urgent records to the disk before the database or anyone else gets them."""
+        self._write_ahead.flush_urgent()
+        if self._projector.is_urgent:
+            self._project()
+
+    def _project(self) -> None:
+        projection = self._projector.take(self._pipeline.state.t_ns)
+        if projection is not None:
+            self._ports.projection.project(projection)
+
+    def _publish(self) -> None:
+        self._project()
+        health, self._health_due = self._health_due, False
+        self._publisher.publish_delta(health)
+
+    def _save_checkpoint(self) -> None:
+        with self._health.guard("checkpoint"):
+            self._checkpoint_writer.begin(
+                self._write_ahead.log_position, self._pipeline.checkpoint()
+            )
+
+    def _report_problems(self) -> None:
+        """Log parts that fail, or work again, as events."""
+        self._checkpoint_writer.check()
+        seen = {
+            "log": self._ports.log.problem,
+            "disk": self._ports.log.little_room,
+            "store": self._ports.projection.problem(),
+        }
+        for report in list(self._health.check(seen, self._pipeline.state.problems)):
+            log.warning("%s: %s", report.part, report.text or "works again")
+            self._perform(STATION_ID, report)
+
+    def _message_report(self) -> Report:
+        """Messages that are here, of units with a token or recent messages."""
+        state, linked = self._pipeline.state, self._ports.linked()
+        return {
+            sender.unit_id: tuple(
+                Held(boot.boot_id, tuple(boot.seen.runs())) for boot in sender.boots
+            )
+            for unit in state.units.values()
+            if unit.registered
+            for sender in (unit, unit.tracker)
+            if sender is not None
+            if sender.unit_id in linked or sender.link_at(state.t_ns) == "live"
+        }
+
+    def _finish(self) -> None:
+        until_ns = self._ports.clock.monotonic_ns() + FINISH_NS
+        with self._health.guard("drive"):
+            while self._run_once() and self._ports.clock.monotonic_ns() < until_ns:
+                pass
+        self._project()
+        self._save_checkpoint()
+        self._checkpoint_writer.finish()
+        self._refuse_waiting()
+
+    def _refuse_waiting(self) -> None:
+        while self._inbox:
+            future = self._inbox.popleft()[-1]
+            future.set_exception(StoreError("the station is stopping; do it again when it runs"))

@@ -1,0 +1,199 @@
+"""Feeds: ordered sources of the station's records, from the bus or from a log.
+
+A record is ``(t_ns, key, payload)`` with station time; ``base_station.core.events.event_of`` makes
+the event of it.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Collection, Iterator
+from pathlib import Path
+from threading import Condition
+
+from shared.channels import Qos, parse_key
+from shared.clock import NS_PER_S, Clock
+from shared.errors import UnknownChannelError
+from shared.mcap_log import LogRecord, read_log, segment_paths
+
+_GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
+_OVERFLOW_REPORTED_NS = 60 * NS_PER_S
+_RECORDS_MAX = 100_000
+_BYTES_MAX = 64 * 1024 * 1024
+_LATE_WAITING = 1024  # records that can wait, at most; who brings them waits meanwhile
+_LATE_BYTES = 1024 * 1024
+_LATE_AT_ONCE = 32  # of these behind what is live: some 3 ms of the pipeline's time
+
+
+class LiveFeed:
+    """A queue from the bus to the one thread that steps the pipeline.
+
+    Any number of threads ``offer`` and ``deliver``; one thread at a time may ``take``.  What can
+    wait has a queue of its own, and comes in small portions behind what is live.  Station time is
+    that of getting in for what is live, of coming out for what can wait, and so never goes back
+    in the order in which records come out.  The queues are bounded: beyond it live data is
+    dropped, and counted in ``overflowed``; alerts are dropped only at twice the bound.
+    """
+
+    def __init__(
+        self, clock: Clock, records_max: int = _RECORDS_MAX, bytes_max: int = _BYTES_MAX
+    ) -> None:
+        """``clock`` gives station time: its UTC must not go back (``SteadyClock``)."""
+        self._clock = clock
+        self._records_max = records_max
+        self._bytes_max = bytes_max
+        self._changed = Condition()
+        self._queue: list[LogRecord] = []
+        self._bytes = 0
+        self._late: deque[tuple[str, bytes]] = deque()
+        self._late_bytes = 0
+        self._late_pending = False  # of what was delivered
+        self._all_taken = False  # and who took it has not come again
+        self._woken = False
+        self._closed = False
+        self._overflowed_ns = 0
+        self.overflowed = 0  # messages that came faster than they were taken, and were dropped
+
+    @property
+    def overflows(self) -> bool:
+        """True where messages were dropped within the last minute."""
+        since_ns = self._clock.monotonic_ns() - self._overflowed_ns
+        return self.overflowed > 0 and since_ns < _OVERFLOW_REPORTED_NS
+
+    @property
+    def late_waits(self) -> bool:
+        """Whether anything that was delivered may not be in the log yet: it waits here, or whoever
+        took it has not come for more.
+        """
+        return self._late_pending
+
+    @property
+    def follows(self) -> bool:
+        """What comes is from the bus."""
+        return False
+
+    def offer(self, key: str, payload: bytes) -> None:
+        """Callback for a bus: stamps the message with station time and returns at once."""
+        with self._changed:
+            if self._has_room(1.0) or (_is_alert(key) and self._has_room(2.0)):
+                self._append(key, payload)
+            else:
+                self.overflowed += 1
+                self._overflowed_ns = self._clock.monotonic_ns()
+
+    def deliver(self, key: str, payload: bytes) -> None:
+        """As ``offer``, for data that can wait: returns when little of it waits.  An alert that
+        comes this way has waited long enough: it goes with what is live.
+        """
+        with self._changed:
+            if not self._has_late_room(1.0):  # and then for a good while, not for a record or two
+                self._changed.wait_for(lambda: self._has_late_room(0.5) or self._closed)
+            self._late_pending, self._all_taken = True, False
+            if _is_alert(key):
+                self._append(key, payload)
+                return
+            self._late.append((key, payload))
+            self._late_bytes += len(payload)
+            if len(self._late) == 1:
+                self._changed.notify_all()
+
+    def take(self, timeout_s: float) -> list[LogRecord]:
+        """Everything live that came, in order, and some of what can wait behind it; waits until
+        something comes, ``wake`` or the timeout.
+        """
+        with self._changed:
+            self._late_pending = self._late_pending and not self._all_taken
+            self._changed.wait_for(lambda: self._queue or self._late or self._woken, timeout_s)
+            if self._queue and not self._late:  # what comes in quick succession is taken together
+                self._changed.wait_for(lambda: self._woken, min(_GATHER_S, timeout_s))
+            self._woken = False
+            records, self._queue = self._queue, []
+            self._bytes = 0
+            had_room = self._has_late_room(0.5)
+            records += self._take_late()
+            if not had_room and self._has_late_room(0.5):
+                self._changed.notify_all()
+            self._all_taken = not self._late
+            return records
+
+    def wake(self) -> None:
+        """End the wait of ``take``, from any thread."""
+        with self._changed:
+            self._woken = True
+            self._changed.notify_all()
+
+    def close(self) -> None:
+        """Release all callers of ``deliver``: nothing is taken any more."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+
+    def _has_room(self, share: float) -> bool:
+        return (
+            len(self._queue) < share * self._records_max and self._bytes < share * self._bytes_max
+        )
+
+    def _has_late_room(self, share: float) -> bool:
+        return len(self._late) < share * _LATE_WAITING and self._late_bytes < share * _LATE_BYTES
+
+    def _take_late(self) -> Iterator[LogRecord]:
+        for _ in range(min(len(self._late), _LATE_AT_ONCE)):
+            key, payload = self._late.popleft()
+            self._late_bytes -= len(payload)
+            yield self._clock.utc_ns(), key, payload
+
+    def _append(self, key: str, payload: bytes) -> None:
+        self._queue.append((self._clock.utc_ns(), key, payload))
+        self._bytes += len(payload)
+        if len(self._queue) == 1:
+            self._changed.notify_all()
+
+
+class LogFeed:
+    """The records of a log, from every segment in turn, the one being written included.
+
+    Any thread may ask; each iterator is for one thread.  What comes is what was recorded, in
+    the order in which it was recorded, which is the order in which it was stepped.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        flush: Callable[[], object] = lambda: None,
+        on_damage: Callable[[str], object] = lambda _: None,
+    ) -> None:
+        """``flush`` brings what is still in memory to the disk (``Recorder.flush``); ``on_damage``
+        hears in words of each part that cannot be read.
+        """
+        self._folder = folder
+        self._flush = flush
+        self._on_damage = on_damage
+
+    def records(
+        self,
+        start_ns: int | None = None,
+        end_ns: int | None = None,
+        keys: Collection[str] | None = None,
+    ) -> Iterator[LogRecord]:
+        """From station time ``start_ns`` until before ``end_ns``, as it stands at the first step.
+
+        Raises LogError when a segment cannot be opened.
+        """
+        self._flush()
+        return read_log(self._folder, start_ns, end_ns, keys, self._on_damage)
+
+    def watch(self) -> Callable[[], bool]:
+        """Gives what tells whether a segment of now has been written anew since, or is gone."""
+        now = self._files()
+        return lambda: not now <= self._files()
+
+    def _files(self) -> set[tuple[str, int]]:
+        """By name and which file that is: one that is written anew is another."""
+        return {(path.name, path.stat().st_ino) for path in segment_paths(self._folder)}
+
+
+def _is_alert(key: str) -> bool:
+    try:
+        return parse_key(key)[1].qos is Qos.ALERT
+    except UnknownChannelError:
+        return False

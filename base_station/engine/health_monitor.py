@@ -1,0 +1,73 @@
+"""Health monitor: reports a part that fails once, until it works steadily again."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
+from shared.messages.station import ReportProblem
+
+WELL_AFTER = 5  # checks in a row without a problem, one a second
+_NUMBER = re.compile(r"\d+")
+_REPORTED_PARTS = ("drive", "pipeline", "bus", "checkpoint")  # by ``report`` and ``report_bug``
+log = logging.getLogger(__name__)
+
+
+class HealthMonitor:
+    """Turns present problems into reports of changes."""
+
+    def __init__(self) -> None:
+        self._failed: dict[str, str] = {}  # since the last check: what is wrong, by part
+        self._quiet: dict[str, int] = {}  # checks without a problem, of parts that had one
+        self._logged: dict[str, set[type[Exception]]] = {}  # by part, until it is well
+
+    def report(self, part: str, text: str) -> None:
+        """Report a failure of this instant, which a later check would not see."""
+        self._failed[part] = text
+
+    @contextmanager
+    def guard(self, part: str) -> Iterator[None]:
+        """Keep a bug in one event's handling from ending the station."""
+        try:
+            yield
+        except Exception as error:  # noqa: BLE001  # told, and the station goes on
+            self.report_bug(part, error)
+
+    def report_bug(self, part: str, error: Exception) -> None:
+        """Report a bug in the program; one that recurs is logged once."""
+        kinds = self._logged.setdefault(part, set())
+        if type(error) not in kinds:
+            kinds.add(type(error))
+            log.error("the station's %s failed", part, exc_info=error)
+        self.report(part, f"The station's {part} failed: {error!r}; please report it")
+
+    def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
+        """``seen``: what is wrong now, by part, empty where nothing is; ``known``: what has been
+        reported, perhaps by an earlier run of the program.  Parts that others watch are left to
+        them.
+        """
+        now = {**dict.fromkeys(_REPORTED_PARTS, ""), **seen, **self._failed}
+        self._failed = {}
+        for part, text in now.items():
+            if text:
+                self._quiet[part] = 0
+                if part not in known or (
+                    part in seen and _without_numbers(text) != _without_numbers(known[part])
+                ):
+                    yield ReportProblem(part, text)
+            elif part in known:
+                self._quiet.setdefault(part, 0)
+        for part in [part for part in self._quiet if not now.get(part)]:
+            self._quiet[part] += 1
+            if self._quiet[part] >= WELL_AFTER:
+                del self._quiet[part]
+                self._logged.pop(part, None)
+                if part in known:
+                    yield ReportProblem(part, "")
+
+
+def _without_numbers(text: str) -> str:
+    """Whatever is counted in it: what is worse now than it was is told, and not every number."""
+    return _NUMBER.sub("", text)

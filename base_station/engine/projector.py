@@ -1,0 +1,94 @@
+"""Projector: reduces the pipeline's outputs to what the database keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+
+from base_station.core.events import ClosedIncidentChanged, Output, Received, Refused, StationEvent
+from base_station.storage.projection import Projection
+from shared.channels import tracked_unit
+from shared.clock import NS_PER_S
+from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, UnitDescription
+
+HEARD_NS = 5 * NS_PER_S  # the store follows when units were heard in such steps
+
+
+class Projector:
+    """Collects outputs; ``take`` hands over what they come to."""
+
+    def __init__(self) -> None:
+        self._alarms: list[AlarmChange] = []
+        self._tracks: list[FusedPosition] = []
+        self._actions: list[OperatorAction] = []
+        self._descriptions: list[UnitDescription] = []
+        self._heard: dict[str, int] = {}
+        self._news: dict[str, None] = {}  # incidents; an ordered set
+        self._heard_before: dict[str, int] = {}
+        self._track_second: dict[str, int] = {}  # by unit, of its newest track point
+
+    def note(self, event: StationEvent, outputs: Sequence[Output]) -> None:
+        for output in outputs:
+            if isinstance(output, AlarmChange):
+                self._alarms.append(output)
+            elif isinstance(output, FusedPosition):
+                self._note_track(output)
+            elif isinstance(output, ClosedIncidentChanged):
+                self._news[output.incident_id] = None
+        if not isinstance(event, Received):
+            return
+        message = event.message
+        if isinstance(message, OperatorAction):
+            if not any(isinstance(output, Refused) for output in outputs):
+                self._actions.append(_at_station_time(message, event.t_ns))
+        elif outputs and message.header.unit_id != STATION_ID and not tracked_unit(event.unit_id):
+            self._note_heard(event.unit_id, event.t_ns)
+            if isinstance(message, UnitDescription):
+                self._descriptions.append(message)
+
+    @property
+    def is_urgent(self) -> bool:
+        """True where it has more than positions and times of last messages."""
+        return bool(self._alarms or self._actions or self._descriptions)
+
+    def take(self, t_ns: int) -> Projection | None:
+        """Projection of what was collected; None where nothing changed."""
+        parts = (
+            self._alarms,
+            self._tracks,
+            self._actions,
+            self._descriptions,
+            self._heard,
+            self._news,
+        )
+        if not any(parts):
+            return None
+        projection = Projection(
+            t_ns=t_ns,
+            alarms=tuple(self._alarms),
+            tracks=tuple(self._tracks),
+            actions=tuple(self._actions),
+            descriptions=tuple(self._descriptions),
+            heard=tuple(self._heard.items()),
+            news=tuple(self._news),
+        )
+        for part in parts:
+            part.clear()
+        return projection
+
+    def _note_heard(self, unit_id: str, t_ns: int) -> None:
+        if t_ns - self._heard_before.get(unit_id, 0) >= HEARD_NS:
+            self._heard_before[unit_id] = self._heard[unit_id] = t_ns
+
+    def _note_track(self, fused: FusedPosition) -> None:
+        second = fused.t_meas_ns // NS_PER_S
+        if self._track_second.get(fused.unit_id) != second:
+            self._track_second[fused.unit_id] = second
+            self._tracks.append(fused)
+
+
+def _at_station_time(action: OperatorAction, t_ns: int) -> OperatorAction:
+    """A projection may hold actions of different times, so each says its own."""
+    header = msgspec.structs.replace(action.header, t_utc_ns=t_ns)
+    return msgspec.structs.replace(action, header=header)

@@ -1,0 +1,74 @@
+"""Station time: the time of the log, of sessions and of everything shown to people."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Lock
+
+from base_station.core.durations import format_duration
+from shared.clock import NS_PER_S, Clock
+
+_STEP_NS = 5 * NS_PER_S  # nothing is old after that
+_REPORT_FROM_NS = 5 * NS_PER_S
+
+
+class SteadyClock:
+    """A clock whose UTC never goes back and never stands still.
+
+    It follows the machine's UTC forwards; when that is set back, it goes on at the rate of
+    monotonic time until the other has caught up.  While it is held it goes on likewise when the
+    machine's is set far forward: nobody is to be taken for missing since yesterday because
+    somebody set a clock.  From any thread.
+    """
+
+    def __init__(self, clock: Clock, not_before_ns: int = 0) -> None:
+        """``not_before_ns``: UTC that was given out before this program started."""
+        self._clock = clock
+        self._lock = Lock()
+        self._offset_ns = max(not_before_ns, clock.utc_ns()) - clock.monotonic_ns()
+        self._is_held: Callable[[], bool] = lambda: False
+
+    def hold_while(self, is_held: Callable[[], bool]) -> None:
+        """``is_held`` may be asked from any thread."""
+        self._is_held = is_held
+
+    def not_before(self, utc_ns: int) -> None:
+        """Another clock has said ``utc_ns``: go on from there."""
+        with self._lock:
+            self._offset_ns = max(self._offset_ns, utc_ns - self._clock.monotonic_ns())
+
+    def agree(self, utc_ns: int) -> None:
+        """It is ``utc_ns`` at the station whose log this one follows, some time on the way ago: so
+        it is here.  Goes back where it must; what is given out meanwhile is in no log.
+        """
+        with self._lock:
+            offset_ns = utc_ns - self._clock.monotonic_ns()
+            if abs(offset_ns - self._offset_ns) > _STEP_NS:
+                self._offset_ns = offset_ns
+
+    def monotonic_ns(self) -> int:
+        return self._clock.monotonic_ns()
+
+    def utc_ns(self) -> int:
+        with self._lock:
+            monotonic_ns = self._clock.monotonic_ns()
+            machine_ns = self._clock.utc_ns() - monotonic_ns
+            if machine_ns <= self._offset_ns + _STEP_NS or not self._is_held():
+                self._offset_ns = max(self._offset_ns, machine_ns)
+            return monotonic_ns + self._offset_ns
+
+    def problems(self) -> tuple[str, ...]:
+        """Problems of the machine's clock, as sentences for a person."""
+        ahead_ns = self.utc_ns() - self._clock.utc_ns()
+        if abs(ahead_ns) <= _REPORT_FROM_NS:
+            return ()
+        span = format_duration(abs(ahead_ns) / NS_PER_S)
+        if ahead_ns > 0:
+            return (
+                f"This machine's clock is {span} behind what was recorded here last: set it. "
+                "Times go on from there meanwhile",
+            )
+        return (
+            f"This machine's clock is {span} ahead of the time that is recorded, which does not "
+            "leap at a standby or in an open incident: set it, or close the incident",
+        )

@@ -1,1 +1,0 @@
-"""Satellite fixes before they are fused: which can be true, which are believed, what all share."""

@@ -1,0 +1,1 @@
+"""GNSS fixes before fusion: screening, receiver model, outliers, common-mode error."""

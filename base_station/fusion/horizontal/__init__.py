@@ -1,0 +1,1 @@
+"""North and east of one unit: filter, headings, compass, walls, landmarks."""

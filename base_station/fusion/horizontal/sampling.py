@@ -1,0 +1,36 @@
+"""Particles of place, heading correction and drift rate, drawn from what a filter has come to."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from base_station.fusion.horizontal.state import PATH, SLOW
+from base_station.fusion.kernels import STATES
+
+Floats = NDArray[np.float64]
+
+
+class Drawn(NamedTuple):
+    particles: Floats  # (n, 4): north, east, turn and drift
+    slow: Floats  # (n, 4): the fixes' slow errors, given a particle
+    slow_covariance: Floats  # (4, 4), of each
+
+
+def draw(mean: Floats, covariance: Floats, rng: np.random.Generator, widths: Floats) -> Drawn:
+    """Draw particles from moments (9,), (9, 9) of ``HorizontalFilter``; ``widths`` (n,): factor of
+    the standard deviation.
+    """
+    own, slow = PATH, list(range(STATES))[SLOW]
+    spread = covariance[np.ix_(own, own)] + 1e-12 * np.eye(5)
+    root = np.linalg.cholesky(spread + 1e-9 * np.diag(np.diag(spread)))
+    drawn = widths[:, None] * (rng.normal(size=(len(widths), 5)) @ root.T)
+    gain = np.linalg.solve(spread, covariance[np.ix_(own, slow)]).T
+    state = mean[own] + drawn
+    return Drawn(
+        np.column_stack([state[:, :2], np.arctan2(state[:, 3], state[:, 2]), state[:, 4]]),
+        mean[slow] + drawn @ gain.T,
+        covariance[np.ix_(slow, slow)] - gain @ covariance[np.ix_(own, slow)],
+    )

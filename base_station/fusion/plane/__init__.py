@@ -1,1 +1,0 @@
-"""North and east of one unit: filter, headings, compass, walls."""

@@ -1,1 +1,0 @@
-"""The parts of the live station's drive: what it hears, keeps and tells."""

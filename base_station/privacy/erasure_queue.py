@@ -1,0 +1,221 @@
+"""Queue of erasures that people asked for: done one after the other, and after a restart too.
+
+A long log takes minutes to be written anew, so nobody waits for it with an open request: what was
+asked for, and how far it is, is kept in a file beside the log until it is done.  Ended at any
+instant, the whole is done again and ends as it would have (``forgetter``).  What the other one of
+two stations has forgotten is a job like any other, and done here too.
+"""
+
+from __future__ import annotations
+
+import logging
+import secrets
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+
+import msgspec
+
+from base_station.privacy.erasure_service import (
+    ErasureProgress,
+    ErasureResult,
+    ErasureService,
+    Progress,
+)
+from base_station.storage.job_queue import JobList, JobQueue
+from shared.errors import MusterError, UserError
+from shared.worker import UNTIL_WOKEN
+
+_log = logging.getLogger(__name__)
+_AGAIN_S = 10.0  # after a failure of disk or store, or while there is an obstacle
+
+
+class ErasureState(StrEnum):
+    WAITING = "waiting"
+    WORKING = "working"
+    DONE = "done"
+    FAILED = "failed"
+
+    @property
+    def is_over(self) -> bool:
+        return self in (ErasureState.DONE, ErasureState.FAILED)
+
+
+class ErasureJob(msgspec.Struct):
+    """What is to be forgotten, at whose job, and how far it is.  It has no name in it."""
+
+    forgetting_id: str
+    by: str
+    kind: str  # "person" or "incident"
+    subject_id: str
+    state: ErasureState = ErasureState.WAITING
+    problem: str = ""  # a sentence for a person
+    share: float = 0.0  # of the log that was looked through
+    records: int = 0  # of the log that changed or went
+    files: int = 0  # that were written anew or removed
+    damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
+    began: bool = False  # once before, perhaps by an earlier run of the program
+    told: bool = False  # the other station has done it: this one does, too
+
+
+Obstacle = Callable[[ErasureJob], str]  # why it has to wait, as a sentence; empty: it need not
+
+
+class _ClosedError(Exception):  # it is no error
+    """The station stops: the rest is done when it runs again."""
+
+
+class ErasureQueue:
+    """Works while it is entered; any thread may call the rest."""
+
+    def __init__(
+        self,
+        forgetter: ErasureService,
+        kept: Path,
+        obstacle: Obstacle,
+        on_done: Callable[[ErasureJob], None],
+    ) -> None:
+        """``kept``: the file.  ``on_done`` is called in the desk's thread when something was
+        forgotten.
+        """
+        self._forgetter = forgetter
+        self._jobs = JobQueue(
+            kept, ErasureJob, "forgetting", self._work_on_first, "erasures are not done"
+        )
+        self._obstacle = obstacle
+        self._on_done = on_done
+        self._told = ""  # why it waits, as last logged
+
+    def __enter__(self) -> ErasureQueue:
+        self._jobs.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._jobs.close()
+
+    def add(self, by: str, kind: str, subject_id: str, *, told: bool = False) -> ErasureJob:
+        """It is on the disk when this returns, and will be done.  The same twice is once.
+
+        Raises StoreError where the disk does not take it.
+        """
+        return self._jobs.add(_wish(by, kind, subject_id, told=told))
+
+    def all(self) -> tuple[ErasureJob, ...]:
+        """The last that are over, and those under way."""
+        return self._jobs.all()
+
+    def problems(self) -> tuple[str, ...]:
+        """Sentences for the console, while something is under way."""
+        return tuple(
+            f"The log is being written anew to forget a {one.kind} ({one.share:.0%}), as {one.by} "
+            f"wished{f': {one.problem}' if one.problem else ''}"
+            for one in self.all()
+            if not one.state.is_over
+        )
+
+    def _work_on_first(self, jobs: list[ErasureJob]) -> float:
+        """Work on the first job that need not wait; return the pause after it."""
+        for job in jobs:
+            problem = self._obstacle(job)
+            if not problem:
+                return 0.0 if self._work(job) else _AGAIN_S
+            self._note(job, problem=problem)
+        return _AGAIN_S if jobs else UNTIL_WOKEN
+
+    def _work(self, job: ErasureJob) -> bool:
+        """False where it is to be tried again later."""
+        tally = _tally_of(job)
+        self._note(job, state=ErasureState.WORKING, problem="", began=True)
+        problem = ""
+        try:
+            _forget(self._forgetter, job, lambda share: self._go_on(job, share, tally), tally)
+        except _ClosedError:
+            return False
+        except UserError as error:
+            problem = str(error)
+            if not job.told:  # else nothing was left to be done
+                self._note(job, state=ErasureState.FAILED, problem=problem)
+                return True
+        except (MusterError, OSError) as error:
+            if str(error) != self._told:
+                _log.warning("forgetting waits, and is tried again: %s", error)
+                self._told = str(error)
+            self._note(job, problem=f"it is tried again: {error}", **_so_far(tally))
+            return False
+        self._told = ""
+        self._on_done(msgspec.structs.replace(job))
+        problem = problem or ". ".join(tally.damaged)
+        self._note(job, state=ErasureState.DONE, share=1.0, problem=problem, **_so_far(tally))
+        return True
+
+    def _go_on(self, job: ErasureJob, share: float, tally: ErasureProgress) -> None:
+        """What was taken out is on the disk before more is: the audit is to say it in the end."""
+        more = (tally.files, tally.damaged) != (job.files, job.damaged)
+        self._jobs.note(job, save=more, share=share, **_so_far(tally))
+        if self._jobs.is_closing:
+            raise _ClosedError
+
+    def _note(self, job: ErasureJob, **now: object) -> None:
+        self._jobs.note(job, save=True, **now)
+
+
+def erase_now(
+    forgetter: ErasureService,
+    kept: Path,
+    by: str,
+    kind: str,
+    subject_id: str,
+    on_progress: Progress,
+) -> ErasureResult:
+    """Without a desk; cut short, one goes on with it that is given the same file.
+
+    Raises UserError where it makes no sense, or a person ends it in the middle.
+    """
+    jobs = JobList(kept, ErasureJob)
+    began = any((one.kind, one.subject_id) == (kind, subject_id) for one in jobs.under_way())
+    if kind == "person" and not began:  # what is no id may be a name, and there are none in it
+        forgetter.require_person(subject_id)
+    added = jobs.add(_wish(by, kind, subject_id, told=False))
+    (job,) = (one for one in jobs.under_way() if one.forgetting_id == added.forgetting_id)
+    tally = _tally_of(job)
+    jobs.note(job, save=True, state=ErasureState.WORKING, began=True)
+    try:
+        done = _forget(forgetter, job, on_progress, tally)
+    except UserError as error:
+        jobs.note(job, save=True, state=ErasureState.FAILED, problem=str(error))
+        raise
+    except KeyboardInterrupt as ended:
+        raise UserError(
+            "a part of it is forgotten: the same command, or the station when it is started, "
+            "goes on with the rest"
+        ) from ended
+    finally:
+        jobs.note(job, save=True, **_so_far(tally))
+    jobs.note(job, save=True, state=ErasureState.DONE, share=1.0)
+    return done
+
+
+def _wish(
+    by: str, kind: str, subject_id: str, *, told: bool
+) -> Callable[[list[ErasureJob]], ErasureJob]:
+    def among(under_way: list[ErasureJob]) -> ErasureJob:
+        same = (one for one in under_way if (one.kind, one.subject_id) == (kind, subject_id))
+        return next(same, ErasureJob(secrets.token_hex(4), by, kind, subject_id, told=told))
+
+    return among
+
+
+def _forget(
+    forgetter: ErasureService, job: ErasureJob, on_progress: Progress, tally: ErasureProgress
+) -> ErasureResult:
+    forget = forgetter.person if job.kind == "person" else forgetter.incident
+    return forget(job.by, job.subject_id, on_progress, tally)
+
+
+def _tally_of(job: ErasureJob) -> ErasureProgress:
+    """Of the tries before."""
+    return ErasureProgress(job.records, job.files, job.began, job.damaged)
+
+
+def _so_far(tally: ErasureProgress) -> dict[str, object]:
+    return {"records": tally.records, "files": tally.files, "damaged": tally.damaged}

@@ -1,0 +1,331 @@
+"""Forgets a person, or everybody in one incident: in the log, the database and the checkpoints.
+
+The log goes first: interrupted, the whole is done again and ends as it would have.  What the
+units' own journals and black boxes hold, what was exported and what another station holds is
+beyond this station's reach: docs/security.md says what to do about it.
+"""
+
+from __future__ import annotations
+
+import logging
+import shutil
+import time
+from collections.abc import Callable, Collection, Iterator
+from concurrent.futures import Future
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Protocol
+
+import msgspec
+
+from base_station.core.erasure.erasure import (
+    CaptureClocks,
+    Erasure,
+    Record,
+    erasure_of_incident,
+    erasure_of_person,
+    first_erased_ns,
+)
+from base_station.core.erasure.redaction import Redactor
+from base_station.core.events import Received, event_of
+from base_station.engine.ports import ActionResult
+from base_station.privacy.pending_erasure import PendingErasure
+from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.erasure import forget_in, known_names
+from base_station.storage.db.records import Records
+from base_station.storage.db.salvage import remove_damaged
+from base_station.storage.db.store import Store
+from base_station.storage.segment_index import segment_row
+from shared.channels import HEARTBEAT, OPERATOR, STATUS, tracker_id
+from shared.clock import Clock
+from shared.errors import StoreError, UserError
+from shared.mcap_log import (
+    SegmentReader,
+    read_log,
+    remove_torn,
+    rewrite_segment,
+    segment_paths,
+)
+from shared.messages import STATION_ID
+from shared.messages.station import Action, ForgetWearers
+
+_log = logging.getLogger(__name__)
+BY_OTHER_STATION = "the other station"  # wished that what it has forgotten is forgotten here too
+_ACTIONS = OPERATOR.key(STATION_ID)
+_ACTED_WITHIN_S = 20.0
+_REMOVED_WITHIN_S = 20.0
+Progress = Callable[[float], None]  # hears the fraction done
+RepairFirst = Callable[[Path, str], bool]  # hears what is damaged in a segment of the log
+Act = Callable[[str, Action], Future[ActionResult] | None]  # None: no station that leads does it
+
+
+class LogFiles(Protocol):
+    """The log as files; a station that runs goes on in a new one."""
+
+    @property
+    def folder(self) -> Path:
+        """Where the segments are."""
+        ...
+
+    @property
+    def rewriting(self) -> AbstractContextManager[object]:
+        """Entered while complete segments are exchanged."""
+        ...
+
+    def complete_segments(self) -> Collection[Path]:
+        """In order; none of them is written to from now on, and none is missing."""
+        ...
+
+    def note_rewritten(self, path: Path) -> None:
+        """This segment has another content now."""
+        ...
+
+
+class RecordingTransfers(Protocol):
+    """Raw recordings that are being pulled from units."""
+
+    def forget(self, unit_ids: Collection[str]) -> None:
+        """None of these units is asked for more."""
+        ...
+
+
+@dataclass(slots=True)
+class ErasureProgress:
+    """What was taken out so far, by the tries that were cut short, too."""
+
+    records: int = 0  # of the log that changed or went
+    files: int = 0  # that were written anew or removed
+    again: bool = False  # it was tried before
+    damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
+
+    def note_damage(self, part: str, written_anew: bool) -> None:
+        gone, stays = "what could not be read of it is gone", "it stays, whoever it tells of"
+        said = f"Damaged: {part}; {gone if written_anew else stays}"
+        if said not in self.damaged:
+            _log.warning("%s", said)
+            self.damaged = (*self.damaged, said)
+
+
+@dataclass(frozen=True, slots=True)
+class ErasureResult:
+    """What became of it, over all tries."""
+
+    what: str  # "person 1f.." or "incident 20..", for the audit
+    records: int
+    files: int
+    damaged: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        done = f"{self.what}: {self.records} records of the log in {self.files} files"
+        return ". ".join((done, *self.damaged))
+
+
+class ClosedLog:
+    """The log of a folder that no station runs on."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.rewriting = Lock()
+
+    def complete_segments(self) -> Collection[Path]:
+        return segment_paths(self.folder)
+
+    def note_rewritten(self, path: Path) -> None:
+        """Nobody remembers what was in it."""
+
+
+class ErasureService:
+    """One at a time; from any thread but the drive's."""
+
+    def __init__(
+        self,
+        log: LogFiles,
+        store: Store,
+        checkpoints: Checkpoints,
+        records: Records,
+        clock: Clock,
+        pulls: RecordingTransfers,
+        act: Act = lambda _by, _action: None,
+        mended_first: RepairFirst = lambda _path, _damage: False,
+    ) -> None:
+        """``act`` has the running station forget what it holds in memory.  ``mended_first`` tells
+        whether what is lost of a segment is about to be fetched from the other station.
+        """
+        self._log = log
+        self._store = store
+        self._checkpoints = checkpoints
+        self._records = records
+        self._clock = clock
+        self._pulls = pulls
+        self._act = act
+        self._mended_first = mended_first
+        self._begun = PendingErasure(DataFolder(log.folder.parent).begun)
+
+    def person(
+        self,
+        by: str,
+        person_id: str,
+        on_progress: Progress = lambda _: None,
+        tally: ErasureProgress | None = None,
+    ) -> ErasureResult:
+        """UserError where nobody has ever heard of that person; tried again, everything may be
+        gone but for the entry in the audit.
+        """
+        tally = tally or ErasureProgress()
+        erasure = self._erasure_of(person_id)
+        if not tally.again:
+            _require_known(erasure)
+        return self._forget(by, erasure, f"person {person_id}", on_progress, tally)
+
+    def require_person(self, person_id: str) -> None:
+        """UserError where nobody has ever heard of that person."""
+        _require_known(self._erasure_of(person_id))
+
+    def incident(
+        self,
+        by: str,
+        incident_id: str,
+        on_progress: Progress = lambda _: None,
+        tally: ErasureProgress | None = None,
+    ) -> ErasureResult:
+        """UserError where there is no such incident, or it is open."""
+        erasure = self._begun.of(incident_id)
+        if erasure is None:
+            erasure = erasure_of_incident(self._actions(), incident_id)
+            self._begun.keep(erasure)
+        return self._forget(
+            by, erasure, f"incident {incident_id}", on_progress, tally or ErasureProgress()
+        )
+
+    def _erasure_of(self, person_id: str) -> Erasure:
+        with self._store.read() as session:
+            names = known_names(session, person_id)
+        found = erasure_of_person(self._actions(), person_id, "", self._clock.utc_ns())
+        everything = sorted({*names, *found.names}, key=lambda one: (-len(one), one))
+        return msgspec.structs.replace(found, names=tuple(everything))
+
+    def _forget(
+        self, by: str, erasure: Erasure, what: str, on_progress: Progress, tally: ErasureProgress
+    ) -> ErasureResult:
+        self._forget_in_memory(by, erasure)
+        self._checkpoints.clear()
+        self._rewrite_log(erasure, on_progress, tally)
+        with self._store.write() as session:
+            forget_in(session, erasure)
+        self._store.compact()
+        tally.files += remove_damaged(self._store.path)
+        self._checkpoints.clear()  # one that was being written meanwhile
+        self._begun.let_go(erasure.incident_id)
+        done = ErasureResult(what, tally.records, tally.files, tally.damaged)
+        kind = "ForgotPerson" if erasure.person_id else "ForgotIncident"
+        self._records.audit(by, kind, str(done))
+        _log.info("forgotten at the wish of %s: %s", by, done)
+        return done
+
+    def _forget_in_memory(self, by: str, erasure: Erasure) -> None:
+        """Done when this returns: what the station saved before that would bring them back."""
+        acted = [self._act(by, ForgetWearers(unit_id)) for unit_id in sorted(erasure.unit_ids)]
+        try:
+            for one in acted:
+                if one is not None:
+                    one.result(_ACTED_WITHIN_S)
+        except TimeoutError as error:
+            raise StoreError("the station did not get to what it holds in memory") from error
+
+    def _rewrite_log(self, erasure: Erasure, on_progress: Progress, tally: ErasureProgress) -> None:
+        segments = [*self._log.complete_segments(), *self._set_aside()]
+        clocks = self._clocks(erasure)
+        self._remove_recordings(erasure, tally)
+        tally.files += sum(map(remove_torn, self._folders(segments)))
+        for number, path in enumerate(segments):
+            on_progress(number / len(segments))
+            redactor = Redactor(erasure.without_inserted(_actions_in(path)), clocks)
+            damage: list[str] = []
+            with self._log.rewriting:
+                changed = rewrite_segment(path, redactor, on_damage=self._noting(path, damage))
+            for part in damage:
+                tally.note_damage(part, written_anew=changed > 0)
+            tally.records += changed
+            if changed:
+                tally.files += 1
+                self._log.note_rewritten(path)
+                self._note_in_table(path)
+        on_progress(1.0)
+
+    def _note_in_table(self, path: Path) -> None:
+        """What was taken out is not missing."""
+        if path.parent == self._log.folder:
+            with SegmentReader(path) as segment:
+                self._records.put_segments([segment_row(segment.info())])
+
+    def _noting(self, path: Path, damage: list[str]) -> Callable[[str], None]:
+        """Written anew without it, a segment would look whole, and nobody would mend it.  Raises
+        StoreError where it is about to be mended.
+        """
+
+        def note(part: str) -> None:
+            if path.parent == self._log.folder and self._mended_first(path, part):
+                raise StoreError(f"{part}; what is lost is fetched from the other station first")
+            damage.append(part)
+
+        return note
+
+    def _set_aside(self) -> list[Path]:
+        """Parts of logs that stand beside the log in the station's folder."""
+        station = self._log.folder.parent
+        known = (self._log.folder, DataFolder(station).recordings)
+        return sorted(
+            path
+            for path in station.rglob("*.mcap")
+            if not any(path.is_relative_to(folder) for folder in known)
+        )
+
+    def _folders(self, segments: list[Path]) -> set[Path]:
+        return {self._log.folder, *(path.parent for path in segments)}
+
+    def _remove_recordings(self, erasure: Erasure, tally: ErasureProgress) -> None:
+        """Raw recordings of the units, whoever wore them: the unit still has its own.  A pull under
+        way finds its folder gone, and ends.
+        """
+        self._pulls.forget(erasure.unit_ids)
+        recordings = DataFolder(self._log.folder.parent).recordings
+        for folder in (recordings / unit_id for unit_id in sorted(erasure.unit_ids)):
+            files = sum(1 for path in folder.rglob("*") if path.is_file())
+            _remove(folder)
+            tally.files += files
+
+    def _actions(self) -> Collection[Record]:
+        return list(read_log(self._log.folder, keys={_ACTIONS}))
+
+    def _clocks(self, erasure: Erasure) -> CaptureClocks:
+        """From signs of life, which come once a second while a unit is linked."""
+        senders = [*erasure.unit_ids, *map(tracker_id, erasure.unit_ids)]
+        keys = {channel.key(one) for channel in (HEARTBEAT, STATUS) for one in senders}
+        clocks = CaptureClocks(first_erased_ns(self._actions(), erasure))
+        for record in read_log(self._log.folder, keys=keys):
+            event = event_of(*record)
+            if isinstance(event, Received):
+                clocks.note(event.t_ns, event.message.header)
+        return clocks
+
+
+def _require_known(erasure: Erasure) -> None:
+    if not (erasure.wearings or erasure.names):
+        raise UserError(f"neither the roster nor the log knows a person {erasure.person_id}")
+
+
+def _actions_in(path: Path) -> Iterator[Record]:
+    with SegmentReader(path) as segment:
+        yield from segment.records(keys={_ACTIONS})
+
+
+def _remove(folder: Path) -> None:
+    """Whoever is writing into it just now has one more question to put, and then ends."""
+    end_s = time.monotonic() + _REMOVED_WITHIN_S
+    while folder.exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        if time.monotonic() > end_s:
+            raise StoreError(f"{folder} cannot be removed; see who uses it, and forget again")

@@ -1,0 +1,53 @@
+"""What is to go of incidents that are being forgotten, in a file until it is done: a log of which
+a part is written anew does not tell any more who was there.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from base_station.core.erasure.erasure import Erasure
+from base_station.storage.private_files import write_atomically
+from shared.errors import StoreError
+
+
+class PendingErasure:
+    """For one thread."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def of(self, incident_id: str) -> Erasure | None:
+        """As it was found before anything went.  Raises StoreError where that cannot be read."""
+        return next((one for one in self._read() if one.incident_id == incident_id), None)
+
+    def keep(self, erasure: Erasure) -> None:
+        """On the disk when this returns.  Raises StoreError."""
+        self._write([*self._read(), erasure])
+
+    def let_go(self, incident_id: str) -> None:
+        """Nothing is left that it tells of.  Raises StoreError."""
+        begun = self._read()
+        left = [one for one in begun if one.incident_id != incident_id]
+        if len(left) < len(begun):
+            self._write(left)
+
+    def _read(self) -> list[Erasure]:
+        try:
+            return msgspec.json.decode(self._path.read_bytes(), type=list[Erasure])
+        except FileNotFoundError:
+            return []
+        except (OSError, msgspec.DecodeError) as error:
+            raise StoreError(
+                f"{self._path} tells what is being forgotten and cannot be read ({error}): "
+                "restore it from a backup, or remove it and forget again"
+            ) from error
+
+    def _write(self, begun: list[Erasure]) -> None:
+        """It has names in it."""
+        if begun:
+            write_atomically(self._path, msgspec.json.encode(begun))
+        else:
+            self._path.unlink(missing_ok=True)

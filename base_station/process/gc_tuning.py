@@ -1,0 +1,71 @@
+"""Python's interpreter, set for a station.
+
+Its collector of cycles is that of a program that holds much and makes hardly a cycle.  As it comes
+it looks at everything that lives again and again: a tenth of the drive's time, in pauses of a tenth
+of a second in which nobody is heard or told anything.
+
+Its threads take turns ten times as often as they would.  What comes from the bus and what goes to a
+console passes three threads that need it for a moment only, and each would wait for five
+milliseconds while the drive has much to do.
+
+Its memory for what is large, such as a state that is saved, would come to be that of what is small,
+full of holes that nothing fits into, and the station's would grow with them.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+_TURN_S = 0.0005
+_NEW_OBJECTS = 50_000  # made and not gone, after which the young are looked at
+_YOUNG, _OLD = 20, 20  # such looks, after which older ones are
+_LARGE_BYTES = 1 << 20  # a block of its own, given back to the system when it is free
+_MMAP_THRESHOLD = -3  # as the C library calls it
+_GIVEN_BACK_BYTES = 1 << 16
+
+
+@contextmanager
+def paused() -> Iterator[None]:
+    """While modules are loaded, of which nothing goes again: looking costs a fifth of that.
+
+    Nor is what they made looked at later, for a station's start would take longer by that.
+    """
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()
+
+
+def configure() -> None:
+    """When the program begins."""
+    gc.set_threshold(_NEW_OBJECTS, _YOUNG, _OLD)
+    sys.setswitchinterval(_TURN_S)
+    _have_own_blocks(_LARGE_BYTES)
+
+
+def return_free_memory() -> None:
+    """For a program of large arrays that come and go, whose memory is bounded."""
+    _have_own_blocks(_GIVEN_BACK_BYTES)
+
+
+def _have_own_blocks(large_bytes: int) -> None:
+    set_memory = getattr(ctypes.CDLL(None), "mallopt", None)  # not every C library has it
+    if set_memory is not None:
+        set_memory(_MMAP_THRESHOLD, large_bytes)
+
+
+def freeze() -> None:
+    """When it is made: what lives now stays, and need not be looked at again."""
+    gc.collect()
+    gc.freeze()
+
+
+def unfreeze() -> None:
+    """When it has ended and another one is to be made in its place: its parts may go."""
+    gc.unfreeze()

@@ -1,0 +1,31 @@
+"""What anybody on the network can have logged is logged once a minute, and how often it was so."""
+
+from __future__ import annotations
+
+import logging
+
+from shared.clock import NS_PER_S, Clock
+
+APART_NS = 60 * NS_PER_S
+
+
+class RateLimitFilter(logging.Filter):
+    """For the logger of a library that warns of every wrong request with few sentences."""
+
+    def __init__(self, clock: Clock) -> None:
+        super().__init__()
+        self._clock = clock
+        self._said: dict[str, tuple[int, int]] = {}  # when, and how often it was left out since
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        if record.levelno > logging.WARNING or not isinstance(record.msg, str):
+            return True
+        now_ns = self._clock.monotonic_ns()
+        said_ns, left_out = self._said.get(record.msg, (now_ns - APART_NS, 0))
+        if now_ns - said_ns < APART_NS:
+            self._said[record.msg] = said_ns, left_out + 1
+            return False
+        self._said[record.msg] = now_ns, 0
+        if left_out:
+            record.msg = f"{record.msg} (and {left_out} times more in the minutes before)"
+        return True

@@ -1,0 +1,54 @@
+"""Ends a station that was told to end and whose disk does not answer.
+
+Whoever waits for such a disk in the kernel can be neither woken nor left behind: each part of the
+station would have to look out for it.  What a kill may take, this may take, too.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Callable
+from threading import Event, Lock, Thread
+
+log = logging.getLogger(__name__)
+
+EXIT_CODE = 1
+_PATIENCE_S = 6.0  # with a disk that may answer yet
+_LOOK_EVERY_S = 0.5
+
+
+class ShutdownWatchdog:
+    """Leave it when all has ended in order."""
+
+    def __init__(self) -> None:
+        self._is_over = Event()
+        self._lock = Lock()
+        self._has_begun = False
+
+    def __enter__(self) -> ShutdownWatchdog:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._is_over.set()
+
+    def begin(self, not_kept: Callable[[], str], let_go: Callable[[], None]) -> None:
+        """From any thread, more than once too.
+
+        ``not_kept``: what a disk that hangs lacks, as a sentence for a person; empty: it answers.
+        ``let_go`` ends what would outlive this program.
+        """
+        with self._lock:
+            if self._has_begun:
+                return
+            self._has_begun = True
+        Thread(target=self._watch, args=(not_kept, let_go), name="end-in-time", daemon=True).start()
+
+    def _watch(self, not_kept: Callable[[], str], let_go: Callable[[], None]) -> None:
+        patience_s = _PATIENCE_S
+        while not self._is_over.wait(patience_s):
+            patience_s = _LOOK_EVERY_S
+            if lack := not_kept():
+                log.critical("ended although the disk does not answer: %s", lack)
+                let_go()
+                os._exit(EXIT_CODE)

@@ -1,0 +1,37 @@
+"""A part of the station that a mistake of the program has ended: a person must hear of it."""
+
+from __future__ import annotations
+
+import logging
+import threading
+
+log = logging.getLogger(__name__)
+
+
+class ThreadCrashMonitor:
+    """Watches this process's threads while it is entered; the others go on without the one."""
+
+    def __init__(self) -> None:
+        self._names: list[str] = []
+
+    def __enter__(self) -> ThreadCrashMonitor:
+        self._before = threading.excepthook
+        threading.excepthook = self._note
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        threading.excepthook = self._before
+
+    def problems(self) -> tuple[str, ...]:
+        """Sentences for the console; they stay until the station starts again."""
+        return tuple(
+            f"A part of the station has ended by a mistake in the program ({name}): start the "
+            "station again at the next quiet moment, and report it"
+            for name in self._names
+        )
+
+    def _note(self, ended: threading.ExceptHookArgs) -> None:
+        name = "unknown" if ended.thread is None else ended.thread.name
+        log.critical("the station's thread %s has ended", name, exc_info=ended.exc_value)
+        if name not in self._names:
+            self._names.append(name)

@@ -1,0 +1,18 @@
+"""Who wore which unit in an incident."""
+
+from __future__ import annotations
+
+from base_station.storage.db.models import Incident
+from base_station.storage.db.records import FOREVER_NS
+from base_station.storage.db.roster import Roster
+
+
+def wearers(roster: Roster, incident: Incident) -> dict[str, list[str]]:
+    """Names by unit, each once, in the order of wearing it."""
+    names: dict[str, list[str]] = {}
+    until_ns = incident.closed_ns or FOREVER_NS
+    for one in roster.assignments(incident.opened_ns, until_ns):
+        worn = names.setdefault(one.unit_id, [])
+        if one.person_name not in worn:
+            worn.append(one.person_name)
+    return names

@@ -1,0 +1,187 @@
+"""Moves a pipeline through a recorded window of the log.  No threads and no clock.
+
+A playback only reads: it has a pipeline of its own, and nothing of what that decides goes to the
+log, the store or the bus.  ``compare`` steps a log and holds what comes out against what the
+live station had decided, one by one.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+
+from base_station.core.checkpoint import Checkpoint
+from base_station.core.events import Output, Received, StationEvent, event_of, is_decision
+from base_station.core.pipeline import StationPipeline
+from base_station.replay.unrecorded import LONGEST_NS, RecordGap, UnrecordedTime
+from base_station.storage.checkpoints import Checkpoints, SavedState
+from shared.codec import encode
+from shared.messages import AlarmChange, FusedPosition
+
+Record = tuple[int, str, bytes]  # station time, key, payload
+OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the order of writing
+MakePipeline = Callable[[Checkpoint | None], StationPipeline]
+Watch = Callable[[], Callable[[], bool]]  # what it gives tells whether the past was changed since
+Decision = FusedPosition | AlarmChange
+
+BURST = 1000  # events
+SAVED_APART = 100_000  # events: some seconds of stepping, which is what going back then takes
+
+
+@dataclass(frozen=True)
+class Archive:
+    """Where a playback finds what happened."""
+
+    open_log: OpenLog
+    checkpoints: Checkpoints
+    make_pipeline: MakePipeline
+    watch: Watch = lambda: lambda: False
+    own: Checkpoints | None = None  # where a playback saves the states that it comes by
+    flaws: Callable[[], Sequence[str]] = tuple  # what is known by now not to be as it was, in words
+    look: Callable[[], bool] = lambda: False  # a little more for flaws; False: all is looked at
+    has_lost: Callable[[int], bool] = lambda _: False  # whether the log had records of that time
+
+    def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
+        """The newest state that was saved of this log, as ``Checkpoints.latest``: its place is
+        there, or is known to have been.  Beside a log that was put back from a backup there may be
+        later ones, or another's.
+        """
+        while (saved := self._saved(until_ns, after_ns)) is not None:
+            if self._has(saved) or self.has_lost(saved.t_ns):
+                return saved
+            until_ns = saved.t_ns - 1
+        return None
+
+    def _saved(self, until_ns: int | None, after_ns: int) -> SavedState | None:
+        found = self.checkpoints.latest(until_ns, after_ns)
+        own = None
+        if self.own is not None:
+            own = self.own.latest(until_ns, after_ns if found is None else found.t_ns)
+        return own or found
+
+    def _has(self, saved: SavedState) -> bool:
+        there = takewhile(lambda record: record[0] == saved.t_ns, self.open_log(saved.t_ns))
+        return sum(not is_decision(key) for _, key, _ in there) >= saved.events_at_t
+
+
+class Playback:
+    """A pipeline at some time of the log."""
+
+    def __init__(self, archive: Archive) -> None:
+        self._archive = archive
+        self._pipeline: StationPipeline
+        self._events: Iterator[StationEvent]
+        self._next: StationEvent | None
+        self._at_ns: int
+        self._place: tuple[int, int]  # of the last event in the log: its time, and which of that
+        self._saved_ns: int  # until there, what can be saved is
+        self._unsaved: int  # events since
+        self._unrecorded: UnrecordedTime | None  # what of it is shown
+        self._begin(None)
+
+    @property
+    def pipeline(self) -> StationPipeline:
+        """Another one after a ``seek``."""
+        return self._pipeline
+
+    def seek(self, t_ns: int) -> Iterator[None]:
+        """Go to ``t_ns``, back or forth, pausing now and then so that it can be given up."""
+        saved = self._archive.latest(t_ns, self._at_ns if t_ns >= self._at_ns else -1)
+        if t_ns < self._at_ns or saved is not None:
+            self._begin(saved)
+        while self.advance(t_ns) is not None:
+            yield
+
+    def advance(self, t_ns: int) -> list[Output] | None:
+        """What comes of the next events until ``t_ns``, a burst at most; None: all is done."""
+        if self._next is None or self._next.t_ns > t_ns:
+            self._at_ns = max(self._at_ns, t_ns)
+            return None
+        outputs = self._end_unrecorded()
+        for _ in range(BURST):
+            if self._next is None or self._next.t_ns > t_ns:
+                break
+            outputs += self._pipeline.step(self._next)
+            at_ns = self._at_ns = self._next.t_ns
+            self._place = at_ns, self._place[1] + 1 if self._place[0] == at_ns else 1
+            self._unsaved += 1
+            self._next = next(self._events, None)
+        if self._unsaved >= SAVED_APART:
+            self._save()
+        return outputs
+
+    @property
+    def at_ns(self) -> int:
+        return self._at_ns
+
+    @property
+    def gap(self) -> RecordGap | None:
+        """Where it stands in one."""
+        from_ns, until_ns = self._place[0], None if self._next is None else self._next.t_ns
+        is_one = (self._at_ns if until_ns is None else until_ns) - from_ns > LONGEST_NS
+        return RecordGap(from_ns, until_ns) if is_one and self._at_ns > from_ns else None
+
+    def show_unrecorded(self) -> list[Output]:
+        """In a gap: show everything as old as it is by now, until the next record is stepped."""
+        if self.gap is None or self._place[0] == 0:
+            return []
+        self._unrecorded = self._unrecorded or UnrecordedTime(self._pipeline)
+        return self._unrecorded.advance_time(self._at_ns)
+
+    def _end_unrecorded(self) -> list[Output]:
+        unrecorded, self._unrecorded = self._unrecorded, None
+        return [] if unrecorded is None else unrecorded.take_back()
+
+    def _begin(self, saved: SavedState | None) -> None:
+        """Again, from a checkpoint or from the beginning of the log."""
+        self._pipeline = self._archive.make_pipeline(saved.pipeline if saved else None)
+        self._place = (saved.t_ns, saved.events_at_t) if saved else (0, 0)
+        self._at_ns, skip = self._place
+        self._saved_ns, self._unsaved = self._at_ns, 0
+        self._unrecorded = None
+        self._events = _events(self._archive.open_log(self._at_ns), self._at_ns, skip)
+        self._next = next(self._events, None)
+
+    def _save(self) -> None:
+        """Where nothing is saved of the stretch that was just gone."""
+        own, since_ns = self._archive.own, self._saved_ns
+        self._saved_ns, self._unsaved = self._at_ns, 0
+        if own is None or own.is_refused or own.has_any(since_ns, self._at_ns):
+            return
+        own.save_if_it_can(*self._place, self._pipeline.checkpoint())
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Where a replay decides otherwise than the live station did."""
+
+    logged: Decision | None
+    replayed: Decision | None
+
+
+def compare(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[Difference]:
+    """Step a log from its beginning; yields every decision that is not as it was logged."""
+    replayed: deque[Decision] = deque()
+    for t_ns, key, payload in records:
+        event = event_of(t_ns, key, payload)
+        if isinstance(event, Received) and isinstance(event.message, Decision):
+            again = replayed.popleft() if replayed else None
+            if again is None or encode(again) != payload:
+                yield Difference(event.message, again)
+        else:
+            replayed += [o for o in pipeline.step(event) if isinstance(o, Decision)]
+    for again in replayed:
+        yield Difference(None, again)
+
+
+def _events(records: Iterable[Record], from_ns: int, skip: int) -> Iterator[StationEvent]:
+    """The events behind a checkpoint that has stepped ``skip`` of those at ``from_ns``."""
+    for t_ns, key, payload in records:
+        if is_decision(key):
+            continue
+        if t_ns == from_ns and skip > 0:
+            skip -= 1
+        else:
+            yield event_of(t_ns, key, payload)

@@ -1,0 +1,383 @@
+"""An incident as it is known afterwards, beside what was shown at the time.
+
+The state at the incident's end comes out of the log, by the same pipeline as live, with what
+came late of its time; the smoother makes trails of everything in it.  What it made of a closed
+incident is kept in the store, and made again when more of its time has come to be known.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+from typing import TypeVar
+
+import msgspec
+import numpy as np
+
+from base_station.core.pins.evidence import encounters_of, evidence_of_all
+from base_station.core.pins.pin_registry import units_of
+from base_station.core.pins.pin_solver import floors_along
+from base_station.core.state import StationState
+from base_station.fusion.lazy_mapping import LastValueMapping
+from base_station.fusion.odometry.points import NO_FLOOR, RESTART, PathArrays
+from base_station.fusion.smoothing.interface import SmoothedPath, Smoother, Solution
+from base_station.replay.assessment.report import IncidentReport, assess
+from base_station.replay.late_arrivals import apply_late_arrivals
+from base_station.replay.playback import Archive, Playback, Record
+from base_station.site.floor_grid import FloorGrid
+from base_station.storage.db.models import Incident
+from base_station.storage.db.records import TrackSample
+from base_station.storage.db.smoothed import SmoothedTracks
+from shared.clock import NS_PER_MS, NS_PER_S, Clock
+from shared.errors import MemoryLimitError
+from shared.log_on_change import LogOnChange
+from shared.quality import Quality
+
+_log = logging.getLogger(__name__)
+Progress = Callable[[float], None]
+Tracks = Mapping[str, Sequence[TrackSample]]
+Made = TypeVar("Made")
+LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
+_AGAIN_NS = 300 * NS_PER_S  # after what it came to could not be kept: it may have taken long
+QUIET_NS = 30 * NS_PER_S  # without news: a journal that is being read brings more of it
+_EVER_NS = 2**63 - 1  # an open incident goes on: whatever was recorded is of it
+UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
+
+
+@dataclass(frozen=True)
+class Smoothed:
+    """What a smoother made of an incident."""
+
+    incident_id: str
+    smoother: str
+    made_ns: int
+    tracks: Tracks  # by unit
+    is_kept: bool = True  # else it is worked out again when somebody asks
+
+
+@dataclass(frozen=True)
+class PostProcessingResult:
+    """All that is made of an incident."""
+
+    made_ns: int
+    smoothed: Tracks
+    raw: Tracks
+    report: IncidentReport
+    is_kept: bool
+
+
+@dataclass(frozen=True)
+class SolvedIncident:
+    """Everything at an incident's end, and the trails that follow from it."""
+
+    state: StationState
+    solution: Solution
+    is_outdated: Callable[[], bool]  # somebody was forgotten since
+
+
+class PostProcessor:
+    """May be asked from any thread; one incident at a time is worked on."""
+
+    def __init__(
+        self, archive: Archive, smoother: Smoother, store: SmoothedTracks, clock: Clock
+    ) -> None:
+        self._archive = archive
+        self._smoother = smoother
+        self._store = store
+        self._clock = clock
+        self._working = threading.RLock()
+        self._given_up: set[str] = set()  # incidents that could not be smoothed by itself
+        self._again_ns = 0  # not before then
+        self._keeping = LogOnChange(_log, "what is known of an incident afterwards cannot be kept")
+        self._catching_up = LogOnChange(_log, "an incident that closed cannot be looked back on")
+
+    def smoothed(self, incident: Incident) -> Smoothed:
+        """As it was made with all that is known of the incident; made now where it was not."""
+        return self._cached_or_made(incident, self._cached_trails, self.smooth)
+
+    def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
+        """Make it again from the log; ``on_progress`` hears the fraction done."""
+        return self._keep(incident, self.known(incident, on_progress), self._clock.utc_ns())
+
+    def _keep(
+        self,
+        incident: Incident,
+        known: SolvedIncident,
+        made_ns: int,
+        report: IncidentReport | None = None,
+    ) -> Smoothed:
+        """All of it at once: no assessment stands beside trails that it does not belong to."""
+        incident_id, smoother = incident.incident_id, self._smoother.name
+        tracks = _smoothed_tracks(incident, known)
+        is_kept = False
+        if incident.closed_ns is not None:
+            raw = _raw_tracks(incident, known)
+            packed = None if report is None else msgspec.msgpack.encode(report)
+            with self._keeping:
+                what = (incident_id, smoother, made_ns, tracks, raw, packed)
+                is_kept = self._store.put(*what, _late_data_ns(incident), known.is_outdated)
+        return Smoothed(incident_id, smoother, made_ns, tracks, is_kept)
+
+    def catch_up(self, incidents: Iterable[Incident], shown: Callable[[Incident], Tracks]) -> None:
+        """Smooth and assess an incident that closed lately and was not yet, or of which more is
+        known since, so that it is there when somebody asks; ``shown`` gives what was.
+        """
+        now_ns = self._clock.utc_ns()
+        if now_ns < self._again_ns:
+            return
+        for incident in incidents:
+            incident_id = incident.incident_id
+            if incident_id in self._given_up or not self._is_due(incident, now_ns):
+                continue
+            self._again_ns = now_ns + _AGAIN_NS
+            try:
+                with self._catching_up:
+                    self._catch_up_with(incident, shown(incident))
+            except Exception:  # noqa: BLE001  # the station goes on without these trails
+                _log.exception("the trails of %s cannot be smoothed", incident_id)
+                self._given_up.add(incident_id)
+            if incident_id in self._given_up or self._is_made(incident):
+                self._again_ns = 0
+            return
+
+    def _catch_up_with(self, incident: Incident, shown: Tracks) -> None:
+        try:
+            self.assess(incident, shown)
+        except MemoryLimitError:
+            self._given_up.add(incident.incident_id)
+            raise
+
+    def _is_due(self, incident: Incident, now_ns: int) -> bool:
+        if incident.closed_ns is None:
+            return False
+        if self._store.has(incident.incident_id):
+            return not self._is_enough(incident)
+        return now_ns - incident.closed_ns < LATELY_NS
+
+    def is_newest(self, incident: Incident) -> bool:
+        """Whether what is said of it was made with all that came of it since it was closed; what is
+        not kept is always made anew.
+        """
+        return not self._store.has(incident.incident_id) or self._is_made(incident)
+
+    def _is_made(self, incident: Incident) -> bool:
+        return self._store.has(incident.incident_id, _late_data_ns(incident))
+
+    def _is_enough(self, incident: Incident) -> bool:
+        """What is kept serves: nothing is newer, or a journal is still being read."""
+        is_quiet = abs(self._clock.utc_ns() - _late_data_ns(incident)) >= QUIET_NS
+        return self._is_made(incident) or (not is_quiet and self._store.has(incident.incident_id))
+
+    def raw(self, incident: Incident) -> Tracks:
+        """Each unit's own path, placed where each of its frames began and never corrected; as it
+        was made when the incident had closed.
+        """
+        return self._cached_or_made(
+            incident, lambda one: self._store.raw(one.incident_id), self._make_raw
+        )
+
+    def assess(self, incident: Incident, live: Tracks) -> IncidentReport:
+        """How good the positions were, as it was made when the incident had closed; ``live`` is
+        what was shown, by unit.
+        """
+        return self._cached_or_made(
+            incident, self._cached_report, lambda one: self._assess(one, live)
+        )
+
+    def _cached_or_made(
+        self,
+        incident: Incident,
+        kept: Callable[[Incident], Made | None],
+        make: Callable[[Incident], Made],
+    ) -> Made:
+        """What is kept of a closed incident, or else made of it: whoever asks meanwhile waits."""
+        found = self._cached(incident, kept)
+        if found is not None:
+            return found
+        with self._working:
+            found = self._cached(incident, kept)
+            return make(incident) if found is None else found
+
+    def _cached(self, incident: Incident, kept: Callable[[Incident], Made | None]) -> Made | None:
+        is_made = incident.closed_ns is not None and self._is_enough(incident)
+        return kept(incident) if is_made else None
+
+    def _cached_trails(self, incident: Incident) -> Smoothed | None:
+        made = self._store.of(incident.incident_id)
+        return None if made is None else Smoothed(incident.incident_id, *made)
+
+    def _cached_report(self, incident: Incident) -> IncidentReport | None:
+        kept = self._store.report(incident.incident_id)
+        return None if kept is None else read_report(kept)
+
+    def _make_raw(self, incident: Incident) -> Tracks:
+        known = self.known(incident)
+        if incident.closed_ns is not None:
+            self._keep(incident, known, self._clock.utc_ns())
+        return _raw_tracks(incident, known)
+
+    def _assess(self, incident: Incident, live: Tracks) -> IncidentReport:
+        return self.post_process(incident, live).report
+
+    def post_process(
+        self, incident: Incident, live: Tracks, on_progress: Progress = lambda _: None
+    ) -> PostProcessingResult:
+        """Make all of it anew."""
+        known, made_ns = self.known(incident, on_progress), self._clock.utc_ns()
+        smoothed, raw = _smoothed_tracks(incident, known), _raw_tracks(incident, known)
+        report = assess(
+            incident.incident_id,
+            self._smoother.name,
+            made_ns // NS_PER_MS,
+            known.state,
+            known.solution.verdicts,
+            live,
+            smoothed,
+            raw,
+        )
+        is_kept = False
+        if incident.closed_ns is not None:
+            is_kept = self._keep(incident, known, made_ns, report).is_kept
+        return PostProcessingResult(made_ns, smoothed, raw, report, is_kept)
+
+    def known(self, incident: Incident, on_progress: Progress = lambda _: None) -> SolvedIncident:
+        with self._working:
+            until_ns = incident.closed_ns or _EVER_NS
+            is_outdated = self._archive.watch()
+            state = self._state_at(until_ns, _late_data_ns(incident), on_progress)
+            evidence = evidence_of_all(state, FloorGrid.of(state.placed_plan))
+            solution = Solution({}, {})  # nobody has been heard of yet
+            if evidence:
+                solution = self._smoother.smooth(evidence, encounters_of(state))
+            on_progress(1.0)
+            return SolvedIncident(state, solution, is_outdated)
+
+    def _state_at(self, until_ns: int, late_data_ns: int, on_progress: Progress) -> StationState:
+        """As everything was then, and with what came of that time until ``late_data_ns``."""
+        playback = Playback(self._archive)
+        begin_ns, end_ns = None, min(until_ns, self._clock.utc_ns())
+        for _ in playback.seek(until_ns):
+            begin_ns = playback.at_ns if begin_ns is None else begin_ns
+            span_ns = max(end_ns - begin_ns, 1)
+            on_progress(0.9 * min((playback.at_ns - begin_ns) / span_ns, 1.0))
+        if late_data_ns > until_ns:
+            apply_late_arrivals(
+                playback.pipeline, lambda: self._between(until_ns, late_data_ns), until_ns
+            )
+        return playback.pipeline.state
+
+    def _between(self, after_ns: int, until_ns: int) -> Iterable[Record]:
+        return takewhile(lambda record: record[0] <= until_ns, self._archive.open_log(after_ns + 1))
+
+
+def _late_data_ns(incident: Incident) -> int:
+    """When more came to be known of it, since it was closed; 0: nothing has."""
+    return incident.late_data_ns or 0  # a row that was not read from the table has none
+
+
+def read_report(kept: bytes) -> IncidentReport | None:
+    """None where another version of the program wrote it: it is worked out again."""
+    try:
+        return msgspec.msgpack.decode(kept, type=IncidentReport)
+    except msgspec.MsgspecError:
+        return None
+
+
+def _smoothed_tracks(incident: Incident, known: SolvedIncident) -> Tracks:
+    return LastValueMapping(
+        _within(incident, known), lambda unit_id: _samples(incident, known, unit_id)
+    )
+
+
+def _raw_tracks(incident: Incident, known: SolvedIncident) -> Tracks:
+    return LastValueMapping(
+        _within(incident, known), lambda unit_id: _raw(incident, known, unit_id)
+    )
+
+
+def _within(incident: Incident, known: SolvedIncident) -> list[str]:
+    """Units of which anything is known while it was open."""
+    paths = known.solution.paths
+    return [unit_id for unit_id, path in paths.items() if _rows_within(incident, path)]
+
+
+def _samples(incident: Incident, known: SolvedIncident, unit_id: str) -> list[TrackSample]:
+    """With the floors that were known at the end; they may have been learnt late."""
+    path = known.solution.paths[unit_id]
+    points = known.state.paths[unit_id].arrays()
+    is_placed = _is_placed(known, unit_id, points)
+    floors = floors_along(known.state, points, path.places_m)
+    heading_rad = (path.turn_rad + points.heading_rad) % (2.0 * np.pi)
+    return [
+        TrackSample(
+            t_ns=int(path.t_ns[row]),
+            north_m=float(path.north_m[row]),
+            east_m=float(path.east_m[row]),
+            down_m=float(path.down_m[row]),
+            std_north_m=float(path.std_north_m[row]),
+            std_east_m=float(path.std_east_m[row]),
+            std_down_m=float(path.std_down_m[row]),
+            heading_rad=float(heading_rad[row]),
+            floor=floors[row],
+            quality=_quality(path, row, is_placed=is_placed),
+        )
+        for row in _rows_within(incident, path)
+    ]
+
+
+def _is_placed(known: SolvedIncident, unit_id: str, points: PathArrays) -> bool:
+    """Whether anything ties its path to the incident frame; else it lies about its own start."""
+    verdicts, state = known.solution.verdicts, known.state
+    pins = (pin_id for pin_id, pin in state.pins.items() if unit_id in units_of(pin))
+    is_pinned = any(pin_id in verdicts and verdicts[pin_id].used for pin_id in pins)
+    has_start = state.paths[unit_id].start_in_path is not None
+    return has_start or is_pinned or len(points.fix_t_ns) > 0
+
+
+def _raw(incident: Incident, known: SolvedIncident, unit_id: str) -> list[TrackSample]:
+    path, points = known.solution.paths[unit_id], known.state.paths[unit_id].arrays()
+    begins = np.flatnonzero((points.flags & RESTART) != 0)
+    begins = np.concatenate(([0], begins[begins > 0]))
+    begin = begins[np.searchsorted(begins, np.arange(len(points)), side="right") - 1]
+    since = points.own_m - points.own_m[begin]
+    cosine, sine = np.cos(path.turn_rad[begin]), np.sin(path.turn_rad[begin])
+    north_m = path.north_m[begin] + cosine * since[:, 0] - sine * since[:, 1]
+    east_m = path.east_m[begin] + sine * since[:, 0] + cosine * since[:, 1]
+    heading_rad = (path.turn_rad[begin] + points.heading_rad) % (2.0 * np.pi)
+    return [
+        TrackSample(
+            t_ns=int(points.t_ns[row]),
+            north_m=float(north_m[row]),
+            east_m=float(east_m[row]),
+            down_m=float(points.down_m[row]),
+            std_north_m=float(points.std_m[row]),
+            std_east_m=float(points.std_m[row]),
+            std_down_m=float(points.down_std_m[row]),
+            heading_rad=float(heading_rad[row]),
+            floor=_floor(points, row),
+            quality=Quality.GOOD.name.lower(),
+        )
+        for row in _rows_within(incident, path)
+    ]
+
+
+def _rows_within(incident: Incident, path: SmoothedPath) -> list[int]:
+    until_ns = incident.closed_ns or _EVER_NS
+    rows: list[int] = np.flatnonzero(
+        (path.t_ns >= incident.opened_ns) & (path.t_ns <= until_ns)
+    ).tolist()
+    return rows
+
+
+def _floor(points: PathArrays, row: int) -> int | None:
+    floor = int(points.floor[row])
+    return None if floor == NO_FLOOR else floor
+
+
+def _quality(path: SmoothedPath, row: int, *, is_placed: bool) -> str:
+    spread_m = np.hypot(path.std_north_m[row], path.std_east_m[row])
+    is_good = is_placed and spread_m <= UNSURE_M
+    return (Quality.GOOD if is_good else Quality.DEGRADED).name.lower()

@@ -1,0 +1,157 @@
+"""Post-processing of an incident in a process of its own.
+
+The live station would stand still for it: it takes minutes of a long incident, and hundreds of
+megabytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Lock
+
+from base_station.fusion.lazy_mapping import LastValueMapping
+from base_station.fusion.smoothing.interface import Smoother
+from base_station.replay.playback import Archive
+from base_station.replay.post_processing import (
+    PostProcessingResult,
+    PostProcessor,
+    Progress,
+    Smoothed,
+    read_report,
+)
+from base_station.replay.processes import wire
+from base_station.replay.processes.server import ReplayProcesses
+from base_station.storage.db.models import Incident
+from base_station.storage.db.smoothed import SmoothedTracks, Tracks, unpacked
+from shared.clock import Clock
+from shared.errors import MemoryLimitError, StoreError
+
+MEMORY_MB = 575  # mapped for data; of these 75 are not touched, so that some 500 are resident
+
+
+@dataclass(frozen=True)
+class PostProcessingContext:
+    """Parts of the station that it needs."""
+
+    processes: ReplayProcesses
+    log: str
+    checkpoints: str
+    database: str
+    prepare: Callable[[], object]  # what is to be looked back on is on the disk then
+    note_damage: Callable[[str], None]  # of the log
+    memory_mb: int = MEMORY_MB
+
+
+class PostProcessingProcess(PostProcessor):
+    """Asks what is kept; what is not is made by a process, one at a time."""
+
+    def __init__(
+        self,
+        place: PostProcessingContext,
+        archive: Archive,
+        smoother: Smoother,
+        store: SmoothedTracks,
+        clock: Clock,
+    ) -> None:
+        super().__init__(archive, smoother, store, clock)
+        self._place = place
+        self._lock = Lock()  # guards what follows
+        self._line: wire.Line | None = None  # to the process that is at work
+        self._closed = False
+
+    def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
+        made = self.post_process(incident, {}, on_progress)
+        name = self._smoother.name
+        return Smoothed(incident.incident_id, name, made.made_ns, made.smoothed, made.is_kept)
+
+    def post_process(
+        self,
+        incident: Incident,
+        live: Tracks,  # noqa: ARG002  # the process reads what was shown by itself
+        on_progress: Progress = lambda _: None,
+    ) -> PostProcessingResult:
+        """Raises StoreError where it was not done; MemoryLimitError, where it never will be."""
+        with self._working:
+            line = self._begin(incident)
+            try:
+                return self._follow(incident, line, on_progress)
+            finally:
+                with self._lock:
+                    self._line = None
+                line.hang_up()
+                line.close()
+
+    def close(self) -> None:
+        """Cancels the work under way; its callers get an error."""
+        with self._lock:
+            self._closed = True
+            if self._line is not None:
+                self._line.hang_up()
+
+    def _begin(self, incident: Incident) -> wire.Line:
+        self._place.prepare()
+        with self._lock:
+            if self._closed:
+                raise StoreError("the station is stopping")
+            self._line = self._place.processes.start(self._job(incident))
+            return self._line
+
+    def _make_raw(self, incident: Incident) -> Tracks:
+        return self.post_process(incident, {}).raw
+
+    def _job(self, incident: Incident) -> wire.PostProcessingJob:
+        return wire.PostProcessingJob(
+            log=self._place.log,
+            checkpoints=self._place.checkpoints,
+            database=self._place.database,
+            incident_id=incident.incident_id,
+            opened_ns=incident.opened_ns,
+            closed_ns=incident.closed_ns,
+            late_data_ns=incident.late_data_ns or 0,
+            now_ns=self._clock.utc_ns(),
+            memory_mb=self._place.memory_mb,
+        )
+
+    def _follow(
+        self, incident: Incident, line: wire.Line, on_progress: Progress
+    ) -> PostProcessingResult:
+        smoothed, raw = dict[str, bytes](), dict[str, bytes]()
+        while (encoded := line.receive()) is not None:
+            match wire.read_look_back(encoded):
+                case wire.Progress(done):
+                    on_progress(done)
+                case wire.UnitTrails(unit_id, of_unit, own):
+                    smoothed |= {} if of_unit is None else {unit_id: of_unit}
+                    raw |= {} if own is None else {unit_id: own}
+                case wire.PostProcessingResultFrame() as made:
+                    return self._made(incident, made, _tracks(smoothed), _tracks(raw))
+                case wire.Damage(what):
+                    self._place.note_damage(what)
+                case wire.Failure(reason, is_memory):
+                    raise (MemoryLimitError if is_memory else StoreError)(reason)
+        if self._closed:
+            raise StoreError("the station is stopping")
+        raise StoreError(
+            f"what is known afterwards of {incident.incident_id} was not worked out: the process "
+            "that did so has ended; ask again"
+        )
+
+    def _made(
+        self,
+        incident: Incident,
+        made: wire.PostProcessingResultFrame,
+        smoothed: Tracks,
+        raw: Tracks,
+    ) -> PostProcessingResult:
+        report = read_report(made.report)
+        if report is None:
+            raise StoreError("another version of the program is at work; start the station again")
+        kept = self._cached_trails(incident) if made.is_kept else None
+        if kept is not None:
+            smoothed, raw = kept.tracks, self._store.raw(incident.incident_id) or {}
+        return PostProcessingResult(made.made_ns, smoothed, raw, report, made.is_kept)
+
+
+def _tracks(packed: dict[str, bytes]) -> Tracks:
+    return LastValueMapping(packed, lambda unit_id: unpacked(packed[unit_id]))

@@ -1,0 +1,111 @@
+"""A replay in a process of its own: commands come on its line, and what consoles see goes back."""
+
+from __future__ import annotations
+
+import threading
+
+import msgspec
+
+from base_station.engine.ports import Trails
+from base_station.replay.playback import Archive
+from base_station.replay.processes.wire import (
+    Command,
+    DeltaFrame,
+    Line,
+    Pause,
+    Photos,
+    Play,
+    ReplayJob,
+    Seek,
+    SetSpeed,
+    SnapshotFrame,
+    SnapshotRequest,
+    ViewFrame,
+    read_command,
+)
+from base_station.replay.session import ReplaySession, Window
+from base_station.views.wire import Delta, Snapshot
+from shared.clock import Clock
+from shared.errors import StoreError
+
+
+def replay(job: ReplayJob, archive: Archive, clock: Clock, line: Line) -> None:
+    """Until the line is closed, or the replay breaks off."""
+    window = Window(job.incident_id, job.start_ns, job.end_ns)
+    work = _ReplayWork(line)
+    session = ReplaySession(archive, window, job.speed, work, work.photo_url, clock)
+    work.begin(session)
+    while (encoded := line.receive()) is not None:
+        work.follow(read_command(encoded))
+    session.close()
+
+
+class _ReplayWork:
+    """The replay's ``LiveSink``, and who moves it."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+        self._encoder = msgspec.json.Encoder()
+        self._photo_urls: dict[str, str] = {}
+        self._commands = 0
+        self._begun = threading.Event()
+        self._session: ReplaySession
+
+    def begin(self, session: ReplaySession) -> None:
+        self._session = session
+        self._begun.set()
+        threading.Thread(target=self._watch, name="replay-watch", daemon=True).start()
+
+    def follow(self, command: Command) -> None:
+        session = self._session
+        match command:
+            case Play():
+                session.play()
+            case Pause():
+                session.pause()
+            case Seek(t_ns):
+                session.seek(t_ns)
+            case SetSpeed(speed):
+                session.set_speed(speed)
+            case Photos(urls):
+                self._photo_urls = urls
+            case SnapshotRequest():
+                session.request_snapshot(self._deliver)
+        self._commands += 1
+
+    # ---- in the replay's thread
+
+    def photo_url(self, person_id: str) -> str | None:
+        return self._photo_urls.get(person_id)
+
+    def delta(self, delta: Delta) -> None:
+        self._tell_view()
+        self._send(DeltaFrame(self._encoder.encode(delta), tuple(delta.trails)))
+
+    def reset(self, snapshot: Snapshot, trails: Trails) -> None:
+        self._show(snapshot, trails, requested=False)
+
+    def _deliver(self, snapshot: Snapshot, trails: Trails) -> None:
+        self._show(snapshot, trails, requested=True)
+
+    def _show(self, snapshot: Snapshot, trails: Trails, *, requested: bool) -> None:
+        self._tell_view()
+        points = {unit_id: bytes(raw) for unit_id, raw in trails.items()}
+        self._send(SnapshotFrame(self._encoder.encode(snapshot), points, requested))
+
+    def _tell_view(self) -> None:
+        """Sends the state as it is after the commands that are counted."""
+        self._begun.wait()
+        commands = self._commands
+        self._send(ViewFrame(self._session.view(), commands))
+
+    def _send(self, frame: DeltaFrame | SnapshotFrame | ViewFrame) -> None:
+        try:
+            self._line.send(frame)
+        except StoreError:  # nobody looks any more: who reads commands finds that, too
+            self._session.end()
+
+    def _watch(self) -> None:
+        """A replay that breaks off takes its process along."""
+        self._session.wait_until_over()
+        self._line.hang_up()

@@ -1,0 +1,196 @@
+"""Messages between a station and a process that looks at the past for it (msgpack)."""
+
+from __future__ import annotations
+
+import select
+import socket
+import struct
+from contextlib import suppress
+from threading import Lock
+
+import msgspec
+
+from base_station.storage.missing_segments import KnownSegment
+from base_station.views.wire import ReplayView
+from shared.errors import StoreError
+
+_LENGTH = struct.Struct("<Q")  # before each message
+
+
+class ReplayJob(msgspec.Struct, frozen=True, tag="replay"):
+    """First to a new process: the replay that it is to be."""
+
+    log: str
+    checkpoints: str
+    incident_id: str
+    start_ns: int
+    end_ns: int
+    speed: float
+    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+
+
+class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
+    """First to a new process: to work out what is known afterwards of an incident, and keep it."""
+
+    log: str
+    checkpoints: str
+    database: str
+    incident_id: str
+    opened_ns: int
+    closed_ns: int | None
+    late_data_ns: int
+    now_ns: int  # station time
+    memory_mb: int  # of its own, at most
+
+
+class Play(msgspec.Struct, frozen=True, tag="play"):
+    pass
+
+
+class Pause(msgspec.Struct, frozen=True, tag="pause"):
+    pass
+
+
+class Seek(msgspec.Struct, frozen=True, tag="seek"):
+    t_ns: int
+
+
+class SetSpeed(msgspec.Struct, frozen=True, tag="speed"):
+    speed: float
+
+
+class Photos(msgspec.Struct, frozen=True, tag="photos"):
+    """Where the console finds them, by person."""
+
+    urls: dict[str, str]
+
+
+class SnapshotRequest(msgspec.Struct, frozen=True, tag="snapshot"):
+    pass
+
+
+class DeltaFrame(msgspec.Struct, frozen=True, tag="delta"):
+    encoded: bytes  # as consoles get it
+    redrawn: tuple[str, ...]  # the units whose whole trail it has
+
+
+class SnapshotFrame(msgspec.Struct, frozen=True, tag="picture"):
+    encoded: bytes
+    trails: dict[str, bytes]  # by unit: its points, encoded
+    requested: bool  # else everybody begins again
+
+
+class ViewFrame(msgspec.Struct, frozen=True, tag="view"):
+    """Where the replay stands after so many commands; before what it describes is shown."""
+
+    view: ReplayView
+    commands: int
+
+
+class Damage(msgspec.Struct, frozen=True, tag="damage"):
+    """A part of the log cannot be read."""
+
+    what: str
+
+
+class Progress(msgspec.Struct, frozen=True, tag="progress"):
+    done: float
+
+
+class UnitTrails(msgspec.Struct, frozen=True, tag="trails"):
+    """Result that was not kept (``base_station.storage.db.smoothed.packed``)."""
+
+    unit_id: str
+    smoothed: bytes | None
+    raw: bytes | None
+
+
+class PostProcessingResultFrame(msgspec.Struct, frozen=True, tag="looked_back"):
+    """The last message, where all was worked out."""
+
+    made_ns: int
+    report: bytes
+    is_kept: bool
+
+
+class Failure(msgspec.Struct, frozen=True, tag="failure"):
+    """The last message: why there is no more, as a sentence for a person."""
+
+    reason: str
+    is_memory: bool  # there is not enough of it, nor would there be the next time
+
+
+Job = ReplayJob | PostProcessingJob
+Command = Play | Pause | Seek | SetSpeed | Photos | SnapshotRequest
+ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
+PostProcessingReport = Progress | UnitTrails | PostProcessingResultFrame | Damage | Failure
+
+
+class Line:
+    """One end of a stream of messages; ``send`` and ``hang_up`` from any thread, one reads."""
+
+    def __init__(self, end: socket.socket) -> None:
+        self._end = end
+        self._sending = Lock()
+
+    def send(self, message: Job | Command | ReplayReport | PostProcessingReport) -> None:
+        """Raises StoreError where the other end is gone."""
+        encoded = msgspec.msgpack.encode(message)
+        with self._sending:
+            try:
+                self._end.sendall(_LENGTH.pack(len(encoded)) + encoded)
+            except OSError as error:
+                raise StoreError(f"the other process has ended: {error}") from error
+
+    def has_news(self, timeout_s: float) -> bool:
+        """A message has come, or the other end is gone; waits for it."""
+        poll = select.poll()  # not select, which knows only the first 1,024 files of a program
+        poll.register(self._end, select.POLLIN)
+        return bool(poll.poll(1000.0 * timeout_s))
+
+    def receive(self) -> bytes | None:
+        """The next message, waiting for it; None: the other end is gone."""
+        length = self._bytes(_LENGTH.size)
+        return None if length is None else self._bytes(_LENGTH.unpack(length)[0])
+
+    def hang_up(self) -> None:
+        """Whoever reads at either end finds that the other one is gone."""
+        with suppress(OSError):  # it is
+            self._end.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """By who reads."""
+        self._end.close()
+
+    def _bytes(self, count: int) -> bytes | None:
+        found = bytearray(count)
+        view, begin = memoryview(found), 0
+        while begin < count:
+            try:
+                came = self._end.recv_into(view[begin:])
+            except OSError:
+                return None
+            if not came:
+                return None
+            begin += came
+        return bytes(found)
+
+
+def read_job(encoded: bytes) -> Job:
+    job: Job = msgspec.msgpack.decode(encoded, type=Job)
+    return job
+
+
+def read_command(encoded: bytes) -> Command:
+    command: Command = msgspec.msgpack.decode(encoded, type=Command)
+    return command
+
+
+def read_replay(encoded: bytes) -> ReplayReport:
+    report: ReplayReport = msgspec.msgpack.decode(encoded, type=ReplayReport)
+    return report
+
+
+def read_look_back(encoded: bytes) -> PostProcessingReport:
+    report: PostProcessingReport = msgspec.msgpack.decode(encoded, type=PostProcessingReport)
+    return report

@@ -1,0 +1,292 @@
+"""A past incident in a console, as it was: play, pause, seek, speed."""
+
+from __future__ import annotations
+
+import logging
+import math
+import threading
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from base_station.engine.console_publisher import ConsolePublisher
+from base_station.engine.ports import LiveSink, Trails
+from base_station.replay.playback import Archive, Playback
+from base_station.replay.unrecorded import RecordGap
+from base_station.views.units import PhotoUrls
+from base_station.views.wire import GapView, ReplayView, Snapshot
+from shared.clock import NS_PER_MS, NS_PER_S, Clock
+from shared.errors import UserError
+from shared.log_on_change import LogOnChange
+
+SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
+DELTA_S = 0.05
+LOOK_NS = 20 * NS_PER_MS  # of each turn goes into looking at the log for flaws
+WHOLE_NS = NS_PER_S  # live, consoles hear of the station and of trails that were filled as often
+GRACE_S = 2.0  # for its thread to end
+PAUSED_S = 1.0  # a console that hears nothing for longer believes its link dead
+MOST_FLAWS = 20  # that are said: with every change
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Window:
+    """What is replayed, in station time."""
+
+    incident_id: str
+    start_ns: int
+    end_ns: int
+
+    def place_of(self, t_ns: int) -> int:
+        """Before the beginning is the beginning; the last millisecond and what is behind it are
+        the end, for a console knows it to a millisecond.
+        """
+        is_end = t_ns // NS_PER_MS >= self.end_ns // NS_PER_MS
+        return self.end_ns if is_end else max(t_ns, self.start_ns)
+
+
+class ReplaySession:
+    """One replay with its thread; a ``LiveSource``.  Methods may be called from any thread."""
+
+    def __init__(
+        self,
+        archive: Archive,
+        window: Window,
+        speed: float,
+        sink: LiveSink,
+        photo_urls: PhotoUrls,
+        clock: Clock,
+    ) -> None:
+        """It plays from the window's beginning.  Raises UserError for an impossible speed.
+
+        The disk is left to the thread: while it hangs, whoever asks for a replay is not kept.
+        """
+        self._window = window
+        self._clock = clock
+        self._archive = archive
+        self._was_changed: Callable[[], bool]
+        self._looking = LogOnChange(_log, "what the log lacks cannot be seen")
+        self._trouble = LogOnChange(_log, "whether the past was changed cannot be seen")
+        self._playback: Playback
+        self._publisher = ConsolePublisher(archive.make_pipeline(None), sink, photo_urls)
+        self._looked_ns = self._whole_ns = clock.monotonic_ns()
+        self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
+        self._lock = threading.Lock()  # guards what follows
+        self._speed = checked_speed(speed)
+        self._playing = True
+        self._at_ns = window.start_ns
+        self._seek_ns: int | None = window.start_ns
+        self._seeking = False
+        self._gap: RecordGap | None = None  # in which it stands
+        self._moved_ns = clock.monotonic_ns()  # until when time has gone by for what is shown
+        self._news = threading.Event()
+        self._closed = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="replay", daemon=True)
+        self._thread.start()
+
+    # ---- from any thread
+
+    def play(self) -> None:
+        """At the end it begins again."""
+        with self._lock:
+            if self._at_ns >= self._window.end_ns:
+                self._seek_ns = self._window.start_ns
+            if not self._playing:
+                self._moved_ns = self._clock.monotonic_ns()
+            self._playing = True
+        self._news.set()
+
+    def pause(self) -> None:
+        with self._lock:
+            self._playing = False
+        self._news.set()
+
+    def seek(self, t_ns: int) -> None:
+        with self._lock:
+            self._seek_ns = self._at_ns = self._window.place_of(t_ns)
+        self._news.set()
+
+    def set_speed(self, speed: float) -> None:
+        """Raises UserError for an impossible speed."""
+        with self._lock:
+            self._speed = checked_speed(speed)
+        self._news.set()
+
+    def view(self) -> ReplayView:
+        with self._lock:
+            return ReplayView(
+                incident_id=self._window.incident_id,
+                start_ms=self._window.start_ns // NS_PER_MS,
+                end_ms=self._window.end_ns // NS_PER_MS,
+                at_ms=self._at_ns // NS_PER_MS,
+                speed=self._speed,
+                playing=self._playing,
+                seeking=self._seeking,
+                flaws=self._flaws(),
+                gap=None if self._gap is None else self._gap_view(self._gap),
+            )
+
+    def _gap_view(self, gap: RecordGap) -> GapView:
+        """As far as it is in the window."""
+        start_ns, end_ns = self._window.start_ns, self._window.end_ns
+        until_ns = end_ns if gap.until_ns is None else gap.until_ns
+        return GapView(
+            from_ms=max(gap.from_ns, start_ns) // NS_PER_MS,
+            until_ms=min(until_ns, end_ns) // NS_PER_MS,
+        )
+
+    def _flaws(self) -> tuple[str, ...]:
+        flaws = tuple(self._archive.flaws())
+        more = len(flaws) - MOST_FLAWS
+        if more <= 0:
+            return flaws
+        return (*flaws[:MOST_FLAWS], f"and {more} more, which the terminal names")
+
+    def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
+        self._asked.append(deliver)
+        self._news.set()
+
+    @property
+    def is_over(self) -> bool:
+        return self._closed.is_set()
+
+    def wait_until_over(self) -> None:
+        self._closed.wait()
+
+    def end(self) -> None:
+        """Its thread ends soon; one that waits for a disk that hangs, when that answers."""
+        self._closed.set()
+        self._news.set()
+
+    def close(self) -> None:
+        self.end()
+        self._thread.join(GRACE_S)
+
+    # ---- in the thread
+
+    def _run(self) -> None:
+        try:
+            self._go_on()
+        except Exception:  # noqa: BLE001  # whoever watches hears no more, and is told it ended
+            _log.exception("the replay of %s broke off", self._window.incident_id)
+            self._closed.set()
+
+    def _go_on(self) -> None:
+        self._open()
+        while not self._closed.is_set():
+            self._follow_changes()
+            self._follow_seek()
+            if self._closed.is_set():
+                return  # amid a seek the picture is not that of where it has got to
+            self._move()
+            if self._seek_ns is not None:
+                continue  # a picture now would be of another time than asked for
+            self._answer()
+            looks = self._look_for_flaws()
+            self._news.wait(DELTA_S if self._playing or looks else PAUSED_S)
+            self._news.clear()
+
+    def _look_for_flaws(self) -> bool:
+        """For a moment, for a seek passes over most of the log; whether more is to be looked at."""
+        until_ns = self._clock.monotonic_ns() + LOOK_NS
+        looks = True
+        with self._looking:
+            while looks and self._clock.monotonic_ns() < until_ns:
+                looks = self._archive.look()
+        return looks
+
+    def _open(self) -> None:
+        """The log as it is now, from its beginning."""
+        self._was_changed = self._archive.watch()
+        self._playback = Playback(self._archive)
+
+    def _follow_changes(self) -> None:
+        """Where somebody was forgotten since, it shows the past as the log has it now."""
+        now_ns = self._clock.monotonic_ns()
+        if now_ns - self._looked_ns < WHOLE_NS:
+            return
+        self._looked_ns = now_ns
+        if not self._is_changed():
+            return
+        if self._archive.own is not None:
+            self._archive.own.clear()  # states of a past that is another now
+        self._open()
+        with self._lock:
+            if self._seek_ns is None:
+                self._seek_ns = self._at_ns
+
+    def _is_changed(self) -> bool:
+        """What cannot be looked at now is looked at again."""
+        with self._trouble:
+            return self._was_changed()
+        return False
+
+    def _follow_seek(self) -> None:
+        with self._lock:
+            seek_ns, self._seek_ns = self._seek_ns, None
+        if seek_ns is None:
+            return
+        told_ns = self._clock.monotonic_ns()
+        for _ in self._playback.seek(seek_ns):
+            if self._closed.is_set() or self._seek_ns is not None:
+                return
+            if self._clock.monotonic_ns() - told_ns >= PAUSED_S * NS_PER_S:
+                told_ns = self._clock.monotonic_ns()
+                self._tell_of_seeking()
+        self._playback.show_unrecorded()
+        with self._lock:
+            self._at_ns, self._seeking, self._gap = seek_ns, False, self._playback.gap
+        self._publisher.use_pipeline(self._playback.pipeline)
+        self._publisher.reset(self.view())
+        with self._lock:
+            self._moved_ns = self._clock.monotonic_ns()  # the way there is not played
+
+    def _tell_of_seeking(self) -> None:
+        """A long way: consoles see that somebody is there, and where it goes."""
+        with self._lock:
+            self._seeking = True
+        self._publisher.publish_delta(replay=self.view())
+        self._answer()
+
+    def _answer(self) -> None:
+        while self._asked:
+            self._asked.popleft()(*self._publisher.snapshot(self.view()))
+
+    def _move(self) -> None:
+        """Let as much of the past go by as the clock and the speed say."""
+        with self._lock:
+            now_ns = self._clock.monotonic_ns()
+            elapsed_ns, self._moved_ns = now_ns - self._moved_ns, now_ns
+            if not self._playing or self._seek_ns is not None:
+                told = None
+            else:
+                told = min(self._at_ns + round(elapsed_ns * self._speed), self._window.end_ns)
+        if told is None:
+            self._tell()
+            return
+        began_ns = self._clock.monotonic_ns()
+        while (outputs := self._playback.advance(told)) is not None:
+            self._publisher.mark_changed(outputs)
+            if self._clock.monotonic_ns() - began_ns > DELTA_S * NS_PER_S:
+                told = self._playback.at_ns  # as fast as it goes
+                break
+        self._publisher.mark_changed(self._playback.show_unrecorded())
+        with self._lock:
+            if self._seek_ns is None:
+                self._at_ns, self._gap = told, self._playback.gap
+                self._playing = self._playing and told < self._window.end_ns
+        self._tell()
+
+    def _tell(self) -> None:
+        now_ns = self._clock.monotonic_ns()
+        whole = now_ns - self._whole_ns >= WHOLE_NS
+        if whole:
+            self._whole_ns = now_ns
+        self._publisher.publish_delta(whole, self.view())
+
+
+def checked_speed(speed: float) -> float:
+    if not (math.isfinite(speed) and SLOWEST <= speed <= FASTEST):
+        raise UserError(f"a replay runs at {SLOWEST} to {FASTEST:.0f} times real time, not {speed}")
+    return speed

@@ -1,0 +1,1 @@
+"""Certificate authority, and the bus router that enforces it."""

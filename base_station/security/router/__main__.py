@@ -1,0 +1,93 @@
+"""The router's own process: ``process`` starts it, reads what it prints, and writes to it."""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import closing, suppress
+from pathlib import Path
+from shutil import rmtree
+from threading import Event, Thread
+
+import msgspec
+
+from base_station.process.open_files import allow_many_files
+from base_station.security.router.process import FAILED, LINKS, READY, STATION, BanOrder
+from base_station.security.router.refusals import RefusalSummary
+from base_station.security.router.router import Router
+from shared.end_signals import told_to_end
+from shared.errors import MusterError
+from shared.log import set_up_logging
+from shared.zenoh_settings import LOCAL_LINK
+
+logger = logging.getLogger(__package__)
+
+_CHECK_EVERY_S = 1.0
+
+
+def run_router(
+    data: Path, listen: tuple[str, ...], links: tuple[str, ...], station: tuple[str, ...]
+) -> int:
+    """Until a signal comes or standard input ends, which it does when the parent dies.
+
+    Tells the parent on standard output whether it is open.  Gives the exit code.
+    """
+    set_up_logging()
+    allow_many_files()
+    stop = told_to_end()
+    ban: list[Callable[[str, float], None]] = []  # once the router is open
+    Thread(target=_read_input, args=(stop, ban, station), daemon=True).start()
+    try:
+        router = Router(data, listen, links, station)
+    except MusterError as error:
+        _write_to_parent(f"{FAILED}{error}")
+        return 2
+    _write_to_parent(READY)
+    with closing(router):
+        try:
+            ban.append(router.ban)
+            refused = RefusalSummary()
+            while not stop.wait(_CHECK_EVERY_S):
+                router.refresh()
+                if router.refused() != refused:
+                    refused = router.refused()
+                    _write_to_parent(msgspec.json.encode(refused).decode())
+        except MusterError as error:
+            logger.error("%s", error)
+            return 2
+    return 0
+
+
+def _write_to_parent(line: str) -> None:
+    """One that was killed meanwhile is told nothing, and has ended the input too."""
+    with suppress(BrokenPipeError):
+        # Not print: what it could not say it would try to say again as the program ends.
+        os.write(sys.stdout.fileno(), f"{line}\n".encode())
+
+
+def _read_input(
+    stop: Event, ban: Sequence[Callable[[str, float], None]], station: tuple[str, ...]
+) -> None:
+    """Orders, a line each, until the end of input: the parent is gone, and so is what only it
+    would have removed.
+    """
+    rest = b""
+    # Not sys.stdin: its lock, held while it reads, would abort a program that ends meanwhile.
+    while read := os.read(sys.stdin.fileno(), 4096):
+        *lines, rest = (rest + read).split(b"\n")
+        for line in lines:
+            order = msgspec.json.decode(line, type=BanOrder)
+            for one in ban:
+                one(order.sender_id, order.seconds)
+    for endpoint in station:
+        rmtree(Path(endpoint.removeprefix(f"{LOCAL_LINK}/")).parent, ignore_errors=True)
+    stop.set()
+
+
+if __name__ == "__main__":
+    ends, _, own = " ".join(sys.argv[2:]).partition(STATION)
+    listening, _, linking = ends.partition(LINKS)
+    joined = (own.strip(),) if own else ()
+    sys.exit(run_router(Path(sys.argv[1]), (*listening.split(),), (*linking.split(),), joined))

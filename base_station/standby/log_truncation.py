@@ -1,0 +1,128 @@
+"""Cuts a log where two stations parted; what stood behind it is kept beside, never deleted.
+
+DATA/apart/TIME-EVENTS-NUMBER/*.mcap    whole segments, of which what stands behind the place counts
+DATA/apart/TIME-EVENTS-NUMBER.told/     the same, when the active station has taken what it lacked
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+from collections.abc import Iterator
+from itertools import dropwhile
+from pathlib import Path
+
+from base_station.core.log_position import START, LogPosition, Record, events_after, is_event
+from base_station.storage.data_folder import DataFolder
+from shared.durable_names import sync_folder
+from shared.errors import LogError
+from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, read_log, segment_paths
+from shared.own_files import make_folder, read_own, write_own
+
+APART = "apart"
+TOLD = ".told"  # of a part's name
+_ONE_SEGMENT = SegmentPolicy(segment_s=1e9, index_entries_max=2**31)
+
+
+def set_aside(folder: DataFolder, place: LogPosition) -> None:
+    """Leave in the log what stands up to ``place``.  No station may be running on the folder.
+
+    Interrupted, it leaves a log that ends earlier, which the standby fetches again.
+    """
+    scratch = folder.path / "log.part"
+    shutil.rmtree(scratch, ignore_errors=True)
+    try:
+        apart = _new_part(folder.path, place)
+        moved = list(_segments_at_or_behind(folder.log, place))
+        kept = _kept(moved, place)
+        writer = SegmentWriter(scratch, _ONE_SEGMENT)
+        for record in kept:
+            writer.write(*record)
+        writer.close()
+        if writer.problem:
+            raise LogError(writer.problem)
+        for path in reversed(moved):
+            _move(path, apart / path.name)
+        for path in segment_paths(scratch):
+            _move(path, folder.log / moved[0].name)
+        scratch.rmdir()
+    except OSError as error:
+        raise LogError(f"the log cannot be cut ({error}): free or mend the disk") from error
+    for path in folder.checkpoints.glob("*.checkpoint"):
+        if int(path.stem) >= place.t_ns:
+            path.unlink()
+
+
+def _move(path: Path, target: Path) -> None:
+    """Whole at the one place or the other; the log may be on a disk of its own."""
+    try:
+        path.rename(target)
+        return
+    except OSError as error:
+        if error.errno != errno.EXDEV:
+            raise
+    copy = target.with_name(target.name + ".part")
+    try:
+        with read_own(path) as there, write_own(copy, 0o640) as here:
+            shutil.copyfileobj(there, here)
+            here.flush()
+            os.fsync(here.fileno())
+        copy.rename(target)
+    except OSError:
+        copy.unlink(missing_ok=True)
+        raise
+    sync_folder(target.parent)
+    path.unlink()
+
+
+def parts(data: Path) -> list[str]:
+    """Names of what was set aside, and the active station has not heard of, oldest first."""
+    folder = data / APART
+    if not folder.is_dir():
+        return []
+    names = (path.name for path in folder.iterdir() if path.is_dir())
+    return sorted(name for name in names if not name.endswith(TOLD))
+
+
+def read_part(data: Path, name: str) -> Iterator[Record]:
+    """The events of one part, in order."""
+    t_ns, events, _ = name.split("-")
+    return events_after(LogPosition(int(t_ns), int(events)), read_log(data / APART / name))
+
+
+def mark_told(data: Path, name: str) -> None:
+    part = data / APART / name
+    part.rename(part.with_name(name + TOLD))
+
+
+def _new_part(data: Path, place: LogPosition) -> Path:
+    """A station may part from the other at one place more than once."""
+    number = 1
+    while any((data / APART).glob(f"{place.t_ns}-{place.events}-{number}*")):
+        number += 1
+    part = data / APART / f"{place.t_ns}-{place.events}-{number}"
+    make_folder(part)
+    return part
+
+
+def _segments_at_or_behind(log: Path, place: LogPosition) -> Iterator[Path]:
+    return dropwhile(lambda path: _end_ns(path) < place.t_ns, segment_paths(log))
+
+
+def _end_ns(path: Path) -> int:
+    with SegmentReader(path) as reader:
+        return reader.info().end_ns
+
+
+def _kept(paths: list[Path], place: LogPosition) -> Iterator[Record]:
+    """What stands up to the place, with what was decided from it."""
+    here = START
+    for path in paths:
+        with SegmentReader(path) as reader:
+            for t_ns, key, payload in reader.records(derived=True):
+                if is_event(key):
+                    here = here.next(t_ns)
+                    if here > place:
+                        return
+                yield t_ns, key, payload

@@ -1,0 +1,224 @@
+"""A station stands alone or is one of two; the composition root sees no difference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from base_station.api.ha_status import HaStatus
+from base_station.config import StandbyConfig
+from base_station.core.log_position import LogPosition
+from base_station.core.state import StationState
+from base_station.engine.feed import LiveFeed, LogFeed
+from base_station.engine.ports import Feed, Log, OperatorGate
+from base_station.engine.station_clock import SteadyClock
+from base_station.security.pki.folder import PkiFolder
+from base_station.standby.branch_merge import BranchMerge, PartServer
+from base_station.standby.ha_controller import HaController, HaDependencies
+from base_station.standby.log_repair import EventServer, LogFiles, LogRepair
+from base_station.standby.shared_log import SharedLog
+from base_station.standby.standby_feed import StandbyFeed
+from base_station.standby.sync_ack import LeaderOnlyGate
+from base_station.standby.table_replication import TableReplication, TableServer
+from base_station.storage.db.records import Records
+from base_station.storage.db.replicated_tables import ReplicatedTables
+from base_station.storage.integrity_checker import IntegrityChecker
+from shared.bus import Bus
+from shared.messages import STATION_ID
+from shared.worker import Worker
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What the rest of the station is made of."""
+
+    data: Path
+    bus: Bus
+    log: Log
+    disk: LogFeed
+    files: LogFiles
+    check: IntegrityChecker
+    live: LiveFeed
+    clock: SteadyClock
+    tables: ReplicatedTables
+    records: Records
+    pki: PkiFolder
+    on_people: Callable[[], None]  # people or photos may have changed
+    on_lead: Callable[[], None]
+    start_again: Callable[[LogPosition | None], None]
+    step_again: Callable[[int], None]  # the log up to this time, in which something was missing
+    forget: Callable[[str], None]  # "person ID" or "incident ID", as the active station has
+
+
+class PeerFeed(Feed, Protocol):
+    def offer(self, key: str, payload: bytes) -> None:
+        """What the bus calls."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class HaMode(Protocol):
+    """How a station stands to another one.  ``log`` and ``feed`` go to the drive."""
+
+    @property
+    def log(self) -> Log: ...
+
+    @property
+    def feed(self) -> PeerFeed: ...
+
+    @property
+    def leads(self) -> bool:
+        """Whether this station decides, commands and acknowledges."""
+        ...
+
+    @property
+    def ha_status(self) -> HaStatus | None:
+        """What the API knows of it."""
+        ...
+
+    def gate_to(self, drive: OperatorGate) -> OperatorGate:
+        """What stands before the drive."""
+        ...
+
+    def may_forget(self) -> bool:
+        """Whether units may forget what the report before the last one told of."""
+        ...
+
+    def note_report(self) -> None:
+        """The drive reports what it has of the units' messages."""
+        ...
+
+    def problems(self) -> tuple[str, ...]:
+        """Sentences for the console."""
+        ...
+
+    def begin(self, place: tuple[int, int], state: StationState) -> None:
+        """What the log says, before anything is added to it."""
+        ...
+
+    def start(self, gate: OperatorGate, closing: ExitStack) -> None:
+        """When the drive runs.  ``closing`` ends it."""
+        ...
+
+
+class Standalone:
+    """There is no other."""
+
+    leads = True
+    ha_status = None
+
+    def __init__(self, parts: Parts) -> None:
+        self.log = parts.log
+        self.feed = parts.live
+        self._on_lead = parts.on_lead
+
+    def gate_to(self, drive: OperatorGate) -> OperatorGate:
+        return drive
+
+    def may_forget(self) -> bool:
+        return True
+
+    def note_report(self) -> None:
+        pass
+
+    def problems(self) -> tuple[str, ...]:
+        return ()
+
+    def begin(self, place: tuple[int, int], state: StationState) -> None:
+        pass
+
+    def start(self, gate: OperatorGate, closing: ExitStack) -> None:  # noqa: ARG002  # the port's
+        self._on_lead()
+
+
+class Paired:
+    """Leads, or follows the one that does."""
+
+    def __init__(self, config: StandbyConfig, parts: Parts) -> None:
+        self._config = config
+        self._parts = parts
+        self.log = SharedLog(parts.log, parts.clock)
+        self.feed = StandbyFeed(parts.live, parts.clock)
+        self._pair = HaController(
+            config,
+            HaDependencies(
+                bus=parts.bus,
+                log=self.log,
+                disk=parts.disk,
+                feed=self.feed,
+                clock=parts.clock,
+                on_lead=parts.on_lead,
+                start_again=parts.start_again,
+            ),
+        )
+
+    @property
+    def leads(self) -> bool:
+        return self._pair.leads
+
+    @property
+    def ha_status(self) -> HaStatus:
+        return self._pair
+
+    def gate_to(self, drive: OperatorGate) -> OperatorGate:
+        return LeaderOnlyGate(drive, self._pair.copy, self._pair.refusal)
+
+    def may_forget(self) -> bool:
+        return self.leads and self._pair.copy.previous_report_is_durable()
+
+    def note_report(self) -> None:
+        self._pair.copy.note_report_received()
+
+    def problems(self) -> tuple[str, ...]:
+        return self._pair.problems()
+
+    def begin(self, place: tuple[int, int], state: StationState) -> None:
+        self.log.begin(LogPosition(*place), state.boot_id, state.take_overs)
+
+    def start(self, gate: OperatorGate, closing: ExitStack) -> None:
+        parts, pair, name = self._parts, self._pair, self._config.name
+        for server in (
+            TableServer(name, parts.bus, parts.tables, parts.pki),
+            PartServer(name, parts.bus, parts.data),
+            EventServer(name, parts.bus, parts.disk),
+        ):
+            closing.callback(server.close)
+        copying = TableReplication(
+            parts.bus,
+            parts.tables,
+            parts.pki,
+            leader=pair.followed,
+            other=pair.other_there,
+            others_run=pair.others_run,
+            caught_up=lambda: pair.leads or pair.in_step,
+            on_people=parts.on_people,
+            on_forgotten=parts.forget,
+            on_dropped=lambda said: parts.records.audit(STATION_ID, "AccountsCopied", said),
+        )
+        merging = BranchMerge(
+            parts.bus,
+            gate,
+            parts.live.deliver,
+            lambda: not parts.live.late_waits and self.log.flush(),
+            lambda: pair.other_there() if pair.leads else None,
+        )
+        mending = LogRepair(parts.bus, parts.files, parts.check, pair.other_there, parts.step_again)
+        threads = (
+            pair,
+            Worker.periodic(
+                "replication", 1.0, copying.look, "the other station's accounts are not copied"
+            ),
+            Worker.periodic(
+                "mending", 5.0, mending.look, "the log is not mended from the other station"
+            ),
+            Worker.periodic(
+                "merging", 2.0, merging.look, "what the other one set aside is not taken"
+            ),
+        )
+        for thread in threads:
+            closing.callback(thread.close)
+            thread.start()

@@ -1,0 +1,107 @@
+"""What one of two stations hears: that the other is there, how far it has got, and units."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+from base_station.core.log_position import LogPosition
+from base_station.standby.election import Election
+from base_station.standby.protocol import PROTOCOL, PeerHeartbeat, ReplicationAck, key_of, unpack
+from shared.bus import Bus
+from shared.channels import STATIONS_ROOT, alive_key
+from shared.clock import NS_PER_S, Clock
+from shared.errors import WireError
+
+logger = logging.getLogger(__name__)
+
+_STRANGER_GONE_NS = 5 * NS_PER_S
+
+
+class PeerMonitor:
+    """From its making until it is closed; the bus's threads call it."""
+
+    def __init__(
+        self,
+        station: str,
+        run: int,
+        bus: Bus,
+        clock: Clock,
+        election: Election,
+        on_beat: Callable[[PeerHeartbeat], None],
+        on_have: Callable[[LogPosition], None],
+    ) -> None:
+        """``run``: of this station's program.  ``election`` hears of the other one, and
+        so does ``on_beat``; ``on_have`` is told how far a follower of this log has it.
+        """
+        self._station = station
+        self._run = run
+        self._clock = clock
+        self._election = election
+        self._on_beat = on_beat
+        self._on_have = on_have
+        self._units: set[str] = set()
+        self._stranger = ""
+        self._stranger_ns = 0  # when it was last heard
+        self._declared = [
+            bus.subscribe(f"{STATIONS_ROOT}/*/beat", self._hear_beat),
+            bus.subscribe(f"{STATIONS_ROOT}/*/have", self._hear_have),
+            bus.watch_alive(alive_key("*"), self._note_unit),
+            bus.watch_alive(f"{STATIONS_ROOT}/*/alive", self._note_station),
+        ]
+
+    @property
+    def units(self) -> int:
+        """How many are linked with either router, as far as is known here."""
+        return len(self._units)
+
+    @property
+    def stranger(self) -> str:
+        """Why a station that is heard is no partner, as a sentence for a person; else empty."""
+        heard = self._clock.monotonic_ns() - self._stranger_ns < _STRANGER_GONE_NS
+        return self._stranger if heard else ""
+
+    def close(self) -> None:
+        for one in self._declared:
+            one.close()
+
+    def _hear_beat(self, key: str, payload: bytes) -> None:
+        try:
+            beat = unpack(payload, PeerHeartbeat)
+        except WireError as error:
+            logger.warning("%s: %s", key, error)
+            return
+        if (beat.station, beat.run) == (self._station, self._run):
+            return
+        now_ns = self._clock.monotonic_ns()
+        if beat.station == self._station:
+            self._stranger_ns = now_ns
+            self._stranger = (
+                f"Two stations call themselves {beat.station}: give each a name of its own in "
+                "[standby]"
+            )
+        elif beat.protocol != PROTOCOL:
+            self._stranger_ns = now_ns
+            self._stranger = (
+                f"Station {beat.station} is of another version: the two cannot stand by for each "
+                "other until both are updated"
+            )
+        else:
+            self._election.hear(beat, now_ns)
+            self._on_beat(beat)
+
+    def _hear_have(self, key: str, payload: bytes) -> None:
+        try:
+            have = unpack(payload, ReplicationAck)
+        except WireError as error:
+            logger.warning("%s: %s", key, error)
+            return
+        if have.run == self._run:
+            self._on_have(have.place)
+
+    def _note_unit(self, key: str, there: bool) -> None:
+        (self._units.add if there else self._units.discard)(key)
+
+    def _note_station(self, key: str, there: bool) -> None:
+        if key != key_of(self._station, "alive"):
+            self._election.note_token(there=there)

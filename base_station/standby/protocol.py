@@ -1,0 +1,73 @@
+"""What two stations say to each other, and under which keys.
+
+Nobody but stations may say or hear anything under these keys (``security.pki.access``); they
+lie outside ``muster/v1``, so no subscription to that tree brings them.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, TypeVar
+
+import msgspec
+
+from base_station.core.log_position import LogPosition, Record
+from shared.channels import STATIONS_ROOT
+from shared.errors import WireError
+from shared.messages.station import TakeOver
+
+PROTOCOL = 2  # stations that differ in it do not pair
+
+Role = Literal["waiting", "standby", "active"]
+W = TypeVar("W")
+
+
+class PeerHeartbeat(msgspec.Struct, frozen=True):
+    """Said several times a second: who is there, and as what."""
+
+    station: str
+    protocol: int
+    role: Role
+    term: int  # of the last take-over in its log
+    place: LogPosition  # up to which it has the log
+    preferred: bool
+    run: int  # of its program; another number: it has started anew
+    units: int  # that are linked, with whichever router
+    url: str  # where consoles find it
+    t_ns: int = 0  # station time there; 0: it is of a version that does not say
+
+
+class ReplicationAck(msgspec.Struct, frozen=True):
+    """A standby has this on its disk."""
+
+    run: int  # of the active station whose log it follows
+    place: LogPosition
+
+
+class LogAncestry(msgspec.Struct, frozen=True):
+    """Where a station's log comes from."""
+
+    log_id: int  # the time of its first event; 0: it is empty
+    take_overs: tuple[TakeOver, ...]
+    place: LogPosition
+
+
+class Batch(msgspec.Struct, frozen=True):
+    """Events of the active station's log, in order."""
+
+    records: tuple[Record, ...]
+
+
+def key_of(station: str, what: str) -> str:
+    return f"{STATIONS_ROOT}/{station}/{what}"
+
+
+def pack(word: msgspec.Struct) -> bytes:
+    return msgspec.msgpack.encode(word)
+
+
+def unpack(payload: bytes, kind: type[W]) -> W:
+    """Raises WireError where the bytes are something else."""
+    try:
+        return msgspec.msgpack.decode(payload, type=kind)
+    except msgspec.MsgspecError as error:
+        raise WireError(f"another station says what makes no sense: {error}") from error

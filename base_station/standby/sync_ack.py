@@ -1,0 +1,154 @@
+"""What people do is confirmed to them when both stations have it, or after a moment without."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from threading import Lock
+from typing import NamedTuple
+
+from base_station.core.log_position import START, LogPosition
+from base_station.engine.ports import ActionResult, OperatorGate
+from shared.clock import NS_PER_S, Clock
+from shared.errors import StoreError
+from shared.messages.station import Action
+
+_BEHIND_NS = 2 * NS_PER_S
+_GOODBYE_NS = 2 * NS_PER_S
+_LOOK_S = 0.02
+_MOST_MARKS = 1000
+_GONE_NS = 3 * NS_PER_S  # nothing was heard from it
+
+
+class _Waiting(NamedTuple):
+    place: LogPosition
+    until_ns: int
+    done: ActionResult
+    told: Future[ActionResult]
+
+
+class ReplicaProgress:
+    """How far the standby has this station's log on its disk.  From any thread."""
+
+    def __init__(self, clock: Clock, place: Callable[[], LogPosition], confirm_s: float) -> None:
+        self._clock = clock
+        self._place = place
+        self._confirm_ns = round(confirm_s * NS_PER_S)
+        self._lock = Lock()
+        self._has = START
+        self._heard_ns: int | None = None
+        self._marks: deque[tuple[int, LogPosition]] = (
+            deque()
+        )  # of this log, not there yet; with times
+        self._waiting: deque[_Waiting] = deque()
+        self._reported = (START, START)  # places at the last two reports
+
+    def note(self, place: LogPosition) -> None:
+        """The standby says what it has; less than before where another machine took its place."""
+        with self._lock:
+            self._has = place
+            self._heard_ns = self._clock.monotonic_ns()
+            ready = self._take_ready()
+        _tell(ready)
+
+    def check(self) -> None:
+        """Several times a second."""
+        now_ns = self._clock.monotonic_ns()
+        with self._lock:
+            self._marks.append((now_ns, self._place()))
+            while self._marks and self._marks[0][1] <= self._has:
+                self._marks.popleft()
+            if len(self._marks) > _MOST_MARKS:  # nobody comes for hours: the first one matters
+                self._marks = deque(list(self._marks)[::2])
+            ready = self._take_ready()
+            alone = [one for one in self._waiting if now_ns >= one.until_ns]
+            for one in alone:
+                self._waiting.remove(one)
+        _tell([*ready, *alone])
+
+    @property
+    def is_there(self) -> bool:
+        """Whether a standby fetches this log."""
+        now_ns = self._clock.monotonic_ns()
+        return self._heard_ns is not None and now_ns - self._heard_ns < _GONE_NS
+
+    @property
+    def is_behind(self) -> bool:
+        with self._lock:
+            oldest_ns = self._marks[0][0] if self._marks else None
+        return oldest_ns is not None and self._clock.monotonic_ns() - oldest_ns > _BEHIND_NS
+
+    def note_report_received(self) -> None:
+        """The station says what it has of the units' messages."""
+        with self._lock:
+            self._reported = self._reported[1], self._place()
+
+    def previous_report_is_durable(self) -> bool:
+        """Whether what the report before the last one told of is on the standby's disk too."""
+        with self._lock:
+            return START < self._reported[0] <= self._has
+
+    def confirm(self, done: ActionResult, told: Future[ActionResult]) -> None:
+        """Hand on what was done when the standby has it too, or it takes too long."""
+        with self._lock:
+            place = self._place()
+            until_ns = self._clock.monotonic_ns() + self._confirm_ns
+            if self._has < place and self.is_there:
+                self._waiting.append(_Waiting(place, until_ns, done, told))
+                return
+        told.set_result(done)
+
+    def drain(self) -> None:
+        """Wait until the standby has all of it, where it answers."""
+        end_ns = self._clock.monotonic_ns() + _GOODBYE_NS
+        while self.is_there and self._has < self._place() and self._clock.monotonic_ns() < end_ns:
+            time.sleep(_LOOK_S)
+
+    def close(self) -> None:
+        """Nobody is left waiting."""
+        with self._lock:
+            left = list(self._waiting)
+            self._waiting.clear()
+        _tell(left)
+
+    def _take_ready(self) -> list[_Waiting]:
+        ready = [one for one in self._waiting if one.place <= self._has]
+        for one in ready:
+            self._waiting.remove(one)
+        return ready
+
+
+class LeaderOnlyGate:
+    """An ``OperatorGate``: people act at the station that leads, and at no other."""
+
+    def __init__(
+        self, gate: OperatorGate, copy: ReplicaProgress, refusal: Callable[[], str | None]
+    ) -> None:
+        """``refusal``: why nothing can be done here, as a sentence; None: it can."""
+        self._gate = gate
+        self._copy = copy
+        self._refusal = refusal
+
+    def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
+        told: Future[ActionResult] = Future()
+        refusal = self._refusal()
+        if refusal is not None:
+            told.set_exception(StoreError(refusal))
+            return told
+
+        def hand_on(done: Future[ActionResult]) -> None:
+            error = done.exception()
+            if error is not None:
+                told.set_exception(error)
+            else:
+                self._copy.confirm(done.result(), told)
+
+        self._gate.submit(by, action, action_id).add_done_callback(hand_on)
+        return told
+
+
+def _tell(ready: list[_Waiting]) -> None:
+    for one in ready:
+        one.told.set_result(one.done)

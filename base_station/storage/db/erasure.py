@@ -1,0 +1,205 @@
+"""Takes what is to be forgotten of people out of the tables; the audit keeps who did what."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import msgspec
+from sqlalchemy import ColumnElement, and_, delete, or_, select, update
+from sqlalchemy.orm import Session
+
+from base_station.core.erasure.erasure import FOREVER_NS, PLACE_ACTIONS, Erasure, Wearing
+from base_station.core.erasure.redaction import is_program_text, name_pattern, remaining_text
+from base_station.core.state import ERASED_TEXT
+from base_station.storage.db.models import (
+    Alarm,
+    AlarmTransition,
+    Assignment,
+    AuditEntry,
+    Incident,
+    IncidentTrails,
+    Person,
+    PostProcessingCache,
+    SmoothedIncident,
+    TrackPoint,
+    UnitStart,
+)
+from shared.messages.station import Assign, DoneApart, ResolveAlarm
+
+_APART, _RESOLVED, _ASSIGNED = (one.__name__ for one in (DoneApart, ResolveAlarm, Assign))
+_NAMED = AuditEntry.action.in_(("AddedPerson", "ChangedPerson"))  # "ID NAME" is their detail
+_NOBODY = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
+
+
+def forget_in(session: Session, erasure: Erasure) -> None:
+    """Every statement may run again."""
+    for one in erasure.wearings:
+        session.execute(delete(TrackPoint).where(_within(TrackPoint, one)))
+        session.execute(delete(UnitStart).where(_within(UnitStart, one)))
+    _looked_back(session, erasure)
+    _alarms(session, erasure)
+    _audit(session, erasure)
+    if erasure.person_id:
+        of_person = Assignment.person_id == erasure.person_id
+        session.execute(update(Assignment).where(of_person).values(_NOBODY))
+        session.execute(delete(Person).where(Person.person_id == erasure.person_id))
+    else:
+        _cut_out(session, erasure)
+
+
+def _looked_back(session: Session, erasure: Erasure) -> None:
+    """What was worked out of incidents in which anybody is forgotten; it can be again."""
+    spans = [(one.from_ns, one.until_ns) for one in erasure.wearings]
+    for incident in session.scalars(select(Incident)).all():
+        until_ns = incident.closed_ns or FOREVER_NS
+        if any(begin < until_ns and end > incident.opened_ns for begin, end in spans):
+            for table in (SmoothedIncident, IncidentTrails, PostProcessingCache):
+                session.execute(delete(table).where(table.incident_id == incident.incident_id))
+
+
+def known_names(session: Session, person_id: str) -> set[str]:
+    """How the tables call a person, now and before."""
+    names = set(session.scalars(select(Person.name).where(Person.person_id == person_id)))
+    names |= set(
+        session.scalars(select(Assignment.person_name).where(Assignment.person_id == person_id))
+    )
+    mine = AuditEntry.detail.startswith(f"{person_id} ", autoescape=True)
+    details = session.scalars(select(AuditEntry.detail).where(_NAMED, mine))
+    names |= {detail.removeprefix(f"{person_id} ") for detail in details}
+    return names - {ERASED_TEXT, ""}
+
+
+def ids_of(session: Session, name: str) -> set[str]:
+    """Who is called so, or was, whether or not they are on the roster still."""
+    ids = set(session.scalars(select(Person.person_id).where(Person.name == name)))
+    worn = Assignment.person_name == name
+    ids |= set(session.scalars(select(Assignment.person_id).where(worn)))
+    theirs = AuditEntry.detail.endswith(f" {name}", autoescape=True)
+    details = session.scalars(select(AuditEntry.detail).where(_NAMED, theirs))
+    return ids | {one.partition(" ")[0] for one in details if one.partition(" ")[2] == name}
+
+
+def _within(table: type[TrackPoint | UnitStart], one: Wearing) -> ColumnElement[bool]:
+    return and_(table.unit_id == one.unit_id, table.t_ns >= one.from_ns, table.t_ns < one.until_ns)
+
+
+def _alarms(session: Session, erasure: Erasure) -> None:
+    names = name_pattern(erasure.names)
+    for alarm in session.scalars(select(Alarm)):
+        covered = erasure.covers(alarm.unit_id, alarm.raised_ns)
+        if covered or erasure.is_about(
+            alarm.unit_id, alarm.raised_ns
+        ):  # what it said before may name others than what it says now
+            _rewrite_alarm(session, alarm, covered, names)
+
+
+def _rewrite_alarm(session: Session, alarm: Alarm, covered: bool, names: re.Pattern[str]) -> None:
+    changes = session.scalars(
+        select(AlarmTransition).where(AlarmTransition.alarm_id == alarm.alarm_id)
+    ).all()
+    rows: list[Alarm | AlarmTransition] = [alarm, *changes]
+    for row in rows:
+        row.text = ERASED_TEXT if covered else names.sub(ERASED_TEXT, row.text)
+        row.by = names.sub(ERASED_TEXT, row.by)
+
+
+def _audit(session: Session, erasure: Erasure) -> None:
+    """Names and places go; that it was done, when and by whom stays."""
+    names = name_pattern(erasure.names)
+    units = name_pattern(tuple(erasure.unit_ids))
+    inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
+    for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
+        entry.detail = _without_names(entry.detail, names)
+        if entry.action == _ASSIGNED:
+            entry.detail = _nobodys(entry.detail, erasure)
+        about = units.search(entry.detail) if entry.action in PLACE_ACTIONS else None
+        if about is not None:
+            entry.detail = ERASED_TEXT
+    for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _RESOLVED)):
+        if _is_about(entry, erasure):
+            entry.detail = _without_names(entry.detail, names)
+    for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _APART)):
+        entry.detail = _apart(entry, erasure, names)
+
+
+def _without_names(detail: str, names: re.Pattern[str]) -> str:
+    """Of an action it is JSON, where a quotation mark within a name is written in another way, and
+    a field may be called like somebody.
+    """
+    try:
+        said = msgspec.json.decode(detail)
+    except msgspec.DecodeError:
+        return names.sub(ERASED_TEXT, detail)
+    if not isinstance(said, dict):
+        return names.sub(ERASED_TEXT, detail)
+    left = _renamed(said, names)
+    return detail if left == said else msgspec.json.encode(left).decode()
+
+
+def _renamed(value: Any, names: re.Pattern[str]) -> Any:
+    match value:
+        case str():
+            return names.sub(ERASED_TEXT, value)
+        case list():
+            return [_renamed(one, names) for one in value]
+        case dict():
+            return {
+                field: one if is_program_text(field) else _renamed(one, names)
+                for field, one in value.items()
+            }
+        case _:
+            return value
+
+
+def _nobodys(detail: str, erasure: Erasure) -> str:
+    """Of who was given a unit: in a small station crew and role are as good as a name."""
+    try:
+        worn = msgspec.json.decode(detail, type=Assign)
+    except msgspec.DecodeError:  # nothing is left of it
+        return detail
+    if erasure.person_id not in ("", worn.person_id):
+        return detail
+    return msgspec.json.encode(msgspec.structs.replace(worn, **_NOBODY)).decode()
+
+
+def _is_about(entry: AuditEntry, erasure: Erasure) -> bool:
+    try:
+        noted = msgspec.json.decode(entry.detail, type=ResolveAlarm)
+    except msgspec.DecodeError:  # nothing is left of it
+        return False
+    return erasure.is_about_alarm(noted.alarm_id)
+
+
+def _apart(entry: AuditEntry, erasure: Erasure, names: re.Pattern[str]) -> str:
+    """What was done at the other station may have been written down long after it was done."""
+    try:
+        done = msgspec.json.decode(entry.detail, type=DoneApart)
+    except msgspec.DecodeError:  # nothing is left of it, or nobody knows what it says
+        return ERASED_TEXT
+    left = remaining_text(done, entry.t_ns, erasure, names)
+    return msgspec.json.encode(msgspec.structs.replace(done, what=left)).decode()
+
+
+def _cut_out(session: Session, erasure: Erasure) -> None:
+    """Nobody wears anything in the time of the incident."""
+    from_ns, until_ns = erasure.from_ns, erasure.until_ns
+    overlapping = select(Assignment).where(
+        Assignment.from_ns < until_ns,
+        or_(Assignment.until_ns.is_(None), Assignment.until_ns > from_ns),
+    )
+    for row in session.scalars(overlapping).all():
+        goes_on = row.until_ns is None or row.until_ns > until_ns
+        if goes_on and row.from_ns < from_ns:
+            columns = {
+                column.name: getattr(row, column.name) for column in Assignment.__table__.columns
+            }
+            after = {"action_id": f"{row.action_id}-after", "from_ns": until_ns}
+            session.add(Assignment(**(columns | after)))
+            row.until_ns = from_ns
+        elif goes_on:
+            row.from_ns = until_ns
+        elif row.from_ns < from_ns:
+            row.until_ns = from_ns
+        else:
+            session.delete(row)

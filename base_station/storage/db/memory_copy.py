@@ -1,0 +1,139 @@
+"""A copy of the station's database in memory, for as long as its disk takes nothing.
+
+What is changed in it meanwhile is noted transaction by transaction, and done again in the file when
+the disk takes something: what others have changed there since stays.
+"""
+
+from __future__ import annotations
+
+import logging
+import secrets
+import sqlite3
+from pathlib import Path
+
+from sqlalchemy import Engine, text
+from sqlalchemy.exc import SQLAlchemyError
+
+from base_station.storage.db.copying import copy_tables, reading_on_full_disk
+from base_station.storage.db.engines import BUSY_TIMEOUT_S, Change, memory_engine, writing
+from base_station.storage.db.migrate import migrate
+from base_station.storage.db.models import (
+    Base,
+    IncidentTrails,
+    PostProcessingCache,
+    SmoothedIncident,
+    TrackPoint,
+)
+from shared.errors import StoreError
+
+WHOLE_BYTES_MAX = 256_000_000  # of a larger file the tracks are left out
+_LARGE: tuple[type[Base], ...] = (TrackPoint, SmoothedIncident, IncidentTrails, PostProcessingCache)
+_WAITING_MAX = 20_000  # transactions; who logs in makes two
+
+_log = logging.getLogger(__name__)
+
+
+class MemoryCopy:
+    """Not thread-safe: one changes it at a time."""
+
+    def __init__(self, path: Path, *, is_open: bool) -> None:
+        """An empty one where there is no file.  ``is_open``: this process has that open.  Raises
+        StoreError where it cannot be read.
+        """
+        self.is_new = not path.exists() or path.stat().st_size == 0
+        self.lacks_tracks = False
+        self._path = path
+        self._name = f"file:/muster-{secrets.token_hex(8)}?vfs=memdb"
+        self._keeper = self._connect()  # the database is there for as long as one is connected
+        self.engine = memory_engine(self._connect)
+        self._waiting: list[list[Change]] = []
+        try:
+            if not self.is_new:
+                self._fill(is_open=is_open)
+            migrate(self.engine)
+        except (sqlite3.Error, OSError, SQLAlchemyError) as error:
+            self.close()
+            raise StoreError(f"{path} cannot be read as the station's database: {error}") from error
+        except StoreError:
+            self.close()
+            raise
+
+    @property
+    def waiting(self) -> int:
+        """Transactions."""
+        return len(self._waiting)
+
+    @property
+    def is_full(self) -> bool:
+        return len(self._waiting) >= _WAITING_MAX
+
+    def keep(self, changes: list[Change]) -> None:
+        """A transaction that has been committed here is to be done in the file, too."""
+        if changes:
+            self._waiting.append(changes)
+
+    def execute(self, changes: list[Change]) -> None:
+        """A transaction that the disk did not take.  Raises SQLAlchemyError or sqlite3.Error."""
+        with writing(self.engine, []).begin() as connection:
+            for change in changes:
+                change.execute(connection)
+
+    def write_to(self, engine: Engine) -> int:
+        """Do in the file what waits, all or nothing; how many transactions it refused, as something
+        else has been done there since.  Raises SQLAlchemyError or sqlite3.Error.
+        """
+        refused = 0
+        with writing(engine, []).begin() as connection:
+            # That it takes a byte is to be known also where nothing waits.
+            connection.execute(text("PRAGMA user_version = 0"))
+            for changes in self._waiting:
+                try:
+                    with connection.begin_nested():
+                        for change in changes:
+                            change.execute(connection)
+                except (sqlite3.IntegrityError, SQLAlchemyError) as error:
+                    cause = getattr(error, "orig", None) or error
+                    if not isinstance(cause, sqlite3.IntegrityError):
+                        raise
+                    refused += 1
+                    _log.warning("what was changed meanwhile does not fit the database: %s", error)
+        self._waiting.clear()
+        return refused
+
+    def write_whole(self, target: sqlite3.Connection) -> None:
+        """Raises sqlite3.Error where the disk does not take it."""
+        self._keeper.backup(target)
+
+    def note_written(self) -> None:
+        """There is a file, which has all of it."""
+        self.is_new = False
+        self._waiting.clear()
+
+    def close(self) -> None:
+        self.engine.dispose()
+        self._keeper.close()
+
+    def _connect(self) -> sqlite3.Connection:
+        return sqlite3.connect(
+            self._name, uri=True, timeout=BUSY_TIMEOUT_S, check_same_thread=False
+        )
+
+    def _fill(self, *, is_open: bool) -> None:
+        with reading_on_full_disk(self._path, is_open=is_open) as reading:
+            pages = reading.execute("PRAGMA page_count").fetchone()[0]
+            page_bytes = reading.execute("PRAGMA page_size").fetchone()[0]
+            if pages * page_bytes <= WHOLE_BYTES_MAX:
+                # Not as a backup, in which it would say of itself that it has a WAL.
+                reading.execute("VACUUM INTO ?", (self._name,))
+                return
+            self.lacks_tracks = True
+            left_out = {table.__tablename__ for table in _LARGE}
+            made = reading.execute(
+                "SELECT type, name, sql FROM sqlite_master "
+                "WHERE sql IS NOT NULL AND name NOT LIKE 'sqlite_%' ORDER BY type = 'index'"
+            ).fetchall()
+            for _, _, sql in made:
+                self._keeper.execute(sql)
+            tables = [name for kind, name, _ in made if kind == "table" and name not in left_out]
+            if unreadable := copy_tables(reading, self._keeper, tables):
+                raise sqlite3.DatabaseError(f"{', '.join(unreadable)} cannot be read")

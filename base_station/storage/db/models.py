@@ -1,0 +1,317 @@
+"""The tables.  Times are integer nanoseconds since 1970 (station time), hashes are hex.
+
+A table is either a *projection*, which ``muster base rebuild`` makes again from the log, or
+*kept*: people, users, sessions, tokens, what is over of these, and the audit are nowhere else.
+"""
+
+from __future__ import annotations
+
+from sqlalchemy import BigInteger, ForeignKey, Index, Integer, LargeBinary, MetaData
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+
+class Base(DeclarativeBase):
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(column_0_label)s",
+            "uq": "uq_%(table_name)s_%(column_0_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_name)s_%(referred_table_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {int: BigInteger}  # noqa: RUF012  # SQLAlchemy's way
+
+
+# ---- kept
+
+
+class BaseMap(Base):
+    """A picture of the ground about the site, and where its corners are; there is one or none."""
+
+    __tablename__ = "base_map"
+
+    image_hash: Mapped[str] = mapped_column(primary_key=True)
+    image: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)  # WebP
+    corners: Mapped[bytes]  # JSON of ``base_station.site.base_map.Corners``
+
+
+class Person(Base):
+    __tablename__ = "people"
+
+    person_id: Mapped[str] = mapped_column(primary_key=True)
+    name: Mapped[str]
+    crew: Mapped[str]
+    role: Mapped[str]
+    created_ns: Mapped[int]
+    photo: Mapped[bytes | None] = mapped_column(LargeBinary, deferred=True)  # JPEG
+    photo_hash: Mapped[str | None]
+
+
+class User(Base):
+    __tablename__ = "users"
+
+    username: Mapped[str] = mapped_column(primary_key=True)
+    password_hash: Mapped[str]
+    role: Mapped[str]
+    created_ns: Mapped[int]  # with the name: who it is; somebody else may have the name later
+    generation: Mapped[int] = mapped_column(server_default="0")  # of logins; older ones are over
+    role_ns: Mapped[int] = mapped_column(server_default="0")  # since when; of two stations' the
+    password_ns: Mapped[int] = mapped_column(server_default="0")  # later holds
+
+
+class LoginSession(Base):
+    __tablename__ = "sessions"
+
+    token_hash: Mapped[str] = mapped_column(primary_key=True)  # SHA-256 of the cookie
+    username: Mapped[str] = mapped_column(ForeignKey("users.username", ondelete="CASCADE"))
+    created_ns: Mapped[int]
+    expires_ns: Mapped[int]
+    generation: Mapped[int] = mapped_column(server_default="0")  # its user's when it began
+
+
+class LoginTransferTicket(Base):
+    """Whoever shows it goes on at the other station as whom a session is for; once."""
+
+    __tablename__ = "hand_overs"
+
+    ticket_hash: Mapped[str] = mapped_column(primary_key=True)  # SHA-256
+    session_hash: Mapped[str] = mapped_column(ForeignKey("sessions.token_hash", ondelete="CASCADE"))
+    expires_ns: Mapped[int]
+
+
+class ApiToken(Base):
+    __tablename__ = "api_tokens"
+
+    token_id: Mapped[str] = mapped_column(primary_key=True)
+    token_hash: Mapped[str] = mapped_column(unique=True)  # SHA-256 of the token
+    username: Mapped[str] = mapped_column(ForeignKey("users.username", ondelete="CASCADE"))
+    name: Mapped[str]
+    role: Mapped[str]  # at most that of its owner
+    scopes: Mapped[str] = mapped_column(server_default="")  # words with spaces; empty: all
+    created_ns: Mapped[int]
+    expires_ns: Mapped[int | None]
+
+
+class Tombstone(Base):
+    """What was taken away for good (``tombstones``): a station that did not hear of it
+    when it was done does not bring it back.
+    """
+
+    __tablename__ = "ended"
+
+    what: Mapped[str] = mapped_column(primary_key=True)
+    until_ns: Mapped[int | None]  # by itself it would have ended then; None: never
+
+
+class AuditEntry(Base):
+    """Who did what; an entry of an operator's action carries the action's own id."""
+
+    __tablename__ = "audit"
+    __table_args__ = {"sqlite_autoincrement": True}  # noqa: RUF012  # SQLAlchemy's way
+
+    # In the order in which this station got to know; the other station's clock may be another.
+    number: Mapped[int] = mapped_column(Integer, primary_key=True)
+    entry_id: Mapped[str] = mapped_column(unique=True)
+    t_ns: Mapped[int] = mapped_column(index=True)
+    by: Mapped[str]
+    action: Mapped[str]
+    detail: Mapped[str]
+
+
+# ---- projections of the log
+
+
+class Unit(Base):
+    """A wearable that registered or was heard."""
+
+    __tablename__ = "units"
+
+    unit_id: Mapped[str] = mapped_column(primary_key=True)
+    label: Mapped[str]
+    registered_ns: Mapped[int | None]  # None: heard, but not ours
+    last_heard_ns: Mapped[int | None]
+    software_version: Mapped[str]
+    source: Mapped[str]
+    sensor_name: Mapped[str]
+    tracker: Mapped[str]
+    calibration: Mapped[str]
+    has_gps: Mapped[bool]
+
+
+class Incident(Base):
+    __tablename__ = "incidents"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    name: Mapped[str]
+    opened_ns: Mapped[int]
+    opened_by: Mapped[str]
+    closed_ns: Mapped[int | None]
+    closed_by: Mapped[str]
+    # station time of the newest data that came after the end
+    late_data_ns: Mapped[int] = mapped_column("news_ns", server_default="0")
+
+
+class Assignment(Base):
+    """Who wore which unit, from when until when; names as they were then."""
+
+    __tablename__ = "assignments"
+    __table_args__ = (Index("ix_assignments_unit_id_from_ns", "unit_id", "from_ns"),)
+
+    action_id: Mapped[str] = mapped_column(primary_key=True)
+    unit_id: Mapped[str]
+    person_id: Mapped[str]
+    person_name: Mapped[str]
+    crew: Mapped[str]
+    role: Mapped[str]
+    from_ns: Mapped[int]
+    until_ns: Mapped[int | None]
+
+
+class Alarm(Base):
+    """An alarm as it stands."""
+
+    __tablename__ = "alarms"
+
+    alarm_id: Mapped[str] = mapped_column(primary_key=True)
+    rule: Mapped[str]
+    unit_id: Mapped[str]
+    priority: Mapped[int]
+    state: Mapped[str]
+    level: Mapped[str]
+    text: Mapped[str]
+    by: Mapped[str]
+    raised_ns: Mapped[int] = mapped_column(index=True)
+    last_raised_ns: Mapped[int] = mapped_column(server_default="0")  # at first, or anew
+    changed_ns: Mapped[int]
+
+
+class AlarmTransition(Base):
+    """One change in the life of an alarm."""
+
+    __tablename__ = "alarm_changes"
+
+    alarm_id: Mapped[str] = mapped_column(primary_key=True)
+    t_ns: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    state: Mapped[str] = mapped_column(primary_key=True)
+    level: Mapped[str] = mapped_column(primary_key=True)
+    text: Mapped[str]
+    by: Mapped[str]
+
+
+class TrackPoint(Base):
+    """Where a unit was, at most once a second; NED metres about the site anchor."""
+
+    __tablename__ = "tracks"
+
+    unit_id: Mapped[str] = mapped_column(primary_key=True)
+    t_s: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)  # whole seconds
+    t_ns: Mapped[int]
+    north_m: Mapped[float]
+    east_m: Mapped[float]
+    down_m: Mapped[float]
+    std_north_m: Mapped[float]
+    std_east_m: Mapped[float]
+    std_down_m: Mapped[float]
+    heading_rad: Mapped[float]
+    floor: Mapped[int | None]
+    quality: Mapped[str]
+
+
+class Anchor(Base):
+    """Where the incident frame lay on the Earth from then on."""
+
+    __tablename__ = "anchors"
+
+    action_id: Mapped[str] = mapped_column(primary_key=True)
+    t_ns: Mapped[int] = mapped_column(index=True)
+    lat_deg: Mapped[float]
+    lon_deg: Mapped[float]
+    height_m: Mapped[float]
+    plan_rotation_rad: Mapped[float]
+
+
+class Plan(Base):
+    """The building's plan from then on, as site GeoJSON."""
+
+    __tablename__ = "plans"
+
+    action_id: Mapped[str] = mapped_column(primary_key=True)
+    t_ns: Mapped[int] = mapped_column(index=True)
+    geojson: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)
+
+
+class UnitStart(Base):
+    """Where a unit's own frame began, as a person said."""
+
+    __tablename__ = "starts"
+
+    action_id: Mapped[str] = mapped_column(primary_key=True)
+    t_ns: Mapped[int]
+    unit_id: Mapped[str] = mapped_column(index=True)
+    north_m: Mapped[float]
+    east_m: Mapped[float]
+    down_m: Mapped[float]
+    heading_rad: Mapped[float]
+
+
+class SmoothedIncident(Base):
+    """That trails were smoothed, and when."""
+
+    __tablename__ = "smoothed_incidents"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    smoother: Mapped[str]
+    made_ns: Mapped[int]
+    known_ns: Mapped[int] = mapped_column(server_default="0")  # with the news of until then
+
+
+class IncidentTrails(Base):
+    """Where one unit was, as it is known afterwards (``base_station.storage.db.smoothed``)."""
+
+    __tablename__ = "incident_trails"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    unit_id: Mapped[str] = mapped_column(primary_key=True)
+    smoothed: Mapped[bytes | None] = mapped_column(LargeBinary)  # None: there is none
+    raw: Mapped[bytes | None] = mapped_column(LargeBinary)  # by the unit's own path alone
+
+
+class PostProcessingCache(Base):
+    """The assessment that was worked out once of a closed incident; msgpack of
+    ``base_station.replay.assessment.report``.
+    """
+
+    __tablename__ = "looked_back"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    report: Mapped[bytes | None] = mapped_column(LargeBinary)  # None: not assessed yet
+
+
+class LogSegment(Base):
+    """One file of the log."""
+
+    __tablename__ = "log_segments"
+
+    name: Mapped[str] = mapped_column(primary_key=True)
+    first_ns: Mapped[int]
+    last_ns: Mapped[int]
+    messages: Mapped[int]
+    size_bytes: Mapped[int]
+    note: Mapped[str]  # what recovery had to say; empty: nothing
+
+
+PROJECTIONS: tuple[type[Base], ...] = (
+    Unit,
+    Incident,
+    Assignment,
+    Alarm,
+    AlarmTransition,
+    TrackPoint,
+    Anchor,
+    Plan,
+    UnitStart,
+    SmoothedIncident,
+    IncidentTrails,
+    PostProcessingCache,
+    LogSegment,
+)

@@ -1,0 +1,251 @@
+"""What one projection changes in the tables.  Every statement may run again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import msgspec
+from sqlalchemy import ColumnElement, func, select, update
+from sqlalchemy.dialects.sqlite import Insert, insert
+from sqlalchemy.orm import Session
+
+from base_station.storage.db.models import (
+    Alarm,
+    AlarmTransition,
+    Anchor,
+    Assignment,
+    AuditEntry,
+    Incident,
+    Plan,
+    TrackPoint,
+    Unit,
+    UnitStart,
+)
+from base_station.storage.projection import Projection
+from shared.clock import NS_PER_S
+from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
+from shared.messages.pins import RemovePin, SetMeeting, SetPin, StartTogether
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    Assign,
+    CloseIncident,
+    ForgetWearers,
+    OpenIncident,
+    RegisterUnit,
+    ReportProblem,
+    ResolveAlarm,
+    SetAnchor,
+    SetPlan,
+    SetStart,
+    Unassign,
+)
+
+_NEW_UNIT = {
+    "label": "",
+    "registered_ns": None,
+    "last_heard_ns": None,
+    "software_version": "",
+    "source": "",
+    "sensor_name": "",
+    "tracker": "",
+    "calibration": "",
+    "has_gps": False,
+}
+
+
+def project_into(session: Session, projections: Sequence[Projection]) -> int:
+    """Write projections in their order; gives how many places no table can hold.
+
+    Where units were and when they were heard makes up nearly all of it and depends on nothing
+    else, so that goes in at the end, in one go.
+    """
+    tracks: list[FusedPosition] = []
+    heard: dict[str, int] = {}
+    for projection in projections:
+        for action in projection.actions:
+            if not isinstance(action.action, ReportProblem):  # that is no person's doing
+                _audit(session, action.header.t_utc_ns, action)
+            _action(session, action.header.t_utc_ns, action)
+        for change in projection.alarms:
+            _alarm(session, change)
+        for description in projection.descriptions:
+            _unit(session, description.header.unit_id, **_described(description))
+        if projection.news:
+            touched = Incident.incident_id.in_(projection.news)
+            session.execute(update(Incident).where(touched).values(late_data_ns=projection.t_ns))
+        tracks += projection.tracks
+        heard.update(projection.heard)
+    left_out = _tracks(session, tracks)
+    _heard(session, heard)
+    return left_out
+
+
+def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
+    key = {"action_id": done.action_id, "t_ns": t_ns}
+    match done.action:
+        case OpenIncident(incident_id=incident_id, name=name):
+            _add(
+                session, Incident, incident_id=incident_id, name=name, opened_ns=t_ns,
+                opened_by=done.by, closed_ns=None, closed_by="",
+            )  # fmt: skip
+        case CloseIncident(incident_id=incident_id):
+            session.execute(
+                update(Incident)
+                .where(Incident.incident_id == incident_id, Incident.closed_ns.is_(None))
+                .values(closed_ns=t_ns, closed_by=done.by)
+            )
+        case Assign() as assign:
+            _end_assignments(session, t_ns, Assignment.unit_id == assign.unit_id)
+            _end_assignments(session, t_ns, Assignment.person_id == assign.person_id)
+            _add(
+                session, Assignment, action_id=done.action_id, from_ns=t_ns, until_ns=None,
+                **msgspec.structs.asdict(assign),
+            )  # fmt: skip
+        case Unassign(unit_id=unit_id):
+            _end_assignments(session, t_ns, Assignment.unit_id == unit_id)
+        case RegisterUnit(unit_id=unit_id, label=label):
+            _unit(session, unit_id, label=label, registered_ns=t_ns)
+        case SetAnchor() as anchor:
+            _add(session, Anchor, **key, **msgspec.structs.asdict(anchor))
+        case SetPlan(geojson=geojson):
+            _add(session, Plan, **key, geojson=geojson)
+        case SetStart() as start:
+            columns = {name: getattr(start, name) for name in _START_COLUMNS}
+            _add(session, UnitStart, **key, **columns)
+        case AcknowledgeAlarm() | ResolveAlarm() | ReportProblem():
+            pass  # what it changed of the alarms comes with the same step
+        case ForgetWearers():
+            pass  # what is stored was rewritten before
+        case _:
+            pass  # the audit and the log have it
+
+
+_START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
+
+
+def _audit(session: Session, t_ns: int, done: OperatorAction) -> None:
+    said = msgspec.structs.asdict(done.action)
+    match done.action:
+        case SetPlan(geojson=geojson):
+            said = {"bytes": len(geojson)}
+        case RemovePin(pin_id=pin_id):
+            said |= _whose_pin(session, pin_id)
+    _add(
+        session, AuditEntry, entry_id=done.action_id, t_ns=t_ns, by=done.by,
+        action=type(done.action).__name__, detail=msgspec.json.encode(said).decode(),
+    )  # fmt: skip
+
+
+def _whose_pin(session: Session, pin_id: str) -> dict[str, object]:
+    """The units that a pin was about, as the audit told when it was set; they may be forgotten."""
+    group, _, of_group = pin_id.partition(":")
+    if of_group:
+        return {"unit_id": of_group}
+    was_set = AuditEntry.action.in_([one.__name__ for one in (SetPin, StartTogether, SetMeeting)])
+    of_this = AuditEntry.detail.contains(f'"pin_id":"{group}"', autoescape=True)
+    newest = select(AuditEntry.detail).where(was_set, of_this).order_by(AuditEntry.number.desc())
+    detail = session.scalars(newest.limit(1)).first()
+    told = {} if detail is None else msgspec.json.decode(detail)
+    return {name: told[name] for name in ("unit_id", "unit_ids", "other_unit_id") if name in told}
+
+
+def _alarm(session: Session, change: AlarmChange) -> None:
+    t_ns, state = change.header.t_utc_ns, change.state.name.lower()
+    current = {
+        "rule": change.rule,
+        "unit_id": change.unit_id,
+        "priority": change.priority,
+        "state": state,
+        "level": change.level,
+        "text": change.text,
+        "by": change.by,
+        "raised_ns": change.raised_ns,
+        "last_raised_ns": change.last_raised_ns,
+        "changed_ns": t_ns,
+    }
+    session.execute(
+        insert(Alarm)
+        .values(alarm_id=change.alarm_id, **current)
+        .on_conflict_do_update(
+            index_elements=[Alarm.alarm_id], set_=current, where=Alarm.changed_ns <= t_ns
+        )
+    )
+    _add(
+        session, AlarmTransition, alarm_id=change.alarm_id, t_ns=t_ns, state=state,
+        level=change.level, text=change.text, by=change.by,
+    )  # fmt: skip
+
+
+def _tracks(session: Session, tracks: Sequence[FusedPosition]) -> int:
+    """Without what is no number, which no column takes; gives how many that were."""
+    all_rows = [
+        {
+            "unit_id": fused.unit_id,
+            "t_s": fused.t_meas_ns // NS_PER_S,
+            "t_ns": fused.t_meas_ns,
+            "north_m": fused.north_m,
+            "east_m": fused.east_m,
+            "down_m": fused.down_m,
+            "std_north_m": fused.std_north_m,
+            "std_east_m": fused.std_east_m,
+            "std_down_m": fused.std_down_m,
+            "heading_rad": fused.heading_rad,
+            "floor": fused.floor,
+            "quality": fused.quality.name.lower(),
+        }
+        for fused in tracks
+    ]
+    rows = [
+        row
+        for row in all_rows
+        if not any(isinstance(value, float) and math.isnan(value) for value in row.values())
+    ]
+    if rows:
+        _execute_many(session, insert(TrackPoint).on_conflict_do_nothing(), rows)
+    return len(all_rows) - len(rows)
+
+
+def _heard(session: Session, heard: Mapping[str, int]) -> None:
+    rows = [
+        {"unit_id": unit_id, **_NEW_UNIT, "last_heard_ns": t_ns} for unit_id, t_ns in heard.items()
+    ]
+    if rows:
+        statement = insert(Unit)
+        latest = func.max(func.coalesce(Unit.last_heard_ns, 0), statement.excluded.last_heard_ns)
+        update_it = statement.on_conflict_do_update(
+            index_elements=[Unit.unit_id], set_={"last_heard_ns": latest}
+        )
+        _execute_many(session, update_it, rows)
+
+
+def _execute_many(session: Session, statement: Insert, rows: Sequence[Mapping[str, Any]]) -> None:
+    """In the session's transaction, without making objects of the rows."""
+    session.connection().execute(statement, rows)
+
+
+def _described(description: UnitDescription) -> dict[str, object]:
+    names = ("software_version", "source", "sensor_name", "tracker", "calibration", "has_gps")
+    return {name: getattr(description, name) for name in names}
+
+
+def _unit(session: Session, unit_id: str, **columns: object) -> None:
+    session.execute(
+        insert(Unit)
+        .values(unit_id=unit_id, **(_NEW_UNIT | columns))
+        .on_conflict_do_update(index_elements=[Unit.unit_id], set_=columns)
+    )
+
+
+def _end_assignments(session: Session, t_ns: int, which: ColumnElement[bool]) -> None:
+    session.execute(
+        update(Assignment)
+        .where(which, Assignment.until_ns.is_(None), Assignment.from_ns < t_ns)
+        .values(until_ns=t_ns)
+    )
+
+
+def _add(session: Session, table: type, **columns: object) -> None:
+    """Insert unless it is there already."""
+    session.execute(insert(table).values(**columns).on_conflict_do_nothing())

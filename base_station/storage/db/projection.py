@@ -1,0 +1,187 @@
+"""Writes what the drive decided into the tables, in a thread of its own.
+
+The drive never waits for the database: projections queue up and go in together, one
+transaction every half second or when someone asks for them (``flush``).  While the disk takes
+nothing they go into the copy in memory and queue on: they go into the file when it does.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Sequence
+from itertools import islice, takewhile
+
+from sqlalchemy.exc import DataError, IntegrityError
+
+from base_station.storage.db.projecting import project_into
+from base_station.storage.db.store import IN_MEMORY, Store
+from base_station.storage.projection import Projection
+from shared.errors import StoreError
+from shared.worker import Worker
+
+PERIOD_S = 0.5
+BATCH = 2_000
+MAX_PENDING = 100_000  # about an hour of twenty units; past it the log alone knows
+
+_NO_NUMBER = "where somebody was is no number"
+
+logger = logging.getLogger(__name__)
+
+
+class SqlProjection:
+    """A ``base_station.engine.ports.ProjectionSink`` on the store."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+        self._pending: deque[Projection] = deque()
+        self._changed = threading.Condition()
+        self._taken = 0  # projections given to ``project`` so far
+        self._settled = 0  # of these, written or given up
+        self._in_memory = 0  # of those pending, the first ones, that are in the copy in memory
+        self._dropped = 0
+        self._wanted = False  # somebody waits in ``flush``
+        self._failure = ""
+        self._drop_reason = ""
+        self._failed_tries = 0
+        self._worker = Worker(
+            "sql-projection",
+            self._step,
+            "what was decided is not written into the tables",
+            retry_s=PERIOD_S,
+            first_after_s=PERIOD_S,
+            at_end=self._write_rest,
+        )
+        self._worker.start()
+
+    def project(self, projection: Projection) -> None:
+        with self._changed:
+            self._pending.append(projection)
+            self._taken += 1
+            if len(self._pending) > MAX_PENDING:
+                self._pending.popleft()
+                self._in_memory = max(self._in_memory - 1, 0)
+                self._dropped += 1
+                self._drop_reason = self._failure or self._store.problem
+                self._settled += 1
+
+    def problem(self) -> str:
+        with self._changed:
+            if self._dropped:
+                return (
+                    f"{self._dropped} changes did not get into the database "
+                    f"({self._drop_reason}); the log has them: run 'muster base rebuild' once the "
+                    "cause is gone"
+                )
+            return self._failure or self._store.problem
+
+    def flush(self, timeout_s: float = 5.0) -> bool:
+        """Wait until all that was projected before this call is in the tables; False where the
+        store does not take it.
+        """
+        if self._store.hangs():
+            return False
+        with self._changed:
+            goal = self._taken
+            # A try that is under way may have begun before this call: two tell.
+            given_up = self._failed_tries + 2
+            self._wanted = True
+            self._worker.wake()
+            self._changed.wait_for(
+                lambda: self._done >= goal or self._failed_tries >= given_up, timeout_s
+            )
+            return self._done >= goal
+
+    @property
+    def _done(self) -> int:
+        """Projections that are in the tables, or given up."""
+        return self._settled + self._in_memory
+
+    def close(self) -> None:
+        """Write what is left and end the thread."""
+        self._worker.close()
+
+    def _step(self) -> float:
+        """Write a batch; return the pause until the next one."""
+        with self._changed:
+            batch = self._next_batch()
+        if batch:
+            self._write(batch)
+        else:
+            self._store.look_at_disk()
+        with self._changed:
+            waits = len(self._pending) > self._in_memory
+            self._wanted = self._wanted and waits and not self._failure
+            return 0.0 if self._wanted else PERIOD_S
+
+    def _write_rest(self) -> None:
+        """Write what is left, for as long as the store takes it."""
+        self._step()
+        while len(self._pending) > self._in_memory and not self._failure:
+            self._step()
+
+    def _next_batch(self) -> tuple[Projection, ...]:
+        """The oldest that are not in the tables."""
+        if not self._store.in_memory:
+            self._in_memory = 0  # the file lacks what only the copy in memory had
+        first = self._in_memory
+        return tuple(islice(self._pending, first, first + BATCH))
+
+    def _write(self, batch: Sequence[Projection]) -> bool:
+        """False where the store does not take it now, and may later."""
+        given_up, left_out = "", 0
+        in_memory = self._store.in_memory
+        try:
+            with self._store.write(is_kept=False) as session:
+                left_out = project_into(session, batch)
+            in_memory = session.info[IN_MEMORY]
+        except Exception as error:
+            if isinstance(error, StoreError) and not _is_impossible(error):
+                self._note_failure(error)
+                return False
+            if len(batch) > 1:  # the others are to get in
+                return all(self._write([one]) for one in batch)
+            logger.exception("a projection cannot be written")
+            given_up = f"a mistake of this program, please report it: {error!r}"
+        if in_memory:
+            self._note_in_memory(batch)
+            return True
+        if left_out:
+            logger.error("%d places of units are no numbers", left_out)
+        self._settle(batch, given_up, left_out)
+        return True
+
+    def _note_in_memory(self, batch: Sequence[Projection]) -> None:
+        """They wait for the disk; what no table can hold is counted when that takes them."""
+        with self._changed:
+            self._failure = ""
+            done = {id(projection) for projection in batch}
+            following = islice(self._pending, self._in_memory, None)
+            self._in_memory += sum(1 for _ in takewhile(lambda one: id(one) in done, following))
+            self._changed.notify_all()
+
+    def _note_failure(self, error: StoreError) -> None:
+        with self._changed:
+            self._failure = str(error)
+            self._failed_tries += 1
+            self._changed.notify_all()
+
+    def _settle(self, batch: Sequence[Projection], given_up: str, left_out: int) -> None:
+        """Done with the batch: written, or given up for a reason; ``left_out``: places in it."""
+        with self._changed:
+            self._failure = ""
+            self._dropped += left_out
+            self._drop_reason = given_up or (_NO_NUMBER if left_out else self._drop_reason)
+            # The oldest may have been dropped meanwhile.
+            settled = {id(projection) for projection in batch}
+            while self._pending and id(self._pending[0]) in settled:
+                self._pending.popleft()
+                self._settled += 1
+                self._dropped += bool(given_up)
+            self._changed.notify_all()
+
+
+def _is_impossible(error: StoreError) -> bool:
+    """No table can ever hold it, as no number."""
+    return isinstance(error.__cause__, IntegrityError | DataError)

@@ -1,0 +1,238 @@
+"""What the projections are asked: incidents, tracks, alarms, the site, log segments, audit."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Collection, Iterable, Mapping, Sequence
+
+import msgspec
+from sqlalchemy import ColumnElement, delete, exists, func, or_, select
+from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy.orm import InstrumentedAttribute
+
+from base_station.fusion.lazy_mapping import LastValueMapping
+from base_station.storage.db import models
+from base_station.storage.db.models import (
+    PROJECTIONS,
+    Alarm,
+    AlarmTransition,
+    AuditEntry,
+    Incident,
+    LogSegment,
+    Plan,
+    TrackPoint,
+    Unit,
+)
+from base_station.storage.db.pages import newest
+from base_station.storage.db.store import Store
+from shared.clock import NS_PER_S, Clock
+from shared.errors import UserError
+from shared.geo import Anchor
+
+FOREVER_NS = 2**63 - 1
+
+
+class Window(msgspec.Struct, frozen=True):
+    """From (included) until (left out), station time."""
+
+    from_ns: int
+    until_ns: int
+
+    def within(self, other: Window) -> Window:
+        return Window(max(self.from_ns, other.from_ns), min(self.until_ns, other.until_ns))
+
+
+EVER = Window(0, FOREVER_NS)
+
+
+class TrackSample(msgspec.Struct, frozen=True):
+    """One point of a track, NED metres about the site anchor; a long track has many."""
+
+    t_ns: int
+    north_m: float
+    east_m: float
+    down_m: float
+    std_north_m: float
+    std_east_m: float
+    std_down_m: float
+    heading_rad: float
+    floor: int | None
+    quality: str
+
+
+_TRACK_COLUMNS = tuple(getattr(TrackPoint, name) for name in TrackSample.__struct_fields__)
+
+
+def _points_of(
+    unit_id: str | InstrumentedAttribute[str], window: Window
+) -> tuple[ColumnElement[bool], ...]:
+    """Of one unit in the window; the whole seconds are the table's key, and come first."""
+    return (
+        TrackPoint.unit_id == unit_id,
+        TrackPoint.t_s >= window.from_ns // NS_PER_S,
+        TrackPoint.t_s <= window.until_ns // NS_PER_S,
+        TrackPoint.t_ns >= window.from_ns,
+        TrackPoint.t_ns < window.until_ns,
+    )
+
+
+def _in(
+    window: Window, t_ns: InstrumentedAttribute[int]
+) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+    return t_ns >= window.from_ns, t_ns < window.until_ns
+
+
+class Records:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Store, clock: Clock) -> None:
+        self._store = store
+        self._clock = clock
+
+    # ---- incidents
+
+    def incidents(self, opened: Window = EVER, limit: int | None = None) -> Sequence[Incident]:
+        """Those opened in the window, newest first (``pages.newest``)."""
+        wanted = select(Incident).where(*_in(opened, Incident.opened_ns))
+        with self._store.read() as session:
+            return newest(session, wanted, Incident.opened_ns, Incident.incident_id, limit)
+
+    def incident(self, incident_id: str) -> Incident | None:
+        with self._store.read() as session:
+            return session.get(Incident, incident_id)
+
+    def require_incident(self, incident_id: str) -> Incident:
+        """Raises UserError, which names those that are known."""
+        incident = self.incident(incident_id)
+        if incident is None:
+            known = ", ".join(f"{one.incident_id} ({one.name})" for one in self.incidents())
+            raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
+        return incident
+
+    # ---- tracks and alarms
+
+    def track_units(self, window: Window) -> Sequence[str]:
+        """Units that have a track in the window."""
+        with self._store.read() as session:
+            # Unit by unit, by the key: the table holds every second of every incident.
+            moved = exists().where(*_points_of(Unit.unit_id, window))
+            return session.scalars(select(Unit.unit_id).where(moved).order_by(Unit.unit_id)).all()
+
+    def track(self, unit_id: str, window: Window, every_s: int = 1) -> list[TrackSample]:
+        """By time; of every ``every_s`` seconds the first point."""
+        inside = _points_of(unit_id, window)
+        wanted = select(*_TRACK_COLUMNS).where(*inside).order_by(TrackPoint.t_s)
+        if every_s > 1:
+            first = select(func.min(TrackPoint.t_s)).where(*inside)
+            wanted = wanted.where(TrackPoint.t_s.in_(first.group_by(TrackPoint.t_s // every_s)))
+        with self._store.read() as session:
+            return [TrackSample(*row) for row in session.execute(wanted)]
+
+    def tracks_of(self, incident: Incident) -> Mapping[str, Sequence[TrackSample]]:
+        """What was shown of every unit while the incident was open; each is read when it is asked
+        for.
+        """
+        window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
+        return LastValueMapping(
+            self.track_units(window), lambda unit_id: self.track(unit_id, window)
+        )
+
+    def alarms(self, raised: Window, limit: int | None = None) -> Sequence[Alarm]:
+        """Those raised in the window, newest first (``pages.newest``)."""
+        wanted = select(Alarm).where(*_in(raised, Alarm.raised_ns))
+        with self._store.read() as session:
+            return newest(session, wanted, Alarm.raised_ns, Alarm.alarm_id, limit)
+
+    def alarm(self, alarm_id: str) -> Alarm | None:
+        with self._store.read() as session:
+            return session.get(Alarm, alarm_id)
+
+    def alarm_life(self, alarm_id: str) -> Sequence[AlarmTransition]:
+        return self.alarm_lives([alarm_id])[alarm_id]
+
+    def alarm_lives(self, alarm_ids: Collection[str]) -> dict[str, list[AlarmTransition]]:
+        """Of each, the changes in its life by time."""
+        lives: dict[str, list[AlarmTransition]] = {alarm_id: [] for alarm_id in alarm_ids}
+        wanted = (
+            select(AlarmTransition)
+            .where(AlarmTransition.alarm_id.in_(lives))
+            .order_by(AlarmTransition.t_ns)
+        )
+        with self._store.read() as session:
+            for change in session.scalars(wanted):
+                lives[change.alarm_id].append(change)
+        return lives
+
+    # ---- site
+
+    def anchor(self, until_ns: int = FOREVER_NS) -> Anchor | None:
+        """The last one set before ``until_ns``; without one, the first set later."""
+        with self._store.read() as session:
+            t_ns = models.Anchor.t_ns
+            before = select(models.Anchor).where(t_ns < until_ns).order_by(t_ns.desc()).limit(1)
+            first = select(models.Anchor).order_by(t_ns).limit(1)
+            row = session.scalars(before).first() or session.scalars(first).first()
+        if row is None:
+            return None
+        return Anchor(row.lat_deg, row.lon_deg, row.height_m, row.plan_rotation_rad)
+
+    def plan(self, until_ns: int = FOREVER_NS) -> bytes | None:
+        """The last one set before ``until_ns``, as site GeoJSON."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(Plan.geojson).where(Plan.t_ns < until_ns).order_by(Plan.t_ns.desc()).limit(1)
+            ).first()
+
+    # ---- log segments
+
+    def segments(self) -> Sequence[LogSegment]:
+        with self._store.read() as session:
+            return session.scalars(select(LogSegment).order_by(LogSegment.first_ns)).all()
+
+    def put_segments(self, segments: Iterable[LogSegment]) -> None:
+        with self._store.write() as session:
+            for segment in segments:
+                session.merge(segment)
+
+    def forget_projections(self) -> None:
+        """Empty every table that the log can make again."""
+        with self._store.write() as session:
+            for table in PROJECTIONS:
+                session.execute(delete(table))
+
+    # ---- audit
+
+    def audit(self, by: str, action: str, detail: str) -> None:
+        with self._store.write() as session:
+            session.execute(
+                insert(AuditEntry).values(
+                    entry_id=secrets.token_hex(16),
+                    t_ns=self._clock.utc_ns(),
+                    by=by,
+                    action=action,
+                    detail=detail,
+                )
+            )
+
+    def audit_once(self, by: str, done: Mapping[str, tuple[str, str]]) -> None:
+        """Action and detail by the id of their entry; what has an entry already keeps it."""
+        t_ns = self._clock.utc_ns()
+        rows = [
+            {"entry_id": entry_id, "t_ns": t_ns, "by": by, "action": action, "detail": detail}
+            for entry_id, (action, detail) in done.items()
+        ]
+        with self._store.write() as session:
+            session.execute(insert(AuditEntry).on_conflict_do_nothing(), rows)
+
+    def audited(self, beginnings: Iterable[str]) -> AuditEntry | None:
+        """The first entry whose id begins in one of these ways."""
+        begins = or_(*(AuditEntry.entry_id.startswith(one, autoescape=True) for one in beginnings))
+        wanted = select(AuditEntry).where(begins).order_by(AuditEntry.number).limit(1)
+        with self._store.read() as session:
+            return session.scalars(wanted).first()
+
+    def audit_entries(self, done: Window, limit: int | None = None) -> Sequence[AuditEntry]:
+        """What was done in the window, newest first (``pages.newest``)."""
+        wanted = select(AuditEntry).where(*_in(done, AuditEntry.t_ns))
+        with self._store.read() as session:
+            return newest(session, wanted, AuditEntry.t_ns, AuditEntry.number, limit)

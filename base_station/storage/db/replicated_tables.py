@@ -1,0 +1,275 @@
+"""What no log can make again, as it stands: users, sessions, tokens, people, the base map.
+
+A standby station copies it from the active one.  What either has taken away both take away
+(``tombstones``), and of a role and a password the later one holds.  Pictures travel by themselves,
+named by their hashes; the audit is only ever added to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import msgspec
+from sqlalchemy import delete, func, select
+from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy.orm import InstrumentedAttribute, Session
+
+from base_station.storage.db.models import (
+    ApiToken,
+    AuditEntry,
+    Base,
+    BaseMap,
+    LoginSession,
+    LoginTransferTicket,
+    Person,
+    Tombstone,
+    User,
+)
+from base_station.storage.db.store import Store
+from base_station.storage.db.tombstones import name_of
+
+Row = dict[str, Any]
+_PICTURES = frozenset({"photo", "image"})
+_NUMBER = "number"  # of an audit entry, at the station that is asked
+_ENDED: tuple[type[Base], ...] = (
+    LoginTransferTicket,
+    LoginSession,
+    ApiToken,
+    User,
+    Person,
+)  # parts first
+_SINCE = {"role_ns": 0, "password_ns": 0}  # as a station says that is of an earlier version
+
+
+class ReplicatedRows(msgspec.Struct, frozen=True):
+    """Rows by column; pictures only as their hashes."""
+
+    users: tuple[Row, ...]
+    tokens: tuple[Row, ...]
+    sessions: tuple[Row, ...]
+    hand_overs: tuple[Row, ...]
+    people: tuple[Row, ...]
+    base_map: tuple[Row, ...]  # one or none
+    ended: tuple[Row, ...] = ()
+
+
+class ReplicatedTables:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def read(self) -> ReplicatedRows:
+        with self._store.read() as session:
+            return ReplicatedRows(
+                users=_rows(session, User),
+                tokens=_rows(session, ApiToken),
+                sessions=_rows(session, LoginSession),
+                hand_overs=_rows(session, LoginTransferTicket),
+                people=_rows(session, Person),
+                base_map=_rows(session, BaseMap),
+                ended=_rows(session, Tombstone),
+            )
+
+    def copy(self, active: ReplicatedRows) -> tuple[str, ...]:
+        """Make these tables like the active station's.  Gives who and what was only here.
+
+        Sessions that began here stay; photos are kept where their hash is the same, and a base map
+        stays until the other one has come.  What was taken away here does not come back.
+        """
+        with self._store.write() as session:
+            _end_what_ended(session, active.ended)
+            theirs = _without_ended(session, active)
+            dropped = (
+                *_only_here(session, User.username, "user", theirs.users),
+                *_only_here(session, ApiToken.token_id, "token", theirs.tokens),
+                *_only_here(session, Person.person_id, "person", theirs.people),
+            )
+            users = tuple(_with_the_later(session, row) for row in theirs.users)
+            _replace(session, User, User.username, users)
+            _replace(session, ApiToken, ApiToken.token_id, theirs.tokens)
+            _put_people(session, theirs.people)
+            for table, rows in (
+                (LoginSession, theirs.sessions),
+                (LoginTransferTicket, theirs.hand_overs),
+            ):
+                if rows:
+                    session.execute(insert(table).on_conflict_do_nothing(), list(rows))
+            if not active.base_map:
+                session.execute(delete(BaseMap))
+        return dropped
+
+    def take_away(self, standby: ReplicatedRows) -> bool:
+        """What the standby took away while it could not be heard, and later roles and passwords;
+        nothing else of it.  Whether there was any.
+        """
+        with self._store.write() as session:
+            some = _end_what_ended(session, standby.ended)
+            for row in _without_ended(session, standby).users:
+                user = session.get(User, row["username"])
+                if user is None or user.created_ns != row["created_ns"]:
+                    continue
+                for name, value in _with_the_later(session, row).items():
+                    some = some or getattr(user, name) != value
+                    setattr(user, name, value)
+        return some
+
+    def missing_photos(self) -> Sequence[str]:
+        """Ids of people whose photo has not come yet."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(Person.person_id).where(
+                    Person.photo_hash.is_not(None), Person.photo.is_(None)
+                )
+            ).all()
+
+    def photo(self, person_id: str) -> bytes | None:
+        with self._store.read() as session:
+            return session.scalar(select(Person.photo).where(Person.person_id == person_id))
+
+    def put_photo(self, person_id: str, jpeg: bytes) -> None:
+        with self._store.write() as session:
+            person = session.get(Person, person_id)
+            if person is not None:
+                person.photo = jpeg
+
+    def base_map(self, image_hash: str) -> bytes | None:
+        with self._store.read() as session:
+            wanted = select(BaseMap.image).where(BaseMap.image_hash == image_hash)
+            return session.scalar(wanted)
+
+    def has_base_map(self, row: Row) -> bool:
+        with self._store.read() as session:
+            return row in _rows(session, BaseMap)
+
+    def put_base_map(self, row: Row, image: bytes) -> None:
+        with self._store.write() as session:
+            session.execute(delete(BaseMap))
+            session.add(BaseMap(**row, image=image))
+
+    def audit_behind(self, number: int, limit: int) -> list[Row]:
+        """Entries behind one, in the order in which this station got to know; from the first one
+        where it has none of that number.
+        """
+        with self._store.read() as session:
+            newest = session.scalar(select(func.max(AuditEntry.number))) or 0
+            entries = session.scalars(
+                select(AuditEntry)
+                .where(AuditEntry.number > (number if number <= newest else 0))
+                .order_by(AuditEntry.number)
+                .limit(limit)
+            )
+            return [_row(entry) for entry in entries]
+
+    def unknown_audit(self, rows: Sequence[Row]) -> list[Row]:
+        """Those that are not there yet."""
+        ids = [row["entry_id"] for row in rows]
+        with self._store.read() as session:
+            known = select(AuditEntry.entry_id).where(AuditEntry.entry_id.in_(ids))
+            there = set(session.scalars(known))
+        return [row for row in rows if row["entry_id"] not in there]
+
+    def add_audit(self, rows: Sequence[Row]) -> None:
+        """Those that are there already stay as they are."""
+        new = [{name: row[name] for name in row if name != _NUMBER} for row in rows]
+        if new:
+            with self._store.write() as session:
+                session.execute(insert(AuditEntry).on_conflict_do_nothing(), new)
+
+
+def _rows(session: Session, table: type[Base]) -> tuple[Row, ...]:
+    return tuple(map(_row, session.scalars(select(table).order_by(*table.__table__.primary_key))))
+
+
+def _row(entry: Base) -> Row:
+    names = (column.name for column in entry.__table__.columns if column.name not in _PICTURES)
+    return {name: getattr(entry, name) for name in names}
+
+
+def _end_what_ended(session: Session, ended: tuple[Row, ...]) -> bool:
+    """Whether anything was not known to be over."""
+    known = set(session.scalars(select(Tombstone.what)))
+    new = {row["what"]: row for row in ended if row["what"] not in known}
+    if not new:
+        return False
+    session.execute(insert(Tombstone), list(new.values()))
+    for table in _ENDED:
+        for row in session.scalars(select(table)).all():
+            if name_of(row) in new:
+                session.delete(row)
+        session.flush()
+    return True
+
+
+def _without_ended(session: Session, rows: ReplicatedRows) -> ReplicatedRows:
+    """What is not over by what this station knows, and belongs to nothing that is."""
+    ended = set(session.scalars(select(Tombstone.what)))
+
+    def left(table: type[Base], rows: tuple[Row, ...]) -> tuple[Row, ...]:
+        return tuple(row for row in rows if name_of(table(**row)) not in ended)
+
+    users = left(User, rows.users)
+    names = {row["username"] for row in users}
+    sessions = tuple(r for r in left(LoginSession, rows.sessions) if r["username"] in names)
+    secrets = {row["token_hash"] for row in sessions}
+    return msgspec.structs.replace(
+        rows,
+        users=users,
+        tokens=tuple(r for r in left(ApiToken, rows.tokens) if r["username"] in names),
+        sessions=sessions,
+        hand_overs=tuple(
+            r for r in left(LoginTransferTicket, rows.hand_overs) if r["session_hash"] in secrets
+        ),
+        people=left(Person, rows.people),
+    )
+
+
+def _with_the_later(session: Session, theirs: Row) -> Row:
+    """Another station's row of a user with the later role and password of the two.
+
+    Both stations come to the same, whichever hears of the other first.  Where the passwords
+    differ, no login with the one that no longer holds stays.
+    """
+    user = session.get(User, theirs["username"])
+    if user is None or user.created_ns != theirs["created_ns"]:
+        return theirs
+    mine, row = _row(user), _SINCE | theirs
+    if mine["role_ns"] > row["role_ns"]:
+        row |= {name: mine[name] for name in ("role", "role_ns")}
+    holds, other = (mine, row) if mine["password_ns"] > row["password_ns"] else (row, mine)
+    superseded = holds["password_hash"] != other["password_hash"]
+    return row | {
+        "password_hash": holds["password_hash"],
+        "password_ns": holds["password_ns"],
+        "generation": max(holds["generation"], other["generation"] + superseded),
+    }
+
+
+def _only_here(
+    session: Session, key: InstrumentedAttribute[str], what: str, rows: Iterable[Row]
+) -> Iterable[str]:
+    here = set(session.scalars(select(key)))
+    return (f"{what} {one}" for one in sorted(here - {row[key.key] for row in rows}))
+
+
+def _replace(
+    session: Session, table: type[Base], key: InstrumentedAttribute[str], rows: tuple[Row, ...]
+) -> None:
+    session.execute(delete(table).where(key.not_in([row[key.key] for row in rows])))
+    for row in rows:
+        statement = insert(table).values(**row)
+        session.execute(statement.on_conflict_do_update(index_elements=[key], set_=row))
+
+
+def _put_people(session: Session, rows: tuple[Row, ...]) -> None:
+    session.execute(delete(Person).where(Person.person_id.not_in([r["person_id"] for r in rows])))
+    for row in rows:
+        person = session.get(Person, row["person_id"])
+        if person is None:
+            session.add(Person(**row, photo=None))
+            continue
+        if person.photo_hash != row["photo_hash"]:
+            person.photo = None
+        for name, value in row.items():
+            setattr(person, name, value)

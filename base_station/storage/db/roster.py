@@ -1,0 +1,181 @@
+"""People, units and who wears which."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Collection, Sequence
+
+from sqlalchemy import ColumnElement, func, select
+from sqlalchemy.orm import Session
+
+from base_station.core.idempotency import KEY_DIGITS
+from base_station.storage.db.erasure import known_names
+from base_station.storage.db.models import Assignment, Person, Unit
+from base_station.storage.db.pages import newest
+from base_station.storage.db.store import Store
+from base_station.storage.db.tombstones import end
+from shared.clock import Clock
+from shared.errors import UserError
+
+
+class Roster:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Store, clock: Clock) -> None:
+        self._store = store
+        self._clock = clock
+        self._photo_hashes = self._load_photo_hashes()
+
+    def people(self) -> Sequence[Person]:
+        with self._store.read() as session:
+            by_name = select(Person).order_by(func.lower(Person.name), Person.person_id)
+            return session.scalars(by_name).all()
+
+    def person(self, person_id: str) -> Person | None:
+        with self._store.read() as session:
+            return session.get(Person, person_id)
+
+    def names_of(self, person_id: str) -> Collection[str]:
+        """How somebody is or was called, who may be in the roster no more."""
+        with self._store.read() as session:
+            return known_names(session, person_id)
+
+    def add_person(self, name: str, crew: str, role: str, row_id: str = "") -> Person:
+        """``row_id`` (``core.idempotency.row_id``): whoever was added with that key before is
+        the one.
+        """
+        person = Person(
+            person_id=row_id or secrets.token_hex(8),
+            name=name,
+            crew=crew,
+            role=role,
+            created_ns=self._clock.utc_ns(),
+            photo=None,
+            photo_hash=None,
+        )
+        with self._store.write() as session:
+            if row_id:
+                same_key = Person.person_id.startswith(row_id[:KEY_DIGITS])
+                before = session.scalars(select(Person).where(same_key)).first()
+                if before is not None:
+                    return before
+            session.add(person)
+        return person
+
+    def change_person(self, person_id: str, name: str, crew: str, role: str) -> Person | None:
+        with self._store.write() as session:
+            person = session.get(Person, person_id)
+            if person is not None:
+                person.name, person.crew, person.role = name, crew, role
+        return person
+
+    def remove_person(self, person_id: str) -> bool:
+        """UserError while the person wears a unit."""
+        with self._store.write() as session:
+            person = session.get(Person, person_id)
+            if person is None:
+                return False
+            worn = _worn_by(session, person_id)
+            if worn:
+                raise UserError(f"{person.name} wears {', '.join(worn)}; unassign that first")
+            end(session, person)
+        self._photo_hashes.pop(person_id, None)
+        return True
+
+    def set_photo(self, person_id: str, jpeg: bytes, photo_hash: str) -> Person | None:
+        with self._store.write() as session:
+            person = session.get(Person, person_id)
+            if person is None:
+                return None
+            person.photo, person.photo_hash = jpeg, photo_hash
+        self._photo_hashes[person_id] = photo_hash
+        return person
+
+    def forget_photo(self, person_id: str) -> None:
+        """The person is in the tables no more."""
+        self._photo_hashes.pop(person_id, None)
+
+    def photo(self, person_id: str) -> tuple[bytes, str] | None:
+        """JPEG and its hash."""
+        with self._store.read() as session:
+            wanted = select(Person.photo, Person.photo_hash).where(Person.person_id == person_id)
+            found = session.execute(wanted).one_or_none()
+        if found is None or found[0] is None or found[1] is None:
+            return None
+        return found[0], found[1]
+
+    def read_again(self) -> None:
+        """Somebody else has changed people and photos."""
+        self._photo_hashes = self._load_photo_hashes()
+
+    def photo_url(self, person_id: str) -> str | None:
+        """Where the console finds the photo; asked in the drive's thread, so from memory."""
+        photo_hash = self._photo_hashes.get(person_id)
+        return None if photo_hash is None else _photo_url(person_id, photo_hash)
+
+    def photo_urls(self) -> dict[str, str]:
+        """Of everybody who has one, by person."""
+        known = tuple(self._photo_hashes.items())
+        return {person_id: _photo_url(person_id, photo_hash) for person_id, photo_hash in known}
+
+    def registered_units(self) -> Sequence[str]:
+        """Ids of the units that are ours."""
+        with self._store.read() as session:
+            return session.scalars(
+                select(Unit.unit_id).where(Unit.registered_ns.is_not(None))
+            ).all()
+
+    def units(self) -> Sequence[tuple[Unit, Assignment | None]]:
+        """Every unit with who wears it now."""
+        with self._store.read() as session:
+            rows = session.execute(
+                select(Unit, Assignment)
+                .outerjoin(
+                    Assignment,
+                    (Assignment.unit_id == Unit.unit_id) & Assignment.until_ns.is_(None),
+                )
+                .order_by(Unit.unit_id)
+            )
+            return [(row[0], row[1]) for row in rows]
+
+    def unit(self, unit_id: str) -> Unit | None:
+        with self._store.read() as session:
+            return session.get(Unit, unit_id)
+
+    def worn_by(self, person_id: str) -> Sequence[str]:
+        with self._store.read() as session:
+            return _worn_by(session, person_id)
+
+    def assignments(self, from_ns: int, until_ns: int) -> Sequence[Assignment]:
+        """Those that held at some time of the window, oldest first."""
+        with self._store.read() as session:
+            held = select(Assignment).where(*_held(from_ns, until_ns))
+            return session.scalars(held.order_by(Assignment.from_ns)).all()
+
+    def newest_assignments(self, from_ns: int, until_ns: int, limit: int) -> Sequence[Assignment]:
+        """Those that held at some time of the window, newest first (``pages.newest``)."""
+        with self._store.read() as session:
+            wanted = select(Assignment).where(*_held(from_ns, until_ns))
+            return newest(session, wanted, Assignment.from_ns, Assignment.action_id, limit)
+
+    def _load_photo_hashes(self) -> dict[str, str]:
+        with self._store.read() as session:
+            rows = session.execute(select(Person.person_id, Person.photo_hash))
+            return {row[0]: row[1] for row in rows if row[1] is not None}
+
+
+def _photo_url(person_id: str, photo_hash: str) -> str:
+    return f"/api/v1/people/{person_id}/photo?v={photo_hash}"
+
+
+def _held(from_ns: int, until_ns: int) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
+    over = Assignment.until_ns.is_not(None) & (Assignment.until_ns <= from_ns)
+    return Assignment.from_ns < until_ns, ~over
+
+
+def _worn_by(session: Session, person_id: str) -> Sequence[str]:
+    return session.scalars(
+        select(Assignment.unit_id).where(
+            Assignment.person_id == person_id, Assignment.until_ns.is_(None)
+        )
+    ).all()

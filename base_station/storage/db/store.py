@@ -1,0 +1,345 @@
+"""Opens the database, and gives out sessions that read or write.
+
+While its disk takes nothing, a live station works on a copy in memory (``memory_copy``).
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import shutil
+import sqlite3
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager, suppress
+from pathlib import Path
+from types import TracebackType
+
+from sqlalchemy import Engine
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from base_station.storage.db.engines import (
+    DAMAGE,
+    NO_ROOM,
+    NOT_OURS,
+    Change,
+    code_of,
+    file_engine,
+    writing,
+)
+from base_station.storage.db.memory_copy import MemoryCopy
+from base_station.storage.db.migrate import migrate
+from shared.errors import DiskFullError, DiskHangsError, StoreError
+from shared.own_files import open_own
+
+_log = logging.getLogger(__name__)
+
+_LOOK_S = 0.5  # whether the disk hangs, while another change is waited for
+_RETRY_S = 2.0  # how often a disk that takes nothing is tried again
+_ROOM_BYTES = 4_000_000  # with less the next changes would fill it again
+_CAN_BE_READ = (*NO_ROOM, *NOT_OURS)  # though it cannot be written
+IN_MEMORY = "muster_in_memory"  # of ``Session.info``, behind ``write``
+
+
+class Store:
+    """The database of one data folder, migrated to what this program knows.
+
+    Thread-safe.  Raises StoreError where the file is no database, cannot be written, or was
+    written by a newer program.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        hangs: Callable[[], bool] = lambda: False,
+        *,
+        memory_fallback: bool = False,
+    ) -> None:
+        """``hangs``: whether the disk does not answer just now.  Nothing more is asked of it then:
+        whoever does would wait for it, whatever else there is to do, and could not be ended.
+
+        ``memory_fallback``: a disk that takes nothing does not keep it from opening.
+        """
+        self.hangs = hangs
+        self.path = path
+        self._memory_fallback = memory_fallback
+        self._writing = threading.Lock()
+        self._memory: MemoryCopy | None = None
+        self._tried_s = 0.0
+        self._refused = 0
+        self.loss = ""  # what it lacks since it was made again, as a sentence for a person
+        self._damage = ""  # that was met since
+        self._reason = ""  # why the disk takes nothing
+        try:
+            self._engine = self._opened()
+        except DiskFullError:
+            if not memory_fallback:
+                raise
+            self._go_into_memory(is_open=False)
+
+    @property
+    def engine(self) -> Engine:
+        return self._engine
+
+    @property
+    def in_memory(self) -> bool:
+        """Whether the disk takes nothing, and what is changed waits for it."""
+        return self._memory is not None
+
+    @property
+    def problem(self) -> str:
+        """What is wrong with the database, as a sentence for a person; empty: nothing."""
+        damage = f"The database is damaged: {self._damage}" if self._damage else ""
+        return "; ".join(filter(None, (damage, self._disk_problem, self.loss)))
+
+    @property
+    def _disk_problem(self) -> str:
+        memory = self._memory
+        if memory is not None:
+            tracks = "; trails of past incidents cannot be shown" if memory.lacks_tracks else ""
+            return (
+                f"The database is kept in memory, as its disk takes nothing: what is changed is "
+                f"written when it does, and lost if the station stops before{tracks}; "
+                f"{self._reason}"
+            )
+        if self._refused:
+            return (
+                f"{self._refused} changes that were made while the disk took nothing are not in "
+                "the database, as others were made there meanwhile: look through users and people"
+            )
+        return ""
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """A consistent view for one reader.  Raises StoreError where the file cannot be read."""
+        self._require_disk()
+        try:
+            with Session(self._engine, expire_on_commit=False) as session:
+                yield session
+        except SQLAlchemyError as error:
+            raise StoreError(f"the database cannot be read: {self._cause(error)}") from error
+
+    @contextmanager
+    def write(self, *, is_kept: bool = True) -> Iterator[Session]:
+        """One transaction, committed at the end of the block; one at a time.  What is not
+        ``is_kept`` while the disk takes nothing is done again by the caller.
+
+        Raises StoreError where the database cannot take it (a full disk, a locked file).
+        """
+        with self._alone():
+            self._leave_memory_if_due()
+            session, changes = self._begun()
+            with closing(session):
+                try:
+                    yield session
+                except SQLAlchemyError as error:
+                    raise self._not_taken(error) from error
+                try:
+                    session.commit()
+                except SQLAlchemyError as error:
+                    self._commit_in_memory(error, changes)
+            session.info[IN_MEMORY] = self.in_memory
+            if self._memory is not None and is_kept:
+                self._memory.keep(changes)
+
+    def look_at_disk(self) -> None:
+        """Go on in the file where its disk takes something again."""
+        if self.in_memory:
+            with suppress(DiskHangsError), self._alone():
+                self._leave_memory_if_due()
+
+    def compact(self) -> None:
+        """Leave no byte in the file of what was deleted or replaced."""
+        with self._alone():
+            if self.in_memory:
+                raise DiskFullError(f"the database cannot be made compact: {self._reason}")
+            connection = self._engine.raw_connection()
+            try:
+                for statement in ("VACUUM", "PRAGMA wal_checkpoint(TRUNCATE)"):
+                    connection.cursor().execute(statement)
+            except sqlite3.Error as error:
+                raise StoreError(f"the database cannot be made compact: {error}") from error
+            finally:
+                connection.close()
+
+    def close(self) -> None:
+        if self._memory is not None:
+            with suppress(StoreError), self._alone():
+                self._tried_s = 0.0
+                self._leave_memory_if_due()
+        if self._memory is not None:
+            _log.error(
+                "%d changes of the database are lost: its disk took nothing until the end",
+                self._memory.waiting,
+            )
+            self._memory.close()
+        self._engine.dispose()
+
+    # ---- on the disk or in memory
+
+    def _opened(self) -> Engine:
+        """The file.  Raises StoreError."""
+        _refuse_link(self.path)
+        _make_private(self.path)
+        engine = file_engine(self.path)
+        try:
+            migrate(engine)
+        except SQLAlchemyError as error:
+            engine.dispose()
+            self._reason = self._cause(error)
+            kind = DiskFullError if self._is_readable(error) else StoreError
+            raise kind(
+                f"{self.path} cannot be opened as the station's database: {self._reason}"
+            ) from error
+        except StoreError:
+            engine.dispose()
+            raise
+        return engine
+
+    def _is_readable(self, error: SQLAlchemyError) -> bool:
+        """Whether it failed at a disk that takes nothing, and may give what is there."""
+        return code_of(getattr(error, "orig", None) or error) in _CAN_BE_READ and (
+            not self.path.exists() or self.path.is_file()
+        )
+
+    def _go_into_memory(self, *, is_open: bool) -> None:
+        self._memory = MemoryCopy(self.path, is_open=is_open)
+        self._tried_s = time.monotonic()
+        self._engine = self._memory.engine
+
+    def _begun(self) -> tuple[Session, list[Change]]:
+        """A session that nobody else writes beside.  Raises StoreError."""
+        changes: list[Change] = []
+        session = Session(writing(self._engine, changes), expire_on_commit=False)
+        try:
+            session.connection()
+        except SQLAlchemyError as error:
+            session.close()
+            refusal = self._not_taken(error)
+            if not self.in_memory:
+                raise refusal from error
+            session = Session(writing(self._engine, changes), expire_on_commit=False)
+        if self._memory is not None and self._memory.is_full:
+            session.close()
+            raise DiskFullError(f"no more changes can wait for the disk: {self._reason}")
+        return session, changes
+
+    def _not_taken(self, error: SQLAlchemyError) -> StoreError:
+        """What did not get in; from now on it is done in memory where the disk is why."""
+        cause = self._cause(error)
+        if self._memory is None and self._memory_fallback and self._is_readable(error):
+            before, self._reason = self._engine, cause
+            with suppress(StoreError):
+                self._go_into_memory(is_open=True)
+                before.dispose()
+        return StoreError(f"the database did not take a change: {cause}")
+
+    def _commit_in_memory(self, error: SQLAlchemyError, changes: list[Change]) -> None:
+        """What the disk did not take in the end.  Raises StoreError."""
+        was_in_memory = self.in_memory
+        refusal = self._not_taken(error)
+        if was_in_memory or self._memory is None:
+            raise refusal from error
+        try:
+            self._memory.execute(changes)
+        except (SQLAlchemyError, sqlite3.Error):
+            raise refusal from error
+
+    def _leave_memory_if_due(self) -> None:
+        """Nobody else changes anything meanwhile."""
+        memory, now_s = self._memory, time.monotonic()
+        if memory is None or now_s - self._tried_s < _RETRY_S or self.hangs():
+            return
+        self._tried_s = now_s
+        try:
+            if shutil.disk_usage(self.path.parent).free < _ROOM_BYTES:
+                return
+            if memory.is_new and not _has_content(self.path):
+                self._write_new(memory)
+            engine = self._opened()
+        except (StoreError, sqlite3.Error, OSError):
+            return
+        try:
+            self._refused += memory.write_to(engine)
+        except (SQLAlchemyError, sqlite3.Error):
+            engine.dispose()
+            return
+        self._engine, self._memory = engine, None
+        memory.close()
+
+    def _write_new(self, memory: MemoryCopy) -> None:
+        """There was no file: all of it is written, and nothing of it waits any more."""
+        making = self.path.with_name(f"{self.path.name}.part")
+        making.unlink(missing_ok=True)
+        _make_private(making)
+        try:
+            with closing(sqlite3.connect(making)) as target:
+                memory.write_whole(target)
+            making.replace(self.path)
+        finally:
+            making.unlink(missing_ok=True)
+        memory.note_written()
+
+    # ---- what may go wrong
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Nobody else changes anything."""
+        self._require_disk()
+        while not self._writing.acquire(timeout=_LOOK_S):
+            self._require_disk()
+        try:
+            yield
+        finally:
+            self._writing.release()
+
+    def _require_disk(self) -> None:
+        if not self.in_memory and self.hangs():
+            raise DiskHangsError(
+                "the station's disk does not answer: until it does nothing can be looked up or "
+                "kept in the database; people are shown and commanded as before; check the disk"
+            )
+
+    def _cause(self, error: SQLAlchemyError) -> str:
+        cause = getattr(error, "orig", None) or error
+        code = code_of(cause)
+        if code in DAMAGE:
+            self._damage = (
+                f"{cause}; stop the station and run 'muster base rebuild': it makes {self.path} "
+                "again from the log, keeps what can be read of users and people, and says what "
+                "cannot; or put it back from a backup"
+            )
+            return self._damage
+        if code in NO_ROOM:
+            return f"{cause}; free or mend the disk"
+        remedy = "; see that file and folder can be written" if code in NOT_OURS else ""
+        return f"{cause}{remedy}"
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def _has_content(path: Path) -> bool:
+    return path.exists() and path.stat().st_size > 0
+
+
+def _refuse_link(path: Path) -> None:
+    """SQLite follows one; what it puts beside a database it opens without."""
+    if path.is_symlink():
+        raise StoreError(f"{path} is a link, which is not followed: put the database itself there")
+
+
+def _make_private(path: Path) -> None:
+    """Where there is no database yet; what SQLite puts beside one has its mode and owner."""
+    with suppress(OSError):  # it is there; or SQLite says in a moment why it cannot be
+        os.close(open_own(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))

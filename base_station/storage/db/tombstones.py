@@ -1,0 +1,44 @@
+"""What was taken away for good: users, sessions, tickets, API tokens, people of the roster.
+
+Of two stations one may do this while the other is off, or cannot be reached, and leads later.  So
+what is over is kept by name, goes to both in either direction, and nothing brings it back.
+"""
+
+from __future__ import annotations
+
+from sqlalchemy.orm import Session
+
+from base_station.storage.db.models import (
+    ApiToken,
+    Base,
+    LoginSession,
+    LoginTransferTicket,
+    Person,
+    Tombstone,
+    User,
+)
+
+
+def end(
+    session: Session, row: User | LoginSession | LoginTransferTicket | ApiToken | Person
+) -> None:
+    """Delete it, for good."""
+    until_ns = getattr(row, "expires_ns", None)
+    session.merge(Tombstone(what=name_of(row), until_ns=until_ns))
+    session.delete(row)
+
+
+def name_of(row: Base) -> str:
+    """Nothing else ever has it."""
+    match row:
+        case User():
+            return f"user {row.username} {row.created_ns}"
+        case LoginSession():
+            return f"session {row.token_hash}"
+        case LoginTransferTicket():
+            return f"ticket {row.ticket_hash}"
+        case ApiToken():
+            return f"token {row.token_id}"
+        case Person():
+            return f"person {row.person_id}"
+    raise TypeError(type(row))

@@ -1,0 +1,165 @@
+"""Whether what was written to the log is still there: a disk may give back other bytes.
+
+What was whole when it was looked at may not be later, so all of it is looked at again now and then,
+and at once where somebody who reads it meets damage.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from pathlib import Path
+from threading import Lock
+
+from base_station.storage.missing_segments import LogGap
+from shared.errors import LogError
+from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, missing_segments
+
+_log = logging.getLogger(__name__)
+
+
+_MOST_SAID = 5
+_AGAIN_LOOKS = 720  # with nothing left to look at: an hour of a station's housekeeping
+
+
+class IntegrityChecker:
+    """Reads the segments that nobody writes, one a look, round after round; from any thread."""
+
+    def __init__(self, remedy: str) -> None:
+        """``remedy``: what becomes of a damaged one, for a person."""
+        self._remedy = remedy
+        self._lock = Lock()
+        self._read: set[Path] = set()
+        self._idle = 0  # looks since all were read
+        self._damaged: dict[Path, str] = {}  # with what is wrong
+        self._cut: set[Path] = set()  # of these, those that can be read and lack something
+        self._missing: tuple[int, ...] = ()  # numbers between those that are there
+        self._lacks: dict[str, LogGap] = {}  # by name: found as the station started
+        self._foreign: dict[Path, str] = {}  # files that are no segments, with the reason
+
+    def look(self, segments: Iterable[SegmentInfo]) -> None:
+        """At one more of them: reading a long log is to hold up nothing."""
+        segments = tuple(segments)
+        with self._lock:
+            self._missing = tuple(missing_segments(one.path for one in segments))
+            new = (one.path for one in segments if one.state is not SegmentState.OPEN)
+            path = next((one for one in new if one not in self._read), None)
+            if path is None:
+                self._idle += 1
+                if self._idle >= _AGAIN_LOOKS:
+                    self._begin_again(set())
+                return
+            self._read.add(path)
+        try:
+            with SegmentReader(path) as reader:
+                damage = "" if reader.is_whole() else "; ".join(reader.damage)
+        except LogError as error:
+            damage = str(error)
+        if damage:
+            self.note_damaged(path, damage)
+        else:  # somebody may have put it back from a backup
+            self.note_mended(path, again=False)
+
+    def note_damaged(self, path: Path, damage: str, *, is_cut: bool = False) -> None:
+        """Not all of this segment can be read, or, where it ``is_cut``, is left of it."""
+        with self._lock:
+            known = path in self._damaged
+            self._damaged[path] = damage
+            if is_cut:
+                self._cut.add(path)
+        if not known:
+            _log.error("the log is damaged: %s", damage)
+
+    def note_lacks(self, folder: Path, lacks: Iterable[LogGap]) -> None:
+        """What was lost while nobody looked."""
+        for lack in lacks:
+            _log.error("the log lacks something: %s", lack)
+            with self._lock:
+                self._lacks[lack.name or str(lack.number)] = lack
+                if not lack.is_gone:
+                    self._damaged[folder / lack.name] = str(lack)
+                    self._cut.add(folder / lack.name)
+
+    def note_foreign(self, foreign: Mapping[Path, str]) -> None:
+        for path, reason in foreign.items():
+            _log.error("%s is no segment of this log and is left out: %s", path.name, reason)
+        with self._lock:
+            self._foreign = dict(foreign)
+
+    @property
+    def lacking(self) -> Collection[str]:
+        """Names of segments of which something is gone."""
+        with self._lock:
+            return frozenset(self._lacks)
+
+    def has_lost(self, t_ns: int) -> bool:
+        """Whether the log had records of about this time and has them no more."""
+        with self._lock:
+            return any(lack.covers(t_ns) for lack in self._lacks.values())
+
+    def recheck(self, what: str) -> None:
+        """Somebody who reads the log has met this damage."""
+        with self._lock:
+            if not any(path.name in what for path in self._damaged):
+                self._begin_again(set(self._damaged))
+
+    def _begin_again(self, but_for: set[Path]) -> None:
+        self._idle = 0
+        self._read = but_for
+
+    @property
+    def damaged(self) -> tuple[Path, ...]:
+        """Segments of which not everything can be read, oldest first."""
+        with self._lock:
+            return tuple(sorted(self._damaged))
+
+    @property
+    def missing(self) -> tuple[int, ...]:
+        """The numbers of segments that are gone."""
+        with self._lock:
+            gone = {lack.number for lack in self._lacks.values() if lack.is_gone}
+            return tuple(sorted(gone | set(self._missing)))
+
+    def note_mended(self, path: Path, *, again: bool = True) -> None:
+        """All of this segment can be read; ``again``: for it was written anew, and is looked at."""
+        with self._lock:
+            if again:
+                self._read.discard(path)
+                self._cut.discard(path)
+            if path not in self._cut:
+                self._damaged.pop(path, None)
+                self._lacks.pop(path.name, None)
+
+    def problems(self) -> tuple[str, ...]:
+        """Sentences for the console."""
+        with self._lock:
+            lacks, foreign = dict(self._lacks), sorted(path.name for path in self._foreign)
+            damaged = sorted(path.name for path in self._damaged if path.name not in lacks)
+            missing = set(self._missing) - {lack.number for lack in lacks.values()}
+        said = []
+        if lacks:
+            said.append(f"{_in_words(list(lacks.values()))}: check the disk. {self._remedy}")
+        if foreign:
+            said.append(
+                f"Files in the log's folder are no segments of this log and are left out "
+                f"({', '.join(foreign)}): see who put them there, and move them away"
+            )
+        if damaged:
+            names = ", ".join(damaged)
+            said.append(
+                f"A part of the log cannot be read any more ({names}): check the disk. "
+                f"{self._remedy}"
+            )
+        if missing:
+            numbers = ", ".join(map(str, sorted(missing)))
+            said.append(
+                f"Files of the log are gone, by their numbers {numbers}: check the disk, restore "
+                "them from a backup, and start the station again"
+            )
+        return tuple(said)
+
+
+def _in_words(lacks: Sequence[LogGap]) -> str:
+    more = len(lacks) - _MOST_SAID
+    said = "; ".join(map(str, lacks[:_MOST_SAID]))
+    return f"A part of the log is lost: {said}{f'; and {more} more' if more > 0 else ''}"

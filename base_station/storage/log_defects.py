@@ -1,0 +1,136 @@
+"""Why what a log tells of the past is not all of it, in words; more of it comes to be known as the
+log is looked through.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Collection, Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+
+from base_station.storage.missing_segments import KnownSegment, LogGap, log_gaps, times_of
+from shared.errors import LogError
+from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, own_segments, segment_began_ns
+
+
+class LogDefects:
+    """From one thread; what it gives may be read from any."""
+
+    def __init__(
+        self,
+        log: Path,
+        known: Collection[KnownSegment] = (),
+        *,
+        is_written: bool = False,
+        until_ns: int | None = None,
+        tell: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        """``known``: what the database knows of the segments.  ``is_written``: a station writes
+        the newest one.  ``until_ns``: what was lost of later times is no flaw.  ``tell`` hears of
+        each flaw.
+        """
+        self._log = log
+        self._known = known
+        self._is_written = is_written
+        self._until_ns = until_ns
+        self._tell = tell
+        self._found: tuple[str, ...] = ()
+        self._segments: list[SegmentInfo] | None = None
+        self._search = self._searches()
+
+    def look(self) -> bool:
+        """At a chunk of the log more; False: all of it was looked at."""
+        return next(self._search, None) is not None
+
+    def note(self, flaw: str) -> bool:
+        """Each once, however often a reader comes by it; whether it is new."""
+        if flaw in self._found:
+            return False
+        self._found = (*self._found, flaw)
+        self._tell(flaw)
+        return True
+
+    def note_damage(self, what: str) -> bool:
+        """That somebody who read the log has come by."""
+        return self.note(f"a part of the log cannot be read: {what}")
+
+    def __call__(self) -> Sequence[str]:
+        return self._found
+
+    def look_at_files(self) -> list[SegmentInfo]:
+        """At all of them, not into them."""
+        if self._segments is None:
+            own, foreign = own_segments(self._log)
+            for path, reason in foreign.items():
+                self.note_damage(f"{path.name} is no segment of this log and is left out: {reason}")
+            written = own[-1:] if self._is_written else []
+            self._segments = [_info_of(path) for path in own if path not in written]
+            lacks = log_gaps(
+                [*self._segments, *map(_being_written, written)],
+                [one for one in self._known if not self._is_behind(one.first_ns)],
+            )
+            for flaw in _in_words([one for one in lacks if not self._is_behind(one.from_ns)]):
+                self.note(flaw)
+            for segment in self._segments:
+                self._look_at_end(segment)
+        return self._segments
+
+    def _is_behind(self, t_ns: int) -> bool:
+        return self._until_ns is not None and t_ns > self._until_ns
+
+    def _searches(self) -> Iterator[bool]:
+        for segment in self.look_at_files():
+            if not self._is_behind(segment.start_ns):
+                yield from self._look_into(segment)
+
+    def _look_at_end(self, segment: SegmentInfo) -> None:
+        if segment.state is SegmentState.CLOSED:
+            return
+        with SegmentReader(segment.path) as reader:
+            for damage in reader.damage:
+                self.note_damage(damage)
+            if reader.bytes_lost:
+                self.note(
+                    f"{segment.path.name} was not ended in order: its last {reader.bytes_lost} "
+                    "bytes cannot be read"
+                )
+
+    def _look_into(self, segment: SegmentInfo) -> Iterator[bool]:
+        try:
+            with SegmentReader(segment.path) as reader:
+                for _ in reader.intact_chunks():
+                    yield True
+                for damage in reader.damage:
+                    self.note_damage(damage)
+        except LogError as error:  # it is taken away meanwhile
+            self.note(str(error))
+
+
+def _info_of(path: Path) -> SegmentInfo:
+    with SegmentReader(path) as reader:
+        return reader.info()
+
+
+def _being_written(path: Path) -> SegmentInfo:
+    """Nothing of it is looked at: to count what is in it is to read it."""
+    began_ns = segment_began_ns(path)
+    return SegmentInfo(path, SegmentState.OPEN, began_ns, began_ns, sys.maxsize, 0)
+
+
+def _in_words(lacks: Sequence[LogGap]) -> Iterator[str]:
+    """Those that are gone one behind the other are one sentence."""
+    yield from (str(lack) for lack in lacks if not lack.is_gone)
+    gone = sorted((lack for lack in lacks if lack.is_gone), key=lambda lack: lack.number)
+    for _, run in groupby(enumerate(gone), lambda one: one[1].number - one[0]):
+        together = [lack for _, lack in run]
+        yield _gone(together[0], together[-1])
+
+
+def _gone(first: LogGap, last: LogGap) -> str:
+    which = (
+        f"segment {first.number} of the log is"
+        if first is last
+        else f"segments {first.number} to {last.number} of the log are"
+    )
+    return f"{which} missing: {times_of(first.from_ns, last.until_ns)} is not known"

@@ -1,0 +1,123 @@
+"""Segments that a log lacks: its files, held against each other and against
+what the database knows of them.  Pure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from shared.clock import NS_PER_S
+from shared.mcap_log import SegmentInfo, SegmentState, segment_began_ns, segment_number
+
+_KILLED_NS = 2 * NS_PER_S  # of the newest segment, which a kill may cost: it was not on the disk
+
+
+@dataclass(frozen=True, slots=True)
+class KnownSegment:
+    """As it was when the database last heard of it."""
+
+    name: str
+    first_ns: int
+    last_ns: int
+    messages: int
+
+
+@dataclass(frozen=True, slots=True)
+class LogGap:
+    """Something of this segment is gone, between these times; 0: they are not known."""
+
+    number: int
+    name: str  # empty: only its number is known
+    from_ns: int
+    until_ns: int
+    kept: int = 0  # messages of it
+    of: int = 0  # 0: nobody knows
+    is_gone: bool = False  # the file itself
+    is_newest: bool = False  # the table is some seconds behind, so it may have gone on
+
+    def covers(self, t_ns: int) -> bool:
+        return self.from_ns <= t_ns and (self.is_newest or t_ns <= self.until_ns)
+
+    def __str__(self) -> str:
+        what = self.name or f"segment {self.number}"
+        if self.is_gone:
+            lost = f"{what} is missing"
+        elif not self.kept:
+            lost = f"{what} is empty"
+        else:
+            lost = f"{what} has {self.kept} of its {self.of} messages"
+        return f"{lost}: {times_of(self.from_ns, self.until_ns)} is not known, or not all of it"
+
+
+def times_of(from_ns: int, until_ns: int) -> str:
+    """0: nobody knows."""
+    since = f" from {_utc(from_ns)}" if from_ns else ""
+    until = f" until {_utc(until_ns)}" if until_ns else ""
+    return f"what happened{since}{until}"
+
+
+def log_gaps(segments: Sequence[SegmentInfo], known: Collection[KnownSegment]) -> list[LogGap]:
+    """``segments``: those that are there, in their order."""
+    by_name = {one.name: one for one in known}
+    present = {one.path.name for one in segments}
+    found = {
+        one.name: _gone(one.name, one.first_ns, one.last_ns, one.messages)
+        for one in known
+        if one.name not in present and one.messages
+    }
+    for at, segment in enumerate(segments):
+        following = segments[at + 1] if at + 1 < len(segments) else None
+        lack = _cut(segment, following, by_name.get(segment.path.name))
+        if lack is not None:
+            found[segment.path.name] = lack
+    numbers = {segment_number(Path(name)) for name in (*present, *found)}
+    newest = max(numbers, default=0)
+    lacks = [
+        replace(one, is_newest=one.number == newest)
+        for one in (*found.values(), *_between(segments, numbers))
+    ]
+    return sorted(lacks, key=lambda one: (one.from_ns, one.number))
+
+
+def _gone(name: str, first_ns: int, last_ns: int, messages: int) -> LogGap:
+    number = segment_number(Path(name))
+    return LogGap(number, name, first_ns, last_ns, of=messages, is_gone=True)
+
+
+def _cut(
+    segment: SegmentInfo, following: SegmentInfo | None, known: KnownSegment | None
+) -> LogGap | None:
+    """A segment is made with its first record, so that an empty one was emptied."""
+    is_short = known is not None and segment.messages < known.messages
+    if known and not following and known.last_ns - segment.end_ns <= _KILLED_NS:
+        is_short = False
+    is_emptied = not segment.messages and segment.state is not SegmentState.OPEN
+    if not is_short and not (is_emptied and (known is None or known.messages)):
+        return None
+    number, name = segment_number(segment.path), segment.path.name
+    last_ns = known.last_ns if known else following.start_ns if following else 0
+    is_tail = segment.end_ns < last_ns
+    first_ns = known.first_ns if known else segment_began_ns(segment.path)
+    from_ns = segment.end_ns if is_tail and segment.messages else first_ns
+    of = known.messages if known else 0
+    return LogGap(number, name, from_ns, last_ns, segment.messages, of)
+
+
+def _between(segments: Sequence[SegmentInfo], numbers: Collection[int]) -> list[LogGap]:
+    """Senders of whose sequence numbers nothing is known but that they must have been there."""
+    by_number: Mapping[int, SegmentInfo] = {segment_number(one.path): one for one in segments}
+    lacks = []
+    for number in sorted(set(range(1, max(by_number, default=0))) - set(numbers)):
+        before = [one for at, one in by_number.items() if at < number]
+        after = [one for at, one in by_number.items() if at > number]
+        from_ns = max((one.end_ns for one in before), default=0)
+        until_ns = min((one.start_ns for one in after if one.start_ns), default=0)
+        lacks.append(LogGap(number, "", from_ns, until_ns, is_gone=True))
+    return lacks
+
+
+def _utc(t_ns: int) -> str:
+    return f"{datetime.fromtimestamp(t_ns // NS_PER_S, UTC):%Y-%m-%d %H:%M:%S} UTC"

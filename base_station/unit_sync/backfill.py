@@ -1,0 +1,239 @@
+"""Fetches from the units' journals what the radio lost (protocol: docs/journal.md).
+
+The drive says about once a second which sequence numbers it has (``report``); one thread asks all
+the units for the rest, each one question at a time and by turns, a bounded number of them at once,
+and hands what comes to the feed as it comes.  Live data never stands behind it: what is asked for
+travels behind live data, and is handed over only while hardly anything waits there.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Callable, Mapping
+from functools import partial
+from threading import Lock
+from typing import NamedTuple
+
+from base_station.unit_sync.journal_client import Held, JournalClient, Question
+from base_station.unit_sync.journal_rate_limit import JournalRateLimit
+from shared.bus import Bus
+from shared.channels import ROOT, backfilled_key, unread_key
+from shared.clock import Clock
+from shared.codec import header_of
+from shared.errors import WireError
+from shared.messages import JournalEntry
+from shared.worker import UNTIL_WOKEN, Worker
+
+logger = logging.getLogger(__name__)
+
+AT_ONCE = 16  # units that are asked for a backlog; of each at most Pace's MOST_BYTES are asked
+_TIMEOUT_S = 10.0
+_MOST_CAME = 8  # times what was asked for; what a unit says beyond is not kept
+_LEAST_KEPT_BYTES = 131_072  # of an answer, however little was asked for
+
+_FETCHING = ("range", "urgent")  # questions that bring messages
+_ALERT = "alert/"  # a key behind the unit begins so
+
+Deliver = Callable[[str, bytes], None]  # key, payload; waits while the feed is full
+Report = Mapping[str, tuple[Held, ...]]  # by unit, of units that are linked
+
+
+class _Asked(NamedTuple):
+    """A question under way."""
+
+    unit_id: str
+    question: Question
+    asked_ns: int
+
+
+class _News(NamedTuple):
+    """What has happened since the thread last looked."""
+
+    report: Report | None
+    alerts_only: bool  # is to be fetched
+    replies: list[tuple[_Asked, bytes | None]]  # None: no more come
+    start_over: bool
+
+
+class Backfill:
+    """``start`` it with a bus; ``report`` may be called from any thread and never waits."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        deliver: Deliver,
+        clock: Clock,
+        may_forget: Callable[[], bool] = lambda: True,
+    ) -> None:
+        """``may_forget``: whether units may be told that what was reported is safe here."""
+        self._bus = bus
+        self._may_forget = may_forget
+        self._deliver = deliver
+        self._clock = clock
+        self._journals: dict[str, JournalClient] = {}
+        self.share = JournalRateLimit(clock)
+        self._turns: deque[str] = deque()  # units that may have something to be asked, by turns
+        self._reported: Report = {}
+        self._asking: dict[str, _Asked] = {}
+        self._backlogs = 0  # of these, questions behind live data
+        self._came_bytes: dict[str, int] = {}  # in answer to what a unit is asked
+        self._ended_ns: dict[str, int] = {}  # when such an answer was over, by unit
+        self._lock = Lock()  # guards what follows
+        self._report: Report | None = None
+        self._urgent: list[tuple[_Asked, bytes | None]] = []
+        self._replies: deque[tuple[_Asked, bytes | None]] = deque()
+        self._alerts_only = False
+        self._starts_over = False
+        self._refused = 0
+        self._worker = Worker("backfill", self._step, "messages are not fetched from journals")
+        self.fetched = 0  # messages brought so far
+
+    @property
+    def gone(self) -> int:
+        """Numbers that no journal has any more."""
+        return sum(journal.gone for journal in self._journals.values())
+
+    def start(self) -> None:
+        self._worker.start()
+
+    def report(self, report: Report, refused: int = 0, *, alerts_only: bool = False) -> None:
+        """Say what the station has now; an older report that was not looked at is forgotten.
+
+        ``refused``: how many records its log has not taken so far.  Where there are more of them,
+        what was fetched may not have come into the log.  ``alerts_only``: its disk takes nothing,
+        and what it has may be in memory only.
+        """
+        with self._lock:
+            self._report, self._alerts_only = report, alerts_only
+            self._starts_over |= refused > self._refused
+            self._refused = refused
+        self._worker.wake()
+
+    def close(self) -> None:
+        self._worker.close()
+
+    def _step(self) -> float:
+        """Take a report and replies, and ask for more."""
+        news = self._next()
+        if news.start_over:
+            for journal in self._journals.values():
+                journal.start_over()
+        if news.report is not None:
+            self._take_report(news.report, alerts_only=news.alerts_only)
+        for asked, reply in news.replies:
+            if self._worker.stopping.is_set():
+                return 0.0
+            if reply is None:
+                self._end(asked)
+            else:
+                self._take(asked, reply)
+        self._ask_by_turns()
+        return 0.0 if self._replies else UNTIL_WOKEN
+
+    def _next(self) -> _News:
+        """Return what is new.  Of replies, all the urgent ones, and one of the others: handing
+        that over may take its time.
+        """
+        with self._lock:
+            news = _News(self._report, self._alerts_only, self._urgent, self._starts_over)
+            self._report, self._urgent, self._starts_over = None, [], False
+            if self._replies:
+                news.replies.append(self._replies.popleft())
+            return news
+
+    def _take_report(self, report: Report, *, alerts_only: bool) -> None:
+        before, self._reported = self._reported, report
+        now_ns = self._clock.monotonic_ns()
+        for unit_id, held in report.items():
+            journal = self._journals.setdefault(unit_id, JournalClient())
+            if unit_id not in before:
+                journal.note_new_link()
+            journal.report(held, now_ns, alerts_only=alerts_only)
+        waiting = [one for one in self._turns if one in report]
+        idle = [one for one in report if one not in waiting and one not in self._asking]
+        self._turns = deque([*waiting, *idle])
+
+    def _take(self, asked: _Asked, reply: bytes) -> None:
+        journal = self._journals[asked.unit_id]
+        try:
+            chunk = journal.take(asked.question, reply, self._clock.monotonic_ns())
+        except WireError as error:
+            logger.warning("the journal of %s cannot be read: %s", asked.unit_id, error)
+            self.share.note(asked.unit_id, len(reply), 0, 0)
+            return
+        entries = () if chunk is None else chunk.entries
+        alerts = sum(entry.suffix.startswith(_ALERT) for entry in entries)
+        self.share.note(asked.unit_id, len(reply), len(entries), alerts)
+        if chunk is not None:
+            for entry in chunk.entries:
+                self._deliver(_key_of(asked.unit_id, chunk.boot_id, entry), entry.payload)
+            self.fetched += len(chunk.entries)
+
+    def _end(self, asked: _Asked) -> None:
+        del self._asking[asked.unit_id]
+        self._backlogs -= not asked.question.urgent
+        # What is fetched is asked for no faster than it is handed over here, too.
+        now_ns = self._clock.monotonic_ns()
+        ended_ns = self._ended_ns[asked.unit_id] if asked.question.urgent else now_ns
+        took_ns = ended_ns - asked.asked_ns
+        self._journals[asked.unit_id].end(asked.question, took_ns)
+        if asked.unit_id in self._reported:
+            self._turns.append(asked.unit_id)
+
+    def _ask_by_turns(self) -> None:
+        """Alerts are asked for at once, a backlog while not too many are being fetched."""
+        for _ in range(len(self._turns)):
+            unit_id = self._turns.popleft()
+            question = self._journals[unit_id].next_question()
+            if question is None or (question.what == "acknowledge" and not self._may_forget()):
+                continue
+            is_held_back = question.what in _FETCHING and not self.share.may_ask(
+                unit_id, urgent=question.what == "urgent"
+            )
+            if is_held_back:
+                self._turns.append(unit_id)
+            elif question.urgent or self._backlogs < AT_ONCE:
+                self._ask(unit_id, question)
+            else:
+                self._turns.append(unit_id)
+
+    def _ask(self, unit_id: str, question: Question) -> None:
+        asked = _Asked(unit_id, question, self._clock.monotonic_ns())
+        self._asking[unit_id] = asked
+        self._backlogs += not question.urgent
+        with self._lock:
+            self._came_bytes[unit_id] = 0
+        try:
+            self._bus.ask(
+                f"{ROOT}/{unit_id}/journal/{question.selector}",
+                b"",
+                _TIMEOUT_S,
+                partial(self._note_reply, asked),
+                urgent=question.urgent,
+            )
+        except Exception as error:  # noqa: BLE001  # or nobody's journal is asked any more
+            logger.warning("the journal of %s cannot be asked: %s", unit_id, error)
+            self._note_reply(asked, None)
+
+    def _note_reply(self, asked: _Asked, reply: bytes | None) -> None:
+        """Called by a thread of the bus."""
+        with self._lock:
+            self._ended_ns[asked.unit_id] = self._clock.monotonic_ns()
+            self._came_bytes[asked.unit_id] += len(reply or b"")
+            most_bytes = max(_LEAST_KEPT_BYTES, _MOST_CAME * asked.question.most_bytes)
+            if reply is not None and self._came_bytes[asked.unit_id] > most_bytes:
+                return  # far more than was asked for
+            (self._urgent if asked.question.urgent else self._replies).append((asked, reply))
+        self._worker.wake()
+
+
+def _key_of(unit_id: str, boot_id: int, entry: JournalEntry) -> str:
+    """What does not say itself which message it is, has that in its key: else it would be missing
+    again whenever the station starts.
+    """
+    header = header_of(entry.payload)
+    said = None if header is None else (header.unit_id, header.boot_id, header.seq)
+    if said == (unit_id, boot_id, entry.seq):
+        return backfilled_key(unit_id, entry.suffix)
+    return unread_key(unit_id, boot_id, entry.seq, entry.suffix)

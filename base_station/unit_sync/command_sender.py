@@ -1,0 +1,100 @@
+"""Says commands to the units, again and again, until they answer or time is over.
+
+The drive says once a second, and at once when there is a new one, which commands no unit has
+answered (``report``); a thread of this module puts them on the bus.  The station hears itself
+there like anybody else, and so the log has every time that a command was sent.  Nothing is sent
+towards a unit that is away: it is told as soon as it is back.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+
+from base_station.core.state.command import Order
+from shared.bus import Bus
+from shared.channels import COMMAND
+from shared.clock import NS_PER_S, Clock
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.log_on_change import LogOnChange
+from shared.messages import Command
+from shared.worker import UNTIL_WOKEN, Worker
+
+logger = logging.getLogger(__name__)
+
+_AGAIN_AFTER_NS = 2 * NS_PER_S  # a reply takes a second on a bad link
+_LOOK_EVERY_S = 0.2  # whether a unit is back
+
+
+class CommandSender:
+    """``start`` it with a bus; ``report`` may be called from any thread and never waits.
+
+    ``stamper`` is this module's own; ``clock`` gives station time.
+    """
+
+    def __init__(self, bus: Bus, stamper: Stamper, clock: Clock) -> None:
+        self._bus = bus
+        self._stamper = stamper
+        self._clock = clock
+        self._said_ns: dict[tuple[str, str], int] = {}  # unit and command: when last
+        self._orders: Sequence[Order] = ()
+        self._fault_log = LogOnChange(logger, "a command cannot be sent; trying again")
+        self._worker = Worker("downlink", self._step, "commands are not sent")
+
+    def start(self) -> None:
+        self._worker.start()
+
+    def report(self, orders: Sequence[Order]) -> None:
+        """Say what no unit has answered; what was said before is forgotten."""
+        self._orders = orders
+        self._worker.wake()
+
+    def close(self) -> None:
+        self._worker.close()
+
+    def _step(self) -> float:
+        orders = self._orders
+        self.send_due(orders)
+        return _LOOK_EVERY_S if orders else UNTIL_WOKEN
+
+    def send_due(self, orders: Sequence[Order]) -> None:
+        """Send all that are due; one that cannot be sent does not hold up the others."""
+        now_ns = self._clock.monotonic_ns()
+        said_ns = {}
+        failure: Exception | None = None
+        for order in orders:
+            name = order.unit_id, order.command_id
+            try:
+                last_ns = self._say(order, self._said_ns.get(name), now_ns)
+            except Exception as error:  # noqa: BLE001  # logged behind the other orders
+                failure = error
+                continue
+            if last_ns is not None:
+                said_ns[name] = last_ns
+        self._said_ns = said_ns
+        if failure is None:
+            self._fault_log.note_success()
+        else:
+            self._fault_log.note_failure(failure)
+
+    def _say(self, order: Order, before_ns: int | None, now_ns: int) -> int | None:
+        """When it was said last; None where it is not for now."""
+        key = COMMAND.key(order.unit_id)
+        if self._clock.utc_ns() >= order.expires_ns or not self._bus.is_heard(key):
+            return None  # what is forgotten here is said at once when the unit is back
+        if before_ns is not None and now_ns - before_ns < _AGAIN_AFTER_NS:
+            return before_ns
+        self._bus.publish(key, encode(self._command(order)), COMMAND.qos)
+        return now_ns
+
+    def _command(self, order: Order) -> Command:
+        return Command(
+            header=self._stamper.header(),
+            command_id=order.command_id,
+            kind=order.kind,
+            issued_by=order.issued_by,
+            expires_utc_ns=order.expires_ns,
+            text=order.text,
+            position_rate_hz=order.position_rate_hz,
+        )

@@ -1,0 +1,363 @@
+"""What the station knows of one unit's journal, and what to ask it next.
+
+Pure: reports and answers in, questions out.  Of what the journal has the newest runs of the unit's
+program are asked for, and more as far as the link carries the answer: there may be thousands.
+Alerts are asked for as soon as a number is missing; the rest when it has been missing for a whole
+report, newest first and in pieces that the link carries.  What the station has safely on its own
+disk is acknowledged, so that the unit may forget it when it needs the room.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+import msgspec
+
+from base_station.core.state.message_stream import BOOTS_KEPT
+from base_station.unit_sync.adaptive_chunk_size import LEAST_BYTES, AdaptiveChunkSize
+from shared.clock import NS_PER_S
+from shared.errors import WireError
+from shared.messages import JournalChunk, JournalEntry, JournalIndex
+from shared.sequence_set import Run, SequenceSet
+
+_INDEX_EVERY_NS = 30 * NS_PER_S
+_INDEX_MORE_NS = NS_PER_S  # where more runs than were asked for may be there
+_INDEXED_BYTES = 32  # of each run in an index
+_ACKNOWLEDGE_EVERY_NS = 10 * NS_PER_S  # of one run; the answer names all of them
+_SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
+_REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
+_NUMBER_BYTES = 100.0  # that come for a number, as long as none have
+_GONE_BYTES = 0.1  # where the journal has none of them any more
+_OVERHEAD_BYTES = 24  # beside its payload, as the unit counts them
+_PIECE_SHARE = 0.8  # of an answer; what does not fit takes a question more
+_LEARN_SHARE = 0.02
+_BRIDGED = 4  # messages that are there between two holes: a question more costs as much
+
+
+class Held(NamedTuple):
+    """What the station has of one boot of one unit."""
+
+    boot_id: int
+    runs: tuple[Run, ...]
+
+
+class Question(NamedTuple):
+    what: str
+    parameters: tuple[tuple[str, int], ...] = ()
+    urgent: bool = False
+
+    @property
+    def most_bytes(self) -> int:
+        """Of messages that it asks for."""
+        return dict(self.parameters).get("total", 0)
+
+    @property
+    def selector(self) -> str:
+        """Behind ``muster/v1/{unit}/journal/``."""
+        said = ";".join(f"{name}={value}" for name, value in self.parameters)
+        return f"{self.what}?{said}" if said else self.what
+
+
+class _Boot:
+    """One run of the unit's program."""
+
+    def __init__(self) -> None:
+        self.held = SequenceSet()  # by the last report
+        self._fetched = SequenceSet()  # or gone for ever
+        self._gone = SequenceSet()  # of these, what the journal has no more
+        self._without_alert = SequenceSet()  # whatever alerts are among them were fetched
+        self._have = SequenceSet()  # held or fetched
+        self._known = SequenceSet()  # held, fetched or without an alert
+        self.first = 1  # the oldest that the journal has
+        self.newest = 0  # that is known of
+        self._settled_to = 0  # a number up to here that is missing is lost, not under way
+        self.unanswered: int | None = None  # from here on it said nothing of alerts, asked last
+        self.complete: deque[int] = deque(maxlen=_SAFE_REPORTS)
+        self.acknowledged = 0
+        self.acknowledge_due_ns = 0
+
+    def report(self, runs: tuple[Run, ...], *, safe: bool) -> None:
+        self.held = SequenceSet([run.first for run in runs], [run.last for run in runs])
+        self._have = _union(self.held, self._fetched)
+        self._known = _union(self._have, self._without_alert)
+        self._settled_to = self.newest
+        self.newest = max(self.newest, runs[-1].last if runs else 0)
+        if safe:
+            # What was fetched may still wait to be written, and is held by a later report.
+            self.complete.append(_union(self.held, self._gone).complete_to(self.first))
+
+    def note_fetched(self, run: Run) -> None:
+        """What the journal has of it came."""
+        for one in (self._fetched, self._have, self._known):
+            one.add_run(run)
+
+    def note_gone(self, run: Run, entries: tuple[JournalEntry, ...]) -> None:
+        """But for these the journal has nothing of it any more."""
+        there = SequenceSet()
+        for entry in entries:
+            there.add(entry.seq)
+        for gone in there.missing(run.first, run.last):
+            self._gone.add_run(gone)
+
+    def new(self, entries: tuple[JournalEntry, ...]) -> tuple[JournalEntry, ...]:
+        """Those that are not there yet."""
+        return tuple(one for one in entries if one.seq not in self._have)
+
+    def note_without_alert(self, run: Run) -> None:
+        """What alerts the journal has in it came."""
+        for one in (self._without_alert, self._known):
+            one.add_run(run)
+
+    def piece(self, count: int) -> Run | None:
+        """The newest of what is missing and not under way, so many numbers at most; across a few
+        that are there, rather than to ask again for each of many holes.
+        """
+        lost = self._have.newest_missing(self.first, self._answered_to(self._settled_to))
+        if lost is None:
+            return None
+        last, least = lost.last, lost.last - count + 1
+        first = max(lost.first, least)
+        while first > least:
+            lost = self._have.newest_missing(self.first, first - 1)
+            if lost is None or lost.last < max(first - 1 - _BRIDGED, least):
+                break
+            first = max(lost.first, least)
+        return Run(first, last)
+
+    def start_over(self) -> None:
+        """What was fetched has not all come into the log."""
+        self._fetched = SequenceSet()
+        self._gone = SequenceSet()
+        self._without_alert = SequenceSet()
+        self._have = _union(self.held, self._fetched)
+        self._known = _union(self.held, self._fetched)
+        self.complete.clear()
+
+    def may_have_alerts(self) -> Run | None:
+        """Where an alert may be missing.  One overtakes all but other alerts on its way, so what
+        is missing before any number that came is lost; and so is what has long been said, as the
+        last words of a run that ended out of reach.
+        """
+        last = max(self.held.lasts[-1], self._settled_to) if self.held.lasts else self.newest
+        newest = self._known.newest_missing(self.first, self._answered_to(last))
+        if newest is None:
+            return None
+        return Run(self._known.complete_to(self.first) + 1, newest.last)
+
+    def _answered_to(self, last: int) -> int:
+        return last if self.unanswered is None else min(last, self.unanswered - 1)
+
+
+class JournalClient:
+    """``report`` what is there; put the ``next_question`` and give it ``take`` and ``end``."""
+
+    def __init__(self) -> None:
+        self._boots: dict[int, _Boot] = {}
+        self._indexed: dict[int, None] = {}  # oldest boot first
+        self._reported_ns = 0
+        self._index_due_ns = 0
+        self._pace = AdaptiveChunkSize()
+        self._index_pace = AdaptiveChunkSize()
+        self._number_bytes = _NUMBER_BYTES
+        self._came_bytes = 0  # in answer to the question that is being answered
+        self._has_more = False  # perhaps, than the last index names
+        self._told = 0  # replies that make sense, to that question
+        self._silent = False  # it did not answer, or nonsense: not before the next report again
+        self._acknowledging: tuple[_Boot, int] | None = None
+        self._alerts_only = False
+        self.gone = 0  # numbers that no journal has any more
+
+    def report(self, held: tuple[Held, ...], now_ns: int, *, alerts_only: bool = False) -> None:
+        """``held``: of the run that goes on last; ``now_ns`` monotonic.  The index is asked for now
+        and then, and until it has the run that goes on.  Of older ones nothing may be left.
+
+        ``alerts_only``: what is held may not be on the disk, and a backlog has no room there.
+        """
+        self._silent = False
+        self._alerts_only = alerts_only
+        self._reported_ns = now_ns
+        runs_of = {one.boot_id: one.runs for one in held}
+        known = dict.fromkeys((*self._indexed, *runs_of))
+        self._boots = {boot_id: self._boots.get(boot_id) or _Boot() for boot_id in known}
+        for boot_id, boot in self._boots.items():
+            boot.report(runs_of.get(boot_id, ()), safe=not alerts_only)
+        is_new = bool(held) and held[-1].boot_id not in self._indexed
+        if now_ns >= self._index_due_ns or is_new:
+            self._index_due_ns = 0
+
+    def note_new_link(self) -> None:
+        """The unit was out of reach, and what its link carries now nobody knows."""
+        self._pace, self._index_pace = AdaptiveChunkSize(), AdaptiveChunkSize()
+
+    def start_over(self) -> None:
+        """Only what is reported from now on is there, whatever was fetched."""
+        for boot in self._boots.values():
+            boot.start_over()
+
+    def next_question(self) -> Question | None:
+        """None: there is nothing to ask before the next report."""
+        if self._silent:
+            return None
+        if self._index_due_ns == 0:
+            return Question("index", (("newest", self._indexed_at_once),), urgent=True)
+        asked = self._ask_missing() or self._ask_unanswered()
+        return asked if asked or self._alerts_only else self._acknowledge()
+
+    def take(self, question: Question, reply: bytes, now_ns: int) -> JournalChunk | None:
+        """Learn from one reply; what it brings is to be kept.
+
+        Raises WireError where it makes no sense, or is no answer to this question.
+        """
+        if question.what in ("index", "acknowledge"):
+            index = JournalIndex.from_bytes(reply)
+            if question.what == "index":
+                self._came_bytes += len(reply)
+                self._learn(index, now_ns, dict(question.parameters)["newest"])
+            self._told += 1
+            return None
+        chunk = JournalChunk.from_bytes(reply)
+        if not _answers(question, chunk):
+            raise WireError(f"boot {chunk.boot_id:x} from {chunk.from_seq} was not asked for")
+        self._told += 1
+        boot = self._boots.setdefault(chunk.boot_id, _Boot())
+        run, new = Run(chunk.from_seq, chunk.to_seq), boot.new(chunk.entries)
+        if chunk.urgent_only:
+            boot.note_without_alert(run)
+            for entry in chunk.entries:
+                boot.note_fetched(Run(entry.seq, entry.seq))
+        else:
+            boot.note_fetched(run)
+            boot.note_gone(run, chunk.entries)
+            self._note_size(chunk)
+        return msgspec.structs.replace(chunk, entries=new)
+
+    def end(self, question: Question, took_ns: int) -> None:
+        """No more replies come to this question."""
+        told, self._told = self._told, 0
+        came_bytes, self._came_bytes = self._came_bytes, 0
+        self._note_answered(question, told)
+        if question.what == "index":
+            self._note_index(question, came_bytes, took_ns)
+        if not told:
+            self._silent = True
+            if question.what == "range":
+                self._pace.note_nothing()
+        elif question.what == "range":
+            self._pace.note(came_bytes, took_ns)
+        elif question.what == "acknowledge" and self._acknowledging is not None:
+            boot, last = self._acknowledging
+            boot.acknowledged = last
+            boot.acknowledge_due_ns = self._reported_ns + _ACKNOWLEDGE_EVERY_NS
+        self._acknowledging = None
+
+    def _note_size(self, chunk: JournalChunk) -> None:
+        numbers = chunk.to_seq - chunk.from_seq + 1
+        came_bytes = sum(len(entry.payload) + _OVERHEAD_BYTES for entry in chunk.entries)
+        share = 1.0 - (1.0 - _LEARN_SHARE) ** numbers
+        learnt = self._number_bytes + share * (came_bytes / numbers - self._number_bytes)
+        self._number_bytes = max(learnt, _GONE_BYTES)
+        self._came_bytes += came_bytes
+        self.gone += numbers - len(chunk.entries)
+
+    @property
+    def _indexed_at_once(self) -> int:
+        return min(self._index_pace.answer_bytes // _INDEXED_BYTES, BOOTS_KEPT)
+
+    def _note_index(self, question: Question, came_bytes: int, took_ns: int) -> None:
+        if not came_bytes:
+            self._index_pace.note_nothing()
+            return
+        self._index_pace.note(came_bytes, took_ns)
+        if self._has_more and self._indexed_at_once > dict(question.parameters)["newest"]:
+            self._index_due_ns = self._reported_ns + _INDEX_MORE_NS
+
+    def _learn(self, index: JournalIndex, now_ns: int, asked: int) -> None:
+        """Two machines under one name both answer.  Of runs that are older than what was asked for
+        an answer says nothing.
+        """
+        self._index_due_ns = now_ns + _INDEX_EVERY_NS
+        has_more, is_first = len(index.boots) >= asked, self._told == 0
+        self._has_more = has_more or (self._has_more and not is_first)
+        before = self._indexed if has_more or not is_first else {}
+        newest = index.boots[-BOOTS_KEPT:]
+        named = {one.boot_id: None for one in newest}
+        known = [*(one for one in before if one not in named), *named]
+        self._indexed = dict.fromkeys(known[-BOOTS_KEPT:])
+        for one in newest:
+            boot = self._boots.setdefault(one.boot_id, _Boot())
+            boot.first = one.first_seq
+            boot.newest = max(boot.newest, one.last_seq)
+
+    def _newest_first(self) -> Iterator[tuple[int, _Boot]]:
+        return ((boot_id, self._boots[boot_id]) for boot_id in reversed(self._indexed))
+
+    def _note_answered(self, question: Question, told: int) -> None:
+        """What a unit's disk does not take it says, and cannot give until later: what it wrote
+        before that is not to wait for it.  So where it said nothing about alerts, one question
+        about what is before these has its turn.
+        """
+        asked = dict(question.parameters)
+        boot = self._boots.get(asked["epoch"]) if "from" in asked else None
+        if boot is not None:
+            boot.unanswered = None if told or question.what != "urgent" else asked["from"]
+
+    def _ask_missing(self) -> Question | None:
+        asked = self._ask_alerts()
+        return asked if asked or self._alerts_only else self._ask_piece()
+
+    def _ask_unanswered(self) -> Question | None:
+        """There is nothing else to ask for."""
+        for boot in self._boots.values():
+            boot.unanswered = None
+        return self._ask_missing()
+
+    def _ask_alerts(self) -> Question | None:
+        for boot_id, boot in self._newest_first():
+            span = boot.may_have_alerts()
+            if span is not None:
+                return _range("urgent", boot_id, span, LEAST_BYTES, urgent=True)
+        return None
+
+    def _ask_piece(self) -> Question | None:
+        """What the wearer did last matters most, so the newest piece of the newest boot."""
+        total = self._pace.answer_bytes
+        count = max(1, int(_PIECE_SHARE * total / self._number_bytes))
+        for boot_id, boot in self._newest_first():
+            piece = boot.piece(count)
+            if piece is not None:
+                return _range("range", boot_id, piece, total)
+        return None
+
+    def _acknowledge(self) -> Question | None:
+        for boot_id, boot in self._newest_first():
+            is_due = self._reported_ns >= boot.acknowledge_due_ns
+            safe = min(boot.complete) if is_due and len(boot.complete) == _SAFE_REPORTS else 0
+            if safe > boot.acknowledged:
+                self._acknowledging = boot, safe
+                said = (("epoch", boot_id), ("to", safe), ("newest", 0))
+                return Question("acknowledge", said)
+        return None
+
+
+def _range(what: str, boot_id: int, run: Run, total: int, *, urgent: bool = False) -> Question:
+    parameters = {"epoch": boot_id, "from": run.first, "to": run.last, "total": total}
+    parameters["bytes"] = min(total, _REPLY_BYTES)
+    return Question(what, tuple(parameters.items()), urgent)
+
+
+def _answers(question: Question, chunk: JournalChunk) -> bool:
+    asked = dict(question.parameters)
+    run = asked["from"] <= chunk.from_seq <= chunk.to_seq <= asked["to"]
+    seqs = [chunk.from_seq - 1, *(entry.seq for entry in chunk.entries), chunk.to_seq + 1]
+    in_order = all(one < other for one, other in pairwise(seqs))
+    return chunk.boot_id == asked["epoch"] and run and in_order
+
+
+def _union(one: SequenceSet, other: SequenceSet) -> SequenceSet:
+    both = SequenceSet([*one.firsts], [*one.lasts])
+    for run in other.runs():
+        both.add_run(run)
+    return both

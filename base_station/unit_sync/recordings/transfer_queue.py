@@ -1,0 +1,153 @@
+"""Queue of recordings that people asked for: pulled by turns, and after a restart too."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Collection
+from pathlib import Path
+
+import msgspec
+
+from base_station.storage.job_queue import JobQueue
+from base_station.unit_sync.recordings.transfer import Ask, Transfer, TransferRequest, TransferState
+from base_station.views.wire import RecordingView
+from shared.clock import Clock
+from shared.errors import MusterError, StoreError, UserError
+from shared.own_files import make_folder
+from shared.worker import UNTIL_WOKEN
+
+_LIST = "wanted.json"
+_MOST = 20  # under way at once
+_REST_S = 0.5  # when no unit answers
+
+
+class Pull(msgspec.Struct):
+    """What was asked for, by whom, and how far it has got."""
+
+    fetch_id: str
+    by: str
+    wanted: TransferRequest
+    state: TransferState = TransferState.WAITING
+    problem: str = ""
+    total_bytes: int = 0
+    done_bytes: int = 0
+
+
+class TransferQueue:
+    """Pulls while it is entered; any thread may call the rest."""
+
+    def __init__(self, ask: Ask, folder: Path, clock: Clock) -> None:
+        self._ask = ask
+        self._folder = folder
+        self._clock = clock
+        self._pulls = JobQueue(
+            folder / _LIST, Pull, "recordings", self._work, "recordings are not pulled"
+        )
+        self._running: dict[str, Transfer] = {}
+
+    def __enter__(self) -> TransferQueue:
+        self._pulls.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._pulls.close()
+        for fetch in self._running.values():
+            fetch.close()
+
+    def add(self, by: str, wanted: TransferRequest) -> Pull:
+        """Pull it, and go on until it is there.
+
+        Raises UserError where that makes no sense, StoreError where the disk takes nothing.
+        """
+        if wanted.to_ns <= wanted.from_ns:
+            raise UserError("the window ends before it begins; turn the two times round")
+        try:
+            make_folder(self._folder)
+        except OSError as error:
+            raise StoreError(f"{self._folder} cannot be made: {error.strerror}") from error
+        return self._pulls.add(lambda under_way: _new_pull(by, wanted, under_way))
+
+    def stop(self, fetch_id: str) -> bool:
+        """Give it up; what has come is kept.  False where there is no such pull under way."""
+        for pull in self._pulls.under_way():
+            if pull.fetch_id == fetch_id:
+                return self._pulls.note(
+                    pull, save=True, state=TransferState.FAILED, problem="stopped by a person"
+                )
+        return False
+
+    def forget(self, unit_ids: Collection[str]) -> None:
+        """Nothing more of what these units kept is to come; who wore them is forgotten."""
+        self._pulls.note_each(
+            lambda pull: pull.wanted.unit_id in unit_ids,
+            state=TransferState.FAILED,
+            problem="deleted: its wearer is forgotten",
+        )
+        self._pulls.wake()
+
+    def pulls(self) -> tuple[Pull, ...]:
+        """Those under way and the last that are over."""
+        return self._pulls.all()
+
+    def views(self) -> tuple[RecordingView, ...]:
+        """As consoles see them."""
+        return tuple(
+            RecordingView(
+                one.fetch_id,
+                one.wanted.unit_id,
+                one.state.value,
+                one.problem,
+                one.done_bytes,
+                one.total_bytes,
+            )
+            for one in self.pulls()
+        )
+
+    def _work(self, pulls: list[Pull]) -> float:
+        """Ask each unit once; return the pause until the next round."""
+        self._let_go({pull.fetch_id for pull in pulls})
+        answered = False
+        for pull in pulls:
+            if self._pulls.is_closing:
+                break
+            answered |= self._turn(pull)
+        if not pulls:
+            return UNTIL_WOKEN
+        return 0.0 if answered else _REST_S
+
+    def _turn(self, pull: Pull) -> bool:
+        """One question to one unit; whether it answered."""
+        try:
+            fetch = self._running.get(pull.fetch_id)
+            if pull.state.is_over:  # since this round began
+                return False
+            if fetch is None:
+                fetch = Transfer(self._ask, self._folder, pull.wanted, self._clock)
+                self._running[pull.fetch_id] = fetch
+        except MusterError as error:  # another program pulls from this unit
+            self._pulls.note(pull, save=False, problem=str(error))
+            return False
+        fetch.step()
+        self._pulls.note(
+            pull,
+            save=fetch.state.is_over,
+            state=fetch.state,
+            problem=fetch.problem,
+            total_bytes=fetch.total_bytes,
+            done_bytes=fetch.done_bytes,
+        )
+        return fetch.state is not TransferState.WAITING
+
+    def _let_go(self, under_way: set[str]) -> None:
+        for fetch_id in self._running.keys() - under_way:
+            self._running.pop(fetch_id).close()
+
+
+def _new_pull(by: str, wanted: TransferRequest, under_way: list[Pull]) -> Pull:
+    if any(one.wanted.unit_id == wanted.unit_id for one in under_way):
+        raise UserError(
+            f"a recording of {wanted.unit_id} is being pulled already; wait for it, or stop it"
+        )
+    if len(under_way) >= _MOST:
+        raise UserError(f"{_MOST} recordings are being pulled; wait for one, or stop one")
+    return Pull(secrets.token_hex(4), by, wanted)

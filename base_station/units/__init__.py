@@ -1,1 +1,0 @@
-"""What is known of a unit from what it says: its runs, its messages, its way, its heat."""

@@ -1,0 +1,1 @@
+"""Activity of the wearer, from the foot: strides, rest, lying, falls, height."""

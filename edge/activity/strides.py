@@ -1,0 +1,97 @@
+"""Segmentation of the tracker's rows into strides, from one footfall to the next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot, isfinite
+
+import numpy as np
+
+from edge.samples import Floats
+from edge.tracker.interface import TrackBatch
+from shared.clock import NS_PER_S
+
+_SHORTEST_SWING_NS = 7 * NS_PER_S // 20  # sprinters need longer
+_SHORTEST_STANCE_NS = NS_PER_S // 10  # after a shorter swing: else the foot was still in the air
+_SWING_SHARE = 0.75  # of a stride: gives the period of the first one after a rest
+_LONGEST_PERIOD_NS = 3 * NS_PER_S  # longer: the foot rested before
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stride:
+    """Stride from lift-off to the next footfall."""
+
+    end_ns: int
+    period_s: float  # from the footfall before
+    length_m: float  # horizontal
+    rise_m: float
+    up_b: Floats  # (3,) unit vector away from the ground at the footfall, sensor axes
+
+    @property
+    def speed_mps(self) -> float:
+        return self.length_m / self.period_s
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Footing:
+    t_ns: int
+    position_n_m: Floats  # (3,)
+
+
+class StrideCutter:
+    """Cutter that takes the rows of one tracker in order, however they are batched."""
+
+    def __init__(self) -> None:
+        self._standing = False
+        self._last: _Footing | None = None  # the row before
+        self._lifted: _Footing | None = None  # where the foot left the ground
+        self._footfall_ns: int | None = None
+        self._unconfirmed_ns: int | None = None  # a footfall after too short a swing
+
+    def push(self, track: TrackBatch) -> list[Stride]:
+        """Return the strides that end within these rows."""
+        strides: list[Stride] = []
+        changes = np.flatnonzero(np.diff(track.stationary, prepend=self._standing))
+        for row in changes.tolist():
+            self._standing = bool(track.stationary[row])
+            if self._standing:
+                strides += self._step_down(track, row)
+            else:
+                self._lift(_footing(track, row - 1) if row else self._last)
+        if len(track):
+            self._last = _footing(track, len(track) - 1)
+        return strides
+
+    def _lift(self, footing: _Footing | None) -> None:
+        if footing is None:
+            return
+        unconfirmed_ns, self._unconfirmed_ns = self._unconfirmed_ns, None
+        if unconfirmed_ns is None or footing.t_ns - unconfirmed_ns >= _SHORTEST_STANCE_NS:
+            self._lifted = footing
+
+    def _step_down(self, track: TrackBatch, row: int) -> list[Stride]:
+        down = _footing(track, row)
+        lifted = self._lifted
+        if lifted is None or down.t_ns <= lifted.t_ns:
+            return []
+        north_m, east_m, sink_m = (down.position_n_m - lifted.position_n_m).tolist()
+        up_b = up_in_body(track.quaternion_nb[row])
+        swing_ns = down.t_ns - lifted.t_ns
+        if swing_ns < _SHORTEST_SWING_NS or not isfinite(north_m + east_m + sink_m + up_b.sum()):
+            self._unconfirmed_ns = down.t_ns
+            return []
+        period_ns = down.t_ns - self._footfall_ns if self._footfall_ns is not None else 0
+        self._footfall_ns = down.t_ns
+        if not swing_ns <= period_ns <= _LONGEST_PERIOD_NS:
+            period_ns = round(swing_ns / _SWING_SHARE)
+        return [Stride(down.t_ns, period_ns / NS_PER_S, hypot(north_m, east_m), -sink_m, up_b)]
+
+
+def up_in_body(quaternion_nb: Floats) -> Floats:
+    """Return the direction up (3,) in sensor axes at an attitude (4,)."""
+    w, x, y, z = quaternion_nb.tolist()
+    return -np.array([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)])
+
+
+def _footing(track: TrackBatch, row: int) -> _Footing:
+    return _Footing(int(track.t_ns[row]), track.position_n_m[row].copy())

@@ -1,0 +1,287 @@
+"""Pipeline of the agent: from sensor batches to outgoing messages.
+
+Pure: no input, output, threads or waiting.  Time comes with the samples; the same batches
+give the same messages.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from edge.activity.monitor import ActivityMonitor
+from edge.activity.mounting import MountingCheck
+from edge.agent.batteries import Batteries
+from edge.agent.decimation import Decimator, OncePerPeriod
+from edge.agent.expected_field import ExpectedField
+from edge.agent.position_publisher import PositionPublisher
+from edge.agent.sensor_health import SensorHealth
+from edge.agent.temperatures import AmbientTemperature, CurrentReadings
+from edge.calibration.correction import Correction
+from edge.calibration.file import identity
+from edge.calibration.model import Calibration
+from edge.clocks.timeline import Timeline
+from edge.sample_codec.codec import gps_fix, is_sendable, sighting, whole_seconds
+from edge.sample_codec.uplink import RawUplink
+from edge.samples import (
+    CANCEL,
+    MAYDAY,
+    AmbientSample,
+    ApproximatePosition,
+    BatterySample,
+    ButtonPress,
+    ElectronicsSample,
+    GpsSample,
+    OtherSample,
+    SensorBatch,
+    SensorDescription,
+    SightingSample,
+)
+from edge.tracker.interface import Tracker
+from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
+from shared.clock import NS_PER_S
+from shared.envelope import Stamper
+from shared.messages import (
+    BatteryState,
+    EventKind,
+    Message,
+    Status,
+    Temperature,
+    UnitDescription,
+    UnitEvent,
+)
+
+LIVE = Timeline()
+_SIGHTED_MAX = 1000  # things told from each other
+_ONE_PRESS_NS = 3 * NS_PER_S  # a thumb that presses several times
+_DESCRIPTION_FOR_TRACKER_HZ = 0.2  # it cannot begin before it has heard one
+
+
+@dataclass(frozen=True, slots=True)
+class UnitIdentity:
+    """Description of a unit, as it is published."""
+
+    software_version: str
+    source: str
+    tracker: str
+    sensor: SensorDescription
+    calibration: Calibration | None = None
+    place: ApproximatePosition | None = None
+
+
+class TrackerPipeline:
+    """State of one unit.  Call ``start`` once, ``step`` for each batch, ``finish`` at the end."""
+
+    def __init__(
+        self,
+        identity: UnitIdentity,
+        tracker: Tracker,
+        stamper: Stamper,
+        position_rate_hz: float,
+        *,
+        mayday: bool = False,
+        raw_uplink: RawUplink | None = None,
+    ) -> None:
+        """``mayday``: one was latched when the unit last came to a sudden end.  ``raw_uplink``:
+        of a unit that sends its samples for somebody else to track with.
+        """
+        self._identity = identity
+        self._correction = (
+            None
+            if identity.calibration is None
+            else Correction(identity.calibration, identity.sensor)
+        )
+        self._tracker = tracker
+        self._stamper = stamper
+        self._positions = PositionPublisher(stamper, position_rate_hz)
+        self._monitor = ActivityMonitor()
+        self._mounting = MountingCheck()
+        self._health = SensorHealth()
+        self._expected_field = ExpectedField(identity.place)
+        self._status_times = Decimator(_rate_hz(STATUS))
+        self._raw_uplink = raw_uplink
+        self._description_times = Decimator(
+            _rate_hz(DESCRIPTION) if raw_uplink is None else _DESCRIPTION_FOR_TRACKER_HZ
+        )
+        self._gps_times = OncePerPeriod(_rate_hz(GPS))
+        self._ambient = AmbientTemperature(_rate_hz(TEMPERATURE))
+        self._electronics = CurrentReadings()
+        self._batteries = Batteries()
+        self._mayday = mayday
+        self._mayday_ns: int | None = None  # when it was pressed and said
+        self._has_gps = False
+        self._journal_pending = 0
+        self._sighted_ns: dict[tuple[str, str], int] = {}
+
+    def start(self) -> tuple[Message, ...]:
+        """Return the unit's first messages."""
+        first = (self._event(EventKind.STARTED, None, self._identity.source), self._describe(None))
+        if not self._mayday:
+            return first
+        return (*first, self._event(EventKind.MAYDAY, None, "still latched after a restart"))
+
+    def step(self, batch: SensorBatch, timeline: Timeline = LIVE) -> tuple[Message, ...]:
+        """Take one batch, quantised as by ``sample_codec``; return the messages to send."""
+        self._update_earth_field(batch, timeline)
+        imu = batch.imu if self._correction is None else self._correction.push(batch.imu)
+        track = self._tracker.push(imu)
+        messages: list[Message] = [
+            self._event(EventKind.SENSOR_FAULT, _last_ns(batch, timeline), fault)
+            for fault in self._health.push(batch.imu)
+        ]
+        for sample in batch.others:
+            messages += self._take_other(sample, timeline)
+        if self._raw_uplink is not None:
+            messages += self._raw_uplink.push(batch.imu, timeline)
+        self._mounting.push(imu)
+        self._positions.set_mounting(is_on_foot=self._mounting.is_on_foot)
+        self._positions.take_pressure(batch.imu)
+        messages += self._positions.push(track, timeline)
+        if self._monitor.push(imu, track):
+            detail = "fell and has not moved since"
+            messages.append(self._event(EventKind.FALL, _last_ns(batch, timeline), detail))
+        messages += self._periodic(batch, timeline)
+        return tuple(messages)
+
+    def finish(self, timeline: Timeline = LIVE) -> tuple[Message, ...]:
+        """Return the rows that the tracker still held back, or the samples that were not sent
+        yet.
+        """
+        messages: list[Message] = [*self._positions.push(self._tracker.finish(), timeline)]
+        if self._raw_uplink is not None:
+            messages += self._raw_uplink.finish(timeline)
+        return tuple(messages)
+
+    def set_position_rate(self, rate_hz: float) -> None:
+        self._positions.set_rate(rate_hz)
+
+    def set_journal_pending(self, pending: int) -> None:
+        """Set how many messages are not known to have arrived, for the next status."""
+        self._journal_pending = pending
+
+    def _update_earth_field(self, batch: SensorBatch, timeline: Timeline) -> None:
+        def utc_ns_of(t_ns: int) -> int:
+            return self._stamper.utc_ns(timeline.to_mono_ns(t_ns))
+
+        learned = self._expected_field.take(batch, utc_ns_of)
+        if learned is not None:
+            self._tracker.set_earth_field(*learned)
+
+    def _take_other(self, sample: OtherSample, timeline: Timeline) -> list[Message]:
+        mono_ns = timeline.to_mono_ns(sample.t_ns)
+        match sample:
+            case AmbientSample():
+                return self._take_ambient(sample, mono_ns)
+            case ElectronicsSample():
+                self._electronics.push(sample.sensor, sample.t_ns, sample.temperature_degc)
+            case GpsSample():
+                self._has_gps = True
+                if self._gps_times.takes(sample.t_ns):
+                    return [gps_fix(self._stamper.header(mono_ns), sample)]
+            case SightingSample():
+                return self._take_sighting(sample, mono_ns)
+            case BatterySample():
+                self._batteries.push(sample)
+            case ButtonPress(button=button) if button in (MAYDAY, CANCEL):
+                return self._take_button(sample, mono_ns)
+        return []
+
+    def _take_ambient(self, sample: AmbientSample, mono_ns: int) -> list[Message]:
+        found = self._ambient.push(sample)
+        return [] if found is None else [Temperature(self._stamper.header(mono_ns), *found)]
+
+    def _take_sighting(self, sample: SightingSample, mono_ns: int) -> list[Message]:
+        """Publish the same thing at most once a second."""
+        key = (sample.kind, sample.seen_id)
+        before_ns = self._sighted_ns.get(key)
+        is_repeat = before_ns is not None and 0 <= sample.t_ns - before_ns < NS_PER_S
+        if is_repeat or not is_sendable(sample):
+            return []
+        if len(self._sighted_ns) >= _SIGHTED_MAX:
+            self._sighted_ns.clear()
+        self._sighted_ns[key] = sample.t_ns
+        return [sighting(self._stamper.header(mono_ns), sample)]
+
+    def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
+        """A mayday stays until the wearer takes it back.  Pressed again it is said again: somebody
+        at the station may have resolved the first one.
+        """
+        if press.button == CANCEL:
+            if not self._mayday:
+                return []
+            self._mayday = False
+            return [self._event(EventKind.MAYDAY_CANCELLED, mono_ns, "button")]
+        before_ns, now_ns = self._mayday_ns, press.t_ns
+        if self._mayday and before_ns is not None and 0 <= now_ns - before_ns < _ONE_PRESS_NS:
+            return []
+        self._mayday, self._mayday_ns = True, now_ns
+        return [self._event(EventKind.MAYDAY, mono_ns, "button")]
+
+    def _periodic(self, batch: SensorBatch, timeline: Timeline) -> list[Message]:
+        t_ns = _last_source_ns(batch)
+        if t_ns is None:
+            return []
+        messages: list[Message] = []
+        if self._status_times.takes(t_ns):
+            messages.append(self._status(t_ns, timeline))
+        if self._description_times.takes(t_ns):
+            messages.append(self._describe(timeline.to_mono_ns(t_ns)))
+        return messages
+
+    def _status(self, t_ns: int, timeline: Timeline) -> Status:
+        battery = self._batteries.emptiest(t_ns)
+        return Status(
+            header=self._stamper.header(timeline.to_mono_ns(t_ns)),
+            activity=self._monitor.activity(t_ns),
+            motionless_s=self._monitor.motionless_s,
+            battery=None if battery is None else battery.level,
+            mayday=self._mayday,
+            steps=self._monitor.steps,
+            cadence_hz=self._monitor.cadence_hz(t_ns),
+            floors_climbed=self._positions.floors_climbed,
+            tracker_rows_dropped=self._positions.rows_dropped,
+            journal_pending=self._journal_pending,
+            electronics=self._electronics.at(t_ns),
+            battery_left_s=None if battery is None else whole_seconds(battery.left_s),
+            battery_state=BatteryState.UNKNOWN if battery is None else battery.state,
+            battery_name="" if battery is None else battery.battery,
+        )
+
+    def _describe(self, mono_ns: int | None) -> UnitDescription:
+        sensor = self._identity.sensor
+        calibration = self._identity.calibration
+        return UnitDescription(
+            header=self._stamper.header(mono_ns),
+            software_version=self._identity.software_version,
+            source=self._identity.source,
+            sensor_name=sensor.name,
+            rate_hz=sensor.rate_hz,
+            accel_full_scale_mps2=sensor.accel_full_scale_mps2,
+            gyro_full_scale_radps=sensor.gyro_full_scale_radps,
+            tracker=self._identity.tracker,
+            calibration="" if calibration is None else identity(calibration),
+            has_magnetometer=sensor.mag_present,
+            has_barometer=sensor.barometer_present,
+            has_gps=self._has_gps,
+            calibrated_s=None if calibration is None else round(calibration.made.timestamp()),
+            calibration_faults="" if calibration is None else "; ".join(calibration.faults()),
+            gain_std=sensor.gain_std,
+        )
+
+    def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:
+        return UnitEvent(self._stamper.header(mono_ns), kind, detail)
+
+
+def _rate_hz(channel: Channel) -> float:
+    assert channel.rate_hz is not None
+    return channel.rate_hz
+
+
+def _last_source_ns(batch: SensorBatch) -> int | None:
+    if len(batch.imu):
+        return int(batch.imu.t_ns[-1])
+    return max((sample.t_ns for sample in batch.others), default=None)
+
+
+def _last_ns(batch: SensorBatch, timeline: Timeline) -> int | None:
+    t_ns = _last_source_ns(batch)
+    return None if t_ns is None else timeline.to_mono_ns(t_ns)

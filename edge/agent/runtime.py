@@ -1,0 +1,237 @@
+"""Runtime loop of one unit: source to pipeline to journal to link, until stopped.
+
+One thread steps the pipeline, stamps what is sent and takes commands, so sequence numbers
+rise in the order of the journal.  Reading the source, writing the journal and holding the
+link have threads of their own: none of them keeps the unit from the rest.
+"""
+
+from __future__ import annotations
+
+import logging
+from contextlib import ExitStack
+from dataclasses import dataclass
+from queue import Empty, SimpleQueue
+from threading import Event
+
+import msgspec
+
+from edge.agent.command_handler import CommandHandler
+from edge.agent.link import Link
+from edge.agent.outbox import Outbox
+from edge.agent.pipeline import TrackerPipeline
+from edge.agent.source_reader import SourceReader, TimedBatch
+from edge.clocks.station import StationClock
+from edge.clocks.timeline import Timeline
+from edge.sample_codec.codec import SampleEncoder, batch_of
+from edge.samples import ACKNOWLEDGE, ButtonPress
+from edge.sources.interface import Source
+from edge.storage.black_box.black_box import BlackBox
+from edge.storage.journal.journal import Journal
+from edge.storage.journal.writer import JournalWriter
+from shared.bus import ReplyHandler
+from shared.channels import COMMAND, clock_key
+from shared.clock import NS_PER_S
+from shared.codec import decode
+from shared.envelope import Stamper
+from shared.errors import RecordingError, WireError
+from shared.messages import Command, EventKind, Heartbeat, UnitEvent
+from shared.messages.event import FAILED
+from shared.service_manager import ServiceManager
+
+logger = logging.getLogger(__name__)
+
+_WAIT_S = 0.05
+_HEARTBEAT_NS = NS_PER_S
+_SILENT_NS = 2 * NS_PER_S
+_CLOCK_TIMEOUT_S = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class AgentParts:
+    """Parts of an agent; the composition root chooses each."""
+
+    source: Source
+    reader: SourceReader
+    raw: SampleEncoder
+    pipeline: TrackerPipeline
+    command_handler: CommandHandler
+    stamper: Stamper
+    clock: StationClock
+    black_box: BlackBox
+    journal: Journal
+    journal_writer: JournalWriter
+    outbox: Outbox
+    link: Link
+    commands: SimpleQueue[bytes]  # filled by the link
+    manager: ServiceManager
+
+
+class Agent:
+    """Agent of one unit; ``run`` it once."""
+
+    def __init__(self, parts: AgentParts) -> None:
+        self._parts = parts
+        self._timeline = Timeline()
+        self._next_heartbeat_ns = 0
+        self._last_batch_ns = 0
+        self._silence_reported = False
+        self._storage_faults = ["", "", ""]
+        self._time_query_failed = False
+        self.commands_not_decoded = 0
+
+    def run(self, stop: Event, *, for_s: float | None = None) -> None:
+        """Run until the source ends, ``stop`` is set or ``for_s`` is over; report the reason at
+        the end.
+
+        Raises RecordingError, when everything is closed, where the source failed.
+        """
+        parts = self._parts
+        started_ns = self._last_batch_ns = parts.clock.monotonic_ns()
+        end_ns = None if for_s is None else started_ns + round(for_s * NS_PER_S)
+        reason = FAILED
+        try:
+            parts.outbox.put(parts.pipeline.start())
+            parts.reader.start()
+            parts.manager.ready()
+            while not stop.is_set() and not parts.reader.ended:
+                if end_ns is not None and parts.clock.monotonic_ns() >= end_ns:
+                    reason = "the time that was set is over"
+                    return
+                self._run_once()
+            if stop.is_set():
+                reason = "told to stop"
+            elif parts.reader.failure is None:
+                reason = "the source ended"
+        finally:
+            self._shut_down(reason)
+        if parts.reader.failure is not None:
+            raise RecordingError(f"the source has failed: {parts.reader.failure}")
+
+    def _run_once(self) -> None:
+        timed = self._parts.reader.take(_WAIT_S)
+        if timed is not None:
+            self._take_batch(timed)
+        self._take_commands()
+        self._parts.clock.turn(self._ask_time)
+        self._check_parts()
+        if self._parts.clock.monotonic_ns() >= self._next_heartbeat_ns:
+            self._send_heartbeat()
+
+    def _take_batch(self, timed: TimedBatch) -> None:
+        parts = self._parts
+        raw = parts.raw.messages(timed.batch)
+        parts.black_box.write(raw)
+        self._timeline = timed.timeline
+        if len(timed.batch.imu):
+            self._last_batch_ns = parts.clock.monotonic_ns()
+            self._silence_reported = False
+        parts.pipeline.set_journal_pending(parts.journal.pending)
+        batch = batch_of(raw)
+        parts.outbox.put(parts.pipeline.step(batch, timed.timeline))
+        if any(isinstance(one, ButtonPress) and one.button == ACKNOWLEDGE for one in batch.others):
+            parts.outbox.put(parts.command_handler.acknowledge())
+        down = any(
+            outage.start_s <= timed.since_start_s < outage.start_s + outage.duration_s
+            for outage in parts.source.radio_outages
+        )
+        parts.link.set_up(up=not down)
+
+    def _take_commands(self) -> None:
+        parts = self._parts
+        while True:
+            try:
+                payload = parts.commands.get_nowait()
+                command = decode(COMMAND, payload)
+            except Empty:
+                return
+            except WireError as error:
+                self.commands_not_decoded += 1
+                logger.warning("a command that cannot be understood: %s", error)
+                continue
+            assert isinstance(command, Command)
+            parts.outbox.put((parts.command_handler.take(command),))
+
+    def _check_parts(self) -> None:
+        """Detect parts that have stopped working, and report each once."""
+        parts = self._parts
+        if not parts.outbox.is_working:
+            raise RuntimeError("the outbox has stopped; see the log before this")
+        if not parts.journal_writer.is_working:
+            raise RuntimeError("the journal has stopped; see the log before this")
+        if not parts.link.is_working:
+            raise RuntimeError("the link has stopped; see the log before this")
+        self._report_storage_faults()
+        for detail in parts.reader.take_faults():
+            self._send_event(EventKind.SENSOR_FAULT, detail)
+        silent_ns = parts.clock.monotonic_ns() - self._last_batch_ns
+        if parts.source.is_live and silent_ns > _SILENT_NS and not self._silence_reported:
+            self._silence_reported = True
+            self._send_event(EventKind.SENSOR_FAULT, "the source has been silent for 2 s")
+
+    def _report_storage_faults(self) -> None:
+        """Report each fault by itself: one that lasts hides none of the others."""
+        parts = self._parts
+        faults = [
+            parts.journal.damage,
+            parts.journal_writer.fault or "",
+            parts.black_box.fault or "",
+        ]
+        for fault, before in zip(faults, self._storage_faults, strict=True):
+            if fault and not before:
+                self._send_event(EventKind.STORAGE_FAULT, fault)
+        self._storage_faults = faults
+
+    def _send_heartbeat(self) -> None:
+        parts = self._parts
+        self._next_heartbeat_ns = parts.clock.monotonic_ns() + _HEARTBEAT_NS
+        parts.manager.working()
+        clock, journal = parts.clock.estimate(), parts.journal
+        heartbeat = Heartbeat(
+            parts.stamper.header(),
+            journal.first_seq,
+            journal.last_seq,
+            never_saved=parts.journal_writer.never_saved,
+            given_up=journal.rows_evicted,
+        )
+        if clock is not None:
+            heartbeat = msgspec.structs.replace(
+                heartbeat,
+                clock_ahead_s=parts.clock.machine_ahead_s(),
+                clock_std_s=clock.std_s,
+                clock_drift=clock.drift,
+            )
+        parts.outbox.put((heartbeat,))
+
+    def _ask_time(self, on_reply: ReplyHandler) -> None:
+        """Query the station for the time; a bus that fails is reopened by the link."""
+        selector = clock_key(self._parts.stamper.unit_id)
+        try:
+            self._parts.link.ask(selector, _CLOCK_TIMEOUT_S, on_reply)
+        except Exception:
+            if not self._time_query_failed:
+                logger.exception("the station cannot be asked for the time")
+            self._time_query_failed = True
+        else:
+            self._time_query_failed = False
+
+    def _shut_down(self, reason: str) -> None:
+        """Send what is left, in order, and close everything."""
+        parts = self._parts
+        ended = parts.reader.ended
+        with ExitStack() as last:  # each is closed, whatever the others do
+            last.callback(parts.journal.close)
+            last.callback(parts.link.close)
+            last.callback(parts.black_box.close)
+            last.callback(parts.journal_writer.close)
+            last.callback(parts.outbox.close)
+            parts.reader.close()
+            parts.outbox.put(parts.pipeline.finish(self._timeline))
+            if ended:
+                self._send_event(
+                    EventKind.SOURCE_ENDED, parts.reader.failure or "the source has no more"
+                )
+            self._send_event(EventKind.STOPPED, reason)
+
+    def _send_event(self, kind: EventKind, detail: str) -> None:
+        logger.info("%s: %s", kind.name, detail)
+        self._parts.outbox.put((UnitEvent(self._parts.stamper.header(), kind, detail),))

@@ -1,0 +1,194 @@
+"""Composition root of the agent: the only place that chooses what it is made of."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from queue import SimpleQueue
+
+from edge.agent.command_handler import CommandHandler
+from edge.agent.link import Link, StationEndpoint
+from edge.agent.outbox import Outbox
+from edge.agent.pipeline import TrackerPipeline, UnitIdentity
+from edge.agent.restore_state import answers_before, mayday_before, position_rate_before
+from edge.agent.runtime import Agent, AgentParts
+from edge.agent.source_reader import SourceReader
+from edge.app.calibration_in_use import calibration_in_use
+from edge.calibration.file import identity
+from edge.calibration.model import Calibration
+from edge.clocks.station import StationClock
+from edge.clocks.timeline import Follower, Timekeeper
+from edge.config import EdgeConfig
+from edge.sample_codec.codec import SampleEncoder, sensor_of
+from edge.sample_codec.uplink import RawUplink
+from edge.samples import SensorDescription
+from edge.sources.bus import BusSource
+from edge.sources.interface import AuxiliarySource, Source
+from edge.storage.black_box.black_box import BlackBox
+from edge.storage.black_box.server import RecordingServer
+from edge.storage.data_folder import DataFolder
+from edge.storage.journal.journal import Journal, open_journal
+from edge.storage.journal.server import JournalServer
+from edge.storage.journal.writer import JournalWriter
+from edge.tracker.registry import NoTracker, make_tracker
+from shared.channels import NO_TRACKER, tracked_unit
+from shared.clock import SystemClock
+from shared.envelope import Stamper
+from shared.messages import EventKind, UnitDescription, UnitEvent
+from shared.service_manager import ServiceManager
+
+
+def compose_agent(
+    config: EdgeConfig,
+    unit_id: str,
+    folder: DataFolder,
+    source: Source,
+    station: StationEndpoint,
+    speed: float | None,
+    auxiliaries: tuple[AuxiliarySource, ...] = (),
+) -> Agent:
+    """Build the agent and its threads; ``speed`` None plays a recording without waiting."""
+    clock = StationClock(SystemClock())
+    with ExitStack() as on_error:
+        journal, damaged = open_journal(
+            folder.journal, _new_boot_id, clock.utc_ns(), round(config.storage.journal_mb * 1e6)
+        )
+        on_error.callback(journal.close)
+        raw = SampleEncoder(unit_id, journal.boot_id)
+        stamper = Stamper(unit_id, journal.boot_id, clock, clock.utc_std_s)
+        worn = tracked_unit(unit_id) or unit_id
+        calibration = calibration_in_use(config, worn, source.description, folder.calibrations)
+        description = _description(config, raw, source, calibration, clock)
+        pipeline = _pipeline(config, sensor_of(description), calibration, stamper, journal, clock)
+        black_box = BlackBox(
+            folder.black_box,
+            description,
+            round(config.storage.black_box_mb * 1e6),
+            clock,
+            clock.utc_std_s,
+        )
+        on_error.callback(black_box.close)
+        commands: SimpleQueue[bytes] = SimpleQueue()
+        link = _link(unit_id, station, commands, journal, RecordingServer(unit_id, folder, clock))
+        on_error.callback(link.close)
+        journal_writer = JournalWriter(journal)
+        on_error.callback(journal_writer.close)
+        outbox = Outbox(unit_id, journal_writer, link.publish)
+        on_error.callback(outbox.close)
+        for detail in _quarantine_reports(folder, damaged):
+            outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
+        agent = Agent(
+            AgentParts(
+                source=source,
+                reader=SourceReader(source, clock, speed, auxiliaries, _timekeeper(source)),
+                raw=raw,
+                pipeline=pipeline,
+                command_handler=CommandHandler(
+                    stamper,
+                    pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
+                    answers_before(journal),
+                ),
+                stamper=stamper,
+                clock=clock,
+                black_box=black_box,
+                journal=journal,
+                journal_writer=journal_writer,
+                outbox=outbox,
+                link=link,
+                commands=commands,
+                manager=ServiceManager(os.environ),
+            )
+        )
+        on_error.pop_all()  # the agent closes it at its end
+    return agent
+
+
+def _timekeeper(source: Source) -> Timekeeper | None:
+    return Follower() if isinstance(source, BusSource) else None
+
+
+def _quarantine_reports(folder: DataFolder, damaged: Path | None) -> Iterator[str]:
+    """Yield reports for a person of what was found in the unit's folder and cannot be used."""
+    if damaged is not None:
+        yield f"the journal was damaged and is set aside as {damaged.name}"
+    if folder.quarantine is not None:
+        yield (
+            "the folder held the journal of another unit, as if copied; it is set aside as "
+            f"{folder.quarantine.name}"
+        )
+
+
+def _description(
+    config: EdgeConfig,
+    raw: SampleEncoder,
+    source: Source,
+    calibration: Calibration | None,
+    clock: StationClock,
+) -> UnitDescription:
+    return raw.description(
+        clock.monotonic_ns(),
+        _with_settings(source.description, config),
+        source=config.source,
+        tracker=config.tracker,
+        calibration="" if calibration is None else identity(calibration),
+    )
+
+
+def _link(
+    unit_id: str,
+    station: StationEndpoint,
+    commands: SimpleQueue[bytes],
+    journal: Journal,
+    recordings: RecordingServer,
+) -> Link:
+    """Build the link over which commands come and the station fetches what it lacks."""
+    servers = JournalServer(unit_id, journal), recordings
+    return Link(
+        unit_id,
+        station,
+        lambda _key, payload: commands.put(payload),
+        [(server.key_expression, server.replies) for server in servers],
+    )
+
+
+def _pipeline(
+    config: EdgeConfig,
+    sensor: SensorDescription,
+    calibration: Calibration | None,
+    stamper: Stamper,
+    journal: Journal,
+    clock: StationClock,
+) -> TrackerPipeline:
+    if calibration is not None:
+        sensor = calibration.described(sensor)
+    tracks = config.tracker != NO_TRACKER
+    return TrackerPipeline(
+        UnitIdentity(_version(), config.source, config.tracker, sensor, calibration, config.place),
+        make_tracker(config.tracker, sensor, (NO_TRACKER,)) if tracks else NoTracker(),
+        stamper,
+        position_rate_before(journal, clock.monotonic_ns()) or config.position_rate_hz,
+        mayday=mayday_before(journal),
+        raw_uplink=None if tracks else RawUplink(stamper),
+    )
+
+
+def _with_settings(sensor: SensorDescription, config: EdgeConfig) -> SensorDescription:
+    """Return the description with settings in place of what the source says."""
+    return sensor if config.gain_std is None else replace(sensor, gain_std=config.gain_std)
+
+
+def _new_boot_id() -> int:
+    """Return a random id, never 0, within what SQLite calls an integer."""
+    return secrets.randbits(63) or 1
+
+
+def _version() -> str:
+    try:
+        return importlib.metadata.version("muster")
+    except importlib.metadata.PackageNotFoundError:  # run from the sources, not installed
+        return "unknown"

@@ -1,0 +1,92 @@
+"""Command ``muster track``: a recording in, a track as CSV out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import track as progress_bar
+
+from edge.sources.black_box import BlackBoxSource
+from edge.sources.interface import Source
+from edge.sources.recording import RecordingSource
+from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.interface import Quality, Reason, TrackBatch
+from edge.tracker.registry import TRACKERS, make_tracker
+from shared.errors import RecordingError
+from shared.mcap_log import segment_paths
+from shared.out_file import whole, writable
+from shared.quality import in_words
+
+COLUMNS = "t_s,north_m,east_m,down_m,std_north_m,std_east_m,std_down_m,std_heading_rad,quality"
+
+
+def track(
+    recording: Annotated[
+        Path,
+        typer.Argument(
+            help="A trial folder, a CSV of samples, or a black box: a boot or a segment."
+        ),
+    ],
+    out: Annotated[Path, typer.Option(help="The CSV file to write.", callback=writable)],
+    tracker: Annotated[
+        str, typer.Option(help="One of: " + ", ".join(entry.name for entry in TRACKERS) + ".")
+    ] = TRACKERS[0].name,
+) -> None:
+    """Track a recorded walk and write time, position and standard deviations."""
+    source = BlackBoxSource(recording) if _is_black_box(recording) else RecordingSource(recording)
+    rows = run_tracker(source, tracker, quiet=False)
+    if not len(rows):
+        raise RecordingError(f"{recording} holds no inertial samples: there is nothing to track")
+    write_csv(rows, out)
+    step_m = rows.position_n_m[-1] - rows.position_n_m[0]
+    Console(stderr=True).print(
+        f"{_report(source)}{len(rows)} rows to {out}: {rows.distance_m[-1]:.1f} m in "
+        f"{rows.steps[-1]} strides, ends {np.hypot(step_m[0], step_m[1]):.2f} m from its start "
+        f"and {-step_m[2]:+.2f} m higher. {_quality_summary(rows)}."
+    )
+
+
+def _is_black_box(path: Path) -> bool:
+    """Return True for a segment, a boot, or several boots, of which one is to be chosen."""
+    folders = (path, *path.glob("*/")) if path.is_dir() else ()
+    return path.suffix == ".mcap" or any(map(segment_paths, folders))
+
+
+def _report(source: Source) -> str:
+    return f"{source.report}\n" if isinstance(source, RecordingSource) else ""
+
+
+def _quality_summary(rows: TrackBatch) -> str:
+    not_good = rows.quality != Quality.GOOD
+    parts = {reason: float(np.mean(not_good & (rows.reasons & reason > 0))) for reason in Reason}
+    worst = sorted(filter(parts.get, parts), key=parts.__getitem__, reverse=True)
+    why = ", ".join(f"{in_words(reason)} ({parts[reason]:.0%})" for reason in worst)
+    return f"{np.mean(not_good):.0%} of the rows are not good" + (f": {why}" if why else "")
+
+
+def run_tracker(source: Source, name: str, *, quiet: bool) -> TrackBatch:
+    """Push a whole recording through a new tracker, as its batches come."""
+    tracker = make_tracker(name, source.description)
+    batches = progress_bar(
+        list(source.batches()),
+        description="Tracking",
+        console=Console(stderr=True),
+        transient=True,
+        disable=quiet,
+    )
+    released = [tracker.push(batch.imu) for batch in batches]
+    return join_rows([*released, tracker.finish()])
+
+
+def write_csv(rows: TrackBatch, out: Path) -> None:
+    """Write one line a row; ``COLUMNS`` is the first line."""
+    std_m = np.sqrt(np.diagonal(rows.position_cov_m2, axis1=1, axis2=2))
+    table = np.column_stack(
+        (rows.t_ns * 1e-9, rows.position_n_m, std_m, rows.heading_std_rad, rows.quality)
+    )
+    with whole(out) as making:
+        np.savetxt(making, table, "%.6f" + ",%.4f" * 6 + ",%.5f,%d", header=COLUMNS, comments="")

@@ -1,1 +1,0 @@
-"""What the wearer is doing, told from the foot: strides, rest, lying, falls, height."""

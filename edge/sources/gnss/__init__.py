@@ -1,0 +1,1 @@
+"""GNSS receivers beside a source: gpsd and NMEA 0183."""

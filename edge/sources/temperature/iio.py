@@ -1,0 +1,112 @@
+"""Temperature sensors of the kernel's Industrial I/O, such as thermocouple converters.
+
+``/sys/bus/iio/devices/iio:deviceN``: ``in_temp_raw``, to which ``in_temp_offset`` is added and
+which ``in_temp_scale`` makes thousandths of a degree Celsius, or ``in_temp_input``, which is that.
+``in_temp_ambient_*`` is the cold junction: the converter's own temperature.
+
+How an open circuit or a short shows, by the kernel's drivers: MAX31856 has ``fault_oc`` and
+``fault_ovuv``, and fails with EIO; MAX31855 and MAX6675 (driver ``maxim_thermocouple``) fail with
+EINVAL for either; MCP9600 shows neither.
+"""
+
+from __future__ import annotations
+
+import errno
+import re
+from pathlib import Path
+
+from edge.sources.polled_device import Unreadable
+from edge.sources.sysfs import number_in, read_if_there, read_text
+from edge.sources.temperature.device_name import find_device, listing, parse_device_name
+from edge.sources.temperature.interface import Role
+from shared.errors import ConfigError
+
+_CHANNEL = re.compile(r"in_temp_?(\w*?)_?(?:raw|input)")
+_COLD_JUNCTION = "ambient"
+_UNSIGNED = "mcp9600"  # its driver hands over the register without its sign
+_FAULTS = {
+    "fault_oc": "open circuit: the thermocouple is broken or not connected",
+    "fault_ovuv": "short circuit: over- or undervoltage at the thermocouple's input",
+}
+
+
+class IioSensor:
+    """Sensor ``NAME[@ADDRESS][/CHANNEL]``; CHANNEL is what stands behind ``in_temp`` in sysfs."""
+
+    def __init__(self, text: str, role: Role, sysfs: Path) -> None:
+        """Raises ConfigError."""
+        self._wanted = parse_device_name("iio", text)
+        self._folder = sysfs / "bus" / "iio" / "devices"
+        if self._wanted.channel == _COLD_JUNCTION and role is Role.ENVIRONMENT:
+            raise ConfigError(
+                f"iio:{text}: {_COLD_JUNCTION} is the cold junction, which is the converter's own "
+                "temperature; write role=electronics to have it as that"
+            )
+
+    def read_degc(self) -> float | Unreadable:
+        device = find_device(self._folder, self._wanted, "IIO device")
+        if isinstance(device, Unreadable):
+            return device
+        channel = self._channel(device)
+        if isinstance(channel, Unreadable):
+            return channel
+        for attribute, fault in _FAULTS.items():
+            if read_if_there(device / attribute) == "1":
+                return Unreadable(fault)
+        try:
+            return self._converted(device, channel)
+        except OSError as error:
+            if error.errno == errno.EINVAL:
+                return Unreadable(
+                    "open circuit or short: the converter reports a fault of its thermocouple"
+                )
+            raise
+
+    def _channel(self, device: Path) -> str | Unreadable:
+        """Return the beginning of the channel's attributes, such as ``in_temp``."""
+        matches = filter(None, (_CHANNEL.fullmatch(each.name) for each in device.iterdir()))
+        channels = sorted({match[1] for match in matches})
+        wanted = self._wanted.channel
+        if wanted in channels:
+            return _beginning(wanted)
+        there = listing(f"{self._wanted}/{one}" if one else str(self._wanted) for one in channels)
+        if wanted:
+            return Unreadable(f"{self._wanted} has no temperature {wanted}; {there}")
+        others = [one for one in channels if one != _COLD_JUNCTION]
+        if len(others) == 1:
+            return _beginning(others[0])
+        return Unreadable(f"{self._wanted} has {len(others)} temperatures; {there}")
+
+    def _converted(self, device: Path, channel: str) -> float | Unreadable:
+        processed = read_if_there(device / f"{channel}_input")
+        if processed is not None:
+            milli_degc = number_in(processed)
+        else:
+            milli_degc = self._scaled(device, channel)
+        if milli_degc is None:
+            return Unreadable(f"{channel} of {self._wanted} is no number")
+        return milli_degc * 1e-3
+
+    def _scaled(self, device: Path, channel: str) -> float | None:
+        raw = number_in(read_text(device / f"{channel}_raw"))
+        scale = self._shared(device, channel, "scale", "1")
+        offset = self._shared(device, channel, "offset", "0")
+        if raw is None or scale is None or offset is None:
+            return None
+        if self._wanted.name == _UNSIGNED and raw >= 2**15:
+            raw -= 2**16
+        return (raw + offset) * scale
+
+    @staticmethod
+    def _shared(device: Path, channel: str, attribute: str, otherwise: str) -> float | None:
+        """Return an attribute of the channel, else that of all temperatures of the device."""
+        for beginning in (channel, "in_temp"):
+            text = read_if_there(device / f"{beginning}_{attribute}")
+            if text is not None:
+                return number_in(text)
+        return number_in(otherwise)
+
+
+def _beginning(channel: str) -> str:
+    """Return the beginning of a channel's attributes, such as ``in_temp_ambient``."""
+    return f"in_temp_{channel}" if channel[:1].isalpha() else f"in_temp{channel}"

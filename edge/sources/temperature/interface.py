@@ -1,0 +1,37 @@
+"""Interface of temperature sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Protocol
+
+from edge.sources.polled_device import Unreadable
+
+RANGE_DEGC = (-55.0, 1250.0)  # what any of them can measure; beyond is a fault, not heat
+
+
+class Role(StrEnum):
+    """Place whose temperature a sensor measures."""
+
+    ENVIRONMENT = "environment"  # the air around the equipment: heat alarms
+    ELECTRONICS = "electronics"  # inside the unit: it shows whether the unit will last
+
+
+class TemperatureSensor(Protocol):
+    """Sensor that is read when asked; called by one thread."""
+
+    def read_degc(self) -> float | Unreadable:
+        """Return the temperature now; may take a second.  Raises OSError where the kernel does."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class SensorKind:
+    """Kind of temperature sensor, as written ``scheme:argument``."""
+
+    scheme: str
+    make: Callable[[str, Role, Path], TemperatureSensor]  # argument, role, where sysfs is mounted
+    argument: str  # what stands after the colon, for help texts

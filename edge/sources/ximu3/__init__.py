@@ -1,0 +1,1 @@
+"""Source of samples for the x-io x-IMU3."""

@@ -1,0 +1,1 @@
+"""Tracker of a foot-mounted sensor: error-state Kalman filter with zero-velocity updates."""

@@ -1,0 +1,1 @@
+"""Error-state Kalman filter: strapdown integration, error propagation, measurement updates."""

@@ -1,0 +1,1 @@
+"""Published rows: fixed-lag smoothing, reported covariance and quality."""

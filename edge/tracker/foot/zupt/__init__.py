@@ -1,0 +1,1 @@
+"""Stance detection, zero-velocity updates, and the consistency of what they find."""

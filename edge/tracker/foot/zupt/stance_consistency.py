@@ -1,0 +1,80 @@
+"""Innovation monitor of stances: stances that contradict the motion between them.
+
+A stance is the stillest of its stride, which need not be still: a foot that is raised and put down
+slowly is at its stillest in mid-air.  Taken for a stance, its velocity is lost, and so is the
+distance that it would have moved.  Nothing in the samples of that moment shows it, but the filter
+does: it knows the variance of the velocity after a swing.  What a stance takes away of that, by its
+variance and summed over the samples of the stance, is the normalised innovation squared (NIS); of
+true stances it is chi-square with three degrees of freedom at most, the filter's noise being that
+of hard strides (Bar-Shalom, Li and Kirubarajan, "Estimation with Applications to Tracking and
+Navigation", 2001, section 5.4).  The effect of scale errors on a swing is no noise of the filter
+(see scale_misalignment), so it comes on top: their share of the swing's speed, and of the velocity
+that gravity adds while the attitude is off.
+
+Which of the two is wrong, stance or velocity, is not known.  So neither is left out; the distance
+that the rejected velocity would have covered since the stance before is reported as uncertainty of
+the position.  These distances add up one to one and not by their squares, for a person who raises a
+foot slowly does it again, the same way.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.filter.strapdown import dot
+from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.foot.state import FilterState, Progress, Step
+from edge.tracker.foot.zupt.zupt import lever_velocity_row
+
+
+@njit()
+def begin_stance(
+    ring: Ring, step: Step, progress: Progress, state: FilterState, slot: int, config: EskfConfig
+) -> None:
+    """Record what the first still sample after a swing takes away, before it does."""
+    state.stance_nis = 0.0
+    state.stance_misfits = False
+    state.stance_after_s = ring[slot].t_s - progress.last_stance_s
+    rotated_rad = min(state.swing_rad, 1.0)
+    gravity_leak_mps = config.gravity_mps2 * rotated_rad * state.stance_after_s
+    state.stance_scale_error_mps = state.scale_errors.std * (
+        state.swing_speed_mps + gravity_leak_mps
+    )
+    for i in range(3):
+        state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
+    row = step.lever_row[0]
+    for i in range(3):
+        lever_velocity_row(state.rotation_nb, state.gyro_radps, i, row)
+        state.stance_off_n_mps[i] = dot(row, state.lever_b_m) - state.velocity_n_mps[i]
+
+
+@njit()
+def inflate_for_misfit(
+    progress: Progress, state: FilterState, t_s: float, config: EskfConfig
+) -> None:
+    """Widen the position at a stance once its samples have contradicted the filter's velocity."""
+    if state.stance_misfits or not _contradicts(state, config):
+        return
+    state.stance_misfits = True
+    progress.misfit_s = t_s
+    for i in range(3):
+        state.misfit_n_m[i] += abs(state.stance_off_n_mps[i]) * state.stance_after_s
+
+
+@njit()
+def _contradicts(state: FilterState, config: EskfConfig) -> bool:
+    """True where this stance takes away more velocity than noise and gains explain."""
+    nis = state.stance_nis
+    if nis <= config.misfit_nis:
+        return False
+    off = state.stance_off_n_mps
+    square = dot(off, off)  # by the variance of the filter it is nis
+    variance = square / nis + state.stance_scale_error_mps**2
+    return bool(square > config.misfit_nis * variance)
+
+
+@njit()
+def height_is_lost(state: FilterState, config: EskfConfig) -> bool:
+    """True where the floor can no longer be known; nothing later brings it back."""
+    return bool(state.misfit_n_m[2] > config.misfit_height_m)

@@ -1,0 +1,196 @@
+"""Stance detector: a stillness statistic and a threshold that follows each stride.
+
+The statistic is SHOE's (Skog et al., "Zero-velocity detection: an algorithm evaluation", 2010) in
+m^2/s^4, over a short window: ``T = var(f) + w mean(|rate|^2) + (|mean f| - g0)^2``.  Shoes, gaits
+and sensors differ by orders of magnitude in how still the stillest instant of a stride is, so the
+threshold is a multiple of the least statistic in the surrounding stride, within bounds.  ``g0``,
+what the accelerometer shows at rest, is learned: real ones show 9.5 to 10.6 m/s^2.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from edge.samples import Floats
+from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.sample_ring import Ring, reach, span
+from edge.tracker.foot.state import FilterState, Progress
+
+
+@njit()
+def measure_motion(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> None:
+    """Write the statistic of sample ``k``, and the sums up to it that ``unrest`` takes means of."""
+    mask = len(ring) - 1
+    here, before = k & mask, (k - 1) & mask
+    stop = min(progress.timed, reach(ring, k))
+    ring[here].motion_m2ps4 = motion_statistic(ring, progress, k, stop, config)
+    ring[here].rest_norm_mps2 = progress.rest_norm_mps2
+    ring[here].motion_sum_m2ps4 = ring[before].motion_sum_m2ps4 + ring[here].motion_m2ps4
+    squares = ring[before].rate_square_sum_rad2ps2
+    for i in range(3):
+        rate_radps = ring[here].gyro_radps[i]
+        ring[here].rate_sum_radps[i] = ring[before].rate_sum_radps[i] + rate_radps
+        squares += rate_radps * rate_radps
+    ring[here].rate_square_sum_rad2ps2 = squares
+
+
+@njit()
+def motion_statistic(
+    ring: Ring, progress: Progress, k: int, stop: int, config: EskfConfig
+) -> float:
+    """Return the statistic of sample ``k``; samples from ``stop`` on are not looked at."""
+    mask = len(ring) - 1
+    now_s = ring[k & mask].t_s
+    first = k
+    while first > 0 and now_s - ring[(first - 1) & mask].t_s <= config.half_window_s:
+        first -= 1
+        if k - first > span(ring):
+            break
+    mean_x = 0.0
+    mean_y = 0.0
+    mean_z = 0.0
+    squares = 0.0
+    rates = 0.0
+    turn_x = 0.0
+    turn_y = 0.0
+    turn_z = 0.0
+    count = 0
+    for i in range(first, stop):
+        slot = i & mask
+        if ring[slot].t_s - now_s > config.half_window_s:
+            break
+        x, y, z = ring[slot].accel_mps2[0], ring[slot].accel_mps2[1], ring[slot].accel_mps2[2]
+        mean_x += x
+        mean_y += y
+        mean_z += z
+        squares += x * x + y * y + z * z
+        x, y, z = ring[slot].gyro_radps[0], ring[slot].gyro_radps[1], ring[slot].gyro_radps[2]
+        rates += x * x + y * y + z * z
+        turn_x += x
+        turn_y += y
+        turn_z += z
+        count += 1
+    mean_norm = math.sqrt(mean_x * mean_x + mean_y * mean_y + mean_z * mean_z) / count
+    agitation = max(squares / count - mean_norm * mean_norm, 0.0)
+    agitation += config.rate_weight_m2ps2 * rates / count
+    steady = (turn_x * turn_x + turn_y * turn_y + turn_z * turn_z) / (count * count)
+    off_mps2 = mean_norm - progress.rest_norm_mps2
+    unsteady = agitation - config.rate_weight_m2ps2 * steady
+    if unsteady < config.rest_motion_m2ps4 and abs(off_mps2) < config.rest_off_mps2:
+        progress.rest_norm_mps2 += config.rest_weight * off_mps2
+    return float(agitation + off_mps2 * off_mps2)
+
+
+@njit()
+def stride_minimum(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> float:
+    """Return the smallest statistic from ``stride_past_s`` before to ``lookahead_s`` after ``k``.
+
+    At the start, and after a long hole, it looks further ahead instead: samples may begin in
+    mid-swing, and half a swing is no stride.  Called for every ``k`` in turn; ``progress`` keeps
+    the sliding window.
+    """
+    mask = len(ring) - 1
+    now_s = ring[k & mask].t_s
+    at = progress.minimum_at
+    to = progress.minimum_to
+    stop = min(progress.measured, reach(ring, k))
+    ahead_s = config.lookahead_s
+    since_s = now_s - progress.began_s
+    if since_s < config.lag_s:  # nothing came before; the first sample has waited for the lag too
+        ahead_s += config.lag_s - since_s
+        stop = min(stop, reach(ring, progress.began_at))
+    while to < stop and ring[to & mask].t_s - now_s <= ahead_s:
+        if to == 0 or ring[to & mask].motion_m2ps4 <= ring[at & mask].motion_m2ps4:
+            at = to
+        to += 1
+    begin = max(progress.minimum_from, to - mask)
+    while now_s - ring[begin & mask].t_s > config.stride_past_s:
+        begin += 1
+    if at < begin:
+        at = begin
+        for i in range(begin, to):
+            if ring[i & mask].motion_m2ps4 <= ring[at & mask].motion_m2ps4:
+                at = i
+    progress.minimum_at = at
+    progress.minimum_from = begin
+    progress.minimum_to = to
+    return float(ring[at & mask].motion_m2ps4)
+
+
+@njit()
+def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig) -> float:
+    """Return the mean statistic within ``unrest_half_window_s`` of ``k``, free of bias.
+
+    ``rest_rate_radps`` becomes the mean rate, ``rest_rate_var_rad2ps2`` its scatter.
+
+    Sway cannot be separated from a gyroscope's bias sample by sample: judged one by one, the
+    samples whose sway happens to cancel the bias would pass for the stillest.  So the rate
+    counts as far as its mean is off the bias that is known.
+    """
+    mask = len(ring) - 1
+    now_s = ring[k & mask].t_s
+    stop = min(progress.measured, reach(ring, k))
+    first = k
+    while first > 0 and k - first < span(ring):
+        if now_s - ring[(first - 1) & mask].t_s > config.unrest_half_window_s:
+            break
+        first -= 1
+    last = k
+    while last + 1 < stop and ring[(last + 1) & mask].t_s - now_s <= config.unrest_half_window_s:
+        last += 1
+    before = (first - 1) & mask
+    count = last + 1 - first
+    total = ring[last & mask].motion_sum_m2ps4 - ring[before].motion_sum_m2ps4
+    by_bias = 0.0  # of the mean square rate
+    squares = ring[last & mask].rate_square_sum_rad2ps2 - ring[before].rate_square_sum_rad2ps2
+    state.rest_rate_var_rad2ps2 = squares / count
+    for i in range(3):
+        mean = (ring[last & mask].rate_sum_radps[i] - ring[before].rate_sum_radps[i]) / count
+        off = mean - state.gyro_bias_radps[i]
+        by_bias += mean * mean - off * off
+        state.rest_rate_radps[i] = mean
+        state.rest_rate_var_rad2ps2 -= mean * mean
+    return float(max(total / count - config.rate_weight_m2ps2 * by_bias, 0.0))
+
+
+@njit()
+def steady_rate(ring: Ring, first: int, stop: int, ahead_s: float, config: EskfConfig) -> Floats:
+    """Return the mean rate (3,) at rest from sample ``first`` on, zeros in motion.
+
+    Looks at samples before ``stop`` and at most ``ahead_s`` after ``first``.  Neither a bias of
+    the gyroscope nor a scale of the accelerometer counts as motion.
+    """
+    mask = len(ring) - 1
+    while stop > first + 1 and ring[(stop - 1) & mask].t_s - ring[first & mask].t_s > ahead_s:
+        stop -= 1
+    count = stop - first
+    rate_radps = np.zeros(3)
+    force_mps2 = np.zeros(3)
+    squares = 0.0
+    for k in range(first, stop):
+        for i in range(3):
+            rate, force = ring[k & mask].gyro_radps[i], ring[k & mask].accel_mps2[i]
+            rate_radps[i] += rate / count
+            force_mps2[i] += force / count
+            squares += (force * force + config.rate_weight_m2ps2 * rate * rate) / count
+    squares -= (force_mps2**2).sum() + config.rate_weight_m2ps2 * (rate_radps**2).sum()
+    if squares > config.steady_motion_m2ps4:
+        rate_radps[:] = 0.0
+    return rate_radps
+
+
+@njit()
+def stance_threshold(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> float:
+    """Return the statistic up to which a sample counts as standing.
+
+    A lift pushes like a small step.  Where a barometer shows the ride, the person stands.
+    """
+    threshold = config.threshold_ratio * ring[slot].stride_minimum_m2ps4
+    least = config.threshold_min_m2ps4
+    since_change_s = ring[slot].t_s - state.barometer.changed_s
+    if state.barometer.started and since_change_s < config.ride_longest_s:
+        least = config.ride_motion_m2ps4
+    return float(min(max(threshold, least), config.threshold_max_m2ps4))

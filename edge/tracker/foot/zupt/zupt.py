@@ -1,0 +1,95 @@
+"""Zero-velocity update (ZUPT) of a foot that rolls about a resting point of the sole.
+
+Zero velocity holds for the point of the sole on the ground, not for a sensor some centimetres above
+it.  So the pseudo-measurement is ``0 = v - R (rate x lever)`` with the lever (m, sensor axes)
+estimated like a bias: from how the velocity changes while the rate changes within a stance.  A
+second one, ``0 = rate - bias``, holds once the foot has rested for a while.  Both weigh the more,
+the stiller the sample is.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from edge.samples import Floats
+from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.error_state import GYRO_BIAS, VELOCITY
+from edge.tracker.foot.filter.measurement_update import (
+    begin_updates,
+    end_updates,
+    measure,
+    measure_with_lever,
+)
+from edge.tracker.foot.filter.strapdown import dot
+from edge.tracker.foot.preprocessing.sample_times import lacks_samples
+from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.foot.state import FilterState, Step
+
+MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
+
+
+@njit()
+def apply_zupt(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfConfig) -> None:
+    """Apply the pseudo-measurements of one still sample."""
+    interval_s = max(ring[slot].interval_s, MIN_INTERVAL_S)
+    if lacks_samples(ring, slot, interval_s):
+        interval_s = ring[slot].period_s  # it is evidence of its own instant, not of the gap
+    motion = ring[slot].motion_m2ps4
+    for i in range(3):
+        state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
+    begin_updates(state)
+    velocity_variance = stance_velocity_noise(ring, slot, motion, config) / interval_s
+    for i in range(3):
+        state.stance_nis += _measure_velocity(step, state, i, velocity_variance)
+    rate_noise = config.stance_rate_radps_rthz**2
+    rate_noise += config.stance_rate_per_unrest**2 * ring[slot].unrest_m2ps4 ** 3
+    rate_variance = rate_noise / interval_s
+    if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_gain_min_hz * rate_noise:
+        for i in range(3):
+            measure(step, state, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
+            gain = step.update_gain[step.updates - 1, GYRO_BIAS + i]
+            off_mps2 = ring[slot].accel_mps2[i] - state.rest_force_mps2[i]
+            state.rest_force_mps2[i] += gain * off_mps2
+    end_updates(state)
+
+
+@njit()
+def is_gliding(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> bool:
+    """True when the foot moves evenly where it seems to stand, as one that is dragged does.
+
+    That shows by a velocity that the filter is sure of.  The stillest samples of a stride are
+    used in any case, or a filter that is wrong would never be corrected.
+    """
+    if ring[slot].motion_m2ps4 <= config.threshold_ratio * ring[slot].stride_minimum_m2ps4:
+        return False
+    for i in range(VELOCITY, VELOCITY + 3):
+        speed_mps = state.velocity_n_mps[i - VELOCITY]
+        if speed_mps * speed_mps > config.glide_gate**2 * state.covariance[i, i]:
+            return True
+    return False
+
+
+@njit()
+def stance_velocity_noise(ring: Ring, slot: int, motion: float, config: EskfConfig) -> float:
+    """Return the density (m^2/s) of how far a stance sample is from the rolling foot's model."""
+    noise = config.stance_velocity_mps_rthz**2
+    noise += config.stance_velocity_per_motion**2 * motion
+    stillest = max(ring[slot].stride_minimum_m2ps4, config.stance_excess_floor_m2ps4)
+    return float(noise * max(motion / stillest, 1.0) ** config.stance_excess_power)
+
+
+@njit()
+def lever_velocity_row(rotation_nb: Floats, rate_b_radps: Floats, axis: int, row: Floats) -> None:
+    """Write row ``axis`` of ``R [w x]`` into ``row`` (3,): times the lever it is the velocity."""
+    x, y, z = rate_b_radps[0], rate_b_radps[1], rate_b_radps[2]
+    row[0] = rotation_nb[axis, 1] * z - rotation_nb[axis, 2] * y
+    row[1] = rotation_nb[axis, 2] * x - rotation_nb[axis, 0] * z
+    row[2] = rotation_nb[axis, 0] * y - rotation_nb[axis, 1] * x
+
+
+@njit()
+def _measure_velocity(step: Step, state: FilterState, axis: int, variance: float) -> float:
+    row = step.lever_row[axis]
+    lever_velocity_row(state.rotation_nb, state.gyro_radps, axis, row)
+    residual_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[axis]
+    return measure_with_lever(step, state, axis, row, residual_mps, variance)

@@ -1,0 +1,1 @@
+"""Tracker by the method of Huang's thesis (2009): quasi-static resets in stance."""

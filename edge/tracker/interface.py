@@ -1,0 +1,80 @@
+"""Interface of trackers: inertial samples in, estimates of the path out.
+
+The navigation frame is NED with its origin at the first sample and, until something better is
+known, an arbitrary but constant heading of "north".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from edge.samples import Floats, ImuBatch, Nanoseconds, SensorDescription
+from shared.earth_field import EarthField
+from shared.quality import Quality, Reason
+
+__all__ = ["Quality", "Reason", "TrackBatch", "Tracker", "TrackerEntry"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackBatch:
+    """Estimates for consecutive samples, one row a sample, possibly none.
+
+    A tracker may hold samples back for at most one second (fixed lag); the
+    rows say their own time, in order, each sample's row exactly once.
+    """
+
+    t_ns: Nanoseconds  # (n,) the sample's own time
+    position_n_m: Floats  # (n, 3) north, east, down
+    velocity_n_mps: Floats  # (n, 3)
+    quaternion_nb: Floats  # (n, 4) Hamilton w, x, y, z; takes sensor axes to navigation axes
+    position_cov_m2: Floats  # (n, 3, 3)
+    heading_std_rad: Floats  # (n,)
+    stationary: NDArray[np.bool_]  # (n,) the foot stands still
+    # What was put right of the walk behind since the start, and is in the columns above: by how
+    # much the position moved without a step, and the heading turned where the walk did not follow.
+    past_shift_n_m: Floats  # (n, 2) north, east
+    past_turn_rad: Floats  # (n,) clockwise
+    distance_m: Floats  # (n,) horizontal path length since the start, stance to stance
+    steps: NDArray[np.int64]  # (n,) strides of this foot counted since the start
+    quality: NDArray[np.uint8]  # (n,) Quality
+    reasons: NDArray[np.uint32]  # (n,) Reason bits
+    magnetic_north_rad: Floats  # (n,) where it lies in the frame, clockwise from the frame's north
+    magnetic_north_std_rad: Floats  # (n,) infinite where the tracker does not know it
+
+    def __len__(self) -> int:
+        return len(self.t_ns)
+
+    def part(self, rows: NDArray[np.intp]) -> TrackBatch:
+        return TrackBatch(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+
+class Tracker(Protocol):
+    """``push`` in any batching gives the same rows to the last bit."""
+
+    def push(self, batch: ImuBatch) -> TrackBatch:
+        """Take samples; return the rows that have become final."""
+        ...
+
+    def set_earth_field(self, field: EarthField, t_ns: int) -> None:
+        """Set the earth's field around here; holds for samples from ``t_ns`` on, which are still to
+        be pushed.
+        """
+        ...
+
+    def finish(self) -> TrackBatch:
+        """Return the rows still held back; the tracker is used up."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class TrackerEntry:
+    """Line of ``TRACKERS``."""
+
+    name: str
+    summary: str
+    make: Callable[[SensorDescription], Tracker]

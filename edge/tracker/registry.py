@@ -1,0 +1,50 @@
+"""Registry of trackers.  A new tracker is a file and a line here."""
+
+from __future__ import annotations
+
+from edge.samples import ImuBatch, SensorDescription
+from edge.tracker.foot.eskf import EskfTracker
+from edge.tracker.foot.output.track_rows import empty_rows
+from edge.tracker.huang.tracker import HuangTracker
+from edge.tracker.interface import TrackBatch, Tracker, TrackerEntry
+from shared.earth_field import EarthField
+from shared.errors import ConfigError
+
+
+class NoTracker:
+    """Tracker of a unit too weak to track: no rows.  Its tracking agent computes the positions.
+
+    Not in ``TRACKERS``, as it keeps none of their promises.
+    """
+
+    def push(self, batch: ImuBatch) -> TrackBatch:
+        del batch
+        return empty_rows()
+
+    def set_earth_field(self, field: EarthField, t_ns: int) -> None:
+        del field, t_ns
+
+    def finish(self) -> TrackBatch:
+        return empty_rows()
+
+
+TRACKERS: tuple[TrackerEntry, ...] = (
+    TrackerEntry("eskf", "error-state filter with stride-adaptive stance (default)", EskfTracker),
+    TrackerEntry(
+        "huang", "the thesis's method: pitch-rate stance, quasi-static resets", HuangTracker
+    ),
+)
+
+
+def make_tracker(
+    name: str, description: SensorDescription, other_names: tuple[str, ...] = ()
+) -> Tracker:
+    """Return a new tracker by its name in ``TRACKERS``; ``ConfigError`` if there is none.
+
+    ``other_names``: what else the caller would have taken for a name.
+    """
+    for entry in TRACKERS:
+        if entry.name == name:
+            return entry.make(description)
+    known = ", ".join((*(entry.name for entry in TRACKERS), *other_names))
+    raise ConfigError(f"There is no tracker '{name}'. Known trackers: {known}.")

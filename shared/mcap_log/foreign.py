@@ -1,0 +1,124 @@
+"""Files that stand among the segments of a log, under the name of one, and are none of it.
+
+A segment begins in the second that its name says, and segments follow each other in time.
+"""
+
+from __future__ import annotations
+
+import struct
+from bisect import bisect_right
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from itertools import zip_longest
+from pathlib import Path
+from statistics import median_low
+
+from mcap.opcode import Opcode
+from mcap.writer import MCAP0_MAGIC
+
+from shared.clock import NS_PER_S
+from shared.errors import LogError
+from shared.mcap_log.container import CHUNK, MESSAGE, NONSENSE, message_offsets, unpacked
+from shared.mcap_log.folder import segment_began_ns, segment_number, segment_paths
+from shared.mcap_log.making import PROFILE
+from shared.mcap_log.segment_file import SegmentFile
+
+_LAST_NS = 3600 * NS_PER_S  # of one that none follows, so much may be lost at its beginning
+_LENGTH = struct.Struct("<I")
+
+
+def own_segments(folder: Path) -> tuple[list[Path], dict[Path, str]]:
+    """The segments of a log in the order of writing, and the files among them that are none of
+    it, each with the reason in words.
+    """
+    foreign: dict[Path, str] = {}
+    own = []
+    for path, following in candidates(segment_paths(folder), foreign):
+        if reason := foreign_by_content(path, following):
+            foreign[path] = reason
+        else:
+            own.append(path)
+    return own, foreign
+
+
+def candidates(paths: Sequence[Path], foreign: dict[Path, str]) -> list[tuple[Path, Path | None]]:
+    """Those whose names may be of one log, each with the one that follows; the others go to
+    ``foreign``.
+    """
+    in_order = _in_order(_one_a_number(paths))
+    foreign |= {
+        path: "its name does not go with the others" for path in paths if path not in set(in_order)
+    }
+    return list(zip_longest(in_order, in_order[1:]))
+
+
+def _one_a_number(paths: Sequence[Path]) -> list[Path]:
+    """Keeps, of two with the same number, the one that began nearer to all the others."""
+    middle_ns = median_low(map(segment_began_ns, paths)) if paths else 0
+    nearest: dict[int, Path] = {}
+    for path in sorted(paths, key=lambda one: -abs(segment_began_ns(one) - middle_ns)):
+        nearest[segment_number(path)] = path
+    return [nearest[number] for number in sorted(nearest)]
+
+
+def _in_order(paths: Sequence[Path]) -> list[Path]:
+    """The most of them, in their order, of which none begins before the one before it."""
+    lasts_ns: list[int] = []  # by length of a run: when its last one begins, at the earliest
+    runs: list[list[Path]] = []
+    for path in paths:
+        began_ns = segment_began_ns(path)
+        place = bisect_right(lasts_ns, began_ns)
+        run = [*(runs[place - 1] if place else ()), path]
+        lasts_ns[place : place + 1] = [began_ns]
+        runs[place : place + 1] = [run]
+    return runs[-1] if runs else []
+
+
+def foreign_by_content(path: Path, following: Path | None) -> str:
+    """Empty where it is of the log, or damaged so that nobody can tell."""
+    try:
+        file = SegmentFile(path)
+    except LogError:
+        return ""
+    try:
+        profile, chunk_at = _header(file)
+        if profile != PROFILE:
+            return f"it was written by another program ({profile or 'which does not say so'})"
+        began_ns, first_ns = segment_began_ns(path), _first_ns(file, chunk_at)
+    except NONSENSE:
+        return ""
+    finally:
+        file.close()
+    until_ns = segment_began_ns(following) if following else began_ns + _LAST_NS
+    if not began_ns <= first_ns < until_ns + NS_PER_S:  # what it began with may be lost
+        return f"its records begin at {_utc(first_ns)}, which is not when its name says"
+    return ""
+
+
+def _header(file: SegmentFile) -> tuple[str, int]:
+    """The profile, and where the first chunk is."""
+    if file.read(0, len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+        raise ValueError("it is no MCAP file")
+    opcode, length = file.record_at(len(MCAP0_MAGIC))
+    if opcode != Opcode.HEADER:
+        raise ValueError("it has no header")
+    body = file.read(len(MCAP0_MAGIC) + 9, length)
+    (count,) = _LENGTH.unpack_from(body)
+    return body[4 : 4 + count].decode(), len(MCAP0_MAGIC) + 9 + length
+
+
+def _first_ns(file: SegmentFile, chunk_at: int) -> int:
+    """When the first record was written; what the chunk says of its times has no checksum."""
+    opcode, length = file.record_at(chunk_at)
+    if opcode != Opcode.CHUNK or length < CHUNK.size:
+        raise ValueError("no chunk stands there")
+    data = unpacked(file.read(chunk_at + 9, length))
+    offset = next(message_offsets(data, {}), None)
+    if offset is None:
+        raise ValueError("it is empty")
+    t_ns: int = MESSAGE.unpack_from(data, offset)[4]
+    return t_ns
+
+
+def _utc(t_ns: int) -> str:
+    return f"{datetime.fromtimestamp(t_ns // NS_PER_S, UTC):%Y-%m-%d %H:%M:%S} UTC"

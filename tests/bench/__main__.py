@@ -1,0 +1,33 @@
+"""``python -m tests.bench bench NAME``: benchmarks of a checkout; ``./muster bench NAME``."""
+
+from __future__ import annotations
+
+from importlib.metadata import EntryPoint
+
+from shared.command_line import COMMANDS, run
+
+BENCHES = {
+    "activity": "tests.bench.tracker.activity:bench_activity",
+    "aids": "tests.bench.tracker.aiding_sensors:bench_aids",
+    "backfill": "tests.bench.backfill:bench_backfill",
+    "bus": "tests.bench.bus.command:bench_bus",
+    "faults": "tests.bench.faults.command:bench_faults",
+    "floors": "tests.bench.floors:bench_floors",
+    "fusion": "tests.bench.fusion.command:bench_fusion",
+    "instructions": "tests.bench.tracker.instructions:bench_instructions",
+    "past": "tests.bench.past.command:bench_past",
+    "published": "tests.bench.tracker.published:bench_published",
+    "restart": "tests.bench.restart:bench_restart",
+    "standby": "tests.bench.standby.command:bench_standby",
+    "station": "tests.bench.station.command:bench_station",
+    "track": "tests.bench.tracker.track:bench_track",
+}
+
+
+def bench_entry_points() -> list[EntryPoint]:
+    """The benchmarks as commands of a group ``bench``."""
+    return [EntryPoint(f"bench.{name}", value, COMMANDS) for name, value in BENCHES.items()]
+
+
+if __name__ == "__main__":
+    run(bench_entry_points())

@@ -1,0 +1,132 @@
+"""Others at the bus and at the console who do no good to a station and its unit."""
+
+from __future__ import annotations
+
+import time
+from contextlib import ExitStack
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+from tests.bench.faults.bus_identities import BABBLER, GONE, LATE, OTHER, UNIT
+from tests.bench.faults.site import Site
+from tests.rig.console_load import Onlookers
+from tests.rig.link_forwarder import Conditions
+from tests.rig.login_flood import Flood, LoginFlood, guesses, slow_bodies
+from tests.rig.lossy_link import CLEAN
+from tests.rig.pacing import wait_until
+
+
+@dataclass(frozen=True, slots=True)
+class Meddling:
+    """Somebody else is on the bus, or tries to be."""
+
+    name: str
+    what: str  # one of ``meddler.WHAT``
+    who: str  # one of the ``Members``
+    names: tuple[str, ...] = (UNIT,)  # in which it speaks
+    seconds: float = 8.0
+    bench_only: bool = False
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        membership: str = getattr(site.members, self.who)
+        site.meddle(self.what, membership, ",".join(self.names), self.seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """Many look on, and some of them read slowly."""
+
+    name: str
+    quick: int
+    slow: int
+    seconds: float = 10.0
+    bench_only: bool = True
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        api = site.link.station.call(lambda: site.station.api)
+        crowd = site.link.station.call(lambda: Onlookers(api, self.quick, self.slow))
+        time.sleep(self.seconds)
+        crowd.close()
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectionFlood:
+    """Somebody without a certificate opens connections; the unit has to link meanwhile."""
+
+    name: str
+    kind: str  # one of ``connection_flood.KINDS``
+    held: int
+    per_s: float
+    seconds: float = 15.0
+    bench_only: bool = True
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        with site.flooded(self.kind, _FLOODED_S, self.held, self.per_s):
+            site.agent.kill()
+            before = site.agent.said()
+            site.agent.start()
+            wait_until("the agent has begun", lambda: site.agent.said() > before)
+            time.sleep(_LINKED_WITHIN_S)
+
+
+@dataclass(frozen=True, slots=True)
+class Attack:
+    """Somebody with a certificate wants to stop the station."""
+
+    name: str
+    what: str  # one of ``attacker.ATTACKS``
+    who: str  # one of the ``Members``
+    seconds: float = 10.0
+    bench_only: bool = True
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        site.attack(self.what, getattr(site.members, self.who), self.seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class ConsoleFlood:
+    """Clients without a session load the console's address with logins and slow bodies."""
+
+    name: str
+    flood: Flood
+    addresses: int
+    seconds: float = 15.0
+    bench_only: bool = True
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        port = site.link.station.call(lambda: urlsplit(site.station.api.origin).port)
+        assert port is not None
+        with ExitStack() as flooded:
+            # The thread of the flood stays in the network of whoever starts it.
+            site.link.station.call(
+                lambda: flooded.enter_context(LoginFlood(port, self.flood, places=self.addresses))
+            )
+            site.ask_par()
+            time.sleep(self.seconds)
+
+
+_FLOODED_S = 120.0  # more than it lasts: it ends when the fault does
+_LINKED_WITHIN_S = 3.0  # to reach: else it is heard only after the fault's end
+
+MEDDLING = (
+    Meddling("said again, in any order, backdated", "repeat", "unit"),
+    Meddling("messages that make no sense", "babble", "babbler", (BABBLER,)),
+    Meddling("A speaks as B", "forge", "other", (OTHER, UNIT), bench_only=True),
+    Meddling("certificate: none", "forge", "without", bench_only=True),
+    Meddling("certificate: foreign", "forge", "foreign", bench_only=True),
+    Meddling("certificate: expired", "forge", "expired", (LATE, UNIT), bench_only=True),
+    Meddling("certificate: revoked", "forge", "revoked", (GONE, UNIT), bench_only=True),
+    Crowd("200 consoles, and 5 that hardly read", 200, 5),
+    ConnectionFlood("attack: 1,500 silent connections, 200/s", "silent", held=1500, per_s=200.0),
+    ConnectionFlood("attack: 200/s begin a handshake", "hello", held=500, per_s=200.0),
+    ConsoleFlood("attack: 120 addresses guess passwords", guesses(1.0), 120),
+    ConsoleFlood("attack: 1,440 slow bodies from 12 addresses", slow_bodies(120), 12),
+    Attack("attack: 50 sessions/s, revoked", "sessions", "revoked"),
+    Attack("attack: a journal without end", "journal", "other"),
+    Attack("attack: a token comes and goes", "toggle", "babbler"),
+)

@@ -1,0 +1,122 @@
+"""Somebody on the bus who wants to stop a station: a program of its own, which ends by itself.
+
+python -m tests.bench.faults.flooding_unit WHAT ENROLMENT SECONDS
+"""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import ssl
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, suppress
+from pathlib import Path
+
+from base_station.config import endpoint_address
+from base_station.security.router.internal_authority import load_identity
+from shared.bus_zenoh import UnitEndpoint, ZenohBus
+from shared.channels import EVENT, POSITION, ROOT, Qos, alive_key
+from shared.clock import SystemClock
+from shared.codec import encode
+from shared.enrolment import Enrolment, read_enrolment
+from shared.errors import MusterError
+from shared.messages import (
+    EventKind,
+    Header,
+    JournalBoot,
+    JournalChunk,
+    JournalEntry,
+    JournalIndex,
+    UnitEvent,
+)
+from shared.tls import TlsIdentity
+from tests.rig import message_factory
+from tests.rig.pacing import paced, wait_until
+
+_MOST_SECONDS = 120.0
+_LAST = 10**9  # number of a journal that never ends
+_ENTRIES, _ANSWERED = 400, 40_000  # of one reply, and of one answer
+_SESSIONS_HZ = 50.0
+
+
+def toggle(enrolment: Enrolment, seconds: float) -> None:
+    """Its liveliness token comes and goes, as fast as the machine can."""
+    with closing(_joined(enrolment)) as bus:
+        end_s = time.monotonic() + seconds
+        while time.monotonic() < end_s:
+            bus.declare_alive(alive_key(enrolment.name)).close()
+
+
+def serve_endless_journal(enrolment: Enrolment, seconds: float) -> None:
+    """It has whatever it is asked for, and all of it are maydays."""
+    name, boot_id = enrolment.name, secrets.randbits(63)
+    clock = SystemClock()
+
+    def answer(key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
+        asked = dict(pair.split("=") for pair in parameters.split(";") if pair)
+        if key.endswith(("/index", "/acknowledge")):
+            yield JournalIndex((JournalBoot(boot_id, 1, _LAST, 0, 0),)).to_bytes()
+            return
+        first, last = int(asked["from"]), int(asked["to"])
+        for begin in range(first, min(last, first + _ANSWERED), _ENTRIES):
+            numbers = range(begin, min(last, begin + _ENTRIES - 1) + 1)
+            entries = tuple(JournalEntry(n, EVENT.suffix, mayday(n)) for n in numbers)
+            is_urgent = key.endswith("/urgent")
+            yield JournalChunk(boot_id, begin, numbers[-1], entries, is_urgent).to_bytes()
+
+    def mayday(number: int) -> bytes:
+        header = Header(name, boot_id, number, number, clock.utc_ns())
+        return encode(UnitEvent(header, EventKind.MAYDAY))
+
+    with closing(_joined(enrolment)) as bus:
+        held = bus.serve(f"{ROOT}/{name}/journal/**", answer), bus.declare_alive(alive_key(name))
+        header = Header(name, boot_id, _LAST, clock.monotonic_ns(), clock.utc_ns())
+        bus.publish(POSITION.key(name), encode(message_factory.position(header)), Qos.LIVE)
+        time.sleep(seconds)
+        for one in held:
+            one.close()
+
+
+def open_sessions(enrolment: Enrolment, seconds: float) -> None:
+    """One after the other, with a certificate that was revoked perhaps."""
+    [endpoint] = enrolment.connect
+    opened: list[ssl.SSLSocket] = []
+    for _ in paced(_SESSIONS_HZ, seconds):
+        with suppress(OSError):
+            opened.append(_handshake(endpoint_address(endpoint), enrolment.identity))
+    for one in opened:
+        one.close()
+
+
+ATTACKS: dict[str, Callable[[Enrolment, float], None]] = {
+    "toggle": toggle,
+    "journal": serve_endless_journal,
+    "sessions": open_sessions,
+}
+
+
+def _joined(enrolment: Enrolment) -> ZenohBus:
+    bus = ZenohBus(UnitEndpoint(enrolment.connect, enrolment.identity))
+    wait_until("the station listens", lambda: bus.is_heard(POSITION.key(enrolment.name)))
+    return bus
+
+
+def _handshake(address: tuple[str, int], identity: TlsIdentity) -> ssl.SSLSocket:
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.load_verify_locations(cadata=identity.authority.decode())
+    load_identity(context, identity)
+    connection = socket.create_connection(address, 3.0)
+    return context.wrap_socket(connection, server_hostname=address[0])
+
+
+def main(what: str, enrolment: str, seconds: str) -> None:
+    ATTACKS[what](read_enrolment(Path(enrolment)), min(float(seconds), _MOST_SECONDS))
+
+
+if __name__ == "__main__":
+    try:
+        main(*sys.argv[1:])
+    except MusterError as error:
+        sys.exit(str(error))

@@ -1,0 +1,122 @@
+"""What each kind of source gives is declared, given, and told in docs/concepts.md."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from contextlib import closing
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from edge.samples import (
+    ACKNOWLEDGE,
+    AmbientSample,
+    BatterySample,
+    ButtonPress,
+    ElectronicsSample,
+    GpsSample,
+    SensorBatch,
+    SightingSample,
+)
+from edge.sources.interface import Quantity
+from edge.sources.registry import SOURCES, open_source
+from tests.conftest import PROJECT_ROOT
+from tests.rig.ximu3_device import TcpDevice, at_rest, text_message
+
+CONCEPTS = PROJECT_ROOT / "docs" / "concepts.md"
+DECLARED = {kind.scheme: kind.gives for kind in SOURCES}
+PASSES_ON = {"mcap", "bus"}  # what another unit gave
+COLUMNS = (
+    *("t_s", "accel_x_mps2", "accel_y_mps2", "accel_z_mps2"),
+    *("gyro_x_radps", "gyro_y_radps", "gyro_z_radps"),
+    *("mag_x_ut", "mag_y_ut", "mag_z_ut", "pressure_pa", "imu_temperature_degc"),
+)
+OTHERS = {
+    AmbientSample: Quantity.AMBIENT_TEMPERATURE,
+    BatterySample: Quantity.BATTERY,
+    ElectronicsSample: Quantity.SENSOR_TEMPERATURE,
+    GpsSample: Quantity.FIX,
+    SightingSample: Quantity.SIGHTING,
+}
+
+
+def given(batches: Iterable[SensorBatch]) -> set[Quantity]:
+    found: set[Quantity] = set()
+    for batch in batches:
+        imu = batch.imu
+        found |= {Quantity.MAGNETIC_FIELD} if imu.mag_ut is not None else set()
+        found |= {Quantity.PRESSURE} if imu.pressure_pa is not None else set()
+        found |= {Quantity.SENSOR_TEMPERATURE} if imu.imu_temperature_degc is not None else set()
+        for other in batch.others:
+            if isinstance(other, ButtonPress):
+                acknowledges = other.button == ACKNOWLEDGE
+                found.add(Quantity.ACKNOWLEDGE_BUTTON if acknowledges else Quantity.MAYDAY_BUTTON)
+            else:
+                found.add(OTHERS[type(other)])
+    return found
+
+
+def of_a_file(folder: Path) -> set[Quantity]:
+    """With every column that a recording may have."""
+    path = folder / "imu.csv"
+    rows = (f"{k * 0.005:.3f},0,0,-9.8,0,0,0,20,0,40,101325,25" for k in range(500))
+    path.write_text("\n".join((",".join(COLUMNS), *rows)), encoding="utf-8")
+    return given(open_source(f"recording:{path}").batches())
+
+
+def of_simulations(_: Path) -> set[Quantity]:
+    """One scenario has beacons, another one a wearer who acknowledges."""
+    return {
+        one
+        for scenario in ("passes-beacons", "search-ground-floor")
+        for one in given(islice(open_source(f"simulated:{scenario}").batches(), 20 * 40))
+    }
+
+
+def of_a_bench(_: Path) -> set[Quantity]:
+    return given(islice(open_source("bench:5").batches(), 20))
+
+
+def of_an_ximu3(_: Path) -> set[Quantity]:
+    press = text_message("O", 60_000, 1.0), text_message("O", 70_000, 0.0)
+    with closing(TcpDevice([*at_rest(30), *press, *at_rest(330, first=30)])) as device:
+        source = open_source(f"ximu3:{device.source}?field=50")
+        with closing(source):
+            return given(islice(source.batches(), 3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("scheme", "take"),
+    [
+        ("recording", of_a_file),
+        ("simulated", of_simulations),
+        ("bench", of_a_bench),
+        ("ximu3", of_an_ximu3),
+    ],
+)
+def test_a_source_gives_what_it_declares_and_no_more(scheme, take, tmp_path: Path) -> None:
+    assert take(tmp_path) == DECLARED[scheme]
+
+
+def test_every_kind_that_passes_nothing_on_is_looked_at() -> None:
+    assert {"recording", "simulated", "bench", "ximu3"} | PASSES_ON == set(DECLARED)
+    assert all(DECLARED[scheme] == frozenset(Quantity) for scheme in PASSES_ON)
+
+
+def test_the_concepts_say_which_source_gives_what() -> None:
+    """A row for each quantity, a column for each kind that passes nothing on."""
+    lines = CONCEPTS.read_text(encoding="utf-8").splitlines()
+    (head,) = (one for one in lines if one.startswith("| beside acceleration and rotation |"))
+    schemes = re.findall(r"`(\w+):`", head)
+    assert set(schemes) == set(DECLARED) - PASSES_ON
+    table = lines[lines.index(head) + 2 :]
+    assert len(Quantity) == next(k for k, line in enumerate(table) if not line)
+    for quantity in Quantity:
+        row = next(one for one in table if one.startswith(f"| {quantity} |"))
+        cells = [cell.strip() for cell in row.strip("|").split("|")][1 : 1 + len(schemes)]
+        told = {scheme for scheme, cell in zip(schemes, cells, strict=True) if cell == "yes"}
+        assert set(cells) <= {"yes", "no"}, row
+        assert told == {one for one in schemes if quantity in DECLARED[one]}, row

@@ -1,0 +1,131 @@
+"""Orders at the console: each dialog shows its own, and those of a closed incident stay in it."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+from playwright.sync_api import Page, expect
+
+from base_station.views.wire import CommandView, Snapshot
+from tests.e2e import scenes
+from tests.e2e.console_page import barriers, command, menu, press
+from tests.e2e.looks import flaws
+from tests.e2e.stage import ANSWERS, Stage
+
+ACKNOWLEDGED = dict.fromkeys(("FF-01", "FF-02", "FF-03"), "acknowledged")
+
+
+def with_orders(*orders: CommandView, shown: Snapshot | None = None) -> Snapshot:
+    return msgspec.structs.replace(shown or scenes.quiet(), commands=orders)
+
+
+def captions(page: Page, order: str) -> list[str]:
+    """Of the orders that the dialog lists."""
+    dialog = command(page, order)
+    found = [text.partition(" (")[0] for text in dialog.locator("caption").all_inner_texts()]
+    page.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+    return found
+
+
+def test_under_evacuate_now_no_other_order_has_ticks(stage: Stage) -> None:
+    """They would be taken for this one's, also those of an evacuation that is over."""
+    par = scenes.order("c1", "par_request", ACKNOWLEDGED, is_open=False)
+    over = scenes.order("c2", "evacuate", ACKNOWLEDGED, is_open=False)
+    page, _ = stage.open(with_orders(par, over))
+    assert captions(page, "Evacuate") == []
+    assert captions(page, "PAR") == ["PAR"]
+    assert sorted(captions(page, "Message")) == ["Evacuate", "PAR"]  # all of the incident
+
+
+def test_of_an_evacuation_who_has_not_answered_stands_first(stage: Stage) -> None:
+    states = {
+        "FF-01": "acknowledged",
+        "FF-02": "received",
+        "FF-03": "acknowledged",
+        "FF-04": "queued",
+    }
+    page, station = stage.open(with_orders(scenes.order("c1", "evacuate", states)))
+    dialog = command(page, "Evacuate")
+    expect(dialog.locator("caption")).to_contain_text("2 of 4 acknowledged")
+    names = dialog.get_by_role("rowheader")
+    expect(names).to_have_text(["Jonas Bergman", "Tomas Novak", "Astrid Lindqvist", "Mira Okafor"])
+    expect(dialog.get_by_role("row", name="Jonas Bergman")).to_contain_text("received by the unit")
+    assert flaws(page) == []
+    assert barriers(page) == []
+    done = scenes.order("c1", "evacuate", states | {"FF-02": "acknowledged"})
+    answered = dialog.get_by_role("button", name="Answered by radio: Jonas Bergman")
+    press(answered)
+    station.change(commands=(done,))
+    expect(names.first).to_have_text("Tomas Novak")
+    station.expect_changes("/commands/c1/confirm")
+
+
+def test_an_evacuation_that_all_have_acknowledged_stays_where_it_was_sent(stage: Stage) -> None:
+    sent = scenes.order("c1", "evacuate", {"FF-01": "queued"})
+    answers = {**ANSWERS, "POST /commands": msgspec.to_builtins(sent)}
+    page, station = stage.open(scenes.quiet(), answers=answers)
+    dialog = command(page, "Evacuate")
+    dialog.get_by_role("button", name="Evacuate now").click()
+    station.expect_changes("/commands")
+    done = scenes.order("c1", "evacuate", {"FF-01": "acknowledged"}, is_open=False)
+    station.change(commands=(done,))
+    expect(dialog.locator("caption")).to_contain_text("1 of 1 acknowledged")
+
+
+@pytest.mark.parametrize("order", ["Evacuate", "PAR", "Message"])
+def test_the_orders_of_a_closed_incident_stay_in_it(stage: Stage, order: str) -> None:
+    of_last = [
+        scenes.order(kind, kind, ACKNOWLEDGED, is_open=False, incident_id="the last one")
+        for kind in ("evacuate", "par_request", "text")
+    ]
+    page, _ = stage.open(with_orders(*of_last))
+    assert captions(page, order) == []
+
+
+def test_what_locate_does_is_said_as_it_is(stage: Stage) -> None:
+    """No unit has an output yet."""
+    locate = msgspec.structs.replace(
+        scenes.order("c1", "locate", {"FF-01": "received"}, is_open=False), asks_wearer=False
+    )
+    page, _ = stage.open(with_orders(locate))
+    card = page.locator(".card", has_text="Astrid Lindqvist")
+    card.get_by_role("button", name="Astrid Lindqvist").click()
+    hint = card.get_by_role("button", name="Locate").get_attribute("title")
+    assert hint == (
+        "Shown as received by the unit once it is there. No unit has a sounder or a light yet."
+    )
+    dialog = command(page, "Message")
+    expect(dialog.locator("caption")).to_contain_text("1 of 1 received by the unit")
+
+
+def test_an_incident_is_closed_over_somebody_only_by_name(stage: Stage) -> None:
+    page, station = stage.open(scenes.bad_minute())
+    dialog = menu(page, "Incidents")
+    dialog.get_by_role("button", name="Close this incident").click()
+    question = dialog.get_by_role("group").filter(has_text="It cannot be opened again.")
+    expect(question).to_contain_text("Open alarms: Jonas Bergman (Fall, No motion); Mira Okafor")
+    expect(question).to_contain_text("Inside: Astrid Lindqvist; Jonas Bergman; Mira Okafor;")
+    assert flaws(page) == []
+    assert barriers(page) == []
+    station.expect_changes()
+    page.wait_for_timeout(600)
+    with page.expect_request(lambda request: request.url.endswith("/close")) as closed:
+        question.get_by_role("button", name="Yes, close this incident").click()
+    sent = closed.value.post_data_json
+    assert sent is not None
+    assert sorted(sent["despite_alarm_ids"]) == [
+        "fall:FF-02", "heat:FF-03", "link-lost:FF-04", "no-motion:FF-02"
+    ]  # fmt: skip
+    assert sent["despite_unit_ids"][:2] == ["FF-01", "FF-02"]
+
+
+def test_an_incident_in_which_all_is_over_asks_as_before(stage: Stage) -> None:
+    shown = scenes.quiet()
+    out = tuple(msgspec.structs.replace(one, inside_since_ms=None) for one in shown.units)
+    page, _ = stage.open(msgspec.structs.replace(shown, units=out))
+    dialog = menu(page, "Incidents")
+    dialog.get_by_role("button", name="Close this incident").click()
+    expect(
+        dialog.get_by_role("group", name="It cannot be opened again.", exact=True)
+    ).to_be_visible()

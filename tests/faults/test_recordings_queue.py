@@ -1,0 +1,60 @@
+"""Recordings that people ask for: by turns, over restarts, until they are there or stopped."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from base_station.unit_sync.recordings.transfer import Ask, TransferRequest, TransferState
+from base_station.unit_sync.recordings.transfer_queue import TransferQueue
+from shared.clock import SystemClock
+from shared.errors import UserError
+from tests.rig.recorded_unit import RecordedUnit, U
+from tests.rig.waiting import until
+
+
+def desk(ask: Ask, folder: Path) -> TransferQueue:
+    return TransferQueue(ask, folder, SystemClock())
+
+
+def test_a_station_that_is_started_again_goes_on(unit: RecordedUnit, tmp_path: Path) -> None:
+    unit.linked = False
+    with desk(unit.ask, tmp_path) as first:
+        first.add("chief", unit.window())
+        until(lambda: "does not answer" in first.pulls()[0].problem)
+    unit.linked = True
+    with desk(unit.ask, tmp_path) as second:
+        until(lambda: second.pulls()[0].state is TransferState.DONE)
+        (view,) = second.views()
+    assert view.unit_id == U
+    assert view.done_bytes == view.total_bytes > 0
+    assert second.pulls()[0].by == "chief"
+
+
+def test_a_unit_that_is_away_holds_up_no_other(unit: RecordedUnit, tmp_path: Path) -> None:
+    away = TransferRequest("FF-02", 1, 2)
+    with desk(unit.ask, tmp_path) as both:
+        both.add("chief", away)
+        both.add("chief", unit.window(0.0, 600.0))
+        until(lambda: both.pulls()[1].state is TransferState.DONE)
+        assert both.pulls()[0].state is TransferState.WAITING
+
+
+def test_a_pull_can_be_stopped_and_asked_for_again(unit: RecordedUnit, tmp_path: Path) -> None:
+    unit.linked = False
+    with desk(unit.ask, tmp_path) as one:
+        pull = one.add("chief", unit.window())
+        with pytest.raises(UserError, match="already"):
+            one.add("chief", unit.window())
+        assert one.stop(pull.fetch_id)
+        assert not one.stop(pull.fetch_id)
+        unit.linked = True
+        one.add("chief", unit.window())
+        until(lambda: one.pulls()[-1].state is TransferState.DONE)
+    assert one.pulls()[0].problem == "stopped by a person"
+
+
+def test_a_window_that_ends_before_it_begins_is_refused(unit: RecordedUnit, tmp_path: Path) -> None:
+    with desk(unit.ask, tmp_path) as one, pytest.raises(UserError, match="before it begins"):
+        one.add("chief", TransferRequest(U, 2, 1))

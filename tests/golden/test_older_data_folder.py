@@ -1,0 +1,43 @@
+"""A data folder of an older version: it opens, replays to the same decisions, and is queried."""
+
+from __future__ import annotations
+
+import tarfile
+from pathlib import Path
+
+from base_station.core.events import is_decision
+from base_station.replay.playback import compare
+from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.db.store import Store
+from shared.clock import SystemClock
+from shared.mcap_log import read_log
+from tests.rig.live_station import make_pipeline
+
+ARCHIVE = Path(__file__).parent / "data_folder" / "folder.tar.xz"
+
+
+def test_log_of_older_version_replays_to_same_decisions(tmp_path: Path) -> None:
+    with tarfile.open(ARCHIVE) as archive:
+        archive.extractall(tmp_path, filter="data")
+    records = list(read_log(tmp_path / "log"))
+    assert sum(is_decision(key) for _, key, _ in records) > 100
+    assert list(compare(records, make_pipeline())) == []
+
+
+def test_database_of_older_version_is_queried(tmp_path: Path) -> None:
+    with tarfile.open(ARCHIVE) as archive:
+        archive.extractall(tmp_path, filter="data")
+    with Store(tmp_path / "station.sqlite") as store:
+        records, roster = Records(store, SystemClock()), Roster(store, SystemClock())
+        incident = records.require_incident("i1")
+        assert (incident.name, incident.late_data_ns) == ("Mill Lane", 0)
+        assert {person.name for person in roster.people()} == {"Ana Horn", "Bo Lind"}
+        assert records.tracks_of(incident).keys() == {"FF-01", "FF-02"}
+        assert any(records.alarm_life(alarm.alarm_id) for alarm in records.alarms(EVER))
+        kept = SmoothedTracks(store)
+        assert kept.has("i1")
+        assert kept.report("i1")
+        assert [user.username for user in Accounts(store, SystemClock()).users()] == ["chief"]

@@ -1,0 +1,82 @@
+"""The OpenAPI document: what a client is made from."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from base_station.api.field_descriptions import FIELDS, PARAMETERS
+from shared.clock import ManualClock
+from tests.rig.desk_station import DeskStation
+
+Document = dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def document(tmp_path_factory: pytest.TempPathFactory) -> Document:
+    station = DeskStation(tmp_path_factory.mktemp("station"), ManualClock())
+    try:
+        return station.app.openapi()
+    finally:
+        station.close()
+
+
+def operations(document: Document) -> Iterator[Document]:
+    for methods in document["paths"].values():
+        yield from methods.values()
+
+
+def fields(document: Document) -> Iterator[tuple[str, str, Document]]:
+    for name, schema in document["components"]["schemas"].items():
+        for field, about in schema.get("properties", {}).items():
+            yield name, field, about
+
+
+def parameters(document: Document) -> Iterator[tuple[str, Document]]:
+    for operation in operations(document):
+        for parameter in operation.get("parameters", ()):
+            yield operation["operationId"], parameter
+
+
+def test_every_field_and_every_parameter_is_described(document: Document) -> None:
+    """A new one is described in ``base_station/api/field_descriptions.py``."""
+    bare = [f"{name}.{field}" for name, field, about in fields(document) if not has_text(about)]
+    bare += [f"{of}({one['name']})" for of, one in parameters(document) if not has_text(one)]
+    assert bare == []
+    assert len(list(fields(document))) > 300
+
+
+def has_text(about: Document) -> bool:
+    return bool(about.get("description", "").strip())
+
+
+def test_nothing_is_described_that_is_not_there(document: Document) -> None:
+    asked = {parameter["name"] for _, parameter in parameters(document)}
+    answered = {
+        known for name, field, _ in fields(document) for known in (field, f"{name}.{field}")
+    }
+    assert set(FIELDS) - answered - asked == set()
+    assert set(PARAMETERS) - asked == set()
+
+
+def test_names_are_of_one_thing(document: Document) -> None:
+    assert [name for name in document["components"]["schemas"] if "__" in name] == []
+    ids = [operation["operationId"] for operation in operations(document)]
+    assert len(ids) == len(set(ids)) > 80
+
+
+def test_every_problem_is_declared_with_the_media_type_that_is_sent(document: Document) -> None:
+    problem = {"schema": {"$ref": "#/components/schemas/ProblemDocument"}}
+    for operation in operations(document):
+        refused = {code: one for code, one in operation["responses"].items() if int(code) >= 400}
+        assert {"401", "409", "422", "429", "503"} <= set(refused), operation["operationId"]
+        for code, response in refused.items():
+            declared = response["content"]
+            assert declared == {"application/problem+json": problem}, (
+                operation["operationId"],
+                code,
+            )
+    assert "HTTPValidationError" not in json.dumps(document)

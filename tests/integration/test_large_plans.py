@@ -1,0 +1,115 @@
+"""A plan as large as may be sent is laid while people walk: what they do is shown all the while."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+from websockets.sync.client import connect
+
+from tests.rig.served_station import MakePosition, greet, prepare
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.waiting import until
+
+PLAN_BYTES = 11_000_000
+FLOORS = 10
+LONGEST_AGE_S = 2.0  # on a machine with much else to do; it was 3 to 12
+
+
+class _Place(msgspec.Struct):
+    t_ms: int
+
+
+class _Shown(msgspec.Struct):
+    position: _Place | None = None
+
+
+class _Told(msgspec.Struct):
+    type: str
+    units: list[_Shown] = []
+
+
+def large_plan() -> bytes:
+    """Walls and round rooms of 20 points each on ten floors."""
+    outline = [[0, 0], [120, 0], [120, 90], [0, 90], [0, 0]]
+    features = [feature("outline", 0, {"type": "Polygon", "coordinates": [outline]})]
+    size = 0
+    while size < PLAN_BYTES:
+        number = len(features)
+        east_m, north_m = 5.0 + number % 110, 5.0 + number // 110 % 80
+        if number % 2:
+            line = [[round(east_m + 0.1 * i, 3), north_m] for i in range(20)]
+            geometry: dict[str, object] = {"type": "LineString", "coordinates": line}
+        else:
+            turns = [math.tau * i / 20.0 for i in range(20)]
+            ring = [
+                [round(east_m + math.cos(turn), 3), round(north_m + math.sin(turn), 3)]
+                for turn in turns
+            ]
+            geometry = {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
+        features.append(feature("wall" if number % 2 else "room", number % FLOORS, geometry))
+        size += len(msgspec.json.encode(features[-1])) + 1
+    floors = [{"floor": floor, "down_m": -3.2 * floor} for floor in range(FLOORS)]
+    muster = {"frame": "site-m", "floors": floors}
+    plan = {"type": "FeatureCollection", "muster": muster, "features": features}
+    return msgspec.json.encode(plan)
+
+
+def feature(kind: str, floor: int, geometry: dict[str, object]) -> dict[str, object]:
+    properties = {"kind": kind, "floor": floor, "name": "store"}
+    return {"type": "Feature", "properties": properties, "geometry": geometry}
+
+
+def test_positions_are_shown_while_a_plan_of_11_mb_is_laid(
+    serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
+) -> None:
+    station, plan = serve(), large_plan()
+    over = threading.Event()
+    ages_s: list[float] = []
+    plans: list[int] = []
+
+    def walk() -> None:
+        due_s = time.monotonic()
+        while not over.is_set():
+            north_m = 50.0 + time.monotonic() % 10.0
+            unit.say(make_position(header=unit.stamper.header(), north_m=north_m, east_m=50.0))
+            due_s += 0.1
+            over.wait(max(0.0, due_s - time.monotonic()))
+
+    with Browser(station.wait_ready(), data) as browser:
+        prepare(browser)
+        greet(browser, unit, make_position)
+        browser.call("PUT", "/site/anchor", json={"lat_deg": 57.7, "lon_deg": 11.9})
+        live = f"{browser.address.replace('http', 'ws', 1)}/api/v1/live"
+        cookie = {"Cookie": browser.cookie()}
+
+        def look() -> None:
+            with connect(live, additional_headers=cookie, max_size=None) as socket:
+                while not over.is_set():
+                    text = socket.recv(30.0)
+                    if len(text) > PLAN_BYTES:
+                        plans.append(len(text))
+                        continue
+                    units, now_s = msgspec.json.decode(text, type=_Told).units, time.time()
+                    places = [one.position for one in units if one.position is not None]
+                    ages_s.extend(now_s - place.t_ms / 1000.0 for place in places)
+
+        threads = [threading.Thread(target=walk), threading.Thread(target=look)]
+        for thread in threads:
+            thread.start()
+        try:
+            until(lambda: len(ages_s) > 10, "the unit is shown")
+            laid = {"content": plan, "headers": {"content-type": "application/geo+json"}}
+            assert browser.status("PUT", "/site/plan", timeout=30.0, **laid) == 204
+            until(lambda: bool(plans), "the plan is shown")
+            shown = len(ages_s)
+            until(lambda: len(ages_s) > shown + 10, "the unit is shown on it")
+        finally:
+            over.set()
+            for thread in threads:
+                thread.join()
+    assert max(ages_s) < LONGEST_AGE_S, sorted(ages_s)[-5:]

@@ -1,0 +1,54 @@
+"""Forgetting in a station's folder, with no station or one that pulls nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+from base_station.privacy.erasure_service import ClosedLog, ErasureService
+from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.records import Records
+from base_station.storage.db.store import Store
+from base_station.storage.segment_index import segment_row
+from shared.clock import SystemClock
+from shared.errors import StoreError
+from shared.mcap_log import (
+    SegmentPolicy,
+    SegmentWriter,
+    read_log,
+)
+
+
+class NoPulls:
+    """Nothing is being pulled."""
+
+    def forget(self, unit_ids: Collection[str]) -> None:
+        pass
+
+
+def forgetter_of(data: DataFolder, store: Store, records: Records) -> ErasureService:
+    """Of a station that does not run."""
+    log, checkpoints = ClosedLog(data.log), Checkpoints(data.checkpoints)
+    return ErasureService(log, store, checkpoints, records, SystemClock(), NoPulls())
+
+
+def fails(*_: object) -> None:
+    """In place of what a full disk does not take."""
+    raise StoreError("the disk is full")
+
+
+def split_log(folder: Path, parts: int) -> None:
+    """The same log in more segments, which the database knows."""
+    records = list(read_log(folder))
+    for path in folder.iterdir():
+        path.unlink()
+    writer = SegmentWriter(folder, SegmentPolicy(chunk_bytes=4096))
+    for number, record in enumerate(records):
+        writer.write(*record)
+        if (number + 1) % (len(records) // parts) == 0:
+            writer.end_segment()
+    writer.close()
+    data = DataFolder(folder.parent)
+    with Store(data.database) as store:
+        Records(store, SystemClock()).put_segments(map(segment_row, data.segments()))

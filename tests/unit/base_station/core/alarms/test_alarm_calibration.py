@@ -1,0 +1,44 @@
+"""When the console is told of a calibration: old, poor, and never for want of one."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.core.alarms.calibration import Calibration
+from base_station.core.alarms.interface import ADVISORY, Clear, Finding
+from base_station.core.state import UnitState
+from shared.clock import NS_PER_S
+from shared.messages import Header
+from tests.rig import message_factory
+
+HEARD_S = 1_800_000_000
+DAY_S = 86_400
+
+
+def unit(calibrated_s: int | None, faults: str = "") -> UnitState:
+    description = message_factory.description(
+        Header("FF-01", 1, 1, 0),
+        calibration="c1",
+        calibrated_s=calibrated_s,
+        calibration_faults=faults,
+    )
+    return UnitState("FF-01", heard_ns=HEARD_S * NS_PER_S, description=description)
+
+
+@pytest.mark.parametrize(
+    ("age_days", "faults", "level"),
+    [(179, "", None), (181, "", "old"), (1, "gyroscope off by 1 deg/s", "poor")],
+)
+def test_age_and_residuals_are_judged(age_days, faults, level):
+    verdict = Calibration().judge(unit(HEARD_S - age_days * DAY_S, faults), 0, "")
+    if level is None:
+        assert isinstance(verdict, Clear)
+        return
+    assert isinstance(verdict, Finding)
+    assert (verdict.level, verdict.priority) == (level, ADVISORY)
+    assert "The calibration of FF-01's unit is " in verdict.text
+    assert faults in verdict.text
+
+
+def test_a_unit_without_a_calibration_is_left_alone():
+    assert isinstance(Calibration().judge(unit(None), 0, ""), Clear)

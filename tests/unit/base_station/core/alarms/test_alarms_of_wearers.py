@@ -1,0 +1,393 @@
+"""Whom alarms are about: who wore the unit when it was said, however late it comes."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from base_station.core.state import WEARERS_KEPT
+from shared.channels import EVENT, NO_TRACKER, backfilled_key, tracker_id
+from shared.clock import NS_PER_S
+from shared.codec import encode
+from shared.messages import AlarmState, EventKind, UnitEvent
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    Assign,
+    CheckIn,
+    ForgetWearers,
+    OpenIncident,
+    ResolveAlarm,
+    Unassign,
+)
+from tests.rig import message_factory
+from tests.rig.station_script import Script
+
+U = "FF-01"
+
+
+@pytest.fixture
+def script() -> Script:
+    script = Script()
+    script.register(U)
+    return script
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("way", ["journal", "live"])
+def test_what_comes_late_is_of_who_wore_the_unit_when_it_was_said(
+    script: Script, kind: EventKind, way: str
+) -> None:
+    events = {}
+    for name in ("Ana", "Bo", ""):
+        script.act(Assign(U, name, name, "", "") if name else Unassign(U))
+        script.wait(3, lambda: script.status(U))
+        events[name] = UnitEvent(script.header(U), kind)
+        script.wait(3, lambda: script.status(U))
+    script.act(Assign(U, "cem", "Cem", "", ""))
+    script.wait(3)
+    key = EVENT.key(U) if way == "live" else backfilled_key(U, EVENT.suffix)
+    told = {}
+    for name, event in events.items():
+        script.record(key, encode(event))
+        told[name] = script.alarms[-1].text
+        script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+        script.wait(1)
+    script.event(U, kind)
+    told["Cem"] = script.alarms[-1].text
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    assert told == {name: text.format(name or f"unit {U}") for name in told}
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("knew_time", [False, True])
+def test_what_a_run_said_of_which_nothing_came_live_is_of_who_wore_the_unit_as_far_as_is_known(
+    script: Script, kind: EventKind, knew_time: bool
+) -> None:
+    """Its monotonic clock says nothing; where it knew the station's time, that does."""
+    texts = []
+    for name in ("Ana", "Bo"):
+        script.act(Assign(U, name, name, "", ""))
+        script.wait(3)
+        script.boot_ids[U] = 6
+        header = script.header(U)
+        script.boot_ids[U] = 7
+        if knew_time:
+            header = msgspec.structs.replace(header, t_utc_ns=script.t_ns, utc_std_s=0.1)
+        if name == "Ana":
+            of_ana = encode(UnitEvent(header, kind))
+        script.wait(3, lambda: script.status(U))
+    script.record(backfilled_key(U, EVENT.suffix), of_ana)
+    texts.append(script.alarms[-1].text)
+    script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
+    script.wait(1)
+    script.event(U, kind)
+    texts.append(script.alarms[-1].text)
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    of_whom = "Ana" if knew_time else "Bo or, before, Ana"
+    assert texts == [text.format(of_whom), text.format("Bo")]
+
+
+def test_who_alone_has_worn_a_unit_is_who_pressed_whenever_that_was(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.boot_ids[U] = 6
+    script.record(
+        backfilled_key(U, EVENT.suffix), encode(UnitEvent(script.header(U), EventKind.MAYDAY))
+    )
+    assert script.alarms[-1].text == "Mayday from Ana"
+
+
+def open_texts(script: Script) -> set[str]:
+    return {one.text for one in script.pipeline.state.alarms.values() if one.is_open}
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+@pytest.mark.parametrize("late", [False, True])
+def test_two_wearers_of_one_unit_are_two_people_in_need(
+    script: Script, kind: EventKind, late: bool
+) -> None:
+    """Whichever of the two is told last."""
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    of_ana = UnitEvent(script.header(U), kind)
+    if not late:
+        script.record(EVENT.key(U), encode(of_ana))
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.event(U, kind)
+    if late:
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+        script.wait(3)
+        script.record(backfilled_key(U, EVENT.suffix), encode(of_ana))
+    script.wait(3)
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    ana, bo = (text.format(name) for name in ("Ana", "Bo"))
+    assert open_texts(script) == {ana, bo}
+    assert [one.text for one in script.alarms if one.state is AlarmState.RAISED] == (
+        [bo, ana] if late else [ana, bo]
+    )
+    of_bo = next(one.alarm_id for one in script.alarms if one.text == bo)
+    script.act(ResolveAlarm(of_bo, "helped"))
+    script.wait(3)
+    assert open_texts(script) == {ana}
+    script.act(ResolveAlarm(next(one.alarm_id for one in script.alarms if one.text == ana), ""))
+    script.wait(3)
+    assert open_texts(script) == set()
+    assert len(script.pipeline.state.alarms) == 1, "of each rule and unit the newest is kept"
+
+
+def test_alarms_of_other_kinds_and_units_of_the_same_time_are_others(script: Script) -> None:
+    units = (U, "FF-02")
+    script.register("FF-02")
+    said_by: dict[str, list[tuple[str, UnitEvent]]] = {}
+    for name in ("Ana", "Bo"):
+        for unit_id in units:
+            script.act(Assign(unit_id, name + unit_id, name + unit_id, "", ""))
+        script.wait(3, lambda: [script.status(unit_id) for unit_id in units])
+        said_by[name] = [
+            (unit_id, UnitEvent(script.header(unit_id), kind))
+            for unit_id in units
+            for kind in (EventKind.MAYDAY, EventKind.FALL)
+        ]
+        script.wait(3)
+    for name in ("Bo", "Ana"):
+        for unit_id, event in said_by[name]:
+            script.record(backfilled_key(unit_id, EVENT.suffix), encode(event))
+    for unit_id, kind in ((U, EventKind.FALL), ("FF-02", EventKind.MAYDAY)):
+        script.event(unit_id, kind)
+    script.wait(3)
+    assert len(open_texts(script)) == 8
+
+
+def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_comes_again(
+    script: Script,
+) -> None:
+    maydays = []
+    for name in ("Ana", "Bo"):
+        script.act(Assign(U, name, name, "", ""))
+        script.wait(3, lambda: script.status(U))
+        maydays.append(UnitEvent(script.header(U), EventKind.MAYDAY))
+        script.wait(3)
+    ana, bo = maydays
+    for late in (bo, ana):
+        script.record(backfilled_key(U, EVENT.suffix), encode(late))
+        script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
+        script.wait(3)
+    raised = len(script.alarms)
+    script.event(U, EventKind.MAYDAY)
+    (again,) = script.alarms[raised:]
+    assert (again.text, again.alarm_id) == ("Mayday from Bo", script.alarms[0].alarm_id)
+    assert len(script.pipeline.state.alarms) == 2
+
+
+@pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
+def test_what_a_unit_said_that_nobody_wore_is_told_once_whoever_is_given_it(
+    script: Script, kind: EventKind
+) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.act(Unassign(U))
+    script.wait(3, lambda: script.status(U))
+    script.event(U, kind)
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(3)
+    assert len(script.alarms) == 1
+
+
+def lie(script: Script, from_s: int, to_s: int) -> None:
+    for motionless_s in range(from_s, to_s):
+        script.now_s += 1.0
+        script.status(U, motionless_s=float(motionless_s))
+
+
+def test_two_wearers_of_one_unit_who_lie_still_are_two_people_in_need(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 40)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    lie(script, 0, 40)
+    ana, bo = "Ana has not moved for 30 s", "Bo has not moved for 30 s"
+    assert open_texts(script) == {ana, bo}
+    of_bo = next(one.alarm_id for one in script.alarms if one.text == bo)
+    lie(script, 0, 3)
+    script.act(ResolveAlarm(of_bo, "rests"))
+    lie(script, 0, 3)
+    assert open_texts(script) == {ana}
+
+
+def test_who_is_given_a_unit_that_nobody_wore_and_that_lay_is_heard(script: Script) -> None:
+    lie(script, 0, 40)
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 40)
+    assert open_texts(script) == {
+        "unit FF-01 has not moved for 30 s",
+        "Ana has not moved for 30 s",
+    }
+
+
+def test_a_unit_that_lies_on_while_another_is_given_it_is_one_alarm(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 40)
+    count = len(script.alarms)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    lie(script, 40, 100)
+    assert len(script.alarms) == count
+
+
+def test_of_who_lay_still_before_the_unit_was_given_on_both_are_named(script: Script) -> None:
+    """It may have been given on before the station was told."""
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 25)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    lie(script, 25, 40)
+    assert [one.text for one in script.alarms] == [
+        "Ana has not moved for 20 s",
+        "Bo or, before, Ana has not moved for 30 s",
+    ]
+    assert len({one.alarm_id for one in script.alarms}) == 1
+
+
+def test_who_had_hardly_lain_still_before_is_not_named(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 10)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    lie(script, 10, 40)
+    assert {one.text for one in script.alarms} == {
+        f"Bo has not moved for {lain_s} s" for lain_s in (20, 30)
+    }
+
+
+def test_a_pre_alert_of_who_wears_the_unit_no_more_is_over(script: Script) -> None:
+    """Nobody heard that they moved."""
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    lie(script, 0, 25)
+    script.wait(60)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(30)
+    lie(script, 20, 22)
+    no_motion = [one for one in script.alarms if one.rule == "no-motion"]
+    assert [(one.text.partition(" ")[0], one.state.name) for one in no_motion] == [
+        ("Ana", "RAISED"),
+        ("Ana", "RESOLVED"),
+        ("Bo", "RAISED"),
+    ]
+
+
+def test_who_is_called_otherwise_has_still_one_mayday(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    script.event(U, EventKind.MAYDAY)
+    script.act(Assign(U, "ana", "Ana B.", "", ""))
+    script.wait(3)
+    assert len(script.alarms) == 1
+
+
+def test_who_wore_a_unit_before_is_forgotten_with_it(script: Script) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(U))
+    fell = UnitEvent(script.header(U), EventKind.FALL)
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.act(ForgetWearers(U))
+    assert b"Ana" not in script.pipeline.checkpoint()
+    script.record(backfilled_key(U, EVENT.suffix), encode(fell))
+    assert script.alarms[-1].text == "(forgotten) may have fallen"
+
+
+def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Script) -> None:
+    agent = tracker_id(U)
+    script.boot_ids[agent] = 8
+    script.say(message_factory.description(script.header(U), tracker=NO_TRACKER))
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(3, lambda: script.status(agent))
+    fell = UnitEvent(script.header(agent), EventKind.FALL)
+    script.wait(3)
+    script.act(Assign(U, "bo", "Bo", "", ""))
+    script.wait(3)
+    script.record(backfilled_key(agent, EVENT.suffix), encode(fell))
+    assert script.alarms[-1].text == "Ana may have fallen"
+
+
+def overdue_pair(script: Script) -> None:
+    """Ana wears FF-01 and Bo FF-02, and nobody has heard of either for too long."""
+    script.register(U, "FF-02")
+    script.act(OpenIncident("i1", "Mill Lane", 30.0, 60.0))
+    for unit_id, name in ((U, "Ana"), ("FF-02", "Bo")):
+        script.act(Assign(unit_id, name, name, "", ""))
+    script.wait(40)
+
+
+@pytest.mark.parametrize("dealt_with", [False, True])
+def test_who_is_overdue_is_so_with_another_unit_whoever_was_overdue_with_that(
+    script: Script, dealt_with: bool
+) -> None:
+    overdue_pair(script)
+    if dealt_with:
+        (of_bo,) = (one for one in script.alarms if one.unit_id == "FF-02")
+        script.act(ResolveAlarm(of_bo.alarm_id, ""))
+        script.wait(3)
+    script.act(Assign("FF-02", "Ana", "Ana", "", ""))
+    script.wait(3)
+    assert open_texts(script) == {"Ana: PAR overdue, not yet confirmed, on duty for 0 min"}
+    script.wait(3)
+    raised = [one for one in script.alarms if one.state is AlarmState.RAISED]
+    assert len(raised) == 3
+    over = [one.alarm_id for one in script.alarms if one.state is AlarmState.RESOLVED]
+    assert len(set(over)) == len(over) == 2
+
+
+def test_a_unit_that_is_given_on_is_no_word_of_who_was_overdue_with_it(script: Script) -> None:
+    overdue_pair(script)
+    script.act(Assign(U, "cem", "Cem", "", ""))
+    (over,) = (one for one in script.alarms if one.state is AlarmState.RESOLVED)
+    assert (over.text.partition(":")[0], over.by) == ("Ana", "handed over")
+    script.act(CheckIn("FF-02", "", everyone=False))
+    assert script.alarms[-1].by == "not overdue; PAR confirmed by radio, entered by chief"
+
+
+def test_who_is_to_rest_is_so_with_another_unit(script: Script) -> None:
+    script.register(U, "FF-02")
+    script.act(OpenIncident("i1", "Mill Lane", 3600.0, 30.0))
+    for unit_id, name in ((U, "Ana"), ("FF-02", "Bo")):
+        script.act(Assign(unit_id, name, name, "", ""))
+        duty = script.pipeline.state.units[unit_id].duty
+        assert duty is not None
+        duty.work_since_ns = script.t_ns
+        duty.rest_due_ns = script.t_ns + 30 * NS_PER_S
+    script.wait(40)
+    script.act(Assign("FF-02", "Ana", "Ana", "", ""))
+    script.wait(3)
+    assert open_texts(script) == {"Ana has worked for 1 min: send to rest"}
+
+
+STANDING = {
+    "mayday": lambda script: script.event(U, EventKind.MAYDAY),
+    "fall": lambda script: script.event(U, EventKind.FALL),
+    "no-motion": lambda script: script.status(U, motionless_s=40.0),
+}
+
+
+@pytest.mark.parametrize("rule", STANDING)
+@pytest.mark.parametrize("known", [False, True])
+def test_an_alarm_stays_the_same_however_often_the_unit_is_handed_over(
+    script: Script, rule: str, known: bool
+) -> None:
+    script.act(Assign(U, "ana", "Ana", "", ""))
+    script.wait(60, lambda: script.status(U))
+    began_s = script.now_s - 40.0
+    STANDING[rule](script)
+    (alarm,) = (one for one in script.alarms if one.rule == rule)
+    if known:
+        script.act(AcknowledgeAlarm(alarm.alarm_id))
+    script.wait(1)
+    before = len(script.alarms)
+    for number in range(3 * WEARERS_KEPT):
+        script.act(Assign(U, str(number), f"P{number}", "", ""))
+        still_s = script.now_s - began_s if rule == "no-motion" else 0.0
+        script.status(U, motionless_s=still_s, mayday=rule == "mayday")
+        script.wait(20)
+    assert [one.text for one in script.alarms[before:] if one.rule == rule] == []
+    former_wearers = script.pipeline.state.units[U].former_wearers
+    assert len(former_wearers) <= 2 * WEARERS_KEPT, "and nothing grows"

@@ -1,0 +1,204 @@
+"""Who wore what when, as the log tells: of one person, and of everybody in one incident."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.core.erasure.erasure import (
+    CaptureClocks,
+    Erasure,
+    Record,
+    Wearing,
+    erasure_of_incident,
+    erasure_of_person,
+    first_erased_ns,
+    inserted_action_id,
+)
+from base_station.core.erasure.redaction import Redactor
+from shared.channels import OPERATOR
+from shared.codec import encode
+from shared.errors import UserError
+from shared.messages import STATION_ID, Header, OperatorAction
+from shared.messages.station import (
+    Action,
+    Assign,
+    CloseIncident,
+    ForgetWearers,
+    OpenIncident,
+    Unassign,
+)
+
+NOW_NS = 1000
+OPEN, CLOSE = OpenIncident("i1", "Mill Lane"), CloseIncident("i1")
+
+
+def done(*actions: tuple[int, Action]) -> list[Record]:
+    """At these times; each has its time as its id."""
+    return [
+        (
+            t_ns,
+            OPERATOR.key(STATION_ID),
+            encode(OperatorAction(Header(STATION_ID, 1, t_ns, 0), f"a{t_ns}", "chief", action)),
+        )
+        for t_ns, action in actions
+    ]
+
+
+def ana(unit_id: str, name: str = "Ana") -> Assign:
+    return Assign(unit_id, "p1", name, "", "")
+
+
+def bo(unit_id: str) -> Assign:
+    return Assign(unit_id, "p2", "Bo Lind", "", "")
+
+
+@pytest.mark.parametrize(
+    ("actions", "wearings"),
+    [
+        ([(10, ana("A")), (20, Unassign("A"))], [("A", 10, 20)]),
+        ([(10, ana("A")), (20, Unassign("B"))], [("A", 10, NOW_NS)]),
+        ([(10, ana("A")), (20, bo("A"))], [("A", 10, 20)]),
+        ([(10, ana("A")), (20, bo("B"))], [("A", 10, NOW_NS)]),
+        ([(10, ana("A")), (20, ana("B"))], [("A", 10, 20), ("B", 20, NOW_NS)]),
+        ([(10, ana("A")), (20, ana("A")), (30, Unassign("A"))], [("A", 10, 30)]),
+        ([(10, bo("A")), (20, ana("A")), (30, bo("A")), (40, ana("A"))],
+         [("A", 20, 30), ("A", 40, NOW_NS)]),
+        ([(10, bo("A")), (20, Unassign("A"))], []),
+    ],
+)  # fmt: skip
+def test_a_person_wears_a_unit_until_it_is_handed_back_or_on(
+    actions: list[tuple[int, Action]], wearings: list[tuple[str, int, int]]
+) -> None:
+    erasure = erasure_of_person(done(*actions), "p1", "", NOW_NS)
+    assert erasure.wearings == tuple(Wearing(*one) for one in wearings)
+
+
+def test_every_name_that_a_person_had_is_known_the_longest_first() -> None:
+    actions = done((10, ana("A")), (20, ana("A", " ")), (30, ana("A", "Ana Kovač")), (40, bo("A")))
+    actions.insert(1, (15, OPERATOR.key(STATION_ID), b"\xffa newer program's"))
+    assert erasure_of_person(actions, "p1", "Anka", NOW_NS).names == ("Ana Kovač", "Anka", "Ana")
+
+
+def test_the_moment_of_handing_back_is_the_next_ones() -> None:
+    erasure = erasure_of_person(done((10, ana("A")), (20, Unassign("A"))), "p1", "", NOW_NS)
+    assert [erasure.covers("A", t_ns) for t_ns in (9, 10, 19, 20)] == [False, True, True, False]
+    assert not erasure.covers("B", 15)
+
+
+def test_everybody_who_wore_a_unit_in_an_incident_is_of_it() -> None:
+    records = done(
+        (5, bo("C")), (6, Unassign("C")),  # before
+        (10, ana("A")),
+        (20, OPEN), (30, bo("B")), (35, ana("D")), (36, Unassign("B")), (40, CLOSE),
+        (50, bo("E")),
+    )  # fmt: skip
+    erasure = erasure_of_incident(records, "i1")
+    assert erasure.wearings == tuple(Wearing(one, 20, 40) for one in "ABD")
+    assert erasure.names == ("Bo Lind", "Ana")
+    assert (erasure.from_ns, erasure.until_ns) == (20, 40)
+    assert erasure.returned_units == ("A", "B", "D")
+    assert erasure.assigned_after == (ana("D"),), "who changes for another unit wears one"
+    assert not erasure.covers("A", 40)
+
+
+def test_what_is_raised_after_an_incident_of_its_units_is_about_it_until_the_next_one() -> None:
+    """What a unit could not say before, and what somebody notes of it when it is dealt with."""
+    records = done(
+        (5, OpenIncident("i0", "")), (6, CloseIncident("i0")),
+        (10, ana("A")), (20, OPEN), (40, CLOSE), (50, OpenIncident("i2", "")),
+    )  # fmt: skip
+    erasure = erasure_of_incident(records, "i1")
+    raised_ns = (19, 20, 39, 40, 49, 50)
+    about = [erasure.is_about("A", one) for one in raised_ns]
+    assert about == [False, True, True, True, True, False]
+    about = [erasure.is_about("B", one) for one in raised_ns]
+    assert about == [False, True, True, False, False, False]
+    assert [erasure.is_about_alarm(f"fall:{one}:45") for one in "AB"] == [True, False]
+    assert erasure.is_about_alarm("station:log:30")
+    assert not erasure.is_about_alarm("of another program")
+    last = erasure_of_incident(records[:-1], "i1")
+    assert last.is_about("A", 10**18)
+
+
+def test_of_an_incident_that_was_forgotten_the_log_tells_the_units_all_the_same() -> None:
+    """Their journals may bring more of it."""
+    records = done(
+        (5, bo("C")), (6, Unassign("C")),  # before
+        (10, ana("A")), (20, OPEN), (30, bo("B")), (36, Unassign("B")), (40, CLOSE),
+    )  # fmt: skip
+    erasure = erasure_of_incident(records, "i1")
+    forgotten = redacted(records, erasure)
+    again = erasure_of_incident(forgotten, "i1")
+    assert again.wearings == erasure.wearings == (Wearing("A", 20, 40), Wearing("B", 20, 40))
+    assert redacted(forgotten, again) == forgotten
+
+
+def redacted(records: list[Record], erasure: Erasure) -> list[Record]:
+    redactor = Redactor(erasure.without_inserted(records), CaptureClocks())
+    return [one for record in records for one in redactor(record)]
+
+
+def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
+    records = done(
+        (1, OpenIncident("i0", "")), (2, bo("B")), (3, CloseIncident("i0")), (4, Unassign("B")),
+        (10, ana("A")), (20, OPEN), (40, CLOSE),
+    )  # fmt: skip
+    erasure = erasure_of_incident(records, "i1")
+    assert (sorted(erasure.unit_ids), erasure.names) == (["A"], ("Ana",))
+
+
+@pytest.mark.parametrize(
+    ("actions", "said"),
+    [
+        ([(20, OPEN)], "open"),
+        ([], "knows no incident"),
+        ([(10, OpenIncident("i0", "")), (20, CloseIncident("i0"))], "knows no incident"),
+    ],
+)
+def test_what_is_open_or_unknown_is_not_forgotten(
+    actions: list[tuple[int, Action]], said: str
+) -> None:
+    with pytest.raises(UserError, match=said):
+        erasure_of_incident(done(*actions), "i1")
+
+
+def test_what_was_put_into_a_part_of_the_log_is_not_put_in_again() -> None:
+    records = done((10, ana("A")), (11, bo("B")), (20, OPEN), (40, CLOSE))
+    erasure = erasure_of_incident(records, "i1")
+    assert erasure.without_inserted(records) == erasure
+    header = Header(STATION_ID, 1, 1, 0)
+    there = [
+        (t_ns, OPERATOR.key(STATION_ID), encode(OperatorAction(header, name, "chief", action)))
+        for t_ns, name, action in (
+            (20, inserted_action_id("a20", "A"), Unassign("A")),
+            (40, inserted_action_id("a40", "B"), bo("B")),
+        )
+    ]
+    left = erasure.without_inserted(there)
+    assert (left.returned_units, left.assigned_after) == (("B",), (ana("A"),))
+    assert erasure.is_inserted("a20-A")
+    assert erasure.is_inserted("a40-B")
+    assert not erasure.is_inserted("a20")
+    assert not erasure.is_inserted("a201-A")
+
+
+@pytest.mark.parametrize(("sender", "captured_ns"), [("A", 115), ("A@tracker", 115), ("B", 113)])
+def test_of_two_stations_the_one_that_forgets_later_places_every_message_as_the_first(
+    sender: str, captured_ns: int
+) -> None:
+    """Though it has heard words of the unit since that were less delayed."""
+    actions = done((10, ana("A")), (30, ForgetWearers("A")), (200, Unassign("A")),
+                   (300, ForgetWearers("A")), (400, ForgetWearers("A")))  # fmt: skip
+    erasure = erasure_of_person(actions, "p1", "", NOW_NS)
+    clocks = CaptureClocks(first_erased_ns(actions, erasure))
+    for t_ns, delay_ns in ((50, 9), (300, 5), (301, 3)):
+        clocks.note(t_ns, Header(sender, 7, t_ns, t_ns - delay_ns - 100))
+    assert clocks.captured_ns(Header(sender, 7, 1, 10)) == captured_ns
+
+
+def test_of_a_run_that_was_not_heard_before_what_came_since_tells() -> None:
+    actions = done((10, ana("A")), (200, Unassign("A")), (300, ForgetWearers("A")))
+    clocks = CaptureClocks(first_erased_ns(actions, erasure_of_person(actions, "p1", "", NOW_NS)))
+    for t_ns, delay_ns in ((400, 9), (500, 3)):
+        clocks.note(t_ns, Header("A", 8, t_ns, t_ns - delay_ns - 100))
+    assert clocks.captured_ns(Header("A", 8, 1, 10)) == 113

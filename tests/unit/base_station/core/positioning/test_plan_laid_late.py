@@ -1,0 +1,206 @@
+"""A plan that is loaded when satellites have placed people already: nobody knows yet where on it
+they are.
+"""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import pytest
+
+from base_station.core.events import Refused
+from base_station.core.state import UnitState
+from base_station.core.trust.trust import trust_of
+from edge.simulation.building import plan_path
+from shared.geo import Anchor, rotate
+from shared.messages.pins import PlaceBeacon, SetMeeting, SetPin, StartTogether
+from shared.messages.station import Action, OpenIncident, SetAnchor, SetPlan, SetStart
+from tests.rig.round_walk import PLAN
+from tests.rig.station_script import Script
+
+A, B = "FF-01", "FF-02"
+LIES = Anchor(52.0, 4.0, 20.0, math.radians(60.0))  # the plan, as nobody has said yet
+ENGINE_M = -25.0, 15.0  # on the plan
+TURNED_RAD = {A: 1.0, B: -2.0}  # of each own frame
+
+
+class Outside(Script):
+    """Two walk about outside with a receiver each."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.register(A, B)
+        self.act(OpenIncident("i", "Mill Lane"))
+        self.walked_m = 0.0
+
+    def walk(self, metres: int) -> None:
+        for _ in range(metres):
+            self.now_s += 1.0
+            self.walked_m += 1.0
+            there_m = _walked(self.walked_m)
+            for unit_id, turned_rad in TURNED_RAD.items():
+                own_m = rotate(*there_m, turned_rad)
+                self.position(unit_id, *own_m, distance_m=self.walked_m, heading_std_rad=0.02)
+                lat_deg, lon_deg, height_m = LIES.to_geodetic(*_on_plan(there_m), 0.0)
+                self.gps(unit_id, lat_deg, lon_deg, height_m=height_m, horizontal_std_m=2.0)
+            self.tick()
+
+    def unit(self, unit_id: str) -> UnitState:
+        return self.pipeline.state.units[unit_id]
+
+    def place_m(self, unit_id: str) -> tuple[float, float]:
+        fused = self.unit(unit_id).fused
+        assert fused is not None
+        return fused.north_m, fused.east_m
+
+    def why(self, unit_id: str) -> str:
+        return trust_of(self.unit(unit_id), 0).reason
+
+    def off_m(self, unit_id: str) -> float:
+        return math.dist(self.place_m(unit_id), _on_plan(_walked(self.walked_m)))
+
+
+def _walked(way_m: float) -> tuple[float, float]:
+    """North and east of the engine."""
+    return (way_m, 0.0) if way_m < 20.0 else (20.0, way_m - 20.0)
+
+
+def _on_plan(there_m: tuple[float, float]) -> tuple[float, float]:
+    return ENGINE_M[0] + there_m[0], ENGINE_M[1] + there_m[1]
+
+
+START = StartTogether("s", (A, B), 0, *ENGINE_M, 0.5, 0, None, 0.3, "")
+ADRIFT = "nobody has said where the plan lies"
+
+
+@pytest.fixture
+def script() -> Outside:
+    script = Outside()
+    script.walk(30)
+    script.act(SetPlan(PLAN))
+    return script
+
+
+def test_until_somebody_says_where_it_lies_nobody_is_believed_on_it(script: Outside) -> None:
+    assert script.why(A) == script.why(B) == ADRIFT
+    anchor = script.pipeline.state.anchor
+    assert anchor is not None
+    earth = {one: anchor.to_geodetic(*script.place_m(one), 0.0)[:2] for one in (A, B)}
+    script.act(SetAnchor(LIES.lat_deg, LIES.lon_deg, LIES.height_m, LIES.rotation_rad))
+    assert script.why(A) == script.why(B) == ""
+    for one in (A, B):
+        assert LIES.to_geodetic(*script.place_m(one), 0.0)[:2] == pytest.approx(earth[one])
+        assert script.off_m(one) < 3.0
+
+
+def test_who_is_inside_is_not_asked_of_a_plan_that_lies_nowhere(script: Outside) -> None:
+    elsewhere = b"[900,0],[940,0],[940,30],[900,30],[900,0]"
+    script.act(SetPlan(PLAN.replace(b"[0,0],[40,0],[40,30],[0,30],[0,0]", elsewhere)))
+    script.walk(1)
+    assert script.unit(A).inside_since_ns is not None, "as without a plan: work has begun"
+    script.act(SetAnchor(LIES.lat_deg, LIES.lon_deg, LIES.height_m, LIES.rotation_rad))
+    script.walk(1)
+    assert script.unit(A).inside_since_ns is None
+
+
+def test_its_walls_hold_nobody(script: Outside) -> None:
+    script.act(SetPlan(plan_path().read_bytes()))
+    begun = Outside()
+    begun.act(SetPlan(plan_path().read_bytes()))
+    for one in (script, begun):
+        one.walk(1)
+        fused = one.unit(A).fused
+        assert fused is not None
+        in_corridor = msgspec.structs.replace(fused, north_m=7.0, east_m=12.0, floor=0)
+        one.unit(A).fused = in_corridor
+        one.wait(15)
+        assert (one.unit(A).reach == ()) is (one is script)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        START,
+        SetPin("p", A, 0, *ENGINE_M, 0.5, 0, None, 0.0, ""),
+        SetStart(A, *ENGINE_M, 0.0, 0.0, 0.5, math.pi),
+        PlaceBeacon("door", "", 0.0, 0.0, 0, 0.3, 3.0),
+    ],
+    ids=lambda said: type(said).__name__,
+)
+def test_the_first_place_that_is_said_on_it_counts_as_if_it_had_been_there_before(
+    said: Action, script: Outside
+) -> None:
+    earlier = Outside()
+    earlier.act(SetPlan(PLAN))
+    earlier.walk(30)
+    for one in (script, earlier):
+        assert not any(isinstance(output, Refused) for output in one.act(said))
+    for number in range(2):
+        for unit_id in (A, B):
+            mine, theirs = script.unit(unit_id).fused, earlier.unit(unit_id).fused
+            assert mine is not None
+            assert theirs is not None
+            assert (mine.north_m, mine.east_m) == pytest.approx(
+                (theirs.north_m, theirs.east_m), abs=0.01
+            )
+            assert mine.quality_reason == theirs.quality_reason
+            assert script.unit(unit_id).gps is not None
+        states = script.pipeline.state.pin_verdicts, earlier.pipeline.state.pin_verdicts
+        assert states[0] == states[1]
+        if not number:
+            script.walk(5)
+            earlier.walk(5)
+    assert script.unit(A).rejected_counts.keys() == {"the site has no anchor"}
+
+
+def test_the_trail_begins_where_the_start_was_said(script: Outside) -> None:
+    script.act(START)
+    trail = script.unit(A).trail
+    assert math.dist((trail[0].north_m, trail[0].east_m), ENGINE_M) < 1.5
+    assert len(trail) > 10
+    plain = script.unit(A).unpinned_trail
+    assert plain is not None
+    assert math.hypot(plain[0].north_m, plain[0].east_m) < 1.5, "about its own start, without"
+
+
+def test_fixes_count_again_once_it_is_said_where_the_plan_lies(script: Outside) -> None:
+    script.act(START)
+    script.act(SetAnchor(LIES.lat_deg, LIES.lon_deg, LIES.height_m, LIES.rotation_rad))
+    script.walk(30)
+    assert {verdict.state for verdict in script.pipeline.state.pin_verdicts.values()} == {"used"}
+    assert script.off_m(A) < 3.0
+    assert script.off_m(B) < 3.0
+
+
+@pytest.mark.parametrize("met", [True, False], ids=["a meeting", "a pin that is refused"])
+def test_what_says_no_place_leaves_people_where_satellites_have_them(
+    met: bool, script: Outside
+) -> None:
+    script.act(
+        SetMeeting("m", A, B, script.t_ns, 1.0, "")
+        if met
+        else SetPin("p", A, script.t_ns, math.nan, 0.0, 0.5, None, None, 0.0, "")
+    )
+    assert script.pipeline.state.anchor_by_gps
+    assert script.why(A) == ADRIFT
+
+
+def test_what_was_said_before_there_was_a_plan_stays_where_it_is_on_the_earth() -> None:
+    script = Outside()
+    script.walk(30)
+    script.act(SetPin("p", A, script.t_ns, *script.place_m(A), 0.5, None, None, 0.0, ""))
+    script.act(SetPlan(PLAN))
+    script.act(SetPin("q", B, script.t_ns, *script.place_m(B), 0.5, None, None, 0.0, ""))
+    assert script.pipeline.state.anchor_by_gps
+    assert script.why(A) == ADRIFT
+
+
+def test_who_has_satellites_only_is_nowhere_on_it(script: Outside) -> None:
+    script.register("FF-03")
+    script.now_s += 1.0
+    script.status("FF-03")
+    script.gps("FF-03", *LIES.to_geodetic(*ENGINE_M, 0.0)[:2])
+    assert script.unit("FF-03").fused is not None
+    script.act(START)
+    assert script.unit("FF-03").fused is None

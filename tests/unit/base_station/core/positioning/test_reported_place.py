@@ -1,0 +1,148 @@
+"""Who is not heard, and says by voice where they are, is shown there."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from base_station.core.checkpoint import read_checkpoint
+from base_station.views.station import StationFacts, snapshot
+from shared.messages import FusedPosition
+from shared.messages.pins import RemovePin, SetMeeting, SetPin
+from shared.messages.station import SetPlan, SetStart
+from tests.rig.live_station import make_pipeline
+from tests.rig.round_walk import PLAN
+from tests.rig.station_script import Script
+
+U, OTHER = "FF-01", "FF-02"
+WALKED_S = 30
+SILENT_S = 120.0
+STAIRS_M = (28.0, 35.0)
+
+
+@pytest.fixture
+def script() -> Script:
+    """Who walked east along a corridor on the ground floor, and has not been heard for long."""
+    script = Script()
+    script.register(U, OTHER)
+    script.act(SetPlan(PLAN))
+    script.act(SetStart(U, 10.0, 2.0, 0.0, 0.0, 0.3, 0.05))
+    walk(script, 0, WALKED_S)
+    script.now_s += SILENT_S
+    script.tick()
+    return script
+
+
+def walk(script: Script, begin: int, end: int) -> None:
+    for second in range(begin, end):
+        script.now_s += 1.0
+        script.position(U, 0.0, 0.9 * second, distance_m=0.9 * second)
+
+
+def pin(
+    script: Script,
+    place_m: tuple[float, float] = STAIRS_M,
+    ago_s: float = 0.0,
+    floor: int | None = 1,
+    pin_id: str = "p",
+) -> None:
+    t_ns = script.t_ns - round(ago_s * 1e9)
+    script.act(SetPin(pin_id, U, t_ns, *place_m, 1.0, floor, None, 0.0, "by voice"))
+
+
+def shown(script: Script) -> FusedPosition:
+    fused = script.pipeline.state.units[U].fused
+    assert fused is not None
+    return fused
+
+
+def far_m(one: FusedPosition, place_m: tuple[float, float]) -> float:
+    return math.dist((one.north_m, one.east_m), place_m)
+
+
+def test_they_are_shown_where_they_say_and_on_that_floor(script: Script) -> None:
+    pin(script)
+    said = shown(script)
+    assert script.fused[-1] == said, "it is in the log"
+    assert (said.north_m, said.east_m, said.floor) == (*STAIRS_M, 1)
+    assert said.std_north_m == said.std_east_m == 1.0
+    assert said.down_m == pytest.approx(-3.2)
+    assert said.floor_probability is not None
+    assert said.floor_probability > 0.9
+    assert said.t_meas_ns == script.t_ns
+
+
+def test_the_region_grows_from_there(script: Script) -> None:
+    grown = region_m(script)
+    pin(script)
+    assert region_m(script) < 3.0 < 20.0 < grown
+    script.now_s += 60.0
+    script.tick()
+    assert region_m(script) > 20.0
+
+
+def region_m(script: Script) -> float:
+    seen = snapshot(script.pipeline.state, 1, StationFacts(), lambda _: None)
+    (view,) = (one for one in seen.units if one.unit_id == U)
+    assert view.position is not None
+    return view.position.ellipse_major_m
+
+
+def test_without_a_floor_they_are_on_the_one_that_is_known(script: Script) -> None:
+    before = shown(script)
+    pin(script, floor=None)
+    assert far_m(shown(script), STAIRS_M) == 0.0
+    assert (shown(script).floor, shown(script).down_m) == (before.floor, before.down_m)
+
+
+def test_the_newest_word_counts_and_one_taken_back_does_not(script: Script) -> None:
+    before = shown(script)
+    pin(script, ago_s=5.0)
+    pin(script, (20.0, 20.0), ago_s=40.0, pin_id="earlier")
+    assert far_m(shown(script), STAIRS_M) == 0.0
+    script.act(RemovePin("p"))
+    assert far_m(shown(script), (20.0, 20.0)) == 0.0
+    script.act(RemovePin("earlier"))
+    now = shown(script)
+    assert (now.north_m, now.east_m, now.floor, now.t_meas_ns) == (
+        before.north_m,
+        before.east_m,
+        before.floor,
+        before.t_meas_ns,
+    )
+
+
+def test_what_the_unit_brings_of_before_moves_nobody_back(script: Script) -> None:
+    pin(script)
+    walked = script.now_s
+    script.now_s = walked - SILENT_S / 2
+    script.position(U, 0.0, 0.9 * WALKED_S, distance_m=0.9 * WALKED_S)
+    script.now_s = walked
+    assert far_m(shown(script), STAIRS_M) == 0.0
+
+
+def test_heard_again_they_go_on_from_there(script: Script) -> None:
+    pin(script, (10.0, 30.0), floor=0)
+    walk(script, WALKED_S, WALKED_S + 5)
+    assert script.pipeline.state.pin_verdicts["p"].state == "used"
+    assert far_m(shown(script), (10.0, 30.0 + 0.9 * 5)) < 2.0
+    assert shown(script).t_meas_ns == script.t_ns
+
+
+def test_the_trail_is_of_what_was_walked(script: Script) -> None:
+    pin(script)
+    trail = script.pipeline.state.units[U].trail
+    assert all(math.dist((step.north_m, step.east_m), STAIRS_M) > 5.0 for step in trail)
+
+
+def test_a_meeting_does_not_place_them(script: Script) -> None:
+    before = shown(script)
+    script.act(SetMeeting("m", U, OTHER, script.t_ns, 1.0, ""))
+    assert far_m(shown(script), (before.north_m, before.east_m)) < 0.1
+
+
+def test_a_station_that_starts_again_shows_the_same(script: Script) -> None:
+    pin(script)
+    again = make_pipeline(read_checkpoint(script.pipeline.checkpoint()))
+    assert again.state.units[U].fused == shown(script)

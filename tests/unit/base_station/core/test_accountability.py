@@ -1,0 +1,291 @@
+"""Who is to be heard from and when: check-ins, handing over, and what is no check-in."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.core.accountability import warning_s
+from base_station.core.checkpoint import read_checkpoint
+from base_station.core.state import Incident
+from shared.clock import NS_PER_S
+from shared.messages import (
+    AlarmState,
+    EventKind,
+)
+from shared.messages.station import (
+    Assign,
+    CheckIn,
+    CloseIncident,
+    OpenIncident,
+    ResolveAlarm,
+    SetAccountability,
+    SetRest,
+    Unassign,
+)
+from tests.rig.people_on_duty import (
+    INTERVAL_S,
+    at_work,
+    confirmed,
+    left_s,
+    overdue,
+    refusals,
+    rest_left_s,
+    unit,
+)
+from tests.rig.station_script import Script
+
+
+@pytest.fixture
+def script() -> Script:
+    return at_work()
+
+
+def test_a_check_in_of_one_is_nobody_else_s(script: Script) -> None:
+    """Nobody of these has a crew: that does not make them one."""
+    for number in (1, 2, 3):
+        script.act(Assign(f"FF-0{number}", f"p{number}", f"Person {number}", "", ""))
+    script.wait(20)
+    script.act(CheckIn("FF-01", "", False))
+    assert left_s(script, "FF-01") == pytest.approx(60.0)
+    assert left_s(script, "FF-02") == pytest.approx(40.0)
+    assert left_s(script, "FF-03") == pytest.approx(40.0)
+
+
+def test_it_runs_only_while_an_incident_is_open() -> None:
+    script = Script()
+    script.register("FF-01")
+    script.act(Assign("FF-01", "p1", "Person 1", "red", ""))
+    assert unit(script).duty is None
+    script.act(OpenIncident("i1", "Mill Lane"))
+    assert left_s(script) == 20 * 60.0  # the usual
+    script.act(CloseIncident("i1"))
+    assert unit(script).duty is None
+
+
+def test_whoever_comes_later_is_due_later(script: Script) -> None:
+    script.register("FF-04")
+    script.wait(30)
+    script.act(Assign("FF-04", "p4", "Person 4", "blue", ""))
+    assert left_s(script, "FF-04") == INTERVAL_S
+    assert left_s(script, "FF-01") == INTERVAL_S - 30.0
+
+
+def test_nothing_that_a_unit_measures_answers_it(script: Script) -> None:
+    def everything() -> None:
+        script.status("FF-01", motionless_s=0.0)
+        script.position("FF-01", 1.0, 1.0)
+        script.temperature("FF-01", 20.0)
+        script.event("FF-01", EventKind.MAYDAY_CANCELLED)
+
+    script.wait(61, everything)
+    raised = [alarm for alarm in overdue(script) if alarm.unit_id == "FF-01"]
+    assert [alarm.state for alarm in raised] == [AlarmState.RAISED]
+    assert raised[0].priority == 1
+    assert raised[0].text == "Person 1: PAR overdue, not yet confirmed, on duty for 1 min"
+
+
+def test_it_fires_once_and_is_armed_again_by_the_check_in(script: Script) -> None:
+    script.wait(200)
+    assert len([one for one in overdue(script) if one.unit_id == "FF-01"]) == 1
+    script.act(CheckIn("FF-01", "", False))
+    mine = [one for one in overdue(script) if one.unit_id == "FF-01"]
+    assert [one.state for one in mine] == [AlarmState.RAISED, AlarmState.RESOLVED]
+    assert mine[-1].by == "not overdue; PAR confirmed by radio, entered by chief"
+    script.wait(59)
+    assert len([one for one in overdue(script) if one.unit_id == "FF-01"]) == 2
+    script.wait(2)
+    mine = [one for one in overdue(script) if one.unit_id == "FF-01"]
+    assert [one.state for one in mine][-1] is AlarmState.RAISED
+    assert len({one.alarm_id for one in mine}) == 2
+
+
+def test_one_that_a_person_resolved_is_not_raised_again_before_a_check_in(script: Script) -> None:
+    script.wait(61)
+    alarm = next(one for one in overdue(script) if one.unit_id == "FF-01")
+    script.act(ResolveAlarm(alarm.alarm_id, "seen at the engine"))
+    script.wait(600)
+    mine = [one for one in overdue(script) if one.unit_id == "FF-01"]
+    assert [one.state for one in mine] == [AlarmState.RAISED, AlarmState.RESOLVED]
+
+
+def test_a_crew_and_everyone_are_ticked_off_at_once(script: Script) -> None:
+    script.wait(30)
+    script.act(CheckIn("", "red", False), by="Ana")
+    assert [left_s(script, f"FF-0{number}") for number in (1, 2, 3)] == [60.0, 60.0, 30.0]
+    assert confirmed(script) == ("radio", "Ana")
+    script.act(CheckIn("", "", True))
+    assert left_s(script, "FF-03") == 60.0
+
+
+def test_other_times_hold_at_once_and_for_everybody(script: Script) -> None:
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
+    script.wait(1)
+    script.act(SetAccountability(600.0, 900.0))
+    assert left_s(script, "FF-01") == left_s(script, "FF-03") == 599.0
+    assert rest_left_s(script) == 899.0
+
+
+def test_other_times_are_not_taken_for_a_word_of_the_wearer(script: Script) -> None:
+    script.wait(1)
+    script.act(CheckIn("FF-01", "", False), by="Ana")
+    script.wait(61)
+    script.act(SetAccountability(600.0, 900.0))
+    (ended,) = [
+        one
+        for one in overdue(script)[1:]
+        if one.state is AlarmState.RESOLVED and one.unit_id == "FF-01"
+    ]
+    assert ended.by == "not overdue; PAR confirmed by radio, entered by Ana"
+
+
+def test_other_times_are_nothing_to_a_unit_that_nobody_wears(script: Script) -> None:
+    script.register("FF-09")
+    script.act(SetAccountability(300.0, 2400.0))
+    assert (unit(script, "FF-09").duty, left_s(script)) == (None, 300.0)
+
+
+def test_who_takes_a_unit_after_the_incident_is_on_no_duty(script: Script) -> None:
+    script.act(CloseIncident("i1"))
+    script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
+    assert refusals(script) == []
+    assert (unit(script).person is not None, unit(script).duty) == (True, None)
+
+
+def test_there_are_no_times_to_change_where_no_incident_is_open() -> None:
+    script = Script()
+    script.act(SetAccountability(300.0, 2400.0))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.act(CloseIncident("i1"))
+    script.act(SetAccountability(300.0, 2400.0))
+    assert refusals(script) == ["no incident is open"] * 2
+
+
+def test_nobody_is_ticked_off_where_no_incident_is_open(script: Script) -> None:
+    """They wear their units still, and whoever presses is told that it counts for nothing."""
+    script.act(CloseIncident("i1"))
+    for meant in (CheckIn("FF-01", "", False), CheckIn("", "red", False), CheckIn("", "", True)):
+        script.act(meant)
+    assert refusals(script) == [
+        f"nobody of {whom} is on duty in an open incident" for whom in ("FF-01", "red", "everyone")
+    ]
+
+
+def test_who_hands_the_unit_back_is_not_waited_for(script: Script) -> None:
+    script.wait(61)
+    script.act(Unassign("FF-01"))
+    mine = [one for one in overdue(script) if one.unit_id == "FF-01"]
+    assert mine[-1].state is AlarmState.RESOLVED
+    assert mine[-1].by == "off duty"
+
+
+def test_who_takes_over_a_unit_has_not_been_inside_since_the_other_went_in(
+    script: Script,
+) -> None:
+    def walk() -> None:
+        script.position("FF-01", 9.0, 0.0, distance_m=9.0)
+
+    script.wait(20, walk)
+    went_in_ns = unit(script).inside_since_ns
+    assert went_in_ns == script.t_ns - 19 * NS_PER_S
+    script.act(Assign("FF-01", "p1", "Person One", "red", "officer"))
+    assert unit(script).inside_since_ns == went_in_ns, "it is the same person"
+    script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
+    assert unit(script).inside_since_ns is None
+    script.wait(5, walk)
+    assert unit(script).inside_since_ns == script.t_ns - 4 * NS_PER_S
+    script.act(Unassign("FF-01"))
+    assert unit(script).inside_since_ns is None
+    script.wait(5, walk)
+    script.act(Assign("FF-01", "p1", "Person 1", "red", ""))
+    assert unit(script).inside_since_ns == script.t_ns - 4 * NS_PER_S, "said late who wears it"
+
+
+def test_a_new_name_for_the_same_person_is_no_check_in(script: Script) -> None:
+    script.wait(30)
+    script.act(Assign("FF-01", "p1", "Person One", "red", "officer"))
+    assert left_s(script) == 30.0
+
+
+def test_whom_nobody_hears_from_is_missed_under_whichever_unit(script: Script) -> None:
+    """Somebody at the console puts right who wears what: that is no word of the wearer."""
+    script.wait(61)
+    script.register("FF-04")
+    script.act(Assign("FF-04", "p1", "Person 1", "red", ""))
+    told = [(one.unit_id, one.state.name) for one in overdue(script)[3:]]
+    assert told == [("FF-01", "RESOLVED"), ("FF-04", "RAISED")]
+    script.act(CheckIn("FF-04", "", False))
+    assert overdue(script)[-1].state is AlarmState.RESOLVED
+
+
+def test_a_unit_that_nobody_wears_is_waited_for_by_nobody() -> None:
+    script = Script()
+    script.register("FF-01")
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # it is carried in
+    script.wait(1)
+    assert unit(script).duty is None
+    script.act(CheckIn("FF-01", "", False))
+    assert refusals(script) == ["nobody of FF-01 is on duty in an open incident"]
+
+
+def test_of_two_incidents_the_first_is_closed_before_the_second_opens(script: Script) -> None:
+    script.act(OpenIncident("i2", "Dock"))
+    script.act(CloseIncident("i2"))
+    assert refusals(script) == [
+        "the incident 'Mill Lane' is open; close it first",
+        "no open incident i2",
+    ]
+    assert left_s(script) == INTERVAL_S
+    script.act(CloseIncident("i1"))
+    script.act(CloseIncident("i1"))
+    assert refusals(script)[2:] == ["no open incident i1"]
+
+
+@pytest.mark.parametrize(("interval_s", "before_s"), [(600.0, 150.0), (2400.0, 300.0)])
+def test_a_check_in_is_announced_in_the_last_quarter_and_five_minutes_at_most(
+    interval_s: float, before_s: float
+) -> None:
+    assert warning_s(Incident("i1", "Mill Lane", 0, None, interval_s)) == before_s
+
+
+@pytest.mark.parametrize(
+    "action",
+    [
+        CheckIn("", "", False),
+        CheckIn("FF-01", "red", False),
+        CheckIn("FF-09", "", False),
+        SetAccountability(float("nan"), 2400.0),
+        SetAccountability(29.9, 2400.0),
+        SetAccountability(1200.0, 43_200.1),
+        SetRest("FF-09", True),
+    ],
+)
+def test_what_makes_no_sense_is_refused_with_a_sentence(
+    script: Script, action: CheckIn | SetAccountability | SetRest
+) -> None:
+    before = script.pipeline.checkpoint()
+    script.act(action)
+    assert len(refusals(script)) == 1
+    after = read_checkpoint(script.pipeline.checkpoint())
+    saved = read_checkpoint(before)
+    assert saved is not None
+    assert after is not None
+    assert saved.state.units == after.state.units
+
+
+@pytest.mark.parametrize(
+    ("par_s", "work_s", "opens"), [(30.0, 43_200.0, True), (29.9, 60.0, False)]
+)
+def test_an_incident_has_times_that_can_be_kept(par_s: float, work_s: float, opens: bool) -> None:
+    script = Script()
+    script.act(OpenIncident("i1", "Mill Lane", par_s, work_s))
+    assert (script.pipeline.state.incident is not None) is opens
+    assert len(refusals(script)) == (not opens)
+
+
+def test_an_old_log_has_the_usual_times() -> None:
+    script = Script()
+    script.act(OpenIncident("i1", "Mill Lane"))
+    incident = script.pipeline.state.incident
+    assert incident is not None
+    assert (incident.par_interval_s, incident.work_limit_s) == (1200.0, 2400.0)

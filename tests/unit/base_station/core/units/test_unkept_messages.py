@@ -1,0 +1,33 @@
+"""What units could not keep is among the station's problems."""
+
+from __future__ import annotations
+
+from base_station.views.station import StationFacts, health_view
+from shared.channels import HEARTBEAT
+from shared.codec import decode, encode
+from shared.messages import Heartbeat
+from tests.rig.station_script import Script
+
+U = "FF-01"
+
+
+def test_what_a_unit_could_not_keep_is_among_the_problems() -> None:
+    script = Script()
+
+    def problems() -> str:
+        return " ".join(health_view(script.pipeline.state, StationFacts()).problems)
+
+    script.say(Heartbeat(script.header(U), 1, 1))
+    assert "journal" not in problems()
+    script.say(Heartbeat(script.header(U), 1, 1, never_saved=120, given_up=3))
+    assert f"{U} 123" in problems()
+    script.say(Heartbeat(script.header(U), 1, 1))  # started again, with room
+    assert "journal" not in problems()
+
+
+def test_the_heartbeat_carries_what_was_not_kept() -> None:
+    script = Script()
+    beat = Heartbeat(script.header(U), 5, 9, never_saved=2**40, given_up=7)
+    heard = decode(HEARTBEAT, encode(beat))
+    assert isinstance(heard, Heartbeat)
+    assert (heard.never_saved, heard.given_up) == (2**40, 7)

@@ -1,0 +1,115 @@
+"""The live state is saved beside the drive, and never knows more than the log."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import Event
+
+import pytest
+
+from base_station.engine.checkpoint_writer import PART, CheckpointWriter
+from base_station.engine.health_monitor import HealthMonitor
+from base_station.storage.checkpoints import Checkpoints
+from shared.messages.station import ForgetWearers, RegisterUnit
+from tests.rig.live_station import LiveStation, make_pipeline
+from tests.rig.waiting import PATIENCE_S, until
+
+STATE = make_pipeline().checkpoint()
+
+
+class Log:
+    """Its disk takes what it is told to."""
+
+    problem = little_room = ""
+    is_behind = refuses = False
+
+    def __init__(self) -> None:
+        self.takes = True
+        self.may_flush = Event()
+        self.may_flush.set()
+
+    def write(self, t_ns: int, key: str, payload: bytes) -> bool:
+        raise NotImplementedError
+
+    def flush(self) -> bool:
+        self.may_flush.wait()
+        return self.takes
+
+
+def told(health: HealthMonitor) -> list[tuple[str, str]]:
+    return [(report.part, report.text) for report in health.check({}, {})]
+
+
+def test_what_a_crash_would_take_from_the_log_is_not_saved(tmp_path: Path) -> None:
+    log, checkpoints, health = Log(), Checkpoints(tmp_path), HealthMonitor()
+    writer = CheckpointWriter(log, checkpoints, health)
+    for takes, t_ns in ((True, 100), (False, 200)):
+        log.takes = takes
+        writer.begin((t_ns, 3), STATE)
+        writer.finish()
+    saved = checkpoints.latest()
+    assert saved is not None
+    assert (saved.t_ns, saved.events_at_t) == (100, 3)
+    assert told(health) == []
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [(OSError(28, "No space left on device"), "free the disk"), (KeyError("x"), "please report")],
+)
+def test_a_state_that_cannot_be_saved_is_told_when_that_is_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, said: str
+) -> None:
+    log, checkpoints, health = Log(), Checkpoints(tmp_path), HealthMonitor()
+
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(checkpoints, "save", fail)
+    writer = CheckpointWriter(log, checkpoints, health)
+    log.may_flush.clear()
+    writer.begin((100, 1), STATE)
+    writer.check()
+    assert (writer.is_under_way, told(health)) == (True, [])
+    log.may_flush.set()
+    until(lambda: not writer.is_under_way)
+    writer.check()
+    ((part, text),) = told(health)
+    assert part == PART
+    assert said in text
+    writer.check()
+    assert told(health) == []
+
+
+def test_one_is_saved_after_the_other(tmp_path: Path) -> None:
+    log, checkpoints = Log(), Checkpoints(tmp_path)
+    writer = CheckpointWriter(log, checkpoints, HealthMonitor())
+    writer.begin((100, 1), STATE)
+    writer.begin((200, 1), STATE)
+    assert checkpoints.latest(until_ns=199) is not None, "the first is there by then"
+    writer.finish()
+    saved = checkpoints.latest()
+    assert saved is not None
+    assert saved.t_ns == 200
+
+
+def test_people_are_not_held_up_by_a_disk_that_does_not_take_what_is_saved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But for who is to be forgotten: what is being saved has them in it."""
+    begun, answers = Event(), Event()
+
+    def hang(*_: object) -> None:
+        begun.set()
+        answers.wait()
+
+    with LiveStation(tmp_path) as station:
+        station.act(RegisterUnit("FF-01", "one"))
+        monkeypatch.setattr(station.checkpoints, "save", hang)
+        station.drive.save_soon()
+        assert begun.wait(PATIENCE_S)
+        forgotten = station.drive.submit("chief", ForgetWearers("FF-01"))
+        station.act(RegisterUnit("FF-02", "two"))
+        assert not forgotten.done()
+        answers.set()
+        assert forgotten.result(PATIENCE_S).refused is None

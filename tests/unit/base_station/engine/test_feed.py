@@ -1,0 +1,211 @@
+"""Feeds: station time, order, bounds, and the log as it was recorded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from base_station.engine.feed import LiveFeed, LogFeed
+from base_station.engine.station_clock import SteadyClock
+from shared.channels import EVENT, POSITION
+from shared.clock import NS_PER_S, ManualClock
+from shared.mcap_log import SegmentWriter
+
+KEY = POSITION.key("anna")
+ALERT = EVENT.key("anna")
+DAY_NS = 86_400 * NS_PER_S
+
+
+class JumpingClock(ManualClock):
+    """A clock whose UTC a person sets."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.set_by_ns = 0
+
+    def utc_ns(self) -> int:
+        return super().utc_ns() + self.set_by_ns
+
+
+def test_records_come_out_in_order_with_station_time() -> None:
+    machine = JumpingClock()
+    feed = LiveFeed(SteadyClock(machine))
+    t0_ns = machine.utc_ns()
+    feed.offer(KEY, b"1")
+    machine.advance(1.0)
+    machine.set_by_ns = -DAY_NS
+    feed.offer(KEY, b"2")
+    assert feed.take(0.0) == [(t0_ns, KEY, b"1"), (t0_ns + NS_PER_S, KEY, b"2")]
+    assert feed.take(0.0) == []
+
+
+def test_take_waits_for_a_message_from_another_thread() -> None:
+    feed = LiveFeed(ManualClock())
+    sender = Thread(target=feed.offer, args=(KEY, b"1"))
+    sender.start()
+    assert [payload for _, _, payload in feed.take(60.0)] == [b"1"]
+    sender.join()
+
+
+def test_wake_ends_the_wait_even_if_it_came_first() -> None:
+    feed = LiveFeed(ManualClock())
+    feed.wake()
+    assert feed.take(60.0) == []
+
+
+def test_beyond_the_bound_live_data_is_dropped_and_counted_but_alerts_are_not() -> None:
+    feed = LiveFeed(ManualClock(), records_max=3)
+    for number in range(5):
+        feed.offer(KEY, bytes([number]))
+    for number in range(5):
+        feed.offer(ALERT, bytes([number]))
+    taken = feed.take(0.0)
+    assert [key for _, key, _ in taken] == [KEY] * 3 + [ALERT] * 3
+    assert feed.overflowed == 4
+    feed.offer(KEY, b"")
+    assert len(feed.take(0.0)) == 1
+
+
+def test_that_it_is_too_much_is_said_while_it_is_and_for_a_minute() -> None:
+    clock = ManualClock()
+    feed = LiveFeed(clock, records_max=1)
+    told = []
+    for later_s in (0.0, 59.0, 61.0, 0.0):  # the first one has room
+        feed.offer(KEY, b"")
+        clock.advance(later_s)
+        told.append(feed.overflows)
+    assert told == [False, True, False, True]
+    assert feed.overflowed == 3
+
+
+def test_the_bound_holds_for_bytes_too() -> None:
+    feed = LiveFeed(ManualClock(), bytes_max=100)
+    for _ in range(10):
+        feed.offer("elsewhere", bytes(60))
+    assert len(feed.take(0.0)) == 2
+    assert feed.overflowed == 8
+
+
+def payloads_of(records: list[tuple[int, str, bytes]]) -> list[bytes]:
+    return [payload for _, _, payload in records]
+
+
+def deliver(feed: LiveFeed, count: int) -> None:
+    for _ in range(count):
+        feed.deliver(KEY, b"late")
+
+
+def test_what_is_live_goes_first_and_what_can_wait_follows_in_portions() -> None:
+    feed = LiveFeed(ManualClock())
+    late = [number.to_bytes(2) for number in range(100)]
+    for payload in late:
+        feed.deliver(KEY, payload)
+    feed.offer(KEY, b"live 1")
+    first = payloads_of(feed.take(60.0))
+    assert feed.late_waits  # it is in no log yet
+    feed.offer(KEY, b"live 2")
+    second = payloads_of(feed.take(60.0))
+    assert [first[0], second[0]] == [b"live 1", b"live 2"]
+    assert 1 < len(first) < 50
+    assert first[1:] + second[1:] == late[: len(first) + len(second) - 2]
+
+
+def test_station_time_never_goes_back_between_what_is_live_and_what_can_wait() -> None:
+    machine = ManualClock()
+    feed = LiveFeed(machine)
+    taken: list[tuple[int, str, bytes]] = []
+    for _ in range(100):
+        feed.deliver(KEY, b"late")
+        machine.advance(0.001)
+        feed.offer(KEY, b"live")
+        machine.advance(0.001)
+        taken += feed.take(0.0)
+    times_ns = [t_ns for t_ns, _, _ in taken]
+    assert times_ns == sorted(times_ns)
+    assert payloads_of(taken).count(b"late") == payloads_of(taken).count(b"live") == 100
+
+
+def test_who_brings_what_can_wait_waits_and_takes_no_room_from_what_is_live() -> None:
+    feed = LiveFeed(ManualClock(), records_max=10)
+    count = 5000
+    bringing = Thread(target=deliver, args=(feed, count))
+    bringing.start()
+    taken: list[bytes] = []
+    for _ in range(100):
+        feed.offer(KEY, b"live")
+        taken += payloads_of(feed.take(60.0))
+    while len(taken) < count + 100:
+        taken += payloads_of(feed.take(60.0))
+    bringing.join()
+    assert feed.overflowed == 0
+    assert taken.count(b"late") == count
+
+
+@pytest.mark.parametrize("key", [KEY, ALERT])
+def test_what_was_delivered_waits_until_who_took_it_comes_again(key: str) -> None:
+    """It is in no log before: nobody may take it for brought."""
+    feed = LiveFeed(ManualClock())
+    waited = [feed.late_waits]
+    feed.deliver(key, b"fetched")
+    waited.append(feed.late_waits)
+    feed.take(60.0)
+    waited.append(feed.late_waits)
+    feed.take(0.0)
+    waited.append(feed.late_waits)
+    assert waited == [False, True, True, False]
+
+
+def test_what_is_delivered_meanwhile_waits_too() -> None:
+    feed = LiveFeed(ManualClock())
+    feed.deliver(KEY, b"fetched")
+    feed.take(60.0)
+    feed.deliver(KEY, b"while that is dealt with")
+    feed.take(60.0)
+    assert feed.late_waits
+    feed.take(0.0)
+    assert not feed.late_waits
+
+
+def test_an_alert_that_was_fetched_waits_behind_nothing_that_can_wait() -> None:
+    feed = LiveFeed(ManualClock())
+    for _ in range(100):
+        feed.deliver(KEY, b"late")
+    feed.deliver(ALERT, b"fell")
+    assert payloads_of(feed.take(60.0))[0] == b"fell"
+
+
+def test_a_closed_feed_lets_go_of_who_waits() -> None:
+    feed = LiveFeed(ManualClock())
+    bringing = Thread(target=deliver, args=(feed, 5000))
+    bringing.start()
+    feed.close()
+    bringing.join()
+
+
+def test_a_log_feeds_its_records_and_asks_for_the_flush_first(tmp_path: Path) -> None:
+    writer = SegmentWriter(tmp_path)
+    for second in range(10):
+        writer.write(second * NS_PER_S, KEY if second % 2 else ALERT, bytes([second]))
+    feed = LogFeed(tmp_path, writer.flush)
+    assert [payload[0] for _, _, payload in feed.records()] == list(range(10))
+    window = feed.records(3 * NS_PER_S, 8 * NS_PER_S, {KEY})
+    assert [payload[0] for _, _, payload in window] == [3, 5, 7]
+
+
+def test_a_log_tells_when_what_was_there_is_written_anew_and_not_when_it_grows(
+    tmp_path: Path,
+) -> None:
+    first, second = (tmp_path / f"{number:06d}-20261122T070000Z.mcap" for number in (1, 2))
+    first.write_bytes(b"with a name in it")
+    changed = LogFeed(tmp_path).watch()
+    with first.open("ab") as growing:
+        growing.write(b" and more")
+    second.write_bytes(b"the next one")
+    assert not changed()
+    anew = tmp_path / "anew"
+    anew.write_bytes(b"without")
+    anew.replace(first)
+    assert changed()
+    assert not LogFeed(tmp_path).watch()()

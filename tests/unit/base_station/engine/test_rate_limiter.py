@@ -1,0 +1,139 @@
+"""One sender that runs wild: what is too much of it goes nowhere, and others lose nothing."""
+
+from __future__ import annotations
+
+import pytest
+
+from base_station.core.state.message_stream import ALERTS_HZ, BYTES_PER_S, MESSAGES_HZ
+from base_station.engine.rate_limiter import SenderRateLimiter
+from shared.channels import COMMAND, EVENT, POSITION, STATUS
+from shared.clock import ManualClock
+
+KEY, ALERT, OTHER = POSITION.key("evil"), EVENT.key("evil"), STATUS.key("anna")
+
+
+class Station:
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        self.heard: list[str] = []
+        self.known: dict[str, str] = {}
+        self.start()
+
+    def start(self) -> None:
+        """Again, with what the log knows."""
+        self.share = SenderRateLimiter(lambda key, _: self.heard.append(key), self.clock)
+
+    def hear(self, key: str, times: int, size: int = 100) -> int:
+        """How many of them come through."""
+        before = self.heard.count(key)
+        for _ in range(times):
+            self.share.offer(key, bytes(size))
+        return self.heard.count(key) - before
+
+    def flood(self, seconds: int) -> None:
+        for _ in range(10 * seconds):
+            self.clock.advance(0.1)
+            self.hear(KEY, MESSAGES_HZ)
+
+    def changes(self) -> list[tuple[str, bool]]:
+        reports = list(self.share.changes(self.known))
+        for one in reports:
+            self.known[one.part] = one.text
+            if not one.text:
+                del self.known[one.part]
+        return [(one.part, bool(one.text)) for one in reports]
+
+
+@pytest.fixture
+def station() -> Station:
+    return Station()
+
+
+def test_what_is_beyond_the_share_is_dropped_and_others_are_heard(station: Station) -> None:
+    assert station.hear(KEY, 10_000) == MESSAGES_HZ
+    assert station.hear(OTHER, 50) == 50
+    station.clock.advance(0.5)
+    assert station.hear(KEY, 10_000) == MESSAGES_HZ // 2
+    station.clock.advance(3600.0)
+    assert station.hear(KEY, 10_000) == MESSAGES_HZ
+
+
+def test_alerts_have_a_share_of_their_own(station: Station) -> None:
+    station.hear(KEY, 10_000)
+    assert station.hear(ALERT, 1000) == ALERTS_HZ
+
+
+def test_bytes_count_too(station: Station) -> None:
+    assert station.hear(KEY, 100, size=50_000) == BYTES_PER_S // 50_000
+
+
+def test_what_is_said_to_a_unit_is_not_said_by_it(station: Station) -> None:
+    station.hear(KEY, 10_000)
+    assert station.hear(COMMAND.key("evil"), 1000) == 1000
+
+
+def test_a_key_that_no_unit_has_is_held_to_a_share(station: Station) -> None:
+    assert station.hear("muster/v1", 10_000) == MESSAGES_HZ
+
+
+def test_a_unit_that_says_as_much_as_units_do_is_never_cut(station: Station) -> None:
+    for _ in range(1000):
+        station.clock.advance(0.1)
+        assert station.hear(KEY, 5, size=1000) == 5
+    station.clock.advance(5.0)
+    assert station.hear(KEY, 250, size=1000) == 250, "what a link has held up"
+    assert station.changes() == []
+
+
+def test_a_flood_is_told_once_and_so_is_its_end(station: Station) -> None:
+    station.hear(KEY, 10_000)
+    assert station.changes() == [], "one burst"
+    station.flood(5)
+    assert station.changes() == [("flood evil", True)]
+    station.flood(5)
+    assert station.changes() == []
+    station.clock.advance(10.0)
+    assert station.changes() == [], "it may go on"
+    station.clock.advance(30.0)
+    assert station.changes() == [("flood evil", False)]
+    assert station.changes() == []
+
+
+def test_a_flood_that_was_told_before_a_restart_ends_as_well(station: Station) -> None:
+    station.known["log"] = "the disk is full"
+    station.flood(5)
+    assert station.changes() == [("flood evil", True)]
+    station.start()
+    station.flood(5)
+    assert station.changes() == [], "it goes on, and is known"
+    station.start()
+    assert station.changes() == []
+    station.clock.advance(25.0)
+    assert station.changes() == []
+    station.clock.advance(10.0)
+    assert station.changes() == [("flood evil", False)]
+    assert station.known == {"log": "the disk is full"}
+    assert station.changes() == []
+
+
+def test_a_flood_that_a_person_dismissed_is_not_told_again_while_it_lasts(
+    station: Station,
+) -> None:
+    station.flood(5)
+    assert station.changes() == [("flood evil", True)]
+    station.known.clear()
+    station.flood(5)
+    assert station.changes() == []
+
+
+def test_bursts_far_apart_are_no_flood(station: Station) -> None:
+    for _ in range(10):
+        station.hear(KEY, 2 * MESSAGES_HZ)
+        station.clock.advance(5.0)
+    assert station.changes() == []
+
+
+def test_any_number_of_senders_costs_bounded_memory(station: Station) -> None:
+    for number in range(5000):
+        station.share.offer(POSITION.key(f"s{number}"), b"")
+    assert len(station.share._senders) <= 2000

@@ -1,0 +1,95 @@
+"""A unit whose token comes and goes without end is shut out, each time for longer, and told."""
+
+from __future__ import annotations
+
+from base_station.engine.liveness import CHANGES_AT_ONCE, LivenessMonitor
+from base_station.engine.sender_bans import FIRST_S, LONGEST_S, SenderBans
+from shared.bus_memory import MemoryRouter
+from shared.channels import alive_key
+from shared.clock import ManualClock
+
+WHY = "does harm"
+
+
+class Watch:
+    """What was ordered, and what a log knows of it."""
+
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        self.orders: list[tuple[str, float]] = []
+        self.known: dict[str, str] = {}
+        self.start()
+
+    def start(self) -> None:
+        """Again, with what the log knows."""
+        self.bans = SenderBans(lambda who, s: self.orders.append((who, s)), self.clock)
+
+    def changes(self) -> list[tuple[str, str]]:
+        reports = [(one.part, one.text) for one in self.bans.changes(self.known)]
+        self.known = {k: v for k, v in (self.known | dict(reports)).items() if v}
+        return reports
+
+
+def test_each_time_it_is_for_longer_and_after_a_quiet_hour_it_begins_anew() -> None:
+    watch = Watch()
+    for _ in range(6):
+        watch.bans.ban("evil", WHY)
+        watch.clock.advance(watch.orders[-1][1] + 1.0)
+    assert [seconds for _, seconds in watch.orders] == [60.0, 240.0, 960.0, 3600.0, 3600.0, 3600.0]
+    assert watch.orders[-1][1] == LONGEST_S
+    watch.clock.advance(3601.0)
+    watch.bans.ban("evil", WHY)
+    assert watch.orders[-1] == ("evil", FIRST_S)
+
+
+def test_what_was_on_its_way_orders_nothing_more() -> None:
+    watch = Watch()
+    for _ in range(1000):
+        watch.bans.ban("evil", WHY)
+    assert watch.orders == [("evil", FIRST_S)]
+    watch.clock.advance(2.0)  # a router that had just ended heard nothing of it
+    watch.bans.ban("evil", WHY)
+    assert watch.orders == [("evil", FIRST_S)] * 2
+
+
+def test_it_is_told_by_name_and_so_is_its_end() -> None:
+    watch = Watch()
+    watch.bans.ban("evil", WHY)
+    [(part, text)] = watch.changes()
+    assert "evil does harm: it is shut out for 1 min" in text
+    assert "muster pki revoke evil" in text
+    assert watch.changes() == []
+    watch.clock.advance(FIRST_S + 31.0)
+    assert watch.changes() == [(part, "")]
+    assert watch.changes() == []
+
+
+def test_what_an_earlier_run_has_told_ends() -> None:
+    watch = Watch()
+    watch.bans.ban("evil", WHY)
+    [(part, _)] = watch.changes()
+    watch.start()
+    assert watch.changes() == [(part, "")]
+
+
+def test_only_the_unit_whose_token_comes_and_goes_without_end_is_shut_out() -> None:
+    router, clock = MemoryRouter(), ManualClock()
+    ban: list[str] = []
+    links = LivenessMonitor(router.attach_station(), lambda who, _: ban.append(who), clock)
+    unit = router.attach_unit()
+    anna = unit.declare_alive(alive_key("anna"))
+    for _ in range(600):  # a link that comes and goes every other second, for twenty minutes
+        anna.close()
+        anna = unit.declare_alive(alive_key("anna"))
+        clock.advance(2.0)
+    assert ban == []
+    for _ in range(round(CHANGES_AT_ONCE)):
+        unit.declare_alive(alive_key("evil")).close()
+    assert set(ban) == {"evil"}
+    assert links.linked == {"anna"}
+    assert links.unlinked == {"evil"}
+    clock.advance(60.0)
+    evil = unit.declare_alive(alive_key("evil"))
+    assert links.linked == {"anna", "evil"}
+    for token in (anna, evil):
+        token.close()

@@ -1,0 +1,209 @@
+"""The height of one unit: what moves it, by how much, and how sure it is then."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from base_station.fusion.interface import BarometricHeight
+from base_station.fusion.parameters import Parameters
+from base_station.fusion.vertical.height import HeightFilter, climb_var_m2
+from base_station.site.storeys import Storey
+from shared.clock import NS_PER_S
+
+KIND = Parameters()
+
+
+def at(down_m: float, std_m: float) -> HeightFilter:
+    height = HeightFilter(KIND)
+    height.reset(down_m, std_m)
+    return height
+
+
+def std_m(height: HeightFilter) -> float:
+    return math.sqrt(height.variance_m2)
+
+
+def update_barometer(
+    height: HeightFilter, begin_s: int, airs_m: list[float], *, referenced: bool
+) -> None:
+    """A look at the air every second."""
+    for second, air_m in enumerate(airs_m, begin_s):
+        height.update_barometer(BarometricHeight(second * NS_PER_S, air_m, referenced))
+
+
+def test_heights_of_fixes_err_slowly_and_are_not_averaged_away() -> None:
+    height = at(0.0, 50.0)
+    for _ in range(1000):
+        height.update_gnss(-6.0, 5.0)
+    assert height.down_m == pytest.approx(-6.0, abs=0.1)
+    assert std_m(height) == pytest.approx(5.0 * math.sqrt(KIND.height_slow_part), rel=0.02)
+
+
+def test_after_some_time_fixes_tell_anew() -> None:
+    height = at(0.0, 50.0)
+    height.update_gnss(-6.0, 5.0)
+    at_once, later = HeightFilter(KIND), HeightFilter(KIND)
+    for one in (at_once, later):
+        one.load(height.save())
+    later.decay_slow_errors(0.0)
+    for one in (at_once, later):
+        one.update_gnss(-6.0, 5.0)
+    assert std_m(later) == pytest.approx(5.0 / math.sqrt(2.0), rel=0.02)
+    assert std_m(later) < 0.8 * std_m(at_once)
+
+
+def test_what_fixes_err_by_fades_to_what_nobody_knows() -> None:
+    """Half of it is as much as nothing after many halves."""
+    height, long_after = at(0.0, 0.1), at(0.0, 0.1)
+    for one in (height, long_after):
+        one.update_gnss(8.0, 5.0)
+    for _ in range(40):
+        height.decay_slow_errors(0.5)
+    long_after.decay_slow_errors(0.0)
+    for one in (height, long_after):
+        one.update_gnss(8.0, 5.0)
+    assert height.down_m == pytest.approx(long_after.down_m)
+    assert height.variance_m2 == pytest.approx(long_after.variance_m2)
+
+
+@pytest.mark.parametrize(("off_m", "is_taken"), [(14.0, True), (-14.0, True), (16.0, False)])
+def test_a_fix_s_height_that_cannot_be_true_moves_nobody(off_m: float, is_taken: bool) -> None:
+    height = at(0.0, 0.5)
+    height.update_gnss(off_m, 5.0)
+    assert (height.down_m != 0.0) is is_taken
+
+
+@pytest.mark.parametrize(("referenced", "least_m", "most_m"), [(True, 0.8, 3.0), (False, 0.0, 0.5)])
+def test_a_storey_that_the_own_path_missed_is_seen_by_the_air_where_the_weather_is_known(
+    referenced: bool, least_m: float, most_m: float
+) -> None:
+    """Some of it: up and down stairs ten times before, which the own path errs by as well."""
+    height = at(0.0, 0.3)
+    update_barometer(height, 0, [7.0] * 60, referenced=True)
+    for climbed_m in (-3.0, 3.0) * 10:
+        height.predict(climbed_m, 5.0)
+    for second in range(60, 90):
+        height.predict(0.0, 0.5)
+        update_barometer(
+            height, second, [min(7.0 + 0.2 * (second - 59), 10.0)], referenced=referenced
+        )
+    assert least_m < height.down_m < most_m
+
+
+def test_said_anew_the_air_is_heard_anew() -> None:
+    height = at(0.0, 0.3)
+    update_barometer(height, 0, [7.0] * 60, referenced=True)
+    height.reset(-20.0, 0.3)
+    update_barometer(height, 3600, [7.0] * 60, referenced=True)
+    assert height.down_m == pytest.approx(-20.0, abs=0.01)
+    assert std_m(height) == pytest.approx(0.3, rel=0.02)
+
+
+def test_a_frame_that_is_moved_moves_heights_and_no_barometer_minds() -> None:
+    moved, stays = at(0.0, 0.3), at(0.0, 0.3)
+    for height, shift_m in ((moved, 12.0), (stays, 0.0)):
+        update_barometer(height, 0, [7.0] * 60, referenced=True)
+        height.predict(-3.0, 10.0)
+        height.shift(shift_m)
+        update_barometer(height, 60, [4.5] * 10, referenced=True)
+    assert abs(stays.down_m + 3.0) > 0.02, "the barometer is heard"
+    assert moved.down_m == pytest.approx(stays.down_m + 12.0)
+    assert moved.variance_m2 == pytest.approx(stays.variance_m2)
+
+
+def test_before_anybody_said_where_it_began_the_air_moves_nobody() -> None:
+    height = HeightFilter(KIND)
+    update_barometer(height, 0, [-500.0] * 5, referenced=True)
+    assert height.down_m == pytest.approx(0.0, abs=0.1)
+    assert std_m(height) == pytest.approx(1.0, rel=0.01)
+
+
+def test_saved_it_goes_on_with_the_same_numbers() -> None:
+    height, again = at(0.0, 0.3), HeightFilter(KIND)
+    update_barometer(height, 0, [7.0] * 30, referenced=True)
+    height.predict(-1.0, 3.0, 0.2)
+    again.load(height.save())
+    for one in (height, again):
+        update_barometer(one, 100, [6.0] * 5, referenced=False)
+        one.predict(-0.4, 3.0, 0.2)
+    assert (again.down_m, again.variance_m2) == (height.down_m, height.variance_m2)
+    assert again.walked_level == height.walked_level
+
+
+def test_who_is_far_from_any_storey_of_the_plan_is_on_none() -> None:
+    height = at(-6.0, 0.3)
+    height.predict(0.0, 10.0)
+    height.constrain_to_plan_floors((0.0, -3.2))
+    assert height.down_m == -6.0
+    height.constrain_to_plan_floors((0.0, -3.2, -6.4))
+    assert height.down_m < -6.1
+
+
+@pytest.mark.parametrize(
+    ("down_m", "own_std_m", "is_taken"),
+    [(-3.0, 0.6, True), (0.2, 0.6, True), (-1.7, 0.6, False), (-3.0, 2.5, False)],
+)
+def test_a_storey_of_the_plan_is_taken_by_who_is_on_no_other(
+    down_m: float, own_std_m: float, is_taken: bool
+) -> None:
+    height = at(down_m, own_std_m)
+    height.constrain_to_plan_floors((0.0, -3.2))
+    assert (height.down_m != down_m) is is_taken
+
+
+def test_on_the_level_is_who_walked_six_metres_of_it_since_it_was_asked() -> None:
+    height = at(0.0, 0.3)
+    for begun in range(2):
+        levels = []
+        for _ in range(7):
+            height.predict(0.0, 1.0)
+            levels.append(height.walked_level)
+        assert levels == [False] * 6 + [True], begun
+        height.constrain_to_plan_floors(())
+
+
+def test_a_storey_makes_nobody_surer_than_it_is_known() -> None:
+    """However often; and who is surer already learns nothing of it."""
+    height = at(-2.8, 0.7)
+    storeys = [Storey(0, 0.0, std_m=0.4), Storey(1, -3.2, std_m=0.4)]
+    best_m = math.hypot(0.4, KIND.level_std_m)
+    for _ in range(50):
+        height.constrain_to_learnt_floors(storeys)
+    assert std_m(height) == pytest.approx(best_m)
+    assert -3.2 < height.down_m < -3.0
+    sure = at(-3.0, 0.3)
+    sure.constrain_to_learnt_floors(storeys)
+    assert (sure.down_m, std_m(sure)) == pytest.approx((-3.0, 0.3))
+
+
+@pytest.mark.parametrize(
+    ("down_m", "own_std_m", "is_taken"),
+    [
+        (-3.0, 0.6, True),
+        (-0.2, 0.6, True),
+        (0.2, 0.6, True),
+        (-1.6, 0.6, False),  # as near to one as to the other
+        (-3.0, 2.5, False),  # may be a storey off
+        (-6.0, 0.6, False),  # where nobody has walked yet
+    ],
+)
+def test_a_storey_is_only_taken_by_who_can_be_on_no_other(
+    down_m: float, own_std_m: float, is_taken: bool
+) -> None:
+    height = at(down_m, own_std_m)
+    height.constrain_to_learnt_floors([Storey(0, 0.0, std_m=0.2), Storey(1, -3.2, std_m=0.2)])
+    assert (height.down_m != down_m) is is_taken
+    height.constrain_to_learnt_floors([])
+
+
+def test_a_climb_is_doubted_by_its_height_and_its_way_up_or_down() -> None:
+    by_climb = KIND.climb_m_per_sqrt_climb_m**2
+    expected_m2 = 3.0 * by_climb + 10.0 * KIND.climb_m_per_sqrt_m**2
+    for climbed_m in (3.0, -3.0):
+        assert climb_var_m2(KIND, climbed_m, 10.0) == pytest.approx(expected_m2)
+        height = at(0.0, 0.3)
+        height.predict(climbed_m, 10.0)
+        assert height.variance_m2 == pytest.approx(0.3**2 + expected_m2)
+        assert height.down_m == climbed_m

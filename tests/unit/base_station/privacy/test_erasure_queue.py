@@ -1,0 +1,175 @@
+"""What is to be forgotten is done one after the other, and gone on with after a restart."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from threading import Event
+from typing import cast
+
+import pytest
+
+from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue, ErasureState
+from base_station.privacy.erasure_service import (
+    ErasureProgress,
+    ErasureResult,
+    ErasureService,
+    Progress,
+)
+from shared.errors import StoreError, UserError
+from tests.rig.waiting import until
+
+
+class StubEraser:
+    """A ``ErasureService`` that waits in the middle, and fails as told."""
+
+    def __init__(self) -> None:
+        self.go = Event()
+        self.half = Event()
+        self.fails: list[BaseException] = []
+        self.began: list[str] = []
+        self.again: list[bool] = []
+        self.done: list[str] = []
+
+    def person(
+        self, by: str, person_id: str, on_progress: Progress, tally: ErasureProgress
+    ) -> ErasureResult:
+        self.began.append(person_id)
+        self.again.append(tally.again)
+        on_progress(0.1)
+        tally.records, tally.files = tally.records + 7, tally.files + 2
+        if self.fails:
+            raise self.fails.pop(0)
+        on_progress(0.5)
+        self.half.set()
+        self.go.wait()
+        on_progress(1.0)
+        self.done.append(person_id)
+        return ErasureResult(f"person {person_id} by {by}", tally.records, tally.files)
+
+
+def desk(
+    worker: StubEraser,
+    folder: Path,
+    obstacle: Callable[[ErasureJob], str] = lambda _: "",
+    on_done: Callable[[ErasureJob], None] = lambda _: None,
+) -> ErasureQueue:
+    return ErasureQueue(cast("ErasureService", worker), folder / "kept.json", obstacle, on_done)
+
+
+def test_it_says_how_far_it_is_and_what_came_of_it(tmp_path: Path) -> None:
+    worker, told = StubEraser(), list[ErasureJob]()
+    with desk(worker, tmp_path, on_done=told.append) as one:
+        one.add("ada", "person", "p-1")
+        worker.half.wait()
+        (under_way,) = one.all()
+        assert (under_way.state, under_way.share) == (ErasureState.WORKING, 0.5)
+        assert "50%" in one.problems()[0]
+        worker.go.set()
+        until(lambda: one.all()[0].state is ErasureState.DONE)
+        (done,) = one.all()
+        assert (done.records, done.files, one.problems()) == (7, 2, ())
+    assert [one.subject_id for one in told] == ["p-1"]
+
+
+def test_the_same_wish_is_one_and_others_wait_their_turn(tmp_path: Path) -> None:
+    worker = StubEraser()
+    with desk(worker, tmp_path) as one:
+        first = one.add("ada", "person", "p-1")
+        assert one.add("bo", "person", "p-1").forgetting_id == first.forgetting_id
+        one.add("ada", "person", "p-2")
+        worker.half.wait()
+        assert worker.began == ["p-1"]
+        worker.go.set()
+        until(lambda: worker.done == ["p-1", "p-2"])
+
+
+def test_a_station_that_ends_in_the_middle_goes_on_when_it_is_back(tmp_path: Path) -> None:
+    worker = StubEraser()
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        worker.half.wait()
+        one._jobs._worker.stop()
+        worker.go.set()
+    assert worker.done == []
+    with desk(worker, tmp_path) as again:
+        until(lambda: again.all()[0].state is ErasureState.DONE)
+    assert worker.done == ["p-1"]
+
+
+@pytest.mark.parametrize("kill", [False, True])
+def test_what_all_tries_took_out_is_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kill: bool
+) -> None:
+    monkeypatch.setattr("base_station.privacy.erasure_queue._AGAIN_S", 0.01)
+    worker = StubEraser()
+    worker.fails = [SystemExit() if kill else StoreError("the disk is full")]
+    worker.go.set()
+    if kill:
+        one = desk(worker, tmp_path)
+        one.add("ada", "person", "p-1")
+        with pytest.raises(SystemExit):
+            one._work_on_first(one._jobs.under_way())
+        worker.fails = [StoreError("the disk is full")]
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: one.all()[0].state is ErasureState.DONE)
+        (done,) = one.all()
+    # What a try had taken out when it was killed, and had not yet gone on from, is not known.
+    assert (done.records, done.files) == (14, 4)
+    assert worker.again == [False, True, True][: len(worker.began)]
+    assert len(worker.began) == (3 if kill else 2)
+
+
+def test_what_makes_no_sense_fails_with_its_reason(tmp_path: Path) -> None:
+    worker = StubEraser()
+    worker.fails = [UserError("nobody knows that person")]
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: one.all()[0].state is ErasureState.FAILED)
+        assert one.all()[0].problem == "nobody knows that person"
+
+
+def test_a_store_that_fails_is_tried_again_and_told_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr("base_station.privacy.erasure_queue._AGAIN_S", 0.01)
+    worker = StubEraser()
+    worker.fails = [StoreError("the disk is full") for _ in range(3)]
+    worker.go.set()
+    with desk(worker, tmp_path) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: one.all()[0].state is ErasureState.DONE)
+    assert worker.began == ["p-1"] * 4
+    assert caplog.text.count("the disk is full") == 1
+
+
+def test_a_standby_leaves_it_and_says_so(tmp_path: Path) -> None:
+    worker = StubEraser()
+    worker.go.set()
+
+    def obstacle(job: ErasureJob) -> str:
+        return "" if job.told else "this is the standby"
+
+    with desk(worker, tmp_path, obstacle) as one:
+        one.add("ada", "person", "p-1")
+        until(lambda: "standby" in one.all()[0].problem)
+        assert worker.began == []
+    with desk(worker, tmp_path, obstacle) as one:  # what the other one has done is done here too
+        one.add("the other station", "person", "p-2", told=True)
+        until(lambda: worker.done == ["p-2"])
+
+
+def test_what_the_other_station_has_forgotten_may_be_unknown_here(tmp_path: Path) -> None:
+    worker = StubEraser()
+    worker.fails = [UserError("nobody knows that person")]
+    with desk(worker, tmp_path) as one:
+        one.add("the other station", "person", "p-1", told=True)
+        until(lambda: one.all()[0].state is ErasureState.DONE)
+
+
+def test_a_wish_that_cannot_be_kept_is_refused(tmp_path: Path) -> None:
+    one = desk(StubEraser(), tmp_path / "missing")
+    with pytest.raises(StoreError, match="nothing is done"):
+        one.add("ada", "person", "p-1")
+    assert one.all() == ()

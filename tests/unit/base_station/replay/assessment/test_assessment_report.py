@@ -1,0 +1,163 @@
+"""An incident's assessment: what was shown, held against pins and against what is known since."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import cast
+
+import msgspec
+import numpy as np
+import pytest
+
+from base_station.core.state import StationState, UnitState
+from base_station.core.state.pin import Pin
+from base_station.fusion.odometry.path_history import PathHistory
+from base_station.fusion.smoothing.interface import Verdict
+from base_station.replay.assessment.report import UnitReport, assess
+from base_station.site.plan import Plan
+from base_station.site.storeys import Storey
+from base_station.storage.db.records import TrackSample
+from shared.clock import NS_PER_S
+
+
+def shown(t_s: float, north_m: float = 0.0, east_m: float = 0.0, floor: int = 0) -> TrackSample:
+    t_ns = round(t_s * NS_PER_S)
+    return TrackSample(t_ns, north_m, east_m, 0.0, 1.0, 1.0, 1.0, 0.0, floor, "good")
+
+
+def assessed(
+    live: Sequence[TrackSample], smoothed: Sequence[TrackSample] = (), *pins: Pin
+) -> UnitReport:
+    state = StationState()
+    state.pins.update({pin.pin_id: pin for pin in pins})
+    verdicts = {pin.pin_id: Verdict(True, 0.5, 0.4) for pin in pins}
+    raw = {"FF-01": smoothed}
+    (unit,) = assess(
+        "i1", "path-graph", 0, state, verdicts, {"FF-01": live}, {"FF-01": smoothed}, raw
+    ).units
+    return unit
+
+
+def pin(t_s: float, north_m: float) -> Pin:
+    t_ns = round(t_s * NS_PER_S)
+    return Pin("p1", "place", "FF-01", t_ns, 0.5, 0, "chief", "", north_m, 0.0, 1)
+
+
+@pytest.mark.parametrize(("t_s", "north_m"), [(12.0, 10.0), (97.0, 50.0), (9.2, 9.0), (0.0, 0.0)])
+def test_a_pin_is_held_against_what_was_shown_nearest_to_its_time(
+    t_s: float, north_m: float
+) -> None:
+    """Somebody who is not heard is shown where they were last."""
+    live = [shown(float(second), float(second)) for second in range(11)]
+    (residual,) = assessed(
+        [*live, shown(100.0, 50.0, floor=1)], (), pin(t_s, north_m)
+    ).pin_residuals
+    assert residual.shown_m == 0.0
+    assert residual.floor_right is (t_s > 50.0)
+
+
+def test_a_pin_of_a_time_at_which_nothing_was_shown_tells_nothing_of_it() -> None:
+    for t_s in (16.0, 50.0, 94.0):
+        (residual,) = assessed([shown(10.0), shown(100.0)], (), pin(t_s, 0.0)).pin_residuals
+        assert (residual.shown_m, residual.floor_right) == (None, None)
+
+
+def test_a_floor_that_was_not_shown_was_not_wrong() -> None:
+    live = [msgspec.structs.replace(shown(10.0), floor=None)]
+    (residual,) = assessed(live, (), pin(10.0, 0.0)).pin_residuals
+    assert (residual.shown_m, residual.floor_right) == (0.0, None)
+
+
+def test_a_pin_at_the_start_is_held_against_what_was_shown_first() -> None:
+    (residual,) = assessed([shown(100.0, 7.0), shown(101.0, 8.0)], (), pin(0.0, 7.0)).pin_residuals
+    assert residual.shown_m == 0.0
+
+
+def test_a_pin_of_another_tells_nothing_of_a_unit() -> None:
+    other = msgspec.structs.replace(pin(10.0, 0.0), unit_id="FF-02")
+    assert assessed([shown(10.0)], (), other).pin_residuals == ()
+
+
+def test_the_nearest_two_storeys_say_how_sure_a_floor_was() -> None:
+    storeys = (Storey(0, 0.0), Storey(1, -3.0), Storey(2, -9.0))
+    state = StationState(plan=Plan(b"", storeys, ()))
+    live = {"FF-01": [shown(1.0)]}
+    (unit,) = assess("i1", "path-graph", 0, state, {}, live, {}, {}).units
+    assert unit.floor_probability == pytest.approx(0.8664, abs=1e-3)  # 1.5 standard deviations
+
+
+@pytest.mark.parametrize(
+    ("fixes_s", "jump_s", "found"),
+    [
+        ((0.0, 60.0, 121.0), 121.0, (7.0,)),
+        ((0.0, 60.0, 121.0), 136.0, (7.0,)),
+        ((0.0, 60.0, 121.0), 145.0, (0.0,)),
+        ((0.0, 60.0, 120.0), 120.0, ()),
+    ],
+)
+def test_a_jump_counts_as_fixes_come_back_after_a_minute(
+    fixes_s: Sequence[float], jump_s: float, found: Sequence[float]
+) -> None:
+    fix_t_ns = np.array([round(one * NS_PER_S) for one in fixes_s])
+    history = SimpleNamespace(begin_ns=0, arrays=lambda: SimpleNamespace(fix_t_ns=fix_t_ns))
+    state = StationState(paths={"FF-01": cast("PathHistory", history)})
+    live = [shown(float(second), 7.0 if second >= jump_s else 0.0) for second in range(200)]
+    smoothed = [shown(0.0), shown(199.0)]
+    (unit,) = assess(
+        "i1", "path-graph", 0, state, {}, {"FF-01": live}, {"FF-01": smoothed}, {}
+    ).units
+    assert unit.reentry_jumps_m == found
+
+
+def test_the_floor_of_somebody_at_rest_is_held_against_what_is_known_of_that_time() -> None:
+    """A trail has a point in ten seconds there."""
+    smoothed = [shown(float(second), floor=0) for second in range(0, 101, 10)]
+    live = [shown(float(second), floor=1 if second % 10 < 5 else 0) for second in range(100)]
+    assert assessed(live, smoothed).floor_right == pytest.approx(0.5)
+
+
+def test_nothing_shown_is_nothing_known() -> None:
+    unit = assessed(())
+    assert (unit.seconds, unit.walked_m, unit.stated, unit.floor_right) == (0.0, 0.0, None, None)
+
+
+def test_what_was_not_used_is_in_it_with_the_reason_that_there_was_most_first() -> None:
+    unit = UnitState("FF-01", rejected_counts={"from the future": 2, "too far from the site": 30})
+    tracks = {"FF-01": [shown(1.0)]}
+    state = StationState(units={"FF-01": unit})
+    (report,) = assess("i1", "path-graph", 0, state, {}, tracks, tracks, tracks).units
+    assert report.not_used == (("too far from the site", 30), ("from the future", 2))
+
+
+def test_a_loop_closes_where_somebody_came_back_last() -> None:
+    way_m = [*range(21), *range(20, -1, -1)]
+    smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
+    state = StationState()
+    raw = [
+        shown(one.t_ns / NS_PER_S, 1.1 * one.north_m, 0.1 * row) for row, one in enumerate(smoothed)
+    ]
+    tracks = {"FF-01": smoothed}
+    report = assess("i1", "path-graph", 0, state, {}, tracks, tracks, {"FF-01": raw})
+    (unit,) = report.units
+    assert unit.loop_closure_m == pytest.approx(4.1)
+    assert unit.loop_closure_percent == pytest.approx(100.0 * 4.1 / unit.walked_m, abs=0.02)
+
+
+def test_what_a_loop_missed_is_held_against_the_way_until_then() -> None:
+    way_m = [*range(21), *range(19, -1, -1), *range(1, 31)]
+    smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
+    raw = [msgspec.structs.replace(one, north_m=1.1 * one.north_m) for one in smoothed]
+    tracks = {"FF-01": smoothed}
+    report = assess("i1", "path-graph", 0, StationState(), {}, tracks, tracks, {"FF-01": raw})
+    (unit,) = report.units
+    assert unit.walked_m == pytest.approx(77.0)
+    assert unit.loop_closure_m == pytest.approx(0.2)  # two metres out again it was last near
+    assert unit.loop_closure_percent == pytest.approx(100.0 * 0.2 / (1.1 * 42.0), abs=0.01)
+
+
+@pytest.mark.parametrize(("furthest_m", "last_m"), [(20, 20), (20, 4), (14, 0)])
+def test_who_did_not_go_far_or_come_back_has_closed_no_loop(furthest_m: int, last_m: int) -> None:
+    way_m = [*range(furthest_m + 1), *range(furthest_m, last_m - 1, -1)]
+    smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
+    assert assessed(smoothed, smoothed).loop_closure_m is None

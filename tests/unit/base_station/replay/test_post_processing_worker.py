@@ -1,0 +1,79 @@
+"""What closed lately is looked back on beside the station, which does not wait for it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Iterator
+from typing import cast
+
+import pytest
+
+from base_station.replay import post_processing_worker
+from base_station.replay.post_processing import PostProcessor, Tracks
+from base_station.replay.post_processing_worker import PostProcessingWorker
+from base_station.storage.db.models import Incident
+from shared.errors import StoreError
+
+WAIT_S = 20.0
+
+
+@pytest.fixture(autouse=True)
+def often(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(post_processing_worker, "EVERY_S", 0.001)
+    monkeypatch.setattr(post_processing_worker, "GRACE_S", 0.001)
+
+
+class LongWork:
+    """Of a long incident."""
+
+    def __init__(self) -> None:
+        self.begun = threading.Event()
+        self.over = threading.Event()
+        self.ended = threading.Event()
+
+    def catch_up(self, incidents: Iterable[Incident], _shown: object) -> None:
+        assert [one.incident_id for one in incidents] == ["i1"]
+        self.begun.set()
+        assert self.over.wait(WAIT_S)
+        self.ended.set()
+
+
+@pytest.fixture
+def work() -> Iterator[LongWork]:
+    work = LongWork()
+    yield work
+    work.over.set()
+    assert not work.begun.is_set() or work.ended.wait(WAIT_S)
+
+
+def incidents() -> list[Incident]:
+    return [Incident(incident_id="i1", name="Mill Lane", opened_ns=1, closed_ns=2)]
+
+
+def shown(_incident: Incident) -> Tracks:
+    return {}
+
+
+def test_a_station_that_stops_does_not_wait_for_what_can_be_worked_out_again(
+    work: LongWork,
+) -> None:
+    with PostProcessingWorker(cast("PostProcessor", work), incidents, shown):
+        assert work.begun.wait(WAIT_S)
+    assert not work.ended.is_set()
+
+
+def test_when_the_database_cannot_be_read_it_is_tried_again(
+    work: LongWork, caplog: pytest.LogCaptureFixture
+) -> None:
+    tries: list[int] = []
+
+    def at_last() -> list[Incident]:
+        tries.append(1)
+        if len(tries) < 3:
+            raise StoreError("the disk does not answer")
+        return incidents()
+
+    with PostProcessingWorker(cast("PostProcessor", work), at_last, shown):
+        assert work.begun.wait(WAIT_S)
+    told = [one.message for one in caplog.records]
+    assert told == ["what closed lately cannot be looked up: the disk does not answer"]

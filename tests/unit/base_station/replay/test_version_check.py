@@ -1,0 +1,115 @@
+"""A log of a station that decided otherwise is told from one that did not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache
+
+import msgspec
+import pytest
+
+from base_station.core.erasure.erasure import CaptureClocks, erasure_of_incident, erasure_of_person
+from base_station.core.erasure.redaction import Redactor
+from base_station.core.events import Received, event_of
+from base_station.replay.playback import Decision, Record
+from base_station.replay.version_check import decisions_differ
+from shared.channels import OPERATOR, channel_of
+from shared.codec import encode
+from shared.messages import STATION_ID, AlarmChange, EventKind, FusedPosition
+from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart, Unassign
+from tests.rig.live_station import make_pipeline
+from tests.rig.logged_walk import walk_with_mayday
+from tests.rig.station_script import Script
+
+Change = Callable[[Decision], Decision]
+
+
+def logged(
+    change: Change = lambda decision: decision, records: Iterable[Record] | None = None
+) -> Iterator[Record]:
+    """What was decided stands behind what it comes of."""
+    pipeline = make_pipeline()
+    for t_ns, key, payload in records or walk_with_mayday():
+        yield t_ns, key, payload
+        for output in pipeline.step(event_of(t_ns, key, payload)):
+            if isinstance(output, Decision):
+                said = change(output)
+                yield t_ns, channel_of(said).key(STATION_ID), encode(said)
+
+
+def north(by_m: float) -> Change:
+    def move(decision: Decision) -> Decision:
+        if isinstance(decision, FusedPosition) and decision.north_m > 50.0:
+            return msgspec.structs.replace(decision, north_m=decision.north_m + by_m)
+        return decision
+
+    return move
+
+
+def named(decision: Decision) -> Decision:
+    if isinstance(decision, AlarmChange):
+        return msgspec.structs.replace(decision, alarm_id="another")
+    return decision
+
+
+def test_what_the_same_program_decided_is_shown_again() -> None:
+    assert any(key.endswith("fused") for _, key, _ in logged())
+    assert not decisions_differ(logged(), make_pipeline())
+    assert not decisions_differ(walk_with_mayday(), make_pipeline()), "nothing was decided"
+    assert not decisions_differ(logged(north(0.01)), make_pipeline()), "nobody sees that"
+
+
+@pytest.mark.parametrize("change", [north(2.0), named])
+def test_what_another_program_decided_is_not(change: Change) -> None:
+    assert decisions_differ(logged(change), make_pipeline())
+
+
+def test_a_log_from_its_middle_tells_nothing_of_the_program() -> None:
+    """Its first places come of fusers that knew more."""
+    whole = list(logged())
+    for begin in (len(whole) // 3, len(whole) // 2):
+        assert not decisions_differ(whole[begin:], make_pipeline())
+        assert not decisions_differ([*whole[:10], *whole[begin:]], make_pipeline())
+
+
+@cache
+def two_incidents() -> tuple[Record, ...]:
+    """In each somebody walks and presses the button; where that begins is told in the first one."""
+    script = Script()
+    script.register("FF-01")
+    for incident_id, person in (("i1", "Ada"), ("i2", "Bea")):
+        script.act(Assign("FF-01", person, person, "red", "leader"))
+        script.act(OpenIncident(incident_id, "Mill Lane"))
+        if incident_id == "i1":
+            script.act(SetStart("FF-01", 5.0, 5.0, 0.0, 1.0, 0.5, 0.05))
+        for second in range(40):
+            script.now_s += 1.0
+            script.position("FF-01", 1.0 * second, 0.0)
+            if second == 20:
+                script.event("FF-01", EventKind.MAYDAY)
+            script.tick()
+        script.act(CloseIncident(incident_id))
+        script.act(Unassign("FF-01"))
+    return tuple(script.records)
+
+
+@pytest.mark.parametrize("incident", [False, True])
+def test_what_forgetting_took_out_tells_nothing_of_the_program(incident: bool) -> None:
+    whole = list(logged(records=two_incidents()))
+    assert not decisions_differ(whole, make_pipeline())
+    actions = [one for one in whole if one[1] == OPERATOR.key(STATION_ID)]
+    if incident:
+        erasure = erasure_of_incident(actions, "i1")
+    else:
+        erasure = erasure_of_person(actions, "Ada", "Ada", whole[-1][0])
+    redact = Redactor(erasure, clocks_of(whole))
+    redacted = [one for record in whole for one in redact(record)]
+    assert not decisions_differ(redacted, make_pipeline())
+
+
+def clocks_of(records: list[Record]) -> CaptureClocks:
+    clocks = CaptureClocks()
+    for event in (event_of(*one) for one in records):
+        if isinstance(event, Received):
+            clocks.note(event.t_ns, event.message.header)
+    return clocks

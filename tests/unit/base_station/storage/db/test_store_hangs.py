@@ -1,0 +1,78 @@
+"""A database on a disk that hangs holds nobody up, and says why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+from threading import Event, Thread
+
+import pytest
+from sqlalchemy.orm import Session
+
+from base_station.storage.db.projection import SqlProjection
+from base_station.storage.db.store import Store
+from base_station.storage.projection import Projection
+from shared.errors import StoreError
+from tests.rig.waiting import PATIENCE_S
+
+
+@pytest.fixture
+def hangs() -> Event:
+    return Event()
+
+
+@pytest.fixture
+def store(tmp_path: Path, hangs: Event) -> Iterator[Store]:
+    with Store(tmp_path / "station.sqlite", hangs.is_set) as store:
+        yield store
+
+
+def test_nothing_is_asked_of_a_disk_that_hangs(store: Store, hangs: Event) -> None:
+    hangs.set()
+
+    def refused(asking: AbstractContextManager[Session]) -> None:
+        with pytest.raises(StoreError, match="does not answer"), asking:
+            pytest.fail("it was asked")
+
+    refused(store.read())
+    refused(store.write())
+    with pytest.raises(StoreError, match="does not answer"):
+        store.compact()
+    hangs.clear()
+    with store.read(), store.write():
+        pass
+
+
+def test_who_waits_for_one_whom_the_disk_holds_up_is_told(store: Store, hangs: Event) -> None:
+    told: list[str] = []
+
+    def change() -> None:
+        try:
+            with store.write():
+                told.append("done")
+        except StoreError as error:
+            told.append(str(error))
+
+    with store.write():
+        waiting = Thread(target=change, daemon=True)
+        waiting.start()
+        hangs.set()
+        waiting.join(PATIENCE_S)
+        assert len(told) == 1
+        assert "does not answer" in told[0]
+    hangs.clear()
+    change()
+    assert told[1:] == ["done"]
+
+
+def test_nobody_waits_for_what_a_disk_that_hangs_does_not_take(store: Store, hangs: Event) -> None:
+    projection = SqlProjection(store)
+    try:
+        hangs.set()
+        projection.project(Projection(t_ns=1))
+        assert not projection.flush(timeout_s=3600.0)
+        hangs.clear()
+        assert projection.flush(PATIENCE_S)
+    finally:
+        projection.close()

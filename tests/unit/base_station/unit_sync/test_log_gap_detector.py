@@ -1,0 +1,154 @@
+"""What a damaged log lacks of what had come is asked for again, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+import pytest
+
+from base_station.core.checkpoint import Checkpoint
+from base_station.core.state import StationState, UnitState
+from base_station.core.state.boot_state import BootState
+from base_station.storage.checkpoints import SavedState
+from base_station.unit_sync.log_gap_detector import LogGapDetector, Lost
+from shared.channels import IMU, POSITION, backfilled_key, tracker_id, unread_key
+from shared.clock import NS_PER_S, ManualClock
+from shared.codec import encode
+from shared.errors import LogError
+from shared.mcap_log import LogRecord
+from shared.messages import Header
+from shared.sequence_set import Run, SequenceSet
+from tests.rig.message_factory import position
+
+UNIT, AGENT = "anna", tracker_id("anna")
+BOOT = 7
+
+
+def spoken(seq: int, sender: str = UNIT) -> LogRecord:
+    return 0, POSITION.key(sender), encode(position(Header(sender, BOOT, seq, seq)))
+
+
+class Damaged:
+    """A log of which ten messages of the unit and ten of its agent had come."""
+
+    def __init__(self) -> None:
+        self.clock = ManualClock()
+        self.damaged: list[str] = []
+        self.saved_ns = self.clock.utc_ns()
+        self.log: list[LogRecord] = [
+            spoken(seq, sender) for seq in range(1, 11) for sender in (UNIT, AGENT)
+        ]
+        self.read: Callable[[], Iterable[LogRecord]] = lambda: self.log
+        self.readings = 0
+        self.taken_back: list[Lost] = []
+        self.search = LogGapDetector(
+            lambda: self.damaged, self._saved, self._records, self.clock, self.taken_back.append
+        )
+
+    def _saved(self, after_ns: int) -> SavedState | None:
+        if self.saved_ns <= after_ns:
+            return None
+        unit, agent = UnitState(UNIT), UnitState(AGENT)
+        for sender in (unit, agent):
+            sender.boots = [BootState(BOOT, SequenceSet([1], [10]))]
+        unit.tracker = agent
+        state = StationState(units={UNIT: unit})
+        return SavedState(self.saved_ns, 1, Checkpoint(state, "", {}, {}))
+
+    def _records(self) -> Iterable[LogRecord]:
+        self.readings += 1
+        return self.read()
+
+    def look(self) -> None:
+        """For a while, in which the station's state is saved."""
+        for _ in range(20):
+            self.search.look()
+            self.clock.advance(1.0)
+            self.saved_ns = self.clock.utc_ns()
+
+
+@pytest.fixture
+def damaged() -> Damaged:
+    return Damaged()
+
+
+def test_what_is_missing_is_taken_back_once(damaged: Damaged) -> None:
+    damaged.log = [one for one in damaged.log if one not in map(spoken, (3, 4, 8))]
+    damaged.log.remove(spoken(10, AGENT))
+    damaged.damaged = ["1.mcap"]
+    damaged.look()
+    assert damaged.taken_back == [
+        {(UNIT, BOOT): (Run(3, 4), Run(8, 8)), (AGENT, BOOT): (Run(10, 10),)}
+    ]
+    damaged.look()
+    assert len(damaged.taken_back) == 1
+
+
+def test_each_new_damage_is_looked_into(damaged: Damaged) -> None:
+    damaged.damaged = ["1.mcap"]
+    damaged.look()
+    assert damaged.taken_back == []
+    damaged.log.remove(spoken(1))
+    damaged.damaged = ["1.mcap", "2.mcap"]
+    damaged.look()
+    assert damaged.taken_back == [{(UNIT, BOOT): (Run(1, 1),)}]
+
+
+def test_a_log_that_is_whole_is_not_read(damaged: Damaged) -> None:
+    damaged.look()
+    assert damaged.readings == 0
+
+
+def test_it_waits_for_a_state_that_was_saved_since(damaged: Damaged) -> None:
+    """What came behind an older one would be missing in it and not in the log."""
+    damaged.damaged = ["1.mcap"]
+    for _ in range(5):
+        damaged.search.look()
+        damaged.clock.advance(1.0)
+    assert damaged.readings == 0
+
+
+@pytest.mark.parametrize(
+    "found",
+    [
+        (0, backfilled_key(UNIT, POSITION.suffix), spoken(3)[2]),
+        (0, unread_key(UNIT, BOOT, 3, POSITION.suffix), b"of a newer program"),
+        (0, IMU.key(UNIT), spoken(3)[2]),  # what nobody can read has a number all the same
+    ],
+)
+def test_however_it_came_it_is_there(damaged: Damaged, found: LogRecord) -> None:
+    damaged.log[damaged.log.index(spoken(3))] = found
+    damaged.damaged = ["1.mcap"]
+    damaged.look()
+    assert damaged.readings == 1
+    assert damaged.taken_back == []
+
+
+def test_a_file_that_goes_while_it_is_read_is_read_again(damaged: Damaged) -> None:
+    def breaks_off() -> Iterator[LogRecord]:
+        damaged.read = lambda: damaged.log[1:]
+        yield damaged.log[1]
+        raise LogError("the segment is gone")
+
+    damaged.read = breaks_off
+    damaged.damaged = ["1.mcap"]
+    damaged.look()
+    assert damaged.readings == 2
+    assert damaged.taken_back == [{(UNIT, BOOT): (Run(1, 1),)}]
+
+
+def test_a_long_log_is_read_in_turns(damaged: Damaged) -> None:
+    taken: list[LogRecord] = []
+
+    def slowly() -> Iterator[LogRecord]:
+        for one in damaged.log:
+            damaged.clock.advance(0.2)
+            taken.append(one)
+            yield one
+
+    damaged.read = slowly
+    damaged.damaged = ["1.mcap"]
+    damaged.search.look()
+    damaged.saved_ns = damaged.clock.utc_ns() + NS_PER_S
+    damaged.search.look()
+    assert 0 < len(taken) < 5

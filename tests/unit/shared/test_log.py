@@ -1,0 +1,62 @@
+"""The programs' own log: one line a record, in UTC."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from shared.log import OneLineFormatter, set_up_logging
+
+
+@pytest.fixture(autouse=True)
+def root_logger_restored() -> Iterator[None]:
+    root = logging.getLogger()
+    handlers, level = root.handlers[:], root.level
+    root.handlers.clear()  # pytest's own, which set_up_logging would close
+    yield
+    for handler in root.handlers:
+        handler.close()
+    root.handlers[:] = handlers
+    root.setLevel(level)
+
+
+def test_a_record_is_one_line_with_utc_time_level_and_component(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    set_up_logging("INFO", tmp_path / "logs" / "station.log")
+    record = logging.LogRecord("base_station.engine.engine", 30, "", 0, "disk\nfull", None, None)
+    record.created, record.msecs = 1_700_000_000.25, 250.0
+    logging.getLogger().handle(record)
+    logging.getLogger("quiet").debug("not asked for")
+    expected = "2023-11-14T22:13:20.250Z WARNING base_station.engine.engine  disk\\nfull\n"
+    assert capsys.readouterr().err == expected
+    assert (tmp_path / "logs" / "station.log").read_text(encoding="utf-8") == expected
+
+
+def test_a_traceback_follows_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "station.log"
+    set_up_logging("INFO", file)
+    try:
+        raise ValueError("a bug")
+    except ValueError:
+        logging.getLogger("edge").exception("step failed")
+    assert re.search(
+        r"ERROR {3}edge {2}step failed\nTraceback .*\nValueError: a bug", file.read_text(), re.S
+    )
+
+
+@pytest.mark.parametrize("character", "\x00\b\x1b\r\x7f\x85\x9b\u2028\u202e")
+def test_what_others_say_forges_no_line_and_moves_no_terminal(character: str) -> None:
+    record = logging.LogRecord("bus", logging.INFO, "", 0, "from %s", (f"an{character}na",), None)
+    said = OneLineFormatter().format(record)
+    assert character not in said
+    assert len(said.splitlines()) == 1
+
+
+def test_other_writing_stays_as_it_is() -> None:
+    record = logging.LogRecord("bus", logging.INFO, "", 0, "Zoë 李 👩🏽\u200d🚒 C:\\new", (), None)
+    assert OneLineFormatter().format(record).endswith("Zoë 李 👩🏽\u200d🚒 C:\\new")
