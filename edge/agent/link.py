@@ -79,7 +79,7 @@ class Link:
 
     def set_up(self, *, up: bool) -> None:
         """Bring the link up or down, soon."""
-        if self._wanted_up == up:  # asked with every batch: waking would hurry the checks of the link
+        if self._wanted_up == up:  # as with most batches: waking would hurry the link's checks
             return
         logger.info("radio %s", "back" if up else "down")
         self._wanted_up = up

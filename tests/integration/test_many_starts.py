@@ -25,6 +25,11 @@ MESSAGES = 5
 RUNS = STARTS_KEPT + 9  # so quickly after each other that some are left to the journal
 
 
+def reported_complete(station: LiveStation) -> int:
+    """Starts of the unit that the station reports to have whole."""
+    return sum(boot.runs == ((1, MESSAGES),) for boot in station.reported.get(U, ()))
+
+
 def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
     tmp_path: Path,
 ) -> None:
@@ -47,6 +52,9 @@ def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
                 station.say(one)
         live = set(said[: STARTS_KEPT * MESSAGES])
         until(lambda: live <= {one for _, _, one in station.log.records()}, "what came live")
+        until(  # an earlier report would have what is there fetched again
+            lambda: reported_complete(station) == STARTS_KEPT, "what came live is reported"
+        )
         server = JournalServer(U, journal)
         station.router.attach_unit().serve(server.key_expression, server.replies)
         backfill = Backfill(station.bus, station.feed.deliver, SystemClock())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import nullcontext
 
@@ -191,6 +192,28 @@ def test_a_link_that_stays_away_is_opened_anew(station, caplog, monkeypatch):
         link.close()
     assert len(opened) == 4
     assert caplog.text.count("no link") == 1
+
+
+def test_a_link_that_is_wanted_again_and_again_is_checked_no_sooner(station, monkeypatch):
+    """The agent asks for it with every batch; hurried checks gave up a slow link too early."""
+    monkeypatch.setattr("edge.agent.link._CHECK_S", PATIENCE_S)
+    monkeypatch.setattr("edge.agent.link._REOPEN_AFTER_S", 1000 * PATIENCE_S)
+    checks: list[int] = []
+    bus = station.router.attach_unit()
+
+    def is_linked() -> bool:
+        checks.append(1)
+        return False
+
+    bus.is_linked = is_linked
+    link = make_link(lambda: bus, [])
+    until(lambda: checks)
+    for _ in range(100):
+        link.set_up(up=True)
+        time.sleep(0.001)  # a worker that was woken would check now
+    link.set_up(up=False)
+    link.close()
+    assert len(checks) == 1
 
 
 def test_a_link_that_is_lost_is_probed_for_and_opened_anew_at_once(station, monkeypatch):
