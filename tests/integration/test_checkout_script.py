@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -9,10 +10,20 @@ import sys
 from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 CHECKOUT = Path(__file__).parents[2]
+
+
+def load_script() -> ModuleType:
+    loader = SourceFileLoader("checkout_script", str(CHECKOUT / "muster"))
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None
+    script = module_from_spec(spec)
+    loader.exec_module(script)
+    return script
 
 
 def test_an_environment_without_its_installer_is_made_anew(tmp_path: Path) -> None:
@@ -31,11 +42,7 @@ def test_an_environment_without_its_installer_is_made_anew(tmp_path: Path) -> No
 def test_the_quick_tests_are_one_for_each_core_and_leave_out_slow_ones(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    loader = SourceFileLoader("checkout_script", str(CHECKOUT / "muster"))
-    spec = spec_from_loader(loader.name, loader)
-    assert spec is not None
-    script = module_from_spec(spec)
-    loader.exec_module(script)
+    script = load_script()
     for name in ("use_recent_python", "prepare_environment", "compile_kernels"):
         monkeypatch.setattr(script, name, lambda: None)
     ran: list[tuple[str, ...]] = []
@@ -55,3 +62,31 @@ def test_the_quick_tests_are_one_for_each_core_and_leave_out_slow_ones(
     folders = [CHECKOUT / one for one in arguments if one.startswith("tests/")]
     assert all(folder.is_dir() for folder in folders)
     assert {folder.name for folder in folders} == {"unit", "property", "contracts", "meta"}
+
+
+@pytest.mark.parametrize(
+    ("failures", "alone", "ended"), [(1, 0, 0), (3, 0, 0), (1, 1, 1), (4, 0, 1)]
+)
+def test_a_few_tests_that_failed_are_run_once_more_and_named(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    failures: int,
+    alone: int,
+    ended: int,
+) -> None:
+    script = load_script()
+    names = [f"tests/test_one.py::test_{number}" for number in range(failures)]
+    (tmp_path / "lastfailed").write_text(json.dumps(dict.fromkeys(names, True)))
+    monkeypatch.setattr(script, "LAST_FAILED", tmp_path / "lastfailed")
+    ran: list[tuple[str, ...]] = []
+
+    def run_pytest(*arguments: str) -> subprocess.CompletedProcess[bytes]:
+        ran.append(arguments)
+        return subprocess.CompletedProcess(arguments, alone)
+
+    monkeypatch.setattr(script, "run_pytest", run_pytest)
+    assert script.retry_failures() == ended
+    assert len(ran) == (failures <= script.RETRIES_MAX)
+    printed = capsys.readouterr().out
+    assert all((name in printed) == (ended == 0) for name in names)
