@@ -73,6 +73,14 @@ Unpaced = Annotated[
     bool, typer.Option("--as-fast-as-possible", help="Play a recording without waiting.")
 ]
 
+CheckSeconds = Annotated[
+    float,
+    typer.Option(
+        "--for", help="Seconds to watch the sensors.", min=1.0, max=600.0, callback=finite
+    ),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the findings for a script.")]
+
 
 @app.command()
 def run(
@@ -118,6 +126,47 @@ def run(
     set_up_logging(settings.log_level)
     stop = told_to_end()
     run_agent(settings, stop, for_s=for_s, paced=not as_fast_as_possible)
+
+
+@app.command()
+def check(
+    config: Config = None,
+    unit: Unit = None,
+    source: SamplesFrom = None,
+    sightings: Sightings = None,
+    gps: Gps = None,
+    temperature: Temperature = None,
+    battery: Battery = None,
+    enrolment: Enrolment = None,
+    connect: Connect = None,
+    data: Data = None,
+    calibration: Calibrated = None,
+    for_s: CheckSeconds = 10.0,
+    as_json: AsJson = False,
+) -> None:
+    """Check a unit before its wearer goes in: lay it down still; exit code 1: it is not ready."""
+    # Only this command needs what these import, and they take their time.
+    from edge.app.check import print_check  # noqa: PLC0415
+    from edge.config import EdgeConfig  # noqa: PLC0415
+    from shared.config import load_config  # noqa: PLC0415
+    from shared.log import set_up_logging  # noqa: PLC0415
+
+    flags = {
+        "unit": unit,
+        "enrolment": enrolment,
+        "source": source,
+        "sightings": sightings,
+        "gps": gps,
+        "temperatures": temperature,
+        "battery": battery,
+        "connect": connect,
+        "data": data,
+        "calibration": calibration,
+    }
+    settings = load_config(config, EdgeConfig, flags)
+    set_up_logging("ERROR")  # what would be logged is a finding
+    if not print_check(settings, for_s, as_json=as_json):
+        raise typer.Exit(1)
 
 
 @app.command()

@@ -50,11 +50,12 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
             _track_for(config, source, listener, station, stop, for_s)
         return
     speed = config.speed if paced else None
-    auxiliaries = _open_auxiliaries(config)
+    auxiliaries = open_auxiliaries(config)
     _run_once(config, member.unit_id, source, station, stop, for_s, speed, auxiliaries)
 
 
-def _open_auxiliaries(config: EdgeConfig) -> tuple[AuxiliarySource, ...]:
+def open_auxiliaries(config: EdgeConfig) -> tuple[AuxiliarySource, ...]:
+    """Open what is set to be read beside the source.  Raises ConfigError."""
     auxiliaries: list[AuxiliarySource] = []
     if config.sightings:
         auxiliaries.append(SightingReader(config.sightings, SystemClock()))

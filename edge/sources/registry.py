@@ -53,10 +53,15 @@ def open_source(text: str) -> Source:
     Raises ``ConfigError`` for a text that names no source, and whatever
     ``MusterError`` the source itself raises for its argument.
     """
+    return source_kind(text).make(text.partition(":")[2])
+
+
+def source_kind(text: str) -> SourceKind:
+    """Return the kind of the source that ``scheme:argument`` names.  Raises ConfigError."""
     scheme, colon, argument = text.partition(":")
     for kind in SOURCES:
         if colon and argument and kind.scheme == scheme:
-            return kind.make(argument)
+            return kind
     choices = ", ".join(f"{kind.scheme}:{kind.argument}" for kind in SOURCES)
     schemes = [kind.scheme for kind in SOURCES]
     if scheme in schemes:

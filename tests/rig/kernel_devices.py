@@ -85,15 +85,15 @@ def has_umockdev() -> bool:
 
 
 class EmulatedAgent:
-    """``muster edge run`` on a machine with the devices of a folder."""
+    """``muster edge run``, or another command, on a machine with the devices of a folder."""
 
-    def __init__(self, machine: Path, output: Path, *flags: str) -> None:
+    def __init__(self, machine: Path, output: Path, *flags: str, command: str = "run") -> None:
         self._output = output
         program = Path(sys.executable).with_name("muster")
         environ = {**os.environ, "LD_PRELOAD": UMOCKDEV, "UMOCKDEV_DIR": str(machine)}
         with output.open("wb") as written:
             self._process = subprocess.Popen(
-                [program, "edge", "run", *flags], env=environ, stdout=written, stderr=written
+                [program, "edge", command, *flags], env=environ, stdout=written, stderr=written
             )
 
     def __enter__(self) -> EmulatedAgent:

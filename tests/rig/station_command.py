@@ -105,6 +105,15 @@ class Agent(Command):
         super().__init__(output, "run", *flags)
 
 
+class UnitCheck(Command):
+    """One run of ``muster edge check``."""
+
+    package = "edge"
+
+    def __init__(self, output: Path, *flags: str) -> None:
+        super().__init__(output, "check", *flags)
+
+
 class Browser:
     """A person at the console."""
 

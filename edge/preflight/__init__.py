@@ -1,0 +1,1 @@
+"""Checks of a unit before its wearer goes in."""

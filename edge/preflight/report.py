@@ -1,0 +1,39 @@
+"""Report of a check, for a person and for a script."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+from rich.console import Console
+from rich.text import Text
+
+from edge.preflight.finding import Finding, Level, worst
+
+_STYLES = {Level.OK: "green", Level.WARNING: "yellow", Level.FAILED: "bold red"}
+_VERDICTS = {
+    Level.OK: "is ready",
+    Level.WARNING: "works; read the warnings before its wearer goes in",
+    Level.FAILED: "is NOT ready: its wearer must not rely on it",
+}
+
+
+def print_finding(finding: Finding, console: Console) -> None:
+    """Print a line, and below it what the finding costs or what to do."""
+    line = Text.assemble(
+        (f"{finding.level:8}", _STYLES[finding.level]), f"{finding.subject}: {finding.text}"
+    )
+    console.print(line, soft_wrap=True)
+    if finding.remedy:
+        console.print(Text(f"        -> {finding.remedy}"), soft_wrap=True)
+
+
+def print_verdict(unit_id: str, findings: Sequence[Finding], console: Console) -> None:
+    level = worst(findings)
+    console.print(Text(f"Unit {unit_id} {_VERDICTS[level]}.", _STYLES[level]), soft_wrap=True)
+
+
+def encode_report(unit_id: str, findings: Sequence[Finding]) -> str:
+    """Return unit, gravest level and findings as JSON."""
+    report = {"unit": unit_id, "level": worst(findings), "findings": findings}
+    return msgspec.json.format(msgspec.json.encode(report)).decode()

@@ -1,0 +1,91 @@
+"""``muster edge check`` as a person and as a script runs it, beside a secured station."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing
+from pathlib import Path
+
+import pytest
+
+from edge.storage.data_folder import DataFolder
+from tests.rig.enrolled_site import EnrolledSite
+from tests.rig.kernel_devices import EmulatedAgent, SysfsTree, has_umockdev
+from tests.rig.station_command import UnitCheck
+from tests.rig.waiting import until
+
+
+@pytest.fixture
+def site(tmp_path: Path, port: int) -> Iterator[EnrolledSite]:
+    with ExitStack() as stack:
+        (tmp_path / "station").mkdir()
+        yield EnrolledSite(tmp_path / "station", stack, port)
+
+
+@pytest.fixture
+def check(tmp_path: Path, site: EnrolledSite) -> Callable[..., UnitCheck]:
+    def started(*flags: str) -> UnitCheck:
+        where = ("--data", str(tmp_path / "units"), "--enrolment", str(site.enrolment))
+        return UnitCheck(
+            tmp_path / "check.txt", "--source", "bench:4", "--for", "4", *where, *flags
+        )
+
+    return started
+
+
+def test_a_unit_beside_its_station_is_checked_and_leaves_no_trace(site, check) -> None:
+    site.open()
+    with check() as checked:
+        assert checked.wait() == 0, checked.said()
+        for line in (
+            "ok      certificate: valid to",
+            "ok      sample rate: 200.0 samples/s of 200",
+            "ok      accelerometer:",
+            "warning calibration: none",
+            "ok      link: linked within",
+            "the station's",
+            "Unit u1 works; read the warnings",
+        ):
+            assert line in checked.said()
+    assert not site.positions
+    assert not site.alive
+
+
+def test_a_station_that_is_away_fails_the_check_and_a_script_sees_it(check) -> None:
+    with check("--json") as checked:
+        assert checked.wait() == 1
+        printed = checked.said()
+    report = json.loads(printed[printed.index("{") :])
+    assert (report["unit"], report["level"]) == ("u1", "failed")
+    (link,) = (one for one in report["findings"] if one["subject"] == "link")
+    assert link["level"] == "failed"
+    assert "nothing listens" in link["text"]
+
+
+def test_a_unit_whose_agent_runs_is_not_checked(site, check, tmp_path: Path) -> None:
+    with closing(DataFolder(tmp_path / "units" / "u1")), check() as checked:
+        assert checked.wait() == 2
+        assert "stop it" in checked.said()
+
+
+@pytest.mark.skipif(not has_umockdev(), reason="no umockdev: install the package umockdev")
+def test_devices_of_the_kernel_are_checked(tmp_path: Path, port: int) -> None:
+    tree = SysfsTree(tmp_path / "machine" / "sys")
+    tree.iio(
+        0, name="max31856", in_temp_scale="7.812500", fault_oc="0", fault_ovuv="0",
+        in_temp_raw="3200",
+    )  # fmt: skip
+    tree.power_supply("BAT0", type="Battery", capacity="12", status="Discharging")
+    flags = (
+        "--unit", "u1", "--source", "bench:4", "--for", "4", "--data", str(tmp_path / "units"),
+        "--connect", f"tcp/127.0.0.1:{port}", "--battery", "auto",
+        "--temperature", "iio:max31856?name=front", "--temperature", "w1:28-000000000001",
+    )  # fmt: skip
+    machine = EmulatedAgent(tree.root.parent, tmp_path / "check.txt", *flags, command="check")
+    with machine as checked:
+        until(lambda: not checked.runs(), "the end of the check")
+        assert "ok      temperature front: 25.0 °C" in checked.said()
+        assert "failed  battery: 12% of BAT0" in checked.said()
+        assert "there is no 1-wire sensor 28-000000000001" in checked.said()
+        assert "NOT ready" in checked.said()

@@ -1,0 +1,96 @@
+"""What a unit reads beside its inertial sensor is compared with what it should have."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from edge.config import EdgeConfig
+from edge.preflight.auxiliary_survey import AuxiliarySurvey
+from edge.preflight.finding import Finding, Level
+from edge.samples import (
+    ACKNOWLEDGE,
+    BEACON,
+    AmbientSample,
+    BatterySample,
+    ButtonPress,
+    GpsSample,
+    OtherSample,
+    SightingSample,
+)
+from edge.sources.interface import Quantity
+
+BARE = EdgeConfig("bench:1")
+FULL = EdgeConfig(
+    "bench:1", gps="gpsd://", temperatures=("w1:1", "w1:2"), battery="auto", sightings="tcp:a:1"
+)
+BUTTONS = frozenset({Quantity.MAYDAY_BUTTON, Quantity.ACKNOWLEDGE_BUTTON})
+
+
+def fix(std_m: float, fix_type: int = 3) -> GpsSample:
+    return GpsSample(1, 50.0, 8.0, 200.0, std_m, 2 * std_m, fix_type, 9, 0.0, 0.0)
+
+
+def survey(
+    config: EdgeConfig, *samples: OtherSample, gives: frozenset[Quantity] = frozenset()
+) -> dict[str, Finding]:
+    found = AuxiliarySurvey(config, gives)
+    for sample in samples:
+        found.push(sample)
+    return {finding.subject: finding for finding in found.findings()}
+
+
+def test_what_a_unit_does_not_have_is_a_warning_with_what_it_costs() -> None:
+    found = survey(BARE)
+    assert set(found) == {"temperature", "battery", "satellites", "mayday button"}
+    for finding in found.values():
+        assert finding.level is Level.WARNING
+        assert finding.remedy
+
+
+def test_what_was_set_and_is_silent_has_failed() -> None:
+    found = survey(FULL)
+    for subject in ("temperature", "battery", "satellites"):
+        assert found[subject].level is Level.FAILED
+    assert found["beacons"].text == "none in reach now"  # out here there may be none
+
+
+def test_a_unit_that_has_everything_is_ok() -> None:
+    found = survey(
+        FULL,
+        AmbientSample(1, 21.5, "front"),
+        BatterySample(1, 0.9, 20_000.0),
+        fix(4.0),
+        SightingSample(1, BEACON, "door", math.nan, math.nan),
+        ButtonPress(1, ACKNOWLEDGE),
+        gives=BUTTONS,
+    )
+    assert {finding.level for finding in found.values()} == {Level.OK}
+    assert found["temperature front"].text == "21.5 °C"
+    assert found["battery"].text == "90% of the sensor, 5.6 h left"
+    assert found["satellites"].text == "fix of 9 satellites, 4 m"
+    assert found["button"].text == "pressed: acknowledge"
+
+
+@pytest.mark.parametrize(
+    ("sample", "subject", "level"),
+    [
+        (AmbientSample(1, 350.0, "front"), "temperature front", Level.WARNING),
+        (AmbientSample(1, math.nan, "front"), "temperature front", Level.WARNING),
+        (BatterySample(1, 0.1), "battery", Level.FAILED),
+        (BatterySample(1, 0.4), "battery", Level.WARNING),
+        (BatterySample(1, 0.9, 600.0), "battery", Level.WARNING),
+        (fix(80.0), "satellites", Level.WARNING),
+        (fix(math.nan), "satellites", Level.WARNING),
+        (fix(3.0, fix_type=0), "satellites", Level.WARNING),
+    ],
+)
+def test_what_makes_no_sense_or_may_not_last_is_found(
+    sample: OtherSample, subject: str, level: Level
+) -> None:
+    assert survey(FULL, sample)[subject].level is level
+
+
+def test_a_button_that_nobody_pressed_is_not_known_to_work() -> None:
+    assert survey(BARE, gives=BUTTONS)["button"].level is Level.WARNING
