@@ -31,6 +31,7 @@ class CommandState(IntEnum):
     RECEIVED = 1
     ACKNOWLEDGED = 2  # by the wearer
     REFUSED = 3
+    NOTIFIED = 4  # received, and an output of the unit has notified the wearer
 
 
 class Command(msgspec.Struct, frozen=True):

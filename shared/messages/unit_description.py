@@ -25,6 +25,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
     calibrated_s: int | None = None  # UTC seconds at which it was made; None: no calibration
     calibration_faults: str = ""  # what is poor about it, in words; empty: nothing
     gain_std: float | None = None  # how far scale and axes may be off; None: unknown
+    outputs: tuple[str, ...] = ()  # kinds of outputs that notify the wearer; empty: it has none
 
     def to_wire(self) -> unit_description_pb2.UnitDescription:
         return unit_description_pb2.UnitDescription(
@@ -43,6 +44,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
             calibrated_s=self.calibrated_s or 0,
             calibration_faults=self.calibration_faults,
             gain_std_ppm=_gain_std_ppm(self.gain_std),
+            outputs=self.outputs,
         )
 
     @staticmethod
@@ -63,6 +65,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
             calibrated_s=wire.calibrated_s or None,
             calibration_faults=wire.calibration_faults,
             gain_std=wire.gain_std_ppm / 1e6 if wire.gain_std_ppm else None,
+            outputs=tuple(wire.outputs),
         )
 
 
