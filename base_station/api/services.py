@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass, field
 from typing import Annotated
@@ -26,6 +26,7 @@ from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
+from base_station.storage.projection import ProjectedTables
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import Snapshot
 from shared.clock import Clock
@@ -43,9 +44,7 @@ class Services:
     base_maps: BaseMaps
     hub: Hub
     gate: OperatorGate
-    wait_for_projection: Callable[
-        [], object
-    ]  # waits until what was decided can be read from the store
+    projection: ProjectedTables  # of which ``records`` and ``roster`` read
     replays: Replays
     forgettings: ErasureQueue | None  # None: a station that only replays
     clock: Clock
@@ -62,7 +61,8 @@ class Services:
     export_lock: asyncio.Lock = field(default_factory=asyncio.Lock)
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
-        """Have the drive take a person's action, and wait until it can be read everywhere.
+        """Have the drive take a person's action, and wait until it is decided and in the log; not
+        for the database, which has it later: who reads that waits (``current_tables``).
 
         Raises UserError with the reason where the action had no effect.  ``action_id``: as of
         ``OperatorGate``; Problem 422 where the client's key came with another request before.
@@ -82,7 +82,7 @@ class Services:
             raise idempotency_key_reused()
         if done.refused is not None:
             raise UserError(done.refused.reason)
-        self.wait_for_projection()
+        self.projection.hasten()
         return done
 
     def picture(self) -> Snapshot:
@@ -91,6 +91,14 @@ class Services:
             return self.hub.snapshot().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
             raise StoreError("the station is too busy to say this now; try again") from None
+
+    def worn_by(self, person_id: str) -> Sequence[str]:
+        """Units that the person wears now."""
+        return [
+            unit.unit_id
+            for unit in self.picture().units
+            if unit.person is not None and unit.person.person_id == person_id
+        ]
 
 
 def idempotency_key_reused() -> Problem:

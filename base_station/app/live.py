@@ -260,7 +260,7 @@ class _Station:
             base_maps=BaseMaps(disk.store),
             hub=resources.hub,
             gate=self._gate,
-            wait_for_projection=disk.projection.flush,
+            projection=disk.projection,
             replays=Replays(replay_process_starter(self._replay_place(), disk.clock.utc_ns)),
             forgettings=self._forgettings,
             clock=disk.clock,

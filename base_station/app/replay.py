@@ -28,6 +28,7 @@ from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.projection import FinishedTables
 from shared.clock import SystemClock
 
 
@@ -66,7 +67,7 @@ def run_replay_station(
             base_maps=BaseMaps(store),
             hub=hub,
             gate=ReadOnlyGate(),
-            wait_for_projection=lambda: None,
+            projection=FinishedTables(),
             replays=replays,
             forgettings=None,
             clock=clock,

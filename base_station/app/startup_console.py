@@ -22,6 +22,7 @@ from base_station.config import HttpConfig, StationConfig
 from base_station.engine.ports import Record
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.models import Incident
+from base_station.storage.projection import FinishedTables
 from shared.errors import UserError
 from shared.mcap_log import SegmentInfo
 
@@ -133,7 +134,7 @@ def startup_application(
         base_maps=BaseMaps(disk.store),
         hub=hub,
         gate=known,
-        wait_for_projection=lambda: None,
+        projection=FinishedTables(),
         replays=Replays(_no_replay),
         forgettings=None,
         clock=disk.clock,

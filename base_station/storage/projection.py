@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import msgspec
@@ -22,6 +23,11 @@ class Projection(msgspec.Struct, frozen=True):
     heard: tuple[tuple[str, int], ...] = ()  # (unit id, station time), every five seconds or so
     news: tuple[str, ...] = ()  # closed incidents of whose time more is known
 
+    @property
+    def is_urgent(self) -> bool:
+        """True where it has more than positions and times of last messages."""
+        return bool(self.actions or self.alarms or self.descriptions)
+
 
 class ProjectionSink(Protocol):
     """The SQL store's writer."""
@@ -33,3 +39,29 @@ class ProjectionSink(Protocol):
     def problem(self) -> str:
         """Why the store is not keeping up, as a sentence for a person; empty: all is well."""
         ...
+
+
+class ProjectedTables(Protocol):
+    """The tables that are projected, for those who read them."""
+
+    def flush(self) -> bool:
+        """Wait, not for ever, until all that was projected before this call is in the tables;
+        False where it is not.
+        """
+        ...
+
+    def hasten(self) -> Callable[[], bool]:
+        """Have what was decided before this call written now, without waiting; gives what tells
+        whether that is over: it is in the tables, or the database does not take it.
+        """
+        ...
+
+
+class FinishedTables:
+    """``ProjectedTables`` into which nothing more is projected."""
+
+    def flush(self) -> bool:
+        return True
+
+    def hasten(self) -> Callable[[], bool]:
+        return self.flush

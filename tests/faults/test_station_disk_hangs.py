@@ -150,6 +150,8 @@ def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
             acknowledge = f"/alarms/{mayday['alarm_id']}/acknowledge"
             as_seen = {"last_raised_ms": mayday["last_raised_ms"]}
             assert post(browser, acknowledge, as_seen, browser.cookie()).is_success
+            par = {"target": {"everyone": True}}
+            assert post(browser, "/check-ins", par, browser.cookie()).is_success
             until(lambda: walk.alarms.get("mayday") == "acknowledged")
             shown = walk.shown
             until(lambda: walk.shown > shown + 20, "the picture goes on")

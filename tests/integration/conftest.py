@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
 
@@ -35,12 +34,6 @@ async def browser(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
         answer = await client.post("/login", json=credentials)
         assert answer.status_code == 200, answer.text
         yield client
-
-
-@pytest_asyncio.fixture
-async def consoles(station: DeskStation) -> None:
-    """What the station has to show goes to whoever watches."""
-    station.hub.connect(asyncio.get_running_loop(), station.drive)
 
 
 @pytest.fixture

@@ -23,8 +23,6 @@ from shared.messages.station import ReportProblem
 from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 from tests.rig.incident_closing import despite
 
-pytestmark = pytest.mark.usefixtures("consoles")
-
 
 @pytest_asyncio.fixture
 async def commander(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:

@@ -13,8 +13,6 @@ from shared.clock import ManualClock
 from shared.messages import STATION_ID, Header, Heartbeat, Tick
 from tests.rig.desk_station import DeskStation
 
-pytestmark = pytest.mark.usefixtures("consoles")
-
 
 def pass_time(station: DeskStation, clock: ManualClock, time_s: float) -> None:
     clock.advance(time_s)

@@ -12,7 +12,6 @@ from base_station.accounts.principals import Role
 from base_station.api.routes import ROUTERS
 from tests.rig.desk_station import ORIGIN, DeskStation
 
-pytestmark = pytest.mark.usefixtures("consoles")
 GUESSED = "nmae"  # a parameter of no route
 INCIDENT = "/incidents/x"
 

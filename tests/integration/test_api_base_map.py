@@ -15,8 +15,6 @@ from tests.rig.desk_station import DeskStation
 # A degree of latitude is 111 km: 200 by 100 pixels of a metre, north up.
 WORLD = (1.6e-5, 0.0, 0.0, -9e-6, 4.0, 52.0)
 
-pytestmark = pytest.mark.usefixtures("consoles")
-
 
 def picture(form: str = "PNG", size: tuple[int, int] = (200, 100)) -> bytes:
     written = io.BytesIO()

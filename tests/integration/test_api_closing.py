@@ -17,8 +17,6 @@ from shared.messages.station import ReportProblem
 from tests.rig import message_factory
 from tests.rig.desk_station import DeskStation
 
-pytestmark = pytest.mark.usefixtures("consoles")
-
 
 async def open_incident(commander: AsyncClient, name: str = "Ana") -> str:
     """With one member, whose unit is FF-01."""

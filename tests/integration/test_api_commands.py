@@ -11,8 +11,6 @@ from tests.rig.desk_station import DeskStation
 
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 
-pytestmark = pytest.mark.usefixtures("consoles")
-
 
 async def test_a_crew_is_told_and_its_answers_are_shown(
     station: DeskStation, clock: ManualClock

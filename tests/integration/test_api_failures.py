@@ -68,17 +68,6 @@ async def test_what_the_station_has_not_done_in_time_it_may_still_do(
     assert not waiting.cancelled()
 
 
-async def test_an_incident_that_the_tables_lag_behind_is_said_to_be_open(
-    station: DeskStation, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(Records, "incident", lambda *_: None)
-    async with station.client(Role.COMMANDER) as commander:
-        answer = await commander.post("/incidents", json={"name": "Kitchen"})
-    assert answer.status_code == 503
-    assert "is open" in answer.json()["detail"]
-    assert station.drive.picture().incident is not None
-
-
 async def test_a_table_that_is_gone_is_a_failure_of_the_station(station: DeskStation) -> None:
     with station.store.write() as session:
         session.connection().exec_driver_sql("DROP TABLE incidents")

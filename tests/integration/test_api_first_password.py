@@ -16,8 +16,6 @@ LOGIN = {"username": "first", "password": GENERATED}
 STILL = {"POST /login", "POST /login/hand-over", "POST /logout", "POST /hand-over", "GET /me",
          "POST /me/password", "GET /standby/leads"}  # fmt: skip
 
-pytestmark = pytest.mark.usefixtures("consoles")
-
 
 @pytest.fixture
 def first(station: DeskStation) -> DeskStation:

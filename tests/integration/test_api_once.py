@@ -20,8 +20,6 @@ EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 PIN = {"unit_id": "FF-01", "north_m": 1.0, "east_m": 2.0}
 KEY = {"Idempotency-Key": '"8e03978e-40d5-43dd-bc93-6894a57f9324"'}
 
-pytestmark = pytest.mark.usefixtures("consoles")
-
 
 @pytest_asyncio.fixture
 async def commander(station: DeskStation, clock: ManualClock) -> AsyncIterator[httpx.AsyncClient]:

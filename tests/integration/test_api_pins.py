@@ -14,8 +14,6 @@ from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import Header, Position
 from tests.rig.desk_station import DeskStation
 
-pytestmark = pytest.mark.usefixtures("consoles")
-
 
 async def walk(
     station: DeskStation, clock: ManualClock, commander: httpx.AsyncClient, make_position: object
@@ -85,6 +83,7 @@ async def test_the_audit_says_whose_pin_was_removed(
         beacon = {"label": "door", "north_m": 1.0, "east_m": 2.0}
         await commander.put("/beacons/door-3", json=beacon)
         await commander.delete("/beacons/door-3")
+    station.projection.flush()
     entries = station.services.records.audit_entries(EVER)
     removed = [json.loads(one.detail) for one in entries if one.action.startswith("Remove")]
     assert removed == [

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import pytest
-
 from base_station.accounts.principals import Role
 from tests.rig.desk_station import DeskStation
 
 PATH = "/reference-barometer"
-
-pytestmark = pytest.mark.usefixtures("consoles")
 
 
 async def test_a_reference_is_set_and_taken_away(station: DeskStation) -> None:

@@ -231,7 +231,7 @@ class Story:
         return answer.json() if answer.content else None
 
     def _authors(self) -> list[str]:
-        self._station.services.wait_for_projection()
+        self._station.services.projection.flush()
         entries = self._station.services.records.audit_entries(EVER)
         return [entry.by for entry in sorted(entries, key=lambda one: one.number)]
 
@@ -294,7 +294,7 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     await do("POST /commands/{command_id}/confirm/undo", unit, command_id=told["command_id"])
     await act_on_pins(do)
     station.drive.hear(UnitEvent(Header("FF-01", 7, 1, 5), EventKind.MAYDAY))
-    station.services.wait_for_projection()
+    station.services.projection.flush()
     (alarm, *_) = station.services.records.alarms(Window(0, 2**62))
     seen = {"last_raised_ms": alarm.last_raised_ns // NS_PER_MS}
     await do("POST /alarms/{alarm_id}/acknowledge", seen, alarm_id=alarm.alarm_id)

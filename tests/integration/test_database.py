@@ -40,6 +40,7 @@ from shared.messages.station import (
     Unassign,
 )
 from tests.rig import message_factory
+from tests.rig.waiting import until
 
 ALL = Window(0, FOREVER_NS)
 
@@ -349,6 +350,29 @@ def test_a_store_that_fails_is_said_and_catches_up(store: Store, clock: ManualCl
     assert projection.flush()
     assert projection.problem() == ""
     assert len(Roster(store, clock).units()) == 52
+    projection.close()
+
+
+def test_who_asks_for_what_was_decided_waits_for_no_position(store: Store) -> None:
+    projection = SqlProjection(store)
+    with store.write():  # nothing else is written
+        projection.project(Projection(NS_PER_S, tracks=(fused(1.0, 1.0),), heard=(("FF-01", 1),)))
+        assert projection.hasten()()
+        projection.project(acted(2, RegisterUnit("FF-01", "one")))
+        is_over = projection.hasten()
+        projection.project(acted(3, RegisterUnit("FF-02", "two")))
+        assert not is_over()
+    until(is_over, "the action is in the table")
+    projection.close()
+
+
+def test_nobody_waits_for_what_the_store_does_not_take(store: Store) -> None:
+    projection = SqlProjection(store)
+    _limit_pages(store)
+    projection.project(acted(20, *(RegisterUnit(f"U-{n}", "x" * 4000) for n in range(50))))
+    is_over = projection.hasten()
+    until(is_over, "it is given up")
+    assert "full" in projection.problem()
     projection.close()
 
 

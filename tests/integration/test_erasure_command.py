@@ -23,9 +23,11 @@ def test_a_running_station_forgets_who_wears_a_unit(
 ) -> None:
     with Browser(serve().wait_ready(), data) as browser:
         incident_id = prepare(browser)
+        browser.call("GET", f"/incidents/{incident_id}")  # the command reads the database itself
         code, said = forget(tmp_path, data, "Ada", confirmed="Ada")
         assert (code, "the incident Kitchen is open; close it first" in said) == (2, True), said
         browser.call("POST", f"/incidents/{incident_id}/close")
+        browser.call("GET", f"/incidents/{incident_id}")
         code, said = forget(tmp_path, data, "Ada", confirmed="Bea")
         assert (code, "nothing was deleted" in said) == (2, True), said
         assert browser.call("GET", "/people") != []

@@ -5,6 +5,7 @@ The pipeline is the real one; an action is stepped in the thread that submits it
 
 from __future__ import annotations
 
+import asyncio
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -173,7 +174,7 @@ class DeskStation:
             base_maps=BaseMaps(self.store),
             hub=self.hub,
             gate=self.drive,
-            wait_for_projection=self.projection.flush,
+            projection=self.projection,
             replays=Replays(no_replays),
             forgettings=self.forgettings,
             clock=clock,
@@ -188,7 +189,8 @@ class DeskStation:
             self.services.accounts.add_user(role.word, PASSWORD, role)
 
     def client(self, role: Role | None = None) -> httpx.AsyncClient:
-        """Over ASGI, with an API token of the user of this role."""
+        """Over ASGI, with an API token of the user of this role; in the loop that answers it."""
+        self.hub.connect(asyncio.get_running_loop(), self.drive)
         headers = {}
         if role is not None:
             _, secret = self.services.accounts.add_token(role.word, "test", role, None)

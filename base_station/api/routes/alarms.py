@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+from contextlib import AbstractContextManager
 from typing import Annotated
 
 import msgspec
@@ -10,19 +10,21 @@ from fastapi import APIRouter, Depends
 from pydantic import Field
 
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import MAX_TIME_MS, AlarmId, Form, Limit, Note, window
 from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
+from base_station.api.refusals import not_found_if_unknown
 from base_station.api.services import Services, Station
-from base_station.storage.db import models
 from base_station.storage.db.records import Window
 from base_station.views.answer import Answer, to_ms
 from base_station.views.station import alarm_view
 from base_station.views.wire import AlarmView
-from shared.errors import DiskHangsError
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
 router = APIRouter(tags=["alarms"])
+
+_NO_ALARM = "There is no such alarm."
 
 
 class Change(Answer, frozen=True):
@@ -51,15 +53,17 @@ class Resolution(Acknowledgement):
 
 @router.get("/alarms")
 def list_alarms(
-    station: Station, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
+    station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[AlarmView]:
     """Those raised in the window, newest first."""
     return [alarm_view(alarm) for alarm in station.records.alarms(when, limit)]
 
 
 @router.get("/alarms/{alarm_id}")
-def get_alarm(alarm_id: AlarmId, station: Station, _: Viewer) -> AlarmWithLife:
-    alarm = _alarm_or_404(station, alarm_id)
+def get_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> AlarmWithLife:
+    alarm = station.records.alarm(alarm_id)
+    if alarm is None:
+        raise Problem(404, _NO_ALARM)
     changes = tuple(
         Change(to_ms(life.t_ns), life.state, life.level, life.text, life.by)
         for life in station.records.alarm_life(alarm_id)
@@ -72,24 +76,20 @@ def acknowledge(
     alarm_id: AlarmId, seen: Acknowledgement, station: Station, perform: Perform
 ) -> None:
     """Refused (409) where it has been raised anew since it was seen; so is resolving it."""
-    _require_alarm(station, alarm_id)
-    perform(AcknowledgeAlarm(alarm_id, seen.last_raised_ms))
+    with _not_found_if_unknown(station, alarm_id):
+        perform(AcknowledgeAlarm(alarm_id, seen.last_raised_ms))
 
 
 @router.post("/alarms/{alarm_id}/resolve", status_code=204)
 def resolve(alarm_id: AlarmId, resolution: Resolution, station: Station, perform: Perform) -> None:
-    _require_alarm(station, alarm_id)
-    perform(ResolveAlarm(alarm_id, resolution.note, resolution.last_raised_ms))
+    with _not_found_if_unknown(station, alarm_id):
+        perform(ResolveAlarm(alarm_id, resolution.note, resolution.last_raised_ms))
 
 
-def _alarm_or_404(station: Services, alarm_id: str) -> models.Alarm:
-    station.wait_for_projection()  # an alarm on the screen may be newer than the store
-    alarm = station.records.alarm(alarm_id)
-    if alarm is None:
-        raise Problem(404, "There is no such alarm.")
-    return alarm
-
-
-def _require_alarm(station: Services, alarm_id: str) -> None:
-    with suppress(DiskHangsError):  # the drive knows, too
-        _alarm_or_404(station, alarm_id)
+def _not_found_if_unknown(station: Services, alarm_id: str) -> AbstractContextManager[None]:
+    return not_found_if_unknown(
+        station,
+        _NO_ALARM,
+        shown=lambda picture: any(one.alarm_id == alarm_id for one in picture.alarms),
+        stored=lambda: station.records.alarm(alarm_id) is not None,
+    )

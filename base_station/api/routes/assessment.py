@@ -6,10 +6,10 @@ import msgspec
 from fastapi import APIRouter
 
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import Id
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import hindsight_of
-from base_station.api.services import Station
 from base_station.replay.assessment.report import IncidentReport, with_people
 from base_station.replay.assessment.wearers import wearers
 
@@ -17,7 +17,7 @@ router = APIRouter(tags=["incidents"])
 
 
 @router.get("/incidents/{incident_id}/assessment")
-def assess_incident(incident_id: Id, station: Station, _: Viewer) -> IncidentReport:
+def assess_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> IncidentReport:
     """What was promised at the time, and how it stands up to what is known afterwards."""
     incident = incident_or_404(station, incident_id)
     live = station.records.tracks_of(incident)

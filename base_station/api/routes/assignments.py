@@ -8,6 +8,7 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import Form, Limit, PersonIdText, UnitId, UnitIdText, window
 from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
@@ -36,7 +37,7 @@ class NewAssignment(Form):
 
 @router.get("/assignments")
 def list_assignments(
-    station: Station, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
+    station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[Assignment]:
     """Those that held at some time of the window, newest first."""
     return [

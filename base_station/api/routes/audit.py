@@ -8,9 +8,9 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel
 
 from base_station.api.authentication import Administrator, Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import IdempotencyKey, Limit, window
 from base_station.api.problems import Problem
-from base_station.api.services import Station
 from base_station.core.idempotency import audit_entry_prefixes
 from base_station.storage.db.records import Window
 from base_station.views.answer import to_ms
@@ -34,7 +34,7 @@ class CarriedOut(BaseModel):
 
 
 @router.get("/idempotency-keys/{key}")
-def get_carried_out(key: IdempotencyKey, station: Station, who: Viewer) -> CarriedOut:
+def get_carried_out(key: IdempotencyKey, station: CurrentStation, who: Viewer) -> CarriedOut:
     """For who had no answer: whether the request with this key, of the same person, was carried
     out.  404: it was not so far, or it was refused.
     """
@@ -46,7 +46,7 @@ def get_carried_out(key: IdempotencyKey, station: Station, who: Viewer) -> Carri
 
 @router.get("/audit")
 def list_audit(
-    station: Station,
+    station: CurrentStation,
     _: Administrator,
     when: Annotated[Window, Depends(window)],
     limit: Limit = 100,

@@ -9,12 +9,13 @@ from starlette.concurrency import run_in_threadpool
 
 from base_station.accounts.principals import Principal
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import TrailKind, trails_of
-from base_station.api.services import Services, Station
+from base_station.api.services import Services
 from base_station.exporters import EXPORTERS
 from base_station.exporters.incident import incident_tracks
 from shared.errors import StoreError
@@ -49,7 +50,7 @@ def list_formats(_: Viewer) -> list[Format]:
 async def export_incident(
     incident_id: Id,
     format_name: Id,
-    station: Station,
+    station: CurrentStation,
     who: Viewer,
     kind: TrailKind = TrailKind.FUSED,
 ) -> Response:

@@ -59,7 +59,7 @@ def forget_person(
     if not names:
         raise Problem(404, "There is no such person.")
     _require_name(confirmation, names)
-    worn = station.roster.worn_by(person_id)
+    worn = station.worn_by(person_id)
     if worn and not confirmation.unassign:
         units = ", ".join(worn)
         raise Problem(
@@ -100,8 +100,9 @@ def _accept(station: Services, by: str, kind: str, subject_id: str) -> ErasureJo
     """
     desk = _desk(station)
     if kind == "person":
-        for unit_id in station.roster.worn_by(subject_id):
+        for unit_id in station.worn_by(subject_id):
             station.perform(by, Unassign(unit_id))
+        station.projection.flush()  # else it would be stored when all else is forgotten
     return desk.add(by, kind, subject_id)
 
 
@@ -117,7 +118,7 @@ def _desk(station: Services) -> ErasureQueue:
             "A message has not reached all to whom it goes, and would not any more: wait until it "
             "has, or its time is over.",
         )
-    station.wait_for_projection()  # what still is to be stored would be stored afterwards
+    station.projection.flush()  # what still is to be stored would be stored afterwards
     return station.forgettings
 
 

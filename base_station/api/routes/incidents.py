@@ -13,10 +13,12 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel, Field
 
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import AlarmIdText, Form, Id, Limit, Name, UnitIdText, window
 from base_station.api.idempotent_request import Perform
 from base_station.api.incident_closing import closing_obstacles
 from base_station.api.problems import Problem
+from base_station.api.refusals import not_found_if_unknown
 from base_station.api.routes.accountability import Seconds
 from base_station.api.services import Services, Station
 from base_station.core.alarms import ALARMS
@@ -71,8 +73,12 @@ class Closing(Form):
 def incident_or_404(station: Services, incident_id: str) -> models.Incident:
     incident = station.records.incident(incident_id)
     if incident is None:
-        raise Problem(404, f"There is no incident {incident_id}.")
+        raise Problem(404, _no_incident(incident_id))
     return incident
+
+
+def _no_incident(incident_id: str) -> str:
+    return f"There is no incident {incident_id}."
 
 
 def window_of(incident: models.Incident) -> Window:
@@ -81,7 +87,7 @@ def window_of(incident: models.Incident) -> Window:
 
 @router.get("/incidents")
 def list_incidents(
-    station: Station, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
+    station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[Incident]:
     """Those opened in the window, newest first."""
     return [_incident(incident) for incident in station.records.incidents(when, limit)]
@@ -98,14 +104,22 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
         new.par_interval_s or usual.par_interval_s,
         new.work_limit_s or usual.work_limit_s,
     )
-    incident = station.records.incident(perform(opening).created_id)
-    if incident is None:
-        raise Problem(503, "The incident is open, but the database has not taken it yet.")
-    return _incident(incident)
+    opened_id = perform(opening).created_id
+    running = station.picture().incident
+    if running is None or running.incident_id != opened_id or running.closed_ms is not None:
+        return _closed_since(station, opened_id)
+    return Incident(
+        incident_id=running.incident_id,
+        name=running.name,
+        opened_ms=running.opened_ms,
+        opened_by=perform.by,
+        closed_ms=None,
+        closed_by="",
+    )
 
 
 @router.get("/incidents/{incident_id}")
-def get_incident(incident_id: Id, station: Station, _: Viewer) -> Incident:
+def get_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> Incident:
     return _incident(incident_or_404(station, incident_id))
 
 
@@ -117,20 +131,27 @@ def close_incident(
     are not in ``closing``; the problem has all their ids as members of the same names.  Orders of
     the incident that have no answer yet are withdrawn.
     """
-    incident_or_404(station, incident_id)
     despite = closing or Closing()
     alarm_ids, unit_ids = despite.despite_alarm_ids, despite.despite_unit_ids
     picture = station.picture()
     running = picture.incident
     if running is not None and running.incident_id == incident_id and running.closed_ms is None:
         closing_obstacles(picture).require_known(alarm_ids, unit_ids)
-    perform(CloseIncident(incident_id, alarm_ids, unit_ids))
+    with not_found_if_unknown(
+        station,
+        _no_incident(incident_id),
+        shown=lambda picture: (
+            picture.incident is not None and picture.incident.incident_id == incident_id
+        ),
+        stored=lambda: station.records.incident(incident_id) is not None,
+    ):
+        perform(CloseIncident(incident_id, alarm_ids, unit_ids))
 
 
 @router.get("/incidents/{incident_id}/alarms")
 def incident_alarms(
     incident_id: Id,
-    station: Station,
+    station: CurrentStation,
     _: Viewer,
     when: Annotated[Window, Depends(window)],
     limit: Limit = 100,
@@ -140,6 +161,15 @@ def incident_alarms(
     alarms = station.records.alarms(when.within(was_open), limit)
     lives = station.records.alarm_lives([alarm.alarm_id for alarm in alarms])
     return [_past_alarm(alarm, lives[alarm.alarm_id], was_open) for alarm in alarms]
+
+
+def _closed_since(station: Services, incident_id: str) -> Incident:
+    """For who repeats the request after the incident's end: only the tables have it."""
+    station.projection.flush()
+    incident = station.records.incident(incident_id)
+    if incident is None:
+        raise Problem(503, "The incident was opened, but the database has not taken it yet.")
+    return _incident(incident)
 
 
 def _past_alarm(

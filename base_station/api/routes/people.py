@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Body, Query, Response
 
 from base_station.api.authentication import AuthenticatedRoute, Commander, Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
 from base_station.api.forms import MAX_UPLOAD_BYTES, Form, Id, Name, ShortText
 from base_station.api.idempotent_request import Perform
@@ -66,14 +67,14 @@ def change_person(person_id: Id, form: PersonForm, station: Station, who: Comman
     person = station.roster.change_person(person_id, form.name, form.crew, form.role)
     if person is None:
         raise Problem(404, _NO_PERSON)
-    for unit_id in station.roster.worn_by(person_id):
+    for unit_id in station.worn_by(person_id):
         station.perform(who.username, Assign(unit_id, person_id, form.name, form.crew, form.role))
     station.records.audit(who.username, "ChangedPerson", f"{person_id} {form.name}")
     return _person(person, station)
 
 
 @router.delete("/people/{person_id}", status_code=204)
-def remove_person(person_id: Id, station: Station, who: Commander) -> None:
+def remove_person(person_id: Id, station: CurrentStation, who: Commander) -> None:
     if not station.roster.remove_person(person_id):
         raise Problem(404, _NO_PERSON)
     station.records.audit(who.username, "RemovedPerson", person_id)
@@ -94,7 +95,7 @@ def set_photo(
     person = station.roster.set_photo(person_id, jpeg, photo_hash)
     if person is None:
         raise Problem(404, _NO_PERSON)
-    for unit_id in station.roster.worn_by(person_id):
+    for unit_id in station.worn_by(person_id):
         station.perform(
             who.username, Assign(unit_id, person_id, person.name, person.crew, person.role)
         )

@@ -8,6 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from base_station.api.authentication import Commander, Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import MAX_TIME_MS, Form, Id, PersonIdText, UnitIdText
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
@@ -48,7 +49,7 @@ def list_recordings(station: Station, _: Viewer) -> list[Recording]:
 
 
 @router.post("/recordings", status_code=202)
-def fetch_recording(new: NewPull, station: Station, who: Commander) -> Recording:
+def fetch_recording(new: NewPull, station: CurrentStation, who: Commander) -> Recording:
     """It is pulled behind live data until it is there, whoever is away or started again."""
     desk = _desk(station)
     if new.unit_id not in station.roster.registered_units():

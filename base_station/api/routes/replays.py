@@ -15,6 +15,7 @@ from pydantic import Field
 
 from base_station.accounts.principals import Principal, Role
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import MAX_TIME_MS, Form, Id, PersonIdText
 from base_station.api.problems import Problem
 from base_station.api.replays import OpenReplay
@@ -54,7 +55,7 @@ def list_replays(station: Station, _: Viewer) -> list[Replay]:
 
 
 @router.post("/replays", status_code=201)
-def start_replay(new: NewReplay, station: Station, who: Viewer, request: Request) -> Replay:
+def start_replay(new: NewReplay, station: CurrentStation, who: Viewer, request: Request) -> Replay:
     """It plays from its beginning; it ends by itself when nobody looks at it any more."""
     loop: asyncio.AbstractEventLoop = request.app.state.loop
     incident = incident_or_404(station, new.incident_id)

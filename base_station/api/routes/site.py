@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Request, Response
 from pydantic import Field
 
 from base_station.api.authentication import AuthenticatedRoute, Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
 from base_station.api.forms import MAX_UPLOAD_BYTES, Form
 from base_station.api.idempotent_request import Perform
@@ -50,7 +51,7 @@ _PLAN_CONTENT = {
 
 
 @router.get("/site/anchor")
-def get_anchor(station: Station, _: Viewer) -> AnchorView | None:
+def get_anchor(station: CurrentStation, _: Viewer) -> AnchorView | None:
     anchor = station.records.anchor()
     return None if anchor is None else anchor_view(anchor)
 
@@ -61,7 +62,7 @@ def set_anchor(form: AnchorForm, perform: Perform) -> None:
 
 
 @router.get("/site/plan", response_class=Response, responses=file_response("application/geo+json"))
-def get_plan(station: Station, _: Viewer) -> Response:
+def get_plan(station: CurrentStation, _: Viewer) -> Response:
     geojson = station.records.plan()
     if geojson is None:
         raise Problem(404, "There is no plan.")

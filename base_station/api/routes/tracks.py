@@ -9,9 +9,10 @@ from fastapi import APIRouter, Depends, Query, Response
 from starlette.concurrency import run_in_threadpool
 
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import Id, UnitId, window
 from base_station.api.routes.incidents import incident_or_404, window_of
-from base_station.api.services import Services, Station
+from base_station.api.services import Services
 from base_station.storage.db.records import TrackSample, Window
 from base_station.views.answer import Answer, to_ms
 
@@ -43,7 +44,7 @@ class Track(Answer, frozen=True):
 @router.get("/units/{unit_id}/track", response_model=Track)
 def unit_track(
     unit_id: UnitId,
-    station: Station,
+    station: CurrentStation,
     _: Viewer,
     when: Annotated[Window, Depends(window)],
     every_s: EverySeconds = 1,
@@ -53,7 +54,7 @@ def unit_track(
 
 @router.get("/incidents/{incident_id}/tracks", response_model=list[Track])
 async def incident_tracks(
-    incident_id: Id, station: Station, _: Viewer, every_s: EverySeconds = 1
+    incident_id: Id, station: CurrentStation, _: Viewer, every_s: EverySeconds = 1
 ) -> Response:
     """Of every unit that moved while the incident was open."""
     async with station.export_lock:

@@ -10,10 +10,11 @@ import msgspec
 from fastapi import APIRouter, Query, Response
 
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import Id
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
-from base_station.api.services import Services, Station
+from base_station.api.services import Services
 from base_station.replay.post_processing import PostProcessor, Tracks
 from base_station.storage.db import models
 from base_station.storage.db.records import TrackSample
@@ -50,7 +51,7 @@ class Trails(Answer, frozen=True):
 @router.get("/incidents/{incident_id}/trails", response_model=Trails)
 def incident_trails(
     incident_id: Id,
-    station: Station,
+    station: CurrentStation,
     _: Viewer,
     kind: TrailKind = TrailKind.FUSED,
     every_s: EverySeconds = 1,

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import math
+from contextlib import AbstractContextManager, suppress
 from typing import Annotated
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from base_station.api.authentication import Viewer
+from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import Form, Metres, ShortText, UnitId, UnitIdOrNone, UnitIdText
 from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
+from base_station.api.refusals import not_found_if_unknown
 from base_station.api.services import Services, Station
 from base_station.storage.db import models
 from base_station.views.answer import to_ms_or_none
+from base_station.views.wire import UnitView
 from shared.channels import validate_unit_id
+from shared.errors import StoreError
 from shared.messages.station import RegisterUnit, SetReference, SetStart
 
 router = APIRouter(tags=["units"])
@@ -61,7 +66,7 @@ class Reference(Form):
 
 
 @router.get("/units")
-def list_units(station: Station, _: Viewer) -> list[Unit]:
+def list_units(station: CurrentStation, _: Viewer) -> list[Unit]:
     return [_unit(unit, worn) for unit, worn in station.roster.units()]
 
 
@@ -70,23 +75,20 @@ def register_unit(new: NewUnit, station: Station, perform: Perform) -> Unit:
     """From now on messages of this unit are believed; registering again changes its label."""
     validate_unit_id(new.unit_id)
     perform(RegisterUnit(new.unit_id, new.label))
-    return _one(station, new.unit_id)
+    return _unit_as_decided(station, new.unit_id)
 
 
 @router.put("/units/{unit_id}")
 def label_unit(unit_id: UnitId, change: Label, station: Station, perform: Perform) -> Unit:
-    unit = station.roster.unit(unit_id)
-    if unit is None or unit.registered_ns is None:
-        raise Problem(404, f"There is no registered unit {unit_id}.")
+    _registered_or_404(station, unit_id)
     perform(RegisterUnit(unit_id, change.label))
-    return _one(station, unit_id)
+    return _unit_as_decided(station, unit_id)
 
 
 @router.put("/units/{unit_id}/start", status_code=204)
 def set_start(unit_id: UnitId, start: Start, station: Station, perform: Perform) -> None:
-    if station.roster.unit(unit_id) is None:
-        raise Problem(404, f"There is no unit {unit_id}.")
-    perform(SetStart(unit_id, **start.model_dump()))
+    with _not_found_if_unknown(station, unit_id):
+        perform(SetStart(unit_id, **start.model_dump()))
 
 
 @router.put("/reference-barometer", status_code=204)
@@ -95,16 +97,47 @@ def set_reference(reference: Reference, station: Station, perform: Perform) -> N
     Where a start says where that unit stands, its satellite receiver tells what all receivers of
     the site err by.
     """
-    if reference.unit_id and station.roster.unit(reference.unit_id) is None:
-        raise Problem(404, f"There is no unit {reference.unit_id}.")
-    perform(SetReference(reference.unit_id, reference.down_m))
+    with _not_found_if_unknown(station, reference.unit_id):
+        perform(SetReference(reference.unit_id, reference.down_m))
 
 
-def _one(station: Services, unit_id: str) -> Unit:
-    for unit, worn in station.roster.units():
-        if unit.unit_id == unit_id:
-            return _unit(unit, worn)
-    raise Problem(503, "The unit is registered, but the database has not taken it yet.")
+def _not_found_if_unknown(station: Services, unit_id: str) -> AbstractContextManager[None]:
+    return not_found_if_unknown(
+        station,
+        f"There is no unit {unit_id}.",
+        shown=lambda picture: not unit_id or any(one.unit_id == unit_id for one in picture.units),
+        stored=lambda: station.roster.unit(unit_id) is not None,
+    )
+
+
+def _registered_or_404(station: Services, unit_id: str) -> UnitView:
+    for view in station.picture().units:
+        if view.unit_id == unit_id and view.registered:
+            return view
+    raise Problem(404, f"There is no registered unit {unit_id}.")
+
+
+def _unit_as_decided(station: Services, unit_id: str) -> Unit:
+    """As was decided.  What the unit has described itself as is no part of that, and comes from the
+    database, as far as that has it now.
+    """
+    view = _registered_or_404(station, unit_id)
+    stored = None
+    with suppress(StoreError):
+        stored = station.roster.unit(unit_id)
+    return Unit(
+        unit_id=view.unit_id,
+        label=view.label,
+        registered=view.registered,
+        person_id=None if view.person is None else view.person.person_id,
+        last_heard_ms=view.last_heard_ms,
+        software_version=stored.software_version if stored else "",
+        source=stored.source if stored else "",
+        sensor_name=stored.sensor_name if stored else "",
+        tracker=stored.tracker if stored else "",
+        calibration=stored.calibration if stored else "",
+        has_gps=stored is not None and stored.has_gps,
+    )
 
 
 def _unit(unit: models.Unit, worn: models.Assignment | None) -> Unit:

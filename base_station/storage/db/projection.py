@@ -1,8 +1,8 @@
 """Writes what the drive decided into the tables, in a thread of its own.
 
 The drive never waits for the database: projections queue up and go in together, one
-transaction every half second or when someone asks for them (``flush``).  While the disk takes
-nothing they go into the copy in memory and queue on: they go into the file when it does.
+transaction every half second or when someone asks for them (``flush``, ``hasten``).  While the
+disk takes nothing they go into the copy in memory and queue on: they go into the file when it does.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import islice, takewhile
 
 from sqlalchemy.exc import DataError, IntegrityError
@@ -31,17 +31,18 @@ logger = logging.getLogger(__name__)
 
 
 class SqlProjection:
-    """A ``base_station.engine.ports.ProjectionSink`` on the store."""
+    """A ``ProjectionSink`` on the store, and the ``ProjectedTables`` of those who read it."""
 
     def __init__(self, store: Store) -> None:
         self._store = store
         self._pending: deque[Projection] = deque()
         self._changed = threading.Condition()
         self._taken = 0  # projections given to ``project`` so far
+        self._decided = 0  # of these, up to the last one that is urgent
         self._settled = 0  # of these, written or given up
         self._in_memory = 0  # of those pending, the first ones, that are in the copy in memory
         self._dropped = 0
-        self._wanted = False  # somebody waits in ``flush``
+        self._wanted = False  # somebody waits for them
         self._failure = ""
         self._drop_reason = ""
         self._failed_tries = 0
@@ -59,6 +60,8 @@ class SqlProjection:
         with self._changed:
             self._pending.append(projection)
             self._taken += 1
+            if projection.is_urgent:
+                self._decided = self._taken
             if len(self._pending) > MAX_PENDING:
                 self._pending.popleft()
                 self._in_memory = max(self._in_memory - 1, 0)
@@ -80,18 +83,30 @@ class SqlProjection:
         """Wait until all that was projected before this call is in the tables; False where the
         store does not take it.
         """
-        if self._store.hangs():
-            return False
         with self._changed:
             goal = self._taken
-            # A try that is under way may have begun before this call: two tell.
-            given_up = self._failed_tries + 2
+            self._changed.wait_for(self._write_now(goal), timeout_s)
+            return self._done >= goal
+
+    def hasten(self) -> Callable[[], bool]:
+        """Have what was decided before this call written now, without waiting; gives what tells
+        whether that is over.  Positions are not waited for: they come all the time.
+        """
+        with self._changed:
+            return self._write_now(self._decided)
+
+    def _write_now(self, goal: int) -> Callable[[], bool]:
+        """Whether the projections up to ``goal`` are in the tables, or the store takes none."""
+        # A try that is under way may have begun before this call: two tell.
+        given_up = self._failed_tries + 2
+
+        def is_over() -> bool:
+            return self._done >= goal or self._failed_tries >= given_up or self._store.hangs()
+
+        if not is_over():
             self._wanted = True
             self._worker.wake()
-            self._changed.wait_for(
-                lambda: self._done >= goal or self._failed_tries >= given_up, timeout_s
-            )
-            return self._done >= goal
+        return is_over
 
     @property
     def _done(self) -> int:

@@ -1,0 +1,31 @@
+"""Reading after writing: who reads tables reads at least what was decided before the request.
+
+An action is answered when it is decided and in the log; the database has it later.  So those wait
+who read from it, and only as long as they hold up nobody: without a thread, and not for ever.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from typing import Annotated
+
+from fastapi import Depends
+
+from base_station.api.authentication import Viewer
+from base_station.api.services import Services, Station
+
+MAX_WAIT_S = 5.0  # then the tables are read as they are: most of what is asked for is there
+_LOOK_S = 0.01
+
+
+async def _current_station(station: Station, _: Viewer) -> Services:
+    is_over = station.projection.hasten()
+    end_s = time.monotonic() + MAX_WAIT_S
+    while not is_over() and time.monotonic() < end_s:
+        await asyncio.sleep(_LOOK_S)
+    return station
+
+
+CurrentStation = Annotated[Services, Depends(_current_station)]
+"""``Station`` of a route that reads tables into which the engine's decisions are projected."""

@@ -1,0 +1,42 @@
+"""Refused actions: whether what they are about exists is asked behind the refusal, for a database
+that is busy must delay no action that is carried out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+
+from base_station.api.problems import Problem
+from base_station.api.services import Services
+from base_station.views.wire import Snapshot
+from shared.errors import StoreError, UserError
+
+
+@contextmanager
+def not_found_if_unknown(
+    station: Services,
+    detail: str,
+    *,
+    shown: Callable[[Snapshot], bool],
+    stored: Callable[[], bool],
+) -> Iterator[None]:
+    """Problem 404 with ``detail`` in place of the refusal (UserError) of an action on something
+    that does not exist: neither ``shown`` in the picture nor ``stored`` in the tables.  Where the
+    database cannot tell, the refusal stands.
+    """
+    try:
+        yield
+    except UserError as refusal:
+        with suppress(StoreError):
+            if _is_unknown(station, shown, stored):
+                raise Problem(404, detail) from refusal
+        raise
+
+
+def _is_unknown(
+    station: Services, shown: Callable[[Snapshot], bool], stored: Callable[[], bool]
+) -> bool:
+    if shown(station.picture()) or stored():
+        return False
+    return station.projection.flush() and not stored()
