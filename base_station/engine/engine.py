@@ -8,7 +8,6 @@ database or a console.
 from __future__ import annotations
 
 import logging
-import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -39,6 +38,7 @@ from shared.envelope import Stamper
 from shared.errors import StoreError
 from shared.messages import STATION_ID, OperatorAction, Tick
 from shared.messages.station import Action, ForgetWearers, ReportProblem, SendCommand
+from shared.worker import Worker
 
 TICK_NS = NS_PER_S
 SOONER_TICK_NS = TICK_NS // 4  # at most, where links come and go all the time
@@ -87,10 +87,15 @@ class StationEngine:
         self._inbox: deque[tuple[str, Action, str, Future[ActionResult]]] = deque()
         self._lost: deque[Lost] = deque()
         self._snapshot_requests: deque[Callable[[Snapshot, Trails], None]] = deque()
-        self._stopping = threading.Event()
         self._unlinked: frozenset[str] = frozenset()  # as was told last
         self._receives_first = False
-        self._thread = threading.Thread(target=self._run, name="station-drive")
+        self._worker = Worker(
+            "station-drive",
+            self._step,
+            "the station's engine does not go on",
+            at_end=self._finish,
+            daemon=False,
+        )
         now_ns = self._last_run_ns = ports.clock.monotonic_ns()
         self._due = _Due(now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
@@ -102,19 +107,20 @@ class StationEngine:
     # ---- from any thread
 
     def start(self) -> None:
-        self._thread.start()
+        self._last_run_ns = self._ports.clock.monotonic_ns()
+        self._worker.start()
 
     def stop(self) -> None:
         """Finish what was taken, and end."""
-        self._stopping.set()
+        self._worker.stop()
         self._ports.feed.wake()
-        self._thread.join(STOP_TIMEOUT_S)
+        self._worker.join(STOP_TIMEOUT_S)
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
         future: Future[ActionResult] = Future()
         self._inbox.append((by, action, action_id, future))
         self._ports.feed.wake()
-        if self._stopping.is_set() and not self._thread.is_alive():
+        if self._worker.stopping.is_set() and not self._worker.is_alive:
             self._refuse_waiting()
         return future
 
@@ -163,12 +169,10 @@ class StationEngine:
 
     # ---- in the thread
 
-    def _run(self) -> None:
-        self._last_run_ns = self._ports.clock.monotonic_ns()
-        while not self._stopping.is_set():
-            with self._health.guard("drive"):
-                self._run_once()
-        self._finish()
+    def _step(self) -> float:
+        with self._health.guard("drive"):
+            self._run_once()  # waits in the feed for what comes, or is due next
+        return 0.0
 
     def _run_once(self) -> bool:
         """Take what came, then do whatever is due; whether anything came."""
