@@ -24,6 +24,14 @@ def test_what_is_installed_for_real_is_what_is_tested():
         assert tested.get(pin) == hashes, pin
 
 
+def test_the_library_of_a_button_is_that_which_is_tested():
+    """The tests take its wheel, which is compiled elsewhere and for some machines only."""
+    project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
+    (required,) = project["optional-dependencies"]["button"]
+    assert set(pinned("deploy/requirements-button.lock")) == {required}
+    assert required.replace("evdev==", "evdev-binary==") in pinned("requirements.lock")
+
+
 def test_what_is_installed_for_real_is_all_that_the_package_needs():
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
     installed = pinned("deploy/requirements.lock")

@@ -1,0 +1,156 @@
+"""What every kind of button promises, whatever its driver."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from edge.wearer.interface import ButtonDriver, ButtonError, ContactChange
+from edge.wearer.registry import BUTTONS, open_button
+from shared.clock import SystemClock
+from shared.errors import ConfigError
+from tests.rig.input_devices import Device, InputDevices
+from tests.rig.waiting import until
+
+
+class EmulatedEvdev:
+    argument = "AB Button"
+
+    def __init__(self, folder: Path, patch: pytest.MonkeyPatch) -> None:
+        self._devices = InputDevices(folder / "input", patch)
+
+    def plug_in(self) -> Device:
+        return self._devices.plug_in(3)
+
+
+EMULATED = {"evdev": EmulatedEvdev}
+
+
+@pytest.fixture(params=EMULATED)
+def emulated(request, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> EmulatedEvdev:
+    return EMULATED[request.param](tmp_path, monkeypatch)
+
+
+@pytest.fixture
+def driver(emulated, request):
+    scheme = request.node.callspec.params["emulated"]
+    (kind,) = (one for one in BUTTONS if one.scheme == scheme)
+    driver = kind.make(emulated.argument, {}, SystemClock())
+    yield driver
+    driver.close()
+
+
+def next_changes(driver: ButtonDriver) -> tuple[ContactChange, ...]:
+    driver.wait(60.0)
+    return driver.read()
+
+
+def test_every_kind_is_emulated() -> None:
+    assert set(EMULATED) == {kind.scheme for kind in BUTTONS}
+
+
+@pytest.mark.parametrize("is_pressed", [False, True])
+def test_the_first_that_is_read_is_the_state(emulated, driver, is_pressed: bool) -> None:
+    button = emulated.plug_in()
+    if is_pressed:
+        button.press()
+    driver.open()
+    (first,) = driver.read()
+    assert first.is_pressed is is_pressed
+    assert driver.read() == ()
+
+
+def test_press_and_release_come_in_order_with_the_time_of_this_machine(emulated, driver) -> None:
+    button = emulated.plug_in()
+    driver.open()
+    driver.read()
+    before_ns = SystemClock().monotonic_ns()
+    for is_pressed in (True, False, True):
+        (button.press if is_pressed else button.release)()
+        (change,) = next_changes(driver)
+        assert change.is_pressed is is_pressed
+        assert before_ns <= change.t_ns <= SystemClock().monotonic_ns()
+        before_ns = change.t_ns
+
+
+def test_changes_that_wait_together_are_read_together(emulated, driver) -> None:
+    button = emulated.plug_in()
+    driver.open()
+    driver.read()
+    for make in (button.press, button.release, button.press):
+        make()
+    assert [one.is_pressed for one in next_changes(driver)] == [True, False, True]
+
+
+def test_where_nothing_comes_the_wait_is_over_and_nothing_is_read(emulated, driver) -> None:
+    emulated.plug_in()
+    driver.open()
+    driver.read()
+    driver.wait(0.01)
+    assert driver.read() == ()
+
+
+def test_one_that_is_missing_is_reported_and_opened_when_it_is_there(emulated, driver) -> None:
+    with pytest.raises(ButtonError, match="there is no"):
+        driver.open()
+    driver.close()
+    emulated.plug_in()
+    driver.open()
+    assert not driver.read()[0].is_pressed
+
+
+def test_one_that_is_removed_is_noticed_and_opened_when_it_is_back(emulated, driver) -> None:
+    button = emulated.plug_in()
+    driver.open()
+    driver.read()
+    button.unplug()
+    driver.wait(60.0)
+    with pytest.raises((ButtonError, OSError)):
+        driver.read()
+    driver.close()
+    driver.close()
+    with pytest.raises(ButtonError):
+        driver.open()
+    emulated.plug_in().press()
+    driver.open()
+    assert driver.read()[0].is_pressed
+
+
+@pytest.mark.slow
+def test_the_reader_hands_over_what_the_wearer_means(emulated, request) -> None:
+    scheme = request.node.callspec.params["emulated"]
+    button = emulated.plug_in()
+    reader = open_button(f"{scheme}:{emulated.argument}", SystemClock())
+    reader.start()
+    until(lambda: button.opened, "the button is open")
+    button.press()
+    found: list[str] = []
+
+    def has_come() -> bool:
+        found.extend(one.button for one in reader.take())
+        return bool(found)
+
+    until(has_come, "the mayday")
+    button.release()
+    reader.close()
+    assert [*found, *reader.take()] == ["mayday"]
+    assert reader.take_faults() == ()
+    assert not button.opened
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("AB Button", "Known are evdev:"),
+        ("evdef:AB Button", "did you mean evdev:?"),
+        ("evdev:", "Known are evdev:"),
+        ("evdev:AB Button?kee=KEY_A", "unknown option 'kee'"),
+        ("evdev:AB Button?key=116", "such as KEY_POWER"),
+        ("evdev:AB Button?key=", "such as KEY_POWER"),
+    ],
+)
+def test_settings_that_cannot_work_are_explained(text: str, said: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        open_button(text, SystemClock())
+    assert said in str(caught.value)
