@@ -45,6 +45,13 @@ Battery = Annotated[
         "there is one."
     ),
 ]
+Button = Annotated[
+    str | None,
+    typer.Option(
+        help="The wearer's button, which calls a mayday: evdev:NAME?key=KEY_POWER or "
+        "evdev:/dev/input/eventN."
+    ),
+]
 Enrolment = Annotated[
     Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
 ]
@@ -91,6 +98,7 @@ def run(
     gps: Gps = None,
     temperature: Temperature = None,
     battery: Battery = None,
+    button: Button = None,
     enrolment: Enrolment = None,
     connect: Connect = None,
     data: Data = None,
@@ -116,6 +124,7 @@ def run(
         "gps": gps,
         "temperatures": temperature,
         "battery": battery,
+        "button": button,
         "connect": connect,
         "data": data,
         "tracker": tracker,
@@ -175,6 +184,7 @@ def sources() -> None:
     from edge.sources.gnss.registry import RECEIVERS  # noqa: PLC0415
     from edge.sources.registry import SOURCES  # noqa: PLC0415
     from edge.sources.temperature.registry import TEMPERATURE_SENSORS  # noqa: PLC0415
+    from edge.wearer.registry import BUTTONS  # noqa: PLC0415
 
     for kind in SOURCES:
         typer.echo(f"{kind.scheme}:{kind.argument}")
@@ -183,6 +193,8 @@ def sources() -> None:
     for sensor in TEMPERATURE_SENSORS:
         typer.echo(f"--temperature {sensor.scheme}:{sensor.argument}")
     typer.echo("--battery NAME or auto")
+    for button in BUTTONS:
+        typer.echo(f"--button {button.scheme}:{button.argument}")
 
 
 @app.command()

@@ -31,6 +31,7 @@ class EdgeConfig:
     gps: str = ""  # a satellite receiver: gpsd://HOST, nmea:/dev/PORT, nmea:tcp://HOST:PORT
     temperatures: tuple[str, ...] = ()  # sensors: hwmon:CHIP, iio:DEVICE, w1:ID, ?name=&role=
     battery: str = ""  # of the unit's computer: a power supply's name, or auto; empty: none
+    button: str = ""  # the wearer's: evdev:NAME?key=KEY_POWER; empty: none, or of the source
     unit: str = ""  # unique among the units of a station; empty: as enrolled
     enrolment: Path | None = None  # from `muster pki enroll`; none: the link is not secured
     connect: tuple[str, ...] = ()  # the station; empty: as enrolled, else tcp/127.0.0.1:7447

@@ -6,6 +6,7 @@ give the same messages.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from edge.activity.monitor import ActivityMonitor
@@ -119,8 +120,25 @@ class TrackerPipeline:
             return first
         return (*first, self._event(EventKind.MAYDAY, None, "still latched after a restart"))
 
+    @property
+    def is_mayday_active(self) -> bool:
+        return self._mayday
+
+    def take_presses(
+        self, presses: Iterable[ButtonPress], timeline: Timeline = LIVE
+    ) -> tuple[Message, ...]:
+        """Return what is sent of presses; no tracker or sensor has a part in it."""
+        return tuple(
+            message
+            for press in presses
+            for message in self._take_button(press, timeline.to_mono_ns(press.t_ns))
+        )
+
     def step(self, batch: SensorBatch, timeline: Timeline = LIVE) -> tuple[Message, ...]:
-        """Take one batch, quantised as by ``sample_codec``; return the messages to send."""
+        """Take one batch, quantised as by ``sample_codec``; return the messages to send.
+
+        Its presses are for ``take_presses``, before it.
+        """
         self._update_earth_field(batch, timeline)
         imu = batch.imu if self._correction is None else self._correction.push(batch.imu)
         track = self._tracker.push(imu)
@@ -181,8 +199,6 @@ class TrackerPipeline:
                 return self._take_sighting(sample, mono_ns)
             case BatterySample():
                 self._batteries.push(sample)
-            case ButtonPress(button=button) if button in (MAYDAY, CANCEL):
-                return self._take_button(sample, mono_ns)
         return []
 
     def _take_ambient(self, sample: AmbientSample, mono_ns: int) -> list[Message]:
@@ -210,6 +226,8 @@ class TrackerPipeline:
                 return []
             self._mayday = False
             return [self._event(EventKind.MAYDAY_CANCELLED, mono_ns, "button")]
+        if press.button != MAYDAY:
+            return []
         before_ns, now_ns = self._mayday_ns, press.t_ns
         if self._mayday and before_ns is not None and 0 <= now_ns - before_ns < _ONE_PRESS_NS:
             return []

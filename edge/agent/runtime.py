@@ -8,6 +8,7 @@ link have threads of their own: none of them keeps the unit from the rest.
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from queue import Empty, SimpleQueue
@@ -17,13 +18,14 @@ import msgspec
 
 from edge.agent.command_handler import CommandHandler
 from edge.agent.link import Link
+from edge.agent.mayday_latch import MaydayLatch
 from edge.agent.outbox import Outbox
 from edge.agent.pipeline import TrackerPipeline
 from edge.agent.source_reader import SourceReader, TimedBatch
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Timeline
 from edge.sample_codec.codec import SampleEncoder, batch_of
-from edge.samples import ACKNOWLEDGE, ButtonPress
+from edge.samples import ACKNOWLEDGE, CANCEL, ButtonPress
 from edge.sources.interface import Source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.journal.journal import Journal
@@ -60,6 +62,7 @@ class AgentParts:
     black_box: BlackBox
     journal: Journal
     journal_writer: JournalWriter
+    mayday_latch: MaydayLatch
     outbox: Outbox
     link: Link
     commands: SimpleQueue[bytes]  # filled by the link
@@ -75,7 +78,7 @@ class Agent:
         self._next_heartbeat_ns = 0
         self._last_batch_ns = 0
         self._silence_reported = False
-        self._storage_faults = ["", "", ""]
+        self._storage_faults = ["", "", "", ""]
         self._time_query_failed = False
         self.commands_not_decoded = 0
 
@@ -119,6 +122,8 @@ class Agent:
 
     def _take_batch(self, timed: TimedBatch) -> None:
         parts = self._parts
+        presses = tuple(one for one in timed.batch.others if isinstance(one, ButtonPress))
+        self._take_presses(presses, timed.timeline)  # before all that may fail
         raw = parts.raw.messages(timed.batch)
         parts.black_box.write(raw)
         self._timeline = timed.timeline
@@ -128,13 +133,23 @@ class Agent:
         parts.pipeline.set_journal_pending(parts.journal.pending)
         batch = batch_of(raw)
         parts.outbox.put(parts.pipeline.step(batch, timed.timeline))
-        if any(isinstance(one, ButtonPress) and one.button == ACKNOWLEDGE for one in batch.others):
-            parts.outbox.put(parts.command_handler.acknowledge())
         down = any(
             outage.start_s <= timed.since_start_s < outage.start_s + outage.duration_s
             for outage in parts.source.radio_outages
         )
         parts.link.set_up(up=not down)
+
+    def _take_presses(self, presses: Iterable[ButtonPress], timeline: Timeline) -> None:
+        """Send what the wearer means by presses.  To cancel where no mayday is active is to
+        acknowledge, with a hasty thumb.
+        """
+        parts = self._parts
+        for press in presses:
+            is_mayday_active = parts.pipeline.is_mayday_active
+            parts.outbox.put(parts.pipeline.take_presses((press,), timeline))
+            parts.mayday_latch.set(is_active=parts.pipeline.is_mayday_active)
+            if press.button == ACKNOWLEDGE or (press.button == CANCEL and not is_mayday_active):
+                parts.outbox.put(parts.command_handler.acknowledge())
 
     def _take_commands(self) -> None:
         parts = self._parts
@@ -175,6 +190,7 @@ class Agent:
             parts.journal.damage,
             parts.journal_writer.fault or "",
             parts.black_box.fault or "",
+            parts.mayday_latch.fault,
         ]
         for fault, before in zip(faults, self._storage_faults, strict=True):
             if fault and not before:
@@ -224,7 +240,9 @@ class Agent:
             last.callback(parts.black_box.close)
             last.callback(parts.journal_writer.close)
             last.callback(parts.outbox.close)
+            last.callback(parts.mayday_latch.close)
             parts.reader.close()
+            self._take_presses(parts.reader.last_presses(), Timeline())
             parts.outbox.put(parts.pipeline.finish(self._timeline))
             if ended:
                 self._send_event(

@@ -16,7 +16,7 @@ from threading import Event, Thread
 import numpy as np
 
 from edge.clocks.timeline import Pacer, Timekeeper, Timeline
-from edge.samples import ImuBatch, OtherSample, SensorBatch
+from edge.samples import ButtonPress, ImuBatch, OtherSample, SensorBatch
 from edge.sources.interface import AuxiliarySource, ReportsFaults, Source
 from shared.clock import NS_PER_S, Clock
 from shared.errors import MusterError
@@ -87,6 +87,12 @@ class SourceReader:
             one for one in (self._source, *self._auxiliaries) if isinstance(one, ReportsFaults)
         )
         return tuple(chain.from_iterable(one.take_faults() for one in reporters))
+
+    def last_presses(self) -> tuple[ButtonPress, ...]:
+        """Return presses of buttons beside the source that no batch has taken along, once closed:
+        of one that was pressed as the source or the agent failed.
+        """
+        return tuple(one for one in self._take_auxiliary() if isinstance(one, ButtonPress))
 
     @property
     def ended(self) -> bool:

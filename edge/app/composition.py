@@ -13,6 +13,7 @@ from queue import SimpleQueue
 
 from edge.agent.command_handler import CommandHandler
 from edge.agent.link import Link, StationEndpoint
+from edge.agent.mayday_latch import MaydayLatch
 from edge.agent.outbox import Outbox
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.agent.restore_state import answers_before, mayday_before, position_rate_before
@@ -64,7 +65,12 @@ def compose_agent(
         worn = tracked_unit(unit_id) or unit_id
         calibration = calibration_in_use(config, worn, source.description, folder.calibrations)
         description = _description(config, raw, source, calibration, clock)
-        pipeline = _pipeline(config, sensor_of(description), calibration, stamper, journal, clock)
+        latch = MaydayLatch(folder.mayday, clock)
+        on_error.callback(latch.close)
+        pipeline = _pipeline(
+            config, sensor_of(description), calibration, stamper, journal, latch, clock
+        )
+        latch.set(is_active=pipeline.is_mayday_active)
         black_box = BlackBox(
             folder.black_box,
             description,
@@ -98,6 +104,7 @@ def compose_agent(
                 black_box=black_box,
                 journal=journal,
                 journal_writer=journal_writer,
+                mayday_latch=latch,
                 outbox=outbox,
                 link=link,
                 commands=commands,
@@ -162,6 +169,7 @@ def _pipeline(
     calibration: Calibration | None,
     stamper: Stamper,
     journal: Journal,
+    latch: MaydayLatch,
     clock: StationClock,
 ) -> TrackerPipeline:
     if calibration is not None:
@@ -172,7 +180,7 @@ def _pipeline(
         make_tracker(config.tracker, sensor, (NO_TRACKER,)) if tracks else NoTracker(),
         stamper,
         position_rate_before(journal, clock.monotonic_ns()) or config.position_rate_hz,
-        mayday=mayday_before(journal),
+        mayday=latch.was_active or mayday_before(journal),
         raw_uplink=None if tracks else RawUplink(stamper),
     )
 

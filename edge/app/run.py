@@ -20,6 +20,7 @@ from edge.sources.registry import open_source
 from edge.sources.sighting_reader import SightingReader
 from edge.sources.temperature.registry import open_temperature_reader
 from edge.storage.data_folder import DataFolder
+from edge.wearer.registry import open_button
 from shared.channels import NO_TRACKER, tracker_id
 from shared.clock import SystemClock
 from shared.errors import ConfigError
@@ -40,10 +41,10 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
     if isinstance(source, BusSource):
         if config.tracker == NO_TRACKER:
             raise ConfigError(f"{config.source} is there to be tracked; choose a tracker")
-        if config.sightings or config.gps or config.temperatures or config.battery:
+        if any(_auxiliaries_set(config)):
             raise ConfigError(
-                f"nothing is read beside {config.source}: sightings, gps, temperatures and battery "
-                "are the unit's own"
+                f"nothing is read beside {config.source}: sightings, gps, temperatures, battery "
+                "and button are the unit's own"
             )
         listener = RawStreamListener(source.unit_id, station.open_listening_bus)
         with closing(listener):
@@ -52,6 +53,10 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
     speed = config.speed if paced else None
     auxiliaries = open_auxiliaries(config)
     _run_once(config, member.unit_id, source, station, stop, for_s, speed, auxiliaries)
+
+
+def _auxiliaries_set(config: EdgeConfig) -> tuple[object, ...]:
+    return config.sightings, config.gps, config.temperatures, config.battery, config.button
 
 
 def open_auxiliaries(config: EdgeConfig) -> tuple[AuxiliarySource, ...]:
@@ -65,6 +70,8 @@ def open_auxiliaries(config: EdgeConfig) -> tuple[AuxiliarySource, ...]:
         auxiliaries.append(BatteryReader(config.battery, SystemClock()))
     if config.temperatures:
         auxiliaries.append(open_temperature_reader(config.temperatures, SystemClock()))
+    if config.button:
+        auxiliaries.append(open_button(config.button, SystemClock()))
     return tuple(auxiliaries)
 
 

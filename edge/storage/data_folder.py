@@ -1,4 +1,4 @@
-"""Data folder of one unit: its journal and its black box; one agent at a time."""
+"""Data folder of one unit: its journal, black box and mayday; one agent at a time."""
 
 from __future__ import annotations
 
@@ -39,6 +39,11 @@ class DataFolder:
         return self.path / "black_box"
 
     @property
+    def mayday(self) -> Path:
+        """File that is there while the wearer's mayday is active."""
+        return self.path / "mayday"
+
+    @property
     def calibrations(self) -> Path:
         """Calibrations ever used, by their identity: without them the raw samples do not"""
         return self.path / "calibrations"
@@ -54,7 +59,7 @@ class DataFolder:
             number = next(n for n in count(1) if not (self.path / f"of-another-{n}").exists())
             quarantine = self.path / f"of-another-{number}"
             quarantine.mkdir()
-            for kept in (*self.path.glob("journal.sqlite*"), self.black_box):
+            for kept in (*self.path.glob("journal.sqlite*"), self.black_box, self.mayday):
                 if kept.exists():
                     kept.rename(quarantine / kept.name)
         with suppress(OSError), write_own(owner_file) as written:  # a full disk stops no unit

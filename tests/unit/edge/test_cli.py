@@ -78,7 +78,9 @@ def test_the_sentence_goes_to_stderr_with_exit_code_2(tmp_path):
 
 @pytest.mark.slow
 def test_lists_sources_and_trackers(tmp_path):
-    assert "mcap:PATH" in muster_edge("sources", cwd=tmp_path).stdout
+    listed = muster_edge("sources", cwd=tmp_path).stdout
+    assert "mcap:PATH" in listed
+    assert "--button evdev:NAME" in listed
     assert "eskf" in muster_edge("trackers", cwd=tmp_path).stdout
 
 

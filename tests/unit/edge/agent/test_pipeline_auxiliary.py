@@ -67,12 +67,12 @@ def test_what_is_not_a_number_is_not_sent():
 
 def test_mayday_latches_until_the_wearer_takes_it_back():
     pipe = pipeline()
-    pressed = of(pipe.step(others_only(ButtonPress(1, "mayday"))), UnitEvent)
+    pressed = of(pipe.take_presses((ButtonPress(1, "mayday"),)), UnitEvent)
     assert [event.kind for event in pressed] == [EventKind.MAYDAY]
-    assert not of(pipe.step(others_only(ButtonPress(2, "mayday"))), UnitEvent)
+    assert not of(pipe.take_presses((ButtonPress(2, "mayday"),)), UnitEvent)
     assert of(steps(pipe, walk(300), []), Status)[-1].mayday
-    assert not of(pipe.step(others_only(ButtonPress(3, "acknowledge"))), UnitEvent)
-    cancelled = of(pipe.step(others_only(ButtonPress(4 * NS_PER_S, "cancel"))), UnitEvent)
+    assert not of(pipe.take_presses((ButtonPress(3, "acknowledge"),)), UnitEvent)
+    cancelled = of(pipe.take_presses((ButtonPress(4 * NS_PER_S, "cancel"),)), UnitEvent)
     assert [event.kind for event in cancelled] == [EventKind.MAYDAY_CANCELLED]
     assert not of(steps(pipe, walk(300, 5.0), []), Status)[-1].mayday
 
@@ -81,9 +81,9 @@ def test_mayday_latches_until_the_wearer_takes_it_back():
 def test_a_mayday_that_is_pressed_again_is_said_again(again_s: float, says: int):
     """The first one has been resolved, and now its wearer is in need again."""
     pipe = pipeline()
-    pipe.step(others_only(ButtonPress(10 * NS_PER_S, "mayday")))
+    pipe.take_presses((ButtonPress(10 * NS_PER_S, "mayday"),))
     again_ns = round((10.0 + again_s) * NS_PER_S)
-    events = of(pipe.step(others_only(ButtonPress(again_ns, "mayday"))), UnitEvent)
+    events = of(pipe.take_presses((ButtonPress(again_ns, "mayday"),)), UnitEvent)
     assert [event.kind for event in events] == [EventKind.MAYDAY] * says
 
 
@@ -92,7 +92,7 @@ def test_a_mayday_that_was_taken_back_is_said_anew_at_once():
     kinds = [
         event.kind
         for tenth, button in enumerate(("mayday", "cancel", "cancel", "mayday"))
-        for event in of(pipe.step(others_only(ButtonPress(tenth * 10**8, button))), UnitEvent)
+        for event in of(pipe.take_presses((ButtonPress(tenth * 10**8, button),)), UnitEvent)
     ]
     assert kinds == [EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.MAYDAY]
 

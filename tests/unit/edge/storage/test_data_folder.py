@@ -39,6 +39,7 @@ def keep_something(path: Path) -> None:
     journal.append([JournalRow(1, POSITION, 5_000, b"said")])
     journal.close()
     (folder.black_box / "boot").mkdir(parents=True)
+    folder.mayday.touch()
     folder.close()
 
 
@@ -48,6 +49,7 @@ def test_a_unit_finds_its_folder_as_it_left_it(tmp_path: Path) -> None:
     assert again.quarantine is None
     assert again.journal.exists()
     assert again.black_box.exists()
+    assert again.mayday.exists()
     again.close()
 
 
@@ -71,8 +73,9 @@ def test_what_another_unit_kept_is_set_aside_and_nothing_of_it_is_said(tmp_path:
         folder = DataFolder(tmp_path / "bert")
         assert folder.quarantine == tmp_path / "bert" / f"of-another-{number}"
         kept = {path.name for path in folder.quarantine.iterdir()}
-        assert kept == {"journal.sqlite", "black_box"}
+        assert kept == {"journal.sqlite", "black_box", "mayday"}
         assert not folder.journal.exists()
+        assert not folder.mayday.exists()
         folder.close()
     own = DataFolder(tmp_path / "bert")
     assert own.quarantine is None

@@ -69,7 +69,8 @@ def messages_of(source: Source, raw: SampleEncoder, batches: list[SensorBatch]) 
     )
     messages: list[Message] = []
     for batch in batches:
-        messages += pipeline.step(batch)
+        presses = [one for one in batch.others if isinstance(one, ButtonPress)]
+        messages += [*pipeline.take_presses(presses), *pipeline.step(batch)]
     return [*messages, *pipeline.finish()]
 
 
