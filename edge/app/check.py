@@ -87,6 +87,8 @@ def _sensor_findings(config: EdgeConfig, source: Source, survey_s: float) -> Ite
             faults += reader.take_faults()
     finally:
         reader.close()
+    for press in reader.last_presses():
+        auxiliary.push(press)
     if reader.failure is not None:
         faults.append(reader.failure)
     yield from (Finding("sensors", Level.FAILED, fault) for fault in faults)

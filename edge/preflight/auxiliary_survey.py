@@ -29,10 +29,11 @@ _BATTERY_LOW, _BATTERY_EMPTY = 0.5, 0.2  # of full; half lasts an incident
 _LEFT_MIN_S = 3600.0
 _FIX_STD_MAX_M = 20.0
 _TWO_DIMENSIONAL = 2  # fix type
+_BUTTONS = frozenset({Quantity.MAYDAY_BUTTON, Quantity.ACKNOWLEDGE_BUTTON})
 
 _NO_HEAT_ALARM = "no heat alarm for this wearer: give --temperature"
 _NO_LOW_BATTERY = "nobody is warned before it is empty: give --battery"
-_NO_MAYDAY = "the wearer cannot call a mayday with this unit; it takes the voice radio"
+_NO_MAYDAY = "the wearer cannot call a mayday with this unit: give --button"
 
 
 class AuxiliarySurvey:
@@ -41,7 +42,7 @@ class AuxiliarySurvey:
     def __init__(self, config: EdgeConfig, gives: frozenset[Quantity]) -> None:
         """``gives``: quantities that the source may give."""
         self._config = config
-        self._gives = gives
+        self._gives = gives | _BUTTONS if config.button else gives
         self._temperatures: dict[str, float] = {}  # by sensor, the newest
         self._batteries = Batteries()
         self._best_fix: GpsSample | None = None
@@ -135,10 +136,9 @@ class AuxiliarySurvey:
             yield Finding(subject, Level.OK, text)
 
     def _button(self) -> Iterator[Finding]:
-        buttons = (Quantity.MAYDAY_BUTTON, Quantity.ACKNOWLEDGE_BUTTON)
         if Quantity.MAYDAY_BUTTON not in self._gives:
             yield Finding("mayday button", Level.WARNING, "the unit has none", _NO_MAYDAY)
         if self._buttons:
             yield Finding("button", Level.OK, f"pressed: {', '.join(sorted(self._buttons))}")
-        elif not self._gives.isdisjoint(buttons):
+        elif not self._gives.isdisjoint(_BUTTONS):
             yield Finding("button", Level.WARNING, "not pressed during the check", "press it once")

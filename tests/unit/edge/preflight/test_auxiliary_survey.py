@@ -94,3 +94,11 @@ def test_what_makes_no_sense_or_may_not_last_is_found(
 
 def test_a_button_that_nobody_pressed_is_not_known_to_work() -> None:
     assert survey(BARE, gives=BUTTONS)["button"].level is Level.WARNING
+
+
+def test_a_button_beside_the_source_calls_a_mayday() -> None:
+    with_one = EdgeConfig("bench:1", button="evdev:AB Button")
+    assert "mayday button" not in survey(with_one)
+    assert survey(with_one)["button"].text == "not pressed during the check"
+    pressed = survey(with_one, ButtonPress(1, ACKNOWLEDGE))
+    assert pressed["button"].level is Level.OK
