@@ -42,6 +42,7 @@ from shared.messages import (
     Sighting,
     Status,
     Temperature,
+    UnitDescription,
     UnitEvent,
 )
 
@@ -132,6 +133,9 @@ class UnitMessages:
                 return self._note_sighting(state, unit, message)
             case CommandReply():
                 return _note_reply(state, unit, message)
+            case UnitDescription():
+                changed = command_tracker.note_outputs(state, unit)
+                return [CommandChanged(command.command_id) for command in changed]
             case _:
                 return []
 

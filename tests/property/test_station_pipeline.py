@@ -43,6 +43,7 @@ from shared.messages.station import (
     UndoConfirmation,
 )
 from shared.quality import Quality
+from tests.rig import message_factory
 from tests.rig.live_station import make_pipeline
 from tests.rig.station_script import Script
 
@@ -137,6 +138,11 @@ DEEDS: st.SearchStrategy[Deed] = st.one_of(
         UNITS,
         COMMAND_IDS,
         st.sampled_from(list(CommandState)),
+    ),
+    st.builds(
+        lambda u, o: lambda s: s.say(message_factory.description(s.header(u), outputs=o)),
+        UNITS,
+        st.sampled_from([(), ("led",)]),
     ),
     st.builds(lambda u, i: lambda s: s.act(ConfirmCommand(i, u)), UNITS, COMMAND_IDS),
     st.builds(

@@ -1,4 +1,4 @@
-"""Command tracker: queued, sent, received, acknowledged, refused or expired.
+"""Command tracker: queued, sent, received, notified, acknowledged, refused or expired.
 
 Every change follows from an event in the log: an operator action, the station's own ``Command``
 as it went out on the bus, a unit's reply, or a tick.  Only a reply that the wearer asked for, or a
@@ -41,7 +41,10 @@ def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
         issued_by=by,
         issued_ns=state.t_ns,
         expires_ns=state.t_ns + round(action.lasts_s * NS_PER_S),
-        deliveries={unit.unit_id: Delivery(unit.unit_id) for unit in _recipients(state, action)},
+        deliveries={
+            unit.unit_id: Delivery(unit.unit_id, can_be_notified=unit.can_be_notified)
+            for unit in _recipients(state, action)
+        },
         incident_id=_open_incident_id(state),
     )
     _drop_oldest_closed(state)
@@ -137,6 +140,9 @@ def note_reply(
     match reply.state:
         case CommandState.RECEIVED if delivery.received_ns is None:
             delivery.received_ns = state.t_ns
+        case CommandState.NOTIFIED if delivery.notified_ns is None:
+            delivery.received_ns = delivery.received_ns or state.t_ns
+            delivery.notified_ns = state.t_ns
         case CommandState.ACKNOWLEDGED if delivery.acknowledged_via != "self":
             delivery.received_ns = delivery.received_ns or state.t_ns
             _acknowledge(delivery, state.t_ns, "self", unit.name_at(event_ns))
@@ -145,6 +151,17 @@ def note_reply(
         case _:
             return None
     return command
+
+
+def note_outputs(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
+    """The unit has described itself: whether it can notify its wearer of what is still open."""
+    for command in state.commands.values():
+        delivery = command.deliveries.get(unit.unit_id)
+        if delivery is None or delivery.can_be_notified == unit.can_be_notified:
+            continue
+        if command.awaits(delivery):
+            delivery.can_be_notified = unit.can_be_notified
+            yield command
 
 
 def expire(state: StationState) -> Iterator[SentCommand]:

@@ -9,7 +9,10 @@ import msgspec
 from shared.messages import ASKS_WEARER, CommandKind
 
 AnsweredBy = Literal["", "self", "radio"]
-DeliveryState = Literal["queued", "sent", "received", "acknowledged", "refused", "expired"]
+DeliveryState = Literal[
+    "queued", "sent", "received", "notified", "acknowledged", "refused", "expired"
+]
+NOTIFIES_WEARER = ASKS_WEARER | {CommandKind.LOCATE}  # the others concern the unit alone
 
 
 class Delivery(msgspec.Struct):
@@ -28,6 +31,9 @@ class Delivery(msgspec.Struct):
     refused_ns: int | None = None
     reason: str = ""  # of a refusal
     expired_ns: int | None = None
+    notified_ns: int | None = None  # an output of the unit has notified the wearer
+    # Whether the unit has an output, as far as was known while more was to come; None: not known.
+    can_be_notified: bool | None = None
 
 
 class SentCommand(msgspec.Struct):
@@ -49,13 +55,25 @@ class SentCommand(msgspec.Struct):
         return self.kind in ASKS_WEARER
 
     @property
+    def notifies_wearer(self) -> bool:
+        """Whether an output of the unit is to notify the wearer of it."""
+        return self.kind in NOTIFIES_WEARER
+
+    @property
     def is_open(self) -> bool:
         return any(map(self.awaits, self.deliveries.values()))
 
     def awaits(self, delivery: Delivery) -> bool:
         """Whether anything more is to come of it in time."""
         state = self.state_of(delivery)
-        return state in {"queued", "sent"} or (state == "received" and self.asks_wearer)
+        if state in {"queued", "sent"}:
+            return True
+        if self.asks_wearer:
+            return state in {"received", "notified"}
+        return state == "received" and delivery.expired_ns is None and self._notifies(delivery)
+
+    def _notifies(self, delivery: Delivery) -> bool:
+        return self.notifies_wearer and bool(delivery.can_be_notified)
 
     def state_of(self, delivery: Delivery) -> DeliveryState:
         """What happened too late is still what happened."""
@@ -66,6 +84,8 @@ class SentCommand(msgspec.Struct):
             return "refused"
         if delivery.expired_ns is not None and not (received and not self.asks_wearer):
             return "expired"
+        if delivery.notified_ns is not None:
+            return "notified"
         if received:
             return "received"
         return "queued" if delivery.sent_ns is None else "sent"

@@ -174,6 +174,11 @@ class UnitState(MessageStream):
         return self.description is not None and self.description.tracker == NO_TRACKER
 
     @property
+    def can_be_notified(self) -> bool | None:
+        """Whether it has an output that notifies its wearer; None: it has not described itself."""
+        return None if self.description is None else bool(self.description.outputs)
+
+    @property
     def path_boot(self) -> BootState:
         """In whose clock, and since whose start, its positions are: of a run that has only just
         begun there are none yet.

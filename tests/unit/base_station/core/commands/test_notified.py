@@ -1,0 +1,207 @@
+"""Received means in the unit, notified that an output of it has run; and units without any."""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+import msgspec
+import pytest
+
+from base_station.core.checkpoint import read_checkpoint
+from base_station.core.commands.command_tracker import open_orders
+from base_station.core.events import CommandChanged, Output
+from base_station.core.state.command import Delivery
+from shared.channels import DESCRIPTION, REPLY, backfilled_key
+from shared.codec import encode
+from shared.messages import CommandKind, CommandReply, CommandState
+from shared.messages.station import (
+    CloseIncident,
+    ConfirmCommand,
+    OpenIncident,
+    SendCommand,
+    UndoConfirmation,
+)
+from tests.rig import message_factory
+from tests.rig.station_script import START_NS, Script
+
+U = "FF-01"
+RECEIVED, NOTIFIED = CommandState.RECEIVED, CommandState.NOTIFIED
+ACKNOWLEDGED = CommandState.ACKNOWLEDGED
+
+
+def sent(
+    kind: CommandKind = CommandKind.EVACUATE, outputs: tuple[str, ...] | None = None
+) -> Script:
+    """A command to one unit, which has described itself where ``outputs`` are given."""
+    script = Script()
+    script.register(U)
+    if outputs is not None:
+        describe(script, outputs)
+    script.act(SendCommand("c1", kind, U, "", False, "hi", 5.0, 60.0))
+    return script
+
+
+def describe(script: Script, outputs: tuple[str, ...]) -> list[Output]:
+    return script.say(message_factory.description(script.header(U), outputs=outputs))
+
+
+def delivery(script: Script) -> Delivery:
+    return script.pipeline.state.commands["c1"].deliveries[U]
+
+
+def state(script: Script) -> str:
+    return script.pipeline.state.commands["c1"].state_of(delivery(script))
+
+
+def is_open(script: Script) -> bool:
+    return script.pipeline.state.commands["c1"].is_open
+
+
+def test_it_is_received_notified_and_acknowledged() -> None:
+    script = sent(outputs=("led",))
+    seen = []
+    for reply in (RECEIVED, NOTIFIED, ACKNOWLEDGED):
+        script.now_s += 1.0
+        assert CommandChanged("c1") in script.reply(U, "c1", reply)
+        seen.append((state(script), is_open(script)))
+    assert seen == [("received", True), ("notified", True), ("acknowledged", False)]
+    one = delivery(script)
+    assert [one.received_ns, one.notified_ns, one.acknowledged_ns] == [
+        START_NS + second * 10**9 for second in (1, 2, 3)
+    ]
+
+
+@pytest.mark.parametrize("replies", list(permutations([RECEIVED, NOTIFIED, ACKNOWLEDGED])))
+def test_in_whatever_order_the_answers_come_the_same_is_known(
+    replies: tuple[CommandState, ...],
+) -> None:
+    script = sent()
+    for reply in replies:
+        script.now_s += 1.0
+        script.reply(U, "c1", reply)
+    one = delivery(script)
+    assert state(script) == "acknowledged"
+    assert one.received_ns == START_NS + 10**9, "whichever came first tells that the unit has it"
+    assert one.notified_ns == START_NS + (1 + replies.index(NOTIFIED)) * 10**9
+    assert one.acknowledged_ns == START_NS + (1 + replies.index(ACKNOWLEDGED)) * 10**9
+
+
+def test_who_notifies_has_received_it() -> None:
+    script = sent()
+    script.reply(U, "c1", NOTIFIED)
+    assert delivery(script).received_ns == script.t_ns
+    assert not open_orders(script.pipeline.state)
+    assert CommandChanged("c1") not in script.reply(U, "c1", RECEIVED)
+    assert state(script) == "notified"
+
+
+def test_who_acknowledges_was_not_notified_by_that() -> None:
+    script = sent()
+    script.reply(U, "c1", ACKNOWLEDGED)
+    assert delivery(script).received_ns == script.t_ns
+    assert delivery(script).notified_ns is None
+
+
+def test_a_second_output_that_has_run_changes_nothing() -> None:
+    script = sent()
+    script.reply(U, "c1", NOTIFIED)
+    before = repr(script.pipeline.state.commands)
+    script.now_s += 1.0
+    assert CommandChanged("c1") not in script.reply(U, "c1", NOTIFIED)
+    assert repr(script.pipeline.state.commands) == before
+
+
+def test_out_of_a_journal_it_counts() -> None:
+    script = sent()
+    reply = CommandReply(script.header(U), "c1", NOTIFIED)
+    script.status(U)
+    script.record(backfilled_key(U, REPLY.suffix), encode(reply))
+    assert state(script) == "notified"
+
+
+def test_a_wearer_who_was_notified_and_does_not_answer_in_time_has_not_answered() -> None:
+    script = sent(outputs=("led",))
+    script.reply(U, "c1", NOTIFIED)
+    script.wait(61)
+    assert (state(script), is_open(script)) == ("expired", False)
+
+
+def test_an_answer_by_radio_that_is_taken_back_leaves_what_the_unit_did() -> None:
+    script = sent(outputs=("led",))
+    script.reply(U, "c1", NOTIFIED)
+    script.act(ConfirmCommand("c1", U))
+    assert state(script) == "acknowledged"
+    script.act(UndoConfirmation("c1", U))
+    assert state(script) == "notified"
+
+
+@pytest.mark.parametrize(
+    ("outputs", "after_received"), [(("led", "beeper"), True), ((), False), (None, False)]
+)
+def test_locate_is_done_when_notified_where_the_unit_can_be(
+    outputs: tuple[str, ...] | None, after_received: bool
+) -> None:
+    script = sent(CommandKind.LOCATE, outputs)
+    script.reply(U, "c1", RECEIVED)
+    assert is_open(script) is after_received
+    assert not open_orders(script.pipeline.state), "it is not sent again for that"
+    script.reply(U, "c1", NOTIFIED)
+    assert (state(script), is_open(script)) == ("notified", False)
+
+
+def test_locate_does_not_wait_for_an_output_for_ever() -> None:
+    script = sent(CommandKind.LOCATE, ("led",))
+    script.reply(U, "c1", RECEIVED)
+    script.wait(61)
+    assert (state(script), is_open(script)) == ("received", False)
+
+
+def test_how_often_to_send_a_position_is_done_when_received() -> None:
+    script = sent(CommandKind.SET_POSITION_RATE, ("led",))
+    script.reply(U, "c1", RECEIVED)
+    assert not is_open(script)
+
+
+def test_an_incident_that_is_closed_ends_the_wait_for_an_output() -> None:
+    script = sent(outputs=("led",))
+    script.act(OpenIncident("i1", "Mill Lane"))
+    script.act(SendCommand("c2", CommandKind.LOCATE, U, "", False, "", 0.0, 60.0))
+    script.reply(U, "c2", RECEIVED)
+    script.act(CloseIncident("i1"))
+    assert not script.pipeline.state.commands["c2"].is_open
+
+
+def test_what_a_unit_says_of_its_outputs_later_is_noted_while_more_is_to_come() -> None:
+    script = sent()
+    assert delivery(script).can_be_notified is None
+    assert CommandChanged("c1") in describe(script, ())
+    assert delivery(script).can_be_notified is False
+    assert CommandChanged("c1") not in describe(script, ()), "said every minute"
+    describe(script, ("beeper",))
+    assert delivery(script).can_be_notified is True
+    script.reply(U, "c1", ACKNOWLEDGED)
+    assert CommandChanged("c1") not in describe(script, ())
+    assert delivery(script).can_be_notified is True, "as it was when it was carried out"
+
+
+def test_an_old_description_out_of_a_journal_says_nothing_of_now() -> None:
+    script = sent()
+    old = message_factory.description(script.header(U))
+    describe(script, ("led",))
+    script.record(backfilled_key(U, DESCRIPTION.suffix), encode(old))
+    assert delivery(script).can_be_notified is True
+    assert script.pipeline.state.units[U].can_be_notified is True
+
+
+def test_a_checkpoint_of_an_earlier_version_opens() -> None:
+    script = sent(outputs=("led",))
+    script.reply(U, "c1", RECEIVED)
+    saved = msgspec.msgpack.decode(script.pipeline.checkpoint())
+    of_unit = saved["state"]["commands"]["c1"]["deliveries"][U]
+    del of_unit["notified_ns"], of_unit["can_be_notified"]
+    opened = read_checkpoint(msgspec.msgpack.encode(saved))
+    assert opened is not None
+    found = opened.state.commands["c1"].deliveries[U]
+    assert (found.received_ns, found.notified_ns, found.can_be_notified) == (
+        script.t_ns, None, None
+    )  # fmt: skip
