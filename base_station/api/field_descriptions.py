@@ -140,9 +140,13 @@ FIELDS: Mapping[str, str] = {
     "acknowledged it.",
     "open": "Whether any unit's delivery can still change.",
     "CommandView.units": "How far it has got with each unit.",
-    "DeliveryView.state": "queued, sent, received, acknowledged, refused or expired.",
+    "DeliveryView.state": "queued, sent, received, notified, acknowledged, refused or expired.",
     "sent_ms": "When it was last sent to the unit; null: not yet.",
     "received_ms": "When the unit had received it; null: not yet.",
+    "notified_ms": "When an output of the unit had notified the wearer; null: not yet.",
+    "notifies_wearer": "Whether outputs of the units notify the wearers of it.",
+    "can_be_notified": "Whether the unit has an output that notifies its wearer; null: not known "
+    "yet.",
     "acknowledged_ms": "When it was acknowledged; null: not yet.",
     "acknowledged_by": "Whose the answer is: the member, or the user who entered it.",
     "acknowledged_via": "How the answer came: self (on the member's own unit) or radio; empty: not "

@@ -173,6 +173,7 @@ class StoredSnapshotSource:
             switched_off=False,
             ambient_ms=None,
             ambient_sensors=(),
+            can_be_notified=None,
         )
 
     def _person(self, worn: models.Assignment) -> PersonView:

@@ -72,6 +72,7 @@ def command_view(command: SentCommand) -> CommandView:
         issued_ms=to_ms(command.issued_ns),
         expires_ms=to_ms(command.expires_ns),
         asks_wearer=command.asks_wearer,
+        notifies_wearer=command.notifies_wearer,
         open=command.is_open,
         units=tuple(_delivery_view(command, one) for one in command.deliveries.values()),
         incident_id=command.incident_id,
@@ -84,10 +85,12 @@ def _delivery_view(command: SentCommand, delivery: Delivery) -> DeliveryView:
         state=command.state_of(delivery),
         sent_ms=to_ms_or_none(delivery.sent_ns),
         received_ms=to_ms_or_none(delivery.received_ns),
+        notified_ms=to_ms_or_none(delivery.notified_ns),
         acknowledged_ms=to_ms_or_none(delivery.acknowledged_ns),
         acknowledged_by=delivery.acknowledged_by,
         reason=delivery.reason,
         acknowledged_via=delivery.acknowledged_via,
+        can_be_notified=delivery.can_be_notified,
     )
 
 

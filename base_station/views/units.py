@@ -95,6 +95,7 @@ def _unit_view(
         unit.stopped_ns is not None,
         to_ms_or_none(unit.temperature_ns) if unit.temperature else None,
         _sensors_view(unit.temperature.sensors) if unit.temperature else (),
+        unit.can_be_notified,
     )
 
 

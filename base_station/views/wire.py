@@ -187,6 +187,7 @@ class UnitView(Answer, frozen=True):
     switched_off: bool  # in order: its silence since is no loss
     ambient_ms: int | None  # when the temperature around the equipment came
     ambient_sensors: tuple[SensorTemperatureView, ...]  # its readings by name; empty: one sensor
+    can_be_notified: bool | None  # it has an output for its wearer; None: not known yet
 
 
 class DeliveryView(Answer, frozen=True):
@@ -194,15 +195,18 @@ class DeliveryView(Answer, frozen=True):
 
     unit_id: str
     state: Annotated[
-        str, one_of("queued", "sent", "received", "acknowledged", "refused", "expired")
+        str,
+        one_of("queued", "sent", "received", "notified", "acknowledged", "refused", "expired"),
     ]
     sent_ms: int | None
     received_ms: int | None
+    notified_ms: int | None  # an output of the unit has notified the wearer
     acknowledged_ms: int | None
     acknowledged_by: str  # self: the member; radio: who entered it
     reason: str  # of a refusal, or of a withdrawal
     # self: on the member's own unit; empty: not yet
     acknowledged_via: Annotated[str, one_of("self", "radio", "")]
+    can_be_notified: bool | None  # as was known while more was to come; None: not known yet
 
 
 class CommandView(Answer, frozen=True):
@@ -215,6 +219,7 @@ class CommandView(Answer, frozen=True):
     issued_ms: int
     expires_ms: int
     asks_wearer: bool  # done only when somebody has acknowledged it
+    notifies_wearer: bool  # an output of each unit that has one is to notify its wearer
     open: bool  # more is to come of it
     units: tuple[DeliveryView, ...]
     incident_id: str  # that was open when it was given; empty: none was

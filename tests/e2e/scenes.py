@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -103,6 +104,7 @@ def unit(index: int) -> wire.UnitView:
         switched_off=False,
         ambient_ms=NOW_MS - 400,
         ambient_sensors=(),
+        can_be_notified=True,
     )
 
 
@@ -141,6 +143,15 @@ def picture(units: list[wire.UnitView], *alarms: wire.AlarmView) -> wire.Snapsho
 
 def quiet(count: int = 5) -> wire.Snapshot:
     return picture([unit(index) for index in range(count)])
+
+
+def without_outputs() -> wire.Snapshot:
+    """All are well; the units of two of them have no output to notify them with."""
+    units = [
+        msgspec.structs.replace(unit(index), can_be_notified=index not in {0, 2})
+        for index in range(5)
+    ]
+    return picture(units)
 
 
 def alarm(index: int, rule: str, priority: int, text: str, ago_s: int) -> wire.AlarmView:
@@ -200,15 +211,16 @@ def bad_minute(count: int = 5) -> wire.Snapshot:
         "chief",
         NOW_MS - 60_000,
         NOW_MS + 500_000,
-        True,
-        True,
-        tuple(
-            wire.DeliveryView(one.unit_id, state, NOW_MS - 60_000, None, None, "", "", "")
+        asks_wearer=True,
+        notifies_wearer=True,
+        open=True,
+        units=tuple(
+            delivery(one.unit_id, state)
             for one, state in zip(
                 units, ("received", "received", "sent", "queued", "received"), strict=False
             )
         ),
-        INCIDENT.incident_id,
+        incident_id=INCIDENT.incident_id,
     )
     health = msgspec.structs.replace(
         HEALTH, problems=("only 700 MB are free for the log", "The bus's router is away")
@@ -289,8 +301,9 @@ def order(
     *,
     is_open: bool = True,
     incident_id: str = INCIDENT.incident_id,
+    without_output: Collection[str] = (),
 ) -> wire.CommandView:
-    """To these units, a minute ago; who has acknowledged it did so on the own unit."""
+    """To these units, a minute ago; some of them cannot notify their wearers."""
     return wire.CommandView(
         command_id,
         kind,
@@ -298,22 +311,31 @@ def order(
         "chief",
         NOW_MS - 60_000,
         NOW_MS + 500_000,
-        True,
-        is_open,
-        tuple(
-            wire.DeliveryView(
-                unit,
-                state,
-                NOW_MS - 60_000,
-                None,
-                NOW_MS - 40_000 if state == "acknowledged" else None,
-                unit if state == "acknowledged" else "",
-                "",
-                "self" if state == "acknowledged" else "",
-            )
+        asks_wearer=kind != "locate",
+        notifies_wearer=True,
+        open=is_open,
+        units=tuple(
+            delivery(unit, state, can_be_notified=unit not in without_output)
             for unit, state in states.items()
         ),
-        incident_id,
+        incident_id=incident_id,
+    )
+
+
+def delivery(unit_id: str, state: str, can_be_notified: bool = True) -> wire.DeliveryView:
+    """Sent a minute ago; who has acknowledged it did so on the own unit."""
+    acknowledged = state == "acknowledged"
+    return wire.DeliveryView(
+        unit_id=unit_id,
+        state=state,
+        sent_ms=NOW_MS - 60_000,
+        received_ms=None,
+        notified_ms=NOW_MS - 58_000 if state == "notified" else None,
+        acknowledged_ms=NOW_MS - 40_000 if acknowledged else None,
+        acknowledged_by=unit_id if acknowledged else "",
+        reason="",
+        acknowledged_via="self" if acknowledged else "",
+        can_be_notified=can_be_notified,
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import msgspec
 import pytest
 from playwright.sync_api import Page, expect
@@ -83,20 +85,91 @@ def test_the_orders_of_a_closed_incident_stay_in_it(stage: Stage, order: str) ->
     assert captions(page, order) == []
 
 
-def test_what_locate_does_is_said_as_it_is(stage: Stage) -> None:
-    """No unit has an output yet."""
-    locate = msgspec.structs.replace(
-        scenes.order("c1", "locate", {"FF-01": "received"}, is_open=False), asks_wearer=False
+def test_locate_is_done_once_the_unit_has_signalled(stage: Stage) -> None:
+    received = scenes.order("c1", "locate", {"FF-01": "received"})
+    answers = {**ANSWERS, "POST /commands": msgspec.to_builtins(received)}
+    page, station = stage.open(with_orders(received), answers=answers)
+    card = page.locator(".card", has_text="Astrid Lindqvist")
+    expect(card.locator(".card-commands")).to_have_text("Locatereceived by the unit")
+    card.get_by_role("button", name="Astrid Lindqvist").click()
+    locate = card.get_by_role("button", name="Locate")
+    expect(locate).to_have_attribute("title", re.compile("such as a light or a sounder"))
+    locate.click()
+    station.expect_changes("/commands")
+    dialog = command(page, "Message")
+    expect(dialog.locator("caption")).to_contain_text("0 of 1 signalled by the unit")
+    station.change(commands=(scenes.order("c1", "locate", {"FF-01": "notified"}, is_open=False),))
+    expect(dialog.locator("caption")).to_contain_text("1 of 1 signalled by the unit")
+
+
+def test_a_signal_of_the_unit_is_no_answer_of_its_wearer(stage: Stage) -> None:
+    page, _ = stage.open(with_orders(scenes.order("c1", "evacuate", {"FF-01": "notified"})))
+    card = page.locator(".card", has_text="Astrid Lindqvist")
+    expect(card.locator(".card-commands")).to_contain_text("signalled by the unit")
+    dialog = command(page, "Evacuate")
+    expect(dialog.locator("caption")).to_contain_text("0 of 1 acknowledged")
+    row = dialog.get_by_role("row", name="Astrid Lindqvist")
+    expect(row).to_contain_text("signalled by the unit")
+    expect(row.get_by_role("button", name="Answered by radio")).to_be_visible()
+
+
+@pytest.mark.parametrize("order", ["Evacuate", "PAR", "Message"])
+def test_before_an_order_is_sent_it_names_whom_only_the_radio_reaches(
+    stage: Stage, order: str
+) -> None:
+    page, _ = stage.open(scenes.without_outputs())
+    dialog = command(page, order)
+    said = dialog.locator(".not-notifiable")
+    expect(said).to_have_text(
+        "2 of 5 cannot be notified: use the voice radio: Astrid Lindqvist, Mira Okafor"
     )
-    page, _ = stage.open(with_orders(locate))
+    assert flaws(page) == []
+    assert barriers(page) == []
+    dialog.get_by_label("To").select_option(label="Rescue 3")
+    expect(said).to_have_text("1 of 1 cannot be notified: use the voice radio: Mira Okafor")
+    dialog.get_by_label("To").select_option(label="Jonas Bergman")
+    expect(said).to_have_text("")
+
+
+def test_a_card_shows_that_its_wearer_cannot_be_notified(stage: Stage) -> None:
+    """Before anything is sent, and a locate order says so before it goes."""
+    page, station = stage.open(scenes.without_outputs())
+    shown = page.locator(".card", has_text="cannot be notified").locator(".name")
+    expect(shown).to_have_text(["Astrid Lindqvist", "Mira Okafor"])
     card = page.locator(".card", has_text="Astrid Lindqvist")
     card.get_by_role("button", name="Astrid Lindqvist").click()
-    hint = card.get_by_role("button", name="Locate").get_attribute("title")
-    assert hint == (
-        "Shown as received by the unit once it is there. No unit has a sounder or a light yet."
+    card.get_by_role("button", name="Locate").click()
+    dialog = page.get_by_role("dialog", name="Locate")
+    expect(dialog.locator(".not-notifiable")).to_have_text(
+        "1 of 1 cannot be notified: use the voice radio: Astrid Lindqvist"
     )
-    dialog = command(page, "Message")
-    expect(dialog.locator("caption")).to_contain_text("1 of 1 received by the unit")
+    station.expect_changes()
+
+
+def test_who_cannot_be_notified_is_not_reached_until_the_answer_by_radio(stage: Stage) -> None:
+    states = {"FF-01": "received", "FF-02": "notified", "FF-03": "sent"}
+    cannot = {"FF-01", "FF-03"}
+    shown = with_orders(
+        scenes.order("c1", "evacuate", states, without_output=cannot),
+        shown=scenes.without_outputs(),
+    )
+    page, station = stage.open(shown)
+    card = page.locator(".card", has_text="Astrid Lindqvist")
+    expect(card.locator(".card-commands")).to_have_text("Evacuatecannot be notified")
+    dialog = command(page, "Evacuate")
+    expect(dialog.locator("caption")).to_contain_text("0 of 3 acknowledged, 2 cannot be notified")
+    names = dialog.get_by_role("rowheader")
+    expect(names).to_have_text(["Astrid Lindqvist", "Mira Okafor", "Jonas Bergman"])
+    row = dialog.get_by_role("row", name="Astrid Lindqvist")
+    expect(row).to_contain_text("cannot be notified")
+    assert flaws(page) == []
+    assert barriers(page) == []
+    press(row.get_by_role("button", name="Answered by radio: Astrid Lindqvist"))
+    station.expect_changes("/commands/c1/confirm")
+    answered = states | {"FF-01": "acknowledged"}
+    station.change(commands=(scenes.order("c1", "evacuate", answered, without_output=cannot),))
+    expect(dialog.locator("caption")).to_contain_text("1 of 3 acknowledged, 1 cannot be notified")
+    expect(row).not_to_contain_text("cannot be notified")
 
 
 def test_an_incident_is_closed_over_somebody_only_by_name(stage: Stage) -> None:

@@ -13,6 +13,7 @@ from base_station.core.events import is_decision
 from base_station.core.pipeline import StationPipeline
 from base_station.fusion import FUSERS
 from base_station.replay.playback import Playback, compare
+from base_station.views.station import command_view
 from shared.channels import OPERATOR, Qos, channel_of
 from shared.codec import decode, encode
 from shared.messages import (
@@ -40,6 +41,7 @@ from shared.messages.station import (
     UndoConfirmation,
 )
 from shared.quality import Quality
+from tests.rig import message_factory
 from tests.rig.live_station import LiveStation, make_pipeline
 from tests.rig.station_script import Record, Script
 from tests.rig.waiting import until
@@ -108,17 +110,29 @@ def _second(script: Script, second: int) -> None:
 
 
 def _commands(script: Script, second: int) -> None:
-    """An evacuation: one acknowledges, one does not hear it in time, for one the chief answers."""
+    """An evacuation: one acknowledges, one does not hear it in time, for one the chief answers.
+    One has an output, which runs for it and for the next order, and one has none.
+    """
+    if second == 65:
+        for unit_id, outputs in (("FF-01", ("led",)), ("FF-03", ())):
+            script.say(message_factory.description(script.header(unit_id), outputs=outputs))
     if second == 70:
         kind = CommandKind.EVACUATE
         script.act(SendCommand("c1", kind, "", "", True, "out", 0.0, lasts_s=60.0))
         script.command("FF-01", "c1")
     if second == 71:
         script.reply("FF-01", "c1", CommandState.RECEIVED)
+    if second == 72:
+        script.reply("FF-01", "c1", CommandState.NOTIFIED)
     if second == 75:
         script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)
     if second == 90:
         script.act(ConfirmCommand("c1", "FF-03"))
+    if second == 200:
+        kind = CommandKind.LOCATE
+        script.act(SendCommand("c2", kind, "", "", True, "", 0.0, lasts_s=60.0))
+        script.reply("FF-01", "c2", CommandState.NOTIFIED)
+        script.reply("FF-02", "c2", CommandState.RECEIVED)
 
 
 @pytest.fixture(scope="module")
@@ -154,6 +168,25 @@ def test_the_incident_is_worth_replaying(told: Script) -> None:
     assert {one.unit_id: command.state_of(one) for one in command.deliveries.values()} == {
         "FF-01": "acknowledged", "FF-02": "expired", "FF-03": "acknowledged"
     }  # fmt: skip
+    assert command.deliveries["FF-01"].notified_ns is not None
+    assert [one.can_be_notified for one in command.deliveries.values()] == [True, None, False]
+    locate = told.pipeline.state.commands["c2"]
+    assert {one.unit_id: locate.state_of(one) for one in locate.deliveries.values()} == {
+        "FF-01": "notified", "FF-02": "received", "FF-03": "expired"
+    }  # fmt: skip
+
+
+def test_a_replay_shows_of_each_command_what_was_shown_live(told: Script) -> None:
+    again = Script(make_pipeline())
+    for t_ns, key, payload in told.records:
+        again.now_s = (t_ns - told.records[0][0]) / 1e9
+        again.record(key, payload)
+    live, replayed = (
+        [command_view(command) for command in script.pipeline.state.commands.values()]
+        for script in (told, again)
+    )
+    assert [view.command_id for view in live] == ["c1", "c2"]
+    assert replayed == live
 
 
 def test_a_replay_of_the_log_decides_the_same(told: Script) -> None:

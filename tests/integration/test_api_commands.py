@@ -7,6 +7,7 @@ import pytest
 from base_station.accounts.principals import Role
 from shared.clock import ManualClock
 from shared.messages import CommandReply, CommandState, Header
+from tests.rig import message_factory
 from tests.rig.desk_station import DeskStation
 
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
@@ -48,6 +49,28 @@ async def test_a_crew_is_told_and_its_answers_are_shown(
     async with station.client(Role.ADMINISTRATOR) as administrator:
         entries = (await administrator.get("/audit")).json()
     assert {"SendCommand", "ConfirmCommand"} <= {entry["action"] for entry in entries}
+
+
+async def test_of_a_unit_it_is_shown_whether_it_can_notify_and_that_it_has(
+    station: DeskStation, clock: ManualClock
+) -> None:
+    async with station.client(Role.COMMANDER) as commander:
+        for unit_id, outputs in (("FF-01", ("led",)), ("FF-02", ())):
+            await commander.post("/units", json={"unit_id": unit_id})
+            header = Header(unit_id, 7, 1, 0)
+            station.drive.hear(message_factory.description(header, outputs=outputs))
+        order = {"kind": "locate", "target": {"everyone": True}, "expires_s": 60}
+        command = (await commander.post("/commands", json=order)).json()
+        assert command["notifies_wearer"]
+        assert [unit["can_be_notified"] for unit in command["units"]] == [True, False]
+        clock.advance(1.0)
+        station.drive.hear(
+            CommandReply(Header("FF-01", 7, 2, 0), command["command_id"], CommandState.NOTIFIED)
+        )
+        first, second = (await commander.get(f"/commands/{command['command_id']}")).json()["units"]
+    assert first["state"] == "notified"
+    assert first["notified_ms"] == first["received_ms"] == command["issued_ms"] + 1000
+    assert (second["state"], second["notified_ms"]) == ("queued", None)
 
 
 async def test_a_viewer_looks_on(station: DeskStation) -> None:

@@ -122,6 +122,7 @@ export interface CommandView {
   issued_ms: number;
   expires_ms: number;
   asks_wearer: boolean;
+  notifies_wearer: boolean;
   open: boolean;
   units: DeliveryView[];
   incident_id: string;
@@ -145,10 +146,12 @@ export interface DeliveryView {
   state: string;
   sent_ms: number | null;
   received_ms: number | null;
+  notified_ms: number | null;
   acknowledged_ms: number | null;
   acknowledged_by: string;
   reason: string;
   acknowledged_via: string;
+  can_be_notified: boolean | null;
 }
 
 export interface EveryoneTarget {

@@ -22,6 +22,7 @@ export type DialogName =
   | "audit"
   | "evacuate"
   | "par_request"
+  | "locate"
   | "text";
 export const dialog = signal<DialogName | null>(null);
 /** The unit that the dialog is about, where it is about one. */

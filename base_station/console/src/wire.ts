@@ -146,17 +146,20 @@ export interface UnitView {
   switched_off: boolean;
   ambient_ms: number | null;
   ambient_sensors: SensorTemperatureView[];
+  can_be_notified: boolean | null;
 }
 
 export interface DeliveryView {
   unit_id: string;
-  state: "queued" | "sent" | "received" | "acknowledged" | "refused" | "expired";
+  state: "queued" | "sent" | "received" | "notified" | "acknowledged" | "refused" | "expired";
   sent_ms: number | null;
   received_ms: number | null;
+  notified_ms: number | null;
   acknowledged_ms: number | null;
   acknowledged_by: string;
   reason: string;
   acknowledged_via: "self" | "radio" | "";
+  can_be_notified: boolean | null;
 }
 
 export interface CommandView {
@@ -167,6 +170,7 @@ export interface CommandView {
   issued_ms: number;
   expires_ms: number;
   asks_wearer: boolean;
+  notifies_wearer: boolean;
   open: boolean;
   units: DeliveryView[];
   incident_id: string;

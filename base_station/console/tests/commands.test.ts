@@ -5,14 +5,26 @@ import {
   crewsOf,
   current,
   newestFirst,
+  notNotifiable,
   openTo,
   progress,
+  recipients,
+  shownState,
   unansweredFirst,
 } from "../src/live/commands";
+import type { CommandView } from "../src/wire";
 import { command, unit } from "./fixtures";
 
 const inCrew = (unitId: string, crew: string) =>
   unit(unitId, { person: { person_id: unitId, name: unitId, crew, role: "", photo_url: null } });
+
+/** The same where these units have no output. */
+const without = (order: CommandView, ...unitIds: string[]): CommandView => ({
+  ...order,
+  units: order.units.map((one) =>
+    unitIds.includes(one.unit_id) ? { ...one, can_be_notified: false } : one,
+  ),
+});
 
 describe("commands", () => {
   it("shows a person what is open to that person", () => {
@@ -34,7 +46,11 @@ describe("commands", () => {
   it("counts an answer only when it is the one that was asked for", () => {
     const units = { a: "acknowledged", b: "received", c: "sent" } as const;
     expect(answered(command("x", units))).toEqual([1, 3]);
-    expect(answered(command("x", { b: "received" }, { asks_wearer: false }))).toEqual([1, 1]);
+    const rate = { kind: "set_position_rate", asks_wearer: false, notifies_wearer: false };
+    expect(answered(command("x", { b: "received" }, rate))).toEqual([1, 1]);
+    const locate = { kind: "locate", asks_wearer: false };
+    expect(answered(command("x", { a: "notified", b: "received" }, locate))).toEqual([1, 2]);
+    expect(answered(command("x", { a: "notified" }))).toEqual([0, 1]);
   });
 
   it("leaves the orders of a closed incident in it", () => {
@@ -65,9 +81,79 @@ describe("commands", () => {
     const order = command("x", { a: "acknowledged", b: "received", c: "acknowledged", d: "queued" });
     expect(unansweredFirst(order).map((one) => one.unit_id)).toEqual(["b", "d", "a", "c"]);
     expect(progress(order)).toBe("2 of 4 acknowledged");
-    const locate = command("y", { a: "received", b: "queued" }, { kind: "locate", asks_wearer: false });
+    const locate = command("y", { a: "notified", b: "queued" }, { kind: "locate", asks_wearer: false });
     expect(unansweredFirst(locate).map((one) => one.unit_id)).toEqual(["b", "a"]);
-    expect(progress(locate)).toBe("1 of 2 received by the unit");
+    expect(progress(locate)).toBe("1 of 2 signalled by the unit");
+  });
+
+  it("counts as not reached, and puts first, whose unit has no output", () => {
+    const states = { a: "sent", b: "received", c: "acknowledged", d: "queued", e: "expired" } as const;
+    const order = without(command("x", states), "b", "c", "e");
+    expect(order.units.map((one) => shownState(order, one))).toEqual([
+      "sent",
+      "cannot_be_notified",
+      "acknowledged",
+      "queued",
+      "cannot_be_notified",
+    ]);
+    expect(unansweredFirst(order).map((one) => one.unit_id)).toEqual(["b", "e", "a", "d", "c"]);
+    expect(progress(order)).toBe("1 of 5 acknowledged, 2 cannot be notified");
+  });
+
+  it("counts somebody as reached who answered by radio, or whose unit has signalled after all", () => {
+    const order = without(command("x", { a: "acknowledged", b: "notified" }), "a", "b");
+    expect(progress(order)).toBe("1 of 2 acknowledged");
+  });
+
+  it("says nothing of outputs where a unit has not described itself, or nobody is notified", () => {
+    const order = command("x", { a: "received" });
+    const [delivery] = order.units.map((one) => ({ ...one, can_be_notified: null }));
+    expect(shownState(order, delivery!)).toBe("received");
+    const rate = { kind: "set_position_rate", asks_wearer: false, notifies_wearer: false };
+    expect(progress(without(command("x", { a: "received" }, rate), "a"))).toBe(
+      "1 of 1 received by the unit",
+    );
+  });
+
+  it("knows whom an order would go to", () => {
+    const units = [
+      inCrew("a", "Red"),
+      inCrew("b", "Blue"),
+      unit("spare"),
+      unit("drawer", { switched_off: true }),
+      unit("silent", { last_heard_ms: null }),
+      unit("stranger", { registered: false }),
+    ];
+    const ids = (target: Parameters<typeof recipients>[0]) =>
+      recipients(target, units).map((one) => one.unit_id);
+    expect(ids({ everyone: true })).toEqual(["a", "b", "spare"]);
+    expect(ids({ crew: "Red" })).toEqual(["a"]);
+    expect(ids({ unit_id: "drawer" })).toEqual(["drawer"]);
+    expect(ids({ unit_id: "stranger" })).toEqual([]);
+  });
+
+  it("names before it is sent whom only the voice radio reaches", () => {
+    const none = { can_be_notified: false };
+    const units = [
+      { ...inCrew("a", "Red"), ...none },
+      { ...inCrew("b", "Red"), can_be_notified: null },
+      { ...inCrew("c", "Blue"), ...none },
+      inCrew("d", "Blue"),
+    ];
+    expect(notNotifiable({ everyone: true }, units)).toBe(
+      "2 of 4 cannot be notified: use the voice radio: a, c",
+    );
+    expect(notNotifiable({ crew: "Red" }, units)).toBe(
+      "1 of 2 cannot be notified: use the voice radio: a",
+    );
+    expect(notNotifiable({ unit_id: "c" }, units)).toBe(
+      "1 of 1 cannot be notified: use the voice radio: c",
+    );
+    expect(notNotifiable({ everyone: true }, [units[0]!, units[2]!])).toBe(
+      "2 of 2 cannot be notified: use the voice radio",
+    );
+    expect(notNotifiable({ unit_id: "d" }, units)).toBe("");
+    expect(notNotifiable({ unit_id: "b" }, units)).toBe("");
   });
 
   it("names each crew once, and nobody without one", () => {

@@ -86,6 +86,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     switched_off: false,
     ambient_ms: 1_000,
     ambient_sensors: [],
+    can_be_notified: true,
     ...change,
   };
 }
@@ -121,16 +122,19 @@ export function command(
     issued_ms: 0,
     expires_ms: 60_000,
     asks_wearer: true,
+    notifies_wearer: true,
     open: true,
     units: Object.entries(units).map(([unit_id, state]) => ({
       unit_id,
       state,
       sent_ms: null,
       received_ms: null,
+      notified_ms: null,
       acknowledged_ms: null,
       acknowledged_by: "",
       reason: "",
       acknowledged_via: "",
+      can_be_notified: true,
     })),
     incident_id: "",
     ...change,

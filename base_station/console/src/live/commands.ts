@@ -1,5 +1,6 @@
 /** What units were told, as the screen needs it.  Pure. */
 import type { CommandView, DeliveryState, DeliveryView, IncidentView, UnitView } from "../wire";
+import { nameAmong } from "./urgency";
 
 export interface UnitCommand {
   command: CommandView;
@@ -38,20 +39,38 @@ export function answered(command: CommandView): [done: number, all: number] {
   return [command.units.filter((one) => one.state === end).length, command.units.length];
 }
 
-/** Of an order, those that are not done first; else in the order given. */
+/** Of an order, whom only the voice radio reaches first, and last those that are done; else in the
+ * order given. */
 export function unansweredFirst(command: CommandView): DeliveryView[] {
   const end = doneState(command);
-  return [...command.units].sort((a, b) => Number(a.state === end) - Number(b.state === end));
+  const rank = (one: DeliveryView) =>
+    one.state === end ? 2 : shownState(command, one) === CANNOT_BE_NOTIFIED ? 0 : 1;
+  return [...command.units].sort((a, b) => rank(a) - rank(b));
 }
 
-/** "2 of 5 acknowledged". */
+/** "2 of 5 acknowledged, 1 cannot be notified". */
 export function progress(command: CommandView): string {
   const [done, all] = answered(command);
-  return `${done} of ${all} ${stateWord(doneState(command))}`;
+  const words = `${done} of ${all} ${stateWord(doneState(command))}`;
+  const states = command.units.map((one) => shownState(command, one));
+  const cannot = states.filter((state) => state === CANNOT_BE_NOTIFIED).length;
+  return cannot === 0 ? words : `${words}, ${cannot} ${stateWord(CANNOT_BE_NOTIFIED)}`;
 }
 
 function doneState(command: CommandView): DeliveryState {
-  return command.asks_wearer ? "acknowledged" : "received";
+  if (command.asks_wearer) return "acknowledged";
+  return command.notifies_wearer ? "notified" : "received";
+}
+
+export const CANNOT_BE_NOTIFIED = "cannot_be_notified";
+export type ShownState = DeliveryState | typeof CANNOT_BE_NOTIFIED;
+
+/** However far it has got with a unit without an output, its wearer is not reached by that. */
+export function shownState(command: CommandView, delivery: DeliveryView): ShownState {
+  const { state, can_be_notified } = delivery;
+  const answered = state === "notified" || state === "acknowledged" || state === "refused";
+  if (answered || !command.notifies_wearer || can_be_notified !== false) return state;
+  return CANNOT_BE_NOTIFIED;
 }
 
 /** The crews that somebody on duty belongs to. */
@@ -61,6 +80,27 @@ export function crewsOf(units: Iterable<UnitView>): string[] {
 }
 
 export type Target = { everyone: true } | { crew: string } | { unit_id: string };
+
+/** Whom an order would go to, as the station decides it. */
+export function recipients(target: Target, units: readonly UnitView[]): UnitView[] {
+  const ours = units.filter((unit) => unit.registered);
+  if ("unit_id" in target) return ours.filter((unit) => unit.unit_id === target.unit_id);
+  if ("crew" in target) return ours.filter((unit) => unit.person?.crew === target.crew);
+  return ours.filter(
+    (unit) => unit.person !== null || (unit.last_heard_ms !== null && !unit.switched_off),
+  );
+}
+
+/** "2 of 5 cannot be notified: use the voice radio: Astrid Lindqvist, Jonas Bergman"; where it is all of
+ * several, without their names; empty: as far as is known, all can be. */
+export function notNotifiable(target: Target, units: readonly UnitView[]): string {
+  const all = recipients(target, units);
+  const cannot = all.filter((unit) => unit.can_be_notified === false);
+  if (cannot.length === 0) return "";
+  const words = `${cannot.length} of ${all.length} cannot be notified: use the voice radio`;
+  if (cannot.length === all.length && all.length > 1) return words;
+  return `${words}: ${cannot.map((unit) => nameAmong(unit, units)).join(", ")}`;
+}
 
 const KINDS: Record<string, string> = {
   evacuate: "Evacuate",
@@ -74,9 +114,9 @@ export function kindWord(kind: string): string {
   return KINDS[kind] ?? kind;
 }
 
-/** What a locate order does: no unit has a light or a sounder yet. */
-export const LOCATE_HINT = 
-  "Shown as received by the unit once it is there. No unit has a sounder or a light yet.";
+/** What a locate order does. */
+export const LOCATE_HINT =
+  "The unit signals its place with its outputs, such as a light or a sounder. Done once it has.";
 
 /** "PAR", "Message: come out". */
 export function commandWord(command: CommandView): string {
@@ -84,15 +124,17 @@ export function commandWord(command: CommandView): string {
   return command.text === "" ? word : `${word}: ${command.text}`;
 }
 
-const STATES: Record<DeliveryState, string> = {
+const STATES: Record<ShownState, string> = {
   queued: "not reached yet",
   sent: "sent",
   received: "received by the unit",
+  notified: "signalled by the unit",
   acknowledged: "acknowledged",
   refused: "refused",
   expired: "no answer",
+  cannot_be_notified: "cannot be notified",
 };
 
-export function stateWord(state: DeliveryState): string {
+export function stateWord(state: ShownState): string {
   return STATES[state];
 }

@@ -58,6 +58,7 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
       {chosen && <ToPlan />}
       <OpenAlarms unit={unit} picture={picture} />
       {unit.cloned && <TwoMachines />}
+      {unit.registered && unit.can_be_notified === false && <NotNotifiable />}
       <OpenCommands unitId={unitId} commands={picture.commands.value} />
       {short ? (
         <BriefFacts unit={unit} picture={picture} />
@@ -167,6 +168,16 @@ function Trust({ unit }: { unit: UnitView }) {
     <p class={`trust ${level}`}>
       <Icon name="target" />
       {reason === "" ? word : `${word}: ${reason}`}
+    </p>
+  );
+}
+
+/** The unit has no light and no sounder: its wearer does not notice what is sent to it. */
+function NotNotifiable() {
+  return (
+    <p class="not-notifiable" title="The unit has no output: use the voice radio">
+      <Icon name="bellOff" />
+      cannot be notified
     </p>
   );
 }

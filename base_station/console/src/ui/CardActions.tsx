@@ -35,16 +35,30 @@ export function CardActions({ unit }: { unit: UnitView }) {
       <button type="button" onClick={() => take({ kind: "meeting", unitId })}>
         Met …
       </button>
-      <button
-        type="button"
-        title={LOCATE_HINT}
-        onClick={() => void attempt(api.sendCommand("locate", { unit_id: unitId }, ""))}
-      >
-        Locate
-      </button>
+      <Locate unit={unit} />
       <button type="button" onClick={() => openDialog("text", unitId)}>
         Message
       </button>
     </div>
+  );
+}
+
+/** Asks first where it cannot do what it is for. */
+function Locate({ unit: { unit_id: unitId, can_be_notified } }: { unit: UnitView }) {
+  if (can_be_notified === false) {
+    return (
+      <button type="button" onClick={() => openDialog("locate", unitId)}>
+        Locate …
+      </button>
+    );
+  }
+  return (
+    <button
+      type="button"
+      title={LOCATE_HINT}
+      onClick={() => void attempt(api.sendCommand("locate", { unit_id: unitId }, ""))}
+    >
+      Locate
+    </button>
   );
 }

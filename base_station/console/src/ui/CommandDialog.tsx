@@ -2,12 +2,21 @@ import { useSignal } from "@preact/signals";
 import { attempt, live, mayAct } from "../sessions";
 import { dialogUnit } from "../uiState";
 import * as api from "../api";
-import { crewsOf, current, kindWord, LOCATE_HINT, newestFirst, type Target } from "../live/commands";
+import {
+  crewsOf,
+  current,
+  kindWord,
+  LOCATE_HINT,
+  newestFirst,
+  notNotifiable,
+  type Target,
+} from "../live/commands";
 import type { Picture } from "../live/picture";
 import { nameAmong } from "../live/urgency";
 import type { CommandView } from "../wire";
 import { Deliveries } from "./Deliveries";
 import { Dialog } from "./Dialog";
+import { Icon } from "./Icon";
 import { useSinglePress } from "./useGuardedPress";
 import { fields } from "./useLoaded";
 
@@ -74,6 +83,7 @@ function CommandForm({ kind, picture, sent }: FormProps) {
   ]);
   // Else the list would turn to its first entry, which is everyone.
   if (!targets.has(to.value)) targets.set(to.value, `${nameIn(to.value)} (nobody now)`);
+  const unreachable = notNotifiable(targetOf(to.value), units);
   return (
     <form
       class="row command-form"
@@ -115,6 +125,11 @@ function CommandForm({ kind, picture, sent }: FormProps) {
       <button class={kind === "evacuate" ? "danger" : "primary"}>
         {kind === "evacuate" ? "Evacuate now" : "Send"}
       </button>
+      {/* Below the button, which many names would push out of sight. */}
+      <p class="not-notifiable" aria-live="polite">
+        {unreachable !== "" && <Icon name="bellOff" />}
+        {unreachable}
+      </p>
     </form>
   );
 }

@@ -1,18 +1,27 @@
-import { commandWord, newestFirst, openTo, stateWord } from "../live/commands";
-import type { CommandView, DeliveryState } from "../wire";
+import {
+  commandWord,
+  newestFirst,
+  openTo,
+  shownState,
+  stateWord,
+  type ShownState,
+} from "../live/commands";
+import type { CommandView } from "../wire";
 import { Icon, type IconName } from "./Icon";
 
-const ICONS: Record<DeliveryState, IconName> = {
+const ICONS: Record<ShownState, IconName> = {
   queued: "clock",
   sent: "sent",
   received: "received",
+  notified: "bell",
   acknowledged: "check",
   refused: "cross",
   expired: "cross",
+  cannot_be_notified: "bellOff",
 };
 
 /** How far a command has got with somebody. */
-export function CommandState({ state }: { state: DeliveryState }) {
+export function CommandState({ state }: { state: ShownState }) {
   return (
     <span class={`command-state ${state}`}>
       <Icon name={ICONS[state]} />
@@ -35,7 +44,7 @@ export function OpenCommands({ unitId, commands }: Props) {
       {open.map(({ command, delivery }) => (
         <li key={command.command_id}>
           <span class="command-word">{commandWord(command)}</span>
-          <CommandState state={delivery.state} />
+          <CommandState state={shownState(command, delivery)} />
         </li>
       ))}
     </ul>

@@ -1,6 +1,6 @@
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
-import { commandWord, progress, unansweredFirst } from "../live/commands";
+import { commandWord, progress, shownState, unansweredFirst } from "../live/commands";
 import type { Picture } from "../live/picture";
 import { displayName, nameAmong } from "../live/urgency";
 import { confirmAnswer } from "../undo";
@@ -36,7 +36,7 @@ export function Deliveries({ command, picture }: Props) {
           <tr key={delivery.unit_id}>
             <th scope="row">{nameOf(delivery.unit_id, picture)}</th>
             <td>
-              <CommandState state={delivery.state} />
+              <CommandState state={shownState(command, delivery)} />
             </td>
             <td>
               <Answer command={command} delivery={delivery} place={place} picture={picture} />

@@ -56,6 +56,7 @@ function Opened() {
       return <AuditDialog />;
     case "evacuate":
     case "par_request":
+    case "locate":
     case "text":
       return <CommandDialog kind={dialog.value} />;
     default:
