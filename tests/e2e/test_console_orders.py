@@ -98,6 +98,24 @@ def test_a_message_stays_on_the_card_until_it_is_answered(page: Page, card: Loca
     expect(card).to_contain_text("Message: Come to the stairs")
 
 
+def test_a_unit_says_that_it_cannot_notify_and_later_that_it_has(
+    page: Page, card: Locator, wearable: Wearable
+) -> None:
+    wearable.describe()
+    expect(card.locator(".not-notifiable")).to_have_text("cannot be notified")
+    dialog = command(page, "PAR")
+    expect(dialog).to_contain_text(f"1 of 1 cannot be notified: use the voice radio: {NAME}")
+    dialog.get_by_role("button", name="Send").click()
+    order = dialog.get_by_role("table").first
+    expect(order.locator("caption")).to_contain_text("0 of 1 acknowledged, 1 cannot be notified")
+    wearable.describe("led")
+    expect(order.get_by_role("row", name=NAME)).to_contain_text("received by the unit")
+    wearable.notify()
+    expect(order.get_by_role("row", name=NAME)).to_contain_text("signalled by the unit")
+    close(dialog)
+    expect(card.locator(".not-notifiable")).to_have_count(0)
+
+
 def test_everybody_can_use_the_roll_call_and_the_plan(page: Page, card: Locator) -> None:
     page.get_by_role("button", name="until the next PAR").click()
     assert barriers(page) == []

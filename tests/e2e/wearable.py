@@ -15,6 +15,8 @@ from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.messages import (
     Command,
+    CommandReply,
+    CommandState,
     EventKind,
     Heartbeat,
     Message,
@@ -41,6 +43,7 @@ class Wearable:
         self._hearing = self._bus.subscribe(
             COMMAND.key(unit_id), lambda _, payload: self._commands.put(payload)
         )
+        self._last_command_id = ""
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._walk, name=unit_id)
 
@@ -63,6 +66,15 @@ class Wearable:
         for reply in self._desk.acknowledge():
             self._say(reply)
 
+    def describe(self, *outputs: str) -> None:
+        """Say which outputs it has to notify its wearer with."""
+        self._say(message_factory.description(self._stamper.header(), outputs=outputs))
+
+    def notify(self) -> None:
+        """An output has run for the command that came last."""
+        header = self._stamper.header()
+        self._say(CommandReply(header, self._last_command_id, CommandState.NOTIFIED))
+
     def _walk(self) -> None:
         walked_m, steps = 0.0, 0
         while not self._ended.wait(STEP_S):
@@ -79,6 +91,7 @@ class Wearable:
         while not self._commands.empty():
             command = decode(COMMAND, self._commands.get())
             assert isinstance(command, Command)
+            self._last_command_id = command.command_id
             self._say(self._desk.take(command))
 
     def _say(self, message: Message) -> None:
