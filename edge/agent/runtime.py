@@ -25,7 +25,7 @@ from edge.agent.source_reader import SourceReader, TimedBatch
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Timeline
 from edge.sample_codec.codec import SampleEncoder, batch_of
-from edge.samples import ACKNOWLEDGE, CANCEL, ButtonPress
+from edge.samples import ACKNOWLEDGE, CANCEL, ButtonPress, SensorBatch
 from edge.sources.interface import Source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.journal.journal import Journal
@@ -46,6 +46,8 @@ _WAIT_S = 0.05
 _HEARTBEAT_NS = NS_PER_S
 _SILENT_NS = 2 * NS_PER_S
 _CLOCK_TIMEOUT_S = 5.0
+_EARLY_NS = 10 * NS_PER_S  # after its start: a tracker that fails by then will fail again
+_CALLS_NS = 30 * NS_PER_S  # after its start, for which the button works without the tracker
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +79,8 @@ class Agent:
         self._timeline = Timeline()
         self._next_heartbeat_ns = 0
         self._last_batch_ns = 0
+        self._started_ns = 0
+        self._failure: Exception | None = None  # of the tracker, soon after the start
         self._silence_reported = False
         self._storage_faults = ["", "", "", ""]
         self._time_query_failed = False
@@ -89,8 +93,8 @@ class Agent:
         Raises RecordingError, when everything is closed, where the source failed.
         """
         parts = self._parts
-        started_ns = self._last_batch_ns = parts.clock.monotonic_ns()
-        end_ns = None if for_s is None else started_ns + round(for_s * NS_PER_S)
+        self._started_ns = self._last_batch_ns = parts.clock.monotonic_ns()
+        end_ns = None if for_s is None else self._started_ns + round(for_s * NS_PER_S)
         reason = FAILED
         try:
             parts.outbox.put(parts.pipeline.start())
@@ -131,13 +135,32 @@ class Agent:
             self._last_batch_ns = parts.clock.monotonic_ns()
             self._silence_reported = False
         parts.pipeline.set_journal_pending(parts.journal.pending)
-        batch = batch_of(raw)
-        parts.outbox.put(parts.pipeline.step(batch, timed.timeline))
+        self._step_pipeline(batch_of(raw), timed.timeline)
         down = any(
             outage.start_s <= timed.since_start_s < outage.start_s + outage.duration_s
             for outage in parts.source.radio_outages
         )
         parts.link.set_up(up=not down)
+
+    def _step_pipeline(self, batch: SensorBatch, timeline: Timeline) -> None:
+        """A tracker that fails ends the agent, which is started again.  One that fails at each
+        start would leave no time to call a mayday: the rest goes on for a while then.
+        """
+        parts = self._parts
+        if self._failure is not None:
+            return
+        try:
+            parts.outbox.put(parts.pipeline.step(batch, timeline))
+        except Exception as error:
+            if self._is_over(_EARLY_NS):
+                raise
+            logger.exception("the tracker has failed at its start")
+            self._failure = error
+            self._send_event(
+                EventKind.SENSOR_FAULT,
+                f"the tracker has failed at its start ({type(error).__name__}: {error}): the "
+                "button works, and the agent is started again half a minute later",
+            )
 
     def _take_presses(self, presses: Iterable[ButtonPress], timeline: Timeline) -> None:
         """Send what the wearer means by presses.  To cancel where no mayday is active is to
@@ -175,6 +198,8 @@ class Agent:
             raise RuntimeError("the journal has stopped; see the log before this")
         if not parts.link.is_working:
             raise RuntimeError("the link has stopped; see the log before this")
+        if self._failure is not None and self._is_over(_CALLS_NS):
+            raise self._failure
         self._report_storage_faults()
         for detail in parts.reader.take_faults():
             self._send_event(EventKind.SENSOR_FAULT, detail)
@@ -182,6 +207,9 @@ class Agent:
         if parts.source.is_live and silent_ns > _SILENT_NS and not self._silence_reported:
             self._silence_reported = True
             self._send_event(EventKind.SENSOR_FAULT, "the source has been silent for 2 s")
+
+    def _is_over(self, after_start_ns: int) -> bool:
+        return self._parts.clock.monotonic_ns() - self._started_ns > after_start_ns
 
     def _report_storage_faults(self) -> None:
         """Report each fault by itself: one that lasts hides none of the others."""

@@ -39,6 +39,7 @@ class ButtonReader:
         self._presses: deque[ButtonPress] = deque()
         self._faults: deque[str] = deque()
         self._reasons: set[str] = set()  # reported, and not over yet
+        self._has_looked = False  # at the button, or for it
         self._is_open = False
         self._opened_ns = 0
         self._worker = Worker(
@@ -56,7 +57,7 @@ class ButtonReader:
 
     def close(self) -> None:
         """Stop when the wearer's gesture under way is decided: a mayday that is being called as the
-        agent ends is not cut off.
+        agent ends is not cut off, not even where it ends as it begins.
         """
         end_s = time.monotonic() + _DECIDED_S
         while self._is_deciding and time.monotonic() < end_s:
@@ -66,7 +67,8 @@ class ButtonReader:
 
     @property
     def _is_deciding(self) -> bool:
-        return self._worker.is_alive and self._gestures.is_undecided
+        is_undecided = not self._has_looked or self._gestures.is_undecided
+        return self._worker.is_alive and is_undecided
 
     def _step(self) -> float:
         try:
@@ -83,6 +85,7 @@ class ButtonReader:
         if self._is_open:
             self._take(self._gestures.lose(self._clock.monotonic_ns()))
         self._is_open = False
+        self._has_looked = True
         self._report(reason)
         return _RETRY_S
 
@@ -98,6 +101,7 @@ class ButtonReader:
         for change in self._driver.read():
             self._take(self._gestures.push(change))
         self._take(self._gestures.advance(now_ns))
+        self._has_looked = True
         if self._reasons and now_ns - self._opened_ns > _RECOVERED_NS:
             logger.info("%s can be read again", self._title)
             self._reasons.clear()

@@ -9,6 +9,7 @@ from threading import Event, Thread
 
 import pytest
 
+from edge.agent import runtime
 from edge.agent.runtime import Agent
 from edge.app.composition import compose_agent
 from edge.config import EdgeConfig
@@ -180,17 +181,54 @@ def test_two_presses_that_cancel_a_mayday_acknowledge_nothing(tmp_path: Path) ->
     assert [one.state for one in unit.station.replies] == [CommandState.RECEIVED]
 
 
-def test_a_mayday_is_sent_where_the_tracker_fails_at_that_moment(tmp_path: Path) -> None:
+def test_a_mayday_is_sent_where_the_tracker_fails_at_that_moment(tmp_path, monkeypatch) -> None:
     unit = Unit(tmp_path)
 
     def fail(*_: object) -> None:
         del unit.button.reader.take  # what is taken from now on comes after the failure
         raise ZeroDivisionError("of the tracker")
 
+    monkeypatch.setattr(runtime, "_EARLY_NS", 0)
     unit.start()
     unit.button.reader.take = lambda: ()  # type: ignore[method-assign]
     unit.button.press(3.5)
     unit.agent._parts.pipeline.step = fail  # type: ignore[method-assign,assignment]
+    unit.join()
+    assert isinstance(unit.error, ZeroDivisionError)
+    assert unit.station.calls() == [MAYDAY]
+
+
+def fail_at_once(unit: Unit) -> None:
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError("of the tracker")
+
+    unit.agent._parts.pipeline.step = fail  # type: ignore[method-assign,assignment]
+
+
+def test_a_tracker_that_fails_at_each_start_leaves_time_to_call(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(runtime, "_CALLS_NS", 10**18)
+    unit = Unit(tmp_path)
+    fail_at_once(unit)
+    unit.start()
+    until(lambda: any("ZeroDivisionError" in one.detail for one in unit.station.events), "a fault")
+    unit.button.press(3.5)
+    until(lambda: unit.station.calls() == [MAYDAY], "the mayday")
+    monkeypatch.setattr(runtime, "_CALLS_NS", 0)
+    unit.join()
+    assert isinstance(unit.error, ZeroDivisionError)
+    faults = [one for one in unit.station.events if one.kind is EventKind.SENSOR_FAULT]
+    assert len(faults) == 1
+
+
+def test_a_hold_that_is_found_by_an_agent_that_fails_at_once_is_a_mayday(tmp_path, monkeypatch):
+    """Its service starts it again and again, and its wearer holds the button all the while."""
+    monkeypatch.setattr(runtime, "_EARLY_NS", -1)
+    unit = Unit(tmp_path)
+    fail_at_once(unit)
+    unit.button.is_pressed = True
+    unit.start()
+    unit.button.let_look()
+    unit.button.clock.advance(3.5)
     unit.join()
     assert isinstance(unit.error, ZeroDivisionError)
     assert unit.station.calls() == [MAYDAY]
