@@ -52,6 +52,13 @@ Button = Annotated[
         "evdev:/dev/input/eventN."
     ),
 ]
+Output = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="An output that notifies the wearer: led:NAME, beeper:/dev/input/DEVICE or "
+        "speech:VOICE; may be repeated."
+    ),
+]
 Enrolment = Annotated[
     Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
 ]
@@ -99,6 +106,7 @@ def run(
     temperature: Temperature = None,
     battery: Battery = None,
     button: Button = None,
+    output: Output = None,
     enrolment: Enrolment = None,
     connect: Connect = None,
     data: Data = None,
@@ -125,6 +133,7 @@ def run(
         "temperatures": temperature,
         "battery": battery,
         "button": button,
+        "outputs": output,
         "connect": connect,
         "data": data,
         "tracker": tracker,
@@ -147,6 +156,7 @@ def check(
     temperature: Temperature = None,
     battery: Battery = None,
     button: Button = None,
+    output: Output = None,
     enrolment: Enrolment = None,
     connect: Connect = None,
     data: Data = None,
@@ -170,6 +180,7 @@ def check(
         "temperatures": temperature,
         "battery": battery,
         "button": button,
+        "outputs": output,
         "connect": connect,
         "data": data,
         "calibration": calibration,
@@ -183,6 +194,7 @@ def check(
 @app.command()
 def sources() -> None:
     """List where samples can come from, and what can be read beside them."""
+    from edge.notifiers.registry import NOTIFIERS  # noqa: PLC0415
     from edge.sources.gnss.registry import RECEIVERS  # noqa: PLC0415
     from edge.sources.registry import SOURCES  # noqa: PLC0415
     from edge.sources.temperature.registry import TEMPERATURE_SENSORS  # noqa: PLC0415
@@ -197,6 +209,8 @@ def sources() -> None:
     typer.echo("--battery NAME or auto")
     for button in BUTTONS:
         typer.echo(f"--button {button.scheme}:{button.argument}")
+    for output in NOTIFIERS:
+        typer.echo(f"--output {output.scheme}:{output.argument}")
 
 
 @app.command()

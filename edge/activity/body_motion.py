@@ -47,11 +47,21 @@ class BodyMotion:
         self._parts: list[Floats] = []  # (m, 6) accel, gyro of the window not yet full
         self._force_before_mps2: Floats | None = None
         self._still_ns = 0
+        self._moving_ns = 0
 
     @property
     def motionless_s(self) -> float:
         """Time without motion; windows without usable samples do not count either way."""
         return self._still_ns / NS_PER_S
+
+    @property
+    def moving_s(self) -> float:
+        """Time with motion, all in all."""
+        return self._moving_ns / NS_PER_S
+
+    def note_motion(self) -> None:
+        """Begin the time without motion anew: the wearer has pressed the button."""
+        self._still_ns = 0
 
     def push(self, imu: ImuBatch) -> list[MotionWindow]:
         """Take samples; return the windows that they complete."""
@@ -82,6 +92,7 @@ class BodyMotion:
         )
         self._force_before_mps2 = force_mps2
         self._still_ns = 0 if moving else self._still_ns + WINDOW_NS
+        self._moving_ns += WINDOW_NS if moving else 0
         peak_radps = float(np.linalg.norm(gyro_radps, axis=1).max(initial=0.0))
         return MotionWindow((self._cell + 1) * WINDOW_NS, moving, force_mps2, peak_radps)
 

@@ -60,6 +60,14 @@ class ActivityMonitor:
         return self._motion.motionless_s
 
     @property
+    def moving_s(self) -> float:
+        return self._motion.moving_s
+
+    def note_press(self) -> None:
+        """Take a press of the button for motion: it cancels the no-motion pre-alert."""
+        self._motion.note_motion()
+
+    @property
     def steps(self) -> int:
         """Steps of both feet; the unit counts the strides of one, also those on the spot."""
         return 2 * self._stride_count

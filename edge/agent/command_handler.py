@@ -67,6 +67,17 @@ class CommandHandler:
             self._remember(reply)
         return replies
 
+    def note_notified(self, command_id: str) -> CommandReply | None:
+        """Answer that an output has notified the wearer; None where that is no news."""
+        reply = self._replies.get(command_id)
+        if reply is None or reply.state is not CommandState.RECEIVED:
+            return None
+        notified = msgspec.structs.replace(
+            reply, header=self._stamper.header(), state=CommandState.NOTIFIED
+        )
+        self._remember(notified)
+        return notified
+
     def _remember(self, reply: CommandReply) -> None:
         self._replies[reply.command_id] = reply
         if len(self._replies) > REMEMBERED:

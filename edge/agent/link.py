@@ -77,6 +77,11 @@ class Link:
         """True while the thread holds the link or seeks it, as it does until ``close``."""
         return self._worker.is_working
 
+    @property
+    def is_lost(self) -> bool:
+        """True from when the log says that there is no link until there is one."""
+        return self._reported_linked is False
+
     def set_up(self, *, up: bool) -> None:
         """Bring the link up or down, soon."""
         if self._wanted_up == up:  # as with most batches: waking would hurry the link's checks

@@ -52,6 +52,7 @@ from shared.messages import (
 )
 
 LIVE = Timeline()
+_WORN_S = 20.0  # of motion, all in all
 _SIGHTED_MAX = 1000  # things told from each other
 _ONE_PRESS_NS = 3 * NS_PER_S  # a thumb that presses several times
 _DESCRIPTION_FOR_TRACKER_HZ = 0.2  # it cannot begin before it has heard one
@@ -67,6 +68,7 @@ class UnitIdentity:
     sensor: SensorDescription
     calibration: Calibration | None = None
     place: ApproximatePosition | None = None
+    outputs: tuple[str, ...] = ()  # kinds of those that notify the wearer
 
 
 class TrackerPipeline:
@@ -107,6 +109,7 @@ class TrackerPipeline:
         self._ambient = AmbientTemperature(_rate_hz(TEMPERATURE))
         self._electronics = CurrentReadings()
         self._batteries = Batteries()
+        self._battery: float | None = None
         self._mayday = mayday
         self._mayday_ns: int | None = None  # when it was pressed and said
         self._has_gps = False
@@ -124,10 +127,31 @@ class TrackerPipeline:
     def is_mayday_active(self) -> bool:
         return self._mayday
 
+    @property
+    def motionless_s(self) -> float:
+        return self._monitor.motionless_s
+
+    @property
+    def is_worn(self) -> bool:
+        """True once it has moved for a while: a unit that lies on a shelf is not worn."""
+        return self._monitor.moving_s >= _WORN_S
+
+    @property
+    def is_on_foot(self) -> bool:
+        return self._mounting.is_on_foot
+
+    @property
+    def battery(self) -> float | None:
+        """Level of the emptiest battery by its last reading, 0 ... 1; None: not known."""
+        return self._battery
+
     def take_presses(
         self, presses: Iterable[ButtonPress], timeline: Timeline = LIVE
     ) -> tuple[Message, ...]:
         """Return what is sent of presses; no tracker or sensor has a part in it."""
+        presses = tuple(presses)
+        if presses:
+            self._monitor.note_press()
         return tuple(
             message
             for press in presses
@@ -247,6 +271,7 @@ class TrackerPipeline:
 
     def _status(self, t_ns: int, timeline: Timeline) -> Status:
         battery = self._batteries.emptiest(t_ns)
+        self._battery = None if battery is None else battery.level
         return Status(
             header=self._stamper.header(timeline.to_mono_ns(t_ns)),
             activity=self._monitor.activity(t_ns),
@@ -283,6 +308,7 @@ class TrackerPipeline:
             calibrated_s=None if calibration is None else round(calibration.made.timestamp()),
             calibration_faults="" if calibration is None else "; ".join(calibration.faults()),
             gain_std=sensor.gain_std,
+            outputs=self._identity.outputs,
         )
 
     def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:

@@ -16,12 +16,12 @@ from threading import Event
 
 import msgspec
 
-from edge.agent.command_handler import CommandHandler
 from edge.agent.link import Link
 from edge.agent.mayday_latch import MaydayLatch
 from edge.agent.outbox import Outbox
 from edge.agent.pipeline import TrackerPipeline
 from edge.agent.source_reader import SourceReader, TimedBatch
+from edge.agent.wearer_notifier import WearerNotifier
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Timeline
 from edge.sample_codec.codec import SampleEncoder, batch_of
@@ -36,7 +36,7 @@ from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.envelope import Stamper
 from shared.errors import RecordingError, WireError
-from shared.messages import Command, EventKind, Heartbeat, UnitEvent
+from shared.messages import Command, EventKind, Heartbeat, Message, UnitEvent
 from shared.messages.event import FAILED
 from shared.service_manager import ServiceManager
 
@@ -58,7 +58,7 @@ class AgentParts:
     reader: SourceReader
     raw: SampleEncoder
     pipeline: TrackerPipeline
-    command_handler: CommandHandler
+    wearer: WearerNotifier
     stamper: Stamper
     clock: StationClock
     black_box: BlackBox
@@ -82,7 +82,7 @@ class Agent:
         self._started_ns = 0
         self._failure: Exception | None = None  # of the tracker, soon after the start
         self._silence_reported = False
-        self._storage_faults = ["", "", "", ""]
+        self._storage_faults = ["", "", "", "", ""]
         self._time_query_failed = False
         self.commands_not_decoded = 0
 
@@ -97,8 +97,9 @@ class Agent:
         end_ns = None if for_s is None else self._started_ns + round(for_s * NS_PER_S)
         reason = FAILED
         try:
-            parts.outbox.put(parts.pipeline.start())
+            self._put_own(parts.pipeline.start())
             parts.reader.start()
+            parts.wearer.start()
             parts.manager.ready()
             while not stop.is_set() and not parts.reader.ended:
                 if end_ns is not None and parts.clock.monotonic_ns() >= end_ns:
@@ -119,6 +120,7 @@ class Agent:
         if timed is not None:
             self._take_batch(timed)
         self._take_commands()
+        self._parts.outbox.put(self._parts.wearer.step())
         self._parts.clock.turn(self._ask_time)
         self._check_parts()
         if self._parts.clock.monotonic_ns() >= self._next_heartbeat_ns:
@@ -169,10 +171,15 @@ class Agent:
         parts = self._parts
         for press in presses:
             is_mayday_active = parts.pipeline.is_mayday_active
-            parts.outbox.put(parts.pipeline.take_presses((press,), timeline))
+            self._put_own(parts.pipeline.take_presses((press,), timeline))
             parts.mayday_latch.set(is_active=parts.pipeline.is_mayday_active)
             if press.button == ACKNOWLEDGE or (press.button == CANCEL and not is_mayday_active):
-                parts.outbox.put(parts.command_handler.acknowledge())
+                parts.outbox.put(parts.wearer.acknowledge())
+
+    def _put_own(self, messages: tuple[Message, ...]) -> None:
+        """Send messages among which a mayday may be."""
+        self._parts.wearer.note_sent(messages)
+        self._parts.outbox.put(messages)
 
     def _take_commands(self) -> None:
         parts = self._parts
@@ -187,7 +194,7 @@ class Agent:
                 logger.warning("a command that cannot be understood: %s", error)
                 continue
             assert isinstance(command, Command)
-            parts.outbox.put((parts.command_handler.take(command),))
+            parts.outbox.put((parts.wearer.take_command(command),))
 
     def _check_parts(self) -> None:
         """Detect parts that have stopped working, and report each once."""
@@ -201,7 +208,7 @@ class Agent:
         if self._failure is not None and self._is_over(_CALLS_NS):
             raise self._failure
         self._report_storage_faults()
-        for detail in parts.reader.take_faults():
+        for detail in (*parts.reader.take_faults(), *parts.wearer.take_faults()):
             self._send_event(EventKind.SENSOR_FAULT, detail)
         silent_ns = parts.clock.monotonic_ns() - self._last_batch_ns
         if parts.source.is_live and silent_ns > _SILENT_NS and not self._silence_reported:
@@ -219,6 +226,7 @@ class Agent:
             parts.journal_writer.fault or "",
             parts.black_box.fault or "",
             parts.mayday_latch.fault,
+            parts.wearer.fault,
         ]
         for fault, before in zip(faults, self._storage_faults, strict=True):
             if fault and not before:
@@ -269,6 +277,7 @@ class Agent:
             last.callback(parts.journal_writer.close)
             last.callback(parts.outbox.close)
             last.callback(parts.mayday_latch.close)
+            last.callback(parts.wearer.close)
             parts.reader.close()
             self._take_presses(parts.reader.last_presses(), Timeline())
             parts.outbox.put(parts.pipeline.finish(self._timeline))

@@ -23,6 +23,7 @@ from edge.preflight.installation import (
     certificate_finding,
     storage_findings,
 )
+from edge.preflight.output_check import output_findings
 from edge.preflight.report import encode_report, print_finding, print_verdict
 from edge.preflight.station_check import station_findings
 from edge.sources.interface import Source
@@ -67,6 +68,7 @@ def check_unit(config: EdgeConfig, survey_s: float) -> Iterator[Finding]:
             )
             yield calibration_finding(calibration, now)
             yield from _sensor_findings(config, source, survey_s)
+        yield from output_findings(config.outputs)
         yield from station_findings(member.unit_id, ZenohStation(member), SystemClock())
 
 

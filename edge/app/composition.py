@@ -14,17 +14,20 @@ from queue import SimpleQueue
 from edge.agent.command_handler import CommandHandler
 from edge.agent.link import Link, StationEndpoint
 from edge.agent.mayday_latch import MaydayLatch
+from edge.agent.open_commands import OpenCommands
 from edge.agent.outbox import Outbox
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.agent.restore_state import answers_before, mayday_before, position_rate_before
 from edge.agent.runtime import Agent, AgentParts
 from edge.agent.source_reader import SourceReader
+from edge.agent.wearer_notifier import WearerNotifier
 from edge.app.calibration_in_use import calibration_in_use
 from edge.calibration.file import identity
 from edge.calibration.model import Calibration
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Follower, Timekeeper
 from edge.config import EdgeConfig
+from edge.notifiers.outputs import Outputs
 from edge.sample_codec.codec import SampleEncoder, sensor_of
 from edge.sample_codec.uplink import RawUplink
 from edge.samples import SensorDescription
@@ -56,6 +59,8 @@ def compose_agent(
     """Build the agent and its threads; ``speed`` None plays a recording without waiting."""
     clock = StationClock(SystemClock())
     with ExitStack() as on_error:
+        outputs = Outputs(config.outputs)
+        on_error.callback(outputs.close)
         journal, damaged = open_journal(
             folder.journal, _new_boot_id, clock.utc_ns(), round(config.storage.journal_mb * 1e6)
         )
@@ -68,7 +73,7 @@ def compose_agent(
         latch = MaydayLatch(folder.mayday, clock)
         on_error.callback(latch.close)
         pipeline = _pipeline(
-            config, sensor_of(description), calibration, stamper, journal, latch, clock
+            config, sensor_of(description), calibration, stamper, journal, latch, outputs, clock
         )
         latch.set(is_active=pipeline.is_mayday_active)
         black_box = BlackBox(
@@ -86,6 +91,13 @@ def compose_agent(
         on_error.callback(journal_writer.close)
         outbox = Outbox(unit_id, journal_writer, link.publish)
         on_error.callback(outbox.close)
+        open_commands = OpenCommands(folder.open_commands)
+        on_error.callback(open_commands.close)
+        handler = CommandHandler(
+            stamper,
+            pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
+            answers_before(journal),
+        )
         for detail in _quarantine_reports(folder, damaged):
             outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
         agent = Agent(
@@ -94,10 +106,8 @@ def compose_agent(
                 reader=SourceReader(source, clock, speed, auxiliaries, _timekeeper(source)),
                 raw=raw,
                 pipeline=pipeline,
-                command_handler=CommandHandler(
-                    stamper,
-                    pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
-                    answers_before(journal),
+                wearer=WearerNotifier(
+                    outputs, open_commands, handler, pipeline, link, journal, clock
                 ),
                 stamper=stamper,
                 clock=clock,
@@ -170,13 +180,22 @@ def _pipeline(
     stamper: Stamper,
     journal: Journal,
     latch: MaydayLatch,
+    outputs: Outputs,
     clock: StationClock,
 ) -> TrackerPipeline:
     if calibration is not None:
         sensor = calibration.described(sensor)
     tracks = config.tracker != NO_TRACKER
     return TrackerPipeline(
-        UnitIdentity(_version(), config.source, config.tracker, sensor, calibration, config.place),
+        UnitIdentity(
+            _version(),
+            config.source,
+            config.tracker,
+            sensor,
+            calibration,
+            outputs=outputs.kinds,
+            place=config.place,
+        ),
         make_tracker(config.tracker, sensor, (NO_TRACKER,)) if tracks else NoTracker(),
         stamper,
         position_rate_before(journal, clock.monotonic_ns()) or config.position_rate_hz,

@@ -43,8 +43,8 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
             raise ConfigError(f"{config.source} is there to be tracked; choose a tracker")
         if any(_auxiliaries_set(config)):
             raise ConfigError(
-                f"nothing is read beside {config.source}: sightings, gps, temperatures, battery "
-                "and button are the unit's own"
+                f"nothing is read beside {config.source}: sightings, gps, temperatures, battery, "
+                "button and outputs are the unit's own"
             )
         listener = RawStreamListener(source.unit_id, station.open_listening_bus)
         with closing(listener):
@@ -56,7 +56,8 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
 
 
 def _auxiliaries_set(config: EdgeConfig) -> tuple[object, ...]:
-    return config.sightings, config.gps, config.temperatures, config.battery, config.button
+    read = (config.sightings, config.gps, config.temperatures, config.battery, config.button)
+    return (*read, config.outputs)
 
 
 def open_auxiliaries(config: EdgeConfig) -> tuple[AuxiliarySource, ...]:

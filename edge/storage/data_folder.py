@@ -44,6 +44,10 @@ class DataFolder:
         return self.path / "mayday"
 
     @property
+    def open_commands(self) -> Path:
+        return self.path / "open_commands.json"
+
+    @property
     def calibrations(self) -> Path:
         """Calibrations ever used, by their identity: without them the raw samples do not"""
         return self.path / "calibrations"

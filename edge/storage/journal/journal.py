@@ -102,6 +102,11 @@ class Journal:
                     raise
 
     @property
+    def acknowledged_seq(self) -> int:
+        """Number up to which the station has all messages of this boot safe; 0: of none."""
+        return self._acknowledged_seq
+
+    @property
     def pending(self) -> int:
         """Messages of this boot that the station is not known to have."""
         return max(0, self.last_seq - self._acknowledged_seq)

@@ -1,0 +1,1 @@
+"""Outputs that notify the wearer: lights, beepers, speech."""

@@ -1,0 +1,43 @@
+"""Outputs of one unit: the same notices are played on all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from pathlib import Path
+
+from edge.notifiers.player import NoticePlayer
+from edge.notifiers.registry import open_notifier, output_kind
+from edge.notifiers.signals import Notice
+from edge.sources.sysfs import SYSFS
+
+
+class Outputs:
+    """``start``, then ``show`` what the wearer is to be notified of; may have none."""
+
+    def __init__(self, texts: Iterable[str], sysfs: Path = SYSFS) -> None:
+        """``texts``: as in the settings.  Raises ConfigError."""
+        chosen = tuple(texts)
+        self.kinds = tuple(dict.fromkeys(output_kind(text) for text in chosen))
+        self._players = [NoticePlayer(text, open_notifier(text, sysfs)) for text in chosen]
+
+    def start(self) -> None:
+        for player in self._players:
+            player.start()
+
+    def show(self, notices: Sequence[Notice]) -> None:
+        """Set what is played from now on; never waits."""
+        for player in self._players:
+            player.show(notices)
+
+    def take_played(self) -> tuple[Notice, ...]:
+        """Return notices that an output has played since the last call, each once an output."""
+        return tuple(chain.from_iterable(player.take_played() for player in self._players))
+
+    def take_faults(self) -> tuple[str, ...]:
+        """Return new faults, a sentence each, for a person."""
+        return tuple(chain.from_iterable(player.take_faults() for player in self._players))
+
+    def close(self) -> None:
+        for player in self._players:
+            player.close()

@@ -1,0 +1,31 @@
+"""Check of the outputs that notify the wearer: each plays a test message once, for a person."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from threading import Event
+
+from edge.notifiers.registry import open_notifier
+from edge.notifiers.signals import Notice, Signal
+from edge.preflight.finding import Finding, Level
+from edge.sources.sysfs import SYSFS, explain_read_error
+
+_TEST = Notice(Signal.TEXT, text="this is a test.")
+_NOBODY_NOTIFIED = "the wearer cannot be notified of orders; it takes the voice radio"
+
+
+def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[Finding]:
+    """Play a test message on each output, as in the settings.  Raises ConfigError."""
+    notifiers = {text: open_notifier(text, sysfs) for text in texts}
+    if not notifiers:
+        yield Finding("output", Level.WARNING, "the unit has none", _NOBODY_NOTIFIED)
+    for text, notifier in notifiers.items():
+        subject = f"output {text}"
+        try:
+            notifier.play(_TEST, Event())
+            notifier.close()
+        except OSError as error:
+            yield Finding(subject, Level.FAILED, explain_read_error(error), _NOBODY_NOTIFIED)
+        else:
+            yield Finding(subject, Level.OK, "has played a test message; was it seen or heard?")

@@ -1,0 +1,122 @@
+"""Orders of a station as they reach the wearer, from the console to a voice or a line."""
+
+from __future__ import annotations
+
+import wave
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+from shutil import which
+from typing import Any
+
+import pytest
+
+from edge.app.jit_warmup import compile_trackers
+from tests.rig.shown_unit import ShownUnit
+from tests.rig.station_command import Agent, Browser, Command
+from tests.rig.waiting import until
+
+FF_01 = "u1"
+
+
+@pytest.fixture
+def browser(serve: Callable[..., Command], data: Path) -> Iterator[Browser]:
+    with Browser(serve().wait_ready(), data) as browser:
+        browser.call("POST", "/units", json={"unit_id": FF_01, "label": FF_01})
+        yield browser
+
+
+@pytest.fixture
+def shown(browser: Browser) -> Iterator[ShownUnit]:
+    with closing(ShownUnit(browser, FF_01)) as shown:
+        until(lambda: shown.card, "the unit's card")
+        yield shown
+
+
+@pytest.fixture
+def started(port: int, tmp_path: Path) -> Iterator[Callable[..., Agent]]:
+    compile_trackers()
+    agents: list[Agent] = []
+
+    def started(*outputs: str) -> Agent:
+        flags = [flag for text in outputs for flag in ("--output", text)]
+        where = ("--data", str(tmp_path / "edge"), "--connect", f"tcp/127.0.0.1:{port}")
+        output = tmp_path / f"agent-{len(agents)}.txt"
+        agents.append(Agent(output, "--unit", FF_01, "--source", "bench:5", *where, *flags))
+        return agents[-1]
+
+    yield started
+    for agent in agents:
+        agent.kill()
+        print(agent.said())  # shown beside a failure
+
+
+def order(browser: Browser, kind: str, **fields: Any) -> str:
+    answer = browser.call(
+        "POST", "/commands", json={"kind": kind, "target": {"unit_id": FF_01}, **fields}
+    )
+    command_id: str = answer["command_id"]
+    return command_id
+
+
+def delivery(browser: Browser, command_id: str) -> dict[str, Any]:
+    commands = browser.call("GET", "/commands")
+    (found,) = (one for one in commands if one["command_id"] == command_id)
+    (unit,) = found["units"]
+    return dict(unit)
+
+
+def test_an_order_reaches_the_wearer_the_station_is_told_and_a_restart_repeats_it(
+    browser, shown, started
+) -> None:
+    agent = started("terminal:FF-01")
+    until(lambda: "linked to the station" in agent.said(), "the link")
+    command_id = order(browser, "evacuate")
+    until(
+        lambda: "FF-01: [evacuate] Evacuate. Leave the building now." in agent.said(), "the order"
+    )
+    until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was played")
+    text_id = order(browser, "text", text="stairs are gone")
+    until(lambda: "FF-01: [message] Message: stairs are gone" in agent.said(), "the message")
+    until(lambda: delivery(browser, text_id)["state"] == "notified", "that it was played, too")
+    agent.kill()
+    again = started("terminal:FF-01")
+    until(lambda: "[evacuate]" in again.said(), "the order after a restart")
+    until(lambda: "stairs are gone" in again.said(), "the message after a restart")
+    assert again.stop() == 0
+
+
+@pytest.mark.skipif(
+    which("espeak-ng") is None or which("aplay") is None,
+    reason="no espeak-ng or no aplay on this machine: install espeak-ng and alsa-utils",
+)
+def test_a_message_is_spoken_on_the_sound_card(
+    browser, shown, started, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    card, sound = tmp_path / "asound.conf", tmp_path / "spoken.wav"
+    card.write_text(
+        "pcm.quiet { type null }\n"
+        f'pcm.default {{ type file slave.pcm "quiet" file "{sound}" format "wav" }}\n'
+    )
+    monkeypatch.setenv("ALSA_CONFIG_PATH", str(card))
+    agent = started("speech:en")
+    until(lambda: "linked to the station" in agent.said(), "the link")
+    command_id = order(browser, "text", text="come out by the window")
+    until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was spoken")
+    with wave.open(str(sound)) as spoken:
+        assert spoken.getnframes() > spoken.getframerate()  # more than a second
+    assert agent.stop() == 0
+
+
+@pytest.mark.skipif(which("espeak-ng") is None, reason="no espeak-ng on this machine")
+def test_without_a_sound_card_nobody_was_notified_and_the_reason_is_an_alarm(
+    browser, shown, started, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "asound.conf").write_text("")
+    monkeypatch.setenv("ALSA_CONFIG_PATH", str(tmp_path / "asound.conf"))
+    agent = started("speech:en")
+    until(lambda: "linked to the station" in agent.said(), "the link")
+    command_id = order(browser, "text", text="come out by the window")
+    until(lambda: "output speech:en" in str(shown.alarms), "the alarm of the broken output")
+    assert delivery(browser, command_id)["state"] == "received"
+    assert agent.stop() == 0

@@ -1,0 +1,141 @@
+"""From a command to the outputs, and from what they have played to the station."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from edge.agent.command_handler import CommandHandler
+from edge.agent.open_commands import OpenCommands
+from edge.agent.wearer_notifier import WearerNotifier
+from edge.notifiers.signals import Notice, Signal
+from shared.clock import NS_PER_S, ManualClock
+from shared.envelope import Stamper
+from shared.messages import (
+    Command,
+    CommandKind,
+    CommandState,
+    EventKind,
+    Header,
+    UnitEvent,
+)
+
+HEADER = Header("station", 1, 1, 0)
+
+
+class Outputs:
+    """Plays nothing until it is told to."""
+
+    def __init__(self) -> None:
+        self.shown: tuple[Notice, ...] = ()
+        self.played: list[Notice] = []
+
+    def show(self, notices: tuple[Notice, ...]) -> None:
+        self.shown = notices
+
+    def take_played(self) -> tuple[Notice, ...]:
+        played, self.played = tuple(self.played), []
+        return played
+
+    def close(self) -> None:
+        pass
+
+
+class Rig:
+    def __init__(self, folder: Path) -> None:
+        self.clock = ManualClock()
+        self.outputs = Outputs()
+        self.pipeline = SimpleNamespace(
+            motionless_s=0.0, is_worn=True, is_on_foot=True, battery=None
+        )
+        self.link = SimpleNamespace(is_lost=False)
+        self.journal = SimpleNamespace(acknowledged_seq=0)
+        parts: tuple[Any, ...] = (
+            self.outputs,
+            OpenCommands(folder / "open_commands.json"),
+            CommandHandler(Stamper("u1", 1, self.clock), None),
+            self.pipeline,
+            self.link,
+            self.journal,
+            self.clock,
+        )
+        self.notifier = WearerNotifier(*parts)
+
+    def signals(self) -> list[Signal]:
+        self.notifier.step()
+        return [notice.signal for notice in self.outputs.shown]
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Iterator[Rig]:
+    rig = Rig(tmp_path)
+    with closing(rig.notifier):
+        yield rig
+
+
+def command(kind: CommandKind, *, text: str = "", expires_ns: int = 0) -> Command:
+    return Command(HEADER, kind.name, kind, "officer", expires_ns, text)
+
+
+def test_a_command_is_received_then_notified_once_then_acknowledged(rig: Rig) -> None:
+    received = rig.notifier.take_command(command(CommandKind.EVACUATE))
+    assert (received.state, received.awaits_wearer) == (CommandState.RECEIVED, True)
+    assert rig.signals() == [Signal.EVACUATE]
+    rig.outputs.played += [*rig.outputs.shown, *rig.outputs.shown]  # on two outputs
+    (notified,) = rig.notifier.step()
+    assert (notified.state, notified.awaits_wearer) == (CommandState.NOTIFIED, True)
+    repeat = rig.notifier.take_command(command(CommandKind.EVACUATE))
+    assert repeat.state is CommandState.NOTIFIED
+    (acknowledged,) = rig.notifier.acknowledge()
+    assert acknowledged.state is CommandState.ACKNOWLEDGED
+    assert rig.signals() == []
+    assert rig.notifier.take_command(command(CommandKind.EVACUATE)).state is (
+        CommandState.ACKNOWLEDGED
+    )
+    assert rig.signals() == []
+
+
+def test_a_command_that_was_answered_before_it_was_played_is_not_notified(rig: Rig) -> None:
+    rig.notifier.take_command(command(CommandKind.TEXT, text="come out"))
+    rig.signals()
+    rig.outputs.played += rig.outputs.shown
+    rig.notifier.acknowledge()
+    assert rig.notifier.step() == ()
+
+
+def test_a_command_whose_time_is_over_is_silent(rig: Rig) -> None:
+    expires_ns = rig.clock.utc_ns() + NS_PER_S
+    rig.notifier.take_command(command(CommandKind.LOCATE, expires_ns=expires_ns))
+    assert rig.signals() == [Signal.LOCATE]
+    rig.clock.advance(2.0)
+    assert rig.signals() == []
+
+
+def test_a_mayday_that_the_station_has_is_confirmed_to_the_wearer(rig: Rig) -> None:
+    header = Header("u1", 1, 7, 0)
+    rig.notifier.note_sent((UnitEvent(header, EventKind.MAYDAY, "button"),))
+    assert rig.signals() == []
+    rig.journal.acknowledged_seq = 7
+    assert rig.signals() == [Signal.MAYDAY_SENT]
+
+
+def test_a_link_that_is_lost_for_half_a_minute_is_notified(rig: Rig) -> None:
+    assert rig.signals() == []
+    rig.link.is_lost = True
+    assert rig.signals() == []
+    rig.clock.advance(31.0)
+    assert rig.signals() == [Signal.LINK_LOST]
+    rig.link.is_lost = False
+    assert rig.signals() == []
+
+
+def test_a_press_and_motion_end_the_pre_alert(rig: Rig) -> None:
+    rig.pipeline.motionless_s = 21.0
+    assert rig.signals() == [Signal.PRE_ALERT]
+    rig.pipeline.motionless_s = 0.0
+    assert rig.signals() == []
