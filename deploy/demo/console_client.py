@@ -85,6 +85,10 @@ class ConsoleClient:
         order = {"kind": "par_request", "target": {"everyone": True}}
         self._call("POST", "/commands", json=order)
 
+    def evacuate(self, unit: str) -> None:
+        """Order one member out."""
+        self._call("POST", "/commands", json={"kind": "evacuate", "target": {"unit_id": unit}})
+
     def close_incident(self, incident_id: str) -> None:
         """Over whatever alarms are open and whoever is inside: it is a demo that ends."""
         path = f"/incidents/{incident_id}/close"

@@ -16,6 +16,9 @@ class Responder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     role: str
     helmet: str  # colour in the drawn portrait
     source: str
+    reacts_to: tuple[str, ...] = ()  # signals upon which the button is pressed
+    mayday_at_s: float | None = None  # after the beginning
+    evacuated_at_s: float | None = None  # when the commander orders it
 
 
 class Crew(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -23,7 +26,7 @@ class Crew(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_crew(recording: Path | None) -> Crew:
-    """The demo's crew; the last of them plays ``recording`` where there is one."""
+    """Return the demo's crew; the last of them plays ``recording`` where one is given."""
     text = (files("deploy.demo") / "crew.toml").read_text()
     crew = msgspec.convert(tomllib.loads(text), Crew)
     if recording is None:

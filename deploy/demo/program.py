@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import socket
 import time
 from collections.abc import Sequence
 from datetime import UTC, datetime
+from enum import Enum
 from pathlib import Path
 from threading import Event
 from typing import Annotated
@@ -19,6 +19,7 @@ from deploy.demo.console_client import ConsoleClient
 from deploy.demo.crew import Crew, read_crew
 from deploy.demo.processes import Child, Children, ToldToEndError
 from deploy.demo.stations import Site, Stations
+from deploy.demo.wearers import HELP, Wearers
 from shared.end_signals import told_to_end
 from shared.errors import UserError
 from shared.options import finite
@@ -29,8 +30,6 @@ _ARRIVAL_S = 120.0  # who was not heard by then will not be
 _ENGINE = -29.4, -9.6  # north and east of the plan's origin: where crew.toml has them begin
 _USUAL_HTTP_PORT = 8080
 _USUAL_BUS_PORT = 7447
-# A walk of some length on which the track is good to see.
-_USUAL_RECORDING = Path("walks") / "footprints" / "37"
 
 
 def demo(
@@ -47,7 +46,7 @@ def demo(
         bool, typer.Option(help="For scripts: no moving status line, a summary at the end.")
     ] = False,
     recording: Annotated[
-        Path | None, typer.Option(help="Recorded walk that the fifth responder plays.")
+        Path | None, typer.Option(help="A recorded walk: the fifth responder plays it.")
     ] = None,
     data: Annotated[
         Path | None, typer.Option(help="Folder for everything the demo writes.")
@@ -57,25 +56,39 @@ def demo(
     standby: Annotated[
         bool, typer.Option("--standby", help="A second station, which takes over from the first.")
     ] = False,
+    panel: Annotated[
+        bool,
+        typer.Option("--panel", help="Show what each wearer sees and hears; press their buttons."),
+    ] = False,
 ) -> None:
     """Run a base station and five responders on this machine until Ctrl-C."""
     stop = told_to_end()
     folder = data or Path("muster-data") / f"demo-{datetime.now(UTC):%Y%m%d-%H%M%S}"
     address = f"http://127.0.0.1:{http_port or _free_port(_USUAL_HTTP_PORT)}"
     bus = f"tls/127.0.0.1:{bus_port or _free_port(_USUAL_BUS_PORT)}"
-    crew = read_crew(recording or _recorded_walk())
+    crew = read_crew(recording)
     sites = [Site("first", folder / "station", bus, address)]
     if standby:
         other = f"http://127.0.0.1:{_free_port(0)}"
         sites.append(Site("second", folder / "standby", f"tls/127.0.0.1:{_free_port(0)}", other))
-    with Children(folder / "output", stop) as children:
+    output = folder / "output"
+    with Children(output, stop) as children, Wearers(crew.responder, output) as wearers:
+        show = Show.NOTHING if headless else Show.PANELS if panel else Show.STATUS
         stations = Stations(children, folder, tuple(sites))
         try:
-            _Demo(children, folder, stations, crew, headless).run(stop, for_s)
+            _Demo(children, folder, stations, crew, wearers, show).run(stop, for_s)
         except ToldToEndError:
             typer.echo("Ended before it had begun.")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)  # all has ended; one press more is no failure
+
+
+class Show(Enum):
+    """What the terminal shows while the demo runs."""
+
+    NOTHING = "nothing"
+    STATUS = "a line that is written over"
+    PANELS = "what the wearers' panels show"
 
 
 class _Demo:
@@ -87,16 +100,19 @@ class _Demo:
         folder: Path,
         stations: Stations,
         crew: Crew,
-        headless: bool,
+        wearers: Wearers,
+        show: Show,
     ) -> None:
         self._children = children
         self._folder = folder
         self._stations = stations
         self._crew = crew
-        self._headless = headless
+        self._wearers = wearers
+        self._show = show
         self._screen = Console(highlight=False, soft_wrap=True)
         self._mourned: list[Child] = []
         self._roll_called = False
+        self._evacuated: set[str] = set()
         self._complete_s: float | None = None
 
     def run(self, stop: Event, for_s: float | None) -> None:
@@ -115,6 +131,9 @@ class _Demo:
                 f"  data      {self._folder}\n"
             )
             self._tell_of_standby()
+            if self._show is Show.PANELS:
+                self._screen.print(HELP)
+                self._wearers.listen(self._screen.print)
             self._screen.print("Ctrl-C ends everything." if for_s is None else "")
             self._watch(console, stop, for_s)
             heard = self._summarise(console)
@@ -154,7 +173,7 @@ class _Demo:
             if source.startswith("recording:"):
                 console.start_unit_at(unit, north_m=-6.0, east_m=4.0)
             flags = ("--enrolment", str(enrolment), "--source", source, "--data", data)
-            self._children.start(unit, ("edge", "run", *flags))
+            self._children.start(unit, ("edge", "run", *flags, *self._wearers.flags(unit)))
 
     def _watch(self, console: ConsoleClient, stop: Event, for_s: float | None) -> None:
         """Wait for the end, saying how things stand; UserError when the station dies."""
@@ -171,18 +190,29 @@ class _Demo:
         for child in self._unmourned():
             self._mourned.append(child)
             self._mourn(child, console)
+        for line in self._wearers.step(elapsed_s):
+            if self._show is Show.PANELS:
+                self._screen.print(line, markup=False)
         try:
             if self._complete_s is None and not self._missing(console.units_heard()):
                 self._complete_s = elapsed_s
             if elapsed_s >= _ROLL_CALL_AT_S and not self._roll_called:
                 console.call_roll()
                 self._roll_called = True
-            if not self._headless and self._screen.is_terminal:
+            self._evacuate(console, elapsed_s)
+            if self._show is Show.STATUS and self._screen.is_terminal:
                 self._screen.print(self._status_line(console, elapsed_s), end="\r")
         except UserError:
             time.sleep(_WATCH_EVERY_S)
             if not self._unmourned():  # else it died since, and the next look is at another station
                 raise
+
+    def _evacuate(self, console: ConsoleClient, elapsed_s: float) -> None:
+        for one in self._crew.responder:
+            at_s = one.evacuated_at_s
+            if at_s is not None and elapsed_s >= at_s and one.unit not in self._evacuated:
+                console.evacuate(one.unit)
+                self._evacuated.add(one.unit)
 
     def _unmourned(self) -> list[Child]:
         return [child for child in self._children.dead() if child not in self._mourned]
@@ -223,13 +253,6 @@ class _Demo:
         for problem in health["problems"]:
             self._screen.print(f"  station: {problem}")
         return heard
-
-
-def _recorded_walk() -> Path | None:
-    """One of the recorded walks beside the checkout, where they are there."""
-    data = Path(os.environ.get("MUSTER_DATA", Path("..") / "shared" / "data"))
-    walk = data / _USUAL_RECORDING
-    return walk if walk.is_dir() else None
 
 
 def _free_port(usual: int) -> int:

@@ -30,7 +30,8 @@ class WearerState:
     is_on_foot: bool = True
     battery: float | None = None  # 0 empty ... 1 full
     unlinked_s: float = 0.0  # 0: there is a link
-    maydays_received: int = 0  # by the station
+    maydays_called: int = 0  # with this start of the agent
+    maydays_received: int = 0  # of these, by the station
 
 
 def notices(state: WearerState, commands: Iterable[OpenCommand]) -> tuple[Notice, ...]:
@@ -49,6 +50,8 @@ def _of_unit(state: WearerState) -> Iterator[Notice]:
         yield Notice(Signal.NO_MOTION)
     elif state.is_worn and state.motionless_s >= PRE_ALERT_S:
         yield Notice(Signal.PRE_ALERT)
+    if state.maydays_called:
+        yield Notice(Signal.MAYDAY_CALLED, str(state.maydays_called))
     if state.maydays_received:
         yield Notice(Signal.MAYDAY_SENT, str(state.maydays_received))
     if not state.is_on_foot:

@@ -45,7 +45,7 @@ class WearerNotifier:
         self._clock = clock
         self._linked_ns = clock.monotonic_ns()  # when there last was a link
         self._mayday_seq: int | None = None  # of a mayday that is not known to have arrived
-        self._maydays_received = 0
+        self._maydays_called = self._maydays_received = 0
 
     def start(self) -> None:
         self._outputs.start()
@@ -76,6 +76,7 @@ class WearerNotifier:
         for message in messages:
             if isinstance(message, UnitEvent) and message.kind is EventKind.MAYDAY:
                 self._mayday_seq = message.header.seq
+                self._maydays_called += 1
 
     def step(self) -> tuple[CommandReply, ...]:
         """Bring the outputs up to date; return replies about what they have played."""
@@ -101,5 +102,6 @@ class WearerNotifier:
             is_on_foot=self._pipeline.is_on_foot,
             battery=self._pipeline.battery,
             unlinked_s=(now_ns - self._linked_ns) / NS_PER_S,
+            maydays_called=self._maydays_called,
             maydays_received=self._maydays_received,
         )

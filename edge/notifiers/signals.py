@@ -18,6 +18,7 @@ class Signal(StrEnum):
     EVACUATE = "evacuate"
     PRE_ALERT = "pre-alert"
     NO_MOTION = "no motion"
+    MAYDAY_CALLED = "mayday called"
     PAR_REQUEST = "PAR request"
     TEXT = "message"
     LOCATE = "locate"
@@ -71,6 +72,7 @@ PATTERNS: dict[Signal, tuple[Pulse, ...]] = {
     Signal.EVACUATE: (Pulse(0.12, 0.08, _HIGH_HZ),) * 10,
     Signal.PRE_ALERT: tuple(Pulse(0.1 + 0.05 * step, 0.1, 1000 + 400 * step) for step in range(6)),
     Signal.NO_MOTION: (Pulse(2.0, 0.1, _HIGH_HZ),),
+    Signal.MAYDAY_CALLED: (Pulse(0.3, 0.1, _LOW_HZ), Pulse(0.9, 0.3, _HIGH_HZ)),
     Signal.PAR_REQUEST: (Pulse(0.4, 0.2, _MIDDLE_HZ), Pulse(0.4, 1.0, _HIGH_HZ)),
     Signal.TEXT: (Pulse(0.15, 0.1, _MIDDLE_HZ),) * 3 + (Pulse(0.15, 1.0, _MIDDLE_HZ),),
     Signal.LOCATE: (Pulse(1.0, 0.5, _HIGH_HZ),),
@@ -84,6 +86,7 @@ _SENTENCES = {
     Signal.EVACUATE: "Evacuate. Leave the building now.",
     Signal.PRE_ALERT: "You are not moving. Move, or press the button.",
     Signal.NO_MOTION: "Firefighter down here.",
+    Signal.MAYDAY_CALLED: "Mayday called.",
     Signal.PAR_REQUEST: "PAR. Press the button if you are well.",
     Signal.TEXT: "Message:",
     Signal.LOCATE: "You are being located.",

@@ -110,6 +110,14 @@ SCENARIOS: tuple[Scenario, ...] = (
         battery_start=0.97,
     ),
     Scenario(
+        name="holds-line",
+        summary="walks in and holds the line still for 26 seconds, again and again",
+        legs=_enter(),
+        loop=(_HOUSE.search("office"), Stand(26.0), _HOUSE.search("store"), Stand(26.0)),
+        start=(-9.0, 12.5),
+        building=True,
+    ),
+    Scenario(
         name="loses-radio",
         summary="searches rooms; the radio is gone from 22 seconds on, for 45 seconds",
         legs=_enter(),

@@ -8,11 +8,13 @@ from urllib.parse import parse_qsl
 from edge.wearer.evdev_button import EvdevButton
 from edge.wearer.interface import ButtonKind
 from edge.wearer.reader import ButtonReader
+from edge.wearer.socket_button import SocketButton
 from shared.clock import Clock
 from shared.errors import ConfigError
 
 BUTTONS: tuple[ButtonKind, ...] = (
     ButtonKind("evdev", EvdevButton, "NAME or /dev/input/eventN, with ?key=KEY_POWER"),
+    ButtonKind("socket", SocketButton, "PATH"),
 )
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from deploy.demo.panel_button import PanelButton
 from edge.wearer.interface import ButtonDriver, ButtonError, ContactChange
 from edge.wearer.registry import BUTTONS, open_button
 from shared.clock import SystemClock
@@ -23,13 +24,36 @@ class EmulatedEvdev:
     def plug_in(self) -> Device:
         return self._devices.plug_in(3)
 
+    def unplug_all(self) -> None:
+        """Nothing is held open for it."""
 
-EMULATED = {"evdev": EmulatedEvdev}
+
+class EmulatedPanel:
+    def __init__(self, folder: Path, _: pytest.MonkeyPatch) -> None:
+        self._path = folder / "button"
+        self.argument = str(self._path)
+        self._buttons: list[PanelButton] = []
+
+    def plug_in(self) -> PanelButton:
+        self._buttons.append(PanelButton(self._path))
+        return self._buttons[-1]
+
+    def unplug_all(self) -> None:
+        for button in self._buttons:
+            button.unplug()
+
+
+EMULATED: dict[str, type[EmulatedEvdev | EmulatedPanel]] = {
+    "evdev": EmulatedEvdev,
+    "socket": EmulatedPanel,
+}
 
 
 @pytest.fixture(params=EMULATED)
-def emulated(request, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> EmulatedEvdev:
-    return EMULATED[request.param](tmp_path, monkeypatch)
+def emulated(request, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    emulated = EMULATED[request.param](tmp_path, monkeypatch)
+    yield emulated
+    emulated.unplug_all()
 
 
 @pytest.fixture

@@ -27,6 +27,7 @@ def test_a_unit_that_is_well_is_silent() -> None:
         (WearerState(is_on_foot=False), Signal.NOT_ON_FOOT),
         (WearerState(battery=0.19), Signal.BATTERY_LOW),
         (WearerState(unlinked_s=30.0), Signal.LINK_LOST),
+        (WearerState(maydays_called=1), Signal.MAYDAY_CALLED),
         (WearerState(maydays_received=1), Signal.MAYDAY_SENT),
     ],
 )

@@ -119,9 +119,9 @@ def test_a_command_whose_time_is_over_is_silent(rig: Rig) -> None:
 def test_a_mayday_that_the_station_has_is_confirmed_to_the_wearer(rig: Rig) -> None:
     header = Header("u1", 1, 7, 0)
     rig.notifier.note_sent((UnitEvent(header, EventKind.MAYDAY, "button"),))
-    assert rig.signals() == []
+    assert rig.signals() == [Signal.MAYDAY_CALLED]
     rig.journal.acknowledged_seq = 7
-    assert rig.signals() == [Signal.MAYDAY_SENT]
+    assert rig.signals() == [Signal.MAYDAY_CALLED, Signal.MAYDAY_SENT]
 
 
 def test_a_link_that_is_lost_for_half_a_minute_is_notified(rig: Rig) -> None:
