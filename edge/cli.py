@@ -60,7 +60,10 @@ Output = Annotated[
     ),
 ]
 Enrolment = Annotated[
-    Path | None, typer.Option(help="File from `muster pki enroll`: who this unit is.")
+    Path | None,
+    typer.Option(
+        help="File from `muster pki enroll`, or a picture of its QR code: who this unit is."
+    ),
 ]
 Connect = Annotated[
     list[str] | None,
@@ -189,6 +192,24 @@ def check(
     set_up_logging("ERROR")  # what would be logged is a finding
     if not print_check(settings, for_s, as_json=as_json):
         raise typer.Exit(1)
+
+
+@app.command()
+def enrol(
+    picture: Annotated[
+        Path, typer.Argument(help="The enrolment's QR code: a photo, or as the console saved it.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="The enrolment file; else NAME.enrolment.toml.")
+    ] = None,
+) -> None:
+    """Make an enrolment file of a picture, which each start of the unit reads at once."""
+    from shared.enrolment import read_enrolment  # noqa: PLC0415
+
+    enrolment = read_enrolment(picture)
+    target = out or Path(f"{enrolment.name}.enrolment.toml")
+    enrolment.write(target)
+    typer.echo(f"{target}: {enrolment.holder.value} {enrolment.name}; delete {picture}")
 
 
 @app.command()

@@ -34,7 +34,7 @@ class EdgeConfig:
     button: str = ""  # the wearer's: evdev:NAME?key=KEY_POWER; empty: none, or of the source
     outputs: tuple[str, ...] = ()  # to the wearer: led:NAME, beeper:/dev/input/DEVICE, speech:en
     unit: str = ""  # unique among the units of a station; empty: as enrolled
-    enrolment: Path | None = None  # from `muster pki enroll`; none: the link is not secured
+    enrolment: Path | None = None  # file or picture of its code; none: the link is not secured
     connect: tuple[str, ...] = ()  # the station; empty: as enrolled, else tcp/127.0.0.1:7447
     data: Path = Path("muster-edge")  # a folder of its own for each unit is made in it
     tracker: str = "eskf"  # none: an agent elsewhere tracks, from the raw samples (bus:UNIT)

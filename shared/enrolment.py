@@ -2,7 +2,7 @@
 
 As a file it is TOML; as a QR code it is ``MUSTER1:`` and base32 of the same in compressed
 MessagePack, because a QR code packs capitals and digits best and a scanner that types like a
-keyboard gets them right.  ``read_enrolment`` takes either.
+keyboard gets them right.  ``read_enrolment`` takes either, and a picture of the code.
 """
 
 from __future__ import annotations
@@ -27,6 +27,9 @@ from shared.tls import DAMAGED, TlsIdentity, check_identity
 _COMPACT_PREFIX = "MUSTER1:"
 _CURVE = ec.SECP256R1()
 _MOST_BYTES = 65_536  # of a file or an unpacked code; an enrolment has about 2,000
+_MOST_PICTURE_BYTES = 32_000_000
+_PICTURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"RIFF")  # PNG, JPEG, WebP
+_HEIC = b"ftyp"  # behind the length of its first box: named, though it cannot be decoded
 
 
 class Holder(Enum):
@@ -114,17 +117,38 @@ def read_enrolment(path: Path) -> Enrolment:
     """Raises ConfigError, one sentence that names the file and what to do."""
     try:
         with path.open("rb") as file:
-            text = file.read(_MOST_BYTES).decode("utf-8-sig")
+            content = file.read(_MOST_BYTES)
+            if _is_picture(content):
+                content += file.read(_MOST_PICTURE_BYTES)
     except FileNotFoundError:
         raise ConfigError(f"{path}: there is no such enrolment file") from None
     except OSError as error:
         raise ConfigError(f"{path}: the enrolment cannot be read: {error}") from error
-    except UnicodeDecodeError:
-        raise ConfigError(f"{path}: this is no enrolment, nor text at all") from None
     try:
-        return parse_enrolment(text)
+        return parse_enrolment(_text(content))
     except ConfigError as error:
         raise ConfigError(f"{path}: {error}") from error
+
+
+def _is_picture(beginning: bytes) -> bool:
+    """Whether a file that begins like this is a picture, whatever its name; text never is."""
+    return beginning.startswith(_PICTURES) or beginning[4:8] == _HEIC
+
+
+def _text(content: bytes) -> str:
+    if _is_picture(content):
+        if len(content) > _MOST_PICTURE_BYTES:
+            raise ConfigError(
+                f"the picture is larger than {_MOST_PICTURE_BYTES // 1_000_000} MB; make it smaller"
+            )
+        # Few enrolments are pictures, and the library that decodes them is slow to load.
+        from shared.enrolment_picture import text_in_picture  # noqa: PLC0415
+
+        return text_in_picture(content, _COMPACT_PREFIX)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ConfigError("this is no enrolment, nor text at all") from None
 
 
 def parse_enrolment(text: str) -> Enrolment:

@@ -32,6 +32,13 @@ def test_the_library_of_a_button_is_that_which_is_tested():
     assert required.replace("evdev==", "evdev-binary==") in pinned("requirements.lock")
 
 
+def test_the_library_of_pictures_is_that_which_is_tested():
+    project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
+    (required,) = project["optional-dependencies"]["pictures"]
+    (installed,) = pinned("deploy/requirements-pictures.lock").items()
+    assert installed == (required, pinned("requirements.lock")[required])
+
+
 def test_what_is_installed_for_real_is_all_that_the_package_needs():
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
     installed = pinned("deploy/requirements.lock")
