@@ -169,6 +169,7 @@ class Scope(StrEnum):
     ASSIGNMENTS = "assignments"
     AUDIT = "audit"
     COMMANDS = "commands"
+    ENROLMENTS = "enrolments"
     EXPORTS = "exports"
     FORGETTING = "forgetting"
     HEALTH = "health"

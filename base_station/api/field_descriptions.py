@@ -69,6 +69,15 @@ FIELDS: Mapping[str, str] = {
     "scopes": "Parts of the API that the token is for; empty: all that its role may.",
     "days": "For how many days the token is good; null: until it is removed.",
     "Token.expires_ms": "When the token ends; null: it does not.",
+    # ---- enrolments
+    "NewEnrolment.days": "For how many days the certificate is valid.",
+    "renew": "Whether the unit is enrolled already and gets a new certificate; the old one works "
+    "until it ends.",
+    "valid_to_ms": "When the certificate ends.",
+    "ShownEnrolment.text": "The enrolment as the QR code has it; saved as a file it is one. It "
+    "holds the private key, and is shown this once.",
+    "qr_rows": "The QR code without its margin, a text for each row: 1 is a dark module, 0 a light "
+    "one.",
     # ---- incidents
     "incident_id": "The incident's id.",
     "opened_ms": "When the incident was opened.",

@@ -21,6 +21,7 @@ from base_station.core.idempotency import is_same_request
 from base_station.engine.ports import ActionResult, OperatorGate
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.replay.post_processing import PostProcessor
+from base_station.security.pki.folder import PkiFolder
 from base_station.site.plan_reader import PlanReader
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
@@ -53,6 +54,7 @@ class Services:
     is_replay_only: bool = False  # what is changed would be lost with its copy of the database
     recordings: TransferQueue | None = None  # None: a station that only replays
     post_processor: PostProcessor | None = None  # None: a station without a log
+    pki: PkiFolder | None = None  # None: a station that enrols nobody
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     plans: PlanReader = field(default_factory=PlanReader)  # of the drive that acts
     image_lock: ImageLock = field(default_factory=ImageLock)

@@ -269,6 +269,7 @@ class _Station:
             recordings=resources.recordings,
             post_processor=post_processor,
             plans=self._plans,
+            pki=resources.pki,
             accountability=resources.config.accountability,
         )
 

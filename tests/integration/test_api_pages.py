@@ -25,7 +25,14 @@ LISTS = {  # path: what names an entry, and its time
     "/audit": ("entry_id", "t_ms"),
 }
 BOUNDED = {  # lists that do not grow with what happens, by what bounds them
-    "people and machines": {"/people", "/units", "/users", "/tokens", "/accountability"},
+    "people and machines": {
+        "/people",
+        "/units",
+        "/enrolments",
+        "/users",
+        "/tokens",
+        "/accountability",
+    },
     "what is shown now": {"/pins", "/beacons", "/commands", "/replays", "/recordings"},
     "one incident": {"/incidents/{incident_id}/tracks"},
     "the program": {"/export-formats"},

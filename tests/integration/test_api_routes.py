@@ -18,6 +18,7 @@ from PIL import Image
 from base_station.accounts.principals import Role
 from base_station.api.authentication import Scope
 from base_station.api.routes import ROUTERS
+from base_station.security.pki.folder import PkiFolder
 from base_station.storage.db.records import EVER, Window
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import StandbyView
@@ -40,6 +41,7 @@ LEAST: dict[str, dict[str, Role | None]] = {
                "GET /people/{person_id}/photo": V, "PUT /people/{person_id}/photo": C},
     "units": {"GET /units": V, "POST /units": C, "PUT /units/{unit_id}": C,
               "PUT /units/{unit_id}/start": C, "PUT /reference-barometer": C},
+    "enrolments": {"GET /enrolments": A, "POST /enrolments": A},
     "assignments": {"GET /assignments": V, "POST /assignments": C,
                     "DELETE /assignments/{unit_id}": C},
     "incidents": {"GET /incidents": V, "POST /incidents": C, "GET /incidents/{incident_id}": V,
@@ -103,7 +105,11 @@ async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStati
     station = DeskStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     with TransferQueue(lambda *_: None, tmp_path / "recordings", clock) as desk:
-        services = dataclasses.replace(station.services, recordings=desk, ha_status=HaStatus())
+        pki = PkiFolder(tmp_path)
+        pki.create("Test", [], ["tls/192.0.2.7:7447"])
+        services = dataclasses.replace(
+            station.services, recordings=desk, ha_status=HaStatus(), pki=pki
+        )
         station.services = station.app.state.services = services
         yield station
     station.close()
@@ -267,6 +273,7 @@ async def act_on_accounts(do: Do) -> None:
     await do("PUT /users/{username}", {"role": "commander"}, username="mia")
     await do("DELETE /users/{username}/sessions", username="mia")
     await do("DELETE /users/{username}", username="mia")
+    await do("POST /enrolments", {"unit_id": "FF-09"})
     token = await do("POST /tokens", {"name": "cot", "role": "viewer"})
     await do("DELETE /tokens/{token_id}", token_id=token["token_id"])
 

@@ -154,6 +154,11 @@ export interface DeliveryView {
   can_be_notified: boolean | null;
 }
 
+export interface EnrolledUnit {
+  unit_id: string;
+  valid_to_ms: number;
+}
+
 export interface EveryoneTarget {
   everyone: true;
 }
@@ -258,6 +263,12 @@ export interface NewCommand {
   text?: string;
   position_rate_hz?: number;
   expires_s?: number;
+}
+
+export interface NewEnrolment {
+  unit_id: string;
+  days?: number;
+  renew?: boolean;
 }
 
 export interface NewIncident {
@@ -475,7 +486,7 @@ export interface Rest {
   resting: boolean;
 }
 
-export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
+export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "enrolments" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
 
 export interface Segment {
   name: string;
@@ -484,6 +495,13 @@ export interface Segment {
   messages: number;
   size_bytes: number;
   note: string;
+}
+
+export interface ShownEnrolment {
+  unit_id: string;
+  valid_to_ms: number;
+  text: string;
+  qr_rows: string[];
 }
 
 export interface ShownTicket {

@@ -18,6 +18,8 @@ export type NewToken = Required<answers.NewToken>;
 export type AuditEntry = answers.AuditEntry;
 export type Person = answers.PersonView;
 export type UnitDetails = answers.Unit;
+export type EnrolledUnit = answers.EnrolledUnit;
+export type ShownEnrolment = answers.ShownEnrolment;
 export type Incident = answers.Incident;
 export type PastAlarm = answers.PastAlarm;
 /** What an incident is closed over knowingly. */
@@ -44,6 +46,7 @@ export const SCOPES = [
   "assignments",
   "audit",
   "commands",
+  "enrolments",
   "exports",
   "forgetting",
   "health",
@@ -94,6 +97,10 @@ export const stopRecording = (fetchId: string) =>
   call<void>("DELETE", `/recordings/${id(fetchId)}`);
 export const registerUnit = (unitId: string, label: string) =>
   act<object>("POST", "/units", { unit_id: unitId, label });
+export const enrolments = () => call<EnrolledUnit[]>("GET", "/enrolments");
+/** Its private key is in the answer alone: it cannot be asked for again. */
+export const enrol = (unitId: string, renew: boolean) =>
+  call<ShownEnrolment>("POST", "/enrolments", { unit_id: unitId, renew });
 export const assign = (unitId: string, personId: string) =>
   act<void>("POST", "/assignments", { unit_id: unitId, person_id: personId });
 export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/${id(unitId)}`);

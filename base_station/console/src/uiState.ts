@@ -20,6 +20,7 @@ export type DialogName =
   | "account"
   | "users"
   | "audit"
+  | "enrolments"
   | "evacuate"
   | "par_request"
   | "locate"

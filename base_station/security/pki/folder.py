@@ -317,7 +317,14 @@ class PkiFolder:
         save_registry(self.registry_path, registry.with_entry(entry))
 
     def _authority(self) -> Issued:
+        if not (self._folder / "authority.key").exists() and self._is_further_station():
+            raise ConfigError(
+                "the key of the authority is at the first station alone; enrol and renew there"
+            )
         return read_issued(self._read("authority.pem"), self._read("authority.key"))
+
+    def _is_further_station(self) -> bool:
+        return self.own_common_name() not in (None, STATION_NAME)
 
     def _read(self, name: str) -> bytes:
         path = self._folder / name

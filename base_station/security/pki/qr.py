@@ -18,6 +18,11 @@ def qr_code(enrolment: Enrolment) -> segno.QRCode:
     return segno.make_qr(enrolment.to_compact(), error="l")
 
 
+def rows_of(code: segno.QRCode) -> list[str]:
+    """Rows of modules, without the margin; 1 is a dark one."""
+    return ["".join(str(int(dark)) for dark in row) for row in code.matrix]
+
+
 def as_text(code: segno.QRCode) -> str:
     """For a terminal: two rows of modules a line."""
     text = io.StringIO()

@@ -5,6 +5,7 @@ import { AccountDialog } from "./AccountDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
 import { CommandDialog } from "./CommandDialog";
+import { EnrolmentsDialog } from "./EnrolmentsDialog";
 import { FlawsDialog } from "./FlawsDialog";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { HealthDialog } from "./HealthDialog";
@@ -54,6 +55,8 @@ function Opened() {
       return <UsersDialog />;
     case "audit":
       return <AuditDialog />;
+    case "enrolments":
+      return <EnrolmentsDialog />;
     case "evacuate":
     case "par_request":
     case "locate":

@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
-import { attempt, live } from "../sessions";
+import { attempt, live, user } from "../sessions";
 import * as api from "../api";
+import { openDialog } from "../uiState";
 import type { ClockView, UnitView } from "../wire";
 import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, DUPLICATE_DEVICE } from "../format";
 import { Columns } from "./Columns";
@@ -20,6 +21,13 @@ export function UnitsDialog() {
   const ids = picture?.unitIds.value ?? [];
   return (
     <Dialog title="Units and who wears them" wide>
+      {user.value?.role === "administrator" && (
+        <p class="row">
+          <button type="button" onClick={() => openDialog("enrolments")}>
+            Enrolments
+          </button>
+        </p>
+      )}
       <RegisterForm />
       <table class="units stacked">
         <Columns

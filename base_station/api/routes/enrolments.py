@@ -1,0 +1,124 @@
+"""Enrolments of units, made in the console and shown once as a QR code; an administrator's work."""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import datetime, timedelta
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Request
+from pydantic import BaseModel, Field
+
+from base_station.api.authentication import Administrator
+from base_station.api.forms import Form, UnitIdText
+from base_station.api.problems import Problem
+from base_station.api.services import Services, Station
+from base_station.security.pki.folder import PkiFolder
+from base_station.security.pki.qr import qr_code, rows_of
+from base_station.views.answer import to_ms
+from shared.channels import validate_unit_id
+from shared.clock import NS_PER_S
+from shared.enrolment import Holder
+from shared.errors import ConfigError, UserError
+from shared.tls import parse_certificate
+
+router = APIRouter(tags=["enrolments"])
+
+_ENROLS_NOBODY = "This station enrols nobody now: it only replays, or is still starting."
+_NO_AUTHORITY = (
+    "This station has no certificate authority, so no unit can be enrolled: make one with "
+    "`muster pki init`, and let the bus listen on tls/."
+)
+_NOT_PRIVATE = (
+    "An enrolment holds a private key, which others on the network could read on its way to you: "
+    "serve the console over TLS, or enrol on the station's own machine."
+)
+
+
+class EnrolledUnit(BaseModel):
+    unit_id: str
+    valid_to_ms: int
+
+
+class NewEnrolment(Form):
+    unit_id: UnitIdText
+    days: Annotated[int, Field(ge=1, le=3650)] = 365
+    renew: bool = False
+
+
+class ShownEnrolment(BaseModel):
+    unit_id: str
+    valid_to_ms: int
+    text: str
+    qr_rows: list[str]
+
+
+@router.get("/enrolments")
+def list_enrolments(station: Station, _: Administrator) -> list[EnrolledUnit]:
+    """Units with a certificate that is not revoked; nothing of this is secret."""
+    with _as_refusal():
+        registry = _authority(station).registry()
+    return [
+        EnrolledUnit(unit_id=one.name, valid_to_ms=_ms(one.valid_to))
+        for one in sorted(registry.entries, key=lambda entry: entry.name)
+        if one.holder is Holder.UNIT and one.revoked is None
+    ]
+
+
+def _require_private(request: Request, station: Station, _: Administrator) -> None:
+    """Dependency: the answer goes over TLS, or does not leave this machine."""
+    if not station.secure and (request.client is None or not _is_loopback(request.client.host)):
+        raise Problem(403, _NOT_PRIVATE)
+
+
+@router.post("/enrolments", status_code=201, dependencies=[Depends(_require_private)])
+def add_enrolment(new: NewEnrolment, station: Station, who: Administrator) -> ShownEnrolment:
+    """Makes a certificate and its private key, of which the station keeps none: it cannot answer
+    this again.  Where the answer was lost, the enrolment is renewed.
+    """
+    validate_unit_id(new.unit_id)
+    authority = _authority(station)
+    with _as_refusal():
+        issue = authority.renew if new.renew else authority.enroll
+        enrolment = issue(new.unit_id, valid=timedelta(days=new.days))
+    # Before it is handed out: what cannot be entered is shown to nobody.
+    action = "RenewedEnrolment" if new.renew else "MadeEnrolment"
+    station.records.audit(who.username, action, f"of unit {new.unit_id}")
+    certificate = parse_certificate(enrolment.identity.certificate, "certificate")
+    return ShownEnrolment(
+        unit_id=new.unit_id,
+        valid_to_ms=_ms(certificate.not_valid_after_utc),
+        text=enrolment.to_compact(),
+        qr_rows=rows_of(qr_code(enrolment)),
+    )
+
+
+def _authority(station: Services) -> PkiFolder:
+    if station.pki is None:
+        raise UserError(_ENROLS_NOBODY)
+    if not station.pki.path.exists():
+        raise UserError(_NO_AUTHORITY)
+    return station.pki
+
+
+@contextmanager
+def _as_refusal() -> Iterator[None]:
+    """What the authority refuses is no mistake of the request's form."""
+    try:
+        yield
+    except ConfigError as error:
+        raise UserError(f"{error}.") from error
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        address = ipaddress.ip_address(host)
+    except ValueError:
+        return False
+    return (getattr(address, "ipv4_mapped", None) or address).is_loopback
+
+
+def _ms(at: datetime) -> int:
+    return to_ms(round(at.timestamp()) * NS_PER_S)
