@@ -24,9 +24,18 @@ class BusConfig:
 
     # Where units connect.  tls/ wants `muster pki init`; tcp/ is not secured.
     listen: tuple[str, ...] = ("tls/0.0.0.0:7447",)
+    announce: bool = False  # by multicast DNS, to everybody on the network (docs/security.md)
 
     def __post_init__(self) -> None:
         _check_endpoints(self.listen)
+        if self.announce and not self.secured_endpoints():
+            raise ConfigError(
+                "a bus without certificates is not announced, as units could not tell it from "
+                "another; listen on tls/, or leave announce out"
+            )
+
+    def secured_endpoints(self) -> tuple[str, ...]:
+        return tuple(one for one in self.listen if one.startswith("tls/"))
 
 
 @dataclass(frozen=True, slots=True)

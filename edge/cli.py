@@ -67,7 +67,10 @@ Enrolment = Annotated[
 ]
 Connect = Annotated[
     list[str] | None,
-    typer.Option(help="The station, tls/HOST:PORT or tcp/HOST:PORT; may be repeated."),
+    typer.Option(
+        help="The station, tls/HOST:PORT or tcp/HOST:PORT; may be repeated. discover: look for it "
+        "on the network, too."
+    ),
 ]
 Data = Annotated[
     Path | None, typer.Option(help="Folder for journal and black box, one below it a unit.")

@@ -35,7 +35,8 @@ class EdgeConfig:
     outputs: tuple[str, ...] = ()  # to the wearer: led:NAME, beeper:/dev/input/DEVICE, speech:en
     unit: str = ""  # unique among the units of a station; empty: as enrolled
     enrolment: Path | None = None  # file or picture of its code; none: the link is not secured
-    connect: tuple[str, ...] = ()  # the station; empty: as enrolled, else tcp/127.0.0.1:7447
+    # The station; empty: as enrolled, else tcp/127.0.0.1:7447; discover: by multicast DNS, too.
+    connect: tuple[str, ...] = ()
     data: Path = Path("muster-edge")  # a folder of its own for each unit is made in it
     tracker: str = "eskf"  # none: an agent elsewhere tracks, from the raw samples (bus:UNIT)
     calibration: Path | None = None  # from `muster edge calibrate`; none: sensors as they are

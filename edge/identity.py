@@ -17,6 +17,7 @@ from shared.tls import TlsIdentity
 _log = logging.getLogger(__name__)
 _ENDPOINT = re.compile(r"(tcp|tls)/(\[[0-9A-Fa-f:.]+\]|[^\s/:]+):([0-9]{1,5})")
 _NEAREST_STATION = "tcp/127.0.0.1:7447"
+DISCOVER = "discover"  # in the place of an endpoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +27,7 @@ class UnitConnection:
     unit_id: str  # under which it speaks; a tracking agent's is its unit's with a suffix
     connect: tuple[str, ...]
     identity: TlsIdentity | None  # None: the link is not secured
+    discovers: bool = False  # looks for stations of its authority on the network, too
 
 
 def unit_connection(config: EdgeConfig) -> UnitConnection:
@@ -34,6 +36,11 @@ def unit_connection(config: EdgeConfig) -> UnitConnection:
     """
     followed = bus_unit(config)
     if config.enrolment is None:
+        if DISCOVER in config.connect:
+            raise ConfigError(
+                "only an enrolled unit can discover its station, as anybody can announce one; give "
+                "--enrolment FILE"
+            )
         if followed is not None:
             found = _tracking_openly(config, followed)
         elif not config.unit:
@@ -91,7 +98,13 @@ def _enrolled(config: EdgeConfig, followed: str | None) -> UnitConnection:
         )
     name = validate_unit_id(enrolment.name)
     bus_id = name if followed is None else tracker_id(name)
-    return UnitConnection(bus_id, config.connect or enrolment.connect, enrolment.identity)
+    given = tuple(one for one in config.connect if one != DISCOVER)
+    return UnitConnection(
+        bus_id,
+        given or enrolment.connect,
+        enrolment.identity,
+        discovers=DISCOVER in config.connect,
+    )
 
 
 def _close(enrolment: Path) -> None:
@@ -113,8 +126,8 @@ def _check_endpoint(endpoint: str, *, secured: bool) -> None:
     parts = _ENDPOINT.fullmatch(endpoint)
     if parts is None or not 0 < int(parts[3]) < 65536 or not can_be_looked_up(parts[2]):
         raise ConfigError(
-            f"{endpoint!r} is no place to connect to; write tcp/HOST:PORT, or tls/HOST:PORT with "
-            "an enrolment"
+            f"{endpoint!r} is no place to connect to; write tcp/HOST:PORT, or with an enrolment "
+            "tls/HOST:PORT or discover"
         )
     if secured != (parts[1] == "tls"):
         raise ConfigError(

@@ -11,7 +11,7 @@ from datetime import datetime
 
 from cryptography import x509
 from cryptography.exceptions import InvalidSignature, UnsupportedAlgorithm
-from cryptography.hazmat.primitives import serialization
+from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.x509.oid import NameOID
 
 from shared.errors import ConfigError
@@ -68,6 +68,11 @@ def validity_problem(identity: TlsIdentity, now: datetime, renewal: str = _RENEW
             f"{certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC and {clock}: {renewal}"
         )
     return None
+
+
+def fingerprint(pem: bytes) -> str:
+    """SHA-256 of the certificate, in hexadecimal, as other programs show it without colons."""
+    return parse_certificate(pem, "certificate").fingerprint(hashes.SHA256()).hex()
 
 
 def parse_certificate(pem: bytes, what: str) -> x509.Certificate:

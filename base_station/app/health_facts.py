@@ -21,7 +21,7 @@ def health_facts(
     resources: Resources, clock: SteadyClock, side: HaMode, others: Sequence[ReportsProblems]
 ) -> StationFacts:
     certificates = resources.expiry, resources.console_expiry, resources.renewal
-    machine = resources.exposed, resources.router
+    machine = resources.exposed, resources.router, resources.presence
     parts: tuple[ReportsProblems, ...] = (clock, *certificates, *machine, side, *others)
     problems = [
         *resources.config.configuration_problems(),

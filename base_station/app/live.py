@@ -325,6 +325,7 @@ class _Station:
                 lost.look()
             self._restart_if_stale()
             requests.look()
+            resources.presence.update()
             self._past.end_idle()
             if resources.renewal.is_due(in_incident=self._is_in_incident()):
                 self._announce("the renewed certificate is taken up")

@@ -10,6 +10,7 @@ from base_station.api.hub import Hub
 from base_station.api.server import bind
 from base_station.app.exposed_secrets import ExposedSecrets
 from base_station.app.factories import Announce
+from base_station.app.station_presence import StationPresence
 from base_station.app.station_storage import StationStorage, open_storage
 from base_station.config import StationConfig, host_and_port
 from base_station.engine.feed import LiveFeed
@@ -47,6 +48,7 @@ class Resources:
     renewal: Renewal
     recordings: TransferQueue
     exposed: ExposedSecrets
+    presence: StationPresence
 
 
 def open_station(config: StationConfig, announce: Announce, closing: ExitStack) -> Resources:
@@ -92,4 +94,5 @@ def open_station(config: StationConfig, announce: Announce, closing: ExitStack) 
         renewal=Renewal(pki, joining.tls, clock),
         recordings=recordings,
         exposed=exposed,
+        presence=closing.enter_context(StationPresence(pki, config)),
     )

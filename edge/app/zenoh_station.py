@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from datetime import UTC, datetime
 
 from edge.agent.reachability_probe import ReachabilityProbe
@@ -10,20 +12,30 @@ from shared.bus import Bus
 from shared.errors import BusError
 
 _CONNECT_TIMEOUT_S = 2.0  # with a router that is not there; then it is tried again
+_SEARCH_EVERY_S = 10.0  # it takes three; in between, the known places are probed
+
+Find = Callable[[], tuple[str, ...]]
 
 
 class ZenohStation:
     """Station over Zenoh, which is loaded when it is needed."""
 
-    def __init__(self, member: UnitConnection) -> None:
+    def __init__(self, member: UnitConnection, find: Find | None = None) -> None:
+        """``find``: finds further endpoints, which prove themselves by their certificate like all;
+        else as ``member`` says.
+        """
         self._member = member
         self._connect = member.connect  # which is tried first changes
         self._probe = ReachabilityProbe(member.connect)
+        self._find = find or (_finder(member) if member.discovers else None)
+        self._searched_s: float | None = None
+        self._is_probed = False  # there is one at a known place
 
     def open_bus(self) -> Bus:
         from shared.bus_zenoh import UnitEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
-        if len(self._member.connect) > 1:  # linked with one of the stations, else it hears double
+        # Linked with one of several stations, else it hears double.
+        if self._find is not None or len(self._member.connect) > 1:
             return self.open_listening_bus()
         return ZenohBus(UnitEndpoint(self._member.connect, self._member.identity))
 
@@ -35,18 +47,45 @@ class ZenohStation:
         """
         from shared.bus_zenoh import ClientEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
+        if not self._is_probed:
+            self._search()
+        self._is_probed = False
+        connect = self._connect
         try:
-            return ZenohBus(
-                ClientEndpoint(self._connect, self._member.identity, _CONNECT_TIMEOUT_S)
-            )
+            return ZenohBus(ClientEndpoint(connect, self._member.identity, _CONNECT_TIMEOUT_S))
         except BusError:
-            self._connect = (*self._connect[1:], self._connect[0])
+            self._connect = (*connect[1:], connect[0])
             raise
 
     def is_reachable(self, timeout_s: float) -> bool:
-        return self._probe.wait(timeout_s)
+        self._is_probed = self._probe.wait(timeout_s)
+        if not self._is_probed:
+            self._search()
+        return self._is_probed
 
     def why_no_link(self) -> str:
         from shared.link_diagnosis import why_no_link  # noqa: PLC0415  # slow to load
 
-        return why_no_link(self._member.connect, self._member.identity, datetime.now(UTC))
+        return why_no_link(self._connect, self._member.identity, datetime.now(UTC))
+
+    def _search(self) -> None:
+        """Take up where stations are now; those that the enrolment names stay, whoever announces
+        what.
+        """
+        now_s = time.monotonic()
+        is_fresh = self._searched_s is not None and now_s - self._searched_s < _SEARCH_EVERY_S
+        if self._find is None or is_fresh:
+            return
+        known = dict.fromkeys((*self._member.connect, *self._find()))
+        self._searched_s = time.monotonic()
+        if known.keys() != set(self._connect):
+            self._connect = tuple(known)
+            self._probe.close()
+            self._probe = ReachabilityProbe(self._connect)
+
+
+def _finder(member: UnitConnection) -> Find:
+    from edge.app.station_finder import StationFinder  # noqa: PLC0415  # few units discover
+
+    assert member.identity is not None  # else there is nothing to prove a station by
+    return StationFinder(member.identity.authority).find

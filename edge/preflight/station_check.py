@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 
 from edge.agent.link import StationEndpoint
 from edge.clocks.station import StationClock
@@ -16,6 +17,7 @@ from shared.errors import BusError
 
 logger = logging.getLogger(__name__)
 
+_ATTEMPTS = 4
 _LINK_WAIT_S = 10.0
 _CLOCK_WAIT_S = 6.0  # some exchanges, one a second
 _ANSWER_WAIT_S = 1.0
@@ -27,7 +29,7 @@ _NO_LINK = "messages are kept and sent later; until then the commander sees noth
 def station_findings(unit_id: str, station: StationEndpoint, machine: Clock) -> Iterator[Finding]:
     """Open the link as the unit would, and close it again."""
     try:
-        bus = station.open_bus()
+        bus = _opened(station)
     except BusError as error:
         yield Finding("link", Level.FAILED, str(error), _NO_LINK)
         return
@@ -40,6 +42,14 @@ def station_findings(unit_id: str, station: StationEndpoint, machine: Clock) -> 
         yield _clock_finding(unit_id, bus, machine)
     finally:
         bus.close()
+
+
+def _opened(station: StationEndpoint) -> Bus:
+    """Each attempt tries another of the places where the station may be."""
+    for _ in range(_ATTEMPTS - 1):
+        with suppress(BusError):
+            return station.open_bus()
+    return station.open_bus()
 
 
 def _is_heard(bus: Bus, key: str) -> bool:

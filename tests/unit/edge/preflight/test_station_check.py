@@ -54,6 +54,24 @@ def test_a_station_that_listens_and_tells_its_time_is_ok(router: MemoryRouter) -
     assert "the station's" in clock.text
 
 
+def test_a_station_at_another_of_its_places_is_found(router: MemoryRouter) -> None:
+    """Each attempt tries the next one: what the enrolment says may be out of date."""
+
+    class MovedStation(Endpoint):
+        attempts = 0
+
+        def open_bus(self) -> Bus:
+            self.attempts += 1
+            if self.attempts < 3:
+                raise BusError("the bus cannot be opened")
+            return super().open_bus()
+
+    station = router.attach_station()
+    station.subscribe(HEARTBEAT.key("*"), lambda _key, _payload: None)
+    link, *_ = station_findings("u1", MovedStation(router), SystemClock())
+    assert link.level is Level.OK
+
+
 def test_a_clock_that_is_an_hour_off_is_a_warning(router: MemoryRouter) -> None:
     station = router.attach_station()
     station.subscribe(HEARTBEAT.key("*"), lambda _key, _payload: None)
