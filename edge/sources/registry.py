@@ -6,6 +6,7 @@ from difflib import get_close_matches
 
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.bus import BusSource
+from edge.sources.iio.source import IioSource
 from edge.sources.interface import Quantity, Source, SourceKind
 from edge.sources.recording import RecordingSource
 from edge.sources.simulated import SimulatedSource
@@ -43,6 +44,12 @@ SOURCES: tuple[SourceKind, ...] = (
                 Quantity.ACKNOWLEDGE_BUTTON,
             }
         ),
+    ),
+    SourceKind(
+        "iio",
+        IioSource,
+        "DEVICE or ACCEL+GYRO, each NAME[@ADDRESS], ?rate=400",
+        frozenset({Quantity.MAGNETIC_FIELD, Quantity.PRESSURE, Quantity.SENSOR_TEMPERATURE}),
     ),
 )
 

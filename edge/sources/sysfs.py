@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 from pathlib import Path
 
 SYSFS = Path("/sys")
@@ -17,6 +18,10 @@ _EXPLANATIONS = {
     errno.ETIMEDOUT: "it does not answer in time; check its wires and its supply",
     errno.EBUSY: "another program uses it; end that one",
     errno.EAGAIN: "it has no value yet",
+    errno.EROFS: (
+        "it cannot be set, because the service sees it read-only; add the line ReadWritePaths that "
+        "stands in muster-unit.service"
+    ),
 }
 
 
@@ -33,6 +38,17 @@ def explain_read_error(error: OSError) -> str:
 def read_text(path: Path) -> str:
     """Return an attribute without its line end.  Raises OSError."""
     return path.read_text(encoding="utf-8", errors="replace").strip()
+
+
+def write_text(path: Path, text: str) -> None:
+    """Set an attribute, which has to be there.  Raises OSError."""
+    descriptor = os.open(path, os.O_WRONLY | os.O_TRUNC | os.O_CLOEXEC)
+    try:
+        os.write(descriptor, text.encode())
+    except OSError as error:  # which does not say of what
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    finally:
+        os.close(descriptor)
 
 
 def read_if_there(path: Path) -> str | None:

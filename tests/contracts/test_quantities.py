@@ -20,9 +20,12 @@ from edge.samples import (
     SensorBatch,
     SightingSample,
 )
+from edge.sources.iio.source import IioSource
 from edge.sources.interface import Quantity
 from edge.sources.registry import SOURCES, open_source
 from tests.conftest import PROJECT_ROOT
+from tests.rig.iio_device import ICM_ACCEL, ICM_GYRO, EmulatedIio
+from tests.rig.kernel_devices import SysfsTree
 from tests.rig.ximu3_device import TcpDevice, at_rest, text_message
 
 CONCEPTS = PROJECT_ROOT / "docs" / "concepts.md"
@@ -87,6 +90,22 @@ def of_an_ximu3(_: Path) -> set[Quantity]:
             return given(islice(source.batches(), 3))
 
 
+def of_iio_devices(folder: Path) -> set[Quantity]:
+    """With every device that it may have."""
+    tree, devices = SysfsTree(folder / "sys"), folder / "dev"
+    field = {f"in_magn_{axis}_raw": "100" for axis in "xyz"}
+    tree.iio(7, "1-001e", name="lis3mdl", in_magn_scale="0.001", **field)
+    tree.iio(8, "1-005d", name="lps22hb", in_pressure_input="101.325")
+    text = "icm42688-accel+icm42688-gyro?mag=lis3mdl&pressure=lps22hb"
+    source = IioSource(text, sysfs=tree.root, devices=devices)
+    with (
+        closing(EmulatedIio(tree, devices, ICM_ACCEL, 0)),
+        closing(EmulatedIio(tree, devices, ICM_GYRO, 1)),
+        closing(source),
+    ):
+        return given(islice(source.batches(), 20))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("scheme", "take"),
@@ -95,6 +114,7 @@ def of_an_ximu3(_: Path) -> set[Quantity]:
         ("simulated", of_simulations),
         ("bench", of_a_bench),
         ("ximu3", of_an_ximu3),
+        ("iio", of_iio_devices),
     ],
 )
 def test_a_source_gives_what_it_declares_and_no_more(scheme, take, tmp_path: Path) -> None:
@@ -102,7 +122,7 @@ def test_a_source_gives_what_it_declares_and_no_more(scheme, take, tmp_path: Pat
 
 
 def test_every_kind_that_passes_nothing_on_is_looked_at() -> None:
-    assert {"recording", "simulated", "bench", "ximu3"} | PASSES_ON == set(DECLARED)
+    assert {"recording", "simulated", "bench", "ximu3", "iio"} | PASSES_ON == set(DECLARED)
     assert all(DECLARED[scheme] == frozenset(Quantity) for scheme in PASSES_ON)
 
 

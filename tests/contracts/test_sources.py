@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from threading import Event, Thread
 
@@ -13,6 +13,7 @@ import pytest
 from edge.sample_codec.codec import SampleEncoder, raw_imu
 from edge.sample_codec.listener import RawStreamListener
 from edge.sources.bus import BusSource
+from edge.sources.iio.source import IioSource
 from edge.sources.interface import Source
 from edge.sources.registry import SOURCES, open_source
 from edge.sources.ximu3.source import Ximu3Source
@@ -23,6 +24,8 @@ from shared.clock import ManualClock
 from shared.codec import encode
 from shared.errors import ConfigError, MusterError
 from shared.messages import Header
+from tests.rig.iio_device import BMI160, ICM_ACCEL, ICM_GYRO, EmulatedIio, Model
+from tests.rig.kernel_devices import SysfsTree
 from tests.rig.waiting import until
 from tests.rig.ximu3_device import PtyDevice, TcpDevice, at_rest
 
@@ -75,11 +78,19 @@ Device = Callable[[list[bytes]], TcpDevice | PtyDevice]
 # Hardware, pretended: it is closed when everything that it said has been taken.
 DEVICES: dict[str, Device] = {"ximu3 on TCP": TcpDevice, "ximu3 on a serial port": PtyDevice}
 LIVE_SAMPLES = 360  # less than a second of them, which come at once
+# Devices of the kernel, emulated: one with both sensors, and one of each.
+IIO_DEVICES: dict[str, tuple[Model, ...]] = {
+    "iio of one device": (BMI160,),
+    "iio of two devices": (ICM_ACCEL, ICM_GYRO),
+}
 
 
-@pytest.fixture(params=[*EXAMPLES, *DEVICES])
+@pytest.fixture(params=[*EXAMPLES, *DEVICES, *IIO_DEVICES])
 def source(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Source]:
-    if request.param in DEVICES:
+    if request.param in IIO_DEVICES:
+        with _emulated(IIO_DEVICES[request.param], tmp_path) as source:
+            yield source
+    elif request.param in DEVICES:
         with (
             closing(DEVICES[request.param](at_rest(LIVE_SAMPLES))) as device,
             _listening(f"ximu3:{device.source}?field=50") as source,
@@ -93,18 +104,38 @@ def source(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Source]:
 
 
 @contextmanager
+def _emulated(models: tuple[Model, ...], folder: Path) -> Iterator[Source]:
+    tree, devices = SysfsTree(folder / "sys"), folder / "dev"
+    tree.iio(7, "1-005d", name="lps22hb", in_pressure_input="101.325")
+    with ExitStack() as stack:
+        for number, model in enumerate(models):
+            stack.enter_context(closing(EmulatedIio(tree, devices, model, number)))
+        text = "+".join(model.name for model in models) + "?pressure=lps22hb"
+        source = IioSource(text, sysfs=tree.root, devices=devices)
+        with _ending(source):
+            yield source
+
+
+@contextmanager
 def _listening(text: str) -> Iterator[Source]:
     source = open_source(text)
     assert isinstance(source, Ximu3Source)
+    with _ending(source):
+        yield source
+
+
+@contextmanager
+def _ending(source: Ximu3Source | IioSource) -> Iterator[None]:
+    """It is closed when enough has been taken."""
     is_tested = Event()
 
     def end() -> None:
-        until(lambda: source.taken == LIVE_SAMPLES or is_tested.is_set(), "everything is taken")
+        until(lambda: source.taken >= LIVE_SAMPLES or is_tested.is_set(), "everything is taken")
         source.close()
 
     ending = Thread(target=end, daemon=True)
     ending.start()
-    yield source
+    yield
     is_tested.set()
     ending.join()
 
@@ -130,7 +161,8 @@ def _say_everything(source: BusSource) -> None:
 
 
 def test_every_kind_has_an_example() -> None:
-    assert {name.split()[0] for name in (*EXAMPLES, *DEVICES)} == {kind.scheme for kind in SOURCES}
+    names = (*EXAMPLES, *DEVICES, *IIO_DEVICES)
+    assert {name.split()[0] for name in names} == {kind.scheme for kind in SOURCES}
 
 
 @pytest.mark.slow
@@ -198,6 +230,13 @@ def test_radio_outages_are_in_order(source: Source) -> None:
         ("ximu3:/dev/ttyACM0?baud=fast", "from 50 to"),
         ("ximu3:/dev/ttyACM0?rate=4000", "from 10 to 400"),
         ("ximu3:/dev/ttyACM0?speed=2", "unknown option 'speed'"),
+        ("iio:bmi160?rate=5", "from 25 to 2000"),
+        ("iio:bmi160?rate=fast", "from 25 to 2000"),
+        ("iio:bmi160?range=16", "unknown option 'range'"),
+        ("iio:bmi160@", "names no device"),
+        ("iio:a+b+c", "names 3 devices"),
+        ("iio:a+b?mag=b", "has to be another device"),
+        ("iio:bmi160/accel", "write the device alone"),
     ],
 )
 def test_a_text_that_names_no_source_is_explained(text: str, said: str) -> None:

@@ -39,6 +39,14 @@ class SysfsTree:
         _link(self.root / "bus" / "iio" / "devices" / f"iio:device{number}", device)
         return device
 
+    def iio_trigger(self, number: int, address: str, /, **attributes: str) -> Path:
+        """``address`` of the device whose trigger it is; empty: a timer."""
+        folder = self.root / "devices" / ("platform" if address else "") / address
+        trigger = folder / f"trigger{number}"
+        write_attributes(trigger, attributes)
+        _link(self.root / "bus" / "iio" / "devices" / f"trigger{number}", trigger)
+        return trigger
+
     def w1(self, sensor_id: str, /, **attributes: str) -> Path:
         device = self.root / "devices" / "w1_bus_master1" / sensor_id
         write_attributes(device, attributes)

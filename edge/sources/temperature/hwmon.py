@@ -11,9 +11,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from edge.sources.device_name import find_device, listing, parse_device_name
 from edge.sources.polled_device import Unreadable
 from edge.sources.sysfs import number_in, read_if_there, read_text
-from edge.sources.temperature.device_name import find_device, listing, parse_device_name
 from edge.sources.temperature.interface import Role
 from shared.errors import ConfigError
 

@@ -15,15 +15,21 @@ import errno
 import re
 from pathlib import Path
 
+from edge.sources.device_name import find_device, listing, parse_device_name
+from edge.sources.iio.attributes import (
+    IIO_DEVICES,
+    UnusableDeviceError,
+    is_one,
+    read_scaled,
+)
 from edge.sources.polled_device import Unreadable
-from edge.sources.sysfs import number_in, read_if_there, read_text
-from edge.sources.temperature.device_name import find_device, listing, parse_device_name
 from edge.sources.temperature.interface import Role
 from shared.errors import ConfigError
 
 _CHANNEL = re.compile(r"in_temp_?(\w*?)_?(?:raw|input)")
+_KIND = "in_temp"
 _COLD_JUNCTION = "ambient"
-_UNSIGNED = "mcp9600"  # its driver hands over the register without its sign
+_UNSIGNED_BITS = {"mcp9600": 16}  # its driver hands over the register without its sign
 _FAULTS = {
     "fault_oc": "open circuit: the thermocouple is broken or not connected",
     "fault_ovuv": "short circuit: over- or undervoltage at the thermocouple's input",
@@ -36,7 +42,7 @@ class IioSensor:
     def __init__(self, text: str, role: Role, sysfs: Path) -> None:
         """Raises ConfigError."""
         self._wanted = parse_device_name("iio", text)
-        self._folder = sysfs / "bus" / "iio" / "devices"
+        self._folder = sysfs / IIO_DEVICES
         if self._wanted.channel == _COLD_JUNCTION and role is Role.ENVIRONMENT:
             raise ConfigError(
                 f"iio:{text}: {_COLD_JUNCTION} is the cold junction, which is the converter's own "
@@ -51,10 +57,13 @@ class IioSensor:
         if isinstance(channel, Unreadable):
             return channel
         for attribute, fault in _FAULTS.items():
-            if read_if_there(device / attribute) == "1":
+            if is_one(device / attribute):
                 return Unreadable(fault)
         try:
-            return self._converted(device, channel)
+            signed_bits = _UNSIGNED_BITS.get(self._wanted.name)
+            return 1e-3 * read_scaled(device, channel, _KIND, signed_bits=signed_bits)
+        except UnusableDeviceError as error:
+            return Unreadable(f"{self._wanted}: {error}")
         except OSError as error:
             if error.errno == errno.EINVAL:
                 return Unreadable(
@@ -76,35 +85,6 @@ class IioSensor:
         if len(others) == 1:
             return _beginning(others[0])
         return Unreadable(f"{self._wanted} has {len(others)} temperatures; {there}")
-
-    def _converted(self, device: Path, channel: str) -> float | Unreadable:
-        processed = read_if_there(device / f"{channel}_input")
-        if processed is not None:
-            milli_degc = number_in(processed)
-        else:
-            milli_degc = self._scaled(device, channel)
-        if milli_degc is None:
-            return Unreadable(f"{channel} of {self._wanted} is no number")
-        return milli_degc * 1e-3
-
-    def _scaled(self, device: Path, channel: str) -> float | None:
-        raw = number_in(read_text(device / f"{channel}_raw"))
-        scale = self._shared(device, channel, "scale", "1")
-        offset = self._shared(device, channel, "offset", "0")
-        if raw is None or scale is None or offset is None:
-            return None
-        if self._wanted.name == _UNSIGNED and raw >= 2**15:
-            raw -= 2**16
-        return (raw + offset) * scale
-
-    @staticmethod
-    def _shared(device: Path, channel: str, attribute: str, otherwise: str) -> float | None:
-        """Return an attribute of the channel, else that of all temperatures of the device."""
-        for beginning in (channel, "in_temp"):
-            text = read_if_there(device / f"{beginning}_{attribute}")
-            if text is not None:
-                return number_in(text)
-        return number_in(otherwise)
 
 
 def _beginning(channel: str) -> str:

@@ -11,9 +11,9 @@ import errno
 import re
 from pathlib import Path
 
+from edge.sources.device_name import listing
 from edge.sources.polled_device import Unreadable
 from edge.sources.sysfs import devices_in, number_in, read_if_there, read_text
-from edge.sources.temperature.device_name import listing
 from edge.sources.temperature.interface import Role
 from shared.errors import ConfigError
 

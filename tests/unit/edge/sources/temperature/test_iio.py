@@ -60,10 +60,10 @@ def test_an_open_circuit_and_a_short_are_told_apart_from_heat(tree, attribute, s
 def test_a_max31855_that_refuses_its_reading_is_open_or_shorted(tree, monkeypatch) -> None:
     tree.iio(0, name="maxim_thermocouple", in_temp_raw="4", in_temp_scale="250")
 
-    def refused(path: Path) -> str:
-        raise OSError(errno.EINVAL, "Invalid argument", str(path))
+    def refused(device: Path, *_: object, **__: object) -> float:
+        raise OSError(errno.EINVAL, "Invalid argument", str(device))
 
-    monkeypatch.setattr(iio, "read_text", refused)
+    monkeypatch.setattr(iio, "read_scaled", refused)
     assert "open circuit or short" in reason(read(tree, "maxim_thermocouple"))
 
 

@@ -1,0 +1,1 @@
+"""Inertial sensors with a driver of the kernel's Industrial I/O."""

@@ -1,0 +1,57 @@
+"""Trigger of a device: the interrupt, or the timer, by which the kernel samples it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from edge.sources.device_name import listing
+from edge.sources.iio.attributes import IIO_DEVICES, UnusableDeviceError
+from edge.sources.sysfs import devices_in, read_if_there, write_text
+
+_CURRENT = Path("trigger") / "current_trigger"  # below the device
+_NEW_DATA = "-dev"
+
+
+@dataclass(frozen=True, slots=True)
+class Trigger:
+    name: str
+    folder: Path | None  # None: it is attached already
+
+    def attach(self, device: Path, rate_hz: float) -> None:
+        """Raises OSError."""
+        if self.folder is None:
+            return
+        frequency = self.folder / "sampling_frequency"  # of a timer
+        if frequency.exists():
+            write_text(frequency, f"{rate_hz:g}")
+        write_text(device / _CURRENT, self.name)
+
+
+def needs_trigger(device: Path) -> bool:
+    """Return True for a device that does not sample by itself."""
+    return (device / _CURRENT).exists()
+
+
+def find_trigger(device: Path, sysfs: Path, wanted: str) -> Trigger | None:
+    """Return the trigger of this name; the device's own for no name, and None where it has none.
+
+    Raises OSError, and UnusableDeviceError where no trigger has the name.
+    """
+    triggers = {
+        read_if_there(folder / "name") or "": folder
+        for folder in devices_in(sysfs / IIO_DEVICES)
+        if folder.name.startswith("trigger")
+    }
+    if wanted:
+        if wanted not in triggers:
+            raise UnusableDeviceError(f"there is no trigger {wanted}; {listing(sorted(triggers))}")
+        return Trigger(wanted, triggers[wanted])
+    current = read_if_there(device / _CURRENT)
+    if current:
+        return Trigger(current, None)
+    bus_device = device.resolve().parent
+    own = [name for name, folder in triggers.items() if folder.resolve().parent == bus_device]
+    # One of new data is named by the device, others by what they wait for, such as a motion.
+    name = min(own, key=lambda each: (_NEW_DATA not in each, each), default=None)
+    return None if name is None else Trigger(name, triggers[name])
