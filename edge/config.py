@@ -26,7 +26,7 @@ class StorageConfig:
 class EdgeConfig:
     """Settings of one agent."""
 
-    source: str  # recording:PATH, simulated:SCENARIO, mcap:PATH, bus:UNIT, ximu3:tcp://HOST
+    source: str  # recording:PATH, simulated:SCENARIO, ximu3:tcp://HOST, iio:NAME ...
     sightings: str = ""  # a reader of beacons and tags: tcp:HOST:PORT or a device's path
     gps: str = ""  # a satellite receiver: gpsd://HOST, nmea:/dev/PORT, nmea:tcp://HOST:PORT
     temperatures: tuple[str, ...] = ()  # sensors: hwmon:CHIP, iio:DEVICE, w1:ID, ?name=&role=
