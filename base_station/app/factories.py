@@ -24,7 +24,7 @@ from base_station.storage.db.store import Store
 from base_station.storage.projection import Projection
 from base_station.storage.segment_index import SegmentIndex
 from shared.clock import Clock, SystemClock
-from shared.mcap_log import SegmentReader, segment_paths
+from shared.mcap_log import SegmentReader, own_segments
 
 _log = logging.getLogger(__name__)
 Announce = Callable[[str], None]
@@ -73,7 +73,7 @@ def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], No
     records = Records(store, SystemClock())
     records.forget_projections()
     segments = []
-    for path in segment_paths(log):
+    for path in own_segments(log)[0]:
         with SegmentReader(path) as reader:
             segments.append(reader.info())
     start_ns = min((one.start_ns for one in segments if one.messages), default=0)

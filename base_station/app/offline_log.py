@@ -6,7 +6,7 @@ It may be on a medium that nobody can write to, or of a station that nobody here
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import pairwise
@@ -32,9 +32,11 @@ from shared.folder_lock import FolderLock
 from shared.mcap_log import (
     SegmentInfo,
     SegmentReader,
+    own_segments,
     segment_number,
     segment_path,
     segment_paths,
+    segments_of_one_log,
 )
 
 Report = Callable[[str], None]
@@ -80,14 +82,14 @@ def open_offline_log(
     words of that and of what cannot be read, ``on_progress`` the fraction done.
     """
     scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-past-")))
-    folder = _folder_with_log(path, scratch)
+    folder, left_out = _folder_with_log(path, scratch)
     damage = damage_of(folder.database)
     if damage:
         report(f"the database is damaged ({damage}); the log is read instead")
     elif in_place and _is_writable(folder):
         store = closing.enter_context(Store(folder.database))
         if not _lacks_incident(store, folder, incident_id):
-            log, defects = _open_log(folder, store, report)
+            log, defects = _open_log(folder, store, left_out, report)
             return OfflineLog(
                 folder,
                 store,
@@ -101,7 +103,7 @@ def open_offline_log(
     if not damage:
         copy_database(folder.database, copy)
     store = closing.enter_context(Store(copy))
-    log, defects = _open_log(folder, store, report)
+    log, defects = _open_log(folder, store, left_out, report)
     if _lacks_incident(store, folder, incident_id):
         report("the database does not have this incident; the log is read instead")
         project_whole_log(store, folder.log, on_progress)
@@ -110,10 +112,14 @@ def open_offline_log(
     )
 
 
-def _open_log(folder: DataFolder, store: Store, report: Report) -> tuple[LogFeed, LogDefects]:
+def _open_log(
+    folder: DataFolder, store: Store, left_out: Mapping[Path, str], report: Report
+) -> tuple[LogFeed, LogDefects]:
     """Opens the log with its known defects, which are reported."""
     known = known_segments_of(Records(store, SystemClock()))
     defects = LogDefects(folder.log, known, is_written=FolderLock.is_held(folder.path), tell=report)
+    for path, reason in left_out.items():
+        defects.note_foreign(path, reason)
     defects.look_at_files()
     log = LogFeed(folder.log, on_damage=defects.note_damage)
     if not defects() and decisions_differ(log.records(), past_pipeline(None)):
@@ -124,11 +130,13 @@ def _open_log(folder: DataFolder, store: Store, report: Report) -> tuple[LogFeed
     return log, defects
 
 
-def _folder_with_log(path: Path, scratch: Path) -> DataFolder:
-    """Files of a log, whatever they are called now, are put in order beside each other."""
+def _folder_with_log(path: Path, scratch: Path) -> tuple[DataFolder, Mapping[Path, str]]:
+    """Files of a log, whatever they are called now, are put in order beside each other; with those
+    that are left out, and why.
+    """
     folder = DataFolder(path)
     if segment_paths(folder.log):
-        return folder
+        return folder, {}
     source = folder.log if folder.log.is_dir() else path
     files = [path] if path.is_file() else sorted(source.glob("*.mcap"))
     if not files:
@@ -136,7 +144,10 @@ def _folder_with_log(path: Path, scratch: Path) -> DataFolder:
             f"there is no station's log in {path}; give the station's folder, its log/ or .mcap "
             "files of that with --data"
         )
-    segments = sorted(_readable_segments(files), key=lambda one: one.start_ns)
+    readable = {one.path: one for one in _readable_segments(files)}
+    left_out = {file: "nothing in it can be read" for file in files if file not in readable}
+    in_time = sorted(readable, key=lambda file: readable[file].start_ns)
+    segments = [readable[file] for file in segments_of_one_log(in_time, left_out)]
     if not segments:
         names = ", ".join(file.name for file in files)
         raise LogError(f"nothing in {names} can be read as a station's log: no MCAP file, or empty")
@@ -152,7 +163,7 @@ def _folder_with_log(path: Path, scratch: Path) -> DataFolder:
     for number, one in enumerate(segments, 1):
         name = one.path.name if are_named else segment_path(Path(), number, one.start_ns).name
         (log_folder.log / name).symlink_to(one.path.absolute())
-    return log_folder
+    return log_folder, left_out
 
 
 def _readable_segments(files: Iterable[Path]) -> Iterator[SegmentInfo]:
@@ -174,4 +185,4 @@ def _lacks_incident(store: Store, folder: DataFolder, incident_id: str) -> bool:
     if records.incident(incident_id) is not None:
         return False
     known = {segment.name for segment in records.segments()}
-    return any(path.name not in known for path in segment_paths(folder.log))
+    return any(path.name not in known for path in own_segments(folder.log)[0])

@@ -176,7 +176,8 @@ def open_storage(
             check.note_damaged(recovery.path, str(recovery), is_cut=True)
     check.note_foreign(recorder.foreign)
     check.note_lacks(folder.log, log_gaps(recorder.segments(), known))
-    recorder.number_after(max(_numbers(one.name for one in known), default=0))
+    last_number = max(_numbers(one.name for one in known), default=0)
+    recorder.continue_log(last_number, max((one.log_id for one in known), default=""))
     ends_ns = [one.end_ns for one in recorder.segments()] + [one.last_ns for one in known]
     steady = SteadyClock(clock, max(ends_ns, default=0))
     return StationStorage(

@@ -22,7 +22,7 @@ from base_station.standby.rpc import RpcServer, ask
 from base_station.storage.integrity_checker import IntegrityChecker
 from shared.bus import Bus
 from shared.errors import BusError, LogError
-from shared.mcap_log import SegmentReader, rewrite_segment, segment_paths
+from shared.mcap_log import SegmentReader, own_segments, rewrite_segment
 
 logger = logging.getLogger(__name__)
 
@@ -82,7 +82,7 @@ class LogRepair:
         station = self._other()
         if not damaged or station is None:
             return
-        paths = segment_paths(self._files.folder)
+        paths, _ = own_segments(self._files.folder)
         # Where one begins is known by the one before it.  One that cannot be mended keeps no other
         # from it.
         known = {one for before, one in pairwise([None, *paths]) if before not in damaged}

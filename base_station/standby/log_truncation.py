@@ -17,12 +17,11 @@ from base_station.core.log_position import START, LogPosition, Record, events_af
 from base_station.storage.data_folder import DataFolder
 from shared.durable_names import sync_folder
 from shared.errors import LogError
-from shared.mcap_log import SegmentPolicy, SegmentReader, SegmentWriter, read_log, segment_paths
+from shared.mcap_log import SegmentReader, own_segments, read_log, write_segment_like
 from shared.own_files import make_folder, read_own, write_own
 
 APART = "apart"
 TOLD = ".told"  # of a part's name
-_ONE_SEGMENT = SegmentPolicy(segment_s=1e9, index_entries_max=2**31)
 
 
 def set_aside(folder: DataFolder, place: LogPosition) -> None:
@@ -36,16 +35,13 @@ def set_aside(folder: DataFolder, place: LogPosition) -> None:
         apart = _new_part(folder.path, place)
         moved = list(_segments_at_or_behind(folder.log, place))
         kept = _kept(moved, place)
-        writer = SegmentWriter(scratch, _ONE_SEGMENT)
-        for record in kept:
-            writer.write(*record)
-        writer.close()
-        if writer.problem:
-            raise LogError(writer.problem)
+        make_folder(scratch)
+        cut = scratch / moved[0].name if moved else None
+        has_cut = cut is not None and write_segment_like(moved[0], cut, kept)
         for path in reversed(moved):
             _move(path, apart / path.name)
-        for path in segment_paths(scratch):
-            _move(path, folder.log / moved[0].name)
+        if cut is not None and has_cut:
+            _move(cut, folder.log / cut.name)
         scratch.rmdir()
     except OSError as error:
         raise LogError(f"the log cannot be cut ({error}): free or mend the disk") from error
@@ -107,7 +103,8 @@ def _new_part(data: Path, place: LogPosition) -> Path:
 
 
 def _segments_at_or_behind(log: Path, place: LogPosition) -> Iterator[Path]:
-    return dropwhile(lambda path: _end_ns(path) < place.t_ns, segment_paths(log))
+    own, _ = own_segments(log)
+    return dropwhile(lambda path: _end_ns(path) < place.t_ns, own)
 
 
 def _end_ns(path: Path) -> int:

@@ -13,7 +13,13 @@ from threading import Lock
 
 from base_station.storage.missing_segments import LogGap
 from shared.errors import LogError
-from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, missing_segments
+from shared.mcap_log import (
+    SegmentInfo,
+    SegmentReader,
+    SegmentState,
+    foreign_in_words,
+    missing_segments,
+)
 
 _log = logging.getLogger(__name__)
 
@@ -82,7 +88,7 @@ class IntegrityChecker:
 
     def note_foreign(self, foreign: Mapping[Path, str]) -> None:
         for path, reason in foreign.items():
-            _log.error("%s is no segment of this log and is left out: %s", path.name, reason)
+            _log.error("%s", foreign_in_words(path, reason))
         with self._lock:
             self._foreign = dict(foreign)
 

@@ -11,7 +11,15 @@ from pathlib import Path
 
 from base_station.storage.missing_segments import KnownSegment, LogGap, log_gaps, times_of
 from shared.errors import LogError
-from shared.mcap_log import SegmentInfo, SegmentReader, SegmentState, own_segments, segment_began_ns
+from shared.mcap_log import (
+    LEFT_OUT,
+    SegmentInfo,
+    SegmentReader,
+    SegmentState,
+    foreign_in_words,
+    own_segments,
+    segment_began_ns,
+)
 
 
 class LogDefects:
@@ -53,7 +61,11 @@ class LogDefects:
 
     def note_damage(self, what: str) -> bool:
         """That somebody who read the log has come by."""
-        return self.note(f"a part of the log cannot be read: {what}")
+        is_part = LEFT_OUT not in what
+        return self.note(f"a part of the log cannot be read: {what}" if is_part else what)
+
+    def note_foreign(self, path: Path, reason: str) -> bool:
+        return self.note(foreign_in_words(path, reason))
 
     def __call__(self) -> Sequence[str]:
         return self._found
@@ -63,7 +75,7 @@ class LogDefects:
         if self._segments is None:
             own, foreign = own_segments(self._log)
             for path, reason in foreign.items():
-                self.note_damage(f"{path.name} is no segment of this log and is left out: {reason}")
+                self.note_foreign(path, reason)
             written = own[-1:] if self._is_written else []
             self._segments = [_info_of(path) for path in own if path not in written]
             lacks = log_gaps(

@@ -23,6 +23,7 @@ class KnownSegment:
     first_ns: int
     last_ns: int
     messages: int
+    log_id: str = ""  # of the log; empty: an earlier version wrote it
 
 
 @dataclass(frozen=True, slots=True)

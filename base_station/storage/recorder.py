@@ -171,9 +171,9 @@ class Recorder:
             )
         return done and not self._failure and not self._writer.problem
 
-    def number_after(self, number: int) -> None:
-        """The next segment's number is higher: the log had one of this number, which is gone."""
-        self._writer.number_after(number)
+    def continue_log(self, number: int, log_id: str) -> None:
+        """The log had a segment of this number, and this id where none that is left has one."""
+        self._writer.continue_log(number, log_id)
 
     def complete_segments(self) -> tuple[Path, ...]:
         """End the open segment and go on in another; all that are complete, in order.

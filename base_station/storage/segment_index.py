@@ -56,11 +56,12 @@ def segment_row(segment: SegmentInfo, note: str = "") -> LogSegment:
         messages=segment.messages,
         size_bytes=segment.size_bytes,
         note=note,
+        log_id=segment.log_id,
     )
 
 
 def known_segments_of(records: Records) -> list[KnownSegment]:
     return [
-        KnownSegment(one.name, one.first_ns, one.last_ns, one.messages)
+        KnownSegment(one.name, one.first_ns, one.last_ns, one.messages, one.log_id)
         for one in records.segments()
     ]

@@ -12,10 +12,11 @@ from shared.mcap_log.folder import (
     segment_paths,
     segments_within,
 )
-from shared.mcap_log.foreign import own_segments
+from shared.mcap_log.foreign import LEFT_OUT, foreign_in_words, own_segments
+from shared.mcap_log.one_log import segments_of_one_log
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.recovery import Recovery, recover_log
-from shared.mcap_log.rewriting import remove_torn, rewrite_segment
+from shared.mcap_log.rewriting import remove_torn, rewrite_segment, write_segment_like
 from shared.mcap_log.schemas import (
     PLAN_TOPIC,
     is_derived,
@@ -31,6 +32,7 @@ from shared.mcap_log.writing import (
 )
 
 __all__ = [
+    "LEFT_OUT",
     "PLAN_TOPIC",
     "LogRecord",
     "Recovery",
@@ -39,6 +41,7 @@ __all__ = [
     "SegmentReader",
     "SegmentState",
     "SegmentWriter",
+    "foreign_in_words",
     "is_derived",
     "location_topic",
     "log_topic",
@@ -52,6 +55,8 @@ __all__ = [
     "segment_number",
     "segment_path",
     "segment_paths",
+    "segments_of_one_log",
     "segments_within",
     "wire_type_of",
+    "write_segment_like",
 ]

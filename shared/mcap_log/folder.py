@@ -30,6 +30,15 @@ def segment_paths(folder: Path) -> list[Path]:
     )
 
 
+def unnumbered_paths(folder: Path) -> list[Path]:
+    """MCAP files beside the segments, under names that are not those of segments."""
+    if not folder.is_dir():
+        return []
+    return sorted(
+        path for path in folder.iterdir() if path.suffix == ".mcap" and not segment_number(path)
+    )
+
+
 def segment_began_ns(path: Path) -> int:
     """The log time of a segment's first record, in whole seconds, from its name."""
     match = _NAME.fullmatch(path.name)

@@ -1,39 +1,54 @@
-"""Files that stand among the segments of a log, under the name of one, and are none of it.
+"""Files that stand among the segments of a log and are none of it.
 
-A segment begins in the second that its name says, and segments follow each other in time.
+A segment has the log's id in its head, begins in the second that its name says, and segments follow
+each other in time.  Of what earlier versions wrote only names and times tell.
 """
 
 from __future__ import annotations
 
-import struct
 from bisect import bisect_right
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import zip_longest
 from pathlib import Path
 from statistics import median_low
 
 from mcap.opcode import Opcode
-from mcap.writer import MCAP0_MAGIC
 
 from shared.clock import NS_PER_S
 from shared.errors import LogError
 from shared.mcap_log.container import CHUNK, MESSAGE, NONSENSE, message_offsets, unpacked
-from shared.mcap_log.folder import segment_began_ns, segment_number, segment_paths
-from shared.mcap_log.making import PROFILE
+from shared.mcap_log.folder import (
+    segment_began_ns,
+    segment_number,
+    segment_paths,
+    unnumbered_paths,
+)
+from shared.mcap_log.identity import SegmentIdentity, first_chunk_at, identity_of
+from shared.mcap_log.one_log import log_id_of, segments_of_one_log
 from shared.mcap_log.segment_file import SegmentFile
 
+LEFT_OUT = "is no segment of this log and is left out"
 _LAST_NS = 3600 * NS_PER_S  # of one that none follows, so much may be lost at its beginning
-_LENGTH = struct.Struct("<I")
+
+
+@dataclass(frozen=True, slots=True)
+class LogEnd:
+    """Where a log goes on."""
+
+    log_id: str = ""  # empty: no segment of it says so
+    name: str = ""  # of its newest segment
+    number: int = 0  # of that, or of a torn one that is kept
 
 
 def own_segments(folder: Path) -> tuple[list[Path], dict[Path, str]]:
-    """The segments of a log in the order of writing, and the files among them that are none of
-    it, each with the reason in words.
+    """The segments of a log in the order of writing, and the MCAP files beside them that are none
+    of it, each with the reason in words.
     """
     foreign: dict[Path, str] = {}
     own = []
-    for path, following in candidates(segment_paths(folder), foreign):
+    for path, following in candidates(folder, foreign):
         if reason := foreign_by_content(path, following):
             foreign[path] = reason
         else:
@@ -41,15 +56,35 @@ def own_segments(folder: Path) -> tuple[list[Path], dict[Path, str]]:
     return own, foreign
 
 
-def candidates(paths: Sequence[Path], foreign: dict[Path, str]) -> list[tuple[Path, Path | None]]:
-    """Those whose names may be of one log, each with the one that follows; the others go to
-    ``foreign``.
+def candidates(folder: Path, foreign: dict[Path, str]) -> list[tuple[Path, Path | None]]:
+    """Those that may be of one log by their heads and names, each with the one that follows; the
+    others go to ``foreign``.
     """
+    foreign |= dict.fromkeys(unnumbered_paths(folder), "its name is not that of a segment")
+    paths = segments_of_one_log(segment_paths(folder), foreign)
     in_order = _in_order(_one_a_number(paths))
     foreign |= {
         path: "its name does not go with the others" for path in paths if path not in set(in_order)
     }
     return list(zip_longest(in_order, in_order[1:]))
+
+
+def foreign_in_words(path: Path, reason: str) -> str:
+    return f"{path.name} {LEFT_OUT}: {reason}"
+
+
+def log_end(folder: Path) -> LogEnd:
+    """Raises OSError where the folder cannot be read."""
+    foreign: dict[Path, str] = {}
+    own = [path for path, _ in candidates(folder, foreign)]
+    numbers = (segment_number(path) for path in folder.iterdir() if path not in foreign)
+    return LogEnd(log_id_of(own), own[-1].name if own else "", max(numbers, default=0))
+
+
+def identity_in_log(path: Path) -> SegmentIdentity:
+    """Where its own head is damaged, that of the log around it."""
+    around = [path for path, _ in candidates(path.parent, {})]
+    return identity_of(path) or SegmentIdentity(log_id_of(around))
 
 
 def _one_a_number(paths: Sequence[Path]) -> list[Path]:
@@ -81,10 +116,7 @@ def foreign_by_content(path: Path, following: Path | None) -> str:
     except LogError:
         return ""
     try:
-        profile, chunk_at = _header(file)
-        if profile != PROFILE:
-            return f"it was written by another program ({profile or 'which does not say so'})"
-        began_ns, first_ns = segment_began_ns(path), _first_ns(file, chunk_at)
+        began_ns, first_ns = segment_began_ns(path), _first_ns(file, first_chunk_at(file))
     except NONSENSE:
         return ""
     finally:
@@ -93,18 +125,6 @@ def foreign_by_content(path: Path, following: Path | None) -> str:
     if not began_ns <= first_ns < until_ns + NS_PER_S:  # what it began with may be lost
         return f"its records begin at {_utc(first_ns)}, which is not when its name says"
     return ""
-
-
-def _header(file: SegmentFile) -> tuple[str, int]:
-    """The profile, and where the first chunk is."""
-    if file.read(0, len(MCAP0_MAGIC)) != MCAP0_MAGIC:
-        raise ValueError("it is no MCAP file")
-    opcode, length = file.record_at(len(MCAP0_MAGIC))
-    if opcode != Opcode.HEADER:
-        raise ValueError("it has no header")
-    body = file.read(len(MCAP0_MAGIC) + 9, length)
-    (count,) = _LENGTH.unpack_from(body)
-    return body[4 : 4 + count].decode(), len(MCAP0_MAGIC) + 9 + length
 
 
 def _first_ns(file: SegmentFile, chunk_at: int) -> int:

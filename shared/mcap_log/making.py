@@ -18,7 +18,7 @@ import numpy as np
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import DataEnd, Footer, Header, McapRecord, Statistics
+from mcap.records import DataEnd, Footer, Header, McapRecord, MetadataIndex, Statistics
 from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
 from shared.mcap_log.container import (
@@ -31,8 +31,8 @@ from shared.mcap_log.container import (
     RECORD,
 )
 from shared.mcap_log.durable_file import DurableFile
+from shared.mcap_log.identity import METADATA_NAME, PROFILE, SegmentIdentity
 
-PROFILE = "muster"
 _MESSAGE = struct.Struct(MESSAGE.format + "Q")  # and when it was said
 _INDEX = struct.Struct("<BQHI")  # opcode, length, topic, bytes of entries
 _SIZE = struct.Struct("<Q")
@@ -128,7 +128,7 @@ class ChunkMaker:
 class McapFile:
     """``add`` chunks in their order, then ``finish``."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, identity: SegmentIdentity) -> None:
         self.file = DurableFile(path)
         self.schemas: dict[int, bytes] = {}  # records with opcode and length, by number
         self.topics: dict[int, bytes] = {}
@@ -138,6 +138,7 @@ class McapFile:
         self._end_ns = 0
         self.file.write(MCAP0_MAGIC)
         self.file.write(bytes_of(Header(PROFILE, LIBRARY_IDENTIFIER)))
+        self._metadata_index = self._write_identity(identity)
 
     def add(self, chunk: MadeChunk) -> None:
         offset = self.file.tell()
@@ -155,11 +156,20 @@ class McapFile:
         self.file.write(bytes_of(DataEnd(0)))
         start = self.file.tell()
         summary = b"".join((*self.schemas.values(), *self.topics.values()))
-        summary += b"".join((bytes_of(self._statistics()), *self._chunks))
+        parts = (bytes_of(self._statistics()), *self._chunks, self._metadata_index)
+        summary += b"".join(parts)
         checked = summary + RECORD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", start, 0)
         self.file.write(summary)
         self.file.write(bytes_of(Footer(start, 0, zlib.crc32(checked))))
         self.file.write(MCAP0_MAGIC)
+
+    def _write_identity(self, identity: SegmentIdentity) -> bytes:
+        """Its record in the file's index; nothing of a segment of an earlier version."""
+        if not identity.log_id:
+            return b""
+        offset, record = self.file.tell(), bytes_of(identity.metadata())
+        self.file.write(record)
+        return bytes_of(MetadataIndex(offset, len(record), METADATA_NAME))
 
     def _statistics(self) -> Statistics:
         return Statistics(
@@ -170,7 +180,7 @@ class McapFile:
             message_count=sum(self.counts.values()),
             message_end_time=self._end_ns,
             message_start_time=self._start_ns or 0,
-            metadata_count=0,
+            metadata_count=bool(self._metadata_index),
             schema_count=len(self.schemas),
         )
 

@@ -18,8 +18,9 @@ from shared.mcap_log.container import (
     unpacked,
 )
 from shared.mcap_log.contents import Chunk, contents_of
-from shared.mcap_log.folder import segment_paths, segments_within
-from shared.mcap_log.foreign import candidates, foreign_by_content
+from shared.mcap_log.folder import segments_within
+from shared.mcap_log.foreign import candidates, foreign_by_content, foreign_in_words
+from shared.mcap_log.identity import identity_of
 from shared.mcap_log.schemas import DERIVED
 from shared.mcap_log.segment_file import SegmentFile
 from shared.mcap_log.writing import SegmentInfo, SegmentState
@@ -89,7 +90,7 @@ class SegmentReader:
 
     def info(self) -> SegmentInfo:
         """Counts the messages of a segment that is not complete by reading it."""
-        chunks = self._contents.chunks
+        chunks, identity = self._contents.chunks, identity_of(self.path)
         if self._contents.counts is None:
             messages = sum(1 for _ in self.records())
         else:
@@ -106,6 +107,7 @@ class SegmentReader:
             max((chunk.end_ns for chunk in chunks), default=0),
             messages,
             self._file.size,
+            identity.log_id if identity else "",
         )
 
     def records(
@@ -222,7 +224,7 @@ def read_log(
     each part that could not be read.  Raises LogError when a segment is taken away meanwhile.
     """
     foreign: dict[Path, str] = {}
-    following = dict(candidates(segment_paths(folder), foreign))
+    following = dict(candidates(folder, foreign))
     for path in segments_within(list(following), start_ns, end_ns):
         if reason := foreign_by_content(path, following[path]):
             foreign[path] = reason
@@ -232,4 +234,4 @@ def read_log(
             for note in segment.damage:
                 on_damage(note)
     for path, reason in foreign.items():
-        on_damage(f"{path.name} is no segment of this log and is left out: {reason}")
+        on_damage(foreign_in_words(path, reason))

@@ -10,6 +10,7 @@ from mcap.records import Channel
 
 from shared.mcap_log.container import MESSAGE, RECORD
 from shared.mcap_log.durable_file import DurableFile
+from shared.mcap_log.identity import SegmentIdentity
 from shared.mcap_log.making import McapFile, bytes_of, made_chunk
 from shared.mcap_log.reading import IntactChunk
 
@@ -20,8 +21,8 @@ _TIMES = struct.Struct("<QQ")  # of the first and the last message, as a chunk b
 class RebuiltSegment:
     """``add`` chunks in their order, then ``finish``."""
 
-    def __init__(self, path: Path) -> None:
-        self._mcap = McapFile(path)
+    def __init__(self, path: Path, identity: SegmentIdentity) -> None:
+        self._mcap = McapFile(path, identity)
 
     @property
     def file(self) -> DurableFile:

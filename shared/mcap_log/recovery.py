@@ -8,6 +8,7 @@ from pathlib import Path
 from shared.durable_names import sync_folder
 from shared.errors import LogError
 from shared.mcap_log.folder import segment_number, segment_paths
+from shared.mcap_log.foreign import identity_in_log
 from shared.mcap_log.reading import SegmentReader
 from shared.mcap_log.rebuilding import RebuiltSegment
 from shared.mcap_log.writing import SegmentState
@@ -70,7 +71,7 @@ def _recover_segment(path: Path) -> Recovery | None:
     with SegmentReader(path) as reader:
         if reader.state is not SegmentState.TORN:
             return None
-        clean = RebuiltSegment(path.with_name(path.name + MAKING))
+        clean = RebuiltSegment(path.with_name(path.name + MAKING), identity_in_log(path))
         try:
             for chunk in reader.intact_chunks():
                 clean.add(chunk)

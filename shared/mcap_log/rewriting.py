@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 from shared.durable_names import sync_folder
 from shared.errors import LogError
+from shared.mcap_log.foreign import identity_in_log
 from shared.mcap_log.reading import LogRecord, SegmentReader
 from shared.mcap_log.recovery import MAKING, TORN
 from shared.mcap_log.writing import Segment, SegmentPolicy
@@ -47,6 +48,23 @@ def rewrite_segment(
     return changed
 
 
+def write_segment_like(model: Path, path: Path, records: Iterable[LogRecord]) -> bool:
+    """Make a complete segment of the same log as ``model``; False, and no file, where there are no
+    records.  Raises OSError.
+    """
+    segment = Segment(path, SegmentPolicy().chunk_bytes, identity_in_log(model))
+    try:
+        for t_ns, key, payload in records:
+            segment.add(t_ns, key, payload)
+        if not segment.end_ns:
+            return False
+        segment.finish()
+        segment.file.sync()
+    finally:
+        segment.file.close()
+    return True
+
+
 def remove_torn(folder: Path) -> int:
     """Remove what recoveries kept of torn segments; the number of files."""
     torn = list(folder.glob(f"*.mcap{TORN}*"))
@@ -63,7 +81,7 @@ def _rewritten(
     on_damage: Callable[[str], None],
 ) -> int:
     changed = 0
-    segment = Segment(making, SegmentPolicy().chunk_bytes)
+    segment = Segment(making, SegmentPolicy().chunk_bytes, identity_in_log(path))
     try:
         with SegmentReader(path) as reader:
             for record in reader.records(derived=True):

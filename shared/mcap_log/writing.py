@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import secrets
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,9 @@ from mcap.records import Channel, Schema
 from shared.clock import NS_PER_S
 from shared.errors import LogError
 from shared.mcap_log.durable_file import DurableFile
-from shared.mcap_log.folder import segment_number, segment_path
+from shared.mcap_log.folder import segment_path
+from shared.mcap_log.foreign import LogEnd, log_end
+from shared.mcap_log.identity import SegmentIdentity
 from shared.mcap_log.making import ChunkMaker, McapFile, bytes_of
 from shared.mcap_log.schemas import (
     descriptor_set,
@@ -25,6 +28,7 @@ from shared.mcap_log.schemas import (
 from shared.own_files import make_folder
 
 _ENCODING = "protobuf"
+_LOG_ID_BYTES = 8
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
 
 
@@ -58,13 +62,15 @@ class SegmentInfo:
     end_ns: int
     messages: int
     size_bytes: int
+    log_id: str = ""  # of its log; empty: of an earlier version, or damaged
 
 
 class Segment:
     """One MCAP file being written: topics are keys, payloads are kept as they are."""
 
-    def __init__(self, path: Path, chunk_bytes: int) -> None:
-        self._mcap = McapFile(path)
+    def __init__(self, path: Path, chunk_bytes: int, identity: SegmentIdentity) -> None:
+        self._identity = identity
+        self._mcap = McapFile(path, identity)
         self._chunk = ChunkMaker()
         self._chunk_bytes = chunk_bytes
         self._schemas: dict[str, int] = {}
@@ -106,7 +112,13 @@ class Segment:
 
     def info(self, state: SegmentState) -> SegmentInfo:
         return SegmentInfo(
-            self.file.path, state, self.start_ns, self.end_ns, self.messages, self.file.tell()
+            self.file.path,
+            state,
+            self.start_ns,
+            self.end_ns,
+            self.messages,
+            self.file.tell(),
+            self._identity.log_id,
         )
 
     def _register(self, key: str) -> tuple[int, bool]:
@@ -153,7 +165,7 @@ class SegmentWriter:
         """
         try:
             make_folder(folder)
-            self._next_number = 1 + max(map(segment_number, folder.iterdir()), default=0)
+            self._end = log_end(folder)
         except OSError as error:
             raise LogError(f"the log folder {folder} cannot be used: {error.strerror}") from error
         self._folder = folder
@@ -166,9 +178,15 @@ class SegmentWriter:
         self._trouble: OSError | None = None
         self.lost = 0
 
-    def number_after(self, number: int) -> None:
-        """The next segment's number is higher than this one, too."""
-        self._next_number = max(self._next_number, number + 1)
+    def continue_log(self, number: int, log_id: str) -> None:
+        """The log had a segment of this number, which is gone; ``log_id``: that of the log, where
+        none is left that says so.
+        """
+        self._end = replace(
+            self._end,
+            number=max(self._end.number, number),
+            log_id=self._end.log_id or log_id,
+        )
 
     @property
     def problem(self) -> str:
@@ -266,9 +284,12 @@ class SegmentWriter:
 
     def _begin_segment(self, t_ns: int) -> None:
         self._end_segment()
-        path = segment_path(self._folder, self._next_number, t_ns)
-        self._segment = Segment(path, self._policy.chunk_bytes)
-        self._next_number += 1
+        end = self._end
+        log_id, number = end.log_id or secrets.token_hex(_LOG_ID_BYTES), end.number + 1
+        path = segment_path(self._folder, number, t_ns)
+        identity = SegmentIdentity(log_id, end.name)
+        self._segment = Segment(path, self._policy.chunk_bytes, identity)
+        self._end = LogEnd(log_id, path.name, number)
 
     def _end_segment(self) -> None:
         if self._segment is not None:

@@ -28,6 +28,8 @@ from shared.mcap_log import (
     SegmentReader,
     SegmentWriter,
     recover_log,
+    segment_began_ns,
+    segment_path,
     segment_paths,
 )
 from shared.messages.station import CloseIncident, OpenIncident
@@ -227,6 +229,41 @@ def of_another_time(path: Path) -> None:
     later = [(t_ns + 7200 * NS_PER_S, key, payload) for t_ns, key, payload in walked()[:500]]
     _log(elsewhere, later)
     shutil.copy(segment_paths(elsewhere / "log")[0], path)
+
+
+def test_a_segment_of_another_station_behind_the_log_lengthens_no_replay(
+    tmp_path: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    """With the next number and a later time, of an incident that is not closed in the log."""
+    data, is_open = tmp_path / "station", len(walked()) - 200
+    _log(data, walked()[:is_open], POLICY)
+    end_ns = max(one.end_ns for one in DataFolder(data).segments())
+    of_another_time(tmp_path / "other.mcap")
+    elsewhere = segment_paths(tmp_path.parent / "elsewhere" / "log")[0]
+    number = len(segment_paths(data / "log")) + 1
+    beside = segment_path(data / "log", number, segment_began_ns(elsewhere))
+    shutil.move(tmp_path / "other.mcap", beside)
+    opened = _open(data, "i1", told, closing_at_end)
+    assert [beside.name in one for one in told].count(True) == 1, told
+    assert f"{beside.name} is no segment of this log and is left out: it is of another log" in told
+    assert max(one.end_ns for one in opened.folder.segments()) == end_ns
+
+
+@pytest.mark.parametrize("is_station", [True, False])
+def test_files_that_cannot_be_of_the_log_are_named(
+    is_station: bool, copy: Path, told: list[str], closing_at_end: ExitStack
+) -> None:
+    """In a station's folder, or among files that somebody gives."""
+    log = copy / "log"
+    of_another_time(copy / "foreign.mcap")
+    shutil.move(copy / "foreign.mcap", log)
+    (log / "empty.mcap").touch()
+    opened = _open(copy if is_station else log, "i1", told, closing_at_end)
+    for name in ("foreign.mcap", "empty.mcap"):
+        (said,) = (one for one in told if name in one)
+        assert f"{name} is no segment of this log and is left out" in said
+    assert len(list(opened.folder.segments())) == len(segment_paths(log))
+    assert set(told) <= {*opened.defects(), *told[-1:]}
 
 
 def cut_short(path: Path) -> None:

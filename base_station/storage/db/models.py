@@ -298,6 +298,7 @@ class LogSegment(Base):
     messages: Mapped[int]
     size_bytes: Mapped[int]
     note: Mapped[str]  # what recovery had to say; empty: nothing
+    log_id: Mapped[str] = mapped_column(default="", server_default="")  # empty: an earlier version
 
 
 PROJECTIONS: tuple[type[Base], ...] = (

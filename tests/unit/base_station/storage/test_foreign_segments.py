@@ -7,16 +7,31 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from mcap.reader import make_reader
 from mcap.writer import Writer
 
 from base_station.engine.feed import LogFeed
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.log_defects import LogDefects
 from base_station.storage.recorder import Recorder
 from shared.clock import NS_PER_S, ManualClock
-from shared.mcap_log import SegmentPolicy, SegmentWriter, own_segments, segment_path, segment_paths
+from shared.mcap_log import (
+    SegmentPolicy,
+    SegmentReader,
+    SegmentWriter,
+    own_segments,
+    recover_log,
+    rewrite_segment,
+    segment_number,
+    segment_path,
+    segment_paths,
+)
+from shared.mcap_log.identity import SegmentIdentity, identity_of
+from shared.mcap_log.writing import Segment
 from tests.rig.small_log import KEY, T0_NS
 
 SEGMENTS, EACH = 4, 10
+OTHER_LOG = "it is of another log"
 
 
 def written(folder: Path, began_ns: int, segments: int = SEGMENTS) -> Path:
@@ -24,6 +39,20 @@ def written(folder: Path, began_ns: int, segments: int = SEGMENTS) -> Path:
         for second in range(segments * EACH):
             log.write(began_ns + second * NS_PER_S, KEY, b"%d" % second)
     return folder
+
+
+def by_earlier_version(path: Path) -> Path:
+    """The same records in a segment that does not say of which log it is."""
+    with SegmentReader(path) as reader:
+        records = list(reader.records())
+    path.unlink()
+    segment = Segment(path, SegmentPolicy().chunk_bytes, SegmentIdentity())
+    for record in records:
+        segment.add(*record)
+    segment.finish()
+    segment.file.sync()
+    segment.file.close()
+    return path
 
 
 @pytest.fixture
@@ -52,32 +81,146 @@ def seconds(data: DataFolder, told: list[str]) -> list[int]:
     return [int(payload) for _, _, payload in LogFeed(data.log, on_damage=told.append).records()]
 
 
-def test_what_stands_in_the_place_of_a_segment(data: DataFolder, tmp_path: Path) -> None:
+@pytest.mark.parametrize("is_earlier", [False, True])
+def test_what_stands_in_the_place_of_a_segment(
+    is_earlier: bool, data: DataFolder, tmp_path: Path
+) -> None:
+    other = elsewhere(tmp_path, 6000)
+    if is_earlier:
+        for path in (*segment_paths(data.log), other):
+            by_earlier_version(path)
     own = segment_paths(data.log)
-    shutil.copy(elsewhere(tmp_path, 6000), own[1])
+    shutil.copy(other, own[1])
     told: list[str] = []
     assert seconds(data, told) == [*range(10), *range(20, 40)]
-    assert told == [
-        f"{own[1].name} is no segment of this log and is left out: its records begin at "
-        "2023-11-14 23:53:20 UTC, which is not when its name says"
-    ]
+    reason = (
+        "its records begin at 2023-11-14 23:53:20 UTC, which is not when its name says"
+        if is_earlier
+        else OTHER_LOG
+    )
+    assert told == [f"{own[1].name} is no segment of this log and is left out: {reason}"]
     assert max(one.end_ns for one in data.segments()) == T0_NS + 39 * NS_PER_S
 
 
-@pytest.mark.parametrize("number", [1, 3, 99])
+@pytest.mark.parametrize("number", [1, 3, 5, 99])
 @pytest.mark.parametrize("after_s", [-6000, 6000])
 def test_what_stands_beside_the_segments_under_a_name_of_its_own(
     number: int, after_s: int, data: DataFolder, tmp_path: Path
 ) -> None:
-    """Only behind all others a later one is as the log may have gone on."""
+    """Also behind all others, where the log may have gone on by its names and times."""
     own = segment_paths(data.log)
     beside = segment_path(data.log, number, T0_NS + after_s * NS_PER_S)
     shutil.copy(elsewhere(tmp_path, after_s), beside)
+    assert own_segments(data.log) == (own, {beside: OTHER_LOG})
+    assert seconds(data, []) == [*range(40)]
+    defects = LogDefects(data.log)
+    while defects.look():
+        pass
+    assert defects() == (f"{beside.name} is no segment of this log and is left out: {OTHER_LOG}",)
+
+
+@pytest.mark.parametrize("number", [1, 3, 99])
+@pytest.mark.parametrize("after_s", [-6000, 6000])
+def test_of_what_earlier_versions_wrote_names_and_times_tell(
+    number: int, after_s: int, data: DataFolder, tmp_path: Path
+) -> None:
+    """Only behind all others a later one is as the log may have gone on."""
+    own = [by_earlier_version(path) for path in segment_paths(data.log)]
+    other = by_earlier_version(elsewhere(tmp_path, after_s))
+    beside = segment_path(data.log, number, T0_NS + after_s * NS_PER_S)
+    shutil.copy(other, beside)
     if number == 99 and after_s > 0:
         assert own_segments(data.log) == ([*own, beside], {})
         return
     assert own_segments(data.log) == (own, {beside: "its name does not go with the others"})
     assert seconds(data, []) == [*range(40)]
+
+
+def test_a_log_of_an_earlier_version_goes_on_and_takes_in_no_other(
+    data: DataFolder, tmp_path: Path
+) -> None:
+    own = [by_earlier_version(path) for path in segment_paths(data.log)]
+    beside = segment_path(data.log, 5, T0_NS + 6000 * NS_PER_S)
+    shutil.copy(elsewhere(tmp_path, 6000), beside)
+    assert own_segments(data.log) == (own, {beside: OTHER_LOG})
+    written(data.log, T0_NS + 40 * NS_PER_S, 1)
+    new = segment_path(data.log, 5, T0_NS + 40 * NS_PER_S)
+    assert own_segments(data.log) == ([*own, new], {beside: OTHER_LOG})
+    own[-1].unlink()
+    assert own_segments(data.log) == ([*own[:-1], new], {beside: OTHER_LOG})
+    behind = by_earlier_version(segment_paths(written(tmp_path / "old", T0_NS, 1))[0])
+    late = segment_path(data.log, 6, T0_NS + 60 * NS_PER_S)
+    shutil.copy(behind, late)
+    assert "an earlier version" in own_segments(data.log)[1][late]
+
+
+@pytest.mark.parametrize("beside_number", [1, 5])
+def test_a_station_goes_on_as_if_what_is_foreign_were_not_there(
+    beside_number: int, data: DataFolder, tmp_path: Path
+) -> None:
+    """With no number left out, and of the same log after each start."""
+    own = segment_paths(data.log)
+    beside = segment_path(data.log, beside_number, T0_NS + 6000 * NS_PER_S)
+    shutil.copy(elsewhere(tmp_path, 6000), beside)
+    for start in range(2):
+        written(data.log, T0_NS + (60 + 20 * start) * NS_PER_S, 1)
+    found, foreign = own_segments(data.log)
+    assert [segment_number(path) for path in found] == [1, 2, 3, 4, 5, 6]
+    assert found[:4] == own
+    assert foreign == {beside: OTHER_LOG}
+
+
+def test_what_is_written_anew_stays_of_its_log(data: DataFolder) -> None:
+    """Of which nobody may know anything but the segments around it."""
+    own = segment_paths(data.log)
+    rewrite_segment(own[1], lambda record: [(record[0], KEY, b"redacted")])
+    content = bytearray(own[2].read_bytes())
+    content[8 + 9 + 30 : 8 + 9 + 60] = bytes(30)
+    own[2].write_bytes(content)
+    rewrite_segment(own[2], lambda record: [(record[0], KEY, b"redacted")])
+    torn = own[3].read_bytes()
+    own[3].write_bytes(torn[: len(torn) // 2])
+    recover_log(data.log)
+    assert own_segments(data.log) == (own, {})
+    heads = [identity_of(path) for path in own]
+    assert {head.log_id for head in heads if head} == {identity_of(own[0]).log_id}  # type: ignore[union-attr]
+
+
+def test_a_log_that_was_lost_goes_on_as_the_same(data: DataFolder, tmp_path: Path) -> None:
+    """What is put back from a backup is of it."""
+    backup = shutil.copytree(data.log, tmp_path / "backup")
+    with closing(Recorder(data.path, ManualClock())) as recorder:
+        log_id = recorder.segments()[0].log_id
+    assert log_id
+    shutil.rmtree(data.log)
+    with closing(Recorder(data.path, ManualClock())) as recorder:
+        recorder.continue_log(4, log_id)
+        recorder.write(T0_NS + 100 * NS_PER_S, KEY, b"100", urgent=True)
+    shutil.copytree(backup, data.log, dirs_exist_ok=True)
+    assert seconds(data, []) == [*range(40), 100]
+
+
+@pytest.mark.parametrize("name", ["foreign.mcap", "empty.mcap"])
+def test_what_has_no_number(name: str, data: DataFolder, tmp_path: Path) -> None:
+    beside = data.log / name
+    if name == "empty.mcap":
+        beside.touch()
+    else:
+        shutil.copy(elsewhere(tmp_path, 6000), beside)
+    told: list[str] = []
+    assert seconds(data, told) == [*range(40)]
+    why = "its name is not that of a segment"
+    assert told == [f"{name} is no segment of this log and is left out: {why}"]
+    with closing(Recorder(data.path, ManualClock())) as recorder:
+        assert recorder.foreign.keys() == {beside}
+
+
+def test_any_reader_of_mcap_sees_of_which_log_a_segment_is(data: DataFolder) -> None:
+    first, second, *_ = segment_paths(data.log)
+    with second.open("rb") as file:
+        (head,) = make_reader(file).iter_metadata()
+    assert (head.name, head.metadata["follows"]) == ("muster.log", first.name)
+    assert len(head.metadata["log_id"]) == 16
 
 
 def test_what_another_program_wrote(data: DataFolder) -> None:

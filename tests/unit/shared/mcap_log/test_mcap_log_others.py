@@ -104,4 +104,4 @@ def test_the_index_of_a_file_says_of_its_chunks_what_they_say_themselves(tmp_pat
         assert statistics is not None
         assert (statistics.message_start_time, statistics.message_end_time) == (T0_NS, T0_NS + 2)
         assert sorted(statistics.channel_message_counts.values()) == [3, 3]
-        assert (statistics.attachment_count, statistics.metadata_count) == (0, 0)
+        assert (statistics.attachment_count, statistics.metadata_count) == (0, 1)
