@@ -212,6 +212,7 @@ FIELDS: Mapping[str, str] = {
     "trails": "One for each unit that moved.",
     # ---- assessment
     "smoother": "Name of the smoother that it is held against.",
+    "IncidentReport.flaws": "Why the log does not tell all of it, in sentences.",
     "IncidentReport.units": "One for each unit that moved.",
     "seconds": "For how long positions of the unit were shown.",
     "walked_m": "Length of the unit's own path, metres.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import secrets
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from contextlib import AbstractContextManager, ExitStack
 from functools import partial
@@ -54,8 +54,7 @@ from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.replicated_tables import ReplicatedTables
-from base_station.storage.missing_segments import KnownSegment
-from base_station.storage.segment_index import SegmentIndex, known_segments_of
+from base_station.storage.segment_index import SegmentIndex
 from base_station.unit_sync.backfill import Backfill, Report
 from base_station.unit_sync.clock_server import ClockServer
 from base_station.unit_sync.command_sender import CommandSender
@@ -64,7 +63,6 @@ from base_station.unit_sync.log_gap_detector import Lost
 from base_station.views.station import StationFacts
 from shared.channels import ROOT, clock_key
 from shared.envelope import Stamper
-from shared.errors import StoreError
 from shared.messages import STATION_ID
 from shared.messages.station import Action, SetThresholds
 from shared.service_manager import ServiceManager
@@ -283,14 +281,8 @@ class _Station:
             note_damage=disk.check.recheck,
             photo_urls=disk.roster.photo_urls,
             empty_pipeline=lambda: past_pipeline(None),
-            known_segments=self._known_segments,
+            known_segments=disk.known_segments,
         )
-
-    def _known_segments(self) -> Collection[KnownSegment]:
-        try:
-            return known_segments_of(self._disk.records)
-        except StoreError:  # a disk that hangs keeps no replay; the files tell of most
-            return ()
 
     def _new_server(self) -> ConsoleServer:
         hub, http = self._resources.hub, self._resources.config.http

@@ -17,7 +17,7 @@ from base_station.app.factories import project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.feed import LogFeed
 from base_station.replay.playback import Archive
-from base_station.replay.version_check import decisions_differ
+from base_station.replay.version_check import DIFFERS, decisions_differ
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.copying import copy_database
@@ -64,7 +64,16 @@ class OfflineLog:
         theirs = Checkpoints(saved) if saved.is_dir() else own
         log = self.log
         defects = self.defects
-        return Archive(log.records, theirs, past_pipeline, log.watch, own, defects, defects.look)
+        return Archive(
+            log.records,
+            theirs,
+            past_pipeline,
+            log.watch,
+            own,
+            flaws=defects,
+            look=defects.look,
+            note=defects.note,
+        )
 
 
 def open_offline_log(
@@ -123,10 +132,7 @@ def _open_log(
     defects.look_at_files()
     log = LogFeed(folder.log, on_damage=defects.note_damage)
     if not defects() and decisions_differ(log.records(), past_pipeline(None)):
-        defects.note(
-            "this version of Muster decides otherwise than the station did: places and alarms of a "
-            "replay may differ from what was shown then, which is in the log"
-        )
+        defects.note(DIFFERS)
     return log, defects
 
 

@@ -48,7 +48,13 @@ def work(line: Line) -> None:
     log = LogFeed(Path(job.log), on_damage=note_damage)
     checkpoints = Checkpoints(Path(job.checkpoints))
     archive = Archive(
-        log.records, checkpoints, past_pipeline, log.watch, flaws=flaws, look=flaws.look
+        log.records,
+        checkpoints,
+        past_pipeline,
+        log.watch,
+        flaws=flaws,
+        look=flaws.look,
+        note=flaws.note,
     )
     match job:
         case ReplayJob():
@@ -63,7 +69,13 @@ def _flaws_of(job: Job) -> LogDefects:
         case ReplayJob():
             return LogDefects(log, job.known_segments, is_written=True, until_ns=job.end_ns)
         case PostProcessingJob():
-            return LogDefects(log, is_written=True)
+            return LogDefects(
+                log,
+                job.known_segments,
+                is_written=True,
+                from_ns=job.opened_ns,
+                until_ns=job.closed_ns,
+            )
 
 
 def _look_back(job: PostProcessingJob, archive: Archive, line: Line) -> None:

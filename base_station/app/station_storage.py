@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -85,6 +85,12 @@ class StationStorage:
             take_back,
         )
 
+    def known_segments(self) -> Collection[KnownSegment]:
+        try:
+            return known_segments_of(self.records)
+        except StoreError:  # a disk that hangs keeps no replay; the files tell of most
+            return ()
+
     def post_processor(self, processes: ReplayProcesses) -> PostProcessingProcess:
         place = PostProcessingContext(
             processes=processes,
@@ -93,6 +99,7 @@ class StationStorage:
             database=str(self.folder.database),
             prepare=self.recorder.flush,
             note_damage=self.check.recheck,
+            known_segments=self.known_segments,
         )
         kept = SmoothedTracks(self.store)
         return PostProcessingProcess(place, self.archive, SMOOTHERS[0], kept, self.clock)

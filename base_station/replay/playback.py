@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
-from base_station.core.checkpoint import Checkpoint
+from base_station.core.checkpoint import Checkpoint, read_checkpoint
 from base_station.core.events import Output, Received, StationEvent, event_of, is_decision
 from base_station.core.pipeline import StationPipeline
 from base_station.replay.unrecorded import LONGEST_NS, RecordGap, UnrecordedTime
@@ -41,6 +41,7 @@ class Archive:
     own: Checkpoints | None = None  # where a playback saves the states that it comes by
     flaws: Callable[[], Sequence[str]] = tuple  # what is known by now not to be as it was, in words
     look: Callable[[], bool] = lambda: False  # a little more for flaws; False: all is looked at
+    note: Callable[[str], object] = lambda _: None  # a flaw that somebody else has found
     has_lost: Callable[[int], bool] = lambda _: False  # whether the log had records of that time
 
     def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:
@@ -123,6 +124,19 @@ class Playback:
         is_one = (self._at_ns if until_ns is None else until_ns) - from_ns > LONGEST_NS
         return RecordGap(from_ns, until_ns) if is_one and self._at_ns > from_ns else None
 
+    def branch(self) -> tuple[StationPipeline, Iterable[Record]] | None:
+        """A pipeline of its own that stands where this one does, and the records from there on,
+        with decisions that it has made already; None while time is shown that has no records.
+        """
+        if self._unrecorded is not None:
+            return None
+        t_ns, events_at_t = self._place
+        state = read_checkpoint(self._pipeline.checkpoint())
+        return (
+            self._archive.make_pipeline(state),
+            _records_behind(self._archive.open_log(t_ns), t_ns, events_at_t),
+        )
+
     def show_unrecorded(self) -> list[Output]:
         """In a gap: show everything as old as it is by now, until the next record is stepped."""
         if self.gap is None or self._place[0] == 0:
@@ -161,27 +175,47 @@ class Difference:
     replayed: Decision | None
 
 
+class Comparison:
+    """Steps a log record by record, and holds what is decided against what was."""
+
+    def __init__(self, pipeline: StationPipeline) -> None:
+        self._pipeline = pipeline
+        self._replayed: deque[Decision] = deque()
+
+    def step(self, record: Record) -> Difference | None:
+        """A decision that is not as it was logged."""
+        event = event_of(*record)
+        if isinstance(event, Received) and isinstance(event.message, Decision):
+            again = self._replayed.popleft() if self._replayed else None
+            is_same = again is not None and encode(again) == record[2]
+            return None if is_same else Difference(event.message, again)
+        self._replayed += [o for o in self._pipeline.step(event) if isinstance(o, Decision)]
+        return None
+
+    def rest(self) -> Iterator[Difference]:
+        """Decisions that were not logged."""
+        return (Difference(None, again) for again in self._replayed)
+
+
 def compare(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[Difference]:
     """Step a log from its beginning; yields every decision that is not as it was logged."""
-    replayed: deque[Decision] = deque()
-    for t_ns, key, payload in records:
-        event = event_of(t_ns, key, payload)
-        if isinstance(event, Received) and isinstance(event.message, Decision):
-            again = replayed.popleft() if replayed else None
-            if again is None or encode(again) != payload:
-                yield Difference(event.message, again)
-        else:
-            replayed += [o for o in pipeline.step(event) if isinstance(o, Decision)]
-    for again in replayed:
-        yield Difference(None, again)
+    comparison = Comparison(pipeline)
+    for record in records:
+        difference = comparison.step(record)
+        if difference is not None:
+            yield difference
+    yield from comparison.rest()
 
 
 def _events(records: Iterable[Record], from_ns: int, skip: int) -> Iterator[StationEvent]:
     """The events behind a checkpoint that has stepped ``skip`` of those at ``from_ns``."""
-    for t_ns, key, payload in records:
-        if is_decision(key):
-            continue
-        if t_ns == from_ns and skip > 0:
+    behind = _records_behind(records, from_ns, skip)
+    return (event_of(*record) for record in behind if not is_decision(record[1]))
+
+
+def _records_behind(records: Iterable[Record], from_ns: int, skip: int) -> Iterator[Record]:
+    for record in records:
+        if record[0] == from_ns and skip > 0 and not is_decision(record[1]):
             skip -= 1
         else:
-            yield event_of(t_ns, key, payload)
+            yield record

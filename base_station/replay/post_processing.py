@@ -238,10 +238,17 @@ class PostProcessor:
             smoothed,
             raw,
         )
+        report = msgspec.structs.replace(report, flaws=self._flaws())
         is_kept = False
         if incident.closed_ns is not None:
             is_kept = self._keep(incident, known, made_ns, report).is_kept
         return PostProcessingResult(made_ns, smoothed, raw, report, is_kept)
+
+    def _flaws(self) -> tuple[str, ...]:
+        """Why the log does not tell all of it."""
+        while self._archive.look():
+            pass
+        return tuple(self._archive.flaws())
 
     def known(self, incident: Incident, on_progress: Progress = lambda _: None) -> SolvedIncident:
         with self._working:

@@ -13,6 +13,7 @@ from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.ports import LiveSink, Trails
 from base_station.replay.playback import Archive, Playback
 from base_station.replay.unrecorded import RecordGap
+from base_station.replay.version_check import DIFFERS, VersionCheck
 from base_station.views.units import PhotoUrls
 from base_station.views.wire import GapView, ReplayView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
@@ -69,6 +70,7 @@ class ReplaySession:
         self._looking = LogOnChange(_log, "what the log lacks cannot be seen")
         self._trouble = LogOnChange(_log, "whether the past was changed cannot be seen")
         self._playback: Playback
+        self._version_check: VersionCheck | None = None  # until the first picture is shown
         self._publisher = ConsolePublisher(archive.make_pipeline(None), sink, photo_urls)
         self._looked_ns = self._whole_ns = clock.monotonic_ns()
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
@@ -193,13 +195,24 @@ class ReplaySession:
         looks = True
         with self._looking:
             while looks and self._clock.monotonic_ns() < until_ns:
-                looks = self._archive.look()
+                looks = self._checks_version() or self._archive.look()
         return looks
+
+    def _checks_version(self) -> bool:
+        """A record more; False: it was checked, or so much is missing that nobody can tell."""
+        if self._version_check is None:
+            self._archive.look()  # at its files
+            self._version_check = VersionCheck(self._playback, self._window.end_ns)
+        differs = None if self._archive.flaws() else self._version_check.look()
+        if differs:
+            self._archive.note(DIFFERS)
+        return differs is False
 
     def _open(self) -> None:
         """The log as it is now, from its beginning."""
         self._was_changed = self._archive.watch()
         self._playback = Playback(self._archive)
+        self._version_check = None
 
     def _follow_changes(self) -> None:
         """Where somebody was forgotten since, it shows the past as the log has it now."""

@@ -1,50 +1,91 @@
-"""Whether a replay shows what was shown: another version of the program may decide otherwise."""
+"""Whether a replay shows what was shown: another version of the program may decide otherwise.
+
+Where somebody was forgotten, or records are missing, the same program decides otherwise, too: what
+follows tells nothing of it.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from itertools import islice
+from itertools import islice, takewhile
 
 from base_station.core.erasure.erasure import inserted_action_id
 from base_station.core.events import Received, event_of
 from base_station.core.pipeline import StationPipeline
 from base_station.core.state import ERASED_TEXT
-from base_station.replay.playback import Decision, Record, compare
+from base_station.replay.playback import Comparison, Decision, Playback, Record
 from shared.channels import channel_of
 from shared.codec import decode, encode
 from shared.messages import AlarmChange, FusedPosition, Message, OperatorAction
 from shared.messages.station import CloseIncident, OpenIncident
 
 FIRST = 10_000  # records: to look at them takes half a second
+OF_INCIDENT = 100_000  # records, of which a few are looked at now and then
 SEEN_M = 0.5  # on the plan
+DIFFERS = (
+    "this version of Muster decides otherwise than the station did: places and alarms of a "
+    "replay may differ from what was shown then, which is in the log"
+)
 
 
 def decisions_differ(records: Iterable[Record], pipeline: StationPipeline) -> bool:
-    """Whether anybody who looks on would see it, at the beginning of a log.
+    """Whether anybody who looks on would see it, at the beginning of a log."""
+    return any(_differences(islice(records, FIRST), pipeline))
 
-    Where somebody was forgotten, or the log is not there from its beginning, the same program
-    decides otherwise, too: what follows tells nothing of it.
-    """
-    comparable = _comparable(islice(records, FIRST), pipeline)
-    return any(
-        one.logged is not None
-        and one.replayed is not None
-        and _is_seen(one.logged, _as_logged(one.replayed))
-        for one in compare(comparable, pipeline)
-    )
+
+class VersionCheck:
+    """Of what a playback is about to show, a record at a time."""
+
+    def __init__(self, playback: Playback, until_ns: int) -> None:
+        self._playback = playback
+        self._until_ns = until_ns
+        self._found: Iterator[bool] | None = None
+
+    def look(self) -> bool | None:
+        """At the next record: whether it is decided otherwise now; None: there is none, or it
+        cannot be looked at now.
+        """
+        if self._found is None:
+            self._found = self._begin()
+        return None if self._found is None else next(self._found, None)
+
+    def _begin(self) -> Iterator[bool] | None:
+        branch = self._playback.branch()
+        if branch is None:
+            return None
+        pipeline, records = branch
+        within = takewhile(lambda record: record[0] <= self._until_ns, records)
+        return _differences(islice(within, OF_INCIDENT), pipeline)
+
+
+def _differences(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[bool]:
+    """For each record, whether anybody would see that something else is decided now."""
+    comparison = Comparison(pipeline)
+    for record in _comparable(records, pipeline):
+        found = comparison.step(record)
+        yield (
+            found is not None
+            and found.logged is not None
+            and found.replayed is not None
+            and _is_seen(found.logged, _as_logged(found.replayed))
+        )
 
 
 def _comparable(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[Record]:
-    """Up to where something is gone: decisions are numbered from the first event on."""
-    numbered = 0
+    """From what the pipeline has not decided yet up to where something is gone: decisions are
+    numbered from the first event on.
+    """
+    begun = numbered = pipeline.state.seq
     put_in: tuple[str, ...] = ()  # how the ids begin of what forgetting put into the log
     for record in records:
         event = event_of(*record)
         message = event.message if isinstance(event, Received) else None
         if isinstance(message, Decision):
-            numbered += 1
             header = message.header
+            if header.boot_id == pipeline.state.boot_id and header.seq <= begun:
+                continue
+            numbered += 1
             if (header.boot_id, header.seq) != (pipeline.state.boot_id, numbered):
                 return
         elif isinstance(message, OperatorAction):

@@ -31,16 +31,18 @@ class LogDefects:
         known: Collection[KnownSegment] = (),
         *,
         is_written: bool = False,
+        from_ns: int = 0,
         until_ns: int | None = None,
         tell: Callable[[str], None] = lambda _: None,
     ) -> None:
         """``known``: what the database knows of the segments.  ``is_written``: a station writes
-        the newest one.  ``until_ns``: what was lost of later times is no flaw.  ``tell`` hears of
-        each flaw.
+        the newest one.  ``from_ns``: nobody reads what ends before it.  ``until_ns``: what was lost
+        of later times is no flaw.  ``tell`` hears of each flaw.
         """
         self._log = log
         self._known = known
         self._is_written = is_written
+        self._from_ns = from_ns
         self._until_ns = until_ns
         self._tell = tell
         self._found: tuple[str, ...] = ()
@@ -93,7 +95,7 @@ class LogDefects:
 
     def _searches(self) -> Iterator[bool]:
         for segment in self.look_at_files():
-            if not self._is_behind(segment.start_ns):
+            if segment.end_ns >= self._from_ns and not self._is_behind(segment.start_ns):
                 yield from self._look_into(segment)
 
     def _look_at_end(self, segment: SegmentInfo) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 import socket
 import threading
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import msgspec
@@ -16,7 +18,7 @@ from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.playback import Archive
-from base_station.replay.post_processing import PostProcessor
+from base_station.replay.post_processing import PostProcessor, read_report
 from base_station.replay.processes.post_processing_process import (
     MEMORY_MB,
     PostProcessingContext,
@@ -30,12 +32,15 @@ from base_station.storage.db.models import Incident
 from base_station.storage.db.records import Records
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.store import Store
+from base_station.storage.missing_segments import KnownSegment
 from shared.clock import NS_PER_S, SystemClock
 from shared.errors import MemoryLimitError, StoreError
+from shared.mcap_log import SegmentWriter, segment_paths
 from shared.messages import Header, Position
 from shared.messages.pins import SetPin
 from shared.messages.station import CloseIncident, OpenIncident, RegisterUnit, SetStart
 from tests.rig.live_station import LiveStation
+from tests.rig.small_log import KEY, T0_NS
 from tests.rig.waiting import until
 
 
@@ -62,7 +67,10 @@ class Desk:
         return PostProcessor(self.archive, SMOOTHERS[0], self.kept, SystemClock())
 
     def beside(
-        self, processes: ReplayProcesses, memory_mb: int = MEMORY_MB
+        self,
+        processes: ReplayProcesses,
+        memory_mb: int = MEMORY_MB,
+        known: tuple[KnownSegment, ...] = (),
     ) -> PostProcessingProcess:
         place = PostProcessingContext(
             processes=processes,
@@ -72,6 +80,7 @@ class Desk:
             prepare=lambda: None,
             note_damage=lambda _: None,
             memory_mb=memory_mb,
+            known_segments=lambda: known,
         )
         return PostProcessingProcess(place, self.archive, SMOOTHERS[0], self.kept, SystemClock())
 
@@ -113,6 +122,24 @@ def test_a_process_makes_the_same_and_it_is_kept(desk: Desk, processes: ReplayPr
     assert made.tracks == again.smoothed
     assert raw == again.raw
     assert report == msgspec.structs.replace(again.report, made_ms=report.made_ms)
+
+
+def test_what_the_log_lacks_is_in_the_report(desk: Desk, processes: ReplayProcesses) -> None:
+    """A segment that only the database knows, and one of another log."""
+    known = KnownSegment("000007-20231114T221320Z.mcap", T0_NS, T0_NS + NS_PER_S, 10)
+    with closing(SegmentWriter(desk.folder.path / "other")) as other:
+        other.write(desk.incident.opened_ns + 3600 * NS_PER_S, KEY, b"")
+    (beside,) = segment_paths(desk.folder.path / "other")
+    shutil.move(beside, desk.folder.log / f"000008{beside.name[6:]}")
+    report = desk.beside(processes, known=(known,)).assess(desk.incident, {})
+    foreign, gone = report.flaws
+    assert foreign.endswith("is no segment of this log and is left out: it is of another log")
+    assert gone.startswith("segment 7 of the log is missing")
+    kept = desk.kept.report("i1")
+    assert kept is not None
+    again = read_report(kept)
+    assert again is not None
+    assert again.flaws == report.flaws
 
 
 def test_of_an_open_incident_it_is_told_and_not_kept(

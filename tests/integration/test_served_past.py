@@ -10,6 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import psutil
 from websockets.sync.client import ClientConnection
 
 from base_station.accounts.principals import Role
@@ -75,6 +76,57 @@ def test_a_past_incident_is_replayed_in_the_console(
         browser.call("DELETE", path)
         assert browser.status("GET", path) == 404
     assert station.stop() == 0
+
+
+def test_a_running_station_replays_in_processes_of_its_own(
+    serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
+) -> None:
+    """One for each replay, which ends with it."""
+    station = serve()
+    with Browser(station.wait_ready(), data) as browser:
+        incident_id, _ = play_incident(browser, unit, make_position)
+        replays = [
+            browser.call("POST", "/replays", json={"incident_id": incident_id}) for _ in range(2)
+        ]
+        paths = [f"/replays/{one['replay_id']}" for one in replays]
+        for path in paths:
+            with watch(browser, f"{path}/live") as console:
+                _wait_for(console, is_shown)
+        # The station looks back on the incident by itself meanwhile.
+        until(lambda: len(replaying(station.pid)) == 2, "only the replays are left")
+        working = replaying(station.pid)
+        assert station.pid not in {one.pid for one in working}
+        live_nice = psutil.Process(station.pid).nice()
+        assert all(one.nice() > live_nice for one in working), "what is live goes first"
+        working[0].kill()
+        until(
+            lambda: (
+                sum(browser.status("GET", path) == 200 for path in paths) == 1
+                or len(replaying(station.pid)) == 1
+            ),
+            "only one is left",
+        )
+        assert browser.status("GET", "/units") == 200, "the station lives on"
+        for path in paths:
+            browser.status("DELETE", path)
+        until(lambda: not replaying(station.pid), "the other one has ended with its replay")
+    assert station.stop() == 0
+
+
+def is_shown(message: dict[str, Any]) -> bool:
+    replay = message.get("replay")
+    return replay is not None and not replay["seeking"]
+
+
+def replaying(station: int) -> list[psutil.Process]:
+    """Processes that look at the past: copies of one that has loaded the program."""
+    return [
+        copy
+        for child in psutil.Process(station).children()
+        if "base_station.app.worker_process" in child.cmdline()
+        for copy in child.children()
+        if copy.status() != psutil.STATUS_ZOMBIE
+    ]
 
 
 def _wait_for(

@@ -216,6 +216,7 @@ export interface IncidentReport {
   units: UnitReport[];
   stated: Figures | null;
   against_smoothed: Figures | null;
+  flaws: string[];
   is_newest: boolean;
 }
 

@@ -80,6 +80,7 @@ class IncidentReport(Answer, frozen=True):
     units: tuple[UnitReport, ...]
     stated: Figures | None  # over all units
     against_smoothed: Figures | None
+    flaws: tuple[str, ...] = ()  # of the log that it was made of
     is_newest: bool = True  # False: more of it is coming out of a journal; not kept
 
 

@@ -6,7 +6,7 @@ megabytes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from threading import Lock
 
@@ -24,6 +24,7 @@ from base_station.replay.processes import wire
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.storage.db.models import Incident
 from base_station.storage.db.smoothed import SmoothedTracks, Tracks, unpacked
+from base_station.storage.missing_segments import KnownSegment
 from shared.clock import Clock
 from shared.errors import MemoryLimitError, StoreError
 
@@ -41,6 +42,7 @@ class PostProcessingContext:
     prepare: Callable[[], object]  # what is to be looked back on is on the disk then
     note_damage: Callable[[str], None]  # of the log
     memory_mb: int = MEMORY_MB
+    known_segments: Callable[[], Iterable[KnownSegment]] = tuple  # of the log, by the database
 
 
 class PostProcessingProcess(PostProcessor):
@@ -111,6 +113,7 @@ class PostProcessingProcess(PostProcessor):
             late_data_ns=incident.late_data_ns or 0,
             now_ns=self._clock.utc_ns(),
             memory_mb=self._place.memory_mb,
+            known_segments=tuple(self._place.known_segments()),
         )
 
     def _follow(

@@ -41,6 +41,7 @@ class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
     late_data_ns: int
     now_ns: int  # station time
     memory_mb: int  # of its own, at most
+    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
 
 
 class Play(msgspec.Struct, frozen=True, tag="play"):

@@ -57,6 +57,11 @@ function Answer({ report }: { report: Assessment | "asked" | "failed" }) {
   return (
     <>
       {!report.is_newest && <p class="warned">{LATE}</p>}
+      {report.flaws.map((flaw) => (
+        <p key={flaw} class="warned">
+          {flaw}
+        </p>
+      ))}
       <Lights report={report} />
       <Errors report={report} />
       <dl class="terms">

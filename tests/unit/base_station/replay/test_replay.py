@@ -259,7 +259,7 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
     sought_s, clock_s = at_s(session), clock.monotonic_ns() / NS_PER_S
     session.close()
     assert clock_s > 10.0
-    assert sought_s == MAYDAY_S
+    assert MAYDAY_S <= sought_s < MAYDAY_S + 1.0, "a record is looked at for flaws meanwhile"
 
 
 def test_one_that_is_closed_on_its_way_just_ends(

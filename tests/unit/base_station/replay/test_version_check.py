@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
+from pathlib import Path
 
 import msgspec
 import pytest
@@ -11,11 +12,18 @@ import pytest
 from base_station.core.erasure.erasure import CaptureClocks, erasure_of_incident, erasure_of_person
 from base_station.core.erasure.redaction import Redactor
 from base_station.core.events import Received, event_of
-from base_station.replay.playback import Decision, Record
-from base_station.replay.version_check import decisions_differ
+from base_station.replay.playback import Archive, Decision, Playback, Record
+from base_station.replay.version_check import VersionCheck, decisions_differ
+from base_station.storage.checkpoints import Checkpoints
 from shared.channels import OPERATOR, channel_of
 from shared.codec import encode
-from shared.messages import STATION_ID, AlarmChange, EventKind, FusedPosition
+from shared.messages import (
+    STATION_ID,
+    AlarmChange,
+    EventKind,
+    FusedPosition,
+    OperatorAction,
+)
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetStart, Unassign
 from tests.rig.live_station import make_pipeline
 from tests.rig.logged_walk import walk_with_mayday
@@ -97,14 +105,75 @@ def two_incidents() -> tuple[Record, ...]:
 def test_what_forgetting_took_out_tells_nothing_of_the_program(incident: bool) -> None:
     whole = list(logged(records=two_incidents()))
     assert not decisions_differ(whole, make_pipeline())
+    assert not decisions_differ(redacted(whole, incident=incident), make_pipeline())
+
+
+def checked(records: Iterable[Record], folder: Path, from_incident: str) -> list[bool]:
+    """What is said of each record from where an incident begins."""
+    whole = list(records)
+    archive = Archive(
+        lambda from_ns: (one for one in whole if one[0] >= from_ns),
+        Checkpoints(folder),
+        make_pipeline,
+    )
+    playback = Playback(archive)
+    for _ in playback.seek(opened_ns(whole, from_incident)):
+        pass
+    check = VersionCheck(playback, whole[-1][0])
+    return list(iter(check.look, None))
+
+
+def opened_ns(records: Iterable[Record], incident_id: str) -> int:
+    return next(
+        event.t_ns
+        for event in (event_of(*one) for one in records)
+        if isinstance(event, Received)
+        and isinstance(event.message, OperatorAction)
+        and isinstance(event.message.action, OpenIncident)
+        and event.message.action.incident_id == incident_id
+    )
+
+
+def test_an_incident_that_another_version_recorded_behind_others_is_told(tmp_path: Path) -> None:
+    """The log's beginning is of this one."""
+    second_ns = opened_ns(two_incidents(), "i2")
+    mixed = [
+        of_this if of_this[0] < second_ns else of_other
+        for of_this, of_other in zip(
+            logged(records=two_incidents()),
+            logged(moved, records=two_incidents()),
+            strict=True,
+        )
+    ]
+    assert any(checked(mixed, tmp_path, "i2"))
+    same = checked(logged(records=two_incidents()), tmp_path, "i2")
+    assert not any(same)
+    assert len(same) > 40
+    assert any(checked(logged(moved, records=two_incidents()), tmp_path, "i1"))
+
+
+def moved(decision: Decision) -> Decision:
+    if isinstance(decision, FusedPosition):
+        return msgspec.structs.replace(decision, north_m=decision.north_m + 2.0)
+    return decision
+
+
+@pytest.mark.parametrize("incident", [False, True])
+def test_of_an_incident_behind_what_was_forgotten_nothing_is_told(
+    incident: bool, tmp_path: Path
+) -> None:
+    whole = list(logged(records=two_incidents()))
+    assert not any(checked(redacted(whole, incident=incident), tmp_path, "i2"))
+
+
+def redacted(whole: list[Record], *, incident: bool) -> list[Record]:
     actions = [one for one in whole if one[1] == OPERATOR.key(STATION_ID)]
     if incident:
         erasure = erasure_of_incident(actions, "i1")
     else:
         erasure = erasure_of_person(actions, "Ada", "Ada", whole[-1][0])
     redact = Redactor(erasure, clocks_of(whole))
-    redacted = [one for record in whole for one in redact(record)]
-    assert not decisions_differ(redacted, make_pipeline())
+    return [one for record in whole for one in redact(record)]
 
 
 def clocks_of(records: list[Record]) -> CaptureClocks:

@@ -22,6 +22,7 @@ from base_station.engine.ports import Trails
 from base_station.replay.processes.replay_process import ReplayContext, ReplayProcess
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.replay.session import Window
+from base_station.replay.version_check import DIFFERS
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import Delta, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S
@@ -31,6 +32,7 @@ from tests.rig.live_station import Screen
 from tests.rig.logged_walk import DURATION_S, MAYDAY_S, walk_with_mayday
 from tests.rig.station_script import START_NS
 from tests.rig.waiting import until
+from tests.unit.base_station.replay.test_version_check import logged, north
 
 pytestmark = pytest.mark.slow
 
@@ -257,3 +259,27 @@ def test_what_the_log_lacks_is_told_in_a_replay_at_a_running_station(
         session.close()
     assert gone.startswith("segment 2 of the log is missing: what happened from 2023-")
     assert flipped.startswith(f"a part of the log cannot be read: {third.name}: the chunk at byte")
+
+
+@pytest.mark.parametrize("is_other", [True, False])
+def test_what_another_version_recorded_is_told_at_a_running_station(
+    is_other: bool, place: ReplayContext, tmp_path: Path
+) -> None:
+    """Once its first picture is shown; a log of the same version is looked through meanwhile."""
+    log, screen = tmp_path / "recorded" / "log", EncodedScreen()
+    with closing(SegmentWriter(log, SegmentPolicy(segment_s=20.0))) as writer:
+        for record in logged(north(2.0) if is_other else north(0.0)):
+            writer.write(*record)
+    if not is_other:  # found where the check comes to its end
+        newest = segment_paths(log)[-1]
+        content = bytearray(newest.read_bytes())
+        content[300] ^= 0xFF
+        newest.write_bytes(content)
+    session = ReplayProcess(replace(place, log=str(log)), WINDOW, 1.0, screen)
+    session.pause()
+    try:
+        until(lambda: session.view().flaws, "it is told", WAIT_S)
+        assert screen.resets
+        assert [flaw == DIFFERS for flaw in session.view().flaws] == [is_other]
+    finally:
+        session.close()
