@@ -88,9 +88,11 @@ def ports_of(feed: Feed, log: Log, screen: Screen, folder: Path, clock: Clock) -
 class LiveStation:
     """Runs from ``with`` to its end; made again on the same folder it goes on."""
 
-    def __init__(self, folder: Path, policy: SegmentPolicy | None = None) -> None:
+    def __init__(
+        self, folder: Path, policy: SegmentPolicy | None = None, screen: Screen | None = None
+    ) -> None:
         clock = SteadyClock(SystemClock())
-        self.screen, self.store = Screen(), Store()
+        self.screen, self.store = screen or Screen(), Store()
         self.checkpoints = Checkpoints(folder / "checkpoints")
         self.recorder = Recorder(folder, clock, policy)
         self.reported: Report = {}  # what may be acknowledged

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -35,7 +35,9 @@ from shared.bench_figures import FiguresFile, write_figures
 from shared.clock import SystemClock
 from shared.messages.station import CloseIncident, OpenIncident, SetStart
 from tests.bench.past.building_walk import BuildingWearer
+from tests.bench.past.live_positions import PositionAges, live_positions
 from tests.rig.accelerated_station import compressed_station
+from tests.rig.latency import Latency, latency_of
 from tests.rig.simulated_units import unit_names
 
 _RATE_HZ = 7.0  # messages a second of each unit
@@ -51,21 +53,27 @@ class LookBackFigures:
     points: int  # of all trails
     peak_mb: float  # resident, of the process that works it out
     took_s: float
+    alone: Latency  # of live positions as consoles get them, before and after it
+    meanwhile: Latency
 
 
 def bench_past(
     units: Annotated[int, typer.Option(min=1, help="Wearers.")] = 100,
     minutes: Annotated[float, typer.Option(min=0.1, help="That they walk.")] = 60.0,
+    live_units: Annotated[int, typer.Option(min=1, help="Wearers at the live station.")] = 20,
+    alone_s: Annotated[float, typer.Option(min=0.5, help="Without it, before and after.")] = 20.0,
     json_file: FiguresFile = None,
 ) -> None:
     """Lets people walk corridors and stairs of a building, closes the incident, and works out what
-    is known of it afterwards, in a process of its own as a station does.
+    is known of it afterwards, in a process of its own as a station does; how old are positions at
+    a station that is live meanwhile?
     """
     with TemporaryDirectory(prefix="muster-bench-") as name, Progress(transient=True) as progress:
         folder = DataFolder(Path(name))
         messages = _walk(folder, units, minutes, progress)
         progress.add_task("looking back", total=None)
-        figures = _look_back(folder, units, minutes, messages)
+        live = live_positions(folder.path / "live", live_units, _RATE_HZ)
+        figures = _look_back(folder, units, minutes, messages, live, alone_s)
     Console().print(_table(figures))
     write_figures(json_file, figures)
 
@@ -85,7 +93,14 @@ def _walk(folder: DataFolder, units: int, minutes: float, progress: Progress) ->
         return station.messages
 
 
-def _look_back(folder: DataFolder, units: int, minutes: float, messages: int) -> LookBackFigures:
+def _look_back(
+    folder: DataFolder,
+    units: int,
+    minutes: float,
+    messages: int,
+    live: AbstractContextManager[PositionAges],
+    alone_s: float,
+) -> LookBackFigures:
     log = LogFeed(folder.log)
     archive = Archive(log.records, Checkpoints(folder.checkpoints), past_pipeline, log.watch)
     with Store(folder.database) as store, ReplayProcesses() as processes:
@@ -101,12 +116,31 @@ def _look_back(folder: DataFolder, units: int, minutes: float, messages: int) ->
         incident = Records(store, clock).require_incident("i1")
         kept = SmoothedTracks(store)
         post_processor = PostProcessingProcess(place, archive, SMOOTHERS[0], kept, clock)
-        began_s = time.perf_counter()
-        with _peak_mb(processes) as seen_mb:
-            made = post_processor.post_process(incident, {})
-        took_s = time.perf_counter() - began_s
+        with live as ages:
+            alone_ms = _ages_alone(ages, alone_s)
+            began_s = time.perf_counter()
+            with _peak_mb(processes) as seen_mb:
+                made = post_processor.post_process(incident, {})
+            took_s = time.perf_counter() - began_s
+            meanwhile_ms = ages.take()
+            alone_ms += _ages_alone(ages, alone_s)
         points = sum(len(track) for track in made.smoothed.values())
-    return LookBackFigures(units, minutes, messages, points, max(seen_mb), took_s)
+    return LookBackFigures(
+        units,
+        minutes,
+        messages,
+        points,
+        max(seen_mb),
+        took_s,
+        latency_of(alone_ms),
+        latency_of(meanwhile_ms),
+    )
+
+
+def _ages_alone(ages: PositionAges, seconds: float) -> list[float]:
+    ages.take()  # of before
+    time.sleep(seconds)
+    return ages.take()
 
 
 @contextmanager
@@ -145,4 +179,8 @@ def _table(figures: LookBackFigures) -> Table:
         table.add_column(title, justify="right" if title or table.columns else "left")
     table.add_row("memory, at most", f"{figures.peak_mb:.0f} MB", f"{_TO_REACH_MB:.0f} MB")
     table.add_row("took", f"{figures.took_s:.1f} s", "")
+    for name, ages in (("without it", figures.alone), ("meanwhile", figures.meanwhile)):
+        table.add_row(
+            f"live positions {name}, p50, p99", f"{ages.p50_ms:.0f}, {ages.p99_ms:.0f} ms", ""
+        )
     return table
