@@ -39,7 +39,7 @@ export interface Applied {
   missed: boolean; // something did not arrive: ask for a snapshot
 }
 
-// As the station thins its own trails out (base_station/core/units/trail.py).
+// As the station thins its own trails out (base_station/core/state/trail.py).
 const TRAIL_STEP_MS = 1000;
 const TRAIL_STEP_M = 0.5;
 const TRAIL_REST_MS = 15_000;

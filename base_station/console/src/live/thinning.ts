@@ -1,4 +1,4 @@
-/** A trail's older part with fewer points, as the station thins its own (base_station/core/units/trail.py): the
+/** A trail's older part with fewer points, as the station thins its own (base_station/core/state/trail.py): the
  * whole way stays, within a stated distance of itself.  Pure. */
 import type { TrailPoint } from "../wire";
 
