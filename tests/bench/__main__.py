@@ -21,6 +21,7 @@ BENCHES = {
     "standby": "tests.bench.standby.command:bench_standby",
     "station": "tests.bench.station.command:bench_station",
     "track": "tests.bench.tracker.track:bench_track",
+    "wearer": "tests.bench.wearer:bench_wearer",
 }
 
 

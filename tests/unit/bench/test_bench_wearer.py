@@ -1,0 +1,18 @@
+"""``muster bench wearer`` measures a button and an order; targets are not asserted."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.bench.wearer import bench_wearer
+
+
+@pytest.mark.slow
+def test_it_writes_the_figures(tmp_path: Path) -> None:
+    bench_wearer(trials=2, outage=False, json_file=tmp_path / "figures.json")
+    figures = json.loads((tmp_path / "figures.json").read_text())
+    assert len(figures["mayday_s"]) == len(figures["order_s"]) == 2
+    assert all(-0.1 < value < 120.0 for value in figures["mayday_s"] + figures["order_s"])
