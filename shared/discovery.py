@@ -22,7 +22,7 @@ SERVICE = "_muster._tcp.local."
 VERSION = "1"
 _RESOLVE_MS = 1000
 _LINGER_S = 0.5  # for further stations, once there is one
-_MOST_LABEL = 50  # a label of DNS has 63 bytes, and may get a number
+_MOST_LABEL = 50  # a label of DNS has 63 bytes
 _MOST_NAMES = 32  # a machine that makes up more is not listened to
 _MOST_ADDRESSES = 8  # of one station
 
@@ -31,7 +31,7 @@ _MOST_ADDRESSES = 8  # of one station
 class Announcement:
     """What a station says of itself to everybody on its network."""
 
-    name: str  # of the station, for people
+    name: str  # of the station, for people; as it is heard, with letters that tell two apart
     station: str  # common name of its certificate
     authority: str  # fingerprint of its authority's certificate
     port: int  # of the bus
@@ -54,7 +54,7 @@ class Announcer:
             try:
                 link = _open(interfaces)
                 cleanup.callback(link.close)
-                link.register_service(_service_of(announcement), allow_name_change=True)
+                link.register_service(_service_of(announcement))
             except (OSError, zeroconf.Error) as error:
                 raise BusError(f"the station cannot be announced: {_reason(error)}") from error
             self._cleanup = cleanup.pop_all()
@@ -105,7 +105,9 @@ def _open(interfaces: Sequence[str]) -> zeroconf.Zeroconf:
 
 
 def _service_of(announcement: Announcement) -> zeroconf.ServiceInfo:
-    label = announcement.name.replace(".", "-")[:_MOST_LABEL]
+    # Two that begin at once do not notice that they have one name, and are then found as one.
+    token = secrets.token_hex(4)
+    label = f"{announcement.name.replace('.', '-')[:_MOST_LABEL]}-{token}"
     return zeroconf.ServiceInfo(
         SERVICE,
         f"{label}.{SERVICE}",
@@ -116,7 +118,7 @@ def _service_of(announcement: Announcement) -> zeroconf.ServiceInfo:
             "station": announcement.station,
         },
         # A host of its own: the machine's name may be announced by another program, or machine.
-        server=f"muster-{secrets.token_hex(8)}.local.",
+        server=f"muster-{token}.local.",
         parsed_addresses=list(announcement.addresses),
     )
 

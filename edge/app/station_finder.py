@@ -25,7 +25,7 @@ class StationFinder:
         """``interfaces``: by their addresses; none: all."""
         self._authority = fingerprint(authority)
         self._interfaces = interfaces
-        self._named: set[tuple[str, str]] = set()
+        self._named: set[str] = set()  # authorities of strangers
 
     def find(self) -> tuple[str, ...]:
         """Endpoints of stations that say they are of this authority; takes three seconds."""
@@ -49,10 +49,9 @@ class StationFinder:
         return announcement.authority == self._authority
 
     def _name_once(self, stranger: Announcement) -> None:
-        key = stranger.name, stranger.authority
-        if key in self._named or len(self._named) >= _MOST_NAMED:
+        if stranger.authority in self._named or len(self._named) >= _MOST_NAMED:
             return
-        self._named.add(key)
+        self._named.add(stranger.authority)
         logger.warning(
             "station %s at %s is of another authority (%s...) and is ignored; a unit of it needs "
             "another enrolment",
