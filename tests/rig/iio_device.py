@@ -86,6 +86,14 @@ ICM_GYRO = Model(
 )
 
 
+def without_buffer(tree: SysfsTree, model: Model, **attributes: str) -> Path:
+    """Make a device whose driver has no buffer, and return its folder."""
+    raw = {
+        f"{name}_raw": str(value) for name, value in zip(model.elements, model.rest, strict=True)
+    }
+    return tree.iio(0, name=model.name, **model.attributes, **raw, **attributes)
+
+
 class EmulatedIio:
     """Device of a model; ``devices`` stands for ``/dev``."""
 

@@ -11,8 +11,8 @@ from edge.sources.iio.attributes import IIO_DEVICES, UnusableDeviceError
 from edge.sources.iio.block import DeviceReader
 from edge.sources.iio.buffer import BufferReader, can_be_captured
 from edge.sources.iio.conversion import ACCEL, GYRO, axes_of
-from edge.sources.iio.plan import Plan, plan_capture, plan_polling
-from edge.sources.iio.polling import USUAL_RATE_HZ, PollingReader
+from edge.sources.iio.plan import USUAL_RATE_HZ, Plan, plan_capture, plan_polling
+from edge.sources.iio.polling import POLLING_RATE_HZ, PollingReader
 from edge.sources.iio.settings import IioSettings
 from edge.sources.iio.trigger import Trigger, find_trigger, needs_trigger
 from edge.sources.polled_device import Unreadable
@@ -69,11 +69,14 @@ def _plan_device(
         trigger = find_trigger(device, machine.sysfs, settings.trigger)
         is_captured = trigger is not None
     if not is_captured:
-        plan = plan_polling(device, kinds, settings.rate_hz or USUAL_RATE_HZ)
+        plan = plan_polling(device, kinds, settings.rate_hz or POLLING_RATE_HZ)
         return InertialDevice(
             *(name, kinds, plan, False), lambda clock: PollingReader(device, kinds, plan, clock)
         )
-    plan = plan_capture(device, kinds, settings.rate_hz)
+    if trigger is not None and trigger.is_timer:
+        plan = plan_polling(device, kinds, settings.rate_hz or USUAL_RATE_HZ)
+    else:
+        plan = plan_capture(device, kinds, settings.rate_hz)
     node = machine.devices / device.name
     return InertialDevice(
         *(name, kinds, plan, True),

@@ -13,6 +13,7 @@ from edge.sources.iio.scan_elements import parse_type
 from edge.sources.sysfs import number_in, read_if_there, read_text, write_text
 
 USUAL_RATE_HZ = 400.0
+_OVERSAMPLING = 2.0  # of a device that is read at times of ours: no value is read twice
 _RATE_TOLERANCE = 0.01  # of a rate that was asked for: drivers write some digits
 _RANGES = {ACCEL: 16 * 9.80665, GYRO: math.radians(2000.0)}  # steps go beyond smaller ones
 _RANGE_TOLERANCE = 0.03  # nominal ranges are rounded
@@ -58,7 +59,8 @@ def plan_capture(device: Path, kinds: Iterable[str], asked_hz: float | None) -> 
 
 
 def plan_polling(device: Path, kinds: Iterable[str], rate_hz: float) -> Plan:
-    """Return the plan of a device that is read ``rate_hz`` times a second: it measures as often.
+    """Return the plan of a device that is read ``rate_hz`` times a second, whenever it has
+    measured: it measures more often.
 
     Raises OSError and UnusableDeviceError.
     """
@@ -66,7 +68,7 @@ def plan_polling(device: Path, kinds: Iterable[str], rate_hz: float) -> Plan:
     for kind in kinds:
         path, offered = _rates(device, kind)
         if path is not None and offered:
-            writes[path] = least_reaching(offered, rate_hz)
+            writes[path] = least_reaching(offered, _OVERSAMPLING * rate_hz)
     ranges, full_scales = _plan_ranges(device, kinds)
     return Plan((*ranges, *writes.items()), rate_hz, full_scales)
 

@@ -17,7 +17,7 @@ from edge.sources.iio.plan import Plan
 from edge.sources.iio.stream_monitor import StreamMonitor
 from shared.clock import NS_PER_S, Clock
 
-USUAL_RATE_HZ = 100.0
+POLLING_RATE_HZ = 100.0
 _TEMPERATURE_NS = NS_PER_S
 _DEGC = 1e-3  # of the unit of temperatures
 

@@ -10,22 +10,26 @@ from edge.sources.iio.attributes import IIO_DEVICES, UnusableDeviceError
 from edge.sources.sysfs import devices_in, read_if_there, write_text
 
 _CURRENT = Path("trigger") / "current_trigger"  # below the device
+_FREQUENCY = "sampling_frequency"  # of a timer
 _NEW_DATA = "-dev"
 
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
     name: str
-    folder: Path | None  # None: it is attached already
+    folder: Path | None  # None: it is not to be found
+
+    @property
+    def is_timer(self) -> bool:
+        """True for one that knows nothing of when the device has measured."""
+        return self.folder is not None and (self.folder / _FREQUENCY).exists()
 
     def attach(self, device: Path, rate_hz: float) -> None:
         """Raises OSError."""
-        if self.folder is None:
-            return
-        frequency = self.folder / "sampling_frequency"  # of a timer
-        if frequency.exists():
-            write_text(frequency, f"{rate_hz:g}")
-        write_text(device / _CURRENT, self.name)
+        if self.folder is not None and self.is_timer:
+            write_text(self.folder / _FREQUENCY, f"{rate_hz:g}")
+        if read_if_there(device / _CURRENT) != self.name:  # some cannot be written
+            write_text(device / _CURRENT, self.name)
 
 
 def needs_trigger(device: Path) -> bool:
@@ -49,7 +53,7 @@ def find_trigger(device: Path, sysfs: Path, wanted: str) -> Trigger | None:
         return Trigger(wanted, triggers[wanted])
     current = read_if_there(device / _CURRENT)
     if current:
-        return Trigger(current, None)
+        return Trigger(current, triggers.get(current))
     bus_device = device.resolve().parent
     own = [name for name, folder in triggers.items() if folder.resolve().parent == bus_device]
     # One of new data is named by the device, others by what they wait for, such as a motion.

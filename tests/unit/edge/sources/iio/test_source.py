@@ -14,7 +14,7 @@ import pytest
 from edge.samples import ElectronicsSample, Floats
 from edge.sources.iio import buffer
 from edge.sources.iio.source import IioSource
-from tests.rig.iio_device import BMI160, ICM_ACCEL, ICM_GYRO, EmulatedIio, Model
+from tests.rig.iio_device import BMI160, ICM_ACCEL, ICM_GYRO, EmulatedIio, Model, without_buffer
 from tests.rig.kernel_devices import SysfsTree, break_attribute, write_attributes
 from tests.rig.taken_batches import TakenBatches
 from tests.rig.waiting import until
@@ -181,9 +181,7 @@ def test_a_rate_that_was_not_known_in_time_is_said(plug, start) -> None:
 
 
 def test_a_device_without_a_buffer_is_polled(tree, start) -> None:
-    raw = dict(zip(BMI160.elements, map(str, BMI160.rest), strict=True))
-    device = tree.iio(0, name="bmi160", **BMI160.attributes, in_temp_raw="25", in_temp_scale="1000")
-    write_attributes(device, {f"{name}_raw": value for name, value in raw.items()})
+    device = without_buffer(tree, BMI160, in_temp_raw="25", in_temp_scale="1000")
     with start("bmi160?rate=50") as taken:
         until(lambda: len(taken) > ENOUGH, "samples")
         break_attribute(device, "in_accel_y_raw")
@@ -195,7 +193,7 @@ def test_a_device_without_a_buffer_is_polled(tree, start) -> None:
     assert np.linalg.norm(taken.column("accel_mps2"), axis=1) == pytest.approx(9.81, abs=0.1)
     assert np.diff(taken.column("t_ns")).min() > 0
     assert taken.others[0].temperature_degc == 25.0
-    assert (device / "in_accel_sampling_frequency").read_text().strip() == "50"
+    assert (device / "in_accel_sampling_frequency").read_text().strip() == "100"
 
 
 def test_a_trigger_of_the_device_is_attached(tree, plug, start) -> None:
@@ -219,6 +217,7 @@ def test_a_timer_that_is_named_is_attached_and_set(tree, plug, start) -> None:
         until(lambda: len(taken) > ENOUGH, "samples")
     assert device.value("trigger/current_trigger") == "muster"
     assert (timer / "sampling_frequency").read_text().strip() == "200"
+    assert device.value("in_accel_sampling_frequency") == "400", "no value is read twice"
 
 
 def test_a_device_whose_stamps_are_of_the_wall_clock(plug, start) -> None:
