@@ -18,6 +18,7 @@ BENCHES = {
     "past": "tests.bench.past.command:bench_past",
     "published": "tests.bench.tracker.published:bench_published",
     "restart": "tests.bench.restart:bench_restart",
+    "sensor": "tests.bench.sensor:bench_sensor",
     "standby": "tests.bench.standby.command:bench_standby",
     "station": "tests.bench.station.command:bench_station",
     "track": "tests.bench.tracker.track:bench_track",

@@ -12,6 +12,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.rig.processes import cpu_s
 from tests.rig.waiting import PATIENCE_S
 
 IO_ERROR = Path("/proc/self/mem")  # reading its beginning fails with EIO
@@ -113,6 +114,10 @@ class EmulatedAgent:
 
     def runs(self) -> bool:
         return self._process.poll() is None
+
+    def cpu_s(self) -> float:
+        """Return what it has spent so far."""
+        return cpu_s(self._process.pid)
 
     def said(self) -> str:
         return self._output.read_text(errors="replace")
