@@ -537,6 +537,7 @@ _FIGURES = dict.fromkeys(("ce50_m", "ve50_m", "se50_m"), 0.4) | dict.fromkeys(
 ASSESSMENT = {
     "incident_id": INCIDENT.incident_id,
     "made_ms": NOW_MS,
+    "flaws": ["The segment 000002-20260501T101500Z.mcap of the log is missing."],
     "units": [
         {
             "unit_id": unit_id(index),
