@@ -35,7 +35,7 @@ def station_findings(unit_id: str, station: StationEndpoint, machine: Clock) -> 
         return
     try:
         began_s = time.monotonic()
-        if not _is_heard(bus, HEARTBEAT.key(unit_id)):
+        if not _wait_for_subscriber(bus, HEARTBEAT.key(unit_id)):
             yield Finding("link", Level.FAILED, station.why_no_link(), _NO_LINK)
             return
         yield Finding("link", Level.OK, f"linked within {time.monotonic() - began_s:.1f} s")
@@ -52,8 +52,8 @@ def _opened(station: StationEndpoint) -> Bus:
     return station.open_bus()
 
 
-def _is_heard(bus: Bus, key: str) -> bool:
-    """Wait until the station subscribes to what this unit says; False when it does not in time."""
+def _wait_for_subscriber(bus: Bus, key: str) -> bool:
+    """Wait until the station subscribes to this unit's messages; False when it does not in time."""
     end_s = time.monotonic() + _LINK_WAIT_S
     while time.monotonic() < end_s:
         if bus.is_linked() and bus.is_heard(key):

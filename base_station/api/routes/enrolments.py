@@ -105,7 +105,7 @@ def _authority(station: Services) -> PkiFolder:
 
 @contextmanager
 def _as_refusal() -> Iterator[None]:
-    """What the authority refuses is no mistake of the request's form."""
+    """Answer a refusal of the authority as one: the request's form is right."""
     try:
         yield
     except ConfigError as error:
