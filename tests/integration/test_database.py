@@ -6,6 +6,8 @@ import hashlib
 import math
 import shutil
 import sqlite3
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
@@ -14,12 +16,14 @@ from typing import Any
 import msgspec
 import pytest
 from alembic import command
+from alembic.script import ScriptDirectory
 from sqlalchemy import inspect, text
 
 from base_station.accounts.principals import Principal, Role
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.alembic_migration import alembic_config
 from base_station.storage.db.copying import copy_database, known_segments
-from base_station.storage.db.migrate import alembic_config
+from base_station.storage.db.migrate import newest_revision
 from base_station.storage.db.models import Base, Person
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.projection import SqlProjection
@@ -62,7 +66,20 @@ def test_an_empty_file_is_migrated_to_what_the_models_say(store: Store) -> None:
         "alembic_version",
     }
     with store.engine.connect() as connection:
-        command.check(alembic_config(connection))  # raises where models and migrations differ
+        config = alembic_config(connection)
+        command.check(config)  # raises where models and migrations differ
+    assert newest_revision() == ScriptDirectory.from_config(config).get_current_head()
+
+
+def test_a_database_of_this_programs_schema_is_opened_without_alembic(
+    path: Path, store: Store
+) -> None:
+    store.close()
+    opened = (
+        "import sys; from pathlib import Path; from base_station.storage.db.store import Store; "
+        f"Store(Path({str(path)!r})).close(); sys.exit('alembic' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", opened], check=False).returncode == 0
 
 
 @pytest.fixture
