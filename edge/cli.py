@@ -127,7 +127,7 @@ def run(
     from edge.app.run import run_agent  # noqa: PLC0415
     from edge.config import EdgeConfig  # noqa: PLC0415
     from shared.config import load_config  # noqa: PLC0415
-    from shared.end_signals import told_to_end  # noqa: PLC0415
+    from shared.end_signals import end_requested  # noqa: PLC0415
     from shared.log import set_up_logging  # noqa: PLC0415
 
     flags = {
@@ -148,7 +148,7 @@ def run(
     }
     settings = load_config(config, EdgeConfig, flags)
     set_up_logging(settings.log_level)
-    stop = told_to_end()
+    stop = end_requested()
     run_agent(settings, stop, for_s=for_s, paced=not as_fast_as_possible)
 
 

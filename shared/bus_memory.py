@@ -113,14 +113,14 @@ class MemoryRouter:
     def declare(self, entry: Declaration) -> None:
         with self._lock:
             self._declarations.append(entry)
-            self._tell_watchers()
+            self._notify_watchers()
         self._settle()
 
     def withdraw(self, entry: Declaration) -> None:
         with self._lock:
             if entry in self._declarations:
                 self._declarations.remove(entry)
-            self._tell_watchers()
+            self._notify_watchers()
         self._settle()
 
     def withdraw_all(self, owner: MemoryBus) -> None:
@@ -130,7 +130,7 @@ class MemoryRouter:
 
     def links_changed(self) -> None:
         with self._lock:
-            self._tell_watchers()
+            self._notify_watchers()
         self._settle()
 
     def _reached_from(self, endpoint: MemoryBus, role: Role) -> list[Declaration]:
@@ -140,7 +140,7 @@ class MemoryRouter:
             if entry.role is role and endpoint.reaches(entry.owner)
         ]
 
-    def _tell_watchers(self) -> None:
+    def _notify_watchers(self) -> None:
         """Tell each watcher how the set of tokens that it can see has changed."""
         for watcher in self._declarations:
             if watcher.role is not Role.WATCHER:

@@ -51,10 +51,10 @@ def run(points: Iterable[EntryPoint]) -> NoReturn:
 
 
 def _in_words(error: OSError) -> str:
-    said = f"{error.filename}: {error.strerror}"
+    reason = f"{error.filename}: {error.strerror}"
     if isinstance(error, PermissionError):
-        return f"{said}; run this as the user to whom it belongs"
-    return f"{said}; check the path and the disk"
+        return f"{reason}; run this as the user to whom it belongs"
+    return f"{reason}; check the path and the disk"
 
 
 def build_program(points: Iterable[EntryPoint]) -> TyperGroup:

@@ -131,14 +131,14 @@ def _resolved(link: zeroconf.Zeroconf, name: str) -> Announcement | None:
         return None
     if info is None or not info.port:
         return None
-    said = info.decoded_properties
+    properties = info.decoded_properties
     addresses = tuple(one for one in info.parsed_addresses() if _is_usable(one))
-    if said.get("version") != VERSION or not addresses:
+    if properties.get("version") != VERSION or not addresses:
         return None
     return Announcement(
         name=name.removesuffix(f".{SERVICE}"),
-        station=said.get("station") or "",
-        authority=said.get("authority") or "",
+        station=properties.get("station") or "",
+        authority=properties.get("authority") or "",
         port=info.port,
         addresses=addresses[:_MOST_ADDRESSES],
     )

@@ -1,4 +1,4 @@
-"""Ctrl-C, and what a service manager sends: a program is told to end."""
+"""Signals that end a program: Ctrl-C, and what a service manager sends."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from queue import SimpleQueue
 from threading import Event, Thread
 
 
-def told_to_end() -> Event:
-    """Set once this program is told to end, as often as it is told; for the main thread to call.
+def end_requested() -> Event:
+    """Event that the first SIGINT or SIGTERM sets; for the main thread to call.
 
     Not set by the handler itself: that runs between any two steps of the main thread, which may
     hold the event's lock just then, and would wait for itself for ever.  A queue takes it.
     """
-    stop, told = Event(), SimpleQueue[int]()
+    stop, received = Event(), SimpleQueue[int]()
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda number, _: told.put(number))
-    Thread(target=_pass_on, args=(told, stop), name="told-to-end", daemon=True).start()
+        signal.signal(number, lambda number, _: received.put(number))
+    Thread(target=_pass_on, args=(received, stop), name="end-signals", daemon=True).start()
     return stop
 
 
@@ -34,6 +34,6 @@ def sigterm_as_ctrl_c() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _pass_on(told: SimpleQueue[int], stop: Event) -> None:
-    told.get()
+def _pass_on(received: SimpleQueue[int], stop: Event) -> None:
+    received.get()
     stop.set()

@@ -35,8 +35,8 @@ class PublishedWalk:
 
 
 def write_walk(path: Path, walk: PublishedWalk) -> None:
-    said = [[float(getattr(one, name)) for name in FIGURES + FLAGS] for one in walk.positions]
-    table = np.column_stack((walk.t_s, walk.truth_m, said))
+    published = [[float(getattr(one, name)) for name in FIGURES + FLAGS] for one in walk.positions]
+    table = np.column_stack((walk.t_s, walk.truth_m, published))
     form = ["%.3f", *["%.4f"] * (len(TRUTH) - 1 + len(FIGURES)), *["%d"] * len(FLAGS)]
     header = ",".join(TRUTH + FIGURES + FLAGS)
     with whole(path) as making:

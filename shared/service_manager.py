@@ -30,9 +30,9 @@ class ServiceManager:
     def _say(self, what: bytes) -> None:
         if not self._address:
             return
-        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC) as said:
-            said.setblocking(False)
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC) as notification:
+            notification.setblocking(False)
             try:
-                said.sendto(what, self._address)
+                notification.sendto(what, self._address)
             except OSError:  # it is away or does not listen: nothing that works depends on it
                 return

@@ -19,15 +19,15 @@ _RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor"
 MOST_BYTES = 64 * 1024 * 1024
 MOST_BYTES_ALONE = 2 * 1024 * 1024
 # What units say and answer is smaller by far: what is larger ends at the router.
-MOST_SAID_BYTES = 64 * 1024
+MOST_PUBLISHED_BYTES = 64 * 1024
 MOST_ANSWERED_BYTES = 1024 * 1024  # twice what is asked for at once
 _LARGEST = (
-    ("said", "put", MOST_SAID_BYTES, ("*/up/**", "*/alert/**", "*/heartbeat")),
+    ("said", "put", MOST_PUBLISHED_BYTES, ("*/up/**", "*/alert/**", "*/heartbeat")),
     ("answered", "reply", MOST_ANSWERED_BYTES, ("**",)),
 )
 # Who has said hello to the router and has no session yet: all units at once, when it opens again.
 _UNICAST = {"accept_pending": 1000}
-_ASKED_HZ = 5.0  # a unit asks for the time once a second at most
+_QUERY_HZ = 5.0  # a unit asks for the time once a second at most
 # Batches of 64 KiB towards each neighbour, made when needed: 1 MB of live data outlasts a second
 # in which a busy machine lets nobody run. With two batches, as is usual, it was dropped.
 _ROUTER_QUEUES = {
@@ -47,7 +47,7 @@ class StationEndpoint:
     """The router.  With ``tls``, which is mutual, the endpoints begin with ``tls/``.
 
     ``access_control``: Zenoh's section of that name, read once, when the bus is opened.
-    ``seldom_asked``: of questions under each of these keys a few a second go through.
+    ``rate_limited_queries``: of questions under each of these keys a few a second go through.
     ``links_tls``: with what it joins other stations' routers, where that is another identity.
     """
 
@@ -55,7 +55,7 @@ class StationEndpoint:
     tls: TlsIdentity | None = None
     access_control: Mapping[str, Any] | None = None
     links: tuple[str, ...] = ()  # other stations' routers, which it joins
-    seldom_asked: tuple[str, ...] = ()
+    rate_limited_queries: tuple[str, ...] = ()
     links_tls: TlsIdentity | None = None
 
 
@@ -120,13 +120,15 @@ def _role_settings(endpoint: Endpoint) -> dict[str, Any]:
                 for name, kind, most_bytes, under in _LARGEST
             ],
         }
-        if endpoint.seldom_asked:
+        if endpoint.rate_limited_queries:
             settings["downsampling"] = [
                 {
                     "id": "asked",
                     "flows": ["ingress"],
                     "messages": ["query"],
-                    "rules": [{"key_expr": k, "freq": _ASKED_HZ} for k in endpoint.seldom_asked],
+                    "rules": [
+                        {"key_expr": k, "freq": _QUERY_HZ} for k in endpoint.rate_limited_queries
+                    ],
                 }
             ]
         if endpoint.access_control is not None:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from base_station.security.pki.folder import PkiFolder
-from base_station.standby.log_truncation import APART, TOLD
+from base_station.standby.log_truncation import APART, MERGED_SUFFIX
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.copying import copy_database, known_segments
 from shared.errors import LogError, StoreError, UserError
@@ -129,9 +129,9 @@ def _rename_handed_over(source: DataFolder, copy: DataFolder) -> None:
     """Renames what was set aside and was renamed when the other station had it.  Put under both
     names it would be told once more, and under the old one nobody would forget what is in it.
     """
-    for handed_over in (source.path / APART).glob(f"*{TOLD}"):
+    for handed_over in (source.path / APART).glob(f"*{MERGED_SUFFIX}"):
         now = copy.path / APART / handed_over.name
-        before = now.with_name(handed_over.name.removesuffix(TOLD))
+        before = now.with_name(handed_over.name.removesuffix(MERGED_SUFFIX))
         if now.exists():
             shutil.rmtree(before, ignore_errors=True)
         elif before.exists():

@@ -126,7 +126,9 @@ def _open_log(
 ) -> tuple[LogFeed, LogDefects]:
     """Opens the log with its known defects, which are reported."""
     known = known_segments_of(Records(store, SystemClock()))
-    defects = LogDefects(folder.log, known, is_written=FolderLock.is_held(folder.path), tell=report)
+    defects = LogDefects(
+        folder.log, known, is_written=FolderLock.is_held(folder.path), on_defect=report
+    )
     for path, reason in left_out.items():
         defects.note_foreign(path, reason)
     defects.look_at_files()

@@ -61,8 +61,8 @@ def pull(config: StationConfig, wanted: TransferRequest, show: Show) -> tuple[Pa
         folder = DataFolder(config.data).recordings
         fetch = Transfer(ask_over(bus), folder, wanted, clock)
         closing.callback(fetch.close)
-        said = f"{wanted.unit_id} from {wanted.from_ns} to {wanted.to_ns}"
-        Records(store, clock).audit(getpass.getuser(), "FetchedRecording", said)
+        details = f"{wanted.unit_id} from {wanted.from_ns} to {wanted.to_ns}"
+        Records(store, clock).audit(getpass.getuser(), "FetchedRecording", details)
         while not fetch.state.is_over:
             fetch.step()
             show(fetch)

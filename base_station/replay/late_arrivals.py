@@ -46,19 +46,19 @@ def apply_late_arrivals(
 ) -> None:
     """``pipeline`` stands where the incident was closed; ``records`` gives what came since."""
     late = _late(records())
-    heard = [run for run in late if _is_heard(pipeline, run)]
-    for run in heard:
+    recorded = [run for run in late if _is_recorded(pipeline, run)]
+    for run in recorded:
         _step_run(pipeline, late[run], closed_ns)
-    for run, words in _clock_reference_messages(records(), late.keys() - set(heard)).items():
+    for run, words in _clock_reference_messages(records(), late.keys() - set(recorded)).items():
         for word in words:
             pipeline.step(word)
         _step_run(pipeline, late[run], closed_ns)
-    for said in _debriefed(records()):
-        message = said.message
+    for event in _debriefed(records()):
+        message = event.message
         assert isinstance(message, OperatorAction)
         assert isinstance(message.action, PinAction)
         if concerns_closed_incident(pipeline.state, message.action, closed_ns):
-            pipeline.step(said)
+            pipeline.step(event)
 
 
 def _late(records: Iterable[Record]) -> dict[Run, list[Received]]:
@@ -74,7 +74,7 @@ def _late(records: Iterable[Record]) -> dict[Run, list[Received]]:
     return late
 
 
-def _is_heard(pipeline: StationPipeline, run: Run) -> bool:
+def _is_recorded(pipeline: StationPipeline, run: Run) -> bool:
     """Whether it was live before the incident was closed: its times can be told."""
     sender_id, boot_id = run
     sender = pipeline.state.sender(sender_id)

@@ -240,13 +240,13 @@ class ReplaySession:
             seek_ns, self._seek_ns = self._seek_ns, None
         if seek_ns is None:
             return
-        told_ns = self._clock.monotonic_ns()
+        published_ns = self._clock.monotonic_ns()
         for _ in self._playback.seek(seek_ns):
             if self._closed.is_set() or self._seek_ns is not None:
                 return
-            if self._clock.monotonic_ns() - told_ns >= PAUSED_S * NS_PER_S:
-                told_ns = self._clock.monotonic_ns()
-                self._tell_of_seeking()
+            if self._clock.monotonic_ns() - published_ns >= PAUSED_S * NS_PER_S:
+                published_ns = self._clock.monotonic_ns()
+                self._publish_seeking()
         self._playback.show_unrecorded()
         with self._lock:
             self._at_ns, self._seeking, self._gap = seek_ns, False, self._playback.gap
@@ -255,7 +255,7 @@ class ReplaySession:
         with self._lock:
             self._moved_ns = self._clock.monotonic_ns()  # the way there is not played
 
-    def _tell_of_seeking(self) -> None:
+    def _publish_seeking(self) -> None:
         """A long way: consoles see that somebody is there, and where it goes."""
         with self._lock:
             self._seeking = True
@@ -272,26 +272,26 @@ class ReplaySession:
             now_ns = self._clock.monotonic_ns()
             elapsed_ns, self._moved_ns = now_ns - self._moved_ns, now_ns
             if not self._playing or self._seek_ns is not None:
-                told = None
+                until_ns = None
             else:
-                told = min(self._at_ns + round(elapsed_ns * self._speed), self._window.end_ns)
-        if told is None:
-            self._tell()
+                until_ns = min(self._at_ns + round(elapsed_ns * self._speed), self._window.end_ns)
+        if until_ns is None:
+            self._publish()
             return
         began_ns = self._clock.monotonic_ns()
-        while (outputs := self._playback.advance(told)) is not None:
+        while (outputs := self._playback.advance(until_ns)) is not None:
             self._publisher.mark_changed(outputs)
             if self._clock.monotonic_ns() - began_ns > DELTA_S * NS_PER_S:
-                told = self._playback.at_ns  # as fast as it goes
+                until_ns = self._playback.at_ns  # as fast as it goes
                 break
         self._publisher.mark_changed(self._playback.show_unrecorded())
         with self._lock:
             if self._seek_ns is None:
-                self._at_ns, self._gap = told, self._playback.gap
-                self._playing = self._playing and told < self._window.end_ns
-        self._tell()
+                self._at_ns, self._gap = until_ns, self._playback.gap
+                self._playing = self._playing and until_ns < self._window.end_ns
+        self._publish()
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         now_ns = self._clock.monotonic_ns()
         whole = now_ns - self._whole_ns >= WHOLE_NS
         if whole:

@@ -19,7 +19,7 @@ from threading import Event
 from base_station.core.idempotency import idempotent_action_id
 from base_station.core.log_position import Record
 from base_station.engine.ports import ActionResult, OperatorGate
-from base_station.standby.log_truncation import mark_told, parts, read_part
+from base_station.standby.log_truncation import mark_merged, parts, read_part
 from base_station.standby.protocol import Batch, pack, unpack
 from base_station.standby.rpc import RpcServer, ask
 from shared.bus import Bus
@@ -48,7 +48,7 @@ class PartServer(RpcServer):
             {
                 "apart/names": self._names,
                 "apart/records": self._records,
-                "apart/told": self._told,
+                "apart/told": self._confirm_merged,
             },
         )
 
@@ -68,10 +68,10 @@ class PartServer(RpcServer):
         self._reading = name, skip + len(records), self._reading[2]
         yield pack(Batch(records))
 
-    def _told(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
+    def _confirm_merged(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
         name = payload.decode()
         if name in parts(self._data):
-            mark_told(self._data, name)
+            mark_merged(self._data, name)
             yield b"told"
 
 
@@ -108,7 +108,7 @@ class BranchMerge:
 
     def _merge(self, station: str, name: bytes, stop: Event) -> None:
         taken = 0
-        told: dict[DoneApart | ReportProblem, Future[ActionResult]] = {}
+        results: dict[DoneApart | ReportProblem, Future[ActionResult]] = {}
         while True:
             question = b"%s %d" % (name, taken)
             batch = next(iter(ask(self._bus, station, "apart/records", question)), None)
@@ -120,19 +120,19 @@ class BranchMerge:
             for record in records:
                 done = self._take(station, record)
                 if done is not None:
-                    told[done] = self._gate.submit(STATION_ID, done, _id_of(name, done))
+                    results[done] = self._gate.submit(STATION_ID, done, _id_of(name, done))
             taken += len(records)
-        if told:
+        if results:
             text = (
-                f"While the stations were apart, people acted at {station} ({len(told)} times), "
+                f"While the stations were apart, people acted at {station} ({len(results)} times), "
                 "and that is not in force here: the audit names it; do again what still matters"
             )
             report = ReportProblem(f"apart {station}", text)
-            told[report] = self._gate.submit(STATION_ID, report, _id_of(name, report))
-        while not (all(one.done() for one in told.values()) and self._settled()):
+            results[report] = self._gate.submit(STATION_ID, report, _id_of(name, report))
+        while not (all(one.done() for one in results.values()) and self._settled()):
             if stop.wait(_SETTLE_S):
                 return
-        if any(one.exception() for one in told.values()):
+        if any(one.exception() for one in results.values()):
             return  # this station does not lead any more: who does takes it
         for _ in ask(self._bus, station, "apart/told", name):
             logger.warning("%d events that %s had set aside are taken", taken, station)
@@ -156,8 +156,8 @@ class BranchMerge:
 
 def _id_of(part: bytes, action: DoneApart | ReportProblem) -> str:
     """A part that is fetched again, though by a station that has started again, names it once."""
-    said = f"{part.decode()} {action}"
-    return idempotent_action_id(STATION_ID, said, said.encode(), secrets.token_hex(16))
+    text = f"{part.decode()} {action}"
+    return idempotent_action_id(STATION_ID, text, text.encode(), secrets.token_hex(16))
 
 
 def _persons_action(payload: bytes) -> OperatorAction | None:
@@ -174,8 +174,8 @@ def _in_words(done: OperatorAction) -> str:
     """What was given with it: a note whole, of a drawing its beginning."""
     action = done.action
     words = (_in_word(name, getattr(action, name)) for name in action.__struct_fields__)
-    said = f"{type(action).__name__} {', '.join(filter(None, words))}"
-    return said if len(said) <= _MOST_LETTERS else f"{said[:_MOST_LETTERS]}…"
+    text = f"{type(action).__name__} {', '.join(filter(None, words))}"
+    return text if len(text) <= _MOST_LETTERS else f"{text[:_MOST_LETTERS]}…"
 
 
 def _in_word(name: str, value: object) -> str:

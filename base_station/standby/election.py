@@ -15,7 +15,7 @@ from shared.clock import NS_PER_S
 
 Decision = Literal["stay", "follow", "lead", "step back"]
 LACKING_LEASES = 20  # that a standby waits for one of which it has not got everything
-_GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
+_TOKEN_GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
 _ON_THE_WAY_NS = NS_PER_S // 2  # what was said before a cable was cut has come by then
 _GREETING_LEASES = 5  # that a station waits at most for one that listens, to hear from it
 _LACKING_NS = 30 * NS_PER_S  # of the other one's log: more is not the last moments
@@ -32,18 +32,18 @@ class LocalStatus(NamedTuple):
     place: LogPosition
     stepped: LogPosition  # its disk may have less of the other one's log
     units: int  # that are linked with either router, as far as it knows
-    unit_heard_ns: int  # when a unit last said anything; monotonic
+    unit_received_ns: int  # when a unit last said anything; monotonic
     other_listens: bool = False  # the other one's router takes connections
 
 
 class Election:
-    """``hear`` what the other one says, then ``decide``, several times a second."""
+    """``receive`` what the other one says, then ``decide``, several times a second."""
 
     def __init__(self, lease_ns: int, now_ns: int) -> None:
         self._lease_ns = lease_ns
         self._since_ns = now_ns  # waits to hear of another one
         self._other: PeerHeartbeat | None = None
-        self._heard_ns = 0
+        self._received_ns = 0
         self._token_there = False
         self._listened_ns: int | None = None  # when the other one's router last did
         self._witness_ns: int | None = None  # since when a unit is heard, and not the other
@@ -60,8 +60,8 @@ class Election:
         """Which of the two is cut off: the other one had no units."""
         return self._other is not None and self._other.units == 0
 
-    def hear(self, beat: PeerHeartbeat, now_ns: int) -> None:
-        self._other, self._heard_ns = beat, now_ns
+    def receive(self, beat: PeerHeartbeat, now_ns: int) -> None:
+        self._other, self._received_ns = beat, now_ns
         self._token_there = True
         self._witness_ns = None
 
@@ -73,8 +73,8 @@ class Election:
         """Whether the other station is heard."""
         if self._other is None:
             return False
-        patience_ns = self._lease_ns * (1.0 if self._token_there else _GONE_SHARE)
-        return now_ns - self._heard_ns < patience_ns
+        patience_ns = self._lease_ns * (1.0 if self._token_there else _TOKEN_GONE_SHARE)
+        return now_ns - self._received_ns < patience_ns
 
     def is_cut_off(self, now_ns: int) -> bool:
         """This standby hears neither the active station nor a unit, though that one had some."""
@@ -111,7 +111,7 @@ class Election:
         return "lead" if now_ns - self._since_ns >= leases * self._lease_ns else "stay"
 
     def _note_witness(self, me: LocalStatus, now_ns: int) -> None:
-        if self._witness_ns is None and me.unit_heard_ns > self._heard_ns + _ON_THE_WAY_NS:
+        if self._witness_ns is None and me.unit_received_ns > self._received_ns + _ON_THE_WAY_NS:
             self._witness_ns = now_ns
 
     def _has_witness(self, now_ns: int) -> bool:
@@ -124,7 +124,7 @@ class Election:
         """Whether the other station may only be out of reach while the routers link again, or has
         what nobody else has and may come back with it.
         """
-        silent_ns = now_ns - self._heard_ns
+        silent_ns = now_ns - self._received_ns
         if self.lacks_log and silent_ns < LACKING_LEASES * self._lease_ns:
             return True
         if not self.is_undecided:

@@ -209,7 +209,7 @@ class HaController:
             self._follower.follow(Leader(other.station, other.run))
         if self.leads:
             self.copy.check()
-        self._say_beat()
+        self._publish_beat()
 
     def _lead(self) -> None:
         """Everything that was fetched is stepped, then the take-over, then what the bus says."""
@@ -239,7 +239,8 @@ class HaController:
         self._around.start_again(cut)
 
     def _me(self) -> LocalStatus:
-        log, config, heard_ns = self._around.log, self._config, self._around.feed.unit_heard_ns
+        log, config = self._around.log, self._config
+        received_ns = self._around.feed.unit_received_ns
         return LocalStatus(
             config.name,
             config.preferred,
@@ -247,10 +248,10 @@ class HaController:
             log.place,
             log.offered,
             self._hearing.units,
-            heard_ns,
+            received_ns,
         )
 
-    def _say_beat(self) -> None:
+    def _publish_beat(self) -> None:
         """A station that leads and writes no log, though it should every second, says nothing."""
         if self._ends or self._is_stuck():
             return

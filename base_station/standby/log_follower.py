@@ -25,7 +25,7 @@ Answer = TypeVar("Answer")
 _TIMEOUT_S = 3.0
 _AGAIN_S = 0.2
 _SETTLE_S = 0.02  # what is written in quick succession goes to the disk together
-_SAY_S = 0.5
+_REPORT_S = 0.5
 _BACKLOG = 1000  # so many events at once are no longer the last moment's
 
 
@@ -169,7 +169,7 @@ class LogFollower:
             leader = self._leader
         if self._closed or leader is None:
             return 0.0
-        if self._log.wait_beyond(self._log.durable, _SAY_S):
+        if self._log.wait_beyond(self._log.durable, _REPORT_S):
             time.sleep(_SETTLE_S)
             self._log.flush()
         have = ReplicationAck(leader.run, self._log.durable)

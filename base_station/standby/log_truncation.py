@@ -21,7 +21,7 @@ from shared.mcap_log import SegmentReader, own_segments, read_log, write_segment
 from shared.own_files import make_folder, read_own, write_own
 
 APART = "apart"
-TOLD = ".told"  # of a part's name
+MERGED_SUFFIX = ".told"  # of a part's name
 
 
 def set_aside(folder: DataFolder, place: LogPosition) -> None:
@@ -78,7 +78,7 @@ def parts(data: Path) -> list[str]:
     if not folder.is_dir():
         return []
     names = (path.name for path in folder.iterdir() if path.is_dir())
-    return sorted(name for name in names if not name.endswith(TOLD))
+    return sorted(name for name in names if not name.endswith(MERGED_SUFFIX))
 
 
 def read_part(data: Path, name: str) -> Iterator[Record]:
@@ -87,9 +87,9 @@ def read_part(data: Path, name: str) -> Iterator[Record]:
     return events_after(LogPosition(int(t_ns), int(events)), read_log(data / APART / name))
 
 
-def mark_told(data: Path, name: str) -> None:
+def mark_merged(data: Path, name: str) -> None:
     part = data / APART / name
-    part.rename(part.with_name(name + TOLD))
+    part.rename(part.with_name(name + MERGED_SUFFIX))
 
 
 def _new_part(data: Path, place: LogPosition) -> Path:

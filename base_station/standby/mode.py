@@ -197,7 +197,7 @@ class Paired:
             caught_up=lambda: pair.leads or pair.in_step,
             on_people=parts.on_people,
             on_forgotten=parts.forget,
-            on_dropped=lambda said: parts.records.audit(STATION_ID, "AccountsCopied", said),
+            on_dropped=lambda details: parts.records.audit(STATION_ID, "AccountsCopied", details),
         )
         merging = BranchMerge(
             parts.bus,

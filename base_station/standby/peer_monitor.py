@@ -15,7 +15,7 @@ from shared.errors import WireError
 
 logger = logging.getLogger(__name__)
 
-_STRANGER_GONE_NS = 5 * NS_PER_S
+_STRANGER_TIMEOUT_NS = 5 * NS_PER_S
 
 
 class PeerMonitor:
@@ -44,8 +44,8 @@ class PeerMonitor:
         self._stranger = ""
         self._stranger_ns = 0  # when it was last heard
         self._declared = [
-            bus.subscribe(f"{STATIONS_ROOT}/*/beat", self._hear_beat),
-            bus.subscribe(f"{STATIONS_ROOT}/*/have", self._hear_have),
+            bus.subscribe(f"{STATIONS_ROOT}/*/beat", self._receive_beat),
+            bus.subscribe(f"{STATIONS_ROOT}/*/have", self._receive_have),
             bus.watch_alive(alive_key("*"), self._note_unit),
             bus.watch_alive(f"{STATIONS_ROOT}/*/alive", self._note_station),
         ]
@@ -58,14 +58,14 @@ class PeerMonitor:
     @property
     def stranger(self) -> str:
         """Why a station that is heard is no partner, as a sentence for a person; else empty."""
-        heard = self._clock.monotonic_ns() - self._stranger_ns < _STRANGER_GONE_NS
-        return self._stranger if heard else ""
+        is_recent = self._clock.monotonic_ns() - self._stranger_ns < _STRANGER_TIMEOUT_NS
+        return self._stranger if is_recent else ""
 
     def close(self) -> None:
         for one in self._declared:
             one.close()
 
-    def _hear_beat(self, key: str, payload: bytes) -> None:
+    def _receive_beat(self, key: str, payload: bytes) -> None:
         try:
             beat = unpack(payload, PeerHeartbeat)
         except WireError as error:
@@ -87,10 +87,10 @@ class PeerMonitor:
                 "other until both are updated"
             )
         else:
-            self._election.hear(beat, now_ns)
+            self._election.receive(beat, now_ns)
             self._on_beat(beat)
 
-    def _hear_have(self, key: str, payload: bytes) -> None:
+    def _receive_have(self, key: str, payload: bytes) -> None:
         try:
             have = unpack(payload, ReplicationAck)
         except WireError as error:

@@ -31,7 +31,7 @@ class SharedLog:
         self.written_ns = clock.monotonic_ns()  # when something was last taken
         self.follows = False  # it is to be the same as another station's
         self.is_cut_short = False  # and is not, until this station starts again
-        self._news = Condition()
+        self._changed = Condition()
         self._first: LogPosition = START  # what is at hand begins behind it
         self._places: list[LogPosition] = []
         self._recent: list[Record] = []
@@ -66,11 +66,11 @@ class SharedLog:
         return self._log.refuses
 
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
-        with self._news:  # in one order here and there
+        with self._changed:  # in one order here and there
             kept = not self.is_cut_short and self._log.write(t_ns, key, payload)
             if is_event(key):
                 self._offered = self._offered.next(t_ns)
-                self._news.notify_all()
+                self._changed.notify_all()
             if kept:
                 self.written_ns = self._clock.monotonic_ns()
                 if is_event(key):
@@ -83,9 +83,9 @@ class SharedLog:
         place = self.place
         done = self._log.flush()
         if done:
-            with self._news:
+            with self._changed:
                 self._durable = max(self._durable, place)
-                self._news.notify_all()
+                self._changed.notify_all()
         return done
 
     # ---- for two stations
@@ -93,7 +93,7 @@ class SharedLog:
     @property
     def place(self) -> LogPosition:
         """Behind the last event written."""
-        with self._news:
+        with self._changed:
             return self._place()
 
     @property
@@ -112,31 +112,31 @@ class SharedLog:
 
     @property
     def take_overs(self) -> tuple[TakeOver, ...]:
-        with self._news:
+        with self._changed:
             return tuple(self._take_overs)
 
     @property
     def term(self) -> int:
-        with self._news:
+        with self._changed:
             return self._take_overs[-1].term if self._take_overs else 0
 
     def wait_beyond(self, place: LogPosition, timeout_s: float) -> bool:
         """Until something is written behind ``place``."""
-        with self._news:
-            return self._news.wait_for(lambda: self._place() > place, timeout_s)
+        with self._changed:
+            return self._changed.wait_for(lambda: self._place() > place, timeout_s)
 
     def wait_reached(self, place: LogPosition, timeout_s: float) -> bool:
-        with self._news:
-            return self._news.wait_for(lambda: self._place() >= place, timeout_s)
+        with self._changed:
+            return self._changed.wait_for(lambda: self._place() >= place, timeout_s)
 
     def wait_offered(self, place: LogPosition, timeout_s: float) -> bool:
         """As ``wait_reached``, though the log has a hole or ends before."""
-        with self._news:
-            return self._news.wait_for(lambda: self._offered >= place, timeout_s)
+        with self._changed:
+            return self._changed.wait_for(lambda: self._offered >= place, timeout_s)
 
     def behind(self, place: LogPosition, most_bytes: int) -> list[Record] | None:
         """The events behind ``place``, as many as that; None: they are no longer at hand."""
-        with self._news:
+        with self._changed:
             if place < self._first:
                 return None
             found: list[Record] = []
@@ -161,12 +161,12 @@ class SharedLog:
             self._note_action(payload)
 
     def _forget_oldest(self) -> None:
-        gone = 0
+        dropped = 0
         while self._bytes > _RECENT_BYTES:
-            self._bytes -= len(self._recent[gone][2])
-            gone += 1
-        self._first = self._places[gone - 1]
-        del self._places[:gone], self._recent[:gone]
+            self._bytes -= len(self._recent[dropped][2])
+            dropped += 1
+        self._first = self._places[dropped - 1]
+        del self._places[:dropped], self._recent[:dropped]
 
     def _note_action(self, payload: bytes) -> None:
         try:

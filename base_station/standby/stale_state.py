@@ -30,9 +30,9 @@ class StaleState:
 
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console."""
-        said = (
+        problem = (
             "What the disk had lost of the log is there again, and this station's picture was made "
             "without it. It is made anew as soon as the other station is in step and no incident "
             "is open; to have it now, let the other one take over"
         )
-        return (said,) if self.is_stale else ()
+        return (problem,) if self.is_stale else ()

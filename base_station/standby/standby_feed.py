@@ -34,8 +34,8 @@ class StandbyFeed:
         self._followed_bytes = 0
         self._kept: deque[tuple[int, str, bytes]] = deque()  # monotonic time, key, payload
         self._kept_bytes = 0
-        self.unit_heard_ns = 0  # when a unit last said anything; monotonic
-        self._lead_asked = False
+        self.unit_received_ns = 0  # when a unit last said anything; monotonic
+        self._lead_requested = False
         self._woken = False
         self._closed = False
         self._follows = True
@@ -69,17 +69,17 @@ class StandbyFeed:
     def lead(self) -> None:
         """From now on the bus, behind what was delivered before."""
         with self._changed:
-            self._lead_asked = True
+            self._lead_requested = True
             self._changed.notify_all()
 
     def take(self, timeout_s: float) -> Sequence[Record]:
         with self._changed:
             if self._follows:
                 self._changed.wait_for(
-                    lambda: self._followed or self._woken or self._lead_asked, timeout_s
+                    lambda: self._followed or self._woken or self._lead_requested, timeout_s
                 )
                 self._woken = False
-                if self._followed or not self._lead_asked:
+                if self._followed or not self._lead_requested:
                     return self._take_followed()
                 self._begin_live()
                 timeout_s = 0.0
@@ -118,7 +118,7 @@ class StandbyFeed:
             return  # its unit will say what it was
         if channel.direction is not Direction.UP or not channel.logged or is_backfilled(key):
             return
-        now_ns = self.unit_heard_ns = self._clock.monotonic_ns()
+        now_ns = self.unit_received_ns = self._clock.monotonic_ns()
         self._kept.append((now_ns, backfilled_key(unit_id, channel.suffix), payload))
         self._kept_bytes += len(payload)
         while self._kept and (

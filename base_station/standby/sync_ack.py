@@ -19,14 +19,14 @@ _BEHIND_NS = 2 * NS_PER_S
 _GOODBYE_NS = 2 * NS_PER_S
 _LOOK_S = 0.02
 _MOST_MARKS = 1000
-_GONE_NS = 3 * NS_PER_S  # nothing was heard from it
+_STANDBY_TIMEOUT_NS = 3 * NS_PER_S  # nothing was heard from it
 
 
 class _Waiting(NamedTuple):
     place: LogPosition
     until_ns: int
     done: ActionResult
-    told: Future[ActionResult]
+    confirmed: Future[ActionResult]
 
 
 class ReplicaProgress:
@@ -38,7 +38,7 @@ class ReplicaProgress:
         self._confirm_ns = round(confirm_s * NS_PER_S)
         self._lock = Lock()
         self._has = START
-        self._heard_ns: int | None = None
+        self._received_ns: int | None = None
         self._marks: deque[tuple[int, LogPosition]] = (
             deque()
         )  # of this log, not there yet; with times
@@ -49,9 +49,9 @@ class ReplicaProgress:
         """The standby says what it has; less than before where another machine took its place."""
         with self._lock:
             self._has = place
-            self._heard_ns = self._clock.monotonic_ns()
+            self._received_ns = self._clock.monotonic_ns()
             ready = self._take_ready()
-        _tell(ready)
+        _confirm(ready)
 
     def check(self) -> None:
         """Several times a second."""
@@ -66,13 +66,13 @@ class ReplicaProgress:
             alone = [one for one in self._waiting if now_ns >= one.until_ns]
             for one in alone:
                 self._waiting.remove(one)
-        _tell([*ready, *alone])
+        _confirm([*ready, *alone])
 
     @property
     def is_there(self) -> bool:
         """Whether a standby fetches this log."""
         now_ns = self._clock.monotonic_ns()
-        return self._heard_ns is not None and now_ns - self._heard_ns < _GONE_NS
+        return self._received_ns is not None and now_ns - self._received_ns < _STANDBY_TIMEOUT_NS
 
     @property
     def is_behind(self) -> bool:
@@ -90,15 +90,15 @@ class ReplicaProgress:
         with self._lock:
             return START < self._reported[0] <= self._has
 
-    def confirm(self, done: ActionResult, told: Future[ActionResult]) -> None:
+    def confirm(self, done: ActionResult, confirmed: Future[ActionResult]) -> None:
         """Hand on what was done when the standby has it too, or it takes too long."""
         with self._lock:
             place = self._place()
             until_ns = self._clock.monotonic_ns() + self._confirm_ns
             if self._has < place and self.is_there:
-                self._waiting.append(_Waiting(place, until_ns, done, told))
+                self._waiting.append(_Waiting(place, until_ns, done, confirmed))
                 return
-        told.set_result(done)
+        confirmed.set_result(done)
 
     def drain(self) -> None:
         """Wait until the standby has all of it, where it answers."""
@@ -111,7 +111,7 @@ class ReplicaProgress:
         with self._lock:
             left = list(self._waiting)
             self._waiting.clear()
-        _tell(left)
+        _confirm(left)
 
     def _take_ready(self) -> list[_Waiting]:
         ready = [one for one in self._waiting if one.place <= self._has]
@@ -132,23 +132,23 @@ class LeaderOnlyGate:
         self._refusal = refusal
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
-        told: Future[ActionResult] = Future()
+        confirmed: Future[ActionResult] = Future()
         refusal = self._refusal()
         if refusal is not None:
-            told.set_exception(StoreError(refusal))
-            return told
+            confirmed.set_exception(StoreError(refusal))
+            return confirmed
 
         def hand_on(done: Future[ActionResult]) -> None:
             error = done.exception()
             if error is not None:
-                told.set_exception(error)
+                confirmed.set_exception(error)
             else:
-                self._copy.confirm(done.result(), told)
+                self._copy.confirm(done.result(), confirmed)
 
         self._gate.submit(by, action, action_id).add_done_callback(hand_on)
-        return told
+        return confirmed
 
 
-def _tell(ready: list[_Waiting]) -> None:
+def _confirm(ready: list[_Waiting]) -> None:
     for one in ready:
-        one.told.set_result(one.done)
+        one.confirmed.set_result(one.done)

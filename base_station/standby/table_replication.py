@@ -46,15 +46,15 @@ class TableServer(RpcServer):
 
     def _all(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
         """Nothing where the asker knows it by its hash."""
-        said = pack(self._tables.read())
-        if _hash(said) != payload:
-            yield said
+        rows_bytes = pack(self._tables.read())
+        if _hash(rows_bytes) != payload:
+            yield rows_bytes
 
     def _enrolled(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
         """As ``tables/all``."""
-        said = pack(self._pki.registry()) if self._pki.exists() else payload
-        if said != payload and _hash(said) != payload:
-            yield said
+        registry_bytes = pack(self._pki.registry()) if self._pki.exists() else payload
+        if registry_bytes != payload and _hash(registry_bytes) != payload:
+            yield registry_bytes
 
     def _photo(self, _key: str, _parameters: str, payload: bytes) -> Iterator[bytes]:
         photo = self._tables.photo(payload.decode())
@@ -105,7 +105,7 @@ class TableReplication:
         self._on_people = on_people
         self._on_forgotten = on_forgotten
         self._on_dropped = on_dropped
-        self._known = self._known_enrolled = self._known_of_standby = b""
+        self._copied_digest = self._enrolled_digest = self._standby_digest = b""
         self._base_map: tuple[Row, ...] = ()  # of the leader
         self._audit_number = 0  # up to which the other station's audit is here
         self._audit_run = 0  # of its program, in which that was counted
@@ -123,14 +123,14 @@ class TableReplication:
             self._add_audit(other)
 
     def _copy(self, leader: str, stop: Event) -> None:
-        said = self._ask(leader, "all", self._known)
-        if said is not None:
-            rows = unpack(said, ReplicatedRows)
+        rows_bytes = self._ask(leader, "all", self._copied_digest)
+        if rows_bytes is not None:
+            rows = unpack(rows_bytes, ReplicatedRows)
             dropped = self._tables.copy(rows)
             self._base_map = rows.base_map
-            if dropped and not self._known:  # else the active station has removed them
+            if dropped and not self._copied_digest:  # else the active station has removed them
                 self._on_dropped(f"only at this station, and gone: {', '.join(dropped)}")
-            self._known = _hash(said)
+            self._copied_digest = _hash(rows_bytes)
         missing = self._tables.missing_photos()
         for person_id in missing:
             if stop.is_set():
@@ -139,17 +139,17 @@ class TableReplication:
             if photo is not None:
                 self._tables.put_photo(person_id, photo)
         self._copy_base_map(leader)
-        if said is not None or missing:
+        if rows_bytes is not None or missing:
             self._on_people()
 
     def _take_away(self, other: str) -> None:
         """Where nobody else leads."""
-        said = self._ask(other, "all", self._known_of_standby)
-        if said is None:
+        rows_bytes = self._ask(other, "all", self._standby_digest)
+        if rows_bytes is None:
             return
-        if self._tables.take_away(unpack(said, ReplicatedRows)):
+        if self._tables.take_away(unpack(rows_bytes, ReplicatedRows)):
             self._on_people()
-        self._known_of_standby = _hash(said)
+        self._standby_digest = _hash(rows_bytes)
 
     def _copy_base_map(self, leader: str) -> None:
         for row in self._base_map:
@@ -179,14 +179,14 @@ class TableReplication:
         self._audit_number = int(entries[-1]["number"])
 
     def _take_enrolled(self, other: str) -> None:
-        said = self._ask(other, "enrolled", self._known_enrolled)
-        if said is not None and self._pki.exists():
-            self._pki.take_registry(unpack(said, Registry))
-            self._known_enrolled = _hash(said)
+        registry_bytes = self._ask(other, "enrolled", self._enrolled_digest)
+        if registry_bytes is not None and self._pki.exists():
+            self._pki.take_registry(unpack(registry_bytes, Registry))
+            self._enrolled_digest = _hash(registry_bytes)
 
     def _ask(self, station: str, what: str, payload: bytes) -> bytes | None:
         return next(iter(ask(self._bus, station, f"tables/{what}", payload)), None)
 
 
-def _hash(said: bytes) -> bytes:
-    return hashlib.sha256(said).digest()
+def _hash(content: bytes) -> bytes:
+    return hashlib.sha256(content).digest()

@@ -24,7 +24,7 @@ from shared.mcap_log import (
 _log = logging.getLogger(__name__)
 
 
-_MOST_SAID = 5
+_MOST_NAMED = 5
 _AGAIN_LOOKS = 720  # with nothing left to look at: an hour of a station's housekeeping
 
 
@@ -82,7 +82,7 @@ class IntegrityChecker:
             _log.error("the log lacks something: %s", lack)
             with self._lock:
                 self._lacks[lack.name or str(lack.number)] = lack
-                if not lack.is_gone:
+                if not lack.is_file_missing:
                     self._damaged[folder / lack.name] = str(lack)
                     self._cut.add(folder / lack.name)
 
@@ -123,8 +123,8 @@ class IntegrityChecker:
     def missing(self) -> tuple[int, ...]:
         """The numbers of segments that are gone."""
         with self._lock:
-            gone = {lack.number for lack in self._lacks.values() if lack.is_gone}
-            return tuple(sorted(gone | set(self._missing)))
+            missing = {lack.number for lack in self._lacks.values() if lack.is_file_missing}
+            return tuple(sorted(missing | set(self._missing)))
 
     def note_mended(self, path: Path, *, again: bool = True) -> None:
         """All of this segment can be read; ``again``: for it was written anew, and is looked at."""
@@ -142,30 +142,30 @@ class IntegrityChecker:
             lacks, foreign = dict(self._lacks), sorted(path.name for path in self._foreign)
             damaged = sorted(path.name for path in self._damaged if path.name not in lacks)
             missing = set(self._missing) - {lack.number for lack in lacks.values()}
-        said = []
+        problems = []
         if lacks:
-            said.append(f"{_in_words(list(lacks.values()))}: check the disk. {self._remedy}")
+            problems.append(f"{_in_words(list(lacks.values()))}: check the disk. {self._remedy}")
         if foreign:
-            said.append(
+            problems.append(
                 f"Files in the log's folder are no segments of this log and are left out "
                 f"({', '.join(foreign)}): see who put them there, and move them away"
             )
         if damaged:
             names = ", ".join(damaged)
-            said.append(
+            problems.append(
                 f"A part of the log cannot be read any more ({names}): check the disk. "
                 f"{self._remedy}"
             )
         if missing:
             numbers = ", ".join(map(str, sorted(missing)))
-            said.append(
+            problems.append(
                 f"Files of the log are gone, by their numbers {numbers}: check the disk, restore "
                 "them from a backup, and start the station again"
             )
-        return tuple(said)
+        return tuple(problems)
 
 
 def _in_words(lacks: Sequence[LogGap]) -> str:
-    more = len(lacks) - _MOST_SAID
-    said = "; ".join(map(str, lacks[:_MOST_SAID]))
-    return f"A part of the log is lost: {said}{f'; and {more} more' if more > 0 else ''}"
+    more = len(lacks) - _MOST_NAMED
+    problems = "; ".join(map(str, lacks[:_MOST_NAMED]))
+    return f"A part of the log is lost: {problems}{f'; and {more} more' if more > 0 else ''}"

@@ -33,18 +33,18 @@ class LogDefects:
         is_written: bool = False,
         from_ns: int = 0,
         until_ns: int | None = None,
-        tell: Callable[[str], None] = lambda _: None,
+        on_defect: Callable[[str], None] = lambda _: None,
     ) -> None:
         """``known``: what the database knows of the segments.  ``is_written``: a station writes
         the newest one.  ``from_ns``: nobody reads what ends before it.  ``until_ns``: what was lost
-        of later times is no flaw.  ``tell`` hears of each flaw.
+        of later times is no flaw.  ``on_defect`` hears of each flaw.
         """
         self._log = log
         self._known = known
         self._is_written = is_written
         self._from_ns = from_ns
         self._until_ns = until_ns
-        self._tell = tell
+        self._on_defect = on_defect
         self._found: tuple[str, ...] = ()
         self._segments: list[SegmentInfo] | None = None
         self._search = self._searches()
@@ -58,7 +58,7 @@ class LogDefects:
         if flaw in self._found:
             return False
         self._found = (*self._found, flaw)
-        self._tell(flaw)
+        self._on_defect(flaw)
         return True
 
     def note_damage(self, what: str) -> bool:
@@ -134,14 +134,14 @@ def _being_written(path: Path) -> SegmentInfo:
 
 def _in_words(lacks: Sequence[LogGap]) -> Iterator[str]:
     """Those that are gone one behind the other are one sentence."""
-    yield from (str(lack) for lack in lacks if not lack.is_gone)
-    gone = sorted((lack for lack in lacks if lack.is_gone), key=lambda lack: lack.number)
-    for _, run in groupby(enumerate(gone), lambda one: one[1].number - one[0]):
+    yield from (str(lack) for lack in lacks if not lack.is_file_missing)
+    missing = sorted((lack for lack in lacks if lack.is_file_missing), key=lambda lack: lack.number)
+    for _, run in groupby(enumerate(missing), lambda one: one[1].number - one[0]):
         together = [lack for _, lack in run]
-        yield _gone(together[0], together[-1])
+        yield _missing_files(together[0], together[-1])
 
 
-def _gone(first: LogGap, last: LogGap) -> str:
+def _missing_files(first: LogGap, last: LogGap) -> str:
     which = (
         f"segment {first.number} of the log is"
         if first is last

@@ -36,7 +36,7 @@ class LogGap:
     until_ns: int
     kept: int = 0  # messages of it
     of: int = 0  # 0: nobody knows
-    is_gone: bool = False  # the file itself
+    is_file_missing: bool = False  # the file itself
     is_newest: bool = False  # the table is some seconds behind, so it may have gone on
 
     def covers(self, t_ns: int) -> bool:
@@ -44,7 +44,7 @@ class LogGap:
 
     def __str__(self) -> str:
         what = self.name or f"segment {self.number}"
-        if self.is_gone:
+        if self.is_file_missing:
             lost = f"{what} is missing"
         elif not self.kept:
             lost = f"{what} is empty"
@@ -65,7 +65,7 @@ def log_gaps(segments: Sequence[SegmentInfo], known: Collection[KnownSegment]) -
     by_name = {one.name: one for one in known}
     present = {one.path.name for one in segments}
     found = {
-        one.name: _gone(one.name, one.first_ns, one.last_ns, one.messages)
+        one.name: _missing_file(one.name, one.first_ns, one.last_ns, one.messages)
         for one in known
         if one.name not in present and one.messages
     }
@@ -83,9 +83,9 @@ def log_gaps(segments: Sequence[SegmentInfo], known: Collection[KnownSegment]) -
     return sorted(lacks, key=lambda one: (one.from_ns, one.number))
 
 
-def _gone(name: str, first_ns: int, last_ns: int, messages: int) -> LogGap:
+def _missing_file(name: str, first_ns: int, last_ns: int, messages: int) -> LogGap:
     number = segment_number(Path(name))
-    return LogGap(number, name, first_ns, last_ns, of=messages, is_gone=True)
+    return LogGap(number, name, first_ns, last_ns, of=messages, is_file_missing=True)
 
 
 def _cut(
@@ -116,7 +116,7 @@ def _between(segments: Sequence[SegmentInfo], numbers: Collection[int]) -> list[
         after = [one for at, one in by_number.items() if at > number]
         from_ns = max((one.end_ns for one in before), default=0)
         until_ns = min((one.start_ns for one in after if one.start_ns), default=0)
-        lacks.append(LogGap(number, "", from_ns, until_ns, is_gone=True))
+        lacks.append(LogGap(number, "", from_ns, until_ns, is_file_missing=True))
     return lacks
 
 

@@ -39,20 +39,20 @@ Deliver = Callable[[str, bytes], None]  # key, payload; waits while the feed is 
 Report = Mapping[str, tuple[Held, ...]]  # by unit, of units that are linked
 
 
-class _Asked(NamedTuple):
+class _Request(NamedTuple):
     """A question under way."""
 
     unit_id: str
     question: Question
-    asked_ns: int
+    requested_ns: int
 
 
-class _News(NamedTuple):
+class _Input(NamedTuple):
     """What has happened since the thread last looked."""
 
     report: Report | None
     alerts_only: bool  # is to be fetched
-    replies: list[tuple[_Asked, bytes | None]]  # None: no more come
+    replies: list[tuple[_Request, bytes | None]]  # None: no more come
     start_over: bool
 
 
@@ -75,14 +75,14 @@ class Backfill:
         self.share = JournalRateLimit(clock)
         self._turns: deque[str] = deque()  # units that may have something to be asked, by turns
         self._reported: Report = {}
-        self._asking: dict[str, _Asked] = {}
+        self._asking: dict[str, _Request] = {}
         self._backlogs = 0  # of these, questions behind live data
         self._came_bytes: dict[str, int] = {}  # in answer to what a unit is asked
         self._ended_ns: dict[str, int] = {}  # when such an answer was over, by unit
         self._lock = Lock()  # guards what follows
         self._report: Report | None = None
-        self._urgent: list[tuple[_Asked, bytes | None]] = []
-        self._replies: deque[tuple[_Asked, bytes | None]] = deque()
+        self._urgent: list[tuple[_Request, bytes | None]] = []
+        self._replies: deque[tuple[_Request, bytes | None]] = deque()
         self._alerts_only = False
         self._starts_over = False
         self._refused = 0
@@ -115,32 +115,32 @@ class Backfill:
 
     def _step(self) -> float:
         """Take a report and replies, and ask for more."""
-        news = self._next()
-        if news.start_over:
+        received = self._next()
+        if received.start_over:
             for journal in self._journals.values():
                 journal.start_over()
-        if news.report is not None:
-            self._take_report(news.report, alerts_only=news.alerts_only)
-        for asked, reply in news.replies:
+        if received.report is not None:
+            self._take_report(received.report, alerts_only=received.alerts_only)
+        for request, reply in received.replies:
             if self._worker.stopping.is_set():
                 return 0.0
             if reply is None:
-                self._end(asked)
+                self._end(request)
             else:
-                self._take(asked, reply)
+                self._take(request, reply)
         self._ask_by_turns()
         return 0.0 if self._replies else UNTIL_WOKEN
 
-    def _next(self) -> _News:
+    def _next(self) -> _Input:
         """Return what is new.  Of replies, all the urgent ones, and one of the others: handing
         that over may take its time.
         """
         with self._lock:
-            news = _News(self._report, self._alerts_only, self._urgent, self._starts_over)
+            received = _Input(self._report, self._alerts_only, self._urgent, self._starts_over)
             self._report, self._urgent, self._starts_over = None, [], False
             if self._replies:
-                news.replies.append(self._replies.popleft())
-            return news
+                received.replies.append(self._replies.popleft())
+            return received
 
     def _take_report(self, report: Report, *, alerts_only: bool) -> None:
         before, self._reported = self._reported, report
@@ -154,32 +154,32 @@ class Backfill:
         idle = [one for one in report if one not in waiting and one not in self._asking]
         self._turns = deque([*waiting, *idle])
 
-    def _take(self, asked: _Asked, reply: bytes) -> None:
-        journal = self._journals[asked.unit_id]
+    def _take(self, request: _Request, reply: bytes) -> None:
+        journal = self._journals[request.unit_id]
         try:
-            chunk = journal.take(asked.question, reply, self._clock.monotonic_ns())
+            chunk = journal.take(request.question, reply, self._clock.monotonic_ns())
         except WireError as error:
-            logger.warning("the journal of %s cannot be read: %s", asked.unit_id, error)
-            self.share.note(asked.unit_id, len(reply), 0, 0)
+            logger.warning("the journal of %s cannot be read: %s", request.unit_id, error)
+            self.share.note(request.unit_id, len(reply), 0, 0)
             return
         entries = () if chunk is None else chunk.entries
         alerts = sum(entry.suffix.startswith(_ALERT) for entry in entries)
-        self.share.note(asked.unit_id, len(reply), len(entries), alerts)
+        self.share.note(request.unit_id, len(reply), len(entries), alerts)
         if chunk is not None:
             for entry in chunk.entries:
-                self._deliver(_key_of(asked.unit_id, chunk.boot_id, entry), entry.payload)
+                self._deliver(_key_of(request.unit_id, chunk.boot_id, entry), entry.payload)
             self.fetched += len(chunk.entries)
 
-    def _end(self, asked: _Asked) -> None:
-        del self._asking[asked.unit_id]
-        self._backlogs -= not asked.question.urgent
+    def _end(self, request: _Request) -> None:
+        del self._asking[request.unit_id]
+        self._backlogs -= not request.question.urgent
         # What is fetched is asked for no faster than it is handed over here, too.
         now_ns = self._clock.monotonic_ns()
-        ended_ns = self._ended_ns[asked.unit_id] if asked.question.urgent else now_ns
-        took_ns = ended_ns - asked.asked_ns
-        self._journals[asked.unit_id].end(asked.question, took_ns)
-        if asked.unit_id in self._reported:
-            self._turns.append(asked.unit_id)
+        ended_ns = self._ended_ns[request.unit_id] if request.question.urgent else now_ns
+        took_ns = ended_ns - request.requested_ns
+        self._journals[request.unit_id].end(request.question, took_ns)
+        if request.unit_id in self._reported:
+            self._turns.append(request.unit_id)
 
     def _ask_by_turns(self) -> None:
         """Alerts are asked for at once, a backlog while not too many are being fetched."""
@@ -199,8 +199,8 @@ class Backfill:
                 self._turns.append(unit_id)
 
     def _ask(self, unit_id: str, question: Question) -> None:
-        asked = _Asked(unit_id, question, self._clock.monotonic_ns())
-        self._asking[unit_id] = asked
+        request = _Request(unit_id, question, self._clock.monotonic_ns())
+        self._asking[unit_id] = request
         self._backlogs += not question.urgent
         with self._lock:
             self._came_bytes[unit_id] = 0
@@ -209,22 +209,22 @@ class Backfill:
                 f"{ROOT}/{unit_id}/journal/{question.selector}",
                 b"",
                 _TIMEOUT_S,
-                partial(self._note_reply, asked),
+                partial(self._note_reply, request),
                 urgent=question.urgent,
             )
         except Exception as error:  # noqa: BLE001  # or nobody's journal is asked any more
             logger.warning("the journal of %s cannot be asked: %s", unit_id, error)
-            self._note_reply(asked, None)
+            self._note_reply(request, None)
 
-    def _note_reply(self, asked: _Asked, reply: bytes | None) -> None:
+    def _note_reply(self, request: _Request, reply: bytes | None) -> None:
         """Called by a thread of the bus."""
         with self._lock:
-            self._ended_ns[asked.unit_id] = self._clock.monotonic_ns()
-            self._came_bytes[asked.unit_id] += len(reply or b"")
-            most_bytes = max(_LEAST_KEPT_BYTES, _MOST_CAME * asked.question.most_bytes)
-            if reply is not None and self._came_bytes[asked.unit_id] > most_bytes:
+            self._ended_ns[request.unit_id] = self._clock.monotonic_ns()
+            self._came_bytes[request.unit_id] += len(reply or b"")
+            most_bytes = max(_LEAST_KEPT_BYTES, _MOST_CAME * request.question.most_bytes)
+            if reply is not None and self._came_bytes[request.unit_id] > most_bytes:
                 return  # far more than was asked for
-            (self._urgent if asked.question.urgent else self._replies).append((asked, reply))
+            (self._urgent if request.question.urgent else self._replies).append((request, reply))
         self._worker.wake()
 
 
@@ -233,7 +233,7 @@ def _key_of(unit_id: str, boot_id: int, entry: JournalEntry) -> str:
     again whenever the station starts.
     """
     header = header_of(entry.payload)
-    said = None if header is None else (header.unit_id, header.boot_id, header.seq)
-    if said == (unit_id, boot_id, entry.seq):
+    name = None if header is None else (header.unit_id, header.boot_id, header.seq)
+    if name == (unit_id, boot_id, entry.seq):
         return backfilled_key(unit_id, entry.suffix)
     return unread_key(unit_id, boot_id, entry.seq, entry.suffix)

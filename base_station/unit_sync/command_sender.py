@@ -37,7 +37,7 @@ class CommandSender:
         self._bus = bus
         self._stamper = stamper
         self._clock = clock
-        self._said_ns: dict[tuple[str, str], int] = {}  # unit and command: when last
+        self._sent_ns: dict[tuple[str, str], int] = {}  # unit and command: when last
         self._orders: Sequence[Order] = ()
         self._fault_log = LogOnChange(logger, "a command cannot be sent; trying again")
         self._worker = Worker("downlink", self._step, "commands are not sent")
@@ -61,24 +61,24 @@ class CommandSender:
     def send_due(self, orders: Sequence[Order]) -> None:
         """Send all that are due; one that cannot be sent does not hold up the others."""
         now_ns = self._clock.monotonic_ns()
-        said_ns = {}
+        sent_ns = {}
         failure: Exception | None = None
         for order in orders:
             name = order.unit_id, order.command_id
             try:
-                last_ns = self._say(order, self._said_ns.get(name), now_ns)
+                last_ns = self._send(order, self._sent_ns.get(name), now_ns)
             except Exception as error:  # noqa: BLE001  # logged behind the other orders
                 failure = error
                 continue
             if last_ns is not None:
-                said_ns[name] = last_ns
-        self._said_ns = said_ns
+                sent_ns[name] = last_ns
+        self._sent_ns = sent_ns
         if failure is None:
             self._fault_log.note_success()
         else:
             self._fault_log.note_failure(failure)
 
-    def _say(self, order: Order, before_ns: int | None, now_ns: int) -> int | None:
+    def _send(self, order: Order, before_ns: int | None, now_ns: int) -> int | None:
         """When it was said last; None where it is not for now."""
         key = COMMAND.key(order.unit_id)
         if self._clock.utc_ns() >= order.expires_ns or not self._bus.is_heard(key):

@@ -30,7 +30,7 @@ _ACKNOWLEDGE_EVERY_NS = 10 * NS_PER_S  # of one run; the answer names all of the
 _SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
 _REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
 _NUMBER_BYTES = 100.0  # that come for a number, as long as none have
-_GONE_BYTES = 0.1  # where the journal has none of them any more
+_EVICTED_BYTES = 0.1  # where the journal has none of them any more
 _OVERHEAD_BYTES = 24  # beside its payload, as the unit counts them
 _PIECE_SHARE = 0.8  # of an answer; what does not fit takes a question more
 _LEARN_SHARE = 0.02
@@ -57,8 +57,8 @@ class Question(NamedTuple):
     @property
     def selector(self) -> str:
         """Behind ``muster/v1/{unit}/journal/``."""
-        said = ";".join(f"{name}={value}" for name, value in self.parameters)
-        return f"{self.what}?{said}" if said else self.what
+        parameters = ";".join(f"{name}={value}" for name, value in self.parameters)
+        return f"{self.what}?{parameters}" if parameters else self.what
 
 
 class _Boot:
@@ -67,7 +67,7 @@ class _Boot:
     def __init__(self) -> None:
         self.held = SequenceSet()  # by the last report
         self._fetched = SequenceSet()  # or gone for ever
-        self._gone = SequenceSet()  # of these, what the journal has no more
+        self._evicted = SequenceSet()  # of these, what the journal has no more
         self._without_alert = SequenceSet()  # whatever alerts are among them were fetched
         self._have = SequenceSet()  # held or fetched
         self._known = SequenceSet()  # held, fetched or without an alert
@@ -87,20 +87,20 @@ class _Boot:
         self.newest = max(self.newest, runs[-1].last if runs else 0)
         if safe:
             # What was fetched may still wait to be written, and is held by a later report.
-            self.complete.append(_union(self.held, self._gone).complete_to(self.first))
+            self.complete.append(_union(self.held, self._evicted).complete_to(self.first))
 
     def note_fetched(self, run: Run) -> None:
         """What the journal has of it came."""
         for one in (self._fetched, self._have, self._known):
             one.add_run(run)
 
-    def note_gone(self, run: Run, entries: tuple[JournalEntry, ...]) -> None:
+    def note_evicted(self, run: Run, entries: tuple[JournalEntry, ...]) -> None:
         """But for these the journal has nothing of it any more."""
         there = SequenceSet()
         for entry in entries:
             there.add(entry.seq)
         for gone in there.missing(run.first, run.last):
-            self._gone.add_run(gone)
+            self._evicted.add_run(gone)
 
     def new(self, entries: tuple[JournalEntry, ...]) -> tuple[JournalEntry, ...]:
         """Those that are not there yet."""
@@ -130,7 +130,7 @@ class _Boot:
     def start_over(self) -> None:
         """What was fetched has not all come into the log."""
         self._fetched = SequenceSet()
-        self._gone = SequenceSet()
+        self._evicted = SequenceSet()
         self._without_alert = SequenceSet()
         self._have = _union(self.held, self._fetched)
         self._known = _union(self.held, self._fetched)
@@ -230,7 +230,7 @@ class JournalClient:
                 boot.note_fetched(Run(entry.seq, entry.seq))
         else:
             boot.note_fetched(run)
-            boot.note_gone(run, chunk.entries)
+            boot.note_evicted(run, chunk.entries)
             self._note_size(chunk)
         return msgspec.structs.replace(chunk, entries=new)
 
@@ -258,7 +258,7 @@ class JournalClient:
         came_bytes = sum(len(entry.payload) + _OVERHEAD_BYTES for entry in chunk.entries)
         share = 1.0 - (1.0 - _LEARN_SHARE) ** numbers
         learnt = self._number_bytes + share * (came_bytes / numbers - self._number_bytes)
-        self._number_bytes = max(learnt, _GONE_BYTES)
+        self._number_bytes = max(learnt, _EVICTED_BYTES)
         self._came_bytes += came_bytes
         self.gone += numbers - len(chunk.entries)
 
@@ -337,8 +337,8 @@ class JournalClient:
             safe = min(boot.complete) if is_due and len(boot.complete) == _SAFE_REPORTS else 0
             if safe > boot.acknowledged:
                 self._acknowledging = boot, safe
-                said = (("epoch", boot_id), ("to", safe), ("newest", 0))
-                return Question("acknowledge", said)
+                parameters = (("epoch", boot_id), ("to", safe), ("newest", 0))
+                return Question("acknowledge", parameters)
         return None
 
 

@@ -18,7 +18,7 @@ from shared.messages.station import ReportProblem
 MESSAGES_AT_ONCE = 250_000
 BYTES_AT_ONCE = 64_000_000
 ALERTS_AT_ONCE = 500
-_TOLD_AFTER_NS = 3 * NS_PER_S  # of waiting
+_REPORTED_AFTER_NS = 3 * NS_PER_S  # of waiting
 _OVER_AFTER_NS = 30 * NS_PER_S
 _PART = "journal share "  # and whose
 _TEXT = (
@@ -76,10 +76,12 @@ class JournalRateLimit:
             over = [who for who, (_, last) in self._waits.items() if now_ns - last > _OVER_AFTER_NS]
             for unit_id in over:
                 del self._waits[unit_id]
-            told = [
-                who for who, (since, last) in self._waits.items() if last - since >= _TOLD_AFTER_NS
+            throttled = [
+                who
+                for who, (since, last) in self._waits.items()
+                if last - since >= _REPORTED_AFTER_NS
             ]
-        parts = {f"{_PART}{unit_id}": _TEXT.format(unit_id) for unit_id in told}
+        parts = {f"{_PART}{unit_id}": _TEXT.format(unit_id) for unit_id in throttled}
         for part, text in parts.items():
             if part not in known:
                 yield ReportProblem(part, text)

@@ -102,7 +102,7 @@ class ConsoleClient:
         health: dict[str, Any] = self._call("GET", "/health")
         return health
 
-    def units_heard(self) -> tuple[str, ...]:
+    def units_received(self) -> tuple[str, ...]:
         units = self._call("GET", "/units")
         return tuple(unit["unit_id"] for unit in units if unit["last_heard_ms"] is not None)
 

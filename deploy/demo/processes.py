@@ -36,7 +36,7 @@ class Child:
         return self.output_path.read_text(errors="replace").strip()[-2000:]
 
 
-class ToldToEndError(Exception):
+class EndRequestedError(Exception):
     """A person wants the demo to end, which has not begun yet."""
 
 
@@ -44,7 +44,7 @@ class Children:
     """Starts commands and, as a context manager, ends them all, the last started first."""
 
     def __init__(self, output_folder: Path, stop: Event) -> None:
-        """Once ``stop`` is set nothing is started or waited for: ToldToEndError."""
+        """Once ``stop`` is set nothing is started or waited for: EndRequestedError."""
         output_folder.mkdir(parents=True, exist_ok=True)
         self._output_folder = output_folder
         self._stop = stop
@@ -94,7 +94,7 @@ class Children:
 
     def wait(self, duration_s: float) -> None:
         if self._stop.wait(duration_s):
-            raise ToldToEndError
+            raise EndRequestedError
 
     def wait_for_line(self, child: Child, beginning: str, patience_s: float) -> str:
         """The first line of its output with this beginning; UserError if it does not come."""

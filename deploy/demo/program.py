@@ -17,10 +17,10 @@ from rich.console import Console
 
 from deploy.demo.console_client import ConsoleClient
 from deploy.demo.crew import Crew, read_crew
-from deploy.demo.processes import Child, Children, ToldToEndError
+from deploy.demo.processes import Child, Children, EndRequestedError
 from deploy.demo.stations import Site, Stations
 from deploy.demo.wearers import HELP, Wearers
-from shared.end_signals import told_to_end
+from shared.end_signals import end_requested
 from shared.errors import UserError
 from shared.options import finite
 
@@ -62,7 +62,7 @@ def demo(
     ] = False,
 ) -> None:
     """Run a base station and five responders on this machine until Ctrl-C."""
-    stop = told_to_end()
+    stop = end_requested()
     folder = data or Path("muster-data") / f"demo-{datetime.now(UTC):%Y%m%d-%H%M%S}"
     address = f"http://127.0.0.1:{http_port or _free_port(_USUAL_HTTP_PORT)}"
     bus = f"tls/127.0.0.1:{bus_port or _free_port(_USUAL_BUS_PORT)}"
@@ -77,7 +77,7 @@ def demo(
         stations = Stations(children, folder, tuple(sites))
         try:
             _Demo(children, folder, stations, crew, wearers, show).run(stop, for_s)
-        except ToldToEndError:
+        except EndRequestedError:
             typer.echo("Ended before it had begun.")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)  # all has ended; one press more is no failure
@@ -130,7 +130,7 @@ class _Demo:
                 f"  login     [bold]{username}[/]  password  [bold]{console.password}[/]\n"
                 f"  data      {self._folder}\n"
             )
-            self._tell_of_standby()
+            self._announce_standby()
             if self._show is Show.PANELS:
                 self._screen.print(HELP)
                 self._wearers.listen(self._screen.print)
@@ -156,7 +156,7 @@ class _Demo:
             self._children.run(f"enrol-{responder.unit}", ("pki", "enroll", responder.unit, *flags))
         return enrolments
 
-    def _tell_of_standby(self) -> None:
+    def _announce_standby(self) -> None:
         first, *others = self._stations.sites
         for other in others:
             self._screen.print(
@@ -194,7 +194,7 @@ class _Demo:
             if self._show is Show.PANELS:
                 self._screen.print(line, markup=False)
         try:
-            if self._complete_s is None and not self._missing(console.units_heard()):
+            if self._complete_s is None and not self._missing(console.units_received()):
                 self._complete_s = elapsed_s
             if elapsed_s >= _ROLL_CALL_AT_S and not self._roll_called:
                 console.call_roll()
@@ -243,7 +243,7 @@ class _Demo:
 
     def _summarise(self, console: ConsoleClient) -> tuple[str, ...]:
         """Say how it went; the units that were heard."""
-        health, heard = console.health(), console.units_heard()
+        health, heard = console.health(), console.units_received()
         self._screen.print(
             f"{health['messages']} messages of {len(heard)} units, "
             f"{health['undecodable']} of them not understood"

@@ -14,7 +14,7 @@ import zenoh
 from shared.bus_zenoh import ClientEndpoint, StationEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import Qos, clock_key
 from shared.errors import BusError
-from shared.zenoh_settings import MOST_ANSWERED_BYTES, MOST_SAID_BYTES
+from shared.zenoh_settings import MOST_ANSWERED_BYTES, MOST_PUBLISHED_BYTES
 from tests.rig.station_process import free_port
 from tests.rig.waiting import until
 
@@ -133,8 +133,8 @@ def test_a_message_too_large_for_anybody_is_not_taken_and_the_link_stays(
 def test_what_is_larger_than_any_units_message_ends_at_the_router(
     address: str, suffix: str
 ) -> None:
-    sizes = (MOST_SAID_BYTES, MOST_SAID_BYTES + 1, 16_000_000, 5)
-    assert sizes_heard(address, f"muster/v1/anna/{suffix}", sizes) == [MOST_SAID_BYTES, 5]
+    sizes = (MOST_PUBLISHED_BYTES, MOST_PUBLISHED_BYTES + 1, 16_000_000, 5)
+    assert sizes_heard(address, f"muster/v1/anna/{suffix}", sizes) == [MOST_PUBLISHED_BYTES, 5]
 
 
 def sizes_heard(address: str, key: str, sizes: Sequence[int]) -> list[int]:
@@ -162,7 +162,7 @@ def test_a_unit_that_asks_all_the_time_is_answered_a_few_times_a_second(address:
         yield b"now"
 
     with (
-        closing(ZenohBus(StationEndpoint((address,), seldom_asked=(key, other)))),
+        closing(ZenohBus(StationEndpoint((address,), rate_limited_queries=(key, other)))),
         closing(ZenohBus(ClientEndpoint((address,)))) as station,
         closing(ZenohBus(ClientEndpoint((address,)))) as rogue,
         closing(ZenohBus(ClientEndpoint((address,)))) as unit,

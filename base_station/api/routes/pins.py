@@ -96,9 +96,9 @@ def set_pin(form: PinForm, station: Station, perform: Perform) -> PinView:
 @router.post("/pins/start", status_code=201)
 def start_together(form: StartForm, station: Station, perform: Perform) -> list[PinView]:
     """These units were together here: where their paths begin, or then."""
-    said = form.model_dump(exclude={"t_ms", "unit_ids"})
+    fields = form.model_dump(exclude={"t_ms", "unit_ids"})
     unit_ids = tuple(form.unit_ids)
-    action = StartTogether(uuid.uuid4().hex, unit_ids, form.t_ms * NS_PER_MS, **said)
+    action = StartTogether(uuid.uuid4().hex, unit_ids, form.t_ms * NS_PER_MS, **fields)
     made = f"{perform(action).created_id}:"
     return [view for view in station.picture().pins if view.pin_id.startswith(made)]
 
@@ -161,8 +161,8 @@ def remove_beacon(beacon_id: Id, station: Station, perform: Perform) -> None:
 
 
 def _place_pin(station: Services, pin_id: str, form: PinForm) -> SetPin:
-    said = form.model_dump(exclude={"t_ms", "unit_id"})
-    return SetPin(pin_id, form.unit_id, _time(station, form.t_ms), **said)
+    fields = form.model_dump(exclude={"t_ms", "unit_id"})
+    return SetPin(pin_id, form.unit_id, _time(station, form.t_ms), **fields)
 
 
 def _beacon(station: Services, beacon_id: str) -> BeaconView | None:

@@ -55,8 +55,8 @@ def fetch_recording(new: NewPull, station: CurrentStation, who: Commander) -> Re
     if new.unit_id not in station.roster.registered_units():
         raise Problem(404, f"There is no unit {new.unit_id}.")
     pull = desk.add(who.username, TransferRequest(new.unit_id, *_window(station, new)))
-    said = f"{new.unit_id} from {pull.wanted.from_ns} to {pull.wanted.to_ns}"
-    station.records.audit(who.username, "FetchedRecording", said)
+    details = f"{new.unit_id} from {pull.wanted.from_ns} to {pull.wanted.to_ns}"
+    station.records.audit(who.username, "FetchedRecording", details)
     return _recording(pull)
 
 

@@ -92,8 +92,8 @@ def end_replay(replay_id: Id, station: Station, who: Viewer) -> None:
     if not _is_own(replay, who):
         if who.role < Role.COMMANDER:
             raise Problem(403, f"This replay is {replay.begun_by}'s; a commander may end it.")
-        said = f"{replay.player.view().incident_id} of {replay.begun_by}"
-        station.records.audit(who.username, "EndedReplay", said)
+        details = f"{replay.player.view().incident_id} of {replay.begun_by}"
+        station.records.audit(who.username, "EndedReplay", details)
     if not station.replays.close(replay_id):
         raise Problem(404, _NO_REPLAY)
 

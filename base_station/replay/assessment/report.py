@@ -148,9 +148,9 @@ def _floor_probability(state: StationState, live: Sequence[TrackSample]) -> floa
 
 def _floor_right(live: Sequence[TrackSample], smoothed: Sequence[TrackSample]) -> float | None:
     """How often the floor shown was the one that is known since."""
-    told = [one for one in live if one.floor is not None]
+    with_floor = [one for one in live if one.floor is not None]
     right = []
-    for one in told:
+    for one in with_floor:
         since = _at(smoothed, one.t_ns)
         if since is not None and since.floor is not None:
             right.append(since.floor == one.floor)

@@ -80,17 +80,17 @@ def incident_of(job: PostProcessingJob) -> Incident:
 def post_process(
     job: PostProcessingJob, post_processor: PostProcessor, live: Tracks, line: Line
 ) -> None:
-    told = [0.0]
+    reported = [0.0]
 
-    def tell(done: float) -> None:
-        if done - told[0] >= _STEP or done >= 1.0:
-            told[0] = done
+    def report_progress(done: float) -> None:
+        if done - reported[0] >= _STEP or done >= 1.0:
+            reported[0] = done
             line.send(Progress(done))
 
-    _tell_made(post_processor.post_process(incident_of(job), live, tell), line)
+    _send_result(post_processor.post_process(incident_of(job), live, report_progress), line)
 
 
-def _tell_made(made: PostProcessingResult, line: Line) -> None:
+def _send_result(made: PostProcessingResult, line: Line) -> None:
     if not made.is_kept:
         for unit_id in sorted({*made.smoothed, *made.raw}):
             line.send(

@@ -203,9 +203,9 @@ class ReplayProcess:
         publisher = ConsolePublisher(self._place.empty_pipeline(), self._sink, self._photos.get)
         waited_s = 0.0
         while not self._is_shown:
-            if not line.has_news(_LOOK_S):
+            if not line.has_message(_LOOK_S):
                 waited_s += _LOOK_S
-                self._tell_of_loading(publisher, told=waited_s < PAUSED_S)
+                self._publish_loading(publisher, is_due=waited_s < PAUSED_S)
                 waited_s %= PAUSED_S
             elif not self._take_next(line):
                 return
@@ -215,10 +215,10 @@ class ReplayProcess:
         while self._take_next(line):
             pass
 
-    def _tell_of_loading(self, publisher: ConsolePublisher, *, told: bool) -> None:
+    def _publish_loading(self, publisher: ConsolePublisher, *, is_due: bool) -> None:
         """Consoles see that somebody is there."""
         view = self.view()
-        if not told:
+        if not is_due:
             publisher.publish_delta(replay=view)
         while self._asked:
             self._asked.popleft()(*publisher.snapshot(view))

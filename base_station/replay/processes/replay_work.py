@@ -79,7 +79,7 @@ class _ReplayWork:
         return self._photo_urls.get(person_id)
 
     def delta(self, delta: Delta) -> None:
-        self._tell_view()
+        self._send_view()
         self._send(DeltaFrame(self._encoder.encode(delta), tuple(delta.trails)))
 
     def reset(self, snapshot: Snapshot, trails: Trails) -> None:
@@ -89,11 +89,11 @@ class _ReplayWork:
         self._show(snapshot, trails, requested=True)
 
     def _show(self, snapshot: Snapshot, trails: Trails, *, requested: bool) -> None:
-        self._tell_view()
+        self._send_view()
         points = {unit_id: bytes(raw) for unit_id, raw in trails.items()}
         self._send(SnapshotFrame(self._encoder.encode(snapshot), points, requested))
 
-    def _tell_view(self) -> None:
+    def _send_view(self) -> None:
         """Sends the state as it is after the commands that are counted."""
         self._begun.wait()
         commands = self._commands

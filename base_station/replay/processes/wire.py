@@ -143,7 +143,7 @@ class Line:
             except OSError as error:
                 raise StoreError(f"the other process has ended: {error}") from error
 
-    def has_news(self, timeout_s: float) -> bool:
+    def has_message(self, timeout_s: float) -> bool:
         """A message has come, or the other end is gone; waits for it."""
         poll = select.poll()  # not select, which knows only the first 1,024 files of a program
         poll.register(self._end, select.POLLIN)

@@ -108,7 +108,7 @@ def access_control(registry: Registry, station_link: str | None = None) -> dict[
     }
 
 
-def seldom_asked(registry: Registry) -> tuple[str, ...]:
+def rate_limited_queries(registry: Registry) -> tuple[str, ...]:
     """Keys under which those who are enrolled ask the station something, each its own."""
     asking = (
         tracker_id(entry.name) if entry.holder is Holder.TRACKER else entry.name

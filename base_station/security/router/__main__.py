@@ -17,7 +17,7 @@ from base_station.process.open_files import allow_many_files
 from base_station.security.router.process import FAILED, LINKS, READY, STATION, BanOrder
 from base_station.security.router.refusals import RefusalSummary
 from base_station.security.router.router import Router
-from shared.end_signals import told_to_end
+from shared.end_signals import end_requested
 from shared.errors import MusterError
 from shared.log import set_up_logging
 from shared.zenoh_settings import LOCAL_LINK
@@ -36,7 +36,7 @@ def run_router(
     """
     set_up_logging()
     allow_many_files()
-    stop = told_to_end()
+    stop = end_requested()
     ban: list[Callable[[str, float], None]] = []  # once the router is open
     Thread(target=_read_input, args=(stop, ban, station), daemon=True).start()
     try:

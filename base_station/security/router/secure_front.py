@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from base_station.security.pki.access import access_control, seldom_asked
+from base_station.security.pki.access import access_control, rate_limited_queries
 from base_station.security.pki.folder import PkiFolder
 from base_station.security.pki.registry import Registry
 from base_station.security.router.acceptor import Acceptor
@@ -48,7 +48,7 @@ class SecureFront:
             tls=self._authority.router,
             access_control=access_control(self._registry, LOCAL_LINK),
             links=links,
-            seldom_asked=seldom_asked(self._registry),
+            rate_limited_queries=rate_limited_queries(self._registry),
             links_tls=self.identity if links else None,
         )
 

@@ -90,8 +90,8 @@ class Transfer:
         self._clock = clock
         self._pace = AdaptiveChunkSize()
         self._took_ns = 0  # by the last answer
-        self._told: set[str] = set()  # files that the unit has told of, since it was first asked
-        self._missing: set[str] = set()  # of these: not here as they were told of
+        self._announced: set[str] = set()  # files that the unit has listed since the first request
+        self._missing: set[str] = set()  # of these: not here as they were listed
         self._unproven: set[str] = set()  # whose hash the unit could not be asked for
         self._lock = FolderLock(
             self.folder, "pull of this unit's recording", "let that one end, or stop it"
@@ -125,7 +125,7 @@ class Transfer:
         self._check(index)
         self.total_bytes = sum(one.size_bytes for one in index.files)
         paths = {one.path for one in index.files}
-        self._told |= paths
+        self._announced |= paths
         self._missing |= paths
         before_bytes = 0
         for file in index.files:
@@ -134,7 +134,7 @@ class Transfer:
             self.done_bytes = before_bytes
         self.state = TransferState.DONE
         self.problem = "; ".join(
-            f"{len(files)} of {len(self._told)} files {what}"
+            f"{len(files)} of {len(self._announced)} files {what}"
             for files, what in (
                 (self._missing, "are gone: the unit needed the room"),
                 (self._unproven, "came whole, but the unit gave them up before telling their hash"),
@@ -148,7 +148,7 @@ class Transfer:
 
     def _check(self, index: RecordingIndex) -> None:
         unit_id = self.wanted.unit_id
-        if not (index.files or self._told):
+        if not (index.files or self._announced):
             began = datetime.fromtimestamp(index.first_ns / NS_PER_S, UTC)
             kept = f"what it keeps begins at {began:%Y-%m-%dT%H:%M:%SZ}"
             raise PermanentTransferError(
@@ -189,13 +189,13 @@ class Transfer:
                 f"digest?path={file.path};size={file.size_bytes}", RecordingDigest.from_bytes
             )
             digest = _digest_of(part)
-            is_gone = not answer.sha256  # and yet all of it is here, each piece of it intact
-            if is_gone or digest == answer.sha256:
+            is_evicted = not answer.sha256  # and yet all of it is here, each piece of it intact
+            if is_evicted or digest == answer.sha256:
                 part.replace(whole)
                 self._write_hash(file.path, digest.hex())
                 self._missing.discard(file.path)
                 self._unproven.discard(file.path)
-                if is_gone:
+                if is_evicted:
                     self._unproven.add(file.path)
                 return
             part.unlink()
@@ -246,10 +246,10 @@ class Transfer:
     def _try(self, question: str, read: Callable[[bytes], T]) -> Steps[T | None]:
         """Ask once; None where there is no answer."""
         yield  # others have their turn, which is no time that the link took
-        asked_ns = self._clock.monotonic_ns()
+        requested_ns = self._clock.monotonic_ns()
         try:
             answer = self._ask(self.wanted.unit_id, question)
-            self._took_ns = self._clock.monotonic_ns() - asked_ns
+            self._took_ns = self._clock.monotonic_ns() - requested_ns
             if answer is not None:
                 understood = read(answer)
                 self.state, self.problem = TransferState.FETCHING, ""
@@ -264,8 +264,8 @@ class Transfer:
     def _write_hash(self, path: str, digest: str) -> None:
         """Among those of other files."""
         hashes = self.folder / HASHES
-        said = hashes.read_bytes().decode("utf-8", "replace") if hashes.exists() else ""
-        lines = (line.partition("  ") for line in said.splitlines())
+        text = hashes.read_bytes().decode("utf-8", "replace") if hashes.exists() else ""
+        lines = (line.partition("  ") for line in text.splitlines())
         known = {name: known for known, _, name in lines} | {path: digest}
         text = "".join(f"{one}  {name}\n" for name, one in sorted(known.items()))
         making = hashes.with_name(HASHES + _PART)

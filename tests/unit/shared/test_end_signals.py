@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from shared.end_signals import told_to_end
+from shared.end_signals import end_requested
 
 
 @pytest.fixture(autouse=True)
@@ -21,7 +21,7 @@ def _handlers() -> Iterator[None]:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_it_is_told_also_while_it_looks_whether_it_is(number: signal.Signals) -> None:
     """Two presses of Ctrl-C, or one in the instant in which the main thread holds the lock."""
-    stop = told_to_end()
+    stop = end_requested()
     assert not stop.is_set()
     with stop._cond:  # type: ignore[attr-defined]  # as it does for an instant in every wait
         signal.raise_signal(number)

@@ -223,7 +223,7 @@ def test_a_part_that_comes_again_names_what_people_did_once(
     leading: Leading, monkeypatch: pytest.MonkeyPatch, starts_again: bool
 ) -> None:
     with monkeypatch.context() as broken:
-        broken.setattr("base_station.standby.branch_merge.mark_told", lambda *_: None)
+        broken.setattr("base_station.standby.branch_merge.mark_merged", lambda *_: None)
         leading.look()  # the word that it is taken was lost
     if starts_again:
         leading.start()

@@ -19,15 +19,17 @@ class Site:
     def __init__(self, *, preferred: bool = False) -> None:
         self.now_s = 100.0
         self.election = Election(round(LEASE_S * NS_PER_S), self.now_ns)
-        self.me = LocalStatus("b", preferred, 1, HERE, stepped=HERE, units=1, unit_heard_ns=0)
+        self.me = LocalStatus("b", preferred, 1, HERE, stepped=HERE, units=1, unit_received_ns=0)
 
     @property
     def now_ns(self) -> int:
         return round(self.now_s * NS_PER_S)
 
-    def hear(self, role: Role, *, term: int = 1, place: LogPosition = HERE, units: int = 1) -> None:
+    def receive(
+        self, role: Role, *, term: int = 1, place: LogPosition = HERE, units: int = 1
+    ) -> None:
         beat = PeerHeartbeat("a", PROTOCOL, role, term, place, True, 1, units, "http://a")
-        self.election.hear(beat, self.now_ns)
+        self.election.receive(beat, self.now_ns)
 
     def decide(self, after_s: float = 0.0) -> Decision:
         self.now_s += after_s
@@ -35,7 +37,7 @@ class Site:
 
     def hear_unit(self, after_s: float) -> None:
         self.now_s += after_s
-        self.me = self.me._replace(unit_heard_ns=self.now_ns)
+        self.me = self.me._replace(unit_received_ns=self.now_ns)
         self.decide()
 
     def become(self, role: Role) -> None:
@@ -54,7 +56,7 @@ def test_one_that_comes_back_waits_for_another_that_listens_and_is_not_heard_yet
     site = Site(preferred=True)
     site.me = site.me._replace(other_listens=True)
     assert site.decide(3 * LEASE_S) == "stay"
-    site.hear("active", term=2)
+    site.receive("active", term=2)
     assert site.decide() == "follow"
 
 
@@ -74,28 +76,28 @@ def test_a_new_standby_with_an_empty_log_leads_nobody() -> None:
 
 def test_where_another_one_leads_it_follows_whatever_it_had() -> None:
     site = Site(preferred=True)
-    site.hear("active", term=1, place=START)
+    site.receive("active", term=1, place=START)
     assert site.decide() == "follow"
 
 
 def test_of_two_that_wait_who_has_more_of_the_log_leads() -> None:
     site = Site()
-    site.hear("waiting", place=LogPosition(50, 2))
+    site.receive("waiting", place=LogPosition(50, 2))
     assert site.decide() == "stay"
-    site.hear("waiting", place=LogPosition(49, 9))
+    site.receive("waiting", place=LogPosition(49, 9))
     assert site.decide() == "lead"
 
 
 def test_of_two_that_have_the_same_the_preferred_one_leads() -> None:
     site = Site(preferred=False)
-    site.hear("waiting")
+    site.receive("waiting")
     assert site.decide() == "stay"
 
 
 def test_a_standby_takes_over_when_the_lease_is_over_and_not_before() -> None:
     site = Site()
     site.become("standby")
-    site.hear("active")
+    site.receive("active")
     site.hear_unit(after_s=1.0)
     assert site.decide(LEASE_S - 1.1) == "stay"
     assert site.decide(0.1) == "lead"
@@ -106,11 +108,11 @@ def test_one_that_has_not_caught_up_waits_for_the_other_to_come_back() -> None:
     site = Site()
     site.become("standby")
     hour = LogPosition(3600 * NS_PER_S, 1)
-    site.hear("active", place=hour)
+    site.receive("active", place=hour)
     site.hear_unit(after_s=1.0)
     assert site.decide(2 * LEASE_S) == "stay"
     assert site.election.lacks_log
-    site.hear("waiting", place=hour)  # it has started again
+    site.receive("waiting", place=hour)  # it has started again
     assert site.decide(1.0) == "stay"
     site.hear_unit(after_s=1.0)
     assert site.decide(20 * LEASE_S - 2.1) == "stay"
@@ -121,7 +123,7 @@ def test_one_that_has_not_caught_up_waits_for_the_other_to_come_back() -> None:
 def test_one_that_lacks_the_last_moments_does_not_wait(units: int) -> None:
     site = Site()
     site.become("standby")
-    site.hear("active", place=LogPosition(3600 * NS_PER_S, 1), units=units)
+    site.receive("active", place=LogPosition(3600 * NS_PER_S, 1), units=units)
     site.me = site.me._replace(stepped=LogPosition(3570 * NS_PER_S, 1))
     site.hear_unit(after_s=1.0)
     assert site.decide(LEASE_S) == "lead"
@@ -130,7 +132,7 @@ def test_one_that_lacks_the_last_moments_does_not_wait(units: int) -> None:
 def test_it_is_sooner_sure_when_the_token_is_gone_too() -> None:
     site = Site()
     site.become("standby")
-    site.hear("active")
+    site.receive("active")
     site.hear_unit(after_s=0.6)
     site.election.note_token(there=False)
     assert site.decide(0.9) == "stay"  # the lease of a station without a token is over
@@ -141,7 +143,7 @@ def test_a_router_that_opens_again_takes_the_token_away_for_a_moment_only() -> N
     site = Site()
     site.become("standby")
     for _ in range(20):
-        site.hear("active")
+        site.receive("active")
         site.election.note_token(there=False)
         assert site.decide(0.5) == "stay"
 
@@ -149,7 +151,7 @@ def test_a_router_that_opens_again_takes_the_token_away_for_a_moment_only() -> N
 def test_who_hears_no_unit_though_the_active_station_had_some_is_cut_off_and_waits() -> None:
     site = Site()
     site.become("standby")
-    site.hear("active", units=2)
+    site.receive("active", units=2)
     site.hear_unit(after_s=0.2)  # that had been said before the cable was cut
     assert site.decide(10 * LEASE_S) == "stay"
     assert site.election.is_cut_off(site.now_ns)
@@ -161,18 +163,18 @@ def test_who_hears_no_unit_though_the_active_station_had_some_is_cut_off_and_wai
 def test_a_unit_that_is_heard_first_when_the_cable_is_whole_again_changes_nothing() -> None:
     site = Site()
     site.become("standby")
-    site.hear("active")
+    site.receive("active")
     assert site.decide(10 * LEASE_S) == "stay"
     site.hear_unit(after_s=0.2)
     assert site.decide(0.3) == "stay"
-    site.hear("active")
+    site.receive("active")
     assert site.decide(2.0) == "stay"
 
 
 def test_where_the_active_station_had_no_units_none_are_waited_for() -> None:
     site = Site()
     site.become("standby")
-    site.hear("active", units=0)
+    site.receive("active", units=0)
     assert site.decide(LEASE_S) == "lead"
     assert not site.election.is_cut_off(site.now_ns)
 
@@ -181,19 +183,19 @@ def test_where_nobody_could_tell_a_router_that_opens_again_is_waited_for() -> No
     """As both do when the first unit is enrolled: for seconds neither station hears the other."""
     site = Site()
     site.become("standby")
-    site.hear("active", units=0)
+    site.receive("active", units=0)
     site.election.note_token(there=False)
     for listens in (True, False, True, False):
         site.me = site.me._replace(other_listens=listens)
         assert site.decide(0.9) == "stay"
-    site.hear("active", units=1)
+    site.receive("active", units=1)
     assert site.decide() == "stay"
 
 
 def test_where_nobody_could_tell_a_station_that_is_gone_is_not_waited_for_long() -> None:
     site = Site()
     site.become("standby")
-    site.hear("active", units=0)
+    site.receive("active", units=0)
     site.me = site.me._replace(other_listens=True)
     assert site.decide(LEASE_S) == "stay"
     site.me = site.me._replace(other_listens=False)
@@ -204,7 +206,7 @@ def test_where_nobody_could_tell_a_station_that_is_gone_is_not_waited_for_long()
 def test_where_nobody_could_tell_a_station_that_hangs_is_taken_over_from_in_the_end() -> None:
     site = Site()
     site.become("standby")
-    site.hear("active", units=0)
+    site.receive("active", units=0)
     site.me = site.me._replace(other_listens=True)
     for _ in range(4):
         assert site.decide(LEASE_S) == "stay"
@@ -214,7 +216,7 @@ def test_where_nobody_could_tell_a_station_that_hangs_is_taken_over_from_in_the_
 def test_a_standby_leads_when_the_active_one_starts_again_with_less() -> None:
     site = Site()
     site.become("standby")
-    site.hear("waiting", place=LogPosition(49, 1))
+    site.receive("waiting", place=LogPosition(49, 1))
     assert site.decide() == "lead"
 
 
@@ -222,7 +224,7 @@ def test_a_standby_leads_when_the_active_one_starts_again_with_less() -> None:
 def test_of_two_that_lead_the_later_take_over_stays(theirs: int, decision: Decision) -> None:
     site = Site(preferred=False)  # the other is, which decides between equal terms
     site.become("active")
-    site.hear("active", term=theirs)
+    site.receive("active", term=theirs)
     assert site.decide() == decision
 
 
@@ -232,10 +234,10 @@ def test_one_of_two_that_lead_steps_back_and_not_both() -> None:
             here = Site(preferred=False)
             here.become("active")
             here.me = here.me._replace(term=mine)
-            here.hear("active", term=theirs)
+            here.receive("active", term=theirs)
             there = Election(round(LEASE_S * NS_PER_S), 0)
             there.role = "active"
-            there.hear(PeerHeartbeat("b", PROTOCOL, "active", mine, START, False, 2, 1, ""), 0)
+            there.receive(PeerHeartbeat("b", PROTOCOL, "active", mine, START, False, 2, 1, ""), 0)
             other = there.decide(LocalStatus("a", True, theirs, START, START, 1, 0), 0)
             assert {here.decide(), other} == {"stay", "step back"}
 
@@ -243,7 +245,7 @@ def test_one_of_two_that_lead_steps_back_and_not_both() -> None:
 def test_an_active_station_goes_on_when_the_other_is_gone() -> None:
     site = Site()
     site.become("active")
-    site.hear("standby")
+    site.receive("standby")
     assert site.decide(100 * LEASE_S) == "stay"
 
 
@@ -252,7 +254,7 @@ def test_one_that_leads_does_not_step_back_for_one_that_follows() -> None:
     site = Site()
     site.become("active")
     for role in ("standby", "waiting"):
-        site.hear(role, term=2)
+        site.receive(role, term=2)
         assert site.decide() == "stay"
 
 
@@ -263,7 +265,7 @@ def test_it_is_said_to_be_cut_off_only_where_a_standby_hears_neither_station_nor
         return site.election.is_cut_off(site.now_ns)
 
     assert not is_cut_off(), "nobody was ever heard"
-    site.hear("active")
+    site.receive("active")
     site.become("standby")
     assert not is_cut_off(), "the active station is heard"
     site.decide(LEASE_S)
@@ -278,9 +280,9 @@ def test_it_is_said_to_be_cut_off_only_where_a_standby_hears_neither_station_nor
 
 def test_what_units_said_before_the_other_was_heard_again_is_no_witness() -> None:
     site = Site()
-    site.hear("active")
+    site.receive("active")
     site.become("standby")
     site.hear_unit(1.0)
-    site.hear("active")
+    site.receive("active")
     site.hear_unit(0.1)
     assert site.decide(LEASE_S) == "stay", "nobody has been heard for longer than the other"

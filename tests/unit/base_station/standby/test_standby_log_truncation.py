@@ -11,7 +11,7 @@ from base_station.core.log_position import START, LogPosition
 from base_station.engine.feed import LogFeed
 from base_station.standby.log_truncation import (
     APART,
-    mark_told,
+    mark_merged,
     parts,
     read_part,
     set_aside,
@@ -42,7 +42,7 @@ def test_a_cut_log_holds_what_stands_up_to_the_place_and_the_rest_is_beside(
     assert len(left) == 2 * kept  # with what was decided
     (name,) = parts(tmp_path)
     assert list(read_part(tmp_path, name)) == records[kept:]
-    mark_told(tmp_path, name)
+    mark_merged(tmp_path, name)
     assert parts(tmp_path) == []
 
 

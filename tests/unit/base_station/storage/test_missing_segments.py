@@ -45,7 +45,7 @@ def test_a_whole_log_lacks_nothing_known_or_not() -> None:
 def test_what_is_gone_is_named_with_its_times() -> None:
     (lack,) = log_gaps([WHOLE[0], *WHOLE[2:]], KNOWN)
     assert (lack.number, lack.from_ns, lack.until_ns) == (2, at(10), at(19))
-    assert lack.is_gone
+    assert lack.is_file_missing
     assert str(lack) == (
         f"{WHOLE[1].path.name} is missing: what happened from 2023-11-14 22:13:30 UTC until "
         "2023-11-14 22:13:39 UTC is not known, or not all of it"
@@ -59,10 +59,10 @@ def test_what_is_gone_is_named_with_its_times() -> None:
 
 def test_without_a_table_the_numbers_and_their_neighbours_tell() -> None:
     assert log_gaps([WHOLE[0], WHOLE[3]], []) == [
-        LogGap(2, "", at(9), at(30), is_gone=True),
-        LogGap(3, "", at(9), at(30), is_gone=True),
+        LogGap(2, "", at(9), at(30), is_file_missing=True),
+        LogGap(3, "", at(9), at(30), is_file_missing=True),
     ]
-    assert log_gaps(WHOLE[1:], []) == [LogGap(1, "", 0, at(10), is_gone=True)]
+    assert log_gaps(WHOLE[1:], []) == [LogGap(1, "", 0, at(10), is_file_missing=True)]
 
 
 def test_what_was_cut_lacks_its_end_and_what_was_emptied_all() -> None:

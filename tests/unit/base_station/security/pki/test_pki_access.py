@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from base_station.security.pki.access import access_control, seldom_asked
+from base_station.security.pki.access import access_control, rate_limited_queries
 from base_station.security.pki.registry import Entry, Registry
 from shared.channels import (
     CHANNELS,
@@ -151,4 +151,4 @@ def test_the_station_may_do_everything_below_the_roots_and_nobody_else(
 
 
 def test_each_asks_for_the_time_under_a_key_of_its_own(registry: Registry) -> None:
-    assert seldom_asked(registry) == tuple(map(clock_key, ("anna", "bert", "bert@tracker")))
+    assert rate_limited_queries(registry) == tuple(map(clock_key, ("anna", "bert", "bert@tracker")))
