@@ -1,1 +1,1 @@
-"""What it takes to run Muster somewhere: the build, the demo, units, configurations."""
+"""Deployment: the build, the demo, units, configurations."""

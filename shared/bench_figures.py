@@ -1,4 +1,4 @@
-"""What every benchmark offers: its figures in a file as well."""
+"""Option that every benchmark offers: its figures in a file as well."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What both buses do around a handler: one call at a time, none after closing, errors logged."""
+"""Calls of a bus handler: one at a time, none after closing, errors logged."""
 
 from __future__ import annotations
 

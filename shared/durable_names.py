@@ -1,4 +1,4 @@
-"""What stands in a folder outlives a loss of power once the folder is brought to the disk, too."""
+"""Durable file names: a name outlives a loss of power once its folder is synced to the disk."""
 
 from __future__ import annotations
 

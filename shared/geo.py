@@ -1,4 +1,4 @@
-"""Where the incident frame lies on the Earth, and how air pressure stands for height.
+"""Place of the incident frame on the Earth, and conversion of air pressure to height.
 
 The incident frame's axes are north, east, down *of the plan*: with no anchor they mean nothing
 more, and nothing moves when an anchor comes later.  The anchor says where the origin lies and

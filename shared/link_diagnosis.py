@@ -1,4 +1,4 @@
-"""Why there is no link: Zenoh's client only hears that time ran out, so try it step by step."""
+"""Diagnosis of a link that fails: Zenoh's client only reports a timeout, so each step is tried."""
 
 from __future__ import annotations
 

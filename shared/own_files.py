@@ -1,5 +1,5 @@
-"""What root makes in a folder belongs to the folder's owner: a command that is given as root beside
-a service that runs as another user leaves nothing behind that the service cannot use.
+"""Ownership of files that root makes: they belong to the folder's owner, so that a command given
+as root beside a service of another user leaves nothing behind that the service cannot use.
 
 And no link leads out of it: whoever may write to the folder could else have root empty any file, or
 give it away.

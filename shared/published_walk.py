@@ -1,4 +1,4 @@
-"""What a unit published on a walk whose truth is known, as a CSV that people can read too."""
+"""Published positions of a walk whose truth is known, as a CSV that people can read too."""
 
 from __future__ import annotations
 

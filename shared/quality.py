@@ -1,4 +1,4 @@
-"""How far an estimate can be trusted, in the words that unit, wire and console share."""
+"""Quality of an estimate, in the words that unit, wire and console share."""
 
 from __future__ import annotations
 

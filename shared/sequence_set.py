@@ -1,4 +1,4 @@
-"""Which sequence numbers are there: a set of integers kept as runs.
+"""Set of sequence numbers, kept as runs.
 
 Messages come nearly in order, so a long history is a handful of runs.
 """

@@ -1,4 +1,4 @@
-"""What systemd, or whoever started this program and keeps it running, is told of it.
+"""Notifications to systemd, or to whatever started this program and keeps it running.
 
 The protocol is that of sd_notify(3): a datagram to the socket that the environment names.  A
 program that has not said for too long that it works is ended and started anew (``WatchdogSec``).

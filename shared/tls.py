@@ -1,4 +1,4 @@
-"""Who a program is on a bus with mutual TLS, and what can be wrong with that.
+"""Identity of a program on a bus with mutual TLS, and the checks of its files.
 
 Everything is PEM in memory: an enrolment is one file, and a private key is never written a
 second time.

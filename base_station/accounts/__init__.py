@@ -1,1 +1,1 @@
-"""Who may log in: users' names, roles and passwords; their table is ``storage.db.accounts``."""
+"""Accounts: names, roles and passwords of users; their table is ``storage.db.accounts``."""

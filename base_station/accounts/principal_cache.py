@@ -1,4 +1,4 @@
-"""Who was let in, for as long as the disk does not tell whether that is over."""
+"""Cache of principals that were let in, for as long as the disk does not answer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who asks something of the station, and how much they may."""
+"""Principals: users and API tokens that send requests, and their roles and scopes."""
 
 from __future__ import annotations
 

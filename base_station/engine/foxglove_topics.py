@@ -1,6 +1,5 @@
-"""What the log holds beside its own records so that Foxglove and Lichtblick show it as it is: a
-place on the map for each unit, the building below them, and the alarms as log lines.  Our own
-readers skip these topics.
+"""Topics for Foxglove and Lichtblick beside the log's own records: a place on the map for each
+unit, the building below them, and the alarms as log lines.  Our own readers skip these topics.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What an exporter gets, and what it is."""
+"""Interface of an exporter, and the incident that it is given."""
 
 from __future__ import annotations
 

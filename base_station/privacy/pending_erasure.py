@@ -1,5 +1,5 @@
-"""What is to go of incidents that are being forgotten, in a file until it is done: a log of which
-a part is written anew does not tell any more who was there.
+"""Erasures that are not done yet, in a file: a log of which a part is rewritten does not say any
+more who was there.
 """
 
 from __future__ import annotations

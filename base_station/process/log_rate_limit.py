@@ -1,4 +1,4 @@
-"""What anybody on the network can have logged is logged once a minute, and how often it was so."""
+"""Rate limit for log lines that anybody on the network can cause: once a minute, with a count."""
 
 from __future__ import annotations
 

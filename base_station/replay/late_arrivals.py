@@ -1,5 +1,5 @@
-"""What came after an incident was closed and is of its time: what journals brought of where people
-were, and the pins of a debriefing.
+"""Late arrivals of a closed incident: positions that journals brought after it, and the pins of a
+debriefing.
 
 In the log it stands among all else that came since: another plan, the next incident, units on
 their way home.  None of that is stepped, so that the state stays the incident's own.

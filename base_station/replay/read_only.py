@@ -1,4 +1,4 @@
-"""What stands in for the drive at a station that only replays."""
+"""Stand-in for the engine at a station that only replays: it refuses every action."""
 
 from __future__ import annotations
 

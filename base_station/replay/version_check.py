@@ -1,4 +1,4 @@
-"""Whether a replay shows what was shown: another version of the program may decide otherwise.
+"""Check that a replay decides as the live station did: another version of the program may not.
 
 Where somebody was forgotten, or records are missing, the same program decides otherwise, too: what
 follows tells nothing of it.

@@ -1,4 +1,4 @@
-"""Where a place of the UTM grid lies on the Earth: in it surveys give their pictures of the ground.
+"""Places of the UTM grid on the Earth: aerial pictures by surveyors are given in it.
 
 Krüger's series for the inverse transverse Mercator projection, to the fourth order in the third
 flattening (C. F. F. Karney, "Transverse Mercator with an accuracy of a few nanometers", J. Geodesy

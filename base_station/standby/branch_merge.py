@@ -1,4 +1,4 @@
-"""What a station heard and people did there while it was apart comes to the one that leads.
+"""Merge of the branch of a station that was apart: its messages and actions come to the leader.
 
 The standby serves what it has set aside; the active station fetches it.  Units' messages go the
 way of what was fetched late, so that those that are in the log are left out.  What people did is

@@ -1,4 +1,4 @@
-"""Which of two stations is in charge.  Pure: time and news come in, a decision comes out.
+"""Leader election between two stations.  Pure: time and heartbeats come in, a decision comes out.
 
 A station leads for as long as it is heard (its lease).  Two stations cannot tell a dead one from a
 cut cable, so the units are asked in a way: who hears none of them, while the other one had some, is

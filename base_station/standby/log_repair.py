@@ -1,4 +1,4 @@
-"""What one of two stations' disks has lost of the log, the other one has.
+"""Repair of the log from the other station: what one disk has lost, the other one has.
 
 Only events are fetched: what was decided from them a replay decides again.
 """

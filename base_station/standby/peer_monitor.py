@@ -1,4 +1,4 @@
-"""What one of two stations hears: that the other is there, how far it has got, and units."""
+"""Monitor of the other station: its presence, its progress, and the units that are received."""
 
 from __future__ import annotations
 

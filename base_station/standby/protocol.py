@@ -1,4 +1,4 @@
-"""What two stations say to each other, and under which keys.
+"""Protocol between two stations: messages and bus keys.
 
 Nobody but stations may say or hear anything under these keys (``security.pki.access``); they
 lie outside ``muster/v1``, so no subscription to that tree brings them.

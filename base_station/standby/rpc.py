@@ -1,4 +1,4 @@
-"""What one station asks the other: questions under its keys, asked in rounds."""
+"""Remote procedure calls between two stations: questions under their keys, asked in rounds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a station's picture was made without what its log has again.
+"""Check for a stale state: it was made without records that the log has again since.
 
 A disk that loses a part of the log costs nothing as long as the station runs: it had stepped what
 came.  One that has started since then has stepped the log without that part.

@@ -1,4 +1,4 @@
-"""What the drive of one of two stations takes: the other's log, and, once it leads, the bus."""
+"""Feed of the engine of one of two stations: the other's log, and, once it leads, the bus."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""What people do is confirmed to them when both stations have it, or after a moment without."""
+"""Synchronous acknowledgement: an action is confirmed when both stations have it, or after a
+moment without the standby.
+"""
 
 from __future__ import annotations
 

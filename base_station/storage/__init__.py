@@ -1,1 +1,1 @@
-"""What the station keeps on its disk: the log, its own files, and a copy of them."""
+"""Storage of the station on its disk: the log, its own files, and a copy of them."""

@@ -1,4 +1,4 @@
-"""What stands where in a station's data folder."""
+"""Layout of a station's data folder."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether what was written to the log is still there: a disk may give back other bytes.
+"""Integrity check of the log's segments: a disk may return other bytes than were written.
 
 What was whole when it was looked at may not be later, so all of it is looked at again now and then,
 and at once where somebody who reads it meets damage.

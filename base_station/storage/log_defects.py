@@ -1,6 +1,4 @@
-"""Why what a log tells of the past is not all of it, in words; more of it comes to be known as the
-log is looked through.
-"""
+"""Defects of a log, in words for a person; more of them may be found while the log is read."""
 
 from __future__ import annotations
 

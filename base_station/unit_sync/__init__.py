@@ -1,1 +1,1 @@
-"""What the radio lost, fetched from the units' journals."""
+"""Synchronisation with units: messages that the radio lost are fetched from their journals."""

@@ -1,4 +1,4 @@
-"""How much to ask a unit for at a time, so that the answer never fills a thin link.
+"""Adaptive size of the chunks asked of a unit, so that an answer never fills a thin link.
 
 Zenoh closes a link on which an answer waits for five seconds to be sent, and a queue of bulk data
 lets the keep-alives miss the lease of three: asked for too much, a thin link goes down before it

@@ -1,4 +1,4 @@
-"""Whether what was reported to the units' journals outlives a power cut of the station."""
+"""Durability of the acknowledgements to journals: they outlive a power cut of the station."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the station knows of one unit's journal, and what to ask it next.
+"""Client of one unit's journal: what the station has of it, and the next question.
 
 Pure: reports and answers in, questions out.  Of what the journal has the newest runs of the unit's
 program are asked for, and more as far as the link carries the answer: there may be thousands.

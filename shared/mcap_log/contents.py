@@ -1,4 +1,4 @@
-"""What a segment holds: its chunks and topics, from its table of contents or from its records."""
+"""Contents of a segment: its chunks and topics, from its summary or from its records."""
 
 from __future__ import annotations
 

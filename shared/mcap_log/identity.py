@@ -1,5 +1,5 @@
-"""Which log a segment is of, as its head tells any reader of MCAP: a metadata record behind the
-header.  Segments of earlier versions have none.
+"""Identity of the log that a segment belongs to, for any reader of MCAP: a metadata record behind
+the header.  Segments of earlier versions have none.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which files of a folder are segments of one log, by what their heads say.
+"""Segments of one log among the files of a folder, by what their heads say.
 
 The log is the one that has the most of them, and what an earlier version wrote before it.
 """

@@ -1,4 +1,4 @@
-"""What a log says of its topics: the protobuf schema of each key, for any reader of MCAP."""
+"""Schemas of a log's topics: the protobuf schema of each key, for any reader of MCAP."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the station answers a unit that asks for the time (see docs/clocks.md)."""
+"""Answer of the station to a unit that asks for the time (see docs/clocks.md)."""
 
 from __future__ import annotations
 

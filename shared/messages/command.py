@@ -1,4 +1,4 @@
-"""What the station tells a unit, and the unit's answer."""
+"""Commands of the station to a unit, and the unit's replies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the station believes a unit's wearer is, in the incident frame."""
+"""Fused position of a unit's wearer, in the incident frame."""
 
 from __future__ import annotations
 

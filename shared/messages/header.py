@@ -1,4 +1,4 @@
-"""Who said a message, when, and which of its messages it is."""
+"""Header of a message: sender, boot, sequence number, time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a unit answers when it is asked for messages of its journal (see docs/journal.md)."""
+"""Answers of a unit's journal (see docs/journal.md)."""
 
 from __future__ import annotations
 

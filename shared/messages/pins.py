@@ -1,4 +1,4 @@
-"""What a person knows of where somebody was, and where beacons hang.
+"""Pins: places of a wearer that a person knows, and places of beacons.
 
 Places are north and east in the incident frame; times are the station's, and 0 means: where each
 unit's path begins.

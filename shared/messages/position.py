@@ -1,4 +1,4 @@
-"""Where a unit believes its wearer is, in its own frame."""
+"""Position of a wearer by the unit's tracker, in the unit's own frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a unit answers when it is asked for its black box (see docs/recordings.md)."""
+"""Answers of a unit that is asked for its black box (see docs/recordings.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the wearer and the unit are."""
+"""Status of the wearer and of the unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a unit is: said at its start and every minute."""
+"""Description of a unit, sent at its start and every minute."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the console's sources and its build lie."""
+"""Paths of the console's sources and of its build."""
 
 from pathlib import Path
 

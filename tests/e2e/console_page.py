@@ -1,4 +1,4 @@
-"""What people do on the console's page, and what can be seen of it."""
+"""Page object of the console: actions of people, and what can be seen."""
 
 from __future__ import annotations
 

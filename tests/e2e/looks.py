@@ -1,4 +1,4 @@
-"""What anybody who looks at a page would find wrong with how it is laid out."""
+"""Checks of a page's layout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What has to be true when the link between a unit and its station was bad for a while."""
+"""Checks after a bad link between a unit and its station."""
 
 from __future__ import annotations
 

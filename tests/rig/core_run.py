@@ -1,4 +1,4 @@
-"""What a station's core makes of incidents in which about everything happens, in one digest.
+"""Digest of what a station's core decides in incidents in which about everything happens.
 
 python -m tests.rig.core_run [FOLDER]            with what FOLDER has of the core as machine code
 python -m tests.rig.core_run --loaded FOLDER     only how much that is

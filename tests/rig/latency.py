@@ -1,4 +1,4 @@
-"""How long it takes from a sensor to a console's WebSocket."""
+"""Latency from a sensor to a console's WebSocket."""
 
 from __future__ import annotations
 

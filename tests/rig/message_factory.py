@@ -1,4 +1,4 @@
-"""What units and the station say, filled in plausibly; for benchmarks, and for tests.
+"""Messages of units and the station, filled in plausibly; for benchmarks and tests.
 
 Keyword arguments replace fields.
 """

@@ -1,4 +1,4 @@
-"""What a station's processes use: the one that was started, and those that it started."""
+"""Processes of a station: the one that was started, and those that it started."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the log alone takes in: the recorder with nothing else beside it."""
+"""Throughput of the log alone: the recorder with nothing else beside it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a unit has ever said, by its own journal."""
+"""Messages that a unit has ever published, by its own journal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What simulated people are put before."""
+"""Fixtures: trackers and simulated people."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What people and beacons tell of where somebody was, and what became of it.
+"""Pins: places of a wearer that people or beacons report, and the verdict on each.
 
 A pin is kept as it was set, whatever the rest says; ``PinVerdict`` says what it is worth.
 """

@@ -1,4 +1,4 @@
-"""What came out of a journal for a unit whose past has pins: its trail is to be solved again.
+"""Queue of units with pins whose journal brought more of the past: their trails are solved again.
 
 A journal brings hundreds of messages; the trail is solved once they stop coming, or now and then
 while they go on, and never for more than one unit at a tick.

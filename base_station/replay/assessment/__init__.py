@@ -1,1 +1,1 @@
-"""How good a position is, said by the station itself: live as a light, afterwards as figures."""
+"""Assessment of positions by the station itself: live as a light, afterwards as figures."""

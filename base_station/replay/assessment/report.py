@@ -1,4 +1,4 @@
-"""How good an incident's positions were: what was promised at the time, and what is known since."""
+"""Report on an incident's positions: the accuracy stated at the time beside what is known since."""
 
 from __future__ import annotations
 

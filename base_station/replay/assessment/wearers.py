@@ -1,4 +1,4 @@
-"""Who wore which unit in an incident."""
+"""Wearers of the units in an incident, by time."""
 
 from __future__ import annotations
 

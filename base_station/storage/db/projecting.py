@@ -1,4 +1,4 @@
-"""What one projection changes in the tables.  Every statement may run again."""
+"""Statements that bring one projection into the tables.  Every one of them may run again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the projections are asked: incidents, tracks, alarms, the site, log segments, audit."""
+"""Queries of the projections: incidents, tracks, alarms, the site, log segments, audit."""
 
 from __future__ import annotations
 

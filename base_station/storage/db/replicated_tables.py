@@ -1,4 +1,5 @@
-"""What no log can make again, as it stands: users, sessions, tokens, people, the base map.
+"""Tables that no log can make again and that are replicated: users, sessions, tokens, people, the
+base map.
 
 A standby station copies it from the active one.  What either has taken away both take away
 (``tombstones``), and of a role and a password the later one holds.  Pictures travel by themselves,

@@ -1,5 +1,5 @@
-"""What is known of closed incidents afterwards, beside the tracks that were shown at the time:
-smoothed trails, the units' own, and an assessment.
+"""Post-processed tracks of closed incidents, beside those that were shown at the time: smoothed
+trails, the units' own, and an assessment.
 """
 
 from __future__ import annotations

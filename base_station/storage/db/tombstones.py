@@ -1,4 +1,4 @@
-"""What was taken away for good: users, sessions, tickets, API tokens, people of the roster.
+"""Tombstones of users, sessions, tickets, API tokens and people that were removed.
 
 Of two stations one may do this while the other is off, or cannot be reached, and leads later.  So
 what is over is kept by name, goes to both in either direction, and nothing brings it back.

@@ -1,4 +1,4 @@
-"""What ``muster bench bus`` measured, and its table beside what is to be reached."""
+"""Report of ``muster bench bus``: the figures beside what is to be reached."""
 
 from __future__ import annotations
 

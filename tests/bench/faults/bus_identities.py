@@ -1,4 +1,4 @@
-"""Who may speak on the bus, and who may not: each as the file or address with which one joins."""
+"""Identities on the bus, allowed and not: each as the file or address with which one joins."""
 
 from __future__ import annotations
 

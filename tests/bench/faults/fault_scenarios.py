@@ -1,4 +1,4 @@
-"""What is done to a station and a unit, one after the other: ``FAULTS``."""
+"""Faults that are done to a station and a unit, one after the other: ``FAULTS``."""
 
 from __future__ import annotations
 

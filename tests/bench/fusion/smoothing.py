@@ -1,4 +1,4 @@
-"""What is known afterwards beside what was shown at the time, and what one pin is worth.
+"""Accuracy of smoothed trails beside what was shown at the time, and the gain of one pin.
 
 The incidents are those of ``muster bench fusion``; the trails of all six people are smoothed
 together.  Errors are told as they are, and *relative* (ISO/IEC 18305): less the one shift that is

@@ -1,4 +1,4 @@
-"""How long it takes to smooth an hour of ten units, and to solve one of them again with a pin."""
+"""Time to smooth an hour of ten units, and to solve one of them again with a pin."""
 
 from __future__ import annotations
 

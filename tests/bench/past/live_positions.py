@@ -1,4 +1,4 @@
-"""How old positions are as consoles get them, at a live station whose units walk in real time."""
+"""Age of positions as consoles get them, at a live station whose units walk in real time."""
 
 from __future__ import annotations
 

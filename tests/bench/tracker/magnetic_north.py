@@ -1,4 +1,4 @@
-"""How well a calibrated unit knows magnetic north, and whether it says so honestly."""
+"""Accuracy of magnetic north at a calibrated unit, and of its stated deviation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be wrong with a recording of another sensor on another person, done to recorded walks.
+"""Perturbations of recorded walks: another sensor, another person.
 
 Each perturbation takes a description, samples and a generator and gives both as the worse
 sensor would have; all of a trial's perturbations are the same in every run.

@@ -1,4 +1,4 @@
-"""How wrong a track is: error figures against a reference, or against closing the loop.
+"""Scores of a track: error figures against a reference, or against closing the loop.
 
 A foot tracker knows neither where north is nor where it started, so a reference
 is first turned about the vertical and shifted, never scaled or mirrored.

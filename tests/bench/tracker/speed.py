@@ -1,4 +1,4 @@
-"""How fast the tracker is: samples per second of one core in batch, latency a sample live."""
+"""Speed of the tracker: samples a second and core in batch, latency of a sample live."""
 
 from __future__ import annotations
 

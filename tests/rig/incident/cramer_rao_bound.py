@@ -1,4 +1,4 @@
-"""How well anybody could know a person's place from path and fixes, no plan considered.
+"""Cramér-Rao bound of a person's place from path and fixes, no plan considered.
 
 The posterior Cramer-Rao bound (Tichavsky et al. 1998) of the simulated errors: they are linear
 about the truth and normal but for the trackers' own words, so that it is the covariance of a

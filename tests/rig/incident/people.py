@@ -1,4 +1,4 @@
-"""What six people do in an incident: outside, through the door, searching rooms, and out again.
+"""Plans of six people in an incident: outside, through the door, searching rooms, and out again.
 
 All begin at the engine.  Half of them walk about outside first, the others go straight in.
 """

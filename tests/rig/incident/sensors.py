@@ -1,4 +1,4 @@
-"""What units, receivers and barometers say of an incident, with errors of models of their own.
+"""Sensors of an incident: units, receivers and barometers, with errors of models of their own.
 
 Where the magnitudes come from:
 
