@@ -137,7 +137,8 @@ FIELDS: Mapping[str, str] = {
     # ---- commands
     "command_id": "The command's id.",
     "kind": "Which kind it is.",
-    "CommandView.kind": "evacuate, par_request, text, locate or set_position_rate.",
+    "CommandView.kind": "evacuate, par_request, text, locate, set_position_rate, or "
+    "mayday_acknowledged, which the station sends to the unit when that alarm is acknowledged.",
     "PinView.kind": "place, start, meeting, beacon or tag.",
     "Progress.kind": "person or incident.",
     "issued_by": "The user who gave it.",

@@ -11,7 +11,7 @@ import msgspec
 from base_station.core import accountability, idempotency
 from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.closed_incidents import add_closed_incident
-from base_station.core.commands import command_tracker
+from base_station.core.commands import command_tracker, mayday_acknowledgements
 from base_station.core.events import (
     ClosedIncidentChanged,
     NamesErased,
@@ -91,7 +91,7 @@ class ActionHandler:
         changes: Iterable[StateChange] = state.units.values()
         match action:
             case AcknowledgeAlarm() | ResolveAlarm():
-                changes = [self._alarm(state, by, action)]
+                changes = self._alarm(state, by, action)
             case ReportProblem() | SetThresholds() | DoneApart():
                 changes = self._station_action(state, action)
             case RegisterUnit():
@@ -156,10 +156,16 @@ class ActionHandler:
 
     def _alarm(
         self, state: StationState, by: str, action: AcknowledgeAlarm | ResolveAlarm
-    ) -> Alarm:
-        if isinstance(action, AcknowledgeAlarm):
-            return _or_raise(self._alarms.acknowledge(state, by, action))
-        return _or_raise(self._alarms.resolve(state, by, action))
+    ) -> Iterator[StateChange]:
+        if isinstance(action, ResolveAlarm):
+            yield _or_raise(self._alarms.resolve(state, by, action))
+            return
+        alarm = _or_raise(self._alarms.acknowledge(state, by, action))
+        yield alarm
+        incident_id = command_tracker.open_incident_id(state)
+        command = mayday_acknowledgements.acknowledge(state, by, alarm, incident_id)
+        if command is not None:
+            yield command
 
     def _station_action(
         self, state: StationState, action: ReportProblem | SetThresholds | DoneApart

@@ -13,7 +13,7 @@ from base_station.core import accountability, idempotency
 from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.alarms.interface import AlarmRule
 from base_station.core.checkpoint import Checkpoint
-from base_station.core.commands import command_tracker
+from base_station.core.commands import command_tracker, mayday_acknowledgements
 from base_station.core.events import (
     ClosedIncidentChanged,
     CommandChanged,
@@ -130,7 +130,8 @@ class StationPipeline:
                 outputs.append(UnitChanged(unit.unit_id))
             alarms = self._alarms.review(state, unit)
             outputs.extend(alarm.change(state.next_header()) for alarm in alarms)
-        outputs.extend(CommandChanged(one.command_id) for one in command_tracker.expire(state))
+        over = [*command_tracker.expire(state), *mayday_acknowledgements.withdraw(state)]
+        outputs.extend(CommandChanged(one.command_id) for one in over)
         update_trust_tallies(state)
         late = pop_due(state.late, state.t_ns)
         if late is not None:

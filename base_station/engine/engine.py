@@ -37,7 +37,16 @@ from shared.codec import encode
 from shared.envelope import Stamper
 from shared.errors import StoreError
 from shared.messages import STATION_ID, OperatorAction, Tick
-from shared.messages.station import Action, ForgetWearers, ReportProblem, SendCommand
+from shared.messages.station import (
+    AcknowledgeAlarm,
+    Action,
+    CloseIncident,
+    ConfirmCommand,
+    ForgetWearers,
+    ReportProblem,
+    SendCommand,
+    UndoConfirmation,
+)
 from shared.worker import Worker
 
 TICK_NS = NS_PER_S
@@ -56,6 +65,14 @@ STOP_TIMEOUT_S = 10.0
 
 _OPERATOR_KEY = OPERATOR.key(STATION_ID)
 _APPLIED_WITHOUT_LOG = (SendCommand, ReportProblem)  # an evacuation waits for no disk
+# What is to be sent to units changes with these at once; with all else at the next tick.
+_CHANGES_ORDERS = (
+    SendCommand,
+    ConfirmCommand,
+    UndoConfirmation,
+    AcknowledgeAlarm,
+    CloseIncident,
+)
 
 log = logging.getLogger(__name__)
 
@@ -264,7 +281,7 @@ class StationEngine:
                     future.set_exception(error)
                 continue
             self._flush_urgent()
-            if isinstance(action, SendCommand):
+            if isinstance(action, _CHANGES_ORDERS):
                 self._ports.say(command_tracker.open_orders(self._pipeline.state))
             if future.set_running_or_notify_cancel():
                 future.set_result(done)

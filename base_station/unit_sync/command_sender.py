@@ -97,4 +97,7 @@ class CommandSender:
             expires_utc_ns=order.expires_ns,
             text=order.text,
             position_rate_hz=order.position_rate_hz,
+            ended_command_id=order.ended_command_id,
+            mayday_boot_id=order.mayday_boot_id,
+            mayday_seq=order.mayday_seq,
         )

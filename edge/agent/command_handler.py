@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 
 import msgspec
 
+from edge.agent.mayday_progress import MaydayProgress
 from edge.config import POSITION_RATE_HZ
 from shared.envelope import Stamper
 from shared.messages import ASKS_WEARER, Command, CommandKind, CommandReply, CommandState
@@ -16,8 +17,10 @@ from shared.messages import ASKS_WEARER, Command, CommandKind, CommandReply, Com
 logger = logging.getLogger(__name__)
 
 REMEMBERED = 1000
+UNANSWERED = frozenset({CommandState.RECEIVED, CommandState.NOTIFIED})
 _RATE_SET = "positions at {:g} Hz"
 _NO_POSITIONS = "this unit sends no positions: an agent at the station tracks for it"
+_OTHER_MAYDAY = "the wearer has cancelled this mayday, or called another one since"
 _RATE_REPLY = re.compile(r"positions at (\d+(?:\.\d+)?) Hz")
 
 
@@ -32,6 +35,7 @@ class CommandHandler:
 
     ``set_position_rate``: None where the unit does not track, and sends no positions.
     ``known_replies``: answers from before the program was started, oldest first.
+    ``maydays``: None where the unit has no button, and calls none.
     """
 
     def __init__(
@@ -39,22 +43,32 @@ class CommandHandler:
         stamper: Stamper,
         set_position_rate: Callable[[float], None] | None,
         known_replies: Iterable[CommandReply] = (),
+        maydays: MaydayProgress | None = None,
     ) -> None:
         self._stamper = stamper
         self._set_position_rate = set_position_rate
+        self._maydays = maydays or MaydayProgress()
         self._replies: OrderedDict[str, CommandReply] = OrderedDict()
         for reply in known_replies:
             self._remember(reply)
 
     def take(self, command: Command) -> CommandReply:
         reply = self._replies.get(command.command_id)
-        if reply is not None:
-            return msgspec.structs.replace(reply, header=self._stamper.header())
-        state, detail = self._apply(command)
-        asks = state is CommandState.RECEIVED and command.kind in ASKS_WEARER
+        if reply is None:
+            state, detail = self._apply(command)
+        else:
+            state, detail = reply.state, reply.detail
+        # One that was ended and comes again waits for the wearer again.
+        asks = state in UNANSWERED and command.kind in ASKS_WEARER
         reply = CommandReply(self._stamper.header(), command.command_id, state, detail, asks)
         self._remember(reply)
         return reply
+
+    def end(self, command_id: str) -> None:
+        """Ask the button for an answer to this command no more."""
+        reply = self._replies.get(command_id)
+        if reply is not None:
+            self._remember(msgspec.structs.replace(reply, awaits_wearer=False))
 
     def acknowledge(self) -> tuple[CommandReply, ...]:
         """Answer everything that asked for the button, which the wearer has pressed."""
@@ -103,5 +117,7 @@ class CommandHandler:
                     )
                 self._set_position_rate(command.position_rate_hz)
                 detail = _RATE_SET.format(command.position_rate_hz)
+            case CommandKind.MAYDAY_ACKNOWLEDGED if not self._maydays.is_acknowledged_by(command):
+                return CommandState.REFUSED, _OTHER_MAYDAY
         logger.info("%s from %s %s", command.kind.name, command.issued_by, command.text)
         return CommandState.RECEIVED, detail

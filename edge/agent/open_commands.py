@@ -71,6 +71,11 @@ class OpenCommands:
         """Drop all: the wearer has pressed the button."""
         self._drop(tuple(self._commands))
 
+    def close_one(self, command_id: str) -> None:
+        """Drop one that is over; one that is not there is none."""
+        if command_id in self._commands:
+            self._drop((command_id,))
+
     def expire(self, utc_ns: int) -> None:
         """Drop those whose time is over by the station's clock."""
         self._drop(tuple(one.command_id for one in self if 0 < one.expires_utc_ns <= utc_ns))

@@ -32,6 +32,7 @@ class WearerState:
     unlinked_s: float = 0.0  # 0: there is a link
     maydays_called: int = 0  # with this start of the agent
     maydays_received: int = 0  # of these, by the station
+    mayday_acknowledgement: str = ""  # id of the station's command; empty: it has not come
 
 
 def notices(state: WearerState, commands: Iterable[OpenCommand]) -> tuple[Notice, ...]:
@@ -54,6 +55,8 @@ def _of_unit(state: WearerState) -> Iterator[Notice]:
         yield Notice(Signal.MAYDAY_CALLED, str(state.maydays_called))
     if state.maydays_received:
         yield Notice(Signal.MAYDAY_SENT, str(state.maydays_received))
+    if state.mayday_acknowledgement:
+        yield Notice(Signal.MAYDAY_ACKNOWLEDGED, state.mayday_acknowledgement)
     if not state.is_on_foot:
         yield Notice(Signal.NOT_ON_FOOT)
     if state.unlinked_s >= _LINK_LOST_S:

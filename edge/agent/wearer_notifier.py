@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from edge.agent.command_handler import CommandHandler
+from edge.agent.command_handler import UNANSWERED, CommandHandler
 from edge.agent.link import Link
+from edge.agent.mayday_progress import MaydayProgress
 from edge.agent.open_commands import OpenCommands
 from edge.agent.pipeline import TrackerPipeline
 from edge.agent.wearer_notices import WearerState, notices
@@ -13,14 +14,7 @@ from edge.clocks.station import StationClock
 from edge.notifiers.outputs import Outputs
 from edge.storage.journal.journal import Journal
 from shared.clock import NS_PER_S
-from shared.messages import (
-    Command,
-    CommandReply,
-    CommandState,
-    EventKind,
-    Message,
-    UnitEvent,
-)
+from shared.messages import Command, CommandKind, CommandReply, Message
 
 
 class WearerNotifier:
@@ -31,6 +25,7 @@ class WearerNotifier:
         outputs: Outputs,
         open_commands: OpenCommands,
         handler: CommandHandler,
+        maydays: MaydayProgress,
         pipeline: TrackerPipeline,
         link: Link,
         journal: Journal,
@@ -39,13 +34,12 @@ class WearerNotifier:
         self._outputs = outputs
         self._open_commands = open_commands
         self._handler = handler
+        self._maydays = maydays
         self._pipeline = pipeline
         self._link = link
         self._journal = journal
         self._clock = clock
         self._linked_ns = clock.monotonic_ns()  # when there last was a link
-        self._mayday_seq: int | None = None  # of a mayday that is not known to have arrived
-        self._maydays_called = self._maydays_received = 0
 
     def start(self) -> None:
         self._outputs.start()
@@ -62,8 +56,16 @@ class WearerNotifier:
     def take_command(self, command: Command) -> CommandReply:
         """Apply a command, and notify the wearer of it from now on where it is for them."""
         reply = self._handler.take(command)
-        if reply.state is CommandState.RECEIVED:
-            self._open_commands.add(command)
+        if reply.state not in UNANSWERED:
+            return reply
+        match command.kind:
+            case CommandKind.END_ORDER:
+                self._end(command.ended_command_id)
+            case CommandKind.MAYDAY_ACKNOWLEDGED:
+                if self._maydays.is_acknowledged_by(command):  # a repeat may come too late
+                    self._maydays.note_acknowledged(command.command_id)
+            case _:
+                self._open_commands.add(command)
         return reply
 
     def acknowledge(self) -> tuple[CommandReply, ...]:
@@ -72,11 +74,8 @@ class WearerNotifier:
         return self._handler.acknowledge()
 
     def note_sent(self, messages: Iterable[Message]) -> None:
-        """Note the unit's own messages: the wearer is notified when a mayday has arrived."""
-        for message in messages:
-            if isinstance(message, UnitEvent) and message.kind is EventKind.MAYDAY:
-                self._mayday_seq = message.header.seq
-                self._maydays_called += 1
+        """Note the unit's own messages: the wearer is notified of what becomes of a mayday."""
+        self._maydays.note_own(messages)
 
     def step(self) -> tuple[CommandReply, ...]:
         """Bring the outputs up to date; return replies about what they have played."""
@@ -89,19 +88,24 @@ class WearerNotifier:
         self._outputs.close()
         self._open_commands.close()
 
+    def _end(self, command_id: str) -> None:
+        """An order is over: the wearer has answered by radio, or the incident was closed."""
+        self._open_commands.close_one(command_id)
+        self._handler.end(command_id)
+        self._maydays.end(command_id)
+
     def _state(self) -> WearerState:
         now_ns = self._clock.monotonic_ns()
         if not self._link.is_lost:
             self._linked_ns = now_ns
-        if self._mayday_seq is not None and self._journal.acknowledged_seq >= self._mayday_seq:
-            self._mayday_seq = None
-            self._maydays_received += 1
+        self._maydays.note_received(self._journal.acknowledged_seq)
         return WearerState(
             motionless_s=self._pipeline.motionless_s,
             is_worn=self._pipeline.is_worn,
             is_on_foot=self._pipeline.is_on_foot,
             battery=self._pipeline.battery,
             unlinked_s=(now_ns - self._linked_ns) / NS_PER_S,
-            maydays_called=self._maydays_called,
-            maydays_received=self._maydays_received,
+            maydays_called=self._maydays.called,
+            maydays_received=self._maydays.received,
+            mayday_acknowledgement=self._maydays.acknowledgement,
         )

@@ -14,6 +14,7 @@ from queue import SimpleQueue
 from edge.agent.command_handler import CommandHandler
 from edge.agent.link import Link, StationEndpoint
 from edge.agent.mayday_latch import MaydayLatch
+from edge.agent.mayday_progress import MaydayProgress
 from edge.agent.open_commands import OpenCommands
 from edge.agent.outbox import Outbox
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
@@ -93,10 +94,12 @@ def compose_agent(
         on_error.callback(outbox.close)
         open_commands = OpenCommands(folder.open_commands)
         on_error.callback(open_commands.close)
+        maydays = MaydayProgress()
         handler = CommandHandler(
             stamper,
             pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
             answers_before(journal),
+            maydays,
         )
         for detail in _quarantine_reports(folder, damaged):
             outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))
@@ -107,7 +110,7 @@ def compose_agent(
                 raw=raw,
                 pipeline=pipeline,
                 wearer=WearerNotifier(
-                    outputs, open_commands, handler, pipeline, link, journal, clock
+                    outputs, open_commands, handler, maydays, pipeline, link, journal, clock
                 ),
                 stamper=stamper,
                 clock=clock,

@@ -21,6 +21,7 @@ class Signal(StrEnum):
     MAYDAY_CALLED = "mayday called"
     PAR_REQUEST = "PAR request"
     TEXT = "message"
+    MAYDAY_ACKNOWLEDGED = "mayday acknowledged"
     LOCATE = "locate"
     MAYDAY_SENT = "mayday sent"
     NOT_ON_FOOT = "worn wrongly"
@@ -76,6 +77,12 @@ PATTERNS: dict[Signal, tuple[Pulse, ...]] = {
     Signal.PAR_REQUEST: (Pulse(0.4, 0.2, _MIDDLE_HZ), Pulse(0.4, 1.0, _HIGH_HZ)),
     Signal.TEXT: (Pulse(0.15, 0.1, _MIDDLE_HZ),) * 3 + (Pulse(0.15, 1.0, _MIDDLE_HZ),),
     Signal.LOCATE: (Pulse(1.0, 0.5, _HIGH_HZ),),
+    # Like neither of the two before it: a mayday goes up, and its answer comes down in three steps.
+    Signal.MAYDAY_ACKNOWLEDGED: (
+        Pulse(0.2, 0.1, _HIGH_HZ),
+        Pulse(0.2, 0.1, _MIDDLE_HZ),
+        Pulse(1.2, 1.0, _LOW_HZ),
+    ),
     Signal.MAYDAY_SENT: (Pulse(0.8, 0.2, _LOW_HZ), Pulse(0.8, 1.0, _HIGH_HZ)),
     Signal.NOT_ON_FOOT: (Pulse(0.5, 0.2, _LOW_HZ),) * 2 + (Pulse(0.1, 1.0, _LOW_HZ),),
     Signal.LINK_LOST: (Pulse(0.6, 0.3, _MIDDLE_HZ), Pulse(0.6, 1.0, _LOW_HZ)),
@@ -90,6 +97,7 @@ _SENTENCES = {
     Signal.PAR_REQUEST: "PAR. Press the button if you are well.",
     Signal.TEXT: "Message:",
     Signal.LOCATE: "You are being located.",
+    Signal.MAYDAY_ACKNOWLEDGED: "The commander knows of your mayday.",
     Signal.MAYDAY_SENT: "Your mayday has reached the station.",
     Signal.NOT_ON_FOOT: "This unit is not on a foot. Your position is not known.",
     Signal.LINK_LOST: "No link. The commander does not see you.",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from shared.messages.alarm import AlarmChange, AlarmState
 from shared.messages.command import (
     ASKS_WEARER,
+    OF_STATION,
     Command,
     CommandKind,
     CommandReply,
@@ -43,6 +44,7 @@ Message = (
 
 __all__ = [
     "ASKS_WEARER",
+    "OF_STATION",
     "SCHEMA_REVISION",
     "STATION_ID",
     "Activity",

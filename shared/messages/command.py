@@ -20,10 +20,14 @@ class CommandKind(IntEnum):
     LOCATE = 4
     SET_POSITION_RATE = 5
     RESET_ALARM = 6
+    MAYDAY_ACKNOWLEDGED = 7
+    END_ORDER = 8
 
 
 # Done when the wearer has acknowledged it; the others are done when the unit has them.
 ASKS_WEARER = frozenset({CommandKind.EVACUATE, CommandKind.PAR_REQUEST, CommandKind.TEXT})
+# Those of the station itself, which follow from what an operator does; nobody orders them.
+OF_STATION = frozenset({CommandKind.MAYDAY_ACKNOWLEDGED, CommandKind.END_ORDER})
 
 
 class CommandState(IntEnum):
@@ -42,6 +46,10 @@ class Command(msgspec.Struct, frozen=True):
     expires_utc_ns: int
     text: str = ""
     position_rate_hz: float = 0.0
+    ended_command_id: str = ""  # for END_ORDER
+    # For MAYDAY_ACKNOWLEDGED: the message by which the station last knew of the mayday.
+    mayday_boot_id: int = 0
+    mayday_seq: int = 0
 
     def to_wire(self) -> command_pb2.Command:
         return command_pb2.Command(
@@ -52,6 +60,9 @@ class Command(msgspec.Struct, frozen=True):
             expires_utc_ns=self.expires_utc_ns,
             text=self.text,
             position_rate_mhz=unsigned32(self.position_rate_hz, 1e3),
+            ended_command_id=self.ended_command_id,
+            mayday_boot_id=self.mayday_boot_id,
+            mayday_seq=self.mayday_seq,
         )
 
     @staticmethod
@@ -64,6 +75,9 @@ class Command(msgspec.Struct, frozen=True):
             expires_utc_ns=wire.expires_utc_ns,
             text=wire.text,
             position_rate_hz=wire.position_rate_mhz * 1e-3,
+            ended_command_id=wire.ended_command_id,
+            mayday_boot_id=wire.mayday_boot_id,
+            mayday_seq=wire.mayday_seq,
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import wave
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -11,12 +12,14 @@ from typing import Any
 
 import pytest
 
+from deploy.demo.panel_button import PanelButton
 from edge.app.jit_warmup import compile_trackers
 from tests.rig.shown_unit import ShownUnit
 from tests.rig.station_command import Agent, Browser, Command
 from tests.rig.waiting import until
 
 FF_01 = "u1"
+_LONGER_S = 5.0  # than the pattern of an order takes
 
 
 @pytest.fixture
@@ -34,15 +37,30 @@ def shown(browser: Browser) -> Iterator[ShownUnit]:
 
 
 @pytest.fixture
-def started(port: int, tmp_path: Path) -> Iterator[Callable[..., Agent]]:
+def panel_path(tmp_path: Path) -> Path:
+    return tmp_path / "button"
+
+
+@pytest.fixture
+def panel(panel_path: Path) -> Iterator[PanelButton]:
+    button = PanelButton(panel_path)
+    yield button
+    button.unplug()
+
+
+@pytest.fixture
+def started(
+    port: int, tmp_path: Path, panel_path: Path, panel: PanelButton
+) -> Iterator[Callable[..., Agent]]:
     compile_trackers()
     agents: list[Agent] = []
 
-    def started(*outputs: str) -> Agent:
+    def started(*outputs: str, source: str = "bench:5") -> Agent:
         flags = [flag for text in outputs for flag in ("--output", text)]
         where = ("--data", str(tmp_path / "edge"), "--connect", f"tcp/127.0.0.1:{port}")
+        flags += ["--button", f"socket:{panel_path}"]
         output = tmp_path / f"agent-{len(agents)}.txt"
-        agents.append(Agent(output, "--unit", FF_01, "--source", "bench:5", *where, *flags))
+        agents.append(Agent(output, "--unit", FF_01, "--source", source, *where, *flags))
         return agents[-1]
 
     yield started
@@ -84,6 +102,48 @@ def test_an_order_reaches_the_wearer_the_station_is_told_and_a_restart_repeats_i
     until(lambda: "[evacuate]" in again.said(), "the order after a restart")
     until(lambda: "stairs are gone" in again.said(), "the message after a restart")
     assert again.stop() == 0
+
+
+def test_an_order_that_was_answered_by_radio_ends_and_one_entered_in_error_is_played_again(
+    browser, shown, started
+) -> None:
+    agent = started("terminal:FF-01")
+    until(lambda: "linked to the station" in agent.said(), "the link")
+    command_id = order(browser, "evacuate")
+    until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was played")
+    browser.call("POST", f"/commands/{command_id}/confirm", json={"unit_id": FF_01})
+    until(lambda: "END_ORDER" in agent.said(), "the end of the order")
+    ended = agent.said().count("[evacuate]")
+    time.sleep(_LONGER_S)
+    assert agent.said().count("[evacuate]") <= ended + 1, "one may have begun"
+    browser.call("POST", f"/commands/{command_id}/confirm/undo", json={"unit_id": FF_01})
+    until(lambda: agent.said().count("[evacuate]") > ended + 1, "the order again")
+    until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was played again")
+    assert agent.stop() == 0
+
+
+def test_a_mayday_that_is_acknowledged_in_an_outage_is_played_once_after_it(
+    browser, shown, started, panel: PanelButton
+) -> None:
+    agent = started("terminal:FF-01", source="simulated:loses-radio")
+    until(lambda: "linked to the station" in agent.said(), "the link")
+    panel.press()
+    until(lambda: "[mayday called]" in agent.said(), "the mayday in the unit")
+    panel.release()
+    until(lambda: any("Mayday" in text for text in shown.alarms.values()), "the alarm")
+    (alarm,) = browser.call("GET", "/alarms")
+    until(lambda: "radio down" in agent.said(), "the outage")
+    seen = {"last_raised_ms": alarm["last_raised_ms"]}
+    browser.call("POST", f"/alarms/{alarm['alarm_id']}/acknowledge", json=seen)
+    (command,) = browser.call("GET", "/commands")
+    assert (command["kind"], command["units"][0]["state"]) == ("mayday_acknowledged", "queued")
+    until(lambda: "radio back" in agent.said(), "the end of the outage")
+    until(
+        lambda: delivery(browser, command["command_id"])["state"] == "notified",
+        "that the wearer was notified",
+    )
+    assert agent.said().count("FF-01: [mayday acknowledged]") == 1
+    assert agent.stop() == 0
 
 
 @pytest.mark.skipif(

@@ -2,7 +2,7 @@
 import { dateAndTime, duration, floorName } from "./format";
 
 /** By number, as the station's messages have them (shared/messages/command.py). */
-const COMMANDS = ["", "evacuate", "PAR", "message", "locate", "position rate", "reset alarm"];
+const COMMANDS = ["", "evacuate", "PAR", "message", "locate", "position rate", "reset alarm", "mayday acknowledged", "end of an order"];
 /** Says nothing to a person. */
 const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "check_in_id", "entry_id", "term"]);
 /** Where 0 is no number: what it stands for, and nothing where it was left out. */

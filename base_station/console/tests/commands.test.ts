@@ -4,6 +4,7 @@ import {
   commandWord,
   crewsOf,
   current,
+  mayAnswerByRadio,
   newestFirst,
   notNotifiable,
   openTo,
@@ -75,6 +76,17 @@ describe("commands", () => {
     expect(shown(incident(null))).toEqual(["of this one", "on its way"]);
     expect(shown(incident(5))).toEqual(["of none", "on its way"]);
     expect(shown(null)).toEqual(["of none", "on its way"]);
+  });
+
+  it("takes an answer by radio for any signal, and asks for none where one was given", () => {
+    const signals = { kind: "mayday_acknowledged", asks_wearer: false };
+    const order = command("x", { a: "acknowledged", b: "received", c: "notified" }, signals);
+    expect(unansweredFirst(order).map((one) => one.unit_id)).toEqual(["b", "a", "c"]);
+    expect(progress(order)).toBe("2 of 3 signalled by the unit");
+    expect(order.units.map((one) => mayAnswerByRadio(order, one))).toEqual([true, true, false]);
+    const rate = { kind: "set_position_rate", asks_wearer: false, notifies_wearer: false };
+    const [delivery] = order.units;
+    expect(mayAnswerByRadio(command("y", {}, rate), delivery!)).toBe(false);
   });
 
   it("puts who has not answered first", () => {

@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from base_station.core.commands import order_ends
+from base_station.core.commands.order_ends import WITHDRAWN
 from base_station.core.state import ERASED_TEXT, StationState, UnitState
 from base_station.core.state.command import (
     AnsweredBy,
@@ -20,13 +22,12 @@ from base_station.core.state.command import (
 )
 from shared.clock import NS_PER_S
 from shared.errors import UserError
-from shared.messages import Command, CommandKind, CommandReply, CommandState
+from shared.messages import OF_STATION, Command, CommandKind, CommandReply, CommandState
 from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmation
 
 MAX_OPEN = 50  # and as many again for evacuations, which wait for nothing
 CLOSED_KEPT = 10  # at hand; the log has all of them
 REPLACED = "a later rate replaces it"
-WITHDRAWN = "its incident was closed"
 _NOT_RECEIVED: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 
 
@@ -45,7 +46,7 @@ def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
             unit.unit_id: Delivery(unit.unit_id, can_be_notified=unit.can_be_notified)
             for unit in _recipients(state, action)
         },
-        incident_id=_open_incident_id(state),
+        incident_id=open_incident_id(state),
     )
     _drop_oldest_closed(state)
     state.commands[action.command_id] = command
@@ -74,8 +75,8 @@ def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand
     if found is None:
         raise UserError(f"no command {action.command_id} to {action.unit_id}")
     command, delivery = found
-    if not command.asks_wearer:
-        raise UserError("nobody has to acknowledge such a command")
+    if not command.notifies_wearer:
+        raise UserError("such a command concerns the unit alone: nobody answers it by radio")
     if delivery.acknowledged_ns is not None:
         raise UserError(f"{delivery.acknowledged_by} has acknowledged it already")
     _acknowledge(delivery, state.t_ns, "radio", by)
@@ -83,7 +84,8 @@ def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand
 
 
 def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
-    """It waits again for the members whose answers were entered by radio; None: for nobody.
+    """It waits again for the members whose answers were entered by radio; None: for nobody.  Their
+    units may know that it was over: it is sent again.
 
     Raises UserError where the incident of the command is closed.
     """
@@ -95,11 +97,12 @@ def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
         for delivery in command.deliveries.values()
         if delivery.acknowledged_via == "radio" and action.unit_id in ("", delivery.unit_id)
     ]
-    if entered and command.incident_id != _open_incident_id(state):
+    if entered and command.incident_id != open_incident_id(state):
         raise UserError("its incident is closed: what was entered in it stays as it is")
     for delivery in entered:
         delivery.acknowledged_ns, delivery.acknowledged_by = None, ""
         delivery.acknowledged_via = ""
+        order_ends.send_again(delivery)
     return command if entered else None
 
 
@@ -119,6 +122,9 @@ def withdraw(state: StationState, incident_id: str) -> Iterator[SentCommand]:
 
 def note_sent(state: StationState, unit_id: str, sent: Command) -> SentCommand | None:
     """Record that the station sent it on the bus; None where that changes nothing."""
+    if sent.kind is CommandKind.END_ORDER:
+        order_ends.note_sent(state, unit_id, sent)
+        return None
     found = _delivery(state, unit_id, sent.command_id)
     if found is None or found[1].sent_ns is not None:
         return None
@@ -135,6 +141,7 @@ def note_reply(
     """
     found = _delivery(state, unit.unit_id, reply.command_id)
     if found is None:
+        order_ends.note_reply(state, unit.unit_id, reply)
         return None
     command, delivery = found
     match reply.state:
@@ -194,8 +201,8 @@ def erase_names(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
 
 
 def open_orders(state: StationState) -> tuple[Order, ...]:
-    """Orders to send, and to repeat, until the units answer."""
-    return tuple(
+    """Orders, and ends of orders, to send and to repeat until the units answer."""
+    begun = (
         Order(
             unit_id=delivery.unit_id,
             command_id=command.command_id,
@@ -204,17 +211,21 @@ def open_orders(state: StationState) -> tuple[Order, ...]:
             expires_ns=command.expires_ns,
             text="" if command.text == ERASED_TEXT else command.text,
             position_rate_hz=command.position_rate_hz,
+            mayday_boot_id=command.mayday_boot_id,
+            mayday_seq=command.mayday_seq,
         )
         for command in state.commands.values()
         for delivery in _undelivered(command)
     )
+    return (*begun, *order_ends.owed(state))
 
 
 def _acknowledge(delivery: Delivery, t_ns: int, via: AnsweredBy, by: str) -> None:
     delivery.acknowledged_ns, delivery.acknowledged_via, delivery.acknowledged_by = t_ns, via, by
 
 
-def _open_incident_id(state: StationState) -> str:
+def open_incident_id(state: StationState) -> str:
+    """Return the id of the incident that is open; empty: none is."""
     incident = state.incident
     return "" if incident is None or incident.closed_ns is not None else incident.incident_id
 
@@ -224,6 +235,8 @@ def _check(state: StationState, action: SendCommand) -> None:
         raise UserError(f"a command needs an id of its own, not {action.command_id!r}")
     if action.kind is CommandKind.UNKNOWN:
         raise UserError("this station does not know this kind of command")
+    if action.kind in OF_STATION:
+        raise UserError("the station sends this by itself; nobody orders it")
     if action.kind is CommandKind.TEXT and not action.text.strip():
         raise UserError("a message needs a text")
     if not (math.isfinite(action.lasts_s) and 0.0 < action.lasts_s <= 86_400.0):
@@ -233,8 +246,12 @@ def _check(state: StationState, action: SendCommand) -> None:
     if sum(map(bool, (action.unit_id, action.crew, action.everyone))) != 1:
         raise UserError("say one of: a unit, a crew, everyone")
     most = 2 * MAX_OPEN if action.kind is CommandKind.EVACUATE else MAX_OPEN
-    if sum(command.is_open for command in state.commands.values()) >= most:
+    if sum(map(_is_open_order, state.commands.values())) >= most:
         raise UserError(f"{most} commands are open; wait until some are answered")
+
+
+def _is_open_order(command: SentCommand) -> bool:
+    return command.is_open and command.kind not in OF_STATION
 
 
 def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
@@ -271,7 +288,15 @@ def _undelivered(command: SentCommand) -> list[Delivery]:
     return [one for one in command.deliveries.values() if command.state_of(one) in _NOT_RECEIVED]
 
 
+def _has_end_to_send(command: SentCommand, t_ns: int) -> bool:
+    return any(order_ends.is_owed(command, one, t_ns) for one in command.deliveries.values())
+
+
 def _drop_oldest_closed(state: StationState) -> None:
-    closed = [one.command_id for one in state.commands.values() if not one.is_open]
+    closed = [
+        one.command_id
+        for one in state.commands.values()
+        if not one.is_open and not _has_end_to_send(one, state.t_ns)
+    ]
     for command_id in closed[: max(0, len(closed) - CLOSED_KEPT + 1)]:
         del state.commands[command_id]

@@ -12,7 +12,8 @@ AnsweredBy = Literal["", "self", "radio"]
 DeliveryState = Literal[
     "queued", "sent", "received", "notified", "acknowledged", "refused", "expired"
 ]
-NOTIFIES_WEARER = ASKS_WEARER | {CommandKind.LOCATE}  # the others concern the unit alone
+# The others concern the unit alone.
+NOTIFIES_WEARER = ASKS_WEARER | {CommandKind.LOCATE, CommandKind.MAYDAY_ACKNOWLEDGED}
 
 
 class Delivery(msgspec.Struct):
@@ -34,6 +35,8 @@ class Delivery(msgspec.Struct):
     notified_ns: int | None = None  # an output of the unit has notified the wearer
     # Whether the unit has an output, as far as was known while more was to come; None: not known.
     can_be_notified: bool | None = None
+    end_sent_ns: int | None = None  # the unit may know that the order is over for it
+    ended_ns: int | None = None  # it has answered that it knows
 
 
 class SentCommand(msgspec.Struct):
@@ -48,6 +51,9 @@ class SentCommand(msgspec.Struct):
     expires_ns: int
     deliveries: dict[str, Delivery]  # by unit
     incident_id: str = ""  # that was open when it was given; empty: none was
+    # Of MAYDAY_ACKNOWLEDGED: the unit's message by which the mayday is known.
+    mayday_boot_id: int = 0
+    mayday_seq: int = 0
 
     @property
     def asks_wearer(self) -> bool:
@@ -101,3 +107,6 @@ class Order(msgspec.Struct, frozen=True):
     expires_ns: int
     text: str
     position_rate_hz: float
+    ended_command_id: str = ""  # of END_ORDER
+    mayday_boot_id: int = 0  # of MAYDAY_ACKNOWLEDGED
+    mayday_seq: int = 0

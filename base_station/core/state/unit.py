@@ -85,6 +85,8 @@ class UnitState(MessageStream):
     mayday_ns: int | None = None  # when it was last told that the button was pressed
     mayday_event_ns: int = 0  # and when the unit said that: it may have waited in its journal
     mayday_is_dated: bool = True  # else nobody can tell when it was said
+    mayday_boot_id: int = 0  # of the message that told it
+    mayday_seq: int = 0
     mayday_cancelled_ns: int | None = None  # since then
     mayday_cancelled_event_ns: int = 0
     fall_ns: int | None = None
@@ -162,6 +164,11 @@ class UnitState(MessageStream):
         self.former_wearers = [
             msgspec.structs.replace(one, name=ERASED_TEXT) for one in self.former_wearers
         ]
+
+    @property
+    def is_mayday_active(self) -> bool:
+        """True for a mayday that was not cancelled."""
+        return self.mayday_ns is not None and self.mayday_cancelled_ns is None
 
     @property
     def began_ns(self) -> int:

@@ -51,23 +51,21 @@ def _apply_position(unit: UnitState, position: Position, t_ns: int) -> None:
 def _apply_status(unit: UnitState, status: Status, t_ns: int) -> None:
     """A press and its taking back are alerts, which overtake what the unit said before them."""
     unit.status, unit.status_ns = status, t_ns
-    if status.mayday == _is_pressed(unit):
+    if status.mayday == unit.is_mayday_active:
         return
     event_ns = _event_time_ns(unit, status.header, t_ns) or t_ns
     if status.mayday and event_ns > unit.mayday_cancelled_event_ns:  # the press itself may be lost
-        _press(unit, t_ns, event_ns)
+        _press(unit, status.header, t_ns, event_ns)
     elif not status.mayday and event_ns > unit.mayday_event_ns:
         unit.mayday_cancelled_ns, unit.mayday_cancelled_event_ns = t_ns, event_ns
 
 
-def _press(unit: UnitState, t_ns: int, event_ns: int, is_dated: bool = True) -> None:
+def _press(
+    unit: UnitState, header: Header, t_ns: int, event_ns: int, is_dated: bool = True
+) -> None:
     unit.mayday_ns, unit.mayday_event_ns, unit.mayday_is_dated = t_ns, event_ns, is_dated
+    unit.mayday_boot_id, unit.mayday_seq = header.boot_id, header.seq
     unit.mayday_cancelled_ns = None
-
-
-def _is_pressed(unit: UnitState) -> bool:
-    """True for a mayday that was not cancelled."""
-    return unit.mayday_ns is not None and unit.mayday_cancelled_ns is None
 
 
 def _apply_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
@@ -101,11 +99,11 @@ def _apply_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
     match event.kind:
         case EventKind.MAYDAY:
             # Of one that stands a status may have told before, where the radio lost the press.
-            stands = _is_pressed(unit) and unit.worn_from_ns(event_ns) == unit.worn_from_ns(
+            stands = unit.is_mayday_active and unit.worn_from_ns(event_ns) == unit.worn_from_ns(
                 unit.mayday_event_ns
             )
             if not stands or event_ns > unit.mayday_event_ns:
-                _press(unit, t_ns, event_ns, is_dated)
+                _press(unit, event.header, t_ns, event_ns, is_dated)
         case EventKind.MAYDAY_CANCELLED:
             if event_ns >= unit.mayday_event_ns:  # else it was pressed again since
                 unit.mayday_cancelled_ns, unit.mayday_cancelled_event_ns = t_ns, event_ns

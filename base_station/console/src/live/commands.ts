@@ -35,16 +35,14 @@ export function newestFirst(commands: Iterable<CommandView>): CommandView[] {
 
 /** How many units have done their part, and of how many. */
 export function answered(command: CommandView): [done: number, all: number] {
-  const end = doneState(command);
-  return [command.units.filter((one) => one.state === end).length, command.units.length];
+  return [command.units.filter((one) => isDone(command, one)).length, command.units.length];
 }
 
 /** Of an order, whom only the voice radio reaches first, and last those that are done; else in the
  * order given. */
 export function unansweredFirst(command: CommandView): DeliveryView[] {
-  const end = doneState(command);
   const rank = (one: DeliveryView) =>
-    one.state === end ? 2 : shownState(command, one) === CANNOT_BE_NOTIFIED ? 0 : 1;
+    isDone(command, one) ? 2 : shownState(command, one) === CANNOT_BE_NOTIFIED ? 0 : 1;
   return [...command.units].sort((a, b) => rank(a) - rank(b));
 }
 
@@ -55,6 +53,11 @@ export function progress(command: CommandView): string {
   const states = command.units.map((one) => shownState(command, one));
   const cannot = states.filter((state) => state === CANNOT_BE_NOTIFIED).length;
   return cannot === 0 ? words : `${words}, ${cannot} ${stateWord(CANNOT_BE_NOTIFIED)}`;
+}
+
+/** An answer by radio is as good as any signal. */
+function isDone(command: CommandView, { state }: DeliveryView): boolean {
+  return state === doneState(command) || state === "acknowledged";
 }
 
 function doneState(command: CommandView): DeliveryState {
@@ -71,6 +74,11 @@ export function shownState(command: CommandView, delivery: DeliveryView): ShownS
   const answered = state === "notified" || state === "acknowledged" || state === "refused";
   if (answered || !command.notifies_wearer || can_be_notified !== false) return state;
   return CANNOT_BE_NOTIFIED;
+}
+
+/** Whether the voice radio may still bring the answer: what only signals is done once it has. */
+export function mayAnswerByRadio(command: CommandView, delivery: DeliveryView): boolean {
+  return command.asks_wearer || (command.notifies_wearer && delivery.state !== "notified");
 }
 
 /** The crews that somebody on duty belongs to. */
@@ -108,6 +116,7 @@ const KINDS: Record<string, string> = {
   text: "Message",
   locate: "Locate",
   set_position_rate: "Position rate",
+  mayday_acknowledged: "Mayday acknowledged",
 };
 
 export function kindWord(kind: string): string {

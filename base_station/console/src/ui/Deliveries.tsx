@@ -1,6 +1,6 @@
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
-import { commandWord, progress, shownState, unansweredFirst } from "../live/commands";
+import { commandWord, mayAnswerByRadio, progress, shownState, unansweredFirst } from "../live/commands";
 import type { Picture } from "../live/picture";
 import { displayName, nameAmong } from "../live/urgency";
 import { confirmAnswer } from "../undo";
@@ -67,7 +67,7 @@ function Answer({ command, delivery, place, picture }: AnswerProps) {
     return <Acknowledged command={command} delivery={delivery} name={name} />;
   }
   if (reason !== "") return <>{reason}</>;
-  if (!command.asks_wearer || !mayAct.value) return null;
+  if (!mayAnswerByRadio(command, delivery) || !mayAct.value) return null;
   return (
     <ByRadio
       label="Answered by radio"

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from edge.agent.command_handler import CommandHandler
+from edge.agent.mayday_progress import MaydayProgress
 from edge.agent.open_commands import OpenCommands
 from edge.agent.wearer_notifier import WearerNotifier
 from edge.notifiers.signals import Notice, Signal
@@ -55,10 +56,12 @@ class Rig:
         )
         self.link = SimpleNamespace(is_lost=False)
         self.journal = SimpleNamespace(acknowledged_seq=0)
+        maydays = MaydayProgress()
         parts: tuple[Any, ...] = (
             self.outputs,
             OpenCommands(folder / "open_commands.json"),
-            CommandHandler(Stamper("u1", 1, self.clock), None),
+            CommandHandler(Stamper("u1", 1, self.clock), None, (), maydays),
+            maydays,
             self.pipeline,
             self.link,
             self.journal,
@@ -139,3 +142,82 @@ def test_a_press_and_motion_end_the_pre_alert(rig: Rig) -> None:
     assert rig.signals() == [Signal.PRE_ALERT]
     rig.pipeline.motionless_s = 0.0
     assert rig.signals() == []
+
+
+def acknowledgement(seq: int) -> Command:
+    return Command(
+        HEADER, "m1", CommandKind.MAYDAY_ACKNOWLEDGED, "ada", 0, mayday_boot_id=1, mayday_seq=seq
+    )
+
+
+def call(rig: Rig, kind: EventKind, seq: int) -> None:
+    rig.notifier.note_sent((UnitEvent(Header("u1", 1, seq, 0), kind, "button"),))
+
+
+def test_a_mayday_that_was_acknowledged_is_played_and_reported_once(rig: Rig) -> None:
+    call(rig, EventKind.MAYDAY, 7)
+    assert rig.notifier.take_command(acknowledgement(7)).state is CommandState.RECEIVED
+    assert rig.signals() == [Signal.MAYDAY_CALLED, Signal.MAYDAY_ACKNOWLEDGED]
+    shown = rig.outputs.shown
+    rig.outputs.played += shown
+    (notified,) = rig.notifier.step()
+    assert (notified.command_id, notified.state) == ("m1", CommandState.NOTIFIED)
+    rig.notifier.take_command(acknowledgement(7))
+    rig.signals()
+    assert rig.outputs.shown == shown, "a repeat is the same notice, which is played once"
+
+
+def test_one_that_comes_after_the_mayday_was_cancelled_is_refused_and_silent(rig: Rig) -> None:
+    call(rig, EventKind.MAYDAY, 7)
+    call(rig, EventKind.MAYDAY_CANCELLED, 8)
+    reply = rig.notifier.take_command(acknowledgement(7))
+    assert reply.state is CommandState.REFUSED
+    assert "cancelled" in reply.detail
+    assert Signal.MAYDAY_ACKNOWLEDGED not in rig.signals()
+
+
+def test_a_repeat_after_another_call_does_not_acknowledge_that(rig: Rig) -> None:
+    call(rig, EventKind.MAYDAY, 7)
+    rig.notifier.take_command(acknowledgement(7))
+    call(rig, EventKind.MAYDAY, 9)
+    rig.notifier.take_command(acknowledgement(7))
+    assert Signal.MAYDAY_ACKNOWLEDGED not in rig.signals()
+
+
+def end(command_id: str, end_id: str = "e1") -> Command:
+    return Command(HEADER, end_id, CommandKind.END_ORDER, "ada", 0, ended_command_id=command_id)
+
+
+def test_an_order_that_ends_is_silent_and_asks_the_button_no_more(rig: Rig) -> None:
+    rig.notifier.take_command(command(CommandKind.EVACUATE))
+    rig.notifier.take_command(command(CommandKind.PAR_REQUEST))
+    reply = rig.notifier.take_command(end("EVACUATE"))
+    assert (reply.command_id, reply.state) == ("e1", CommandState.RECEIVED)
+    assert rig.signals() == [Signal.PAR_REQUEST]
+    assert [one.command_id for one in rig.notifier.acknowledge()] == ["PAR_REQUEST"]
+
+
+def test_an_order_that_comes_again_after_its_end_is_played_again(rig: Rig) -> None:
+    rig.notifier.take_command(command(CommandKind.EVACUATE))
+    rig.signals()
+    rig.outputs.played += rig.outputs.shown
+    rig.notifier.step()
+    rig.notifier.take_command(end("EVACUATE"))
+    assert rig.signals() == []
+    reply = rig.notifier.take_command(command(CommandKind.EVACUATE))
+    assert (reply.state, reply.awaits_wearer) == (CommandState.NOTIFIED, True)
+    assert rig.signals() == [Signal.EVACUATE]
+    rig.notifier.take_command(end("EVACUATE", "e2"))
+    assert rig.signals() == []
+
+
+def test_the_end_of_what_the_unit_does_not_know_is_none(rig: Rig) -> None:
+    assert rig.notifier.take_command(end("elsewhere")).state is CommandState.RECEIVED
+    assert rig.signals() == []
+
+
+def test_a_mayday_acknowledged_by_voice_too_is_played_no_more(rig: Rig) -> None:
+    call(rig, EventKind.MAYDAY, 7)
+    rig.notifier.take_command(acknowledgement(7))
+    rig.notifier.take_command(end("m1"))
+    assert rig.signals() == [Signal.MAYDAY_CALLED]

@@ -6,12 +6,13 @@ import math
 
 import pytest
 
-from base_station.core.commands.command_tracker import CLOSED_KEPT, MAX_OPEN, WITHDRAWN, open_orders
+from base_station.core.commands.command_tracker import CLOSED_KEPT, MAX_OPEN, open_orders
+from base_station.core.commands.order_ends import WITHDRAWN
 from base_station.core.events import CommandChanged, Refused
 from base_station.core.state import ERASED_TEXT
 from shared.channels import REPLY, backfilled_key
 from shared.codec import encode
-from shared.messages import CommandKind, CommandReply, CommandState, EventKind
+from shared.messages import OF_STATION, CommandKind, CommandReply, CommandState, EventKind
 from shared.messages.station import (
     Assign,
     CloseIncident,
@@ -20,7 +21,9 @@ from shared.messages.station import (
     OpenIncident,
     SendCommand,
     Unassign,
+    UndoConfirmation,
 )
+from tests.rig import message_factory
 from tests.rig.station_script import Script
 
 RECEIVED, ACKNOWLEDGED = CommandState.RECEIVED, CommandState.ACKNOWLEDGED
@@ -220,7 +223,29 @@ def test_what_asks_nobody_is_done_when_it_is_received():
     assert not script.pipeline.state.commands["c1"].is_open
     script.wait(61)
     assert states(script) == {"FF-01": "received"}
+
+
+def test_what_concerns_the_unit_alone_cannot_be_confirmed_by_radio():
+    script = to_one(CommandKind.SET_POSITION_RATE)
     assert isinstance(script.act(ConfirmCommand("c1", "FF-01"))[0], Refused)
+
+
+def test_a_locate_order_to_a_unit_without_an_output_can_be_confirmed_by_radio():
+    script = crewed()
+    script.say(message_factory.description(script.header("FF-01"), outputs=()))
+    script.act(order(kind=CommandKind.LOCATE, unit_id="FF-01"))
+    script.reply("FF-01", "c1", RECEIVED)
+    assert script.act(ConfirmCommand("c1", "FF-01"), by="ada") == [CommandChanged("c1")]
+    assert states(script) == {"FF-01": "acknowledged"}
+    assert script.act(UndoConfirmation("c1", "FF-01")) == [CommandChanged("c1")]
+    assert states(script) != {"FF-01": "acknowledged"}
+
+
+@pytest.mark.parametrize("kind", sorted(OF_STATION))
+def test_nobody_orders_what_the_station_sends_by_itself(kind):
+    script = crewed()
+    (output,) = script.act(order(kind=kind, everyone=True))
+    assert isinstance(output, Refused)
 
 
 def test_a_refusal_says_why_and_ends_it():

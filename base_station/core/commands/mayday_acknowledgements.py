@@ -1,0 +1,68 @@
+"""Mayday acknowledged: the unit notifies its wearer that somebody at the station knows of the call.
+
+It follows from the acknowledgement of the alarm, and waits for the link as an order does.  It is of
+one call: one that is cancelled or followed by another ends it, at the station and in the unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from base_station.core.state import Alarm, StationState, UnitState
+from base_station.core.state.command import Delivery, SentCommand
+from shared.clock import NS_PER_S
+from shared.messages import CommandKind
+
+MAYDAY_RULE = "mayday"
+CANCELLED = "the wearer has cancelled the mayday"
+CALLED_AGAIN = "the wearer has called another mayday"
+_LASTS_NS = 86_400 * NS_PER_S  # as long as any order may
+
+
+def acknowledge(state: StationState, by: str, alarm: Alarm, incident_id: str) -> SentCommand | None:
+    """Create the command of an alarm that was acknowledged; None where it is of no mayday that is
+    active, or of one of a former wearer.
+    """
+    unit = state.units.get(alarm.unit_id)
+    if alarm.rule != MAYDAY_RULE or unit is None or not unit.is_mayday_active:
+        return None
+    event_ns = unit.mayday_event_ns if unit.mayday_is_dated else None
+    if alarm.about != unit.worn_from_ns(event_ns):
+        return None
+    command = SentCommand(
+        command_id=f"mayday-{unit.unit_id}-{state.t_ns}",
+        kind=CommandKind.MAYDAY_ACKNOWLEDGED,
+        text="",
+        position_rate_hz=0.0,
+        issued_by=by,
+        issued_ns=state.t_ns,
+        expires_ns=state.t_ns + _LASTS_NS,
+        deliveries={
+            unit.unit_id: Delivery(unit.unit_id, can_be_notified=unit.can_be_notified),
+        },
+        incident_id=incident_id,
+        mayday_boot_id=unit.mayday_boot_id,
+        mayday_seq=unit.mayday_seq,
+    )
+    state.commands[command.command_id] = command
+    return command
+
+
+def withdraw(state: StationState) -> Iterator[SentCommand]:
+    """End those whose mayday is over: it would be wrong to notify the wearer of them now."""
+    for command in state.commands.values():
+        if command.kind is not CommandKind.MAYDAY_ACKNOWLEDGED:
+            continue
+        for delivery in command.deliveries.values():
+            reason = _over(command, state.units[delivery.unit_id])
+            if reason and command.awaits(delivery):
+                delivery.expired_ns, delivery.reason = state.t_ns, reason
+                yield command
+
+
+def _over(command: SentCommand, unit: UnitState) -> str:
+    """Return why its mayday is over; empty where it is not."""
+    if not unit.is_mayday_active:
+        return CANCELLED
+    is_same = (command.mayday_boot_id, command.mayday_seq) == (unit.mayday_boot_id, unit.mayday_seq)
+    return "" if is_same else CALLED_AGAIN

@@ -1,0 +1,84 @@
+"""Ends of orders: a unit is told that an order is over of which it may still notify its wearer.
+
+An order is over for a unit when its answer by radio was entered, or when its incident was closed.
+What the wearer has answered, and what has expired, the unit knows by itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from base_station.core.state import StationState
+from base_station.core.state.command import Delivery, Order, SentCommand
+from shared.messages import Command, CommandKind, CommandReply
+
+WITHDRAWN = "its incident was closed"
+
+
+def is_owed(command: SentCommand, delivery: Delivery, t_ns: int) -> bool:
+    """Whether the unit is still to be told that the order is over."""
+    is_over = delivery.acknowledged_via == "radio" or delivery.reason == WITHDRAWN
+    may_notify = delivery.sent_ns is not None and delivery.refused_ns is None
+    is_told = delivery.ended_ns is not None
+    return (
+        command.notifies_wearer
+        and is_over
+        and may_notify
+        and not is_told
+        and t_ns < command.expires_ns
+    )
+
+
+def owed(state: StationState) -> Iterator[Order]:
+    """Ends to send, and to repeat, until the units answer."""
+    for command in state.commands.values():
+        for delivery in command.deliveries.values():
+            if is_owed(command, delivery, state.t_ns):
+                yield Order(
+                    unit_id=delivery.unit_id,
+                    command_id=_end_id(command, delivery),
+                    kind=CommandKind.END_ORDER,
+                    issued_by=delivery.acknowledged_by or command.issued_by,
+                    expires_ns=command.expires_ns,
+                    text="",
+                    position_rate_hz=0.0,
+                    ended_command_id=command.command_id,
+                )
+
+
+def note_sent(state: StationState, unit_id: str, sent: Command) -> None:
+    """Note that the station has sent an end; where it is none any more, the order goes again."""
+    command = state.commands.get(sent.ended_command_id)
+    delivery = None if command is None else command.deliveries.get(unit_id)
+    if command is None or delivery is None:
+        return
+    delivery.end_sent_ns = state.t_ns
+    if _end_id(command, delivery) != sent.command_id:
+        send_again(delivery)
+
+
+def send_again(delivery: Delivery) -> None:
+    """The order is not over after all: where the unit may know it so, it is on its way anew."""
+    if delivery.end_sent_ns is not None:
+        delivery.sent_ns = delivery.received_ns = delivery.notified_ns = None
+        delivery.end_sent_ns = delivery.ended_ns = None
+
+
+def note_reply(state: StationState, unit_id: str, reply: CommandReply) -> bool:
+    """Note that a unit has answered an end; True where the reply is to one.
+
+    A unit of an earlier version refuses it; there is no more to be done about that.
+    """
+    for command in state.commands.values():
+        delivery = command.deliveries.get(unit_id)
+        if delivery is not None and _end_id(command, delivery) == reply.command_id:
+            delivery.ended_ns = delivery.ended_ns or state.t_ns
+            return True
+    return False
+
+
+def _end_id(command: SentCommand, delivery: Delivery) -> str:
+    """Id of its own for each time that it ends: an answer by radio can be undone and entered
+    again.
+    """
+    return f"{command.command_id}:end:{delivery.acknowledged_ns or delivery.expired_ns}"
