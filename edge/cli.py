@@ -55,8 +55,8 @@ Button = Annotated[
 Output = Annotated[
     list[str] | None,
     typer.Option(
-        help="An output that notifies the wearer: led:NAME, beeper:/dev/input/DEVICE or "
-        "speech:VOICE; may be repeated."
+        help="An output that notifies the wearer: led:NAME, beeper:/dev/input/DEVICE, "
+        "sound:default or speech:VOICE; may be repeated."
     ),
 ]
 Enrolment = Annotated[

@@ -32,7 +32,9 @@ class EdgeConfig:
     temperatures: tuple[str, ...] = ()  # sensors: hwmon:CHIP, iio:DEVICE, w1:ID, ?name=&role=
     battery: str = ""  # of the unit's computer: a power supply's name, or auto; empty: none
     button: str = ""  # the wearer's: evdev:NAME?key=KEY_POWER; empty: none, or of the source
-    outputs: tuple[str, ...] = ()  # to the wearer: led:NAME, beeper:/dev/input/DEVICE, speech:en
+    outputs: tuple[
+        str, ...
+    ] = ()  # to the wearer: led:NAME, beeper:/dev/input/DEVICE, sound:default
     unit: str = ""  # unique among the units of a station; empty: as enrolled
     enrolment: Path | None = None  # file or picture of its code; none: the link is not secured
     # The station; empty: as enrolled, else tcp/127.0.0.1:7447; discover: by multicast DNS, too.

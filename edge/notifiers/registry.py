@@ -8,6 +8,7 @@ from pathlib import Path
 from edge.notifiers.beeper import BeeperNotifier
 from edge.notifiers.interface import Notifier, NotifierKind
 from edge.notifiers.led import LedNotifier
+from edge.notifiers.sound import SoundNotifier
 from edge.notifiers.speech import SpeechNotifier
 from edge.notifiers.terminal import TerminalNotifier
 from edge.sources.sysfs import SYSFS
@@ -16,6 +17,7 @@ from shared.errors import ConfigError
 NOTIFIERS: tuple[NotifierKind, ...] = (
     NotifierKind("led", LedNotifier, "NAME"),
     NotifierKind("beeper", BeeperNotifier, "/dev/input/DEVICE"),
+    NotifierKind("sound", SoundNotifier, "default or a device of `aplay -L`"),
     NotifierKind("speech", SpeechNotifier, "VOICE"),
     NotifierKind("terminal", TerminalNotifier, "TITLE"),
 )

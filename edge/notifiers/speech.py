@@ -5,18 +5,16 @@ espeak-ng could play by itself, but reports success where there is no sound card
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 from threading import Event
 
 from edge.notifiers.signals import Notice, sentence
+from edge.notifiers.sound_card import last_line, play_wave, require_programs
 from shared.errors import ConfigError
 
-_SPEAKER, _PLAYER = "espeak-ng", "aplay"
-_PACKAGES = {_SPEAKER: "espeak-ng", _PLAYER: "alsa-utils"}  # of Debian
+_SPEAKER = "espeak-ng"
 _WORDS_PER_MINUTE = "150"  # slower than its own 175: there is noise
-_POLL_S = 0.05
 _PAUSE_S = 2.0  # before it is spoken again
 _SYNTHESIS_S = 10.0
 _CHARACTERS_MAX = 500
@@ -27,11 +25,7 @@ class SpeechNotifier:
 
     def __init__(self, voice: str, _sysfs: Path) -> None:
         """Raises ConfigError where a program is missing, or does not know the voice."""
-        for program, package in _PACKAGES.items():
-            if shutil.which(program) is None:
-                raise ConfigError(
-                    f"speech needs the program {program}: on Debian, apt-get install {package}"
-                )
+        require_programs("speech", _SPEAKER)
         self._voice = voice
         try:
             self._synthesize("")
@@ -42,25 +36,7 @@ class SpeechNotifier:
             ) from error
 
     def play(self, notice: Notice, interrupt: Event) -> None:
-        sound = self._synthesize(sentence(notice)[:_CHARACTERS_MAX])
-        process = subprocess.Popen(
-            [_PLAYER, "-q", "-"], stdin=subprocess.PIPE, stderr=subprocess.PIPE
-        )
-        with process:
-            assert process.stdin is not None
-            assert process.stderr is not None
-            try:
-                process.stdin.write(sound)
-                process.stdin.close()
-            except BrokenPipeError:
-                pass  # it has ended: what it complains of is said below
-            while process.poll() is None:
-                if interrupt.wait(_POLL_S):
-                    process.kill()
-                    return
-            complaint = process.stderr.read()
-        if process.returncode != 0:
-            raise OSError(f"{_PLAYER} plays nothing: {_last_line(complaint)}")
+        play_wave(self._synthesize(sentence(notice)[:_CHARACTERS_MAX]), interrupt)
         interrupt.wait(_PAUSE_S)
 
     def close(self) -> None:
@@ -80,10 +56,5 @@ class SpeechNotifier:
         except subprocess.TimeoutExpired as error:
             raise OSError(f"{_SPEAKER} hangs") from error
         if made.returncode != 0:
-            raise OSError(_last_line(made.stderr))
+            raise OSError(last_line(made.stderr))
         return made.stdout
-
-
-def _last_line(text: bytes) -> str:
-    lines = text.decode(errors="replace").strip().splitlines()
-    return lines[-1] if lines else "it says no more"

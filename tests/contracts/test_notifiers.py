@@ -8,6 +8,7 @@ import time
 import wave
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ from tests.rig.waiting import PATIENCE_S
 EVACUATE = Notice(Signal.EVACUATE, "c1")
 INPUT_EVENT = struct.Struct("llHHi")
 SOUND_SHORTEST_S = 1.0
+PROGRAMS = {"sound": ("aplay",), "speech": ("espeak-ng", "aplay")}
 
 
 @dataclass
@@ -80,7 +82,7 @@ def emulated_beeper(folder: Path, _: pytest.MonkeyPatch) -> Emulated:
     )
 
 
-def emulated_sound_card(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Emulated:
+def emulated_sound_card(text: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Emulated:
     card, heard = folder / "asound.conf", folder / "heard.wav"
     card.write_text(
         "pcm.quiet { type null }\n"
@@ -88,14 +90,14 @@ def emulated_sound_card(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Emulat
     )
     monkeypatch.setenv("ALSA_CONFIG_PATH", str(card))
 
-    def has_spoken() -> bool:
+    def was_heard() -> bool:
         with wave.open(str(heard)) as sound:
             samples = sound.readframes(sound.getnframes())
             return len(set(samples)) > 1 and sound.getnframes() > (
                 SOUND_SHORTEST_S * sound.getframerate()
             )
 
-    return Emulated("speech:en", folder, has_spoken, lambda: True, card.unlink)
+    return Emulated(text, folder, was_heard, lambda: True, card.unlink)
 
 
 def emulated_terminal(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Emulated:
@@ -117,10 +119,11 @@ def emulated_terminal(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Emulated
     )
 
 
-EMULATED = {
+EMULATED: dict[str, Callable[[Path, pytest.MonkeyPatch], Emulated]] = {
     "led": emulated_led,
     "beeper": emulated_beeper,
-    "speech": emulated_sound_card,
+    "sound": partial(emulated_sound_card, "sound:default"),
+    "speech": partial(emulated_sound_card, "speech:en"),
     "terminal": emulated_terminal,
 }
 
@@ -129,8 +132,8 @@ EMULATED = {
 def emulated(
     request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Emulated:
-    missing = [name for name in ("espeak-ng", "aplay") if not _is_installed(name)]
-    if request.param == "speech" and missing:
+    missing = [name for name in PROGRAMS.get(request.param, ()) if not _is_installed(name)]
+    if missing:
         pytest.skip(f"no {' and no '.join(missing)} on this machine")
     return EMULATED[request.param](tmp_path, monkeypatch)
 
