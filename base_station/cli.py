@@ -21,7 +21,7 @@ from shared.options import finite
 from shared.out_file import writable
 
 if TYPE_CHECKING:
-    from base_station.app.folder_commands import PostProcessingContext
+    from base_station.app.folder_commands import IncidentCommandContext
     from base_station.config import StationConfig
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
@@ -315,7 +315,7 @@ def _progress_bar(what: str) -> Iterator[Callable[[float], None]]:
         yield tell
 
 
-def _reason_not_kept(post_processing: PostProcessingContext) -> str:
+def _reason_not_kept(post_processing: IncidentCommandContext) -> str:
     if post_processing.incident.closed_ns is None:
         return "the incident is open"
     return (

@@ -25,7 +25,7 @@ from shared.channels import Qos
 from shared.errors import BusError
 
 
-class Role(Enum):
+class EndpointRole(Enum):
     """What an endpoint declared."""
 
     SUBSCRIBER = auto()
@@ -39,7 +39,7 @@ class Declaration:
     """One declaration of an endpoint, by the router's book."""
 
     owner: MemoryBus
-    role: Role
+    role: EndpointRole
     expression: str
     gate: HandlerGate
     alive: set[str] = field(default_factory=set)  # of a watcher: the tokens it was told of
@@ -86,7 +86,7 @@ class MemoryRouter:
 
     def route(self, sender: MemoryBus, key: str, payload: bytes) -> None:
         with self._lock:
-            for entry in self._reached_from(sender, Role.SUBSCRIBER):
+            for entry in self._reached_from(sender, EndpointRole.SUBSCRIBER):
                 if intersects(entry.expression, key):
                     self._defer(entry.gate, key, payload)
         self._settle()
@@ -95,7 +95,7 @@ class MemoryRouter:
         with self._lock:
             return any(
                 intersects(entry.expression, key) and entry.owner is not sender
-                for entry in self._reached_from(sender, Role.SUBSCRIBER)
+                for entry in self._reached_from(sender, EndpointRole.SUBSCRIBER)
             )
 
     def answers(
@@ -104,7 +104,7 @@ class MemoryRouter:
         with self._lock:
             serving = [
                 entry.gate
-                for entry in self._reached_from(asker, Role.SERVER)
+                for entry in self._reached_from(asker, EndpointRole.SERVER)
                 if intersects(entry.expression, key)
             ]
         for gate in serving:
@@ -133,7 +133,7 @@ class MemoryRouter:
             self._notify_watchers()
         self._settle()
 
-    def _reached_from(self, endpoint: MemoryBus, role: Role) -> list[Declaration]:
+    def _reached_from(self, endpoint: MemoryBus, role: EndpointRole) -> list[Declaration]:
         return [
             entry
             for entry in self._declarations
@@ -143,11 +143,11 @@ class MemoryRouter:
     def _notify_watchers(self) -> None:
         """Tell each watcher how the set of tokens that it can see has changed."""
         for watcher in self._declarations:
-            if watcher.role is not Role.WATCHER:
+            if watcher.role is not EndpointRole.WATCHER:
                 continue
             alive = {
                 token.expression
-                for token in self._reached_from(watcher.owner, Role.TOKEN)
+                for token in self._reached_from(watcher.owner, EndpointRole.TOKEN)
                 if intersects(watcher.expression, token.expression)
             }
             for key in sorted(watcher.alive ^ alive):
@@ -193,16 +193,18 @@ class MemoryBus:
         self._router.route(self, require_key(key), bytes(payload))
 
     def subscribe(self, key_expression: str, handler: SampleHandler) -> Subscription:
-        return self._declare(Role.SUBSCRIBER, require_key_expression(key_expression), handler)
+        return self._declare(
+            EndpointRole.SUBSCRIBER, require_key_expression(key_expression), handler
+        )
 
     def declare_alive(self, key: str) -> Subscription:
-        return self._declare(Role.TOKEN, require_key(key), bool)
+        return self._declare(EndpointRole.TOKEN, require_key(key), bool)
 
     def watch_alive(self, key_expression: str, handler: LivelinessHandler) -> Subscription:
-        return self._declare(Role.WATCHER, require_key_expression(key_expression), handler)
+        return self._declare(EndpointRole.WATCHER, require_key_expression(key_expression), handler)
 
     def serve(self, key_expression: str, handler: QueryHandler) -> Subscription:
-        return self._declare(Role.SERVER, require_key_expression(key_expression), handler)
+        return self._declare(EndpointRole.SERVER, require_key_expression(key_expression), handler)
 
     def query(self, selector: str, payload: bytes, timeout_s: float) -> Iterable[bytes]:
         del timeout_s  # everyone here answers at once
@@ -234,18 +236,20 @@ class MemoryBus:
         self._closed = True
         self._router.withdraw_all(self)
 
-    def _declare(self, role: Role, expression: str, handler: Callable[..., object]) -> Subscription:
+    def _declare(
+        self, role: EndpointRole, expression: str, handler: Callable[..., object]
+    ) -> Subscription:
         self._require_open()
         entry = Declaration(self, role, expression, HandlerGate(expression, handler))
         self._router.declare(entry)
-        return _Declared(self._router, entry)
+        return _MemoryDeclaration(self._router, entry)
 
     def _require_open(self) -> None:
         if self._closed:
             raise BusError("the bus is closed")
 
 
-class _Declared:
+class _MemoryDeclaration:
     def __init__(self, router: MemoryRouter, entry: Declaration) -> None:
         self._router = router
         self._entry = entry

@@ -14,7 +14,7 @@ from base_station.engine.feed import LogFeed
 from base_station.replay.playback import Archive
 from base_station.replay.processes.replay_process import ReplayContext, ReplayProcess
 from base_station.replay.rebuild import project_log
-from base_station.replay.session import ReplaySession, Window
+from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.models import Incident
 from base_station.storage.db.projecting import project_into
@@ -55,9 +55,9 @@ def replay_process_starter(
     return start
 
 
-def _window_of(incident: Incident, recorded_until_ns: Callable[[], int]) -> Window:
+def _window_of(incident: Incident, recorded_until_ns: Callable[[], int]) -> ReplayWindow:
     end_ns = incident.closed_ns or max(recorded_until_ns(), incident.opened_ns)
-    return Window(incident.incident_id, incident.opened_ns, end_ns)
+    return ReplayWindow(incident.incident_id, incident.opened_ns, end_ns)
 
 
 def announce_first_login(accounts: Accounts, note: Path | None, announce: Announce) -> None:

@@ -42,7 +42,7 @@ FORGET_COMMAND = "muster base forget"  # in the audit
 
 
 @dataclass(frozen=True)
-class PostProcessingContext:
+class IncidentCommandContext:
     """Inputs of commands about a closed incident."""
 
     post_processor: PostProcessor
@@ -190,7 +190,7 @@ def open_post_processing(
     closing: ExitStack,
     report: Callable[[str], None],
     on_progress: Callable[[float], None],
-) -> PostProcessingContext:
+) -> IncidentCommandContext:
     """A past incident, beside a running station or without one; also of what somebody gave.
 
     ``report`` hears in words of what of it cannot be read, ``on_progress`` the fraction done where
@@ -204,7 +204,7 @@ def open_post_processing(
         offline_log.archive(), SMOOTHERS[0], SmoothedTracks(offline_log.store), clock
     )
     people = wearers(Roster(offline_log.store, clock), incident)
-    return PostProcessingContext(
+    return IncidentCommandContext(
         post_processor, records, incident, people, offline_log.keeps_result
     )
 

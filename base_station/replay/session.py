@@ -32,7 +32,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class Window:
+class ReplayWindow:
     """What is replayed, in station time."""
 
     incident_id: str
@@ -53,7 +53,7 @@ class ReplaySession:
     def __init__(
         self,
         archive: Archive,
-        window: Window,
+        window: ReplayWindow,
         speed: float,
         sink: LiveSink,
         photo_urls: PhotoUrls,

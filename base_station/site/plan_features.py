@@ -31,7 +31,7 @@ class _Geometry(msgspec.Struct, tag_field="type", gc=False):
     pass
 
 
-class Point(_Geometry, tag="Point"):
+class PointGeometry(_Geometry, tag="Point"):
     coordinates: _Position
 
 
@@ -60,7 +60,13 @@ class GeometryCollection(_Geometry, tag="GeometryCollection"):
 
 
 Geometry = (
-    Point | MultiPoint | LineString | MultiLineString | Polygon | MultiPolygon | GeometryCollection
+    PointGeometry
+    | MultiPoint
+    | LineString
+    | MultiLineString
+    | Polygon
+    | MultiPolygon
+    | GeometryCollection
 )
 _LINES, _AREAS = (LineString, MultiLineString), (Polygon, MultiPolygon)
 _SHAPES = {"room": _AREAS, **dict.fromkeys(LINED, (*_LINES, *_AREAS))}

@@ -27,7 +27,7 @@ from shared.mcap_log import SegmentReader, own_segments, rewrite_segment
 logger = logging.getLogger(__name__)
 
 
-class LogFiles(Protocol):
+class SharedLogFiles(Protocol):
     """The log as files, while a station writes it."""
 
     @property
@@ -62,7 +62,7 @@ class LogRepair:
     def __init__(
         self,
         bus: Bus,
-        files: LogFiles,
+        files: SharedLogFiles,
         check: IntegrityChecker,
         other: Callable[[], str | None],
         on_mended: Callable[[int], None],

@@ -18,7 +18,7 @@ from base_station.engine.station_clock import SteadyClock
 from base_station.security.pki.folder import PkiFolder
 from base_station.standby.branch_merge import BranchMerge, PartServer
 from base_station.standby.ha_controller import HaController, HaDependencies
-from base_station.standby.log_repair import EventServer, LogFiles, LogRepair
+from base_station.standby.log_repair import EventServer, LogRepair, SharedLogFiles
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
 from base_station.standby.sync_ack import LeaderOnlyGate
@@ -39,7 +39,7 @@ class Parts:
     bus: Bus
     log: Log
     disk: LogFeed
-    files: LogFiles
+    files: SharedLogFiles
     check: IntegrityChecker
     live: LiveFeed
     clock: SteadyClock

@@ -27,7 +27,7 @@ _ROTATED_COS = 0.99  # the mean specific force has turned by 8 degrees since the
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class MotionWindow:
+class BodyMotionWindow:
     """Summary of half a second of samples."""
 
     end_ns: int
@@ -63,7 +63,7 @@ class BodyMotion:
         """Begin the time without motion anew: the wearer has pressed the button."""
         self._still_ns = 0
 
-    def push(self, imu: ImuBatch) -> list[MotionWindow]:
+    def push(self, imu: ImuBatch) -> list[BodyMotionWindow]:
         """Take samples; return the windows that they complete."""
         windows = []
         for part in by_window(imu):
@@ -76,7 +76,7 @@ class BodyMotion:
             self._parts.append(np.hstack((part.accel_mps2, part.gyro_radps)))
         return windows
 
-    def _close_window(self) -> MotionWindow | None:
+    def _close_window(self) -> BodyMotionWindow | None:
         if self._cell is None:
             return None
         samples = np.vstack(self._parts)
@@ -94,7 +94,7 @@ class BodyMotion:
         self._still_ns = 0 if moving else self._still_ns + WINDOW_NS
         self._moving_ns += WINDOW_NS if moving else 0
         peak_radps = float(np.linalg.norm(gyro_radps, axis=1).max(initial=0.0))
-        return MotionWindow((self._cell + 1) * WINDOW_NS, moving, force_mps2, peak_radps)
+        return BodyMotionWindow((self._cell + 1) * WINDOW_NS, moving, force_mps2, peak_radps)
 
     def _has_rotated(self, force_mps2: Floats) -> bool:
         before = self._force_before_mps2

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from edge.activity.body_motion import WINDOW_NS, BodyMotion, MotionWindow, by_window
+from edge.activity.body_motion import WINDOW_NS, BodyMotion, BodyMotionWindow, by_window
 from edge.activity.falls import FallDetector
 from edge.activity.posture import Posture
 from edge.activity.pressure_height import PressureHeight
@@ -160,7 +160,7 @@ class ActivityMonitor:
         climbed_m = self._pressure_height.climbed_m(first.end_ns, last.end_ns)
         return climbed_m is not None and climbed_m / rise_m < _CONFIRMED_SHARE
 
-    def _take_window(self, window: MotionWindow) -> bool:
+    def _take_window(self, window: BodyMotionWindow) -> bool:
         """Return True where the window confirms a fall."""
         self._window_ns = window.end_ns
         if window.moving:

@@ -10,7 +10,7 @@ from collections import deque
 
 import numpy as np
 
-from edge.activity.body_motion import WINDOW_NS, MotionWindow, cosine
+from edge.activity.body_motion import WINDOW_NS, BodyMotionWindow, cosine
 from edge.activity.strides import Stride
 from edge.samples import Floats
 from shared.clock import NS_PER_S
@@ -76,7 +76,7 @@ class Posture:
             if self.crawling:
                 self.lying = self.collapsed = False  # it was a rest on hands and knees
 
-    def take_window(self, window: MotionWindow, motionless_s: float) -> None:
+    def take_window(self, window: BodyMotionWindow, motionless_s: float) -> None:
         """Take the next half second; ``motionless_s`` counts it."""
         self._now_ns = window.end_ns
         start_ns = window.end_ns - WINDOW_NS
@@ -103,7 +103,7 @@ class Posture:
             self._tipped_since_ns = window.end_ns
         self._hold_tipped(window, motionless_s)
 
-    def _hold_tipped(self, window: MotionWindow, motionless_s: float) -> None:
+    def _hold_tipped(self, window: BodyMotionWindow, motionless_s: float) -> None:
         step_b = self._crawl_step_b
         kneeling = (
             self.crawling and step_b is not None and cosine(step_b, window.force_mps2) > _SAME_COS

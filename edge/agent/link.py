@@ -31,7 +31,7 @@ _REOPEN_AFTER_S = 15.0  # a session has been seen to stop trying
 _CLOSING_S = 10.0  # a bus may take seconds where its link leads nowhere
 
 
-class StationEndpoint(Protocol):
+class StationConnector(Protocol):
     """The station as seen from a unit."""
 
     def open_bus(self) -> Bus:
@@ -53,7 +53,7 @@ class Link:
     def __init__(
         self,
         unit_id: str,
-        station: StationEndpoint,
+        station: StationConnector,
         on_command: SampleHandler,
         served: Iterable[tuple[str, QueryHandler]],
     ) -> None:

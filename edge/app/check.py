@@ -28,7 +28,7 @@ from edge.preflight.report import encode_report, print_finding, print_verdict
 from edge.preflight.station_check import station_findings
 from edge.sources.interface import Source
 from edge.sources.registry import open_source, source_kind
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from shared.clock import SystemClock
 from shared.errors import ConfigError
 
@@ -59,7 +59,7 @@ def check_unit(config: EdgeConfig, survey_s: float) -> Iterator[Finding]:
         raise ConfigError(f"{config.source} has no sensors of its own; check the unit itself")
     member = unit_connection(config)
     now = datetime.now(UTC)
-    with closing(DataFolder(config.data / member.unit_id)) as folder:
+    with closing(UnitDataFolder(config.data / member.unit_id)) as folder:
         yield certificate_finding(member.identity, now)
         yield from storage_findings(folder, config.storage)
         with closing(open_source(config.source)) as source:

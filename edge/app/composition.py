@@ -12,7 +12,7 @@ from pathlib import Path
 from queue import SimpleQueue
 
 from edge.agent.command_handler import CommandHandler
-from edge.agent.link import Link, StationEndpoint
+from edge.agent.link import Link, StationConnector
 from edge.agent.mayday_latch import MaydayLatch
 from edge.agent.mayday_progress import MaydayProgress
 from edge.agent.open_commands import OpenCommands
@@ -36,7 +36,7 @@ from edge.sources.bus import BusSource
 from edge.sources.interface import AuxiliarySource, Source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.server import RecordingServer
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from edge.storage.journal.journal import Journal, open_journal
 from edge.storage.journal.server import JournalServer
 from edge.storage.journal.writer import JournalWriter
@@ -51,9 +51,9 @@ from shared.service_manager import ServiceManager
 def compose_agent(
     config: EdgeConfig,
     unit_id: str,
-    folder: DataFolder,
+    folder: UnitDataFolder,
     source: Source,
-    station: StationEndpoint,
+    station: StationConnector,
     speed: float | None,
     auxiliaries: tuple[AuxiliarySource, ...] = (),
 ) -> Agent:
@@ -132,7 +132,7 @@ def _timekeeper(source: Source) -> Timekeeper | None:
     return Follower() if isinstance(source, BusSource) else None
 
 
-def _quarantine_reports(folder: DataFolder, damaged: Path | None) -> Iterator[str]:
+def _quarantine_reports(folder: UnitDataFolder, damaged: Path | None) -> Iterator[str]:
     """Yield reports for a person of what was found in the unit's folder and cannot be used."""
     if damaged is not None:
         yield f"the journal was damaged and is set aside as {damaged.name}"
@@ -161,7 +161,7 @@ def _description(
 
 def _link(
     unit_id: str,
-    station: StationEndpoint,
+    station: StationConnector,
     commands: SimpleQueue[bytes],
     journal: Journal,
     recordings: RecordingServer,

@@ -19,7 +19,7 @@ from edge.sources.power_supply import BatteryReader
 from edge.sources.registry import open_source
 from edge.sources.sighting_reader import SightingReader
 from edge.sources.temperature.registry import open_temperature_reader
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from edge.wearer.registry import open_button
 from shared.channels import NO_TRACKER, tracker_id
 from shared.clock import SystemClock
@@ -128,7 +128,7 @@ def _run_once(
 ) -> None:
     with ExitStack() as cleanup:
         cleanup.callback(source.close)
-        folder = DataFolder(config.data / unit_id)
+        folder = UnitDataFolder(config.data / unit_id)
         cleanup.callback(folder.close)
         agent = compose_agent(config, unit_id, folder, source, station, speed, auxiliaries)
         agent.run(stop, for_s=for_s)

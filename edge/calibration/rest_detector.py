@@ -20,7 +20,7 @@ _STEADY_MPS2 = 0.15  # of the force from one window to the next: half a degree t
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Window:
+class RestWindow:
     """Means of half a second of stillness."""
 
     start_ns: int
@@ -36,7 +36,7 @@ class RestDetector:
     """
 
     def __init__(self) -> None:
-        self.rests: list[list[Window]] = []
+        self.rests: list[list[RestWindow]] = []
         self.moved_at_s: float | None = None  # when it last moved, since its first sample
         self._began_ns = 0
         self._settling = True
@@ -91,12 +91,12 @@ class RestDetector:
         if self._settling:
             self.rests.append([])
             self._settling = False
-        self.rests[-1].append(Window(start_ns, mean[:3], mean[3:], self._last_degc))
+        self.rests[-1].append(RestWindow(start_ns, mean[:3], mean[3:], self._last_degc))
 
 
-def mean_of(windows: list[Window]) -> Window:
+def mean_of(windows: list[RestWindow]) -> RestWindow:
     """Return one window for all of them."""
-    return Window(
+    return RestWindow(
         windows[0].start_ns,
         np.mean([window.accel_mps2 for window in windows], axis=0),
         np.mean([window.gyro_radps for window in windows], axis=0),
@@ -104,7 +104,7 @@ def mean_of(windows: list[Window]) -> Window:
     )
 
 
-def seconds(windows: list[Window]) -> float:
+def seconds(windows: list[RestWindow]) -> float:
     return len(windows) * WINDOW_NS / NS_PER_S
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from edge.calibration.model import Accelerometer, Gyroscope, Magnetometer, Matrix, Vector, Warmth
-from edge.calibration.rest_detector import Window, mean_of
+from edge.calibration.rest_detector import RestWindow, mean_of
 from edge.calibration.sphere_fit import DIAGONAL, SYMMETRIC, TRIANGULAR, fit_sphere
 from edge.samples import Floats
 
@@ -20,7 +20,9 @@ _NOISE_SHARE = 0.7  # what is not credited to noise counts as walk, the worse of
 _BLOCK = 20  # windows that are averaged: slow noise makes neighbours alike
 
 
-def solve_gyroscope(windows: list[Window], poses: list[Window], warmth: Warmth | None) -> Gyroscope:
+def solve_gyroscope(
+    windows: list[RestWindow], poses: list[RestWindow], warmth: Warmth | None
+) -> Gyroscope:
     """The bias of one rest; from ``poses``, if there are any, what force adds to it."""
     mean = mean_of(windows)
     rates = _at_one_warmth(windows, mean.temperature_degc, warmth)
@@ -43,7 +45,7 @@ def solve_gyroscope(windows: list[Window], poses: list[Window], warmth: Warmth |
     )
 
 
-def _at_one_warmth(windows: list[Window], at_degc: float, warmth: Warmth | None) -> Floats:
+def _at_one_warmth(windows: list[RestWindow], at_degc: float, warmth: Warmth | None) -> Floats:
     """The rates (n, 3) as they would be at that temperature."""
     rates = np.array([window.gyro_radps for window in windows])
     if warmth is None:
@@ -52,7 +54,7 @@ def _at_one_warmth(windows: list[Window], at_degc: float, warmth: Warmth | None)
     return np.asarray(rates - degc[:, None] * np.array(warmth.gyro_bias_per_degc_radps))
 
 
-def _force_slope(poses: list[Window], rates: Floats) -> tuple[Floats, Floats]:
+def _force_slope(poses: list[RestWindow], rates: Floats) -> tuple[Floats, Floats]:
     """Rate by force (3, 3) with standard deviations; at least six poses."""
     forces = np.array([pose.accel_mps2 for pose in poses])
     table = np.column_stack((forces, np.ones(len(forces))))
@@ -75,7 +77,7 @@ def observes_misalignment(directions: Floats) -> tuple[bool, bool, bool]:
     return xy, xz, yz
 
 
-def solve_accelerometer(poses: list[Window], warmth: Warmth | None) -> Accelerometer:
+def solve_accelerometer(poses: list[RestWindow], warmth: Warmth | None) -> Accelerometer:
     """Scale and bias, and misalignment too where the poses tell of it."""
     forces = np.array([pose.accel_mps2 for pose in poses])
     degc = np.array([pose.temperature_degc for pose in poses])
@@ -126,7 +128,7 @@ def solve_magnetometer(fields_ut: Floats) -> Magnetometer:
     )
 
 
-def solve_warmth(windows: list[Window]) -> Warmth:
+def solve_warmth(windows: list[RestWindow]) -> Warmth:
     """Straight lines of both biases against temperature, of a unit that never moved."""
     count = len(windows) // _BLOCK
     used = windows[: count * _BLOCK]

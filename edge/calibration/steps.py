@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from edge.calibration.rest_detector import RestDetector, Window, mean_of, seconds
+from edge.calibration.rest_detector import RestDetector, RestWindow, mean_of, seconds
 from edge.calibration.solver import observes_misalignment
 from edge.samples import Floats, ImuBatch
 
@@ -67,7 +67,7 @@ class StillStep:
     def push(self, imu: ImuBatch) -> None:
         self._finder.push(imu)
 
-    def windows(self) -> list[Window]:
+    def windows(self) -> list[RestWindow]:
         return max(self._finder.rests, key=len, default=[])
 
     def missing(self) -> str | None:
@@ -115,9 +115,9 @@ class PosesStep:
     def push(self, imu: ImuBatch) -> None:
         self._finder.push(imu)
 
-    def poses(self) -> list[Window]:
+    def poses(self) -> list[RestWindow]:
         """Return one pose a direction, by the longest rest in it."""
-        kept: list[Window] = []
+        kept: list[RestWindow] = []
         rests = [rest for rest in self._finder.rests if seconds(rest) >= _POSE_S]
         for rest in sorted(rests, key=len, reverse=True):
             pose = mean_of(rest)
@@ -256,10 +256,10 @@ class WarmUpStep:
     def push(self, imu: ImuBatch) -> None:
         self._finder.push(imu)
 
-    def windows(self) -> list[Window]:
+    def windows(self) -> list[RestWindow]:
         return _without_misread(self._known_windows())
 
-    def _known_windows(self) -> list[Window]:
+    def _known_windows(self) -> list[RestWindow]:
         """Return the longest rest, as far as the temperature is known."""
         longest = max(self._finder.rests, key=len, default=[])
         return [window for window in longest if np.isfinite(window.temperature_degc)]
@@ -299,7 +299,7 @@ class WarmUpStep:
         return max(degc) - min(degc) if degc else 0.0
 
 
-def _without_misread(windows: list[Window]) -> list[Window]:
+def _without_misread(windows: list[RestWindow]) -> list[RestWindow]:
     """Return the windows whose temperature is that of the windows around them."""
     degc = np.array([window.temperature_degc for window in windows])
     if len(degc) <= _NEIGHBOURS:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from edge.agent.sensor_health import SensorHealth
-from edge.calibration.rest_detector import RestDetector, Window, mean_of, seconds
+from edge.calibration.rest_detector import RestDetector, RestWindow, mean_of, seconds
 from edge.preflight.finding import Finding, Level
 from edge.samples import Floats, ImuBatch, SensorDescription
 from shared.clock import NS_PER_S
@@ -143,7 +143,7 @@ class InertialSurvey:
             "" if is_slow else f"its bias is too large to be found while walking: {_CALIBRATE}",
         )
 
-    def _longest_rest(self) -> list[Window]:
+    def _longest_rest(self) -> list[RestWindow]:
         return max(self._rests.rests, key=len, default=[])
 
 

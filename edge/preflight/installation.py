@@ -11,7 +11,7 @@ from edge.calibration.file import identity
 from edge.calibration.model import Calibration
 from edge.config import StorageConfig
 from edge.preflight.finding import Finding, Level
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from shared.tls import TlsIdentity, parse_certificate, validity_problem
 
 _CERTIFICATE_WARNING = timedelta(days=30)  # as the station warns
@@ -55,7 +55,7 @@ def calibration_finding(calibration: Calibration | None, now: datetime) -> Findi
     return Finding(subject, Level.OK, text)
 
 
-def storage_findings(folder: DataFolder, limits: StorageConfig) -> Iterator[Finding]:
+def storage_findings(folder: UnitDataFolder, limits: StorageConfig) -> Iterator[Finding]:
     """Yield findings on the disk below the data folder, and on what was set aside in it."""
     free_bytes = shutil.disk_usage(folder.path).free
     wanted_bytes = 1e6 * (limits.journal_mb + limits.black_box_mb) - _size_bytes(folder.path)

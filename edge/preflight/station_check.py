@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 
-from edge.agent.link import StationEndpoint
+from edge.agent.link import StationConnector
 from edge.clocks.station import StationClock
 from edge.preflight.finding import Finding, Level
 from shared.bus import Bus, ReplyHandler
@@ -26,7 +26,7 @@ _CLOCK_AHEAD_MAX_S = 60.0  # the station's time is used all the same, once the l
 _NO_LINK = "messages are kept and sent later; until then the commander sees nothing of this wearer"
 
 
-def station_findings(unit_id: str, station: StationEndpoint, machine: Clock) -> Iterator[Finding]:
+def station_findings(unit_id: str, station: StationConnector, machine: Clock) -> Iterator[Finding]:
     """Open the link as the unit would, and close it again."""
     try:
         bus = _opened(station)
@@ -44,7 +44,7 @@ def station_findings(unit_id: str, station: StationEndpoint, machine: Clock) -> 
         bus.close()
 
 
-def _opened(station: StationEndpoint) -> Bus:
+def _opened(station: StationConnector) -> Bus:
     """Each attempt tries another of the places where the station may be."""
     for _ in range(_ATTEMPTS - 1):
         with suppress(BusError):

@@ -17,7 +17,7 @@ import msgspec
 import numpy as np
 
 from edge.samples import Floats
-from edge.simulation.legs import Leg, Point, Stairs, Walk
+from edge.simulation.legs import Leg, Point, StairsLeg, Walk
 from shared.geo import Anchor
 
 _INSET_M = 1.0  # how far from the walls a room is searched
@@ -92,10 +92,10 @@ class Building:
         first, second = self.flights
         return (
             Walk((first.bottom,)),
-            Stairs(first.top, first.rise_m, first.risers),
+            StairsLeg(first.top, first.rise_m, first.risers),
             Walk(((first.top[0] + 1.2, first.top[1]), (second.bottom[0] + 1.2, second.bottom[1]))),
             Walk((second.bottom,)),
-            Stairs(second.top, second.rise_m, second.risers),
+            StairsLeg(second.top, second.rise_m, second.risers),
             Walk(((second.top[0] - 1.5, second.top[1]),)),
         )
 
@@ -104,10 +104,10 @@ class Building:
         first, second = self.flights
         return (
             Walk((second.top,)),
-            Stairs(second.bottom, -second.rise_m, second.risers),
+            StairsLeg(second.bottom, -second.rise_m, second.risers),
             Walk(((second.bottom[0] + 1.2, second.bottom[1]), (first.top[0] + 1.2, first.top[1]))),
             Walk((first.top,)),
-            Stairs(first.bottom, -first.rise_m, first.risers),
+            StairsLeg(first.bottom, -first.rise_m, first.risers),
             Walk(((first.bottom[0] - 1.5, first.bottom[1]),)),
         )
 

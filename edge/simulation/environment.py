@@ -89,7 +89,7 @@ def earth_n_ut(anchor: Anchor) -> Floats:
     )
 
 
-class Magnetometer:
+class SimulatedMagnetometer:
     def __init__(self, errors: MagErrors, field: MagneticField, rng: np.random.Generator) -> None:
         self._errors = errors
         self._field = field

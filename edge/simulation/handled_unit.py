@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from edge.samples import Floats, ImuBatch, SensorBatch, SensorDescription
-from edge.simulation.environment import MagneticField, Magnetometer
+from edge.simulation.environment import MagneticField, SimulatedMagnetometer
 from edge.simulation.imu import Imu
 from edge.simulation.kinematics import Motion
 from edge.simulation.simulation import CONSUMER_SENSORS, SensorErrors, Simulation
@@ -43,7 +43,7 @@ class HandledUnit:
             sensors = worn_in.sensors
             imu_rng, mag_rng, *_ = worn_in.sensor_rngs()
         self.imu = Imu(sensors.imu, np.eye(3), rate_hz, imu_rng)
-        self.mag = Magnetometer(sensors.mag, MagneticField(None, mag_rng), mag_rng)
+        self.mag = SimulatedMagnetometer(sensors.mag, MagneticField(None, mag_rng), mag_rng)
         self._rotation_ns = np.eye(3)
         self._row = 0
         self._rate_hz = rate_hz

@@ -35,7 +35,7 @@ class Walk(msgspec.Struct, frozen=True, tag="walk", forbid_unknown_fields=True):
     rise_m: Metres = 0.0  # of the ramp, over the whole way
 
 
-class Stairs(msgspec.Struct, frozen=True, tag="stairs", forbid_unknown_fields=True):
+class StairsLeg(msgspec.Struct, frozen=True, tag="stairs", forbid_unknown_fields=True):
     """Climb (``rise_m`` positive) or descend one straight flight that starts here."""
 
     to: Point
@@ -106,4 +106,4 @@ class Crawl(msgspec.Struct, frozen=True, tag="crawl", forbid_unknown_fields=True
     to: Points
 
 
-Leg = Walk | Stairs | Spiral | Stand | Wait | Kneel | Sit | Ride | Turn | Lie | Crawl
+Leg = Walk | StairsLeg | Spiral | Stand | Wait | Kneel | Sit | Ride | Turn | Lie | Crawl

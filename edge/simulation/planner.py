@@ -17,7 +17,7 @@ from edge.simulation.legs import (
     Ride,
     Sit,
     Spiral,
-    Stairs,
+    StairsLeg,
     Stand,
     Turn,
     Wait,
@@ -46,7 +46,7 @@ class Planner:
     def do(self, leg: Leg) -> None:
         if isinstance(leg, Walk):
             self._walk(leg)
-        elif isinstance(leg, Stairs | Spiral):
+        elif isinstance(leg, StairsLeg | Spiral):
             self._climb(leg)
         elif isinstance(leg, Stand):
             stand(self.plan, leg.duration_s)
@@ -94,7 +94,7 @@ class Planner:
                     down_m = begin_down_m - slope * along_m - float(pile_m)
                 self._stride(gait, line.point(along_m), heading_rad, down_m)
 
-    def _climb(self, stairs: Stairs | Spiral) -> None:
+    def _climb(self, stairs: StairsLeg | Spiral) -> None:
         line = self._way_up(stairs)
         self._face(line.heading_rad(0.0, 0.1))
         gait = STAIRS_PACES[stairs.pace][stairs.rise_m > 0.0]
@@ -106,8 +106,8 @@ class Planner:
             down_m = floor_down_m - stairs.rise_m * tread / stairs.risers
             self._stride(gait, line.point(along_m), line.heading_rad(along_m, 0.1), down_m)
 
-    def _way_up(self, stairs: Stairs | Spiral) -> Polyline:
-        if isinstance(stairs, Stairs):
+    def _way_up(self, stairs: StairsLeg | Spiral) -> Polyline:
+        if isinstance(stairs, StairsLeg):
             return Polyline((self._middle, stairs.to))
         north_m = self._middle[0] - stairs.middle[0]
         east_m = self._middle[1] - stairs.middle[1]

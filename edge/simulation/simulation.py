@@ -35,7 +35,7 @@ from edge.simulation.environment import (
     Barometer,
     MagErrors,
     MagneticField,
-    Magnetometer,
+    SimulatedMagnetometer,
     earth_n_ut,
 )
 from edge.simulation.gps import Gps
@@ -136,7 +136,7 @@ class Simulation:
         rate_hz = self.scenario.rate_hz
         imu_rng, mag_rng, baro_rng, gps_rng, other_rng = self.sensor_rngs()
         imu = Imu(self.sensors.imu, self._rotation_bs, rate_hz, imu_rng)
-        mag = Magnetometer(self.sensors.mag, self._field(mag_rng), mag_rng)
+        mag = SimulatedMagnetometer(self.sensors.mag, self._field(mag_rng), mag_rng)
         baro = Barometer(
             self.sensors.baro, self._building, self._anchor.height_m, rate_hz, baro_rng
         )

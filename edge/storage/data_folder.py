@@ -13,7 +13,7 @@ from shared.own_files import write_own
 _OWNER = "unit"
 
 
-class DataFolder:
+class UnitDataFolder:
     """Folder, locked from making to ``close``; the system unlocks it when the process dies.
 
     It has the unit's name.  ``quarantine`` is where journal and black box of another unit went that

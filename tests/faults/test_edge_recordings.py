@@ -11,7 +11,7 @@ import pytest
 from edge.app.composition import compose_agent
 from edge.config import EdgeConfig
 from edge.sources.registry import open_source
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from edge.tracker.interface import Quality, Reason
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
@@ -55,7 +55,7 @@ def run_agent_on(rows: np.ndarray, folder: Path):
         recording / "imu.csv.gz", rows, delimiter=",", header=COLUMNS, comments="", fmt="%.9f"
     )
     config = EdgeConfig(unit="u1", source=f"recording:{recording}", data=folder)
-    data = DataFolder(folder / "u1")
+    data = UnitDataFolder(folder / "u1")
     source = open_source(config.source)
     agent = compose_agent(config, "u1", data, source, Nobody(), speed=None)
     journal = agent._parts.journal

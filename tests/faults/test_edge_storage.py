@@ -18,7 +18,7 @@ from edge.app.composition import compose_agent
 from edge.app.jit_warmup import compile_trackers
 from edge.config import EdgeConfig
 from edge.sources.registry import open_source
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from edge.storage.journal.journal import Journal, JournalRow
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
@@ -85,7 +85,7 @@ class Running:
     def __init__(self, folder: Path) -> None:
         compile_trackers()
         self.station = Station()
-        self.data = DataFolder(folder / "u1")
+        self.data = UnitDataFolder(folder / "u1")
         config = EdgeConfig(unit="u1", source="simulated:search-ground-floor", data=folder)
         source = open_source(config.source)
         self.agent = compose_agent(config, "u1", self.data, source, self.station, speed=4.0)

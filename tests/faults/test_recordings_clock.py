@@ -12,7 +12,7 @@ from edge.sample_codec.codec import SampleEncoder
 from edge.sources.registry import open_source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.server import RecordingServer
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from shared.bus import ReplyHandler
 from shared.clock import NS_PER_S, ManualClock
 from shared.mcap_log import SegmentReader, segment_began_ns, segment_paths
@@ -41,7 +41,9 @@ def link(clock: StationClock, station_ns: int) -> None:
     clock.turn(answer)
 
 
-def record(folder: DataFolder, machine: Machine, began_ns: int, set_at_s: float) -> StationClock:
+def record(
+    folder: UnitDataFolder, machine: Machine, began_ns: int, set_at_s: float
+) -> StationClock:
     """The unit begins at this station time, and somebody sets its clock later."""
     clock = StationClock(machine)
     source = open_source("simulated:climbs-stairs?seed=3")
@@ -75,7 +77,7 @@ def found(server: RecordingServer, from_s: float) -> list[str]:
 def test_a_window_is_found_whatever_the_clock_said_when(
     tmp_path: Path, began_ns: int, set_at_s: float
 ) -> None:
-    folder, machine = DataFolder(tmp_path), Machine(utc_ns=began_ns)
+    folder, machine = UnitDataFolder(tmp_path), Machine(utc_ns=began_ns)
     clock = record(folder, machine, STATION_NS, set_at_s)
     (boot,) = folder.black_box.iterdir()
     segments = segment_paths(boot)
@@ -103,7 +105,7 @@ def test_of_boots_that_ended_long_before_nothing_is_read(
             read.append(path)
             super().__init__(path)
 
-    folder, machine = DataFolder(tmp_path), Machine(utc_ns=STATION_NS)
+    folder, machine = UnitDataFolder(tmp_path), Machine(utc_ns=STATION_NS)
     clock = record(folder, machine, STATION_NS, set_at_s=-1.0)
     last = segment_paths(next(folder.black_box.iterdir()))[-1]
     last.write_bytes(last.read_bytes()[:-100])
@@ -119,7 +121,7 @@ def test_of_boots_that_ended_long_before_nothing_is_read(
 
 
 def test_the_oldest_goes_first_whatever_its_date(tmp_path: Path) -> None:
-    folder = DataFolder(tmp_path)
+    folder = UnitDataFolder(tmp_path)
     for boot, began_s in enumerate((4_102_444_800, 60)):  # first of all a clock in 2100
         machine = Machine(utc_ns=began_s * NS_PER_S)
         record(folder, machine, STATION_NS + boot * 3600 * NS_PER_S, set_at_s=-1.0)

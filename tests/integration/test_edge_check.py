@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from tests.rig.enrolled_site import EnrolledSite
 from tests.rig.kernel_devices import EmulatedAgent, SysfsTree, has_umockdev
 from tests.rig.station_command import UnitCheck
@@ -64,7 +64,7 @@ def test_a_station_that_is_away_fails_the_check_and_a_script_sees_it(check) -> N
 
 
 def test_a_unit_whose_agent_runs_is_not_checked(site, check, tmp_path: Path) -> None:
-    with closing(DataFolder(tmp_path / "units" / "u1")), check() as checked:
+    with closing(UnitDataFolder(tmp_path / "units" / "u1")), check() as checked:
         assert checked.wait() == 2
         assert "stop it" in checked.said()
 

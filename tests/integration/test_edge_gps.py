@@ -23,7 +23,7 @@ from edge.config import EdgeConfig
 from edge.samples import GpsSample, ImuBatch
 from edge.sources.gnss.registry import open_receiver
 from edge.sources.registry import open_source
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.channels import COMMAND, parse_key
@@ -132,7 +132,7 @@ def said_of(fix: GpsSample) -> Told:
 
 
 @contextmanager
-def worn(config: EdgeConfig, folder: DataFolder, station: Station) -> Iterator[None]:
+def worn(config: EdgeConfig, folder: UnitDataFolder, station: Station) -> Iterator[None]:
     """An agent in a thread, until its time is over."""
     beside = (open_receiver(config.gps, SystemClock()),)
     source, stop = open_source(config.source), Event()
@@ -155,7 +155,7 @@ def test_fixes_of_a_receiver_place_a_walk(kind: str, tmp_path: Path) -> None:
     station = Station()
     with ExitStack() as held:
         sensor = held.enter_context(closing(TcpDevice(paced(played(imu)))))
-        folder = held.enter_context(closing(DataFolder(tmp_path / "u1")))
+        folder = held.enter_context(closing(UnitDataFolder(tmp_path / "u1")))
         said = paced((due_s, say(told)) for due_s, told in due)
         receiver = held.enter_context(closing(pretend(said, hangs=True)))
         config = EdgeConfig(

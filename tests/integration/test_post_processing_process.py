@@ -25,7 +25,7 @@ from base_station.replay.processes.post_processing_process import (
     PostProcessingProcess,
 )
 from base_station.replay.processes.server import ReplayProcesses
-from base_station.replay.processes.wire import Job, Line
+from base_station.replay.processes.wire import Job, MessageStream
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.models import Incident
@@ -181,7 +181,7 @@ class KilledAtWork(ReplayProcesses):
 
     is_killed = False
 
-    def start(self, job: Job) -> Line:
+    def start(self, job: Job) -> MessageStream:
         line = super().start(job)
         if not self.is_killed:
             self.is_killed = True
@@ -209,11 +209,11 @@ class AtWork(ReplayProcesses):
         self.begun = threading.Event()
         self.far_end: socket.socket | None = None
 
-    def start(self, job: Job) -> Line:
+    def start(self, job: Job) -> MessageStream:
         assert job.incident_id == "i1"
         ours, self.far_end = socket.socketpair()
         self.begun.set()
-        return Line(ours)
+        return MessageStream(ours)
 
 
 def test_a_station_that_stops_does_not_wait_for_it(desk: Desk) -> None:

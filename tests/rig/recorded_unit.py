@@ -12,7 +12,7 @@ from edge.sample_codec.codec import SampleEncoder
 from edge.sources.registry import open_source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.server import RecordingServer
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from shared.clock import NS_PER_S, ManualClock, SystemClock
 
 U = "FF-01"
@@ -25,7 +25,7 @@ class RecordedUnit:
 
     def __init__(self, folder: Path) -> None:
         self.machine = ManualClock(utc_ns=time.time_ns() - SECONDS * NS_PER_S)
-        self.folder = DataFolder(folder)
+        self.folder = UnitDataFolder(folder)
         self.began_ns = self.machine.utc_ns()
         source = open_source("simulated:climbs-stairs?seed=3")
         raw = SampleEncoder(U, 7)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from edge.samples import SensorDescription
-from edge.simulation.legs import Crawl, Kneel, Ride, Stairs, Stand, Walk
+from edge.simulation.legs import Crawl, Kneel, Ride, StairsLeg, Stand, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.foot.eskf import EskfTracker
@@ -23,8 +23,8 @@ SEED = 101  # with which kneeling on toes and getting up is taken for a contradi
 LEGS = {
     "walks": (Walk(((15.0, 0.0), (15.0, 8.0), (0.0, 8.0))),),
     "runs": (Walk(((40.0, 0.0), (0.0, 0.0)), "run"),),
-    "ladder": (Stairs((0.2, 0.0), 4.2, 14), Stand(2.0), Stairs((0.0, 0.0), -4.2, 14)),
-    "stairs": (Stairs((2.5, 0.0), 1.6, 9), Stand(1.0), Stairs((0.0, 0.0), -1.6, 9)),
+    "ladder": (StairsLeg((0.2, 0.0), 4.2, 14), Stand(2.0), StairsLeg((0.0, 0.0), -4.2, 14)),
+    "stairs": (StairsLeg((2.5, 0.0), 1.6, 9), Stand(1.0), StairsLeg((0.0, 0.0), -1.6, 9)),
     "crawls and kneels": (Crawl(((5.0, 0.0), (0.0, 0.0))), Kneel(20.0)),
 }
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from edge.samples import ImuBatch
-from edge.simulation.legs import Spiral, Stairs, Stand, Turn, Walk
+from edge.simulation.legs import Spiral, StairsLeg, Stand, Turn, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.foot.eskf import EskfTracker
@@ -20,9 +20,9 @@ def flights(rise_m, floors, at_once=1, pace="walk"):
     far, near = (RISERS * 0.28, 0.0), (0.0, 0.0)
     up, down = (
         (
-            Stairs(far, rise, RISERS, at_once, pace),
+            StairsLeg(far, rise, RISERS, at_once, pace),
             Turn(180.0),
-            Stairs(near, rise, RISERS, at_once, pace),
+            StairsLeg(near, rise, RISERS, at_once, pace),
             Turn(0.0),
         )
         for rise in (rise_m, -rise_m)

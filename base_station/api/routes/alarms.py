@@ -27,7 +27,7 @@ router = APIRouter(tags=["alarms"])
 _NO_ALARM = "There is no such alarm."
 
 
-class Change(Answer, frozen=True):
+class AlarmHistoryEntry(Answer, frozen=True):
     """One in the life of an alarm."""
 
     t_ms: int
@@ -38,7 +38,7 @@ class Change(Answer, frozen=True):
 
 
 class AlarmWithLife(AlarmView, frozen=True):
-    changes: tuple[Change, ...]  # oldest first
+    changes: tuple[AlarmHistoryEntry, ...]  # oldest first
 
 
 class Acknowledgement(Form):
@@ -65,7 +65,7 @@ def get_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> AlarmWit
     if alarm is None:
         raise Problem(404, _NO_ALARM)
     changes = tuple(
-        Change(to_ms(life.t_ns), life.state, life.level, life.text, life.by)
+        AlarmHistoryEntry(to_ms(life.t_ns), life.state, life.level, life.text, life.by)
         for life in station.records.alarm_life(alarm_id)
     )
     return AlarmWithLife(**msgspec.structs.asdict(alarm_view(alarm)), changes=changes)

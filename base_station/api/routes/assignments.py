@@ -20,7 +20,7 @@ from shared.messages.station import Assign, Unassign
 router = APIRouter(tags=["assignments"])
 
 
-class Assignment(BaseModel):
+class AssignmentAnswer(BaseModel):
     unit_id: str
     person_id: str
     person_name: str
@@ -38,10 +38,10 @@ class NewAssignment(Form):
 @router.get("/assignments")
 def list_assignments(
     station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
-) -> list[Assignment]:
+) -> list[AssignmentAnswer]:
     """Those that held at some time of the window, newest first."""
     return [
-        Assignment(
+        AssignmentAnswer(
             unit_id=one.unit_id,
             person_id=one.person_id,
             person_name=one.person_name,

@@ -18,7 +18,7 @@ from base_station.views.answer import to_ms
 router = APIRouter(tags=["audit"])
 
 
-class AuditEntry(BaseModel):
+class AuditEntryAnswer(BaseModel):
     entry_id: str
     t_ms: int
     by: str
@@ -50,10 +50,10 @@ def list_audit(
     _: Administrator,
     when: Annotated[Window, Depends(window)],
     limit: Limit = 100,
-) -> list[AuditEntry]:
+) -> list[AuditEntryAnswer]:
     """What was done in the window, newest first."""
     return [
-        AuditEntry(
+        AuditEntryAnswer(
             entry_id=entry.entry_id,
             t_ms=to_ms(entry.t_ns),
             by=entry.by,

@@ -20,7 +20,7 @@ router = APIRouter(tags=["site"], route_class=AuthenticatedRoute)
 LatLon = tuple[float, float]
 
 
-class BaseMap(BaseModel):
+class BaseMapAnswer(BaseModel):
     """Degrees (WGS-84) of three of the picture's corners."""
 
     image_url: str
@@ -30,7 +30,7 @@ class BaseMap(BaseModel):
 
 
 @router.get("/site/base-map")
-def get_base_map(station: Station, _: Viewer) -> BaseMap | None:
+def get_base_map(station: Station, _: Viewer) -> BaseMapAnswer | None:
     found = station.base_maps.corners()
     return None if found is None else _view(*found)
 
@@ -42,7 +42,7 @@ def set_base_map(
     station: Station,
     who: Administrator,
     crs: Annotated[str, Query(max_length=20)] = DEGREES,
-) -> BaseMap:
+) -> BaseMapAnswer:
     """PNG, JPEG or WebP, written anew without its metadata; ``world``: the numbers of its world
     file, in the order of its lines; ``crs``: the grid that they are in, by its EPSG number.
     """
@@ -76,8 +76,8 @@ def get_base_map_image(image_hash: Id, station: Station, _: Viewer) -> Response:
     return Response(webp, media_type="image/webp", headers=headers)
 
 
-def _view(image_hash: str, corners: Corners) -> BaseMap:
-    return BaseMap(
+def _view(image_hash: str, corners: Corners) -> BaseMapAnswer:
+    return BaseMapAnswer(
         image_url=f"/api/v1/site/base-map/{image_hash}",
         upper_left=corners.upper_left,
         upper_right=corners.upper_right,

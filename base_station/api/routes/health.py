@@ -14,7 +14,7 @@ from base_station.views.wire import HealthView
 router = APIRouter(tags=["health"])
 
 
-class Segment(Answer, frozen=True):
+class LogSegmentAnswer(Answer, frozen=True):
     """A file of the log."""
 
     name: str
@@ -29,7 +29,7 @@ class Health(HealthView, frozen=True, kw_only=True):
     """As the consoles see it, and who watches, and what the log is made of."""
 
     consoles: int
-    segments: tuple[Segment, ...]
+    segments: tuple[LogSegmentAnswer, ...]
 
 
 @router.get("/health")
@@ -41,7 +41,7 @@ def get_health(station: Station, _: Viewer) -> Health:
         **msgspec.structs.asdict(view),
         consoles=station.hub.watchers,
         segments=tuple(
-            Segment(
+            LogSegmentAnswer(
                 segment.name,
                 to_ms(segment.first_ns),
                 to_ms(segment.last_ns),

@@ -37,7 +37,7 @@ MOST_NAMED = 2000
 _LEVELS = {rule.name: rule.levels for rule in ALARMS}
 
 
-class Incident(BaseModel):
+class IncidentAnswer(BaseModel):
     incident_id: str
     name: str
     opened_ms: int
@@ -63,7 +63,7 @@ class NewIncident(Form):
     work_limit_s: Seconds | None = None
 
 
-class Closing(Form):
+class ClosingForm(Form):
     """Over what the incident is closed knowingly: what has come up since nobody has seen."""
 
     despite_alarm_ids: Annotated[tuple[AlarmIdText, ...], Field(max_length=MOST_NAMED)] = ()
@@ -88,13 +88,13 @@ def window_of(incident: models.Incident) -> Window:
 @router.get("/incidents")
 def list_incidents(
     station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
-) -> list[Incident]:
+) -> list[IncidentAnswer]:
     """Those opened in the window, newest first."""
     return [_incident(incident) for incident in station.records.incidents(when, limit)]
 
 
 @router.post("/incidents", status_code=201)
-def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incident:
+def open_incident(new: NewIncident, station: Station, perform: Perform) -> IncidentAnswer:
     opened = datetime.fromtimestamp(station.clock.utc_ns() / NS_PER_S, UTC)
     incident_id = f"{opened:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
     usual = station.accountability
@@ -108,7 +108,7 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
     running = station.picture().incident
     if running is None or running.incident_id != opened_id or running.closed_ms is not None:
         return _closed_since(station, opened_id)
-    return Incident(
+    return IncidentAnswer(
         incident_id=running.incident_id,
         name=running.name,
         opened_ms=running.opened_ms,
@@ -119,19 +119,19 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
 
 
 @router.get("/incidents/{incident_id}")
-def get_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> Incident:
+def get_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> IncidentAnswer:
     return _incident(incident_or_404(station, incident_id))
 
 
 @router.post("/incidents/{incident_id}/close", status_code=204)
 def close_incident(
-    incident_id: Id, station: Station, perform: Perform, closing: Closing | None = None
+    incident_id: Id, station: Station, perform: Perform, closing: ClosingForm | None = None
 ) -> None:
     """Refused (409), with their names, where alarms of units are open or people are inside that
     are not in ``closing``; the problem has all their ids as members of the same names.  Orders of
     the incident that have no answer yet are withdrawn.
     """
-    despite = closing or Closing()
+    despite = closing or ClosingForm()
     alarm_ids, unit_ids = despite.despite_alarm_ids, despite.despite_unit_ids
     picture = station.picture()
     running = picture.incident
@@ -163,7 +163,7 @@ def incident_alarms(
     return [_past_alarm(alarm, lives[alarm.alarm_id], was_open) for alarm in alarms]
 
 
-def _closed_since(station: Services, incident_id: str) -> Incident:
+def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
     """For who repeats the request after the incident's end: only the tables have it."""
     station.projection.flush()
     incident = station.records.incident(incident_id)
@@ -194,8 +194,8 @@ def _is_raised_anew(
     return now.state == "raised" and not eased
 
 
-def _incident(incident: models.Incident) -> Incident:
-    return Incident(
+def _incident(incident: models.Incident) -> IncidentAnswer:
+    return IncidentAnswer(
         incident_id=incident.incident_id,
         name=incident.name,
         opened_ms=to_ms(incident.opened_ns),

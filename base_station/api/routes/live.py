@@ -40,7 +40,7 @@ _CHECKING = ThreadPoolExecutor(4, thread_name_prefix="check-login")
 _log = logging.getLogger(__name__)
 
 
-class Closing(Exception):  # noqa: N818  # it is no error
+class WebSocketClosing(Exception):  # noqa: N818  # it is no error
     """Ends a WebSocket with a code and a reason."""
 
     def __init__(self, code: int, reason: str) -> None:
@@ -73,12 +73,12 @@ async def _serve(socket: WebSocket, hub: Hub | None) -> None:
     try:
         await _check_login(socket, services)
         if hub is None:
-            raise Closing(NOT_FOUND, "there is no such replay; it may have ended")
+            raise WebSocketClosing(NOT_FOUND, "there is no such replay; it may have ended")
         await _watch(socket, services, hub)
-    except Closing as closing:
+    except WebSocketClosing as closing:
         await _close(socket, closing)
     except StoreError as error:
-        await _close(socket, Closing(TRY_AGAIN, _as_reason(error)))
+        await _close(socket, WebSocketClosing(TRY_AGAIN, _as_reason(error)))
     except WebSocketDisconnect:
         pass
 
@@ -106,12 +106,12 @@ async def _send(socket: WebSocket, client: Client) -> None:
     while True:
         message = await client.next_message()
         if client.lapses > MOST_LAPSES:
-            raise Closing(TOO_SLOW, "this console is too slow for what happens")
+            raise WebSocketClosing(TOO_SLOW, "this console is too slow for what happens")
         try:
             async with asyncio.timeout(SEND_TIMEOUT_S):
                 await socket.send_text(message.decode())
         except TimeoutError:
-            raise Closing(TOO_SLOW, "this console has stopped reading") from None
+            raise WebSocketClosing(TOO_SLOW, "this console has stopped reading") from None
 
 
 async def _listen(socket: WebSocket, client: Client) -> None:
@@ -119,7 +119,9 @@ async def _listen(socket: WebSocket, client: Client) -> None:
         try:
             msgspec.json.decode(await socket.receive_text(), type=Request)
         except (msgspec.DecodeError, KeyError):
-            raise Closing(NOT_UNDERSTOOD, 'all that can be asked is {"type": "snapshot"}') from None
+            raise WebSocketClosing(
+                NOT_UNDERSTOOD, 'all that can be asked is {"type": "snapshot"}'
+            ) from None
         client.request_snapshot()
 
 
@@ -143,11 +145,11 @@ async def _check_login(socket: WebSocket, services: Services) -> None:
     except TimeoutError:
         raise StoreError("the station's disk does not answer; check it") from None
     if principal is None:
-        raise Closing(NOT_LOGGED_IN, "log in first")
+        raise WebSocketClosing(NOT_LOGGED_IN, "log in first")
     if must_change_password(principal, services):
-        raise Closing(NOT_LOGGED_IN, CHANGE_FIRST)
+        raise WebSocketClosing(NOT_LOGGED_IN, CHANGE_FIRST)
     if not scope_covers(principal, (Scope.LIVE,)):
-        raise Closing(NOT_LOGGED_IN, "this token is not for the live picture")
+        raise WebSocketClosing(NOT_LOGGED_IN, "this token is not for the live picture")
 
 
 def _as_reason(error: StoreError) -> str:
@@ -155,7 +157,7 @@ def _as_reason(error: StoreError) -> str:
     return str(error).encode()[:120].decode(errors="ignore")
 
 
-async def _close(socket: WebSocket, closing: Closing) -> None:
+async def _close(socket: WebSocket, closing: WebSocketClosing) -> None:
     try:
         async with asyncio.timeout(1.0):
             await socket.close(closing.code, closing.reason)

@@ -21,7 +21,7 @@ router = APIRouter(tags=["tracks"])
 EverySeconds = Annotated[int, Query(ge=1, le=3600)]
 
 
-class TrackPoint(Answer, frozen=True):
+class TrackPointAnswer(Answer, frozen=True):
     """NED metres about the site anchor."""
 
     t_ms: int
@@ -38,7 +38,7 @@ class TrackPoint(Answer, frozen=True):
 
 class Track(Answer, frozen=True):
     unit_id: str
-    points: tuple[TrackPoint, ...]
+    points: tuple[TrackPointAnswer, ...]
 
 
 @router.get("/units/{unit_id}/track", response_model=Track)
@@ -72,8 +72,8 @@ def _track(station: Services, unit_id: str, when: Window, every_s: int) -> Track
     return Track(unit_id, tuple(map(_point, points)))
 
 
-def _point(point: TrackSample) -> TrackPoint:
-    return TrackPoint(
+def _point(point: TrackSample) -> TrackPointAnswer:
+    return TrackPointAnswer(
         t_ms=to_ms(point.t_ns),
         north_m=point.north_m,
         east_m=point.east_m,

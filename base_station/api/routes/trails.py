@@ -35,7 +35,7 @@ class TrailKind(StrEnum):
 Point = tuple[int, float, float, int | None]  # t_ms, north_m, east_m, floor
 
 
-class Trail(Answer, frozen=True):
+class TrailAnswer(Answer, frozen=True):
     unit_id: str
     points: tuple[Point, ...]
 
@@ -45,7 +45,7 @@ class Trails(Answer, frozen=True):
     kind: TrailKind
     made_ms: int  # when it was worked out
     is_newest: bool  # False: more of it is coming out of a journal, and is worked out soon
-    trails: tuple[Trail, ...]
+    trails: tuple[TrailAnswer, ...]
 
 
 @router.get("/incidents/{incident_id}/trails", response_model=Trails)
@@ -64,14 +64,16 @@ def incident_trails(
         kind,
         to_ms(made_ns),
         kind is TrailKind.FUSED or hindsight_of(station).is_newest(incident),
-        tuple(_encoded(Trail(unit_id, _points(tracks[unit_id], every_s))) for unit_id in tracks),
+        tuple(
+            _encoded(TrailAnswer(unit_id, _points(tracks[unit_id], every_s))) for unit_id in tracks
+        ),
     )
     return Response(msgspec.json.encode(body), media_type="application/json")
 
 
-def _encoded(trail: Trail) -> Trail:
+def _encoded(trail: TrailAnswer) -> TrailAnswer:
     """Encoded at once: the points of all units are large."""
-    return cast("Trail", msgspec.Raw(msgspec.json.encode(trail)))
+    return cast("TrailAnswer", msgspec.Raw(msgspec.json.encode(trail)))
 
 
 def hindsight_of(station: Services) -> PostProcessor:

@@ -26,7 +26,7 @@ from shared.messages.station import RegisterUnit, SetReference, SetStart
 router = APIRouter(tags=["units"])
 
 
-class Unit(BaseModel):
+class UnitAnswer(BaseModel):
     unit_id: str
     label: str
     registered: bool
@@ -49,7 +49,7 @@ class Label(Form):
     label: ShortText
 
 
-class Start(Form):
+class UnitStartForm(Form):
     """Where the unit's own frame began, in the incident frame, as well as it is known."""
 
     north_m: Metres
@@ -66,12 +66,12 @@ class Reference(Form):
 
 
 @router.get("/units")
-def list_units(station: CurrentStation, _: Viewer) -> list[Unit]:
+def list_units(station: CurrentStation, _: Viewer) -> list[UnitAnswer]:
     return [_unit(unit, worn) for unit, worn in station.roster.units()]
 
 
 @router.post("/units", status_code=201)
-def register_unit(new: NewUnit, station: Station, perform: Perform) -> Unit:
+def register_unit(new: NewUnit, station: Station, perform: Perform) -> UnitAnswer:
     """From now on messages of this unit are believed; registering again changes its label."""
     validate_unit_id(new.unit_id)
     perform(RegisterUnit(new.unit_id, new.label))
@@ -79,14 +79,14 @@ def register_unit(new: NewUnit, station: Station, perform: Perform) -> Unit:
 
 
 @router.put("/units/{unit_id}")
-def label_unit(unit_id: UnitId, change: Label, station: Station, perform: Perform) -> Unit:
+def label_unit(unit_id: UnitId, change: Label, station: Station, perform: Perform) -> UnitAnswer:
     _registered_or_404(station, unit_id)
     perform(RegisterUnit(unit_id, change.label))
     return _unit_as_decided(station, unit_id)
 
 
 @router.put("/units/{unit_id}/start", status_code=204)
-def set_start(unit_id: UnitId, start: Start, station: Station, perform: Perform) -> None:
+def set_start(unit_id: UnitId, start: UnitStartForm, station: Station, perform: Perform) -> None:
     with _not_found_if_unknown(station, unit_id):
         perform(SetStart(unit_id, **start.model_dump()))
 
@@ -117,7 +117,7 @@ def _registered_or_404(station: Services, unit_id: str) -> UnitView:
     raise Problem(404, f"There is no registered unit {unit_id}.")
 
 
-def _unit_as_decided(station: Services, unit_id: str) -> Unit:
+def _unit_as_decided(station: Services, unit_id: str) -> UnitAnswer:
     """As was decided.  What the unit has described itself as is no part of that, and comes from the
     database, as far as that has it now.
     """
@@ -125,7 +125,7 @@ def _unit_as_decided(station: Services, unit_id: str) -> Unit:
     stored = None
     with suppress(StoreError):
         stored = station.roster.unit(unit_id)
-    return Unit(
+    return UnitAnswer(
         unit_id=view.unit_id,
         label=view.label,
         registered=view.registered,
@@ -140,8 +140,8 @@ def _unit_as_decided(station: Services, unit_id: str) -> Unit:
     )
 
 
-def _unit(unit: models.Unit, worn: models.Assignment | None) -> Unit:
-    return Unit(
+def _unit(unit: models.Unit, worn: models.Assignment | None) -> UnitAnswer:
+    return UnitAnswer(
         unit_id=unit.unit_id,
         label=unit.label,
         registered=unit.registered_ns is not None,

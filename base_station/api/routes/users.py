@@ -24,7 +24,7 @@ RoleWord = Literal["viewer", "commander", "administrator"]
 Username = Annotated[str, Path(min_length=1, max_length=80)]
 
 
-class User(BaseModel):
+class UserAnswer(BaseModel):
     username: str
     role: str
     created_ms: int
@@ -48,10 +48,10 @@ class PasswordChange(Form):
 
 
 @router.get("/users")
-def list_users(station: Station, _: Administrator) -> list[User]:
+def list_users(station: Station, _: Administrator) -> list[UserAnswer]:
     sessions = station.accounts.open_sessions()
     return [
-        User(
+        UserAnswer(
             username=user.username,
             role=user.role,
             created_ms=to_ms(user.created_ns),

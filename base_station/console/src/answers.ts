@@ -8,6 +8,14 @@ export interface Acknowledgement {
   last_raised_ms: number;
 }
 
+export interface AlarmHistoryEntry {
+  t_ms: number;
+  state: string;
+  level: string;
+  text: string;
+  by: string;
+}
+
 export interface AlarmView {
   alarm_id: string;
   rule: string;
@@ -34,7 +42,7 @@ export interface AlarmWithLife {
   raised_ms: number;
   last_raised_ms: number;
   changed_ms: number;
-  changes: Change[];
+  changes: AlarmHistoryEntry[];
 }
 
 export interface AnchorForm {
@@ -51,7 +59,7 @@ export interface AnchorView {
   plan_rotation_rad: number;
 }
 
-export interface Assignment {
+export interface AssignmentAnswer {
   unit_id: string;
   person_id: string;
   person_name: string;
@@ -61,7 +69,7 @@ export interface Assignment {
   until_ms: number | null;
 }
 
-export interface AuditEntry {
+export interface AuditEntryAnswer {
   entry_id: string;
   t_ms: number;
   by: string;
@@ -69,7 +77,7 @@ export interface AuditEntry {
   detail: string;
 }
 
-export interface BaseMap {
+export interface BaseMapAnswer {
   image_url: string;
   upper_left: [number, number];
   upper_right: [number, number];
@@ -101,15 +109,7 @@ export interface CarriedOut {
   t_ms: number;
 }
 
-export interface Change {
-  t_ms: number;
-  state: string;
-  level: string;
-  text: string;
-  by: string;
-}
-
-export interface Closing {
+export interface ClosingForm {
   despite_alarm_ids?: string[];
   despite_unit_ids?: string[];
 }
@@ -197,10 +197,10 @@ export interface Health {
   repeated: number;
   reading: number | null;
   consoles: number;
-  segments: Segment[];
+  segments: LogSegmentAnswer[];
 }
 
-export interface Incident {
+export interface IncidentAnswer {
   incident_id: string;
   name: string;
   opened_ms: number;
@@ -228,6 +228,15 @@ export interface Label {
 
 export interface Leads {
   leads: boolean;
+}
+
+export interface LogSegmentAnswer {
+  name: string;
+  first_ms: number;
+  last_ms: number;
+  messages: number;
+  size_bytes: number;
+  note: string;
 }
 
 export interface Me {
@@ -489,15 +498,6 @@ export interface Rest {
 
 export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "enrolments" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
 
-export interface Segment {
-  name: string;
-  first_ms: number;
-  last_ms: number;
-  messages: number;
-  size_bytes: number;
-  note: string;
-}
-
 export interface ShownEnrolment {
   unit_id: string;
   valid_to_ms: number;
@@ -517,15 +517,6 @@ export interface StandbyView {
   other_role: string;
   other_url: string;
   in_step: boolean;
-}
-
-export interface Start {
-  north_m: number;
-  east_m: number;
-  down_m?: number;
-  heading_rad?: number;
-  std_m?: number;
-  heading_std_rad?: number;
 }
 
 export interface StartForm {
@@ -566,10 +557,10 @@ export interface TokenSecret {
 
 export interface Track {
   unit_id: string;
-  points: TrackPoint[];
+  points: TrackPointAnswer[];
 }
 
-export interface TrackPoint {
+export interface TrackPointAnswer {
   t_ms: number;
   north_m: number;
   east_m: number;
@@ -582,7 +573,7 @@ export interface TrackPoint {
   quality: string;
 }
 
-export interface Trail {
+export interface TrailAnswer {
   unit_id: string;
   points: [number, number, number, number | null][];
 }
@@ -594,7 +585,7 @@ export interface Trails {
   kind: TrailKind;
   made_ms: number;
   is_newest: boolean;
-  trails: Trail[];
+  trails: TrailAnswer[];
 }
 
 export interface TrustReport {
@@ -608,7 +599,7 @@ export interface UndoCheckIn {
   unit_id?: string;
 }
 
-export interface Unit {
+export interface UnitAnswer {
   unit_id: string;
   label: string;
   registered: boolean;
@@ -639,11 +630,20 @@ export interface UnitReport {
   people: string[];
 }
 
+export interface UnitStartForm {
+  north_m: number;
+  east_m: number;
+  down_m?: number;
+  heading_rad?: number;
+  std_m?: number;
+  heading_std_rad?: number;
+}
+
 export interface UnitTarget {
   unit_id: string;
 }
 
-export interface User {
+export interface UserAnswer {
   username: string;
   role: string;
   created_ms: number;

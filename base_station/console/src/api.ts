@@ -12,22 +12,22 @@ export type Role = (typeof ROLES)[number];
 /** The document of the API has the role as a string. */
 type WithRole<Answer> = Omit<Answer, "role"> & { role: Role };
 export type Me = WithRole<answers.Me>;
-export type User = WithRole<answers.User>;
+export type User = WithRole<answers.UserAnswer>;
 export type Token = WithRole<answers.Token>;
 export type NewToken = Required<answers.NewToken>;
-export type AuditEntry = answers.AuditEntry;
+export type AuditEntry = answers.AuditEntryAnswer;
 export type Person = answers.PersonView;
-export type UnitDetails = answers.Unit;
+export type UnitDetails = answers.UnitAnswer;
 export type EnrolledUnit = answers.EnrolledUnit;
 export type ShownEnrolment = answers.ShownEnrolment;
-export type Incident = answers.Incident;
+export type Incident = answers.IncidentAnswer;
 export type PastAlarm = answers.PastAlarm;
 /** What an incident is closed over knowingly. */
-export type Despite = Required<answers.Closing>;
+export type Despite = Required<answers.ClosingForm>;
 /** How often everybody is to be heard from, and when to send them to rest. */
 export type Times = answers.Times;
 export type RunningReplay = answers.Replay;
-export type BaseMap = answers.BaseMap;
+export type BaseMap = answers.BaseMapAnswer;
 export type LatLon = BaseMap["upper_left"];
 export type ReplayChange = answers.ReplayChange;
 export type Forgetting = answers.Progress;

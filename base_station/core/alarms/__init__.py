@@ -9,8 +9,8 @@ acknowledging, resolving, latching and hysteresis in time are the ``AlarmManager
 
 from __future__ import annotations
 
-from base_station.core.alarms.battery import Battery
-from base_station.core.alarms.calibration import Calibration
+from base_station.core.alarms.battery import BatteryLow
+from base_station.core.alarms.calibration import CalibrationPoor
 from base_station.core.alarms.cloned_unit import ClonedUnit
 from base_station.core.alarms.fall import Fall
 from base_station.core.alarms.gps_unused import GpsUnused
@@ -37,7 +37,7 @@ ALARMS: tuple[AlarmRule, ...] = (
     MissedCheckIn(),
     Heat(),
     HeatDose(),
-    Battery(),
+    BatteryLow(),
     LinkLost(),
     TrackerDegraded(),
     TrackerGone(),
@@ -48,6 +48,6 @@ ALARMS: tuple[AlarmRule, ...] = (
     TrackerFault(),
     UnknownUnit(),
     ClonedUnit(),
-    Calibration(),
+    CalibrationPoor(),
     RestDue(),
 )

@@ -13,7 +13,7 @@ from shared.messages import Message, Status
 
 
 @dataclass(frozen=True, slots=True)
-class Battery:
+class BatteryLow:
     low: Annotated[float, Within(0.01, 0.9)] = 0.10
     hysteresis: Annotated[float, Within(0.0, 0.5)] = 0.05
     name: str = "battery"

@@ -16,7 +16,7 @@ _DAY_S = 86_400
 
 
 @dataclass(frozen=True, slots=True)
-class Calibration:
+class CalibrationPoor:
     """A unit without any calibration is left alone: not every sensor needs one."""
 
     old_after_days: Annotated[float, Within(1.0, 3650.0)] = 180.0

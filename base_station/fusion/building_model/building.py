@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from base_station.fusion.building_model.stairs import Stairs
+from base_station.fusion.building_model.stairs import LearntStairs
 from base_station.fusion.building_model.straight_segments import Axis, wrap_quarter
 from base_station.fusion.gaussian import at_least
 
@@ -28,10 +28,10 @@ OUTLIER2 = 9.0  # squared standard deviations apart: not about the same
 class KnownStairs(msgspec.Struct, frozen=True):
     """One stairwell: the first observation of each unit."""
 
-    observations: tuple[tuple[str, Stairs], ...]
+    observations: tuple[tuple[str, LearntStairs], ...]
 
     @property
-    def mean(self) -> Stairs:
+    def mean(self) -> LearntStairs:
         if len(self.observations) == 1:
             return self.observations[0][1]
         shared = max(observation.shared_m2 for _, observation in self.observations) * np.eye(2)
@@ -63,7 +63,7 @@ class LearntBuilding(msgspec.Struct, frozen=True):
         axes = (*others, (unit_id, axis))
         return msgspec.structs.replace(self, axes=axes, axis=_mean_axis(axes))
 
-    def match(self, seen: Stairs) -> int | None:
+    def match(self, seen: LearntStairs) -> int | None:
         """Row of the stairs of a climb; -1: new stairs; None: ambiguous."""
         if max(seen.covariance_m2[0], seen.covariance_m2[2]) > SURE_M**2:
             return None
@@ -73,7 +73,7 @@ class LearntBuilding(msgspec.Struct, frozen=True):
         best = odds.index(max(odds))
         return best if odds[best] > ODDS * (1.0 + sum(odds) - odds[best]) else None
 
-    def with_stairs(self, row: int, unit_id: str, seen: Stairs) -> LearntBuilding:
+    def with_stairs(self, row: int, unit_id: str, seen: LearntStairs) -> LearntBuilding:
         """Model with this observation; ``row`` from ``match``. Only the first observation of a unit
         counts.
         """

@@ -37,7 +37,7 @@ class Climb(msgspec.Struct, frozen=True):
     turns: bool  # back on itself: the next storey's stairs lie above
 
 
-class Stairs(msgspec.Struct, frozen=True):
+class LearntStairs(msgspec.Struct, frozen=True):
     """A climb as it was known best, in the incident frame."""
 
     north_m: float
@@ -49,12 +49,12 @@ class Stairs(msgspec.Struct, frozen=True):
     shared_m2: float = SHARED_M2  # of the covariance, each axis: by which everybody errs alike
 
     @staticmethod
-    def at(climb: Climb, place: Floats, covariance: Floats, shared_m2: float) -> Stairs:
+    def at(climb: Climb, place: Floats, covariance: Floats, shared_m2: float) -> LearntStairs:
         """A climb whose middle is estimated there: (2,) and (2, 2)."""
         (north_m, east_m), ((north, cross), (_, east)) = place.tolist(), covariance.tolist()
         spread_m2 = north, cross, east
         levels_m = climb.low_m, climb.high_m
-        return Stairs(north_m, east_m, spread_m2, *levels_m, climb.turns, shared_m2)
+        return LearntStairs(north_m, east_m, spread_m2, *levels_m, climb.turns, shared_m2)
 
     @property
     def variance_m2(self) -> float:
@@ -65,7 +65,7 @@ class Stairs(msgspec.Struct, frozen=True):
         north, cross, east = self.covariance_m2
         return np.array([self.north_m, self.east_m]), np.array([[north, cross], [cross, east]])
 
-    def reframed(self, turn_rad: float, north_m: float, east_m: float) -> Stairs:
+    def reframed(self, turn_rad: float, north_m: float, east_m: float) -> LearntStairs:
         """The incident frame was moved: turned clockwise, then shifted."""
         moved_m = rotate(self.north_m, self.east_m, turn_rad)
         cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
@@ -78,7 +78,7 @@ class Stairs(msgspec.Struct, frozen=True):
             covariance_m2=(north, cross, east),
         )
 
-    def odds(self, other: Stairs) -> float:
+    def odds(self, other: LearntStairs) -> float:
         """That both are the same and not two, by where they are."""
         apart_m = abs(self.low_m - other.low_m), abs(self.high_m - other.high_m)
         if not (self.turns and other.turns) and max(apart_m) > SAME_LEVEL_M:

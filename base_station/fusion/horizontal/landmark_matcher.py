@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 
 from base_station.fusion.building_model.building import LearntBuilding
 from base_station.fusion.building_model.dominant_direction import DominantDirectionFilter
-from base_station.fusion.building_model.stairs import SHARED_M2, STD_M, Climb, ClimbDetector, Stairs
+from base_station.fusion.building_model.stairs import (
+    SHARED_M2,
+    STD_M,
+    Climb,
+    ClimbDetector,
+    LearntStairs,
+)
 from base_station.fusion.building_model.straight_segments import (
     Drift,
     SegmentDetector,
@@ -75,7 +81,7 @@ class LandmarkMatcher(msgspec.Struct):
     ) -> LearntBuilding:
         since = climb.since_north_m, climb.since_east_m
         place, covariance = horizontal.place_before(*since)
-        seen = Stairs.at(climb, place, covariance, self.shared_m2)
+        seen = LearntStairs.at(climb, place, covariance, self.shared_m2)
         row = learnt.match(seen)
         if row is None:
             return learnt

@@ -24,7 +24,7 @@ _LEVEL = 3
 Records = NDArray[np.void]  # every column "<i8", the first one the time
 
 
-class Chunk(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class RowChunk(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Times are as in the rows."""
 
     first: int  # the earliest time
@@ -36,7 +36,7 @@ class Chunk(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class Packed(msgspec.Struct, array_like=True):
     """Chunks in the order in which their rows came."""
 
-    chunks: list[Chunk] = msgspec.field(default_factory=list)
+    chunks: list[RowChunk] = msgspec.field(default_factory=list)
 
     def __bool__(self) -> bool:
         return bool(self.chunks)
@@ -82,12 +82,12 @@ class Packed(msgspec.Struct, array_like=True):
         return slice(alike[0], alike[0] + 2) if len(alike) > MOST_CHUNKS else None
 
 
-def _chunk(rows: Records, thinned: int = 0) -> Chunk:
+def _chunk(rows: Records, thinned: int = 0) -> RowChunk:
     times = _times(rows)
-    return Chunk(int(times.min()), int(times.max()), thinned, _compressed(_columns(rows)))
+    return RowChunk(int(times.min()), int(times.max()), thinned, _compressed(_columns(rows)))
 
 
-def _rows(chunk: Chunk, row: np.dtype[np.void]) -> Records:
+def _rows(chunk: RowChunk, row: np.dtype[np.void]) -> Records:
     columns = _decompressed(chunk.columns, len(row.names or ()))
     rows: Records = np.ascontiguousarray(columns.T).view(row)
     return rows.ravel()

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from base_station.fusion.building_model.building import SURE_M
-from base_station.fusion.building_model.stairs import Climb, ClimbDetector, Stairs
+from base_station.fusion.building_model.stairs import Climb, ClimbDetector, LearntStairs
 from base_station.fusion.odometry.points import BREAK, RESTART
 from base_station.fusion.smoothing.chain import Chain, PathEstimate, place_of
 from base_station.fusion.smoothing.landmarks import Landmark, Visit
@@ -31,10 +31,10 @@ TAIL = 2.4
 class _Known:
     """Stairwell with its visits."""
 
-    stairs: Stairs  # as all climbs on it tell
+    stairs: LearntStairs  # as all climbs on it tell
     visits: list[Visit] = field(default_factory=list)
 
-    def take(self, stairs: Stairs, visit: Visit) -> None:
+    def take(self, stairs: LearntStairs, visit: Visit) -> None:
         self.visits.append(visit)
         if len(self.visits) == 1:
             return
@@ -54,7 +54,7 @@ def find_stairs(
 ) -> list[Landmark]:
     """``spreads`` (k, n, n) by unit: of the knots, without what all units err by together."""
     climbs = [
-        (Stairs.at(climb, *_placed(visit, estimates, spreads), 0.0), visit)
+        (LearntStairs.at(climb, *_placed(visit, estimates, spreads), 0.0), visit)
         for unit_id, chain in chains.items()
         for climb, visit in _climbs(unit_id, chain)
         if estimates[unit_id].aligned[visit.knot]

@@ -59,7 +59,7 @@ class PostProcessingProcess(PostProcessor):
         super().__init__(archive, smoother, store, clock)
         self._place = place
         self._lock = Lock()  # guards what follows
-        self._line: wire.Line | None = None  # to the process that is at work
+        self._line: wire.MessageStream | None = None  # to the process that is at work
         self._closed = False
 
     def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
@@ -91,7 +91,7 @@ class PostProcessingProcess(PostProcessor):
             if self._line is not None:
                 self._line.hang_up()
 
-    def _begin(self, incident: Incident) -> wire.Line:
+    def _begin(self, incident: Incident) -> wire.MessageStream:
         self._place.prepare()
         with self._lock:
             if self._closed:
@@ -117,12 +117,12 @@ class PostProcessingProcess(PostProcessor):
         )
 
     def _follow(
-        self, incident: Incident, line: wire.Line, on_progress: Progress
+        self, incident: Incident, line: wire.MessageStream, on_progress: Progress
     ) -> PostProcessingResult:
         smoothed, raw = dict[str, bytes](), dict[str, bytes]()
         while (encoded := line.receive()) is not None:
             match wire.read_look_back(encoded):
-                case wire.Progress(done):
+                case wire.ProgressFrame(done):
                     on_progress(done)
                 case wire.UnitTrails(unit_id, of_unit, own):
                     smoothed |= {} if of_unit is None else {unit_id: of_unit}

@@ -15,10 +15,10 @@ from base_station.process import gc_tuning
 from base_station.replay.post_processing import PostProcessingResult, PostProcessor, Tracks
 from base_station.replay.processes.wire import (
     Failure,
-    Line,
+    MessageStream,
     PostProcessingJob,
     PostProcessingResultFrame,
-    Progress,
+    ProgressFrame,
     UnitTrails,
 )
 from base_station.storage.db.models import Incident
@@ -44,7 +44,7 @@ class StationTime:
         return self._clock.monotonic_ns()
 
 
-def stand_back(line: Line) -> None:
+def stand_back(line: MessageStream) -> None:
     """Lowers its priority below live work, and ends when the socket is closed."""
     os.nice(_NICE)
     gc_tuning.return_free_memory()
@@ -52,7 +52,7 @@ def stand_back(line: Line) -> None:
 
 
 @contextmanager
-def bounded(job: PostProcessingJob, line: Line) -> Iterator[None]:
+def bounded(job: PostProcessingJob, line: MessageStream) -> Iterator[None]:
     """Beyond so much memory it is told that it is not done, and why."""
     before, most = resource.getrlimit(resource.RLIMIT_DATA)
     resource.setrlimit(resource.RLIMIT_DATA, (job.memory_mb * 1_000_000, most))
@@ -78,19 +78,19 @@ def incident_of(job: PostProcessingJob) -> Incident:
 
 
 def post_process(
-    job: PostProcessingJob, post_processor: PostProcessor, live: Tracks, line: Line
+    job: PostProcessingJob, post_processor: PostProcessor, live: Tracks, line: MessageStream
 ) -> None:
     reported = [0.0]
 
     def report_progress(done: float) -> None:
         if done - reported[0] >= _STEP or done >= 1.0:
             reported[0] = done
-            line.send(Progress(done))
+            line.send(ProgressFrame(done))
 
     _send_result(post_processor.post_process(incident_of(job), live, report_progress), line)
 
 
-def _send_result(made: PostProcessingResult, line: Line) -> None:
+def _send_result(made: PostProcessingResult, line: MessageStream) -> None:
     if not made.is_kept:
         for unit_id in sorted({*made.smoothed, *made.raw}):
             line.send(
@@ -113,7 +113,7 @@ def _too_large(job: PostProcessingJob) -> str:
     )
 
 
-def _end_with(line: Line) -> None:
+def _end_with(line: MessageStream) -> None:
     while line.receive() is not None:
         pass
     os._exit(1)

@@ -20,7 +20,7 @@ from base_station.replay.processes.wire import (
     Command,
     Damage,
     DeltaFrame,
-    Line,
+    MessageStream,
     Pause,
     Photos,
     Play,
@@ -33,7 +33,7 @@ from base_station.replay.processes.wire import (
     ViewFrame,
     read_replay,
 )
-from base_station.replay.session import GRACE_S, PAUSED_S, Window, checked_speed
+from base_station.replay.session import GRACE_S, PAUSED_S, ReplayWindow, checked_speed
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import ReplayView, Snapshot
 from shared.clock import NS_PER_MS
@@ -72,7 +72,7 @@ class ReplayProcess:
     """
 
     def __init__(
-        self, place: ReplayContext, window: Window, speed: float, sink: EncodedSink
+        self, place: ReplayContext, window: ReplayWindow, speed: float, sink: EncodedSink
     ) -> None:
         """It plays from the window's beginning.  Raises UserError for an impossible speed.
 
@@ -80,7 +80,7 @@ class ReplayProcess:
         """
         self._place, self._window, self._sink = place, window, sink
         self._lock = threading.Lock()  # guards what follows
-        self._line: Line | None = None  # to the process, as soon as that is there
+        self._line: MessageStream | None = None  # to the process, as soon as that is there
         self._unsent: list[Command] = []
         self._commands = 0  # given so far
         self._view = _first_view(window, checked_speed(speed))
@@ -175,7 +175,7 @@ class ReplayProcess:
             )
         self._over.set()
 
-    def _begin(self) -> Line | None:
+    def _begin(self) -> MessageStream | None:
         self._place.prepare()
         window = self._window
         job = ReplayJob(
@@ -199,7 +199,7 @@ class ReplayProcess:
                 return None
         return line
 
-    def _follow(self, line: Line) -> None:
+    def _follow(self, line: MessageStream) -> None:
         publisher = ConsolePublisher(self._place.empty_pipeline(), self._sink, self._photos.get)
         waited_s = 0.0
         while not self._is_shown:
@@ -223,7 +223,7 @@ class ReplayProcess:
         while self._asked:
             self._asked.popleft()(*publisher.snapshot(view))
 
-    def _take_next(self, line: Line) -> bool:
+    def _take_next(self, line: MessageStream) -> bool:
         encoded = line.receive()
         if encoded is None or self._closed.is_set():
             return False
@@ -256,7 +256,7 @@ class ReplayProcess:
             deliver(snapshot, trails)
 
 
-def _first_view(window: Window, speed: float) -> ReplayView:
+def _first_view(window: ReplayWindow, speed: float) -> ReplayView:
     return ReplayView(
         incident_id=window.incident_id,
         start_ms=window.start_ns // NS_PER_MS,

@@ -11,7 +11,7 @@ from base_station.replay.playback import Archive
 from base_station.replay.processes.wire import (
     Command,
     DeltaFrame,
-    Line,
+    MessageStream,
     Pause,
     Photos,
     Play,
@@ -23,15 +23,15 @@ from base_station.replay.processes.wire import (
     ViewFrame,
     read_command,
 )
-from base_station.replay.session import ReplaySession, Window
+from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.views.wire import Delta, Snapshot
 from shared.clock import Clock
 from shared.errors import StoreError
 
 
-def replay(job: ReplayJob, archive: Archive, clock: Clock, line: Line) -> None:
+def replay(job: ReplayJob, archive: Archive, clock: Clock, line: MessageStream) -> None:
     """Until the line is closed, or the replay breaks off."""
-    window = Window(job.incident_id, job.start_ns, job.end_ns)
+    window = ReplayWindow(job.incident_id, job.start_ns, job.end_ns)
     work = _ReplayWork(line)
     session = ReplaySession(archive, window, job.speed, work, work.photo_url, clock)
     work.begin(session)
@@ -43,7 +43,7 @@ def replay(job: ReplayJob, archive: Archive, clock: Clock, line: Line) -> None:
 class _ReplayWork:
     """The replay's ``LiveSink``, and who moves it."""
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: MessageStream) -> None:
         self._line = line
         self._encoder = msgspec.json.Encoder()
         self._photo_urls: dict[str, str] = {}

@@ -18,7 +18,7 @@ from threading import Lock
 from types import TracebackType
 
 from base_station.process import compiled_core
-from base_station.replay.processes.wire import Job, Line
+from base_station.replay.processes.wire import Job, MessageStream
 from shared.errors import StoreError
 
 IDLE_S = 600.0  # after the last use it is ended: its memory may be wanted
@@ -49,7 +49,7 @@ class ReplayProcesses:
     ) -> None:
         self.close()
 
-    def start(self, job: Job) -> Line:
+    def start(self, job: Job) -> MessageStream:
         """A process that does this; it ends when the line to it is closed.
 
         Raises StoreError where no process can be started.
@@ -67,7 +67,7 @@ class ReplayProcesses:
                     ours = self._new_process()
                 except OSError as error:
                     raise StoreError(f"no process can be started: {error}") from error
-        line = Line(ours)
+        line = MessageStream(ours)
         line.send(job)
         return line
 

@@ -94,7 +94,7 @@ class Damage(msgspec.Struct, frozen=True, tag="damage"):
     what: str
 
 
-class Progress(msgspec.Struct, frozen=True, tag="progress"):
+class ProgressFrame(msgspec.Struct, frozen=True, tag="progress"):
     done: float
 
 
@@ -124,10 +124,10 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
 Job = ReplayJob | PostProcessingJob
 Command = Play | Pause | Seek | SetSpeed | Photos | SnapshotRequest
 ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
-PostProcessingReport = Progress | UnitTrails | PostProcessingResultFrame | Damage | Failure
+PostProcessingReport = ProgressFrame | UnitTrails | PostProcessingResultFrame | Damage | Failure
 
 
-class Line:
+class MessageStream:
     """One end of a stream of messages; ``send`` and ``hang_up`` from any thread, one reads."""
 
     def __init__(self, end: socket.socket) -> None:

@@ -14,7 +14,7 @@ from shared.out_file import write_secret
 from shared.tls import TlsIdentity, check_identity
 
 
-class _Table(msgspec.Struct, forbid_unknown_fields=True):
+class _EnrolmentTable(msgspec.Struct, forbid_unknown_fields=True):
     station: str
     authority: str
     certificate: str
@@ -48,7 +48,7 @@ class StationEnrolment:
 def read_station_enrolment(path: Path) -> StationEnrolment:
     """Raises ConfigError, one sentence that names the file and what to do."""
     try:
-        table = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), _Table)
+        table = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), _EnrolmentTable)
         registry = msgspec.json.decode(table.registry, type=Registry)
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} cannot be read: {error}") from error

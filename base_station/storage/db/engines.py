@@ -29,7 +29,7 @@ _PRAGMAS = (
 )
 
 
-class Change(NamedTuple):
+class Statement(NamedTuple):
     """One statement of a transaction, to be executed again elsewhere."""
 
     statement: str
@@ -54,7 +54,7 @@ def memory_engine(connect: Callable[[], sqlite3.Connection]) -> Engine:
     return _configured(engine, ("foreign_keys = ON", "temp_store = MEMORY"))
 
 
-def writing(engine: Engine, changes: list[Change]) -> Engine:
+def writing(engine: Engine, changes: list[Statement]) -> Engine:
     """An engine whose transactions wait for each other; what they change is noted in
     ``changes``.
     """
@@ -91,6 +91,6 @@ def _configured(engine: Engine, pragmas: tuple[str, ...]) -> Engine:
         if changes is not None and statement.lstrip()[:7].upper().startswith(_CHANGING):
             # Of many rows in one statement it says many, too, and they are one row of parameters.
             is_many = executemany and isinstance(parameters[0], tuple | dict | list)
-            changes.append(Change(statement, parameters, is_many))
+            changes.append(Statement(statement, parameters, is_many))
 
     return engine

@@ -15,7 +15,7 @@ from sqlalchemy import Engine, text
 from sqlalchemy.exc import SQLAlchemyError
 
 from base_station.storage.db.copying import copy_tables, reading_on_full_disk
-from base_station.storage.db.engines import BUSY_TIMEOUT_S, Change, memory_engine, writing
+from base_station.storage.db.engines import BUSY_TIMEOUT_S, Statement, memory_engine, writing
 from base_station.storage.db.migrate import migrate
 from base_station.storage.db.models import (
     Base,
@@ -46,7 +46,7 @@ class MemoryCopy:
         self._name = f"file:/muster-{secrets.token_hex(8)}?vfs=memdb"
         self._keeper = self._connect()  # the database is there for as long as one is connected
         self.engine = memory_engine(self._connect)
-        self._waiting: list[list[Change]] = []
+        self._waiting: list[list[Statement]] = []
         try:
             if not self.is_new:
                 self._fill(is_open=is_open)
@@ -67,12 +67,12 @@ class MemoryCopy:
     def is_full(self) -> bool:
         return len(self._waiting) >= _WAITING_MAX
 
-    def keep(self, changes: list[Change]) -> None:
+    def keep(self, changes: list[Statement]) -> None:
         """A transaction that has been committed here is to be done in the file, too."""
         if changes:
             self._waiting.append(changes)
 
-    def execute(self, changes: list[Change]) -> None:
+    def execute(self, changes: list[Statement]) -> None:
         """A transaction that the disk did not take.  Raises SQLAlchemyError or sqlite3.Error."""
         with writing(self.engine, []).begin() as connection:
             for change in changes:

@@ -24,7 +24,7 @@ from base_station.storage.db.engines import (
     DAMAGE,
     NO_ROOM,
     NOT_OURS,
-    Change,
+    Statement,
     code_of,
     file_engine,
     writing,
@@ -209,9 +209,9 @@ class Store:
         self._tried_s = time.monotonic()
         self._engine = self._memory.engine
 
-    def _begun(self) -> tuple[Session, list[Change]]:
+    def _begun(self) -> tuple[Session, list[Statement]]:
         """A session that nobody else writes beside.  Raises StoreError."""
-        changes: list[Change] = []
+        changes: list[Statement] = []
         session = Session(writing(self._engine, changes), expire_on_commit=False)
         try:
             session.connection()
@@ -236,7 +236,7 @@ class Store:
                 before.dispose()
         return StoreError(f"the database did not take a change: {cause}")
 
-    def _commit_in_memory(self, error: SQLAlchemyError, changes: list[Change]) -> None:
+    def _commit_in_memory(self, error: SQLAlchemyError, changes: list[Statement]) -> None:
         """What the disk did not take in the end.  Raises StoreError."""
         was_in_memory = self.in_memory
         refusal = self._not_taken(error)

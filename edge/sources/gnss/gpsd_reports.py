@@ -119,11 +119,11 @@ class Error(msgspec.Struct):
     message: str = ""
 
 
-class Other(msgspec.Struct):
+class OtherReport(msgspec.Struct):
     """Report of no use here."""
 
 
-GpsdReport = Tpv | Sky | Gst | Device | Devices | Error | Other
+GpsdReport = Tpv | Sky | Gst | Device | Devices | Error | OtherReport
 _READ: dict[str, type[GpsdReport]] = {
     "TPV": Tpv,
     "SKY": Sky,
@@ -140,7 +140,7 @@ def report_of(line: bytes) -> GpsdReport | None:
         return None
     try:
         kind = msgspec.json.decode(line, type=_Class).cls
-        return msgspec.json.decode(line, type=_READ.get(kind, Other))
+        return msgspec.json.decode(line, type=_READ.get(kind, OtherReport))
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
         raise WireError(f"not what gpsd says ({error})") from error
 

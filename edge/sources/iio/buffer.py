@@ -19,7 +19,7 @@ from edge.samples import Floats
 from edge.sources.iio.attributes import UnusableDeviceError, read_shared_number
 from edge.sources.iio.block import Block
 from edge.sources.iio.conversion import TEMPERATURE, TIMESTAMP, axes_of, read_conversion
-from edge.sources.iio.plan import Plan
+from edge.sources.iio.plan import CapturePlan
 from edge.sources.iio.sample_times import choose_clock
 from edge.sources.iio.scan_elements import FrameLayout, element_names, enabled_elements
 from edge.sources.iio.stream_monitor import StreamMonitor
@@ -49,7 +49,7 @@ class BufferReader:
         device: Path,
         node: Path,
         kinds: tuple[str, ...],
-        plan: Plan,
+        plan: CapturePlan,
         trigger: Trigger | None,
         clock: Clock,
     ) -> None:

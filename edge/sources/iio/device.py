@@ -11,7 +11,7 @@ from edge.sources.iio.attributes import IIO_DEVICES, UnusableDeviceError
 from edge.sources.iio.block import DeviceReader
 from edge.sources.iio.buffer import BufferReader, can_be_captured
 from edge.sources.iio.conversion import ACCEL, GYRO, axes_of
-from edge.sources.iio.plan import USUAL_RATE_HZ, Plan, plan_capture, plan_polling
+from edge.sources.iio.plan import USUAL_RATE_HZ, CapturePlan, plan_capture, plan_polling
 from edge.sources.iio.polling import POLLING_RATE_HZ, PollingReader
 from edge.sources.iio.settings import IioSettings
 from edge.sources.iio.trigger import Trigger, find_trigger, needs_trigger
@@ -35,7 +35,7 @@ class InertialDevice:
 
     name: DeviceName
     kinds: tuple[str, ...]  # of channels that are wanted of it
-    plan: Plan
+    plan: CapturePlan
     is_captured: bool  # otherwise it is polled
     open: Callable[[Clock], DeviceReader]  # raises OSError and UnusableDeviceError
 

@@ -20,7 +20,7 @@ _RANGE_TOLERANCE = 0.03  # nominal ranges are rounded
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class CapturePlan:
     """Attributes to set, in order, and what comes of it."""
 
     writes: tuple[tuple[Path, str], ...]
@@ -34,7 +34,7 @@ class Plan:
             write_text(path, text)
 
 
-def plan_capture(device: Path, kinds: Iterable[str], asked_hz: float | None) -> Plan:
+def plan_capture(device: Path, kinds: Iterable[str], asked_hz: float | None) -> CapturePlan:
     """Return the plan of a device that gives its samples by itself.
 
     ``asked_hz`` None: nearest to the usual.  Raises OSError and UnusableDeviceError.
@@ -55,10 +55,10 @@ def plan_capture(device: Path, kinds: Iterable[str], asked_hz: float | None) -> 
                 f"gives {rate_hz:g}: write ?rate={rate_hz:g}, or another one that it offers"
             )
     ranges, full_scales = _plan_ranges(device, kinds)
-    return Plan((*ranges, *writes.items()), rate_hz, full_scales, remark)
+    return CapturePlan((*ranges, *writes.items()), rate_hz, full_scales, remark)
 
 
-def plan_polling(device: Path, kinds: Iterable[str], rate_hz: float) -> Plan:
+def plan_polling(device: Path, kinds: Iterable[str], rate_hz: float) -> CapturePlan:
     """Return the plan of a device that is read ``rate_hz`` times a second, whenever it has
     measured: it measures more often.
 
@@ -70,7 +70,7 @@ def plan_polling(device: Path, kinds: Iterable[str], rate_hz: float) -> Plan:
         if path is not None and offered:
             writes[path] = least_reaching(offered, _OVERSAMPLING * rate_hz)
     ranges, full_scales = _plan_ranges(device, kinds)
-    return Plan((*ranges, *writes.items()), rate_hz, full_scales)
+    return CapturePlan((*ranges, *writes.items()), rate_hz, full_scales)
 
 
 def nearest(offered: str, wanted: float) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from edge.sources.iio.attributes import read_number, read_scaled
 from edge.sources.iio.block import Block
 from edge.sources.iio.conversion import TEMPERATURE, axes_of, read_conversion
-from edge.sources.iio.plan import Plan
+from edge.sources.iio.plan import CapturePlan
 from edge.sources.iio.stream_monitor import StreamMonitor
 from shared.clock import NS_PER_S, Clock
 
@@ -27,7 +27,9 @@ class PollingReader:
 
     descriptor = None
 
-    def __init__(self, device: Path, kinds: tuple[str, ...], plan: Plan, clock: Clock) -> None:
+    def __init__(
+        self, device: Path, kinds: tuple[str, ...], plan: CapturePlan, clock: Clock
+    ) -> None:
         """Raises OSError and UnusableDeviceError."""
         self._device = device
         self._clock = clock

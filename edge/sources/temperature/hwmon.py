@@ -14,7 +14,7 @@ from pathlib import Path
 from edge.sources.device_name import find_device, listing, parse_device_name
 from edge.sources.polled_device import Unreadable
 from edge.sources.sysfs import number_in, read_if_there, read_text
-from edge.sources.temperature.interface import Role
+from edge.sources.temperature.interface import SensorRole
 from shared.errors import ConfigError
 
 # Chips that measure the machine itself, by their drivers' names.
@@ -29,19 +29,19 @@ _INPUT = re.compile(r"(temp\d+)_input")
 class HwmonSensor:
     """Sensor ``CHIP[@ADDRESS][/INPUT]``; INPUT is the label or ``temp1``."""
 
-    def __init__(self, text: str, role: Role, sysfs: Path) -> None:
+    def __init__(self, text: str, role: SensorRole, sysfs: Path) -> None:
         """Raises ConfigError."""
         self._wanted = parse_device_name("hwmon", text)
         self._role = role
         self._folder = sysfs / "class" / "hwmon"
-        if role is Role.ENVIRONMENT and _MACHINE.fullmatch(self._wanted.name):
+        if role is SensorRole.ENVIRONMENT and _MACHINE.fullmatch(self._wanted.name):
             raise ConfigError(f"hwmon:{text}: {_refusal(self._wanted.name)}")
 
     def read_degc(self) -> float | Unreadable:
         chip = find_device(self._folder, self._wanted, "hwmon chip")
         if isinstance(chip, Unreadable):
             return chip
-        if self._role is Role.ENVIRONMENT and _is_thermal_zone(chip):
+        if self._role is SensorRole.ENVIRONMENT and _is_thermal_zone(chip):
             return Unreadable(_refusal(self._wanted.name))
         found = self._input(chip)
         if isinstance(found, Unreadable):

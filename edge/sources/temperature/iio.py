@@ -23,7 +23,7 @@ from edge.sources.iio.attributes import (
     read_scaled,
 )
 from edge.sources.polled_device import Unreadable
-from edge.sources.temperature.interface import Role
+from edge.sources.temperature.interface import SensorRole
 from shared.errors import ConfigError
 
 _CHANNEL = re.compile(r"in_temp_?(\w*?)_?(?:raw|input)")
@@ -39,11 +39,11 @@ _FAULTS = {
 class IioSensor:
     """Sensor ``NAME[@ADDRESS][/CHANNEL]``; CHANNEL is what stands behind ``in_temp`` in sysfs."""
 
-    def __init__(self, text: str, role: Role, sysfs: Path) -> None:
+    def __init__(self, text: str, role: SensorRole, sysfs: Path) -> None:
         """Raises ConfigError."""
         self._wanted = parse_device_name("iio", text)
         self._folder = sysfs / IIO_DEVICES
-        if self._wanted.channel == _COLD_JUNCTION and role is Role.ENVIRONMENT:
+        if self._wanted.channel == _COLD_JUNCTION and role is SensorRole.ENVIRONMENT:
             raise ConfigError(
                 f"iio:{text}: {_COLD_JUNCTION} is the cold junction, which is the converter's own "
                 "temperature; write role=electronics to have it as that"

@@ -13,7 +13,7 @@ from edge.sources.polled_device import Unreadable
 RANGE_DEGC = (-55.0, 1250.0)  # what any of them can measure; beyond is a fault, not heat
 
 
-class Role(StrEnum):
+class SensorRole(StrEnum):
     """Place whose temperature a sensor measures."""
 
     ENVIRONMENT = "environment"  # the air around the equipment: heat alarms
@@ -33,5 +33,7 @@ class SensorKind:
     """Kind of temperature sensor, as written ``scheme:argument``."""
 
     scheme: str
-    make: Callable[[str, Role, Path], TemperatureSensor]  # argument, role, where sysfs is mounted
+    make: Callable[
+        [str, SensorRole, Path], TemperatureSensor
+    ]  # argument, role, where sysfs is mounted
     argument: str  # what stands after the colon, for help texts

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from edge.samples import AmbientSample, ElectronicsSample
 from edge.sources.polled_device import PolledDevice, Unreadable
-from edge.sources.temperature.interface import RANGE_DEGC, Role, TemperatureSensor
+from edge.sources.temperature.interface import RANGE_DEGC, SensorRole, TemperatureSensor
 from shared.clock import Clock
 
 _PERIOD_S = 0.5
@@ -20,7 +20,7 @@ class NamedSensor:
 
     name: str
     text: str  # as in the settings, for a person
-    role: Role
+    role: SensorRole
     sensor: TemperatureSensor
 
     def read(self, clock: Clock) -> AmbientSample | ElectronicsSample | Unreadable:
@@ -34,7 +34,7 @@ class NamedSensor:
                 f"it shows {shown}, which is not between {least_degc:g} and {most_degc:g} °C: the "
                 "sensor is open, shorted or set wrongly"
             )
-        kind = AmbientSample if self.role is Role.ENVIRONMENT else ElectronicsSample
+        kind = AmbientSample if self.role is SensorRole.ENVIRONMENT else ElectronicsSample
         return kind(clock.monotonic_ns(), found, self.name)
 
 

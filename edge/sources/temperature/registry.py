@@ -11,7 +11,7 @@ from urllib.parse import parse_qsl
 from edge.sources.sysfs import SYSFS
 from edge.sources.temperature.hwmon import HwmonSensor
 from edge.sources.temperature.iio import IioSensor
-from edge.sources.temperature.interface import Role, SensorKind
+from edge.sources.temperature.interface import SensorKind, SensorRole
 from edge.sources.temperature.reader import NamedSensor, TemperatureReader
 from edge.sources.temperature.w1 import W1Sensor
 from shared.clock import Clock
@@ -48,7 +48,7 @@ def _named_sensor(text: str, sysfs: Path) -> NamedSensor:
     place, _, options = text.partition("?")
     scheme, colon, argument = place.partition(":")
     values = _options(text, options)
-    role = _role(text, values.get("role", Role.ENVIRONMENT))
+    role = _role(text, values.get("role", SensorRole.ENVIRONMENT))
     name = values.get("name", argument)
     for kind in TEMPERATURE_SENSORS:
         if colon and argument and kind.scheme == scheme:
@@ -77,9 +77,9 @@ def _options(text: str, options: str) -> dict[str, str]:
     return values
 
 
-def _role(text: str, value: str) -> Role:
+def _role(text: str, value: str) -> SensorRole:
     try:
-        return Role(value)
+        return SensorRole(value)
     except ValueError:
-        roles = ", ".join(Role)
+        roles = ", ".join(SensorRole)
         raise ConfigError(f"{text}: the role is {value!r}; known are {roles}") from None

@@ -14,7 +14,7 @@ from pathlib import Path
 from edge.sources.device_name import listing
 from edge.sources.polled_device import Unreadable
 from edge.sources.sysfs import devices_in, number_in, read_if_there, read_text
-from edge.sources.temperature.interface import Role
+from edge.sources.temperature.interface import SensorRole
 from shared.errors import ConfigError
 
 _ID = re.compile(r"(?:10|22|28|3b|42)-[0-9a-f]{12}")
@@ -26,7 +26,7 @@ _STEP_DEGC = 15.0  # what the air may change by between two readings
 class W1Sensor:
     """Sensor of an id such as ``28-0316a2794faa``."""
 
-    def __init__(self, text: str, role: Role, sysfs: Path) -> None:  # noqa: ARG002  # any role will do
+    def __init__(self, text: str, role: SensorRole, sysfs: Path) -> None:  # noqa: ARG002  # any role will do
         """Raises ConfigError."""
         if not _ID.fullmatch(text):
             raise ConfigError(

@@ -46,13 +46,13 @@ class Inertial:
 
 
 @dataclass(frozen=True, slots=True)
-class Magnetometer:
+class MagnetometerMessage:
     t_us: int
     field: Vector  # 1 is the magnitude of the field in which it was calibrated, about 50 uT
 
 
 @dataclass(frozen=True, slots=True)
-class Temperature:
+class TemperatureMessage:
     """Temperature inside the inertial sensor."""
 
     t_us: int
@@ -60,7 +60,7 @@ class Temperature:
 
 
 @dataclass(frozen=True, slots=True)
-class Battery:
+class BatteryMessage:
     t_us: int
     level: float  # 0 empty ... 1 full
     state: BatteryState
@@ -80,11 +80,19 @@ class Notification:
 
 
 @dataclass(frozen=True, slots=True)
-class Other:
+class OtherMessage:
     """Understood to be a message, of a kind that nobody here needs."""
 
 
-Message = Inertial | Magnetometer | Temperature | Battery | Button | Notification | Other
+Message = (
+    Inertial
+    | MagnetometerMessage
+    | TemperatureMessage
+    | BatteryMessage
+    | Button
+    | Notification
+    | OtherMessage
+)
 
 
 class Frames:
@@ -118,7 +126,7 @@ def _from_text(frame: bytes) -> Message:
     except UnicodeDecodeError as error:
         raise WireError("bytes that are no text") from error
     if text.startswith("{") and text.endswith("}\r"):
-        return Other()  # an answer to a command that somebody gave it
+        return OtherMessage()  # an answer to a command that somebody gave it
     if not text.endswith("\r"):
         raise WireError("a line without its end")
     kind, _, remainder = text[:-1].partition(",")
@@ -128,7 +136,7 @@ def _from_text(frame: bytes) -> Message:
     if kind in "NF":
         return _notification(kind, _time(int(time)), remainder)
     if kind not in _KINDS:
-        return Other()
+        return OtherMessage()
     fields = remainder.split(",")
     if not all(map(_NUMBER.fullmatch, fields)):
         raise WireError("something else than numbers")
@@ -144,7 +152,7 @@ def _from_binary(frame: bytes) -> Message:
     if kind in "NF":
         return _notification(kind, t_us, values.decode("ascii", "replace"))
     if kind not in _KINDS:
-        return Other()
+        return OtherMessage()
     if len(values) % 4:
         raise WireError("half a number")
     return _measured(kind, t_us, struct.unpack(f"<{len(values) // 4}f", values))
@@ -184,18 +192,18 @@ def _measured(kind: str, t_us: int, values: tuple[float, ...]) -> Message:
             return Inertial(t_us, gyro_dps, accel_g)
         case "M":
             _within(values, _MAG_MOST)
-            return Magnetometer(t_us, _vector(values))
+            return MagnetometerMessage(t_us, _vector(values))
         case "T":
             if not _DEGC[0] <= values[0] <= _DEGC[1]:
                 raise WireError(f"{values[0]:g} degC")
-            return Temperature(t_us, values[0])
+            return TemperatureMessage(t_us, values[0])
         case "O":
             return Button(t_us, is_down=values[0] >= _HALF_DOWN)
         case _:
             if not 0.0 <= values[0] <= 100.0:
                 raise WireError(f"a battery at {values[0]:g} %")
             state = _CHARGING.get(values[2], BatteryState.UNKNOWN)
-            return Battery(t_us, values[0] / 100.0, state)
+            return BatteryMessage(t_us, values[0] / 100.0, state)
 
 
 _KINDS = {"I": 6, "M": 3, "T": 1, "B": 3, "O": 1}  # values of each

@@ -39,14 +39,14 @@ from edge.sources.ximu3.message_monitor import MessageMonitor
 from edge.sources.ximu3.messages import (
     ACCEL_FULL_SCALE_G,
     GYRO_FULL_SCALE_DPS,
-    Battery,
+    BatteryMessage,
     Button,
     Frames,
     Inertial,
-    Magnetometer,
+    MagnetometerMessage,
     Message,
     Notification,
-    Temperature,
+    TemperatureMessage,
     Vector,
     message_of,
 )
@@ -219,11 +219,11 @@ class Ximu3Source:
                 if t_ns is not None:
                     self._rows.add(t_ns, message)
                     self.taken += 1
-            case Magnetometer():
+            case MagnetometerMessage():
                 self._rows.mag = message.field
-            case Temperature():
+            case TemperatureMessage():
                 self._rows.temperature_degc = message.temperature_degc
-            case Battery():
+            case BatteryMessage():
                 self._rows.battery = message
             case Button():
                 self._rows.take_button(is_down=message.is_down)
@@ -266,7 +266,7 @@ class _Rows:
         self._is_pressed = False  # since the row before
         self.mag: Vector | None = None
         self.temperature_degc: float | None = None
-        self.battery: Battery | None = None
+        self.battery: BatteryMessage | None = None
 
     def __len__(self) -> int:
         return len(self._t_ns)

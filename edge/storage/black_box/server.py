@@ -8,7 +8,7 @@ from pathlib import Path
 
 from edge.clocks.station import StationClock
 from edge.storage.black_box.station_time import read_clock_offset
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from edge.storage.query_server import Parameters, QueryServer
 from shared.clock import NS_PER_S
 from shared.mcap_log import (
@@ -34,7 +34,7 @@ _LONGEST_NS = round(SegmentPolicy().segment_s * NS_PER_S) + NS_PER_S  # names ha
 class RecordingServer(QueryServer):
     """Server of ``index``, ``piece`` and ``digest`` under ``muster/v1/{unit}/recording/``."""
 
-    def __init__(self, unit_id: str, folder: DataFolder, clock: StationClock) -> None:
+    def __init__(self, unit_id: str, folder: UnitDataFolder, clock: StationClock) -> None:
         self._folder = folder
         self._clock = clock
         functions = {"index": self._index, "piece": self._piece, "digest": self._digest}

@@ -22,7 +22,7 @@ from edge.simulation.legs import (
     Pace,
     Sit,
     Spiral,
-    Stairs,
+    StairsLeg,
     StairsPace,
     Stand,
     Turn,
@@ -96,10 +96,10 @@ def floors(
     far, near = (RISERS * TREAD_M, 0.0), (0.0, 0.0)
     up, down = (
         (
-            Stairs(far, rise_m, RISERS, at_once, pace),
+            StairsLeg(far, rise_m, RISERS, at_once, pace),
             Turn(180.0),
             *between,
-            Stairs(near, rise_m, RISERS, at_once, pace),
+            StairsLeg(near, rise_m, RISERS, at_once, pace),
             Turn(0.0),
         )
         for rise_m in (RISERS * RISER_M, -RISERS * RISER_M)
@@ -119,9 +119,9 @@ def corridors(count: int) -> tuple[Leg, ...]:
     corridor = (Walk(((-14.0, 0.0), (-14.0, 6.0), (0.0, 6.0), (0.0, 0.0))), Turn(0.0))
     up, down = (
         (
-            Stairs((2.52, 0.0), rise_m, RISERS),
+            StairsLeg((2.52, 0.0), rise_m, RISERS),
             Turn(180.0),
-            Stairs((0.0, 0.0), rise_m, RISERS),
+            StairsLeg((0.0, 0.0), rise_m, RISERS),
             *corridor,
         )
         for rise_m in (1.53, -1.53)

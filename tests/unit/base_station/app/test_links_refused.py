@@ -24,7 +24,7 @@ from base_station.security.pki.folder import PkiFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.store import Store
 from edge.storage.black_box.station_time import write_clock_offset
-from edge.storage.data_folder import DataFolder as UnitFolder
+from edge.storage.data_folder import UnitDataFolder as UnitFolder
 from shared.clock import ManualClock
 from shared.errors import MusterError
 from shared.log import set_up_logging

@@ -13,7 +13,7 @@ import pytest
 
 from base_station.engine.ports import Trails
 from base_station.replay.playback import BURST, Archive
-from base_station.replay.session import MOST_FLAWS, ReplaySession, Window
+from base_station.replay.session import MOST_FLAWS, ReplaySession, ReplayWindow
 from base_station.storage.checkpoints import Checkpoints
 from base_station.views.wire import Snapshot, TrailPoint
 from shared.channels import POSITION, backfilled_key
@@ -35,7 +35,7 @@ def screen() -> Screen:
 
 @pytest.fixture
 def session(tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(
         archive(walk_with_mayday(), tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
     )
@@ -131,7 +131,7 @@ def test_what_consoles_hear_once_a_second_is_told_as_it_is_played(
                 script.record(backfilled_key("FF-01", POSITION.suffix), encode(late))
         script.tick()
     clock = ManualClock()
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = archive(script.records, tmp_path)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
     until(lambda: len(screen.resets) == 1)
@@ -181,7 +181,7 @@ def test_sent_to_the_end_as_consoles_say_it_it_is_there_and_begins_again(
     script.act(OpenIncident("i1", "Mill Lane"))
     script.now_s = 7.000_345_678
     script.act(CloseIncident("i1"))
-    window, source = Window("i1", START_NS, script.t_ns), archive(script.records, tmp_path)
+    window, source = ReplayWindow("i1", START_NS, script.t_ns), archive(script.records, tmp_path)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, ManualClock())
     session.pause()
     session.seek(session.view().end_ms * NS_PER_MS)
@@ -197,7 +197,7 @@ def test_sent_to_the_end_as_consoles_say_it_it_is_there_and_begins_again(
 
 def test_its_pace_is_the_speed_asked_for(tmp_path: Path, screen: Screen) -> None:
     clock = ManualClock()
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = archive(walk_with_mayday(), tmp_path)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
     until(lambda: len(screen.resets) == 1)
@@ -231,7 +231,7 @@ def test_faster_than_this_machine_it_shows_what_it_comes_past(
     monkeypatch.setattr("base_station.replay.session.DELTA_S", 0.001)
     monkeypatch.setattr("base_station.replay.playback.BURST", 1)
     clock = ManualClock()
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(
         slow_archive(clock, tmp_path), window, 1000.0, screen, lambda _: None, clock
     )
@@ -249,7 +249,7 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
 ) -> None:
     """Who goes to the next alarm sees it happen, however long the station reads to get there."""
     clock = ManualClock()
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     slow = slow_archive(clock, tmp_path)
     session = ReplaySession(slow, window, 1.0, screen, lambda _: None, clock)
     until(lambda: len(screen.resets) == 1)
@@ -277,7 +277,7 @@ def test_one_that_is_closed_on_its_way_just_ends(
             clock.advance(0.01)
             yield record
 
-    window = Window("i1", START_NS + 100 * NS_PER_S, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS + 100 * NS_PER_S, START_NS + DURATION_S * NS_PER_S)
     source = Archive(waiting, Checkpoints(tmp_path), make_pipeline)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
     assert reached.wait(10.0)
@@ -313,7 +313,7 @@ def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
 
     clock = ManualClock()
     threads = set(threading.enumerate())
-    window = Window("i1", START_NS, START_NS + 10**9 * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + 10**9 * NS_PER_S)
     source = Archive(endless, Checkpoints(tmp_path), make_pipeline)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
     session.pause()
@@ -328,7 +328,7 @@ def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
 
 def test_played_on_it_goes_on_from_where_it_was_paused(tmp_path: Path, screen: Screen) -> None:
     clock = ManualClock()
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(
         archive(walk_with_mayday(), tmp_path), window, 1.0, screen, lambda _: None, clock
     )
@@ -356,7 +356,7 @@ def test_an_impossible_speed_is_refused_in_words(session: ReplaySession, speed: 
 
 
 def test_an_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> None:
-    window = Window("i1", START_NS, START_NS + NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + NS_PER_S)
     session = ReplaySession(
         archive([], tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
     )
@@ -382,7 +382,7 @@ def test_who_is_forgotten_meanwhile_is_shown_no_more(
 
     source = Archive(lambda t_ns: (one for one in log if one[0] >= t_ns), Checkpoints(tmp_path),
                      make_pipeline, watch, own)  # fmt: skip
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     clock = ManualClock()
     monkeypatch.setattr("base_station.replay.playback.BURST", 7)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
@@ -413,7 +413,7 @@ def test_one_that_breaks_off_is_over(
         yield from walk_with_mayday()[:20]
         raise StoreError("the log cannot be read")
 
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = Archive(torn, Checkpoints(tmp_path), make_pipeline)
     session = ReplaySession(source, window, 1000.0, screen, lambda _: None, SystemClock())
     until(lambda: session.is_over)
@@ -433,7 +433,7 @@ def test_a_disk_that_hangs_keeps_nobody_who_begins_or_ends_one(
         waited.append(comes_back.wait(10.0))
         yield from walk_with_mayday()
 
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = Archive(hanging, Checkpoints(tmp_path), make_pipeline)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, SystemClock())
     session.pause()
@@ -455,7 +455,7 @@ def test_one_goes_on_where_it_cannot_be_seen_whether_the_past_was_changed(
         raise FileNotFoundError(2, "No such file or directory")
 
     clock = ManualClock()
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     records = list(walk_with_mayday())
     source = Archive(lambda _: iter(records), Checkpoints(tmp_path), make_pipeline, lambda: gone)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
@@ -472,7 +472,7 @@ def test_it_says_what_of_its_log_cannot_be_shown_as_it_was(tmp_path: Path, scree
     """Also what is come by on the way; whoever looks on does not see the terminal."""
     flaws = ["segment 2 of the log is missing"]
     source = replace(archive(walk_with_mayday(), tmp_path), flaws=lambda: flaws)
-    window = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(source, window, 1.0, screen, lambda _: None, SystemClock())
     try:
         flaws.append("a part of the log cannot be read")

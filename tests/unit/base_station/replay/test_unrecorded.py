@@ -10,7 +10,7 @@ import pytest
 
 from base_station.engine.ports import Trails
 from base_station.replay.playback import Playback
-from base_station.replay.session import ReplaySession, Window
+from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.replay.unrecorded import RecordGap
 from base_station.views.wire import GapView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, SystemClock
@@ -94,7 +94,7 @@ def screen() -> Screen:
 
 @pytest.fixture
 def session(tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
-    window = Window("i1", START_NS, at(END_S))
+    window = ReplayWindow("i1", START_NS, at(END_S))
     session = ReplaySession(
         archive(with_hole(), tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
     )

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from edge.activity.body_motion import WINDOW_NS, MotionWindow
+from edge.activity.body_motion import WINDOW_NS, BodyMotionWindow
 from edge.activity.posture import Posture
 from edge.activity.strides import Stride
 from edge.samples import Floats
@@ -31,7 +31,7 @@ class Foot:
             self.now_ns += WINDOW_NS
             moving = rate_radps is not None
             self.still = 0 if moving else self.still + 1
-            window = MotionWindow(
+            window = BodyMotionWindow(
                 self.now_ns, moving, WEIGHT_MPS2 * up(angle_deg), rate_radps or 0.01
             )
             self.posture.take_window(window, self.still / 2.0)
@@ -173,7 +173,7 @@ def test_who_moves_again_has_not_collapsed_for_good(foot: Foot) -> None:
 def test_a_unit_that_was_never_seen_standing_says_nothing() -> None:
     posture = Posture()
     for second in range(1, 20):
-        window = MotionWindow(second * WINDOW_NS, True, WEIGHT_MPS2 * up(90.0), 9.0)
+        window = BodyMotionWindow(second * WINDOW_NS, True, WEIGHT_MPS2 * up(90.0), 9.0)
         posture.take_window(window, 0.0)
     assert not any((posture.lying, posture.collapsed, posture.tipped))
 
@@ -356,7 +356,7 @@ def test_a_unit_switched_on_in_its_bag_has_seen_after_five_strides_how_it_is_wor
 
 def test_a_sensor_that_shows_noughts_before_it_is_awake_does_not_show_how_it_is_worn() -> None:
     foot = Foot(stands_s=0.0)
-    foot.posture.take_window(MotionWindow(WINDOW_NS, False, np.zeros(3), 0.0), 0.5)
+    foot.posture.take_window(BodyMotionWindow(WINDOW_NS, False, np.zeros(3), 0.0), 0.5)
     foot.held(0.0, 1.0)
     foot.held(90.0, 3.0)
     assert foot.posture.lying

@@ -16,7 +16,7 @@ from edge.config import EdgeConfig
 from edge.samples import SensorBatch
 from edge.sources.registry import open_source
 from edge.sources.tabletop import TabletopSource
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from edge.storage.journal.journal import Journal
 from shared.bus_memory import MemoryRouter
 from shared.channels import COMMAND, EVENT, EVERY_UNIT, HEARTBEAT, POSITION, Qos, alive_key
@@ -240,7 +240,7 @@ def test_a_link_that_is_lost_is_probed_for_and_opened_anew_at_once(station, monk
 
 def test_an_agent_whose_link_has_stopped_ends_so_that_it_is_started_again(station, tmp_path):
     """It would go on, look well to whoever watches it, and never be heard again."""
-    data = DataFolder(tmp_path / "u1")
+    data = UnitDataFolder(tmp_path / "u1")
     config = EdgeConfig("simulated:straight", unit="u1", tracker="none", data=tmp_path)
     source = open_source(config.source)
     other_end = FakeStation(station.router.attach_unit)
@@ -269,7 +269,7 @@ def test_a_bus_that_cannot_be_asked_ends_no_agent(station, tmp_path, caplog):
         bus.ask = ask
         return bus
 
-    data = DataFolder(tmp_path / "u1")
+    data = UnitDataFolder(tmp_path / "u1")
     config = EdgeConfig("bench:1", unit="u1", tracker="none", data=tmp_path)
     source = open_source(config.source)
     agent = compose_agent(config, "u1", data, source, FakeStation(open_bus), speed=1.0)
@@ -287,7 +287,7 @@ def test_an_agent_that_cannot_be_made_leaves_nothing_running(station, tmp_path, 
 
     monkeypatch.setattr("edge.app.composition.answers_before", fail)
     before = set(threading.enumerate())
-    data = DataFolder(tmp_path / "u1")
+    data = UnitDataFolder(tmp_path / "u1")
     config = EdgeConfig("bench:1", unit="u1", tracker="none", data=tmp_path)
     source = open_source(config.source)
     with pytest.raises(StoreError):
@@ -308,7 +308,7 @@ def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fai
                 raise RecordingError("the cable is broken")
             return iter(())
 
-    data = DataFolder(tmp_path / "u1")
+    data = UnitDataFolder(tmp_path / "u1")
     config = EdgeConfig("bench:1", unit="u1", tracker="none", data=tmp_path)
     other_end = FakeStation(station.router.attach_unit)
     agent = compose_agent(config, "u1", data, Broken("1"), other_end, speed=1.0)
@@ -318,7 +318,7 @@ def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fai
     data.close()
 
 
-def how_it_stopped(data: DataFolder) -> str:
+def how_it_stopped(data: UnitDataFolder) -> str:
     """By the last word in its journal."""
     journal = Journal(data.journal, lambda: 1, 0, 10**9)
     event = decode(EVENT, next(journal.earlier_alerts(EVENT)).payload)

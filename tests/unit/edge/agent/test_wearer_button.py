@@ -15,7 +15,7 @@ from edge.app.composition import compose_agent
 from edge.config import EdgeConfig
 from edge.samples import SensorBatch
 from edge.sources.tabletop import TabletopSource
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.channels import COMMAND, EVENT, REPLY, STATUS
@@ -79,7 +79,7 @@ class Unit:
         self.button = ScriptedButton()
         self.stop = Event()
         self.error: BaseException | None = None
-        self._data = DataFolder(folder / "u1")
+        self._data = UnitDataFolder(folder / "u1")
         config = EdgeConfig("bench:1", unit="u1", tracker="none", data=folder)
         self.agent: Agent = compose_agent(
             *(config, "u1", self._data, source or TabletopSource("1"), self.station, 1.0),

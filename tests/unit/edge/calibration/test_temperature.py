@@ -10,7 +10,7 @@ import pytest
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.calibration.correction import Correction
 from edge.calibration.model import Accelerometer, Calibration, Gyroscope, Warmth
-from edge.calibration.rest_detector import Window
+from edge.calibration.rest_detector import RestWindow
 from edge.calibration.solver import solve_accelerometer, solve_gyroscope
 from edge.samples import Floats, ImuBatch, SensorBatch, SensorDescription
 from edge.simulation.handled_unit import EDGES, SIDES
@@ -36,15 +36,15 @@ def triple(values: Floats) -> tuple[float, float, float]:
 WARMTH = Warmth(triple(ACCEL_SLOPE), ZERO, triple(GYRO_SLOPE), ZERO, 10.0, 30.0, 0.0, 0.0)
 
 
-def rest(up: Floats, degc: float, at_degc: float, rng: np.random.Generator) -> Window:
+def rest(up: Floats, degc: float, at_degc: float, rng: np.random.Generator) -> RestWindow:
     """Half a second with the unit's ``up`` upwards; its biases are those above at ``at_degc``."""
     warmer = degc - at_degc
     accel_mps2 = GRAVITY_MPS2 * up + ACCEL_BIAS + ACCEL_SLOPE * warmer
     gyro_radps = GYRO_BIAS + GYRO_SLOPE * warmer + PER_FORCE @ accel_mps2
-    return Window(0, accel_mps2, gyro_radps + rng.normal(0.0, 1e-6, 3), degc)
+    return RestWindow(0, accel_mps2, gyro_radps + rng.normal(0.0, 1e-6, 3), degc)
 
 
-def poses(at_degc: float, rng: np.random.Generator) -> list[Window]:
+def poses(at_degc: float, rng: np.random.Generator) -> list[RestWindow]:
     """The unit warms by two thirds of a degree from one to the next."""
     ups = np.vstack((SIDES, EDGES)).astype(float)
     ups /= np.linalg.norm(ups, axis=1)[:, None]
@@ -75,7 +75,7 @@ def test_the_gyroscope_of_a_unit_that_warms_is_too() -> None:
 def test_the_bias_is_as_sure_as_so_many_noisy_readings_make_it() -> None:
     rng = np.random.default_rng(3)
     noise = rng.normal(0.0, 1e-3, (400, 3))
-    still = [Window(0, np.array([0.0, 0.0, 9.8]), GYRO_BIAS + one, 20.0) for one in noise]
+    still = [RestWindow(0, np.array([0.0, 0.0, 9.8]), GYRO_BIAS + one, 20.0) for one in noise]
     found = solve_gyroscope(still, [], None)
     assert found.bias_std_radps == pytest.approx([1e-3 / 20.0] * 3, rel=0.2)
     assert found.residual_radps == pytest.approx(1e-3, rel=0.1)

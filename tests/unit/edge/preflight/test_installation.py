@@ -15,7 +15,7 @@ from edge.calibration.model import Calibration
 from edge.config import StorageConfig
 from edge.preflight.finding import Level
 from edge.preflight.installation import calibration_finding, certificate_finding, storage_findings
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from shared.tls import TlsIdentity
 
 NOW = datetime.now(UTC)
@@ -30,8 +30,8 @@ def identity(tmp_path_factory: pytest.TempPathFactory) -> TlsIdentity:
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Iterator[DataFolder]:
-    with closing(DataFolder(tmp_path / "u1")) as folder:
+def folder(tmp_path: Path) -> Iterator[UnitDataFolder]:
+    with closing(UnitDataFolder(tmp_path / "u1")) as folder:
         yield folder
 
 
@@ -69,7 +69,7 @@ def test_a_calibration_is_there_and_new_enough() -> None:
     ],
 )
 def test_there_is_room_for_what_may_be_stored(
-    folder: DataFolder,
+    folder: UnitDataFolder,
     monkeypatch: pytest.MonkeyPatch,
     free_mb: int,
     limits: StorageConfig,
@@ -82,8 +82,8 @@ def test_there_is_room_for_what_may_be_stored(
 
 
 def test_another_units_journal_is_named(tmp_path: Path) -> None:
-    DataFolder(tmp_path / "u1").close()
+    UnitDataFolder(tmp_path / "u1").close()
     shutil.copytree(tmp_path / "u1", tmp_path / "u2")
-    with closing(DataFolder(tmp_path / "u2")) as folder:
+    with closing(UnitDataFolder(tmp_path / "u2")) as folder:
         levels = {one.subject: one.level for one in storage_findings(folder, SMALL)}
     assert levels["data folder"] is Level.WARNING

@@ -15,7 +15,7 @@ from edge.simulation.environment import (
     Barometer,
     MagErrors,
     MagneticField,
-    Magnetometer,
+    SimulatedMagnetometer,
 )
 from edge.simulation.gps import Gps
 from shared.geo import pressure_altitude_m, pressure_pa_at
@@ -45,14 +45,14 @@ def test_steel_bends_the_field_inside_only() -> None:
 def test_an_ideal_magnetometer_sees_the_field_in_its_own_axes() -> None:
     field = MagneticField(None, rng())
     quarter_turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    mag = Magnetometer(IDEAL_MAG, field, rng())
+    mag = SimulatedMagnetometer(IDEAL_MAG, field, rng())
     said = mag.measure(0, at(OUTSIDE, 1), quarter_turn[None])[0]
     north, east, down = field.at(at(OUTSIDE, 1))[0]
     assert said == pytest.approx([east, -north, down])
 
 
 def test_missed_magnetometer_samples_are_nan_across_calls() -> None:
-    mag = Magnetometer(MagErrors(every=3), MagneticField(None, rng()), rng())
+    mag = SimulatedMagnetometer(MagErrors(every=3), MagneticField(None, rng()), rng())
     turns = np.tile(np.eye(3), (7, 1, 1))
     first = mag.measure(0, at(OUTSIDE, 7), turns)
     second = mag.measure(7, at(OUTSIDE, 7), turns)
@@ -61,7 +61,7 @@ def test_missed_magnetometer_samples_are_nan_across_calls() -> None:
 
 
 def test_hard_iron_moves_the_centre() -> None:
-    mag = Magnetometer(CONSUMER_MAG, MagneticField(None, rng()), rng())
+    mag = SimulatedMagnetometer(CONSUMER_MAG, MagneticField(None, rng()), rng())
     turns = np.array([np.diag(signs) for signs in ([1, 1, 1], [1, -1, -1], [-1, 1, -1])])
     said = np.array([mag.measure(0, at(OUTSIDE, 1), turn[None].astype(float))[0] for turn in turns])
     norms_ut = np.linalg.norm(said, axis=1)

@@ -22,7 +22,7 @@ from edge.simulation.legs import (
     Point,
     Sit,
     Spiral,
-    Stairs,
+    StairsLeg,
     Stand,
     Turn,
     Wait,
@@ -266,7 +266,8 @@ def test_winding_stairs_end_above_or_below_their_start_turned(rise_m: float) -> 
 
 def test_two_risers_at_once_take_half_the_strides() -> None:
     strides = [
-        len(ends_of(Stairs((4.5, 0.0), 2.88, 16, at_once))[0].plan.footfall_s) for at_once in (1, 2)
+        len(ends_of(StairsLeg((4.5, 0.0), 2.88, 16, at_once))[0].plan.footfall_s)
+        for at_once in (1, 2)
     ]
     assert strides == [8, 4]
 

@@ -12,7 +12,7 @@ from edge.app.composition import compose_agent
 from edge.app.jit_warmup import compile_trackers
 from edge.config import EdgeConfig
 from edge.sources.registry import open_source
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from edge.storage.journal.journal import Journal, JournalRow
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
@@ -34,7 +34,7 @@ class NoStation:
 
 
 def keep_something(path: Path) -> None:
-    folder = DataFolder(path)
+    folder = UnitDataFolder(path)
     journal = Journal(folder.journal, lambda: 7, 1_000, 10**9)
     journal.append([JournalRow(1, POSITION, 5_000, b"said")])
     journal.close()
@@ -45,7 +45,7 @@ def keep_something(path: Path) -> None:
 
 def test_a_unit_finds_its_folder_as_it_left_it(tmp_path: Path) -> None:
     keep_something(tmp_path / "anna")
-    again = DataFolder(tmp_path / "anna")
+    again = UnitDataFolder(tmp_path / "anna")
     assert again.quarantine is None
     assert again.journal.exists()
     assert again.black_box.exists()
@@ -59,7 +59,7 @@ def test_what_a_power_cut_leaves_of_its_name_is_no_other_unit(tmp_path: Path, le
     keep_something(tmp_path / "anna")
     (tmp_path / "anna" / "unit").write_bytes(left)
     for _ in range(2):
-        again = DataFolder(tmp_path / "anna")
+        again = UnitDataFolder(tmp_path / "anna")
         assert again.quarantine is None
         assert again.journal.exists()
         again.close()
@@ -70,14 +70,14 @@ def test_what_another_unit_kept_is_set_aside_and_nothing_of_it_is_said(tmp_path:
     keep_something(tmp_path / "anna")
     for number in (1, 2):  # copied twice
         shutil.copytree(tmp_path / "anna", tmp_path / "bert", dirs_exist_ok=True)
-        folder = DataFolder(tmp_path / "bert")
+        folder = UnitDataFolder(tmp_path / "bert")
         assert folder.quarantine == tmp_path / "bert" / f"of-another-{number}"
         kept = {path.name for path in folder.quarantine.iterdir()}
         assert kept == {"journal.sqlite", "black_box", "mayday"}
         assert not folder.journal.exists()
         assert not folder.mayday.exists()
         folder.close()
-    own = DataFolder(tmp_path / "bert")
+    own = UnitDataFolder(tmp_path / "bert")
     assert own.quarantine is None
     own.close()
 
@@ -86,7 +86,7 @@ def test_a_person_is_told_of_it(tmp_path: Path) -> None:
     compile_trackers()
     keep_something(tmp_path / "anna")
     shutil.copytree(tmp_path / "anna", tmp_path / "bert")
-    folder = DataFolder(tmp_path / "bert")
+    folder = UnitDataFolder(tmp_path / "bert")
     config = EdgeConfig(unit="bert", source="simulated:search-ground-floor", data=tmp_path)
     agent = compose_agent(config, "bert", folder, open_source(config.source), NoStation(), None)
     parts = agent._parts
@@ -103,16 +103,16 @@ def test_a_person_is_told_of_it(tmp_path: Path) -> None:
 
 
 def test_two_agents_do_not_share_a_folder(tmp_path: Path) -> None:
-    folder = DataFolder(tmp_path / "anna")
+    folder = UnitDataFolder(tmp_path / "anna")
     with pytest.raises(DataFolderInUseError, match="another agent is using"):
-        DataFolder(tmp_path / "anna")
+        UnitDataFolder(tmp_path / "anna")
     folder.close()
-    DataFolder(tmp_path / "anna").close()
+    UnitDataFolder(tmp_path / "anna").close()
 
 
 def test_a_note_that_cannot_be_written_or_read_stops_no_unit(tmp_path: Path) -> None:
     (tmp_path / "anna" / "unit").mkdir(parents=True)
-    folder = DataFolder(tmp_path / "anna")
+    folder = UnitDataFolder(tmp_path / "anna")
     assert folder.quarantine is None
     folder.close()
 
@@ -129,4 +129,4 @@ def test_what_cannot_be_set_aside_is_not_used(
     monkeypatch.setattr("pathlib.Path.rename", refuse)
     for _ in range(2):  # and is let go of
         with pytest.raises(LogError, match="Read-only file system"):
-            DataFolder(tmp_path / "bert")
+            UnitDataFolder(tmp_path / "bert")

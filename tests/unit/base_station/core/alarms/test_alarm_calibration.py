@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.core.alarms.calibration import Calibration
+from base_station.core.alarms.calibration import CalibrationPoor
 from base_station.core.alarms.interface import ADVISORY, Clear, Finding
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
@@ -30,7 +30,7 @@ def unit(calibrated_s: int | None, faults: str = "") -> UnitState:
     [(179, "", None), (181, "", "old"), (1, "gyroscope off by 1 deg/s", "poor")],
 )
 def test_age_and_residuals_are_judged(age_days, faults, level):
-    verdict = Calibration().judge(unit(HEARD_S - age_days * DAY_S, faults), 0, "")
+    verdict = CalibrationPoor().judge(unit(HEARD_S - age_days * DAY_S, faults), 0, "")
     if level is None:
         assert isinstance(verdict, Clear)
         return
@@ -41,4 +41,4 @@ def test_age_and_residuals_are_judged(age_days, faults, level):
 
 
 def test_a_unit_without_a_calibration_is_left_alone():
-    assert isinstance(Calibration().judge(unit(None), 0, ""), Clear)
+    assert isinstance(CalibrationPoor().judge(unit(None), 0, ""), Clear)

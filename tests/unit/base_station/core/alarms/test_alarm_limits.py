@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from base_station.core.alarms.battery import Battery
+from base_station.core.alarms.battery import BatteryLow
 from base_station.core.alarms.cloned_unit import ClonedUnit
 from base_station.core.alarms.heat import Heat
 from base_station.core.alarms.heat_dose import HeatDose
@@ -58,7 +58,7 @@ def judged(rule: AlarmRule, unit: UnitState, level: str = "") -> str | None:
 )
 def test_the_battery(battery: float | None, standing: str, found: str | None) -> None:
     unit = UnitState("FF-01", status=message_factory.status(HEADER, battery=battery))
-    assert judged(Battery(), unit, standing) == found
+    assert judged(BatteryLow(), unit, standing) == found
 
 
 @pytest.mark.parametrize(

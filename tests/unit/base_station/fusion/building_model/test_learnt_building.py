@@ -10,7 +10,7 @@ import pytest
 
 from base_station.fusion.building_model.building import MOST_STAIRS, KnownStairs, LearntBuilding
 from base_station.fusion.building_model.dominant_direction import DominantDirectionFilter
-from base_station.fusion.building_model.stairs import Climb, ClimbDetector, Stairs
+from base_station.fusion.building_model.stairs import Climb, ClimbDetector, LearntStairs
 from base_station.fusion.building_model.straight_segments import (
     Axis,
     Drift,
@@ -20,7 +20,7 @@ from base_station.fusion.building_model.straight_segments import (
 )
 from base_station.fusion.gaussian import conservative_fusion, jeffrey_update
 
-STAIRS = Stairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True, shared_m2=0.5)
+STAIRS = LearntStairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True, shared_m2=0.5)
 
 FOUND = KnownStairs((("FF-01", STAIRS),))
 
@@ -295,7 +295,7 @@ def test_reframed_it_is_the_same_building() -> None:
     assert wrap_quarter(moved.axis.direction_rad - 0.1) == pytest.approx(0.0)
     assert moved.axis.variance == pytest.approx(1e-3)
     climb = Climb(0.0, 0.0, 0.0, -3.0, turns=True)
-    seen = Stairs.at(climb, np.array([-4.0, 12.0]), np.eye(2), 0.3)
+    seen = LearntStairs.at(climb, np.array([-4.0, 12.0]), np.eye(2), 0.3)
     assert moved.match(seen) == 0
 
 

@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from base_station.fusion.building_model.building import LearntBuilding
-from base_station.fusion.building_model.stairs import Stairs
+from base_station.fusion.building_model.stairs import LearntStairs
 from base_station.fusion.building_model.straight_segments import Axis
 from base_station.fusion.gnss.screening import in_incident_frame, may_anchor, screen_fix
 from base_station.fusion.interface import FixVerdict, PlaceFix
@@ -374,7 +374,7 @@ def test_what_was_learnt_of_the_building_stays_where_it_is_on_the_earth(script: 
     """Its stairs, the way its walls go, its storeys; and a beacon that hangs in it."""
     walk_a_minute(script)
     state = script.pipeline.state
-    stairs = Stairs(30.0, 4.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)
+    stairs = LearntStairs(30.0, 4.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)
     state.learnt_building = (
         LearntBuilding().with_stairs(-1, U, stairs).with_axis(U, Axis(0.1, 1e-3))
     )

@@ -21,7 +21,7 @@ from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.ports import Trails
 from base_station.replay.processes.replay_process import ReplayContext, ReplayProcess
 from base_station.replay.processes.server import ReplayProcesses
-from base_station.replay.session import Window
+from base_station.replay.session import ReplayWindow
 from base_station.replay.version_check import DIFFERS
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import Delta, Snapshot
@@ -37,7 +37,7 @@ from tests.unit.base_station.replay.test_version_check import logged, north
 pytestmark = pytest.mark.slow
 
 WAIT_S = 300.0  # a loaded machine loads the program slowly
-WINDOW = Window("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+WINDOW = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
 
 
 class EncodedScreen(Screen):

@@ -8,7 +8,7 @@ import pytest
 
 from edge.sources.polled_device import Unreadable
 from edge.sources.temperature.hwmon import HwmonSensor
-from edge.sources.temperature.interface import Role
+from edge.sources.temperature.interface import SensorRole
 from shared.errors import ConfigError
 from tests.rig.kernel_devices import SysfsTree
 
@@ -18,7 +18,9 @@ def tree(tmp_path: Path) -> SysfsTree:
     return SysfsTree(tmp_path / "sys")
 
 
-def read(tree: SysfsTree, text: str, role: Role = Role.ENVIRONMENT) -> float | Unreadable:
+def read(
+    tree: SysfsTree, text: str, role: SensorRole = SensorRole.ENVIRONMENT
+) -> float | Unreadable:
     return HwmonSensor(text, role, tree.root).read_degc()
 
 
@@ -68,13 +70,13 @@ def test_the_machine_itself_is_refused_as_the_air_and_read_when_asked_for(
     tree.hwmon(0, name=name, temp1_input="48000")
     with pytest.raises(ConfigError, match="not the air around it"):
         read(tree, name)
-    assert read(tree, name, Role.ELECTRONICS) == pytest.approx(48.0)
+    assert read(tree, name, SensorRole.ELECTRONICS) == pytest.approx(48.0)
 
 
 def test_a_thermal_zone_of_any_name_is_the_machine_itself(tree: SysfsTree) -> None:
     tree.hwmon(0, "thermal_zone3", name="skin", temp1_input="48000")
     assert "not the air around it" in reason(read(tree, "skin"))
-    assert read(tree, "skin", Role.ELECTRONICS) == pytest.approx(48.0)
+    assert read(tree, "skin", SensorRole.ELECTRONICS) == pytest.approx(48.0)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 from edge.sources.polled_device import Unreadable
 from edge.sources.temperature import iio
 from edge.sources.temperature.iio import IioSensor
-from edge.sources.temperature.interface import Role
+from edge.sources.temperature.interface import SensorRole
 from tests.rig.kernel_devices import SysfsTree
 
 MAX31856 = {
@@ -29,7 +29,9 @@ def tree(tmp_path: Path) -> SysfsTree:
     return SysfsTree(tmp_path / "sys")
 
 
-def read(tree: SysfsTree, text: str, role: Role = Role.ENVIRONMENT) -> float | Unreadable:
+def read(
+    tree: SysfsTree, text: str, role: SensorRole = SensorRole.ENVIRONMENT
+) -> float | Unreadable:
     return IioSensor(text, role, tree.root).read_degc()
 
 
@@ -41,7 +43,7 @@ def reason(found: float | Unreadable) -> str:
 def test_the_thermocouple_is_meant_and_not_its_cold_junction(tree: SysfsTree) -> None:
     tree.iio(0, **MAX31856)
     assert read(tree, "max31856") == pytest.approx(25.0)
-    assert read(tree, "max31856/ambient", Role.ELECTRONICS) == pytest.approx(25.0)
+    assert read(tree, "max31856/ambient", SensorRole.ELECTRONICS) == pytest.approx(25.0)
 
 
 def test_the_hottest_that_it_measures(tree: SysfsTree) -> None:

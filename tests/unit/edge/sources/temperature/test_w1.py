@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from edge.sources.polled_device import Unreadable
-from edge.sources.temperature.interface import Role
+from edge.sources.temperature.interface import SensorRole
 from edge.sources.temperature.w1 import W1Sensor
 from tests.rig.kernel_devices import SysfsTree
 
@@ -20,7 +20,7 @@ def tree(tmp_path: Path) -> SysfsTree:
 
 
 def read_each(tree: SysfsTree, *milli_degc: str) -> list[float | Unreadable]:
-    sensor = W1Sensor(ID, Role.ENVIRONMENT, tree.root)
+    sensor = W1Sensor(ID, SensorRole.ENVIRONMENT, tree.root)
     found = []
     for text in milli_degc:
         tree.w1(ID, temperature=text)
@@ -57,7 +57,7 @@ def test_an_older_kernel_shows_a_checksum(tree: SysfsTree, checksum, expected) -
         w1_slave=f"73 01 4b 46 7f ff 0d 10 41 : crc=41 {checksum}\n"
         "73 01 4b 46 7f ff 0d 10 41 t=23187",
     )
-    found = W1Sensor(ID, Role.ENVIRONMENT, tree.root).read_degc()
+    found = W1Sensor(ID, SensorRole.ENVIRONMENT, tree.root).read_degc()
     if expected is None:
         assert isinstance(found, Unreadable)
         assert "garbled" in found.reason

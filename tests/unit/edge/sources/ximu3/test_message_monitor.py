@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from edge.sources.ximu3.message_monitor import MessageMonitor
-from edge.sources.ximu3.messages import Other
+from edge.sources.ximu3.messages import OtherMessage
 from shared.clock import NS_PER_S
 from shared.errors import WireError
 
@@ -22,7 +22,7 @@ class Line:
         for _ in range(seconds):
             self._now_s += 1
             for _ in range(100 - bad):
-                self.watch.count(Other())
+                self.watch.count(OtherMessage())
             for _ in range(bad):
                 self.watch.count_garbled(b"I,1", WireError("half a message"))
             told += self.watch.take_events(self._now_s * NS_PER_S)
