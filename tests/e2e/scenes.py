@@ -154,6 +154,23 @@ def without_outputs() -> wire.Snapshot:
     return picture(units)
 
 
+def par_requested() -> wire.Snapshot:
+    """A PAR was requested at the beginning, and nobody has confirmed one."""
+    units = []
+    for index in range(5):
+        member = unit(index)
+        assert member.duty is not None
+        duty = msgspec.structs.replace(
+            member.duty,
+            checked_in_ms=None,
+            checked_in_by="",
+            asked_ms=NOW_MS - 20_000,
+            confirmed="not_yet",
+        )
+        units.append(msgspec.structs.replace(member, duty=duty))
+    return picture(units)
+
+
 def alarm(index: int, rule: str, priority: int, text: str, ago_s: int) -> wire.AlarmView:
     raised_ms = NOW_MS - 1000 * ago_s
     return wire.AlarmView(

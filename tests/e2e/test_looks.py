@@ -37,6 +37,7 @@ def on_every_screen(page: Page, look: Callable[[Page], list[str]]) -> dict[str, 
         scenes.switched_off,
         scenes.overdue,
         scenes.without_outputs,
+        scenes.par_requested,
     ],
 )
 def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], Snapshot]) -> None:
