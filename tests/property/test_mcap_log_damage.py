@@ -130,6 +130,7 @@ def test_what_was_flushed_before_a_tear_is_there(
     assert recover_log(folder)[0].bytes_lost == round(cut * 5000)
 
 
+@pytest.mark.slow
 @settings(MANY, suppress_health_check=FIXTURES)
 @given(at=st.floats(0.0, 1.0, exclude_max=True), bit=st.integers(0, 7), end=st.booleans())
 def test_a_flipped_bit_costs_one_chunk_at_most_and_is_told(

@@ -38,6 +38,7 @@ def plain() -> Walk:
     return walk
 
 
+@pytest.mark.slow
 @given(pins=PINS)
 @settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_with_all_pins_taken_back_everything_is_as_it_was(

@@ -78,6 +78,7 @@ def any_evidence(rng: np.random.Generator, unit_id: str) -> UnitEvidence:
     return UnitEvidence(path, said, int(path.t_ns[0]), places, grid)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("smoother", SMOOTHERS, ids=lambda smoother: smoother.name)
 def test_every_place_and_every_uncertainty_is_a_number(smoother: Smoother) -> None:
     for seed in range(CASES):

@@ -140,10 +140,12 @@ def test_a_path_grows_by_a_few_bytes_a_second(grown: tuple[int, int]) -> None:
     assert 0 < grown[0] < BYTES_A_SECOND * (LATE_S - FULL_S)
 
 
+@pytest.mark.slow
 def test_nothing_else_grows(grown: tuple[int, int]) -> None:
     assert grown[1] < 5_000
 
 
+@pytest.mark.slow
 def test_so_do_fixes() -> None:
     rng, history = np.random.default_rng(4), PathHistory()
     receiver = Receiver(rng)

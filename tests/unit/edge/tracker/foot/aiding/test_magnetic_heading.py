@@ -104,6 +104,7 @@ def test_a_field_that_bends_slowly_does_no_harm(bend_ut):
     assert rms(np.concatenate(seeing)) < rms(np.concatenate(blind))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", ["stuck", "missing", "infinite", "absurd"])
 def test_a_broken_magnetometer_is_as_good_as_none(fault):
     description, imu, _ = simulated(0)

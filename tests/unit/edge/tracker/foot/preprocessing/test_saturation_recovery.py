@@ -52,6 +52,7 @@ def test_what_a_swing_hides_is_found_by_its_slopes(peak_mps2):
     assert abs(bridged_mps - cut_off_mps(force_mps2)) < doubt_mps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_strike_is_no_slope_of_a_plateau_that_it_ends(side):
     """It falls by 30 m/s^2 in one sample, which the tenth of a second before knows nothing of."""
