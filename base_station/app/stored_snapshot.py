@@ -174,6 +174,7 @@ class StoredSnapshotSource:
             ambient_ms=None,
             ambient_sensors=(),
             can_be_notified=None,
+            preflight=None,
         )
 
     def _person(self, worn: models.Assignment) -> PersonView:

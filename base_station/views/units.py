@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 
 from base_station.core.state import Alarm, Person, StationState, UnitState
 from base_station.core.state.duty import Duty
@@ -16,6 +17,7 @@ from base_station.views.wire import (
     DutyView,
     PersonView,
     PositionView,
+    PreflightView,
     SensorTemperatureView,
     StatusView,
     TrustView,
@@ -27,6 +29,8 @@ from shared.messages import (
     BatteryState,
     FusedPosition,
     Heartbeat,
+    PreflightFinding,
+    PreflightLevel,
     SensorTemperature,
     Status,
 )
@@ -38,6 +42,7 @@ _ACTIVITY_WORDS = tuple(activity.name.lower() for activity in Activity)  # by nu
 _BATTERY_WORDS = tuple(state.name.lower() for state in BatteryState)
 _QUALITY_WORDS = tuple(quality.name.lower() for quality in Quality)
 _GREEN = TrustView("green", "")
+_READY = PreflightView("ok", "")
 
 
 def unit_views(
@@ -96,7 +101,20 @@ def _unit_view(
         to_ms_or_none(unit.temperature_ns) if unit.temperature else None,
         _sensors_view(unit.temperature.sensors) if unit.temperature else (),
         unit.can_be_notified,
+        preflight_view(unit.description.preflight) if unit.description else None,
     )
+
+
+@lru_cache(maxsize=1000)  # units say the same again and again, and each change of one shows it
+def preflight_view(findings: tuple[PreflightFinding, ...] | None) -> PreflightView | None:
+    """What was found, in one text; None: the unit has not checked itself."""
+    if findings is None:
+        return None
+    if not findings:
+        return _READY
+    failed = any(one.level is PreflightLevel.FAILED for one in findings)
+    text = "; ".join(f"{one.subject}: {one.text}" for one in findings)
+    return PreflightView("failed" if failed else "warning", text)
 
 
 def _clock_view(heartbeat: Heartbeat | None) -> ClockView | None:

@@ -119,6 +119,13 @@ class TrustView(Answer, frozen=True):
     reason: str  # for a person; empty: green
 
 
+class PreflightView(Answer, frozen=True):
+    """What a unit has found when it checked itself at its start."""
+
+    level: Annotated[str, one_of("ok", "warning", "failed")]
+    text: str  # for a person, the gravest first; empty: ok
+
+
 class ClockView(Answer, frozen=True):
     """What a unit knows of the station's time."""
 
@@ -188,6 +195,7 @@ class UnitView(Answer, frozen=True):
     ambient_ms: int | None  # when the temperature around the equipment came
     ambient_sensors: tuple[SensorTemperatureView, ...]  # its readings by name; empty: one sensor
     can_be_notified: bool | None  # it has an output for its wearer; None: not known yet
+    preflight: PreflightView | None  # None: it has not checked itself yet
 
 
 class DeliveryView(Answer, frozen=True):

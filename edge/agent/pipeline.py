@@ -45,6 +45,7 @@ from shared.messages import (
     BatteryState,
     EventKind,
     Message,
+    PreflightFinding,
     Status,
     Temperature,
     UnitDescription,
@@ -113,6 +114,7 @@ class TrackerPipeline:
         self._mayday = mayday
         self._mayday_ns: int | None = None  # when it was pressed and said
         self._has_gps = False
+        self._preflight: tuple[PreflightFinding, ...] | None = None
         self._journal_pending = 0
         self._sighted_ns: dict[tuple[str, str], int] = {}
 
@@ -195,6 +197,11 @@ class TrackerPipeline:
 
     def set_position_rate(self, rate_hz: float) -> None:
         self._positions.set_rate(rate_hz)
+
+    def set_preflight(self, findings: tuple[PreflightFinding, ...]) -> UnitDescription:
+        """Set what the check at the start has found; return the description that says so."""
+        self._preflight = findings
+        return self._describe(None)
 
     def set_journal_pending(self, pending: int) -> None:
         """Set how many messages are not known to have arrived, for the next status."""
@@ -309,6 +316,7 @@ class TrackerPipeline:
             calibration_faults="" if calibration is None else "; ".join(calibration.faults()),
             gain_std=sensor.gain_std,
             outputs=self._identity.outputs,
+            preflight=self._preflight,
         )
 
     def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:

@@ -13,6 +13,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from threading import Event
+from typing import Protocol
 
 import msgspec
 
@@ -36,7 +37,14 @@ from shared.clock import NS_PER_S
 from shared.codec import decode
 from shared.envelope import Stamper
 from shared.errors import RecordingError, WireError
-from shared.messages import Command, EventKind, Heartbeat, Message, UnitEvent
+from shared.messages import (
+    Command,
+    EventKind,
+    Heartbeat,
+    Message,
+    PreflightFinding,
+    UnitEvent,
+)
 from shared.messages.event import FAILED
 from shared.service_manager import ServiceManager
 
@@ -48,6 +56,18 @@ _SILENT_NS = 2 * NS_PER_S
 _CLOCK_TIMEOUT_S = 5.0
 _EARLY_NS = 10 * NS_PER_S  # after its start: a tracker that fails by then will fail again
 _CALLS_NS = 30 * NS_PER_S  # after its start, for which the button works without the tracker
+
+
+class StartCheck(Protocol):
+    """Check of the unit at its start, beside all else; see ``edge.preflight.start_check``."""
+
+    def start(self, mono_ns: int) -> None: ...
+
+    def push(self, batch: SensorBatch) -> None: ...
+
+    def step(self, mono_ns: int) -> tuple[PreflightFinding, ...] | None:
+        """Return what is wrong or missing, where that is news."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +89,7 @@ class AgentParts:
     link: Link
     commands: SimpleQueue[bytes]  # filled by the link
     manager: ServiceManager
+    start_check: StartCheck | None = None  # None: of an agent that has no sensors of its own
 
 
 class Agent:
@@ -100,6 +121,8 @@ class Agent:
             self._put_own(parts.pipeline.start())
             parts.reader.start()
             parts.wearer.start()
+            if parts.start_check is not None:
+                parts.start_check.start(parts.clock.monotonic_ns())
             parts.manager.ready()
             while not stop.is_set() and not parts.reader.ended:
                 if end_ns is not None and parts.clock.monotonic_ns() >= end_ns:
@@ -121,6 +144,7 @@ class Agent:
             self._take_batch(timed)
         self._take_commands()
         self._parts.outbox.put(self._parts.wearer.step())
+        self._step_start_check()
         self._parts.clock.turn(self._ask_time)
         self._check_parts()
         if self._parts.clock.monotonic_ns() >= self._next_heartbeat_ns:
@@ -136,6 +160,8 @@ class Agent:
         if len(timed.batch.imu):
             self._last_batch_ns = parts.clock.monotonic_ns()
             self._silence_reported = False
+        if parts.start_check is not None:
+            parts.start_check.push(timed.batch)
         parts.pipeline.set_journal_pending(parts.journal.pending)
         self._step_pipeline(batch_of(raw), timed.timeline)
         down = any(
@@ -163,6 +189,14 @@ class Agent:
                 f"the tracker has failed at its start ({type(error).__name__}: {error}): the "
                 "button works, and the agent is started again half a minute later",
             )
+
+    def _step_start_check(self) -> None:
+        parts = self._parts
+        if parts.start_check is None:
+            return
+        findings = parts.start_check.step(parts.clock.monotonic_ns())
+        if findings is not None:
+            parts.outbox.put((parts.pipeline.set_preflight(findings),))
 
     def _take_presses(self, presses: Iterable[ButtonPress], timeline: Timeline) -> None:
         """Send what the wearer means by presses.  To cancel where no mayday is active is to

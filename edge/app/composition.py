@@ -8,6 +8,7 @@ import secrets
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from queue import SimpleQueue
 
@@ -29,11 +30,19 @@ from edge.clocks.station import StationClock
 from edge.clocks.timeline import Follower, Timekeeper
 from edge.config import EdgeConfig
 from edge.notifiers.outputs import Outputs
+from edge.preflight.finding import Finding
+from edge.preflight.installation import (
+    calibration_finding,
+    certificate_finding,
+    storage_findings,
+)
+from edge.preflight.start_check import StartCheck
 from edge.sample_codec.codec import SampleEncoder, sensor_of
 from edge.sample_codec.uplink import RawUplink
 from edge.samples import SensorDescription
 from edge.sources.bus import BusSource
 from edge.sources.interface import AuxiliarySource, Source
+from edge.sources.registry import source_kind
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.server import RecordingServer
 from edge.storage.data_folder import UnitDataFolder
@@ -46,6 +55,7 @@ from shared.clock import SystemClock
 from shared.envelope import Stamper
 from shared.messages import EventKind, UnitDescription, UnitEvent
 from shared.service_manager import ServiceManager
+from shared.tls import TlsIdentity
 
 
 def compose_agent(
@@ -56,6 +66,7 @@ def compose_agent(
     station: StationConnector,
     speed: float | None,
     auxiliaries: tuple[AuxiliarySource, ...] = (),
+    certificate: TlsIdentity | None = None,
 ) -> Agent:
     """Build the agent and its threads; ``speed`` None plays a recording without waiting."""
     clock = StationClock(SystemClock())
@@ -122,10 +133,33 @@ def compose_agent(
                 link=link,
                 commands=commands,
                 manager=ServiceManager(os.environ),
+                start_check=_start_check(config, folder, source, speed, calibration, certificate),
             )
         )
         on_error.pop_all()  # the agent closes it at its end
     return agent
+
+
+def _start_check(
+    config: EdgeConfig,
+    folder: DataFolder,
+    source: Source,
+    speed: float | None,
+    calibration: Calibration | None,
+    certificate: TlsIdentity | None,
+) -> StartCheck | None:
+    """Build the check at the start, of a unit with sensors that are read as time goes by."""
+    if speed is None or isinstance(source, BusSource):
+        return None
+
+    def installation() -> Iterator[Finding]:
+        now = datetime.now(UTC)
+        yield certificate_finding(certificate, now)
+        yield calibration_finding(calibration, now)
+        yield from storage_findings(folder, config.storage)
+
+    gives = source_kind(config.source).gives
+    return StartCheck(config, source.description, gives, installation)
 
 
 def _timekeeper(source: Source) -> Timekeeper | None:

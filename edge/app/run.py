@@ -24,6 +24,7 @@ from edge.wearer.registry import open_button
 from shared.channels import NO_TRACKER, tracker_id
 from shared.clock import SystemClock
 from shared.errors import ConfigError
+from shared.tls import TlsIdentity
 
 logger = logging.getLogger(__name__)
 
@@ -52,7 +53,9 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
         return
     speed = config.speed if paced else None
     auxiliaries = open_auxiliaries(config)
-    _run_once(config, member.unit_id, source, station, stop, for_s, speed, auxiliaries)
+    _run_once(
+        config, member.unit_id, source, station, stop, for_s, speed, auxiliaries, member.identity
+    )
 
 
 def _auxiliaries_set(config: EdgeConfig) -> tuple[object, ...]:
@@ -125,10 +128,13 @@ def _run_once(
     for_s: float | None,
     speed: float | None,
     auxiliaries: tuple[AuxiliarySource, ...] = (),
+    certificate: TlsIdentity | None = None,
 ) -> None:
     with ExitStack() as cleanup:
         cleanup.callback(source.close)
         folder = UnitDataFolder(config.data / unit_id)
         cleanup.callback(folder.close)
-        agent = compose_agent(config, unit_id, folder, source, station, speed, auxiliaries)
+        agent = compose_agent(
+            config, unit_id, folder, source, station, speed, auxiliaries, certificate
+        )
         agent.run(stop, for_s=for_s)

@@ -23,6 +23,7 @@ from edge.samples import (
     SightingSample,
 )
 from edge.sources.interface import Quantity
+from edge.sources.temperature.registry import sensor_name
 
 _TEMPERATURE_DEGC = (-40.0, 60.0)  # around a unit, and inside one, before its wearer goes in
 _BATTERY_LOW, _BATTERY_EMPTY = 0.5, 0.2  # of full; half lasts an incident
@@ -65,14 +66,15 @@ class AuxiliarySurvey:
             case ButtonPress():
                 self._buttons.add(sample.button)
 
-    def findings(self) -> Iterator[Finding]:
+    def findings(self, *, asks_press: bool = True) -> Iterator[Finding]:
+        """``asks_press``: somebody was asked to press the button."""
         yield from self._temperature()
         yield from self._battery()
         yield from self._satellites()
         if self._config.sightings:
             text = f"{self._sightings} sightings"
             yield Finding("beacons", Level.OK, text if self._sightings else "none in reach now")
-        yield from self._button()
+        yield from self._button(asks_press=asks_press)
 
     def _note_fix(self, fix: GpsSample) -> None:
         self._has_receiver_answered = True
@@ -85,8 +87,9 @@ class AuxiliarySurvey:
         subject = "temperature"
         if not self._config.temperatures and not self._temperatures:
             yield Finding(subject, Level.WARNING, "the unit has no sensor", _NO_HEAT_ALARM)
-        elif not self._temperatures:
-            yield Finding(subject, Level.FAILED, "no sensor gave a reading", _NO_HEAT_ALARM)
+        for sensor in map(sensor_name, self._config.temperatures):
+            if sensor not in self._temperatures:
+                yield Finding(f"{subject} {sensor}", Level.FAILED, "no reading", _NO_HEAT_ALARM)
         least_degc, most_degc = _TEMPERATURE_DEGC
         for sensor, degc in sorted(self._temperatures.items()):
             is_plausible = least_degc <= degc <= most_degc
@@ -135,10 +138,10 @@ class AuxiliarySurvey:
             text = f"fix of {fix.satellites} satellites, {fix.horizontal_std_m:.0f} m"
             yield Finding(subject, Level.OK, text)
 
-    def _button(self) -> Iterator[Finding]:
+    def _button(self, *, asks_press: bool) -> Iterator[Finding]:
         if Quantity.MAYDAY_BUTTON not in self._gives:
             yield Finding("mayday button", Level.WARNING, "the unit has none", _NO_MAYDAY)
         if self._buttons:
             yield Finding("button", Level.OK, f"pressed: {', '.join(sorted(self._buttons))}")
-        elif not self._gives.isdisjoint(_BUTTONS):
+        elif asks_press and not self._gives.isdisjoint(_BUTTONS):
             yield Finding("button", Level.WARNING, "not pressed during the check", "press it once")

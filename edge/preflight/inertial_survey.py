@@ -57,7 +57,8 @@ class InertialSurvey:
         if imu.pressure_pa is not None:
             self._pressure_pa.append(imu.pressure_pa)
 
-    def findings(self) -> Iterator[Finding]:
+    def findings(self, *, asks_rest: bool = True) -> Iterator[Finding]:
+        """``asks_rest``: somebody was asked to lay the unit down."""
         if self._count < 2:  # two times make a rate
             yield Finding(
                 _SENSOR,
@@ -69,7 +70,7 @@ class InertialSurvey:
         yield from (Finding(_SENSOR, Level.FAILED, fault) for fault in self._faults)
         yield self._rate()
         yield from self._ranges()
-        yield from self._at_rest()
+        yield from self._at_rest(asks_rest=asks_rest)
         yield from _quantity(
             "magnetic field", self._field_ut, _FIELD_UT, 1.0, "uT",
             "iron or a magnet is near it, or it is not calibrated: headings drift",
@@ -115,9 +116,11 @@ class InertialSurvey:
         else:
             yield Finding(_RANGE, Level.OK, text)
 
-    def _at_rest(self) -> Iterator[Finding]:
+    def _at_rest(self, *, asks_rest: bool) -> Iterator[Finding]:
         rest = self._longest_rest()
         if seconds(rest) < _REST_MIN_S:
+            if not asks_rest:
+                return
             yield Finding(
                 "rest",
                 Level.WARNING,

@@ -13,13 +13,14 @@ from edge.sources.sysfs import SYSFS, explain_read_error
 
 _TEST = Notice(Signal.TEXT, text="this is a test.")
 _NOBODY_NOTIFIED = "the wearer cannot be notified of orders; it takes the voice radio"
+NO_OUTPUT = Finding("output", Level.WARNING, "the unit has none", _NOBODY_NOTIFIED)
 
 
 def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[Finding]:
     """Play a test message on each output, as in the settings.  Raises ConfigError."""
     notifiers = {text: open_notifier(text, sysfs) for text in texts}
     if not notifiers:
-        yield Finding("output", Level.WARNING, "the unit has none", _NOBODY_NOTIFIED)
+        yield NO_OUTPUT
     for text, notifier in notifiers.items():
         subject = f"output {text}"
         try:

@@ -22,7 +22,11 @@ from shared.messages.sighting import Sighting, SightingKind
 from shared.messages.station import OperatorAction, Tick
 from shared.messages.status import Activity, BatteryState, Status
 from shared.messages.temperature import SensorTemperature, Temperature
-from shared.messages.unit_description import UnitDescription
+from shared.messages.unit_description import (
+    PreflightFinding,
+    PreflightLevel,
+    UnitDescription,
+)
 
 Message = (
     Position
@@ -69,6 +73,8 @@ __all__ = [
     "Message",
     "OperatorAction",
     "Position",
+    "PreflightFinding",
+    "PreflightLevel",
     "RawImu",
     "SensorTemperature",
     "Sighting",

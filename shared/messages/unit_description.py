@@ -2,11 +2,42 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
+
 import msgspec
 
 from shared.messages.header import Header
+from shared.messages.known import known
 from shared.messages.muster.v1 import unit_description_pb2
 from shared.messages.quantise import unsigned32
+
+
+class PreflightLevel(IntEnum):
+    UNKNOWN = 0
+    WARNING = 1  # it works, and something of it is missing or weak
+    FAILED = 2  # its wearer is not tracked, or not heard
+
+
+class PreflightFinding(msgspec.Struct, frozen=True):
+    """What a unit has found wrong or missing when it checked itself at its start."""
+
+    level: PreflightLevel
+    subject: str  # a word or two
+    text: str  # what was found
+    remedy: str = ""  # what it costs, or what to do
+
+    def to_wire(self) -> unit_description_pb2.PreflightFinding:
+        return unit_description_pb2.PreflightFinding(
+            level=int(self.level),  # type: ignore[arg-type]  # stubs want the generated enum
+            subject=self.subject,
+            text=self.text,
+            remedy=self.remedy,
+        )
+
+    @staticmethod
+    def from_wire(wire: unit_description_pb2.PreflightFinding) -> PreflightFinding:
+        level = known(PreflightLevel, wire.level)
+        return PreflightFinding(level, wire.subject, wire.text, wire.remedy)
 
 
 class UnitDescription(msgspec.Struct, frozen=True):
@@ -26,6 +57,8 @@ class UnitDescription(msgspec.Struct, frozen=True):
     calibration_faults: str = ""  # what is poor about it, in words; empty: nothing
     gain_std: float | None = None  # how far scale and axes may be off; None: unknown
     outputs: tuple[str, ...] = ()  # kinds of outputs that notify the wearer; empty: it has none
+    # The gravest first; None: the check is not over, or this version makes none.
+    preflight: tuple[PreflightFinding, ...] | None = None
 
     def to_wire(self) -> unit_description_pb2.UnitDescription:
         return unit_description_pb2.UnitDescription(
@@ -45,6 +78,8 @@ class UnitDescription(msgspec.Struct, frozen=True):
             calibration_faults=self.calibration_faults,
             gain_std_ppm=_gain_std_ppm(self.gain_std),
             outputs=self.outputs,
+            preflight_done=self.preflight is not None,
+            preflight=[one.to_wire() for one in self.preflight or ()],
         )
 
     @staticmethod
@@ -66,6 +101,9 @@ class UnitDescription(msgspec.Struct, frozen=True):
             calibration_faults=wire.calibration_faults,
             gain_std=wire.gain_std_ppm / 1e6 if wire.gain_std_ppm else None,
             outputs=tuple(wire.outputs),
+            preflight=tuple(map(PreflightFinding.from_wire, wire.preflight))
+            if wire.preflight_done
+            else None,
         )
 
 

@@ -105,6 +105,7 @@ def unit(index: int) -> wire.UnitView:
         ambient_ms=NOW_MS - 400,
         ambient_sensors=(),
         can_be_notified=True,
+        preflight=wire.PreflightView("ok", ""),
     )
 
 

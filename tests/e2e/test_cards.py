@@ -7,6 +7,7 @@ import re
 import msgspec
 from playwright.sync_api import expect
 
+from base_station.views import wire
 from tests.e2e import scenes
 from tests.e2e.console_page import menu, painted, strip
 from tests.e2e.looks import flaws
@@ -157,3 +158,32 @@ def test_a_phone_shows_the_list_or_the_plan(stage: Stage) -> None:
     page.get_by_role("button", name="Menu").click()
     page.get_by_role("navigation").get_by_role("button", name="Units").click()
     expect(page.get_by_role("dialog")).to_be_visible()
+
+
+def test_a_unit_that_is_not_ready_says_so_and_one_with_warnings_where_it_is_chosen(
+    stage: Stage,
+) -> None:
+    shown = scenes.bad_minute()
+    found = (
+        wire.PreflightView("failed", "battery: no reading"),
+        wire.PreflightView("warning", "output: the unit has none"),
+        None,
+    )
+    checked = tuple(
+        msgspec.structs.replace(unit, preflight=preflight)
+        for unit, preflight in zip(shown.units, found, strict=False)
+    )
+    units = (*checked, *shown.units[len(checked) :])
+    page, _ = stage.open(msgspec.structs.replace(shown, units=units))
+    broken, weak, unknown = (
+        page.locator(f'.card[data-unit="{unit.unit_id}"]') for unit in units[:3]
+    )
+    expect(broken).to_contain_text("Unit not ready: battery: no reading")
+    expect(unknown).not_to_contain_text("ready")
+    expect(weak).not_to_contain_text("with warnings")
+    weak.get_by_role("button").first.click()
+    expect(weak).to_contain_text("Unit with warnings: output: the unit has none")
+    menu(page, "Units")
+    table = page.get_by_role("table")
+    expect(table).to_contain_text("not ready: battery: no reading")
+    expect(table).to_contain_text("not known")

@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from edge.app.jit_warmup import compile_trackers
 from edge.storage.data_folder import UnitDataFolder
 from tests.rig.enrolled_site import EnrolledSite
 from tests.rig.kernel_devices import EmulatedAgent, SysfsTree, has_umockdev
-from tests.rig.station_command import UnitCheck
+from tests.rig.shown_unit import ShownUnit
+from tests.rig.station_command import Agent, Browser, Command, UnitCheck
 from tests.rig.waiting import until
 
 
@@ -89,3 +91,25 @@ def test_devices_of_the_kernel_are_checked(tmp_path: Path, port: int) -> None:
         assert "failed  battery: 12% of BAT0" in checked.said()
         assert "there is no 1-wire sensor 28-000000000001" in checked.said()
         assert "NOT ready" in checked.said()
+
+
+def test_a_unit_checks_itself_at_its_start_and_its_card_shows_what_is_missing(
+    tmp_path: Path, serve: Callable[..., Command], data: Path, port: int
+) -> None:
+    compile_trackers()
+    where = ("--data", str(tmp_path / "units"), "--connect", f"tcp/127.0.0.1:{port}")
+    with ExitStack() as stack:
+        browser = stack.enter_context(Browser(serve().wait_ready(), data))
+        browser.call("POST", "/units", json={"unit_id": "u1", "label": "u1"})
+        shown = stack.enter_context(closing(ShownUnit(browser, "u1")))
+        output = tmp_path / "agent.txt"
+        agent = stack.enter_context(
+            Agent(output, "--unit", "u1", "--source", "bench:5", "--battery", "none", *where)
+        )
+        until(lambda: shown.card.get("preflight"), "what the unit has found")
+        preflight = shown.card["preflight"]
+        assert preflight["level"] == "failed"
+        assert preflight["text"].startswith("battery: no reading; ")
+        assert "temperature: the unit has no sensor" in preflight["text"]
+        assert "sample rate" not in preflight["text"]
+        assert "check at the start: output: the unit has none" in agent.said()

@@ -5,6 +5,7 @@ import type {
   HealthView,
   Link,
   PositionView,
+  PreflightView,
   SensorTemperatureView,
   StatusView,
   UnitView,
@@ -43,6 +44,13 @@ export function countdown(ms: number): string {
 }
 
 const CLOCK_WRONG_MS = 10_000;
+
+/** What a unit has found when it checked itself at its start; empty: nobody knows. */
+export function preflightText(preflight: PreflightView | null): string {
+  if (preflight === null) return "";
+  if (preflight.level === "ok") return "ready";
+  return `${preflight.level === "failed" ? "not ready" : "with warnings"}: ${preflight.text}`;
+}
 
 /** How far a unit's own clock is from the station's: "40 ms ahead ± 3 ms", "1 min 15 s behind". */
 export function clockOffset({ ahead_ms, std_ms }: ClockView): string {

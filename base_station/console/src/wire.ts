@@ -86,6 +86,11 @@ export interface TrustView {
   reason: string;
 }
 
+export interface PreflightView {
+  level: "ok" | "warning" | "failed";
+  text: string;
+}
+
 export interface ClockView {
   ahead_ms: number;
   std_ms: number;
@@ -147,6 +152,7 @@ export interface UnitView {
   ambient_ms: number | null;
   ambient_sensors: SensorTemperatureView[];
   can_be_notified: boolean | null;
+  preflight: PreflightView | null;
 }
 
 export interface DeliveryView {

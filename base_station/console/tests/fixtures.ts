@@ -87,6 +87,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     ambient_ms: 1_000,
     ambient_sensors: [],
     can_be_notified: true,
+    preflight: { level: "ok", text: "" },
     ...change,
   };
 }

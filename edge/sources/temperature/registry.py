@@ -23,6 +23,7 @@ TEMPERATURE_SENSORS: tuple[SensorKind, ...] = (
     SensorKind("w1", W1Sensor, "28-0123456789ab"),
 )
 
+_LONGEST_NAME = 32
 _OPTIONS = ("name", "role")
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _.-]{0,31}")
 
@@ -44,16 +45,22 @@ def open_temperature_reader(
     return TemperatureReader(sensors, clock)
 
 
+def sensor_name(text: str) -> str:
+    """Return the name that the readings of a sensor bear.  Raises ConfigError."""
+    place, _, options = text.partition("?")
+    name = _options(text, options).get("name")
+    return place.partition(":")[2][:_LONGEST_NAME] if name is None else name
+
+
 def _named_sensor(text: str, sysfs: Path) -> NamedSensor:
     place, _, options = text.partition("?")
     scheme, colon, argument = place.partition(":")
     values = _options(text, options)
     role = _role(text, values.get("role", SensorRole.ENVIRONMENT))
-    name = values.get("name", argument)
     for kind in TEMPERATURE_SENSORS:
         if colon and argument and kind.scheme == scheme:
             sensor = kind.make(argument, role, sysfs)
-            return NamedSensor(name[:32] if "name" not in values else name, text, role, sensor)
+            return NamedSensor(sensor_name(text), text, role, sensor)
     choices = ", ".join(f"{kind.scheme}:{kind.argument}" for kind in TEMPERATURE_SENSORS)
     schemes = [kind.scheme for kind in TEMPERATURE_SENSORS]
     near = get_close_matches(scheme, schemes, n=1)

@@ -59,6 +59,7 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
       <OpenAlarms unit={unit} picture={picture} />
       {unit.cloned && <TwoMachines />}
       {unit.registered && unit.can_be_notified === false && <NotNotifiable />}
+      <NotReady unit={unit} chosen={chosen} />
       <OpenCommands unitId={unitId} commands={picture.commands.value} />
       {short ? (
         <BriefFacts unit={unit} picture={picture} />
@@ -178,6 +179,19 @@ function NotNotifiable() {
     <p class="not-notifiable" title="The unit has no output: use the voice radio">
       <Icon name="bellOff" />
       cannot be notified
+    </p>
+  );
+}
+
+/** What the unit lacks by its own check: what matters to everybody, what is only weak to who looks
+ * closer. */
+function NotReady({ unit: { preflight, registered }, chosen }: { unit: UnitView; chosen: boolean }) {
+  if (preflight === null || preflight.level === "ok" || !registered) return null;
+  if (preflight.level === "warning" && !chosen) return null;
+  return (
+    <p class={`trust ${preflight.level === "failed" ? "red" : ""}`}>
+      <Icon name="alarm" />
+      Unit {format.preflightText(preflight)}
     </p>
   );
 }

@@ -2,8 +2,8 @@ import { useSignal } from "@preact/signals";
 import { attempt, live, user } from "../sessions";
 import * as api from "../api";
 import { openDialog } from "../uiState";
-import type { ClockView, UnitView } from "../wire";
-import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, DUPLICATE_DEVICE } from "../format";
+import type { ClockView, PreflightView, UnitView } from "../wire";
+import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, preflightText, DUPLICATE_DEVICE } from "../format";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useDone } from "./Done";
@@ -38,6 +38,7 @@ export function UnitsDialog() {
             "GPS",
             "Worn by",
             "Calibration",
+            "Check at start",
             "Positions a second",
             "Raw recording",
           ]}
@@ -91,6 +92,9 @@ function UnitRow({ unit, people, calibration }: RowProps) {
       <td data-label="Calibration">
         <Calibration unit={unit} calibration={calibration} />
       </td>
+      <td data-label="Check at start">
+        <CheckAtStart preflight={unit.preflight} />
+      </td>
       <td data-label="Positions a second">{unit.registered && <Rate unitId={unit.unit_id} />}</td>
       <td data-label="Raw recording">{unit.registered && <Recording unitId={unit.unit_id} />}</td>
     </tr>
@@ -115,6 +119,13 @@ function Calibration({ unit, calibration }: { unit: UnitView; calibration: strin
       {warning && <small class="warned"> {alarmLabel(warning)}</small>}
     </>
   );
+}
+
+/** What the unit has found at its start, as `muster edge check` would. */
+function CheckAtStart({ preflight }: { preflight: PreflightView | null }) {
+  const text = preflightText(preflight);
+  const bad = preflight?.level === "failed";
+  return <small class={bad ? "warned" : "quiet"}>{text === "" ? "not known" : text}</small>;
 }
 
 function Rate({ unitId }: { unitId: string }) {

@@ -23,7 +23,11 @@ from edge.sources.interface import Quantity
 
 BARE = EdgeConfig("bench:1")
 FULL = EdgeConfig(
-    "bench:1", gps="gpsd://", temperatures=("w1:1", "w1:2"), battery="auto", sightings="tcp:a:1"
+    "bench:1",
+    gps="gpsd://",
+    temperatures=("w1:1?name=front", "w1:2"),
+    battery="auto",
+    sightings="tcp:a:1",
 )
 BUTTONS = frozenset({Quantity.MAYDAY_BUTTON, Quantity.ACKNOWLEDGE_BUTTON})
 
@@ -51,15 +55,27 @@ def test_what_a_unit_does_not_have_is_a_warning_with_what_it_costs() -> None:
 
 def test_what_was_set_and_is_silent_has_failed() -> None:
     found = survey(FULL)
-    for subject in ("temperature", "battery", "satellites"):
+    for subject in ("temperature front", "temperature 2", "battery", "satellites"):
         assert found[subject].level is Level.FAILED
     assert found["beacons"].text == "none in reach now"  # out here there may be none
+
+
+def test_one_silent_sensor_of_two_is_named() -> None:
+    found = survey(FULL, AmbientSample(1, 21.5, "front"))
+    levels = {name: one.level for name, one in found.items() if "temperature" in name}
+    assert levels == {"temperature 2": Level.FAILED, "temperature front": Level.OK}
+
+
+def test_nobody_is_asked_for_a_press_at_the_start() -> None:
+    found = list(AuxiliarySurvey(BARE, BUTTONS).findings(asks_press=False))
+    assert "button" not in {finding.subject for finding in found}
 
 
 def test_a_unit_that_has_everything_is_ok() -> None:
     found = survey(
         FULL,
         AmbientSample(1, 21.5, "front"),
+        AmbientSample(1, 20.5, "2"),
         BatterySample(1, 0.9, 20_000.0),
         fix(4.0),
         SightingSample(1, BEACON, "door", math.nan, math.nan),
