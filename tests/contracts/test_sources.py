@@ -235,7 +235,7 @@ def test_radio_outages_are_in_order(source: Source) -> None:
         ("iio:bmi160?range=16", "unknown option 'range'"),
         ("iio:bmi160@", "names no device"),
         ("iio:a+b+c", "names 3 devices"),
-        ("iio:a+b?mag=b", "has to be another device"),
+        ("iio:a+b?pressure=b", "has to be another device"),
         ("iio:bmi160/accel", "write the device alone"),
     ],
 )

@@ -24,6 +24,7 @@ NS_PER_S = 10**9
 Raw = tuple[int, ...]
 GYRO = ("in_anglvel_x", "in_anglvel_y", "in_anglvel_z")
 ACCEL = ("in_accel_x", "in_accel_y", "in_accel_z")
+MAG = ("in_magn_x", "in_magn_y", "in_magn_z")
 _LE16, _BE16, _TIME = "le:s16/16>>0", "be:s16/16>>0", "le:s64/64>>0"
 
 
@@ -83,6 +84,27 @@ ICM_GYRO = Model(
         "mount_matrix": _MATRIX,
     },
     (1, -2, 3),
+)
+
+MPU9250 = Model(  # its magnetometer is a chip within the chip, with axes of its own
+    "mpu9250",
+    dict.fromkeys((*GYRO, *ACCEL, *MAG), _LE16),
+    struct.Struct("<9h6x"),
+    {
+        "in_accel_scale": "0.004785",
+        "in_accel_scale_available": "0.000598 0.001196 0.002392 0.004785",
+        "in_anglvel_scale": "0.001064724",
+        "in_anglvel_scale_available": "0.000133090 0.001064724",
+        "sampling_frequency": "50",
+        "sampling_frequency_available": "10 20 50 100 200 500",
+        "in_accel_mount_matrix": _MATRIX,
+        "in_anglvel_mount_matrix": _MATRIX,
+        "in_magn_x_scale": "0.001500",
+        "in_magn_y_scale": "0.001500",
+        "in_magn_z_scale": "0.001500",
+        "in_magn_mount_matrix": "0, 1, 0; 1, 0, 0; 0, 0, -1",
+    },
+    (1, -2, 3, 5, -7, 2048, 0, 133, -267),
 )
 
 

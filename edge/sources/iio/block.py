@@ -26,6 +26,10 @@ class Block:
     def __len__(self) -> int:
         return len(self.t_ns)
 
+    def without(self, kind: str) -> Block:
+        rest = {one: values for one, values in self.values.items() if one != kind}
+        return Block(self.t_ns, rest, self.temperature_degc)
+
     def part(self, rows: NDArray[np.bool_]) -> Block:
         degc = self.temperature_degc
         return Block(

@@ -18,7 +18,14 @@ import numpy as np
 from edge.samples import Floats
 from edge.sources.iio.attributes import UnusableDeviceError, read_shared_number
 from edge.sources.iio.block import Block
-from edge.sources.iio.conversion import TEMPERATURE, TIMESTAMP, axes_of, read_conversion
+from edge.sources.iio.conversion import (
+    MAG,
+    TEMPERATURE,
+    TIMESTAMP,
+    UT_PER_GAUSS,
+    axes_of,
+    read_conversion,
+)
 from edge.sources.iio.plan import CapturePlan
 from edge.sources.iio.sample_times import choose_clock
 from edge.sources.iio.scan_elements import FrameLayout, element_names, enabled_elements
@@ -164,6 +171,8 @@ class BufferReader:
         for kind, axes in self._axes.items():
             columns = np.stack([raw[axis][is_placed] for axis in axes], axis=1)
             values[kind] = self._conversions[kind].apply(columns.astype(np.float64))
+        if MAG in values:
+            values[MAG] *= UT_PER_GAUSS
         degc: Floats | None = None
         if self._temperature is not None:
             offset, scale = self._temperature

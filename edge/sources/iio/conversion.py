@@ -14,6 +14,8 @@ from edge.sources.sysfs import read_text
 ACCEL, GYRO, MAG = "in_accel", "in_anglvel", "in_magn"  # kinds of channels with three axes
 TEMPERATURE, PRESSURE, TIMESTAMP = "in_temp", "in_pressure", "in_timestamp"
 
+UT_PER_GAUSS = 100.0  # the kernel gives a magnetic field in gauss
+
 _AXES = 3
 _ORTHONORMAL = 0.01  # of the products of its rows: a device tree gives some digits
 

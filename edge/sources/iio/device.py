@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from edge.sources.device_name import DeviceName, find_device, listing
 from edge.sources.iio.attributes import IIO_DEVICES, UnusableDeviceError
 from edge.sources.iio.block import DeviceReader
 from edge.sources.iio.buffer import BufferReader, can_be_captured
-from edge.sources.iio.conversion import ACCEL, GYRO, axes_of
+from edge.sources.iio.conversion import ACCEL, GYRO, MAG, axes_of
 from edge.sources.iio.plan import USUAL_RATE_HZ, CapturePlan, plan_capture, plan_polling
 from edge.sources.iio.polling import POLLING_RATE_HZ, PollingReader
 from edge.sources.iio.settings import IioSettings
@@ -38,6 +38,8 @@ class InertialDevice:
     plan: CapturePlan
     is_captured: bool  # otherwise it is polled
     open: Callable[[Clock], DeviceReader]  # raises OSError and UnusableDeviceError
+    has_mag: bool = False  # a magnetometer that is wanted of it
+    captures_mag: bool = False  # its frames have the magnetometer
 
     def __str__(self) -> str:
         return f"{' and '.join(_TITLES[kind] for kind in self.kinds)} {self.name}"
@@ -50,10 +52,10 @@ def find_inertial_devices(settings: IioSettings, machine: Machine) -> list[Inert
     """
     if settings.accel == settings.gyro:
         return [_plan_device(settings.accel, (ACCEL, GYRO), settings, machine)]
-    return [
-        _plan_device(settings.accel, (ACCEL,), settings, machine),
-        _plan_device(settings.gyro, (GYRO,), settings, machine),
-    ]
+    accel = _plan_device(settings.accel, (ACCEL,), settings, machine)
+    if accel.has_mag:  # one is enough
+        settings = replace(settings, mag=settings.accel)
+    return [accel, _plan_device(settings.gyro, (GYRO,), settings, machine)]
 
 
 def _plan_device(
@@ -63,6 +65,7 @@ def _plan_device(
     if isinstance(device, Unreadable):
         raise UnusableDeviceError(device.reason)
     _require(device, name, kinds)
+    has_mag = settings.mag in (None, name) and _has_channels(device, MAG)
     trigger: Trigger | None = None
     is_captured = can_be_captured(device, kinds)
     if is_captured and needs_trigger(device):
@@ -71,23 +74,32 @@ def _plan_device(
     if not is_captured:
         plan = plan_polling(device, kinds, settings.rate_hz or POLLING_RATE_HZ)
         return InertialDevice(
-            *(name, kinds, plan, False), lambda clock: PollingReader(device, kinds, plan, clock)
+            *(name, kinds, plan, False),
+            lambda clock: PollingReader(device, kinds, plan, clock),
+            has_mag,
         )
     if trigger is not None and trigger.is_timer:
         plan = plan_polling(device, kinds, settings.rate_hz or USUAL_RATE_HZ)
     else:
         plan = plan_capture(device, kinds, settings.rate_hz)
     node = machine.devices / device.name
+    captures_mag = has_mag and can_be_captured(device, (MAG,))
+    captured = (*kinds, MAG) if captures_mag else kinds
     return InertialDevice(
         *(name, kinds, plan, True),
-        lambda clock: BufferReader(device, node, kinds, plan, trigger, clock),
+        lambda clock: BufferReader(device, node, captured, plan, trigger, clock),
+        *(has_mag, captures_mag),
     )
+
+
+def _has_channels(device: Path, kind: str) -> bool:
+    return all((device / f"{axis}_raw").exists() for axis in axes_of(kind))
 
 
 def _require(device: Path, name: DeviceName, kinds: tuple[str, ...]) -> None:
     """Raises UnusableDeviceError where a channel is missing."""
     for kind in kinds:
-        if all((device / f"{axis}_raw").exists() for axis in axes_of(kind)):
+        if _has_channels(device, kind):
             continue
         channels = sorted(path.name.removesuffix("_raw") for path in device.glob("in_*_raw"))
         both = "; accelerometer and gyroscope of two devices are written ACCEL+GYRO"

@@ -19,8 +19,13 @@ class IioSettings:
     gyro: DeviceName  # the same one, where a device has both
     rate_hz: float | None = None  # None: what the driver offers nearest to the usual one
     trigger: str = ""  # name; empty: the device's own
-    mag: DeviceName | None = None
+    mag: DeviceName | None = None  # None: where the inertial sensor has one, that
     pressure: DeviceName | None = None
+
+    @property
+    def separate_mag(self) -> DeviceName | None:
+        """Magnetometer that is another device than the inertial sensor."""
+        return None if self.mag in (self.accel, self.gyro) else self.mag
 
     def __str__(self) -> str:
         return "+".join(dict.fromkeys((str(self.accel), str(self.gyro))))
@@ -45,12 +50,11 @@ def parse_settings(text: str) -> IioSettings:
         mag=_parse_name(text, values["mag"]) if "mag" in values else None,
         pressure=_parse_name(text, values["pressure"]) if "pressure" in values else None,
     )
-    for beside in (settings.mag, settings.pressure):
-        if beside in devices:
-            raise ConfigError(
-                f"{_SCHEME}:{text}: {beside} is captured as the inertial sensor; a magnetometer or "
-                "barometer has to be another device"
-            )
+    if settings.pressure in devices:
+        raise ConfigError(
+            f"{_SCHEME}:{text}: {settings.pressure} is captured as the inertial sensor; a "
+            "barometer has to be another device"
+        )
     return settings
 
 

@@ -19,14 +19,14 @@ from edge.sources.iio.attributes import (
     read_number,
     read_scaled,
 )
-from edge.sources.iio.conversion import MAG, PRESSURE, axes_of, read_conversion
+from edge.sources.iio.conversion import MAG, PRESSURE, UT_PER_GAUSS, axes_of, read_conversion
 from edge.sources.polled_device import PolledDevice, Unreadable
 from shared.clock import NS_PER_S, Clock
 
-_MAG_PERIOD_S, _PRESSURE_PERIOD_S = 0.05, 0.1
-_UT_PER_GAUSS, _PA_PER_KPA = 100.0, 1000.0
+MAG_PERIOD_S, _PRESSURE_PERIOD_S = 0.05, 0.1
+_PA_PER_KPA = 1000.0
 _PRESSURE_PA = (20_000.0, 130_000.0)  # beyond, it is no air pressure
-_STUCK_NS = 10 * NS_PER_S
+STUCK_NS = 10 * NS_PER_S
 
 Values = tuple[float, ...]
 
@@ -72,8 +72,8 @@ class SlowSensor:
         if isinstance(values, Unreadable):
             return values
         last = self._last
-        if last is not None and values == last.values and t_ns - last.t_ns > _STUCK_NS:
-            return Unreadable(f"it has repeated one value for {_STUCK_NS // NS_PER_S} s: it hangs")
+        if last is not None and values == last.values and t_ns - last.t_ns > STUCK_NS:
+            return Unreadable(f"it has repeated one value for {STUCK_NS // NS_PER_S} s: it hangs")
         return Reading((t_ns + self._clock.monotonic_ns()) // 2, values)
 
 
@@ -82,10 +82,10 @@ def open_magnetometer(name: DeviceName, sysfs: Path, clock: Clock) -> SlowSensor
 
     def read(device: Path) -> Values:
         raw = np.array([[read_number(device / f"{axis}_raw") for axis in axes_of(MAG)]])
-        field_ut = _UT_PER_GAUSS * read_conversion(device, MAG).apply(raw)[0]
+        field_ut = UT_PER_GAUSS * read_conversion(device, MAG).apply(raw)[0]
         return tuple(field_ut.tolist())
 
-    return SlowSensor(f"magnetometer {name}", _reader_of(name, sysfs, read), _MAG_PERIOD_S, clock)
+    return SlowSensor(f"magnetometer {name}", _reader_of(name, sysfs, read), MAG_PERIOD_S, clock)
 
 
 def open_barometer(name: DeviceName, sysfs: Path, clock: Clock) -> SlowSensor:

@@ -17,7 +17,8 @@ from threading import Event
 from edge.samples import SensorBatch, SensorDescription
 from edge.sources.iio.attributes import UnusableDeviceError
 from edge.sources.iio.block import Block, DeviceReader
-from edge.sources.iio.conversion import ACCEL, GYRO
+from edge.sources.iio.captured_mag import CapturedMagnetometer
+from edge.sources.iio.conversion import ACCEL, GYRO, MAG
 from edge.sources.iio.device import InertialDevice, Machine, find_inertial_devices
 from edge.sources.iio.joined_timeline import JoinedTimeline
 from edge.sources.iio.plan import USUAL_RATE_HZ
@@ -59,13 +60,18 @@ class IioSource:
         self._faults: deque[str] = deque(maxlen=_FAULTS_MAX)
         self._silence_reasons: set[str] = set()  # why there have been no samples since the last one
         self._remarks: set[str] = set()  # on how it is set; once each
-        mag, pressure = self._settings.mag, self._settings.pressure
-        self._mag = None if mag is None else open_magnetometer(mag, sysfs, self._clock)
+        mag, pressure = self._settings.separate_mag, self._settings.pressure
+        self._mag: SlowSensor | None = None  # one that is read apart
+        if mag is not None:
+            self._mag = open_magnetometer(mag, sysfs, self._clock)
+        self._captured_mag = CapturedMagnetometer()
         self._barometer: SlowSensor | None = None
         if pressure is not None:
             self._barometer = open_barometer(pressure, sysfs, self._clock)
-        self._rows = Rows(str(self._settings), mag=mag is not None, pressure=pressure is not None)
         self._description = self._describe()
+        self._rows = Rows(
+            str(self._settings), mag=self._description.mag_present, pressure=pressure is not None
+        )
         self.taken = 0  # inertial samples
         self.left_out = 0  # of the gyroscope, as there was no acceleration beside them
 
@@ -121,11 +127,13 @@ class IioSource:
         """Describe the devices that are there now; of others, only what was asked for is known."""
         rate_hz = self._settings.rate_hz or USUAL_RATE_HZ
         full_scales: dict[str, float] = {}
+        has_mag = self._settings.mag is not None
         try:
             devices = find_inertial_devices(self._settings, self._machine)
             rate_hz = devices[-1].plan.rate_hz
             for device in devices:
                 full_scales |= device.plan.full_scales
+                has_mag = has_mag or device.has_mag
         except (OSError, UnusableDeviceError) as error:
             logger.info("%s is not described: %s", self, error)
         return SensorDescription(
@@ -133,7 +141,7 @@ class IioSource:
             rate_hz=rate_hz,
             accel_full_scale_mps2=full_scales.get(ACCEL),
             gyro_full_scale_radps=full_scales.get(GYRO),
-            mag_present=self._mag is not None,
+            mag_present=has_mag,
             barometer_present=self._barometer is not None,
         )
 
@@ -146,6 +154,7 @@ class IioSource:
         with ExitStack() as stack:
             readers = [stack.enter_context(closing(one.open(self._clock))) for one in devices]
             self._report_remarks(devices)
+            self._open_own_mag(devices, stack)
             joined = JoinedTimeline(readers[0].rate_hz) if len(readers) > 1 else None
             last_ns = [self._clock.monotonic_ns()] * len(readers)
             while not self._closed.is_set():
@@ -160,6 +169,17 @@ class IioSource:
                     yield self._cut()
                 self._require_samples(devices, readers, last_ns)
 
+    def _open_own_mag(self, devices: list[InertialDevice], stack: ExitStack) -> None:
+        """Read the magnetometer of a device that is polled in a thread of its own."""
+        own = next((one for one in devices if one.has_mag and not one.is_captured), None)
+        if own is None:
+            return
+        sensor = open_magnetometer(own.name, self._machine.sysfs, self._clock)
+        stack.enter_context(closing(sensor))
+        stack.callback(setattr, self, "_mag", None)
+        self._mag = sensor
+        sensor.start()
+
     def _wait(self, readers: list[DeviceReader]) -> bool:
         """Wait until one of them has samples; return True where none has in time."""
         now_ns = self._clock.monotonic_ns()
@@ -169,6 +189,9 @@ class IioSource:
         return bool(descriptors) and not ready
 
     def _take(self, block: Block, joined: JoinedTimeline | None) -> None:
+        if MAG in block.values:
+            self._rows.add_mag(self._captured_mag.take(block))
+            block = block.without(MAG)
         if joined is not None:
             joined.push(block)
             block = joined.take()
@@ -202,6 +225,7 @@ class IioSource:
             how = "captured" if device.is_captured else "polled, as it has no buffer or no trigger"
             logger.info("%s: %s at %g samples/s", device, how, device.plan.rate_hz)
             self._report_once(device.plan.remark and f"{device}: {device.plan.remark}")
+            self._report_once(self._mag_remark(device))
         rate_hz, described_hz = devices[-1].plan.rate_hz, self._description.rate_hz
         if abs(rate_hz / described_hz - 1.0) > _RATE_OFF:
             self._report_once(
@@ -209,13 +233,24 @@ class IioSource:
                 f"{described_hz:g} before it was there: restart the unit's agent"
             )
 
+    def _mag_remark(self, device: InertialDevice) -> str:
+        if device.has_mag and device.is_captured and not device.captures_mag:
+            return f"{device}: its driver does not capture its magnetometer: that is not read"
+        if device.has_mag and not self._description.mag_present:
+            return (
+                f"{device}: it has a magnetometer, and was taken for one without before it was "
+                "there: restart the unit's agent"
+            )
+        is_asked = self._settings.mag == device.name
+        return f"{device}: it has no magnetometer" if is_asked and not device.has_mag else ""
+
     def _report_once(self, remark: str) -> None:
         if remark and remark not in self._remarks:
             self._remarks.add(remark)
             self._report_fault(remark)
 
     def _report_events(self, device: InertialDevice, reader: DeviceReader) -> None:
-        for event in reader.take_events():
+        for event in (*reader.take_events(), *self._captured_mag.take_events()):
             self._report_fault(f"{device}: {event}")
 
     def _report_silence(self, reason: str) -> None:

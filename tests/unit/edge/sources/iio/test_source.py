@@ -12,9 +12,17 @@ import numpy as np
 import pytest
 
 from edge.samples import ElectronicsSample, Floats
-from edge.sources.iio import buffer
+from edge.sources.iio import buffer, captured_mag
 from edge.sources.iio.source import IioSource
-from tests.rig.iio_device import BMI160, ICM_ACCEL, ICM_GYRO, EmulatedIio, Model, without_buffer
+from tests.rig.iio_device import (
+    BMI160,
+    ICM_ACCEL,
+    ICM_GYRO,
+    MPU9250,
+    EmulatedIio,
+    Model,
+    without_buffer,
+)
 from tests.rig.kernel_devices import SysfsTree, break_attribute, write_attributes
 from tests.rig.taken_batches import TakenBatches
 from tests.rig.waiting import until
@@ -109,6 +117,82 @@ def test_magnetometer_and_barometer_beside_it(tree, plug, start) -> None:
         write_attributes(mag, {"in_magn_x_raw": "2740"})
         until(lambda: seen("mag_ut")[4:5] == pytest.approx([-40.0], abs=0.01), "another field")
     assert not taken.faults()
+
+
+def fields_ut(taken: TakenBatches) -> Floats:
+    column: Floats = taken.column("mag_ut")
+    known: Floats = column[np.isfinite(column[:, 0])]
+    return known
+
+
+def turning_field(k: int) -> tuple[int, ...]:
+    """A field that is measured each tenth sample, of a foot that lies still."""
+    return (*MPU9250.rest[:6], 0, 133 + k // 10 % 3, -267)
+
+
+@pytest.mark.parametrize("text", ["mpu9250", "mpu9250?mag=mpu9250"])
+def test_a_magnetometer_in_the_same_device_is_captured_with_it(plug, start, text) -> None:
+    plug(MPU9250, values=turning_field)
+    with start(text) as taken:
+        until(lambda: len(taken) > 10 * ENOUGH, "samples")
+    assert np.linalg.norm(taken.column("accel_mps2"), axis=1) == pytest.approx(9.8, abs=0.1)
+    assert fields_ut(taken)[0] == pytest.approx([19.95, 0.0, 40.05], abs=0.01)
+    column = taken.column("mag_ut")
+    at = np.flatnonzero(np.isfinite(column[:, 0]))
+    assert (np.diff(at) >= 20).all(), "each tenth sample of 500 a second is more than is of use"
+    assert len(at) > len(column) / 40
+    assert not taken.faults()
+
+
+def test_one_field_in_all_frames_is_one_measurement_and_at_last_a_fault(
+    plug, start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(captured_mag, "STUCK_NS", 10**9)
+    plug(MPU9250, values=lambda _: MPU9250.rest)
+    with start("mpu9250") as taken:
+        until(lambda: "its magnetometer has repeated one value" in taken.faults(), "the fault")
+        assert len(fields_ut(taken)) == 1
+
+
+def test_a_magnetometer_in_one_of_two_devices(plug, start) -> None:
+    plug(MPU9250, values=turning_field)
+    plug(ICM_GYRO, number=1)
+    with start("mpu9250+icm42688-gyro") as taken:
+        until(lambda: len(taken) > ENOUGH and len(fields_ut(taken)) > 1, "a field")
+    assert np.isfinite(taken.column("gyro_radps")).all()
+    assert not taken.faults()
+
+
+def test_a_magnetometer_in_a_device_that_is_polled(tree, start) -> None:
+    device = without_buffer(tree, MPU9250)
+    with start("mpu9250") as taken:
+        until(lambda: len(taken) > ENOUGH and len(fields_ut(taken)), "a field")
+        write_attributes(device, {"in_magn_y_raw": "200"})
+        until(lambda: fields_ut(taken)[-1][0] == pytest.approx(30.0), "another field")
+    assert not taken.faults()
+
+
+def test_a_magnetometer_that_is_not_captured_is_said(plug, start) -> None:
+    device = plug(MPU9250)
+    for axis in "xyz":
+        (device.path / "scan_elements" / f"in_magn_{axis}_en").unlink()
+    with start("mpu9250") as taken:
+        until(lambda: "does not capture its magnetometer" in taken.faults(), "the remark")
+
+
+def test_a_magnetometer_that_was_asked_of_a_device_without_one_is_said(plug, start) -> None:
+    plug()
+    with start("bmi160?mag=bmi160") as taken:
+        until(lambda: len(taken) > ENOUGH, "samples")
+        until(lambda: "it has no magnetometer" in taken.faults(), "the remark")
+
+
+def test_a_magnetometer_that_was_not_known_at_the_start_is_said(plug, start) -> None:
+    with start("mpu9250?rate=200") as taken:
+        until(lambda: "there is no IIO device" in taken.faults(), "that it is missing")
+        plug(MPU9250, values=turning_field)
+        until(lambda: len(taken) > ENOUGH, "samples")
+        until(lambda: "was taken for one without" in taken.faults(), "the remark")
 
 
 def test_a_device_that_appears_later_is_read(plug, start) -> None:
@@ -283,3 +367,8 @@ def test_it_is_described_by_what_its_driver_offers(plug, tree) -> None:
     assert described.accel_full_scale_mps2 == pytest.approx(16 * 9.80665, rel=0.001)
     assert described.gyro_full_scale_radps == pytest.approx(np.radians(2000), rel=0.001)
     assert not described.mag_present
+
+
+def test_a_magnetometer_in_the_device_is_described(plug, tree) -> None:
+    plug(MPU9250)
+    assert IioSource("mpu9250", sysfs=tree.root).description.mag_present
