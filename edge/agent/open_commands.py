@@ -40,7 +40,9 @@ class OpenCommands:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._read_fault = ""
-        self._commands = {command.command_id: command for command in self._read()}
+        found = self._read()
+        self._on_disk = found  # None: not known; it is written anew
+        self._commands = {command.command_id: command for command in found or ()}
         self._worker = Worker(
             "open-commands", self._step, "open commands are not kept on disk", at_end=self._save
         )
@@ -91,7 +93,8 @@ class OpenCommands:
         if command_ids:
             self._worker.wake()
 
-    def _read(self) -> list[OpenCommand]:
+    def _read(self) -> list[OpenCommand] | None:
+        """Return what the disk has; None where that cannot be read."""
         try:
             with read_own(self._path) as file:
                 return msgspec.json.decode(file.read(), type=list[OpenCommand])
@@ -99,18 +102,25 @@ class OpenCommands:
             return []
         except (OSError, msgspec.MsgspecError) as error:  # a unit must start in any case
             self._read_fault = f"which commands were open cannot be read: {error}"
-            return []
+            return None
 
     def _step(self) -> float:
         self._save()
         return UNTIL_WOKEN
 
     def _save(self) -> None:
-        """Bring the commands to the disk: a power cut leaves those before or those after."""
+        """Bring the commands to the disk: a power cut leaves those before or those after.
+
+        What is there already is not written again: flash memory wears, and a start is no news.
+        """
+        commands = list(self._commands.values())
+        if commands == self._on_disk:
+            return
         new = self._path.with_suffix(".new")
         with write_own(new, 0o600) as written:
-            written.write(msgspec.json.encode(list(self._commands.values())))
+            written.write(msgspec.json.encode(commands))
             written.flush()
             os.fsync(written.fileno())
         new.replace(self._path)
         sync_folder(self._path.parent)
+        self._on_disk = commands

@@ -1,11 +1,13 @@
-"""``muster bench sensor``: what a unit's agent costs with an emulated sensor of Industrial I/O."""
+"""``muster bench sensor``: what a unit's agent costs with emulated sensors of the kernel, and how
+soon a temperature is on the console.
+"""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import takewhile
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,6 +23,7 @@ from edge.sources.registry import open_source
 from shared.bench_figures import FiguresFile, write_figures
 from shared.clock import NS_PER_S
 from shared.errors import ConfigError
+from tests.bench.whole_unit import WholeUnitFigures, measure_whole_unit
 from tests.rig.device_requests import DeviceRequests
 from tests.rig.iio_device import BMI160, ICM_ACCEL, ICM_GYRO, EmulatedIio, Raw, without_buffer
 from tests.rig.kernel_devices import EmulatedAgent, SysfsTree, has_umockdev
@@ -47,8 +50,15 @@ class SensorRow:
     longest_gap_ms: float
 
 
+@dataclass(frozen=True, slots=True)
+class SensorFigures:
+    rows: list[SensorRow] = field(default_factory=list)
+    whole_unit: WholeUnitFigures = field(default_factory=WholeUnitFigures)
+
+
 def bench_sensor(
     seconds: Annotated[float, typer.Option(min=5.0, help="Measured, of each.")] = 60.0,
+    steps: Annotated[int, typer.Option(min=1, help="Of a temperature.")] = 40,
     json_file: FiguresFile = None,
 ) -> None:
     """Measure the CPU of an agent whose sensor is emulated, and count what it takes."""
@@ -62,8 +72,11 @@ def bench_sensor(
         measure("one device", "iio:bmi160", "none", seconds, walk),
         measure("polled", f"iio:bmi160?rate={_POLLING_HZ:g}", "eskf", seconds, walk),
     ]
+    with TemporaryDirectory(prefix="muster") as name:
+        whole_unit = measure_whole_unit(seconds, steps, Path(name), walk)
     Terminal().print(_table(rows))
-    write_figures(json_file, rows)
+    Terminal().print(_whole_unit_table(whole_unit))
+    write_figures(json_file, SensorFigures(rows, whole_unit))
 
 
 def raw_walk() -> Walk:
@@ -129,4 +142,13 @@ def _table(rows: list[SensorRow]) -> Table:
     for row in rows:
         shown = f"{row.cores:.1%}", f"{row.rate_hz:.1f}", f"{row.longest_gap_ms:.1f} ms"
         table.add_row(row.sensor, row.tracker, *shown)
+    return table
+
+
+def _whole_unit_table(figures: WholeUnitFigures) -> Table:
+    table = Table("", "measured", "to reach", title="A whole unit beside a station")
+    table.add_row("all sensors at 400 Hz: share of a core", f"{figures.cores:.1%}", "15 %")
+    p50_s, p99_s, most_s = np.percentile(figures.temperature_s, (50, 99, 100))
+    shown = f"p50 {p50_s:.2f} s, p99 {p99_s:.2f} s, at most {most_s:.2f} s"
+    table.add_row("temperature step to the console", shown, "2 s")
     return table

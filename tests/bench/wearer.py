@@ -1,4 +1,5 @@
-"""``muster bench wearer``: from a button to the screen, and from an order to the wearer.
+"""``muster bench wearer``: from a button to the screen, from an order to the wearer, and from a
+decision of the unit to its output.
 
 A station and an agent as processes on this machine; the button is another program's, over a local
 socket, and the output a line.
@@ -10,7 +11,7 @@ import json
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Condition, Thread
@@ -29,6 +30,7 @@ from edge.app.jit_warmup import compile_trackers
 from edge.wearer.gestures import HOLD_NS
 from shared.bench_figures import FiguresFile, write_figures
 from shared.clock import NS_PER_S
+from tests.bench.pre_alert import measure_pre_alerts
 from tests.rig.station_command import Agent, Browser, Command
 from tests.rig.station_process import free_port
 from tests.rig.waiting import PATIENCE_S, until
@@ -46,21 +48,24 @@ class WearerFigures:
 
     mayday_s: list[float] = field(default_factory=list)  # from the end of the hold to the screen
     order_s: list[float] = field(default_factory=list)  # from sending it to the output
+    pre_alert_s: list[float] = field(default_factory=list)  # from the decision to the output
     mayday_after_outage_s: float = float("nan")  # from the return of the radio to the screen
     maydays_shown_after_outage: int = 0  # of one
 
 
 def bench_wearer(
-    trials: Annotated[int, typer.Option(min=1, help="Maydays, and orders.")] = 40,
+    trials: Annotated[int, typer.Option(min=1, help="Maydays, orders, pre-alerts.")] = 40,
     outage: Annotated[bool, typer.Option(help="Also a mayday while the radio is away.")] = True,
     json_file: FiguresFile = None,
 ) -> None:
     """Holds a button and sends orders, again and again; once while the radio is away."""
     compile_trackers()
+    with TemporaryDirectory(prefix="muster-bench-") as folder:
+        pre_alert_s = measure_pre_alerts(trials, Path(folder))
     with Progress(transient=True) as progress:
         task = progress.add_task("maydays and orders", total=trials)
         with _site("bench:5") as site:
-            figures = WearerFigures()
+            figures = WearerFigures(pre_alert_s=pre_alert_s)
             for number in range(trials):
                 figures.mayday_s.append(site.call_mayday())
                 figures.order_s.append(site.order(f"order {number}"))
@@ -175,8 +180,10 @@ def _with_outage(site: _Site, figures: WearerFigures) -> WearerFigures:
     back_s = time.monotonic()
     until(lambda: site.maydays, "the mayday on the screen")
     time.sleep(5.0)  # a second one would come
-    return WearerFigures(
-        figures.mayday_s, figures.order_s, site.maydays[0][0] - back_s, len(site.maydays)
+    return replace(
+        figures,
+        mayday_after_outage_s=site.maydays[0][0] - back_s,
+        maydays_shown_after_outage=len(site.maydays),
     )
 
 
@@ -194,6 +201,7 @@ def _table(figures: WearerFigures) -> Table:
     for name, values, to_reach in (
         ("held button to the screen", figures.mayday_s, "p99 300 ms"),
         ("order to the wearer's output", figures.order_s, ""),
+        ("no motion, decided, to the wearer's output", figures.pre_alert_s, "100 ms"),
     ):
         p50_ms, p99_ms = 1e3 * np.percentile(values, (50, 99))
         table.add_row(name, f"{p50_ms:.0f} ms", f"{p99_ms:.0f} ms", to_reach)

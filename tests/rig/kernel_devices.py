@@ -54,6 +54,12 @@ class SysfsTree:
         _link(self.root / "bus" / "w1" / "devices" / sensor_id, device)
         return device
 
+    def led(self, name: str, /, **attributes: str) -> Path:
+        device = self.root / "devices" / "platform" / "leds" / name
+        write_attributes(device, attributes)
+        _link(self.root / "class" / "leds" / name, device)
+        return device
+
     def power_supply(self, name: str, /, **attributes: str) -> Path:
         device = self.root / "devices" / "platform" / "battery" / "power_supply" / name
         write_attributes(device, attributes)

@@ -1,4 +1,4 @@
-"""``muster bench wearer`` measures a button and an order; targets are not asserted."""
+"""``muster bench wearer`` measures a button, an order and a pre-alert; targets are not asserted."""
 
 from __future__ import annotations
 
@@ -14,5 +14,6 @@ from tests.bench.wearer import bench_wearer
 def test_it_writes_the_figures(tmp_path: Path) -> None:
     bench_wearer(trials=2, outage=False, json_file=tmp_path / "figures.json")
     figures = json.loads((tmp_path / "figures.json").read_text())
-    assert len(figures["mayday_s"]) == len(figures["order_s"]) == 2
+    for name in ("mayday_s", "order_s", "pre_alert_s"):
+        assert len(figures[name]) == 2
     assert all(-0.1 < value < 120.0 for value in figures["mayday_s"] + figures["order_s"])

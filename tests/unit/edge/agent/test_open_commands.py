@@ -62,6 +62,38 @@ def test_an_answer_closes_all_and_time_those_that_are_over(path) -> None:
         assert ids(commands) == []
 
 
+def test_a_start_that_changes_nothing_writes_nothing(path) -> None:
+    with closing(OpenCommands(path)):
+        pass
+    assert not path.exists(), "there is nothing to keep"
+    with closing(OpenCommands(path)) as commands:
+        commands.add(command("a", CommandKind.EVACUATE))
+    written = path.stat()
+    with closing(OpenCommands(path)) as commands:
+        assert ids(commands) == ["a"]
+    assert (path.stat().st_ino, path.stat().st_mtime_ns) == (written.st_ino, written.st_mtime_ns)
+
+
+def test_a_damaged_file_is_written_anew_once(path) -> None:
+    path.write_bytes(b"[1]")
+    with closing(OpenCommands(path)):
+        pass
+    assert path.read_bytes() == b"[]"
+    with closing(OpenCommands(path)) as commands:
+        assert commands.fault == ""
+
+
+def test_one_that_ends_is_kept_no_more(path) -> None:
+    with closing(OpenCommands(path)) as commands:
+        commands.add(command("a", CommandKind.EVACUATE))
+        commands.add(command("b", CommandKind.TEXT, text="x"))
+        commands.close_one("a")
+        commands.close_one("elsewhere")
+        assert ids(commands) == ["b"]
+    with closing(OpenCommands(path)) as commands:
+        assert ids(commands) == ["b"]
+
+
 @pytest.mark.parametrize("content", [b"", b"\0" * 40, b"[1]", b'[{"command_id":"a"}]'])
 def test_a_damaged_file_stops_no_unit_and_is_reported(path, content) -> None:
     path.write_bytes(content)
