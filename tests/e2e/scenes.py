@@ -30,6 +30,8 @@ INCIDENT = wire.IncidentView(
     "20261121-1", "Mill Road 7, flats", NOW_MS - 52 * MINUTE_MS, None, 1200.0, 300.0, 2400.0
 )
 
+_WARNINGS = ("warning", "temperature: the unit has no sensor; output: the unit has none")
+
 
 def unit_id(index: int) -> str:
     return f"FF-{index + 1:02}"
@@ -105,7 +107,7 @@ def unit(index: int) -> wire.UnitView:
         ambient_ms=NOW_MS - 400,
         ambient_sensors=(),
         can_be_notified=True,
-        preflight=wire.PreflightView("ok", ""),
+        preflight=wire.PreflightView(*(_WARNINGS if index == 4 else ("ok", ""))),
     )
 
 

@@ -186,4 +186,4 @@ def test_a_unit_that_is_not_ready_says_so_and_one_with_warnings_where_it_is_chos
     menu(page, "Units")
     table = page.get_by_role("table")
     expect(table).to_contain_text("not ready: battery: no reading")
-    expect(table).to_contain_text("not known")
+    expect(table).to_contain_text("with warnings: output: the unit has none")

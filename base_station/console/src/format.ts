@@ -45,11 +45,9 @@ export function countdown(ms: number): string {
 
 const CLOCK_WRONG_MS = 10_000;
 
-/** What a unit has found when it checked itself at its start; empty: nobody knows. */
-export function preflightText(preflight: PreflightView | null): string {
-  if (preflight === null) return "";
-  if (preflight.level === "ok") return "ready";
-  return `${preflight.level === "failed" ? "not ready" : "with warnings"}: ${preflight.text}`;
+/** What a unit has found wrong when it checked itself at its start. */
+export function preflightText({ level, text }: PreflightView): string {
+  return `${level === "failed" ? "not ready" : "with warnings"}: ${text}`;
 }
 
 /** How far a unit's own clock is from the station's: "40 ms ahead ± 3 ms", "1 min 15 s behind". */

@@ -219,8 +219,6 @@ describe("words", () => {
   });
 
   it.each([
-    [null, ""],
-    [{ level: "ok", text: "" } as const, "ready"],
     [{ level: "warning", text: "output: none" } as const, "with warnings: output: none"],
     [{ level: "failed", text: "battery: empty" } as const, "not ready: battery: empty"],
   ])("says what a unit has found at its start", (preflight, text) => {

@@ -38,7 +38,6 @@ export function UnitsDialog() {
             "GPS",
             "Worn by",
             "Calibration",
-            "Check at start",
             "Positions a second",
             "Raw recording",
           ]}
@@ -77,7 +76,10 @@ function UnitRow({ unit, people, calibration }: RowProps) {
   const labelled = unit.label !== "" && unit.label !== unit.unit_id;
   return (
     <tr>
-      <th scope="row">{labelled ? `${unit.label} (${unit.unit_id})` : unit.unit_id}</th>
+      <th scope="row">
+        {labelled ? `${unit.label} (${unit.unit_id})` : unit.unit_id}
+        <CheckAtStart preflight={unit.preflight} />
+      </th>
       <td>
         {linkText(unit)}
         {unit.cloned && <small class="warned"> {DUPLICATE_DEVICE}</small>}
@@ -91,9 +93,6 @@ function UnitRow({ unit, people, calibration }: RowProps) {
       </td>
       <td data-label="Calibration">
         <Calibration unit={unit} calibration={calibration} />
-      </td>
-      <td data-label="Check at start">
-        <CheckAtStart preflight={unit.preflight} />
       </td>
       <td data-label="Positions a second">{unit.registered && <Rate unitId={unit.unit_id} />}</td>
       <td data-label="Raw recording">{unit.registered && <Recording unitId={unit.unit_id} />}</td>
@@ -121,11 +120,11 @@ function Calibration({ unit, calibration }: { unit: UnitView; calibration: strin
   );
 }
 
-/** What the unit has found at its start, as `muster edge check` would. */
+/** What the unit has found wrong at its start, as `muster edge check` would. */
 function CheckAtStart({ preflight }: { preflight: PreflightView | null }) {
-  const text = preflightText(preflight);
-  const bad = preflight?.level === "failed";
-  return <small class={bad ? "warned" : "quiet"}>{text === "" ? "not known" : text}</small>;
+  if (preflight === null || preflight.level === "ok") return null;
+  const level = preflight.level === "failed" ? "warned" : "quiet";
+  return <small class={`check-at-start ${level}`}>{preflightText(preflight)}</small>;
 }
 
 function Rate({ unitId }: { unitId: string }) {
