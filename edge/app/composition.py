@@ -142,7 +142,7 @@ def compose_agent(
 
 def _start_check(
     config: EdgeConfig,
-    folder: DataFolder,
+    folder: UnitDataFolder,
     source: Source,
     speed: float | None,
     calibration: Calibration | None,

@@ -24,7 +24,7 @@ from edge.clocks.timeline import Timeline
 from edge.config import EdgeConfig
 from edge.samples import ImuBatch, SensorBatch, SensorDescription
 from edge.sources.interface import OfflineSource
-from edge.storage.data_folder import DataFolder
+from edge.storage.data_folder import UnitDataFolder
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
 from shared.clock import NS_PER_S
@@ -96,7 +96,7 @@ def measure_pre_alerts(rests: int, folder: Path) -> list[float]:
     config = EdgeConfig("bench:1", outputs=("terminal:unit",), data=folder)
     decided_s: list[float] = []
     watched = _Watched()
-    with closing(DataFolder(folder / "unit")) as data:
+    with closing(UnitDataFolder(folder / "unit")) as data:
         agent = compose_agent(config, "unit", data, _MovesAndRests(rests), _Station(), _SPEED)
         _note_decisions(agent._parts.pipeline, decided_s)
         with redirect_stdout(cast("io.TextIOBase", watched)):
