@@ -298,7 +298,7 @@ def _open(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
         raise UserError(f"the incident {running.name!r} is open; close it first")
     state.incident = accountability.new_incident(state, action)
     for unit in state.units.values():
-        unit.trail.clear()
+        unit.trails.shown.clear()
         unit.trust = TrustTally()
         unit.inside_since_ns = None
         unit.heat_dose = unit.late_heat_dose = 0.0

@@ -25,17 +25,17 @@ class TrailEncoder:
 
     def update_if_behind(self, unit: UnitState) -> None:
         """Not far behind a trail that goes on: little is left to do when it is asked for."""
-        if unit.trail:
-            self._of(unit.unit_id).update_if_behind(unit.trail)
+        if unit.trails.shown:
+            self._of(unit.unit_id).update_if_behind(unit.trails.shown)
 
     def of(self, unit: UnitState) -> msgspec.Raw:
         encoded = self._of(unit.unit_id)
-        encoded.update(unit.trail)
+        encoded.update(unit.trails.shown)
         return encoded.whole()
 
     def all(self, units: Iterable[UnitState]) -> dict[str, msgspec.Raw]:
         """Trails of all units that have one."""
-        return {unit.unit_id: self.of(unit) for unit in units if unit.trail}
+        return {unit.unit_id: self.of(unit) for unit in units if unit.trails.shown}
 
     def _of(self, unit_id: str) -> _EncodedTrail:
         encoded = self._encoded_trails.get(unit_id)

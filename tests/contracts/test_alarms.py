@@ -78,7 +78,7 @@ def in_trouble(seen_ns: int = T_NS, rule: AlarmRule | None = None) -> UnitState:
         unit.position, quality=Quality.LOST, reasons=reasons, distance_m=3000.0
     )
     unit.degraded_since_ns = seen_ns - 60 * NS_PER_S
-    unit.mayday_ns = unit.fall_ns = seen_ns
+    unit.mayday.t_ns = unit.fall.t_ns = seen_ns
     unit.fused = lost_place(seen_ns)
     unit.position_lost_since_ns = seen_ns - 60 * NS_PER_S
     unit.duty = Duty(

@@ -258,10 +258,10 @@ def test_what_was_said_before_is_placed_before_when_it_comes_out_of_the_journal(
         walk.real_s += 1.0
         script.now_s += 1.0
     walk.step(10)
-    before = list(script.pipeline.state.units[U].trail)
+    before = list(script.pipeline.state.units[U].trails.shown)
     for one in reversed(lost):
         script.record(backfilled_key(U, POSITION.suffix), encode(one))
-    trail = script.pipeline.state.units[U].trail
+    trail = script.pipeline.state.units[U].trails.shown
     assert len(trail) > len(before)
     assert [step.t_ns for step in trail] == sorted(step.t_ns for step in trail)
     assert [step.north_m for step in trail] == sorted(step.north_m for step in trail)

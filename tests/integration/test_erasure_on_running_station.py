@@ -65,7 +65,7 @@ def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
         Walker(station, "FF-02").press_mayday()
         forgetter.person("admin", "p-77")
         unit = station.pipeline.state.units["FF-01"]
-        assert unit.trail == []
+        assert unit.trails.shown == []
         assert unit.fused is None
         saved = station.pipeline.checkpoint()
         assert ANA.encode() not in saved

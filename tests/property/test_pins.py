@@ -50,7 +50,7 @@ def test_with_all_pins_taken_back_everything_is_as_it_was(
         unit = walk.script.pipeline.state.units["FF-01"]
         assert unit.fused is not None
         assert all(map(math.isfinite, (unit.fused.north_m, unit.fused.std_north_m)))
-        assert all(math.isfinite(step.north_m) for step in unit.trail)
+        assert all(math.isfinite(step.north_m) for step in unit.trails.shown)
         state = walk.script.pipeline.state
         assert state.pin_verdicts.keys() == state.pins.keys()
         if taken_back:
@@ -59,7 +59,7 @@ def test_with_all_pins_taken_back_everything_is_as_it_was(
         walk.script.act(RemovePin(pin_id))
     walk.go(10)
     mine, theirs = (one.script.pipeline.state.units["FF-01"] for one in (walk, plain))
-    assert mine.trail == theirs.trail
+    assert mine.trails.shown == theirs.trails.shown
     assert mine.fused is not None
     assert theirs.fused is not None
     assert mine.fused.north_m == theirs.fused.north_m

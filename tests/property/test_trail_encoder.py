@@ -28,7 +28,7 @@ def step(t_s: int, north_m: float = 0.0) -> TrailStep:
 
 
 def change(unit: UnitState, what: str, much: int) -> None:
-    trail = unit.trail
+    trail = unit.trails.shown
     end_s = trail[-1].t_ns // NS_PER_S if trail else 0
     if what == "walk":
         trail += [step(end_s + 2 * i + 2, i / 7) for i in range(much)]
@@ -38,7 +38,9 @@ def change(unit: UnitState, what: str, much: int) -> None:
         place = much % len(trail)
         trail.insert(place, TrailStep(trail[place].t_ns - NS_PER_S, 3.0, 4.0, 1))
     elif what == "solve":
-        unit.trail = [msgspec.structs.replace(one, north_m=one.north_m + much) for one in trail]
+        unit.trails.shown = [
+            msgspec.structs.replace(one, north_m=one.north_m + much) for one in trail
+        ]
     elif what == "clear":
         trail.clear()
 
@@ -54,7 +56,7 @@ def test_what_is_kept_is_what_the_trail_is(changes: list[Change]) -> None:
             said = msgspec.json.decode(trails.of(unit))
             assert said == [
                 [one.t_ns // 1_000_000, round(one.north_m, 2), round(one.east_m, 2), one.floor]
-                for one in unit.trail
+                for one in unit.trails.shown
             ]
 
 
@@ -69,11 +71,11 @@ def test_a_point_is_encoded_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(trail_encoder, "_encoded", counted)
     unit, trails = UnitState("FF-01"), TrailEncoder()
-    unit.trail = [step(2 * i) for i in range(TRAIL_POINTS)]
+    unit.trails.shown = [step(2 * i) for i in range(TRAIL_POINTS)]
     trails.all([unit])
     for i in range(5 * AT_ONCE):
-        unit.trail.append(step(2 * (TRAIL_POINTS + i)))
-        del unit.trail[0]
+        unit.trails.shown.append(step(2 * (TRAIL_POINTS + i)))
+        del unit.trails.shown[0]
         trails.update_if_behind(unit)
     assert encoded == [TRAIL_POINTS, *5 * [AT_ONCE]]
     assert len(msgspec.json.decode(trails.all([unit])["FF-01"])) == TRAIL_POINTS

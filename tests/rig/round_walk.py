@@ -66,7 +66,7 @@ class Walk:
         return list(self.script.act(pin))
 
     def trail(self, unit_id: str) -> list[TrailStep]:
-        return self.script.pipeline.state.units[unit_id].trail
+        return self.script.pipeline.state.units[unit_id].trails.shown
 
     def worst_m(self, unit_id: str, begin_s: float = 0.0, end_s: float = math.inf) -> float:
         begin_ns = self.script.t_ns - self.walked_s * 10**9

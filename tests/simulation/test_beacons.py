@@ -69,7 +69,7 @@ def told(simulation: Simulation, said: Said, *, with_beacons: bool) -> Script:
 
 def trail_off_m(simulation: Simulation, script: Script) -> float:
     """Mean, over the trail."""
-    trail = script.pipeline.state.units["FF-01"].trail
+    trail = script.pipeline.state.units["FF-01"].trails.shown
     begin_ns = script.records[0][0]
     t_s = np.array([(one.t_ns - begin_ns) / NS_PER_S for one in trail])
     places = np.array([(one.north_m, one.east_m) for one in trail])

@@ -19,15 +19,15 @@ class Fall:
     triggered_by: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.fall_ns is None:
+        fall = unit.fall
+        if fall.t_ns is None:
             return None
-        event_ns = unit.fall_event_ns if unit.fall_is_dated else None
         return Finding(
             "fall",
             EMERGENCY,
-            f"{unit.name_at(event_ns)} may have fallen",
-            seen_ns=unit.fall_ns,
-            onset_ns=unit.fall_ns,
+            f"{unit.name_at(fall.dated_ns)} may have fallen",
+            seen_ns=fall.t_ns,
+            onset_ns=fall.t_ns,
             latched=True,
-            about=unit.worn_from_ns(event_ns),
+            about=unit.worn_from_ns(fall.dated_ns),
         )

@@ -19,17 +19,17 @@ class Mayday:
     triggered_by: tuple[type[Message], ...] = (Status,)
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.mayday_ns is None:
+        call = unit.mayday
+        if call.t_ns is None:
             return None
-        if unit.mayday_cancelled_ns is not None:
-            return Clear(unit.mayday_cancelled_ns, "cancelled by the wearer")
-        event_ns = unit.mayday_event_ns if unit.mayday_is_dated else None
+        if call.cancelled_ns is not None:
+            return Clear(call.cancelled_ns, "cancelled by the wearer")
         return Finding(
             "mayday",
             EMERGENCY,
-            f"Mayday from {unit.name_at(event_ns)}",
-            seen_ns=unit.mayday_ns,
-            onset_ns=unit.mayday_ns,
+            f"Mayday from {unit.name_at(call.dated_ns)}",
+            seen_ns=call.t_ns,
+            onset_ns=call.t_ns,
             latched=True,
-            about=unit.worn_from_ns(event_ns),
+            about=unit.worn_from_ns(call.dated_ns),
         )

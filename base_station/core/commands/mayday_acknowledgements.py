@@ -24,10 +24,9 @@ def acknowledge(state: StationState, by: str, alarm: Alarm, incident_id: str) ->
     active, or of one of a former wearer.
     """
     unit = state.units.get(alarm.unit_id)
-    if alarm.rule != MAYDAY_RULE or unit is None or not unit.is_mayday_active:
+    if alarm.rule != MAYDAY_RULE or unit is None or not unit.mayday.is_active:
         return None
-    event_ns = unit.mayday_event_ns if unit.mayday_is_dated else None
-    if alarm.about != unit.worn_from_ns(event_ns):
+    if alarm.about != unit.worn_from_ns(unit.mayday.dated_ns):
         return None
     command = SentCommand(
         command_id=f"mayday-{unit.unit_id}-{state.t_ns}",
@@ -41,8 +40,8 @@ def acknowledge(state: StationState, by: str, alarm: Alarm, incident_id: str) ->
             unit.unit_id: Delivery(unit.unit_id, can_be_notified=unit.can_be_notified),
         },
         incident_id=incident_id,
-        mayday_boot_id=unit.mayday_boot_id,
-        mayday_seq=unit.mayday_seq,
+        mayday_boot_id=unit.mayday.boot_id,
+        mayday_seq=unit.mayday.seq,
     )
     state.commands[command.command_id] = command
     return command
@@ -62,7 +61,7 @@ def withdraw(state: StationState) -> Iterator[SentCommand]:
 
 def _over(command: SentCommand, unit: UnitState) -> str:
     """Return why its mayday is over; empty where it is not."""
-    if not unit.is_mayday_active:
+    if not unit.mayday.is_active:
         return CANCELLED
-    is_same = (command.mayday_boot_id, command.mayday_seq) == (unit.mayday_boot_id, unit.mayday_seq)
+    is_same = (command.mayday_boot_id, command.mayday_seq) == (unit.mayday.boot_id, unit.mayday.seq)
     return "" if is_same else CALLED_AGAIN

@@ -34,7 +34,7 @@ class PinnedUnits:
 
     def forget(self, unit: UnitState) -> None:
         self._fusers.pop(unit.unit_id, None)
-        unit.unpinned_trail = None
+        unit.trails.unpinned = None
 
     def all(self) -> Iterable[Fuser]:
         return self._fusers.values()
@@ -59,10 +59,10 @@ class PinnedUnits:
     def _take(self, unit: UnitState, result: SolvedUnit, plain: Callable[[str], Fuser]) -> bool:
         if result.path is None:
             self._fusers.pop(unit.unit_id, None)
-            return unit.restore_unpinned_trail()
+            return unit.trails.restore_unpinned()
         fuser = self._kind.restore(plain(unit.unit_id).save())
         fuser.set_map(self.grid)
         fuser.set_posterior(result.path.posterior)
         self._fusers[unit.unit_id] = fuser
-        unit.show_solved_trail(result.trail)
+        unit.trails.show_solved(result.trail)
         return True

@@ -29,5 +29,5 @@ def relocate_unit(state: StationState, unit: UnitState, fuser: Fuser, solver: Pa
     drop_learnt(state, unit.unit_id)
     path = solver.solve(state, unit.unit_id, ()).paths[unit.unit_id]
     fuser.set_posterior(path.posterior)
-    unit.replace_unpinned_trail(0, trail_of(state, history.arrays(), path.places_m))
+    unit.trails.replace_plain(0, trail_of(state, history.arrays(), path.places_m))
     return True

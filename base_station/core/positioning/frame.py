@@ -46,9 +46,10 @@ def reframe(state: StationState, move: RigidTransform2D) -> None:
     for history in state.paths.values():
         history.reframe(move.turn_rad, *shift_m, move.down_m)
     for unit in state.units.values():
-        unit.trail = [_moved(step, move) for step in unit.trail]
-        if unit.unpinned_trail is not None:
-            unit.unpinned_trail = [_moved(step, move) for step in unit.unpinned_trail]
+        trails = unit.trails
+        trails.shown = [_moved(step, move) for step in trails.shown]
+        if trails.unpinned is not None:
+            trails.unpinned = [_moved(step, move) for step in trails.unpinned]
     state.learnt_building = state.learnt_building.reframed(move.turn_rad, *shift_m)
     reframe_pins(state, move.turn_rad, *shift_m)
     state.learnt_floors.reframe(move.turn_rad, *shift_m, move.down_m)

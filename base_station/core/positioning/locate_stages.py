@@ -52,15 +52,13 @@ def find_earlier_floor(update: LocationUpdate) -> None:
 def extend_trails(update: LocationUpdate) -> None:
     """Add the newest point of the trails, within the shown incident."""
     if _is_drawn(update):
-        update.unit.extend_unpinned_trail(update.plain)
-        update.unit.extend_trail(update.fused)
+        update.unit.trails.extend(update.plain, update.fused)
 
 
 def insert_into_trails(update: LocationUpdate) -> None:
     """Add an earlier point of the trails, within the shown incident."""
     if _is_drawn(update):
-        update.unit.insert_into_unpinned_trail(update.plain)
-        update.unit.insert_into_trail(update.fused)
+        update.unit.trails.insert(update.plain, update.fused)
 
 
 def keep_in_path(update: LocationUpdate) -> None:

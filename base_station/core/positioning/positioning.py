@@ -201,8 +201,8 @@ class Positioning:
         for history in state.paths.values():
             history.begin_incident(state.t_ns, before_ns)
         for unit in state.units.values():
-            if unit.unpinned_trail is not None:
-                unit.unpinned_trail.clear()
+            if unit.trails.unpinned is not None:
+                unit.trails.unpinned.clear()
         kept = set().union(*map(units_of, state.pins.values()))
         return kept | drop(state, lambda pin: is_about(pin, before_ns))
 
@@ -229,7 +229,7 @@ class Positioning:
             before = self._fusers.forget(unit)
             history.drop_fixes()
             drop_learnt(state, unit_id)
-            unit.replace_unpinned_trail(0, [])
+            unit.trails.replace_plain(0, [])
             if unit.position is None:
                 unit.fused = None
                 continue
@@ -246,7 +246,7 @@ class Positioning:
         state.learnt_building = state.learnt_building.without(unit.unit_id)
         state.late.pop(unit.unit_id, None)
         unit.fused, unit.position = None, None
-        unit.trail.clear()
+        unit.trails.shown.clear()
 
     def set_anchor(self, state: StationState, anchor: Anchor) -> None:
         """Set the anchor. Places set by hand stay on the plan; a frame that the first fix had

@@ -58,9 +58,9 @@ def renumber_next_trail(state: StationState) -> str | None:
         return None
     history, unit = state.paths[unit_id], state.units[unit_id]
     history.is_renumbered = False
-    plain = unit.trail if unit.unpinned_trail is None else unit.unpinned_trail
+    plain = unit.trails.plain
     if history.begin_ns is None or not plain:
         return None
     before = plain.copy()
     plain[:] = renumbered_trail(state, plain, history.arrays())
-    return unit_id if plain is unit.trail and plain != before else None
+    return unit_id if plain is unit.trails.shown and plain != before else None

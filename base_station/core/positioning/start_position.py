@@ -45,7 +45,7 @@ def replay_from_start(
     points = history.arrays()
     places_m = np.column_stack((points.shown_m, points.down_m))
     since = [one for one in trail_of(state, points, places_m) if one.t_ns >= correction.begin_ns]
-    unit.replace_unpinned_trail(correction.begin_ns, since)
+    unit.trails.replace_plain(correction.begin_ns, since)
 
 
 def drop_learnt(state: StationState, unit_id: str) -> None:

@@ -8,8 +8,9 @@ from base_station.core.state.boot_state import BootState
 from base_station.core.state.duty import Duty
 from base_station.core.state.exposure import ExposureInterval
 from base_station.core.state.message_stream import STALE_AFTER_S, Link, MessageStream
-from base_station.core.state.trail import TrailStep, bound, extend_trail, insert_into_trail
 from base_station.core.state.trust_tally import TrustTally
+from base_station.core.state.unit_alert import MaydayCall, UnitAlert
+from base_station.core.state.unit_trails import UnitTrails
 from base_station.site.plan import Ring
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
@@ -79,19 +80,10 @@ class UnitState(MessageStream):
     fused: FusedPosition | None = None
     position_lost_since_ns: int | None = None  # the fused position is lost
     last_backfill_s: int = 0  # of which second of station time it was told last, late, where it was
-    trail: list[TrailStep] = msgspec.field(default_factory=list)
-    unpinned_trail: list[TrailStep] | None = None  # as it would be without any pin; None: as it is
+    trails: UnitTrails = msgspec.field(default_factory=UnitTrails)
     trust: TrustTally = msgspec.field(default_factory=TrustTally)  # in this incident
-    mayday_ns: int | None = None  # when it was last told that the button was pressed
-    mayday_event_ns: int = 0  # and when the unit said that: it may have waited in its journal
-    mayday_is_dated: bool = True  # else nobody can tell when it was said
-    mayday_boot_id: int = 0  # of the message that told it
-    mayday_seq: int = 0
-    mayday_cancelled_ns: int | None = None  # since then
-    mayday_cancelled_event_ns: int = 0
-    fall_ns: int | None = None
-    fall_event_ns: int = 0
-    fall_is_dated: bool = True
+    mayday: MaydayCall = msgspec.field(default_factory=MaydayCall)
+    fall: UnitAlert = msgspec.field(default_factory=UnitAlert)
     fault: Fault | None = None
     inside_since_ns: int | None = None
     reach: Ring = ()  # not heard: the border of what can be walked to by now, where a plan tells
@@ -144,15 +136,8 @@ class UnitState(MessageStream):
         """Whether a press, a fall or a rest that it told last was in that time: whose that was does
         not change with the next wearers.
         """
-        event_ns = [
-            event_ns
-            for t_ns, event_ns in (
-                (self.mayday_ns, self.mayday_event_ns),
-                (self.fall_ns, self.fall_event_ns),
-            )
-            if t_ns is not None
-        ]
-        if any(worn.from_ns <= one < worn.until_ns for one in event_ns):
+        alerts = [alert for alert in (self.mayday, self.fall) if alert.t_ns is not None]
+        if any(worn.from_ns <= alert.event_ns < worn.until_ns for alert in alerts):
             return True
         if self.status is None:
             return False
@@ -164,11 +149,6 @@ class UnitState(MessageStream):
         self.former_wearers = [
             msgspec.structs.replace(one, name=ERASED_TEXT) for one in self.former_wearers
         ]
-
-    @property
-    def is_mayday_active(self) -> bool:
-        """True for a mayday that was not cancelled."""
-        return self.mayday_ns is not None and self.mayday_cancelled_ns is None
 
     @property
     def began_ns(self) -> int:
@@ -226,40 +206,3 @@ class UnitState(MessageStream):
     def count_rejected(self, reason: str) -> None:
         """Count a message whose content was not used."""
         self.rejected_counts[reason] = self.rejected_counts.get(reason, 0) + 1
-
-    def extend_trail(self, fused: FusedPosition) -> bool:
-        """Add a point where the wearer moved, at most one a second; True where one was added."""
-        return extend_trail(self.trail, fused)
-
-    def insert_into_trail(self, fused: FusedPosition) -> bool:
-        """Put a point that came late in its place, where none is near in time."""
-        return insert_into_trail(self.trail, fused)
-
-    def extend_unpinned_trail(self, fused: FusedPosition) -> None:
-        """Extend the trail as it would be without any pin."""
-        if self.unpinned_trail is not None:
-            extend_trail(self.unpinned_trail, fused)
-
-    def insert_into_unpinned_trail(self, fused: FusedPosition) -> None:
-        if self.unpinned_trail is not None:
-            insert_into_trail(self.unpinned_trail, fused)
-
-    def replace_unpinned_trail(self, since_ns: int, trail: list[TrailStep]) -> None:
-        """Without any pin, the wearer was elsewhere since then."""
-        plain = self.trail if self.unpinned_trail is None else self.unpinned_trail
-        before = [step for step in plain if step.t_ns < since_ns]
-        plain[:] = [*before, *trail]
-        bound(plain)
-
-    def show_solved_trail(self, trail: list[TrailStep]) -> None:
-        """The past was solved with pins; what would be without is kept beside it."""
-        if self.unpinned_trail is None:
-            self.unpinned_trail = self.trail
-        self.trail = trail
-
-    def restore_unpinned_trail(self) -> bool:
-        """No pin is left that matters; True where that changes the trail."""
-        if self.unpinned_trail is None:
-            return False
-        self.trail, self.unpinned_trail = self.unpinned_trail, None
-        return True

@@ -51,21 +51,14 @@ def _apply_position(unit: UnitState, position: Position, t_ns: int) -> None:
 def _apply_status(unit: UnitState, status: Status, t_ns: int) -> None:
     """A press and its taking back are alerts, which overtake what the unit said before them."""
     unit.status, unit.status_ns = status, t_ns
-    if status.mayday == unit.is_mayday_active:
+    mayday = unit.mayday
+    if status.mayday == mayday.is_active:
         return
     event_ns = _event_time_ns(unit, status.header, t_ns) or t_ns
-    if status.mayday and event_ns > unit.mayday_cancelled_event_ns:  # the press itself may be lost
-        _press(unit, status.header, t_ns, event_ns)
-    elif not status.mayday and event_ns > unit.mayday_event_ns:
-        unit.mayday_cancelled_ns, unit.mayday_cancelled_event_ns = t_ns, event_ns
-
-
-def _press(
-    unit: UnitState, header: Header, t_ns: int, event_ns: int, is_dated: bool = True
-) -> None:
-    unit.mayday_ns, unit.mayday_event_ns, unit.mayday_is_dated = t_ns, event_ns, is_dated
-    unit.mayday_boot_id, unit.mayday_seq = header.boot_id, header.seq
-    unit.mayday_cancelled_ns = None
+    if status.mayday and event_ns > mayday.cancelled_event_ns:  # the press itself may be lost
+        mayday.press(status.header, t_ns, event_ns)
+    elif not status.mayday and event_ns > mayday.event_ns:
+        mayday.cancel(t_ns, event_ns)
 
 
 def _apply_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
@@ -96,19 +89,19 @@ def apply_late_temperature(
 def _apply_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
     event_time_ns = _event_time_ns(unit, event.header, t_ns)
     is_dated, event_ns = event_time_ns is not None, event_time_ns or t_ns
+    mayday = unit.mayday
     match event.kind:
         case EventKind.MAYDAY:
             # Of one that stands a status may have told before, where the radio lost the press.
-            stands = unit.is_mayday_active and unit.worn_from_ns(event_ns) == unit.worn_from_ns(
-                unit.mayday_event_ns
-            )
-            if not stands or event_ns > unit.mayday_event_ns:
-                _press(unit, event.header, t_ns, event_ns, is_dated)
+            worn_from_ns = unit.worn_from_ns(mayday.event_ns)
+            stands = mayday.is_active and unit.worn_from_ns(event_ns) == worn_from_ns
+            if not stands or event_ns > mayday.event_ns:
+                mayday.press(event.header, t_ns, event_ns, is_dated=is_dated)
         case EventKind.MAYDAY_CANCELLED:
-            if event_ns >= unit.mayday_event_ns:  # else it was pressed again since
-                unit.mayday_cancelled_ns, unit.mayday_cancelled_event_ns = t_ns, event_ns
+            if event_ns >= mayday.event_ns:  # else it was pressed again since
+                mayday.cancel(t_ns, event_ns)
         case EventKind.FALL:
-            unit.fall_ns, unit.fall_event_ns, unit.fall_is_dated = t_ns, event_ns, is_dated
+            unit.fall.note(t_ns, event_ns, is_dated=is_dated)
         case EventKind.SENSOR_FAULT | EventKind.STORAGE_FAULT:
             apply_fault(unit, event, t_ns)
         case EventKind.STOPPED:

@@ -82,7 +82,7 @@ class Walker:
     def worst_off_m(self) -> float:
         """Of the part that was missed."""
         begin_ns = self.script.records[0][0]
-        trail = self.script.pipeline.state.units["FF-01"].trail
+        trail = self.script.pipeline.state.units["FF-01"].trails.shown
         return max(abs(one.east_m) for one in trail if 60 < (one.t_ns - begin_ns) / NS_PER_S <= 120)
 
 
@@ -107,7 +107,7 @@ def test_without_the_pin_what_came_late_is_there_all_the_same(walker: Walker) ->
         for _ in one.backfill():
             pass
     walker.script.act(RemovePin("p1"))
-    trails = [one.script.pipeline.state.units["FF-01"].trail for one in (walker, plain)]
+    trails = [one.script.pipeline.state.units["FF-01"].trails.shown for one in (walker, plain)]
     assert trails[0] == trails[1]
 
 
@@ -137,7 +137,7 @@ def test_a_plan_that_comes_after_pins_is_heeded_in_seconds(walker: Walker) -> No
     """As it is at the next change of a pin."""
 
     def trail() -> list[tuple[float, float]]:
-        trail = walker.script.pipeline.state.units["FF-01"].trail
+        trail = walker.script.pipeline.state.units["FF-01"].trails.shown
         return [(one.north_m, one.east_m) for one in trail]
 
     before = trail()

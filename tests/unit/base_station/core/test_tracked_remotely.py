@@ -68,8 +68,8 @@ def test_its_positions_and_trail_are_shown_as_if_it_tracked_itself(script: Remot
     walk(script)
     itself = Remote(tracker="eskf")
     walk(itself, tracked_by=U)
-    assert script.unit.trail == itself.unit.trail
-    assert len(script.unit.trail) == 10
+    assert script.unit.trails.shown == itself.unit.trails.shown
+    assert len(script.unit.trails.shown) == 10
     assert {fused.unit_id for fused in script.fused} == {U}
     assert set(script.pipeline.state.units) == {U}, "the agent is no unit"
 
@@ -220,7 +220,7 @@ def test_one_word_of_the_agent_and_another_start_of_the_unit_are_no_tracking(
 
 def test_a_fall_that_the_agent_has_seen_is_the_units(script: Remote) -> None:
     outputs = script.event(AGENT, EventKind.FALL)
-    assert script.unit.fall_ns == script.t_ns
+    assert script.unit.fall.t_ns == script.t_ns
     alarms = [one for one in outputs if isinstance(one, AlarmChange)]
     assert [(one.rule, one.unit_id) for one in alarms] == [("fall", U)], "at once"
     assert UnitChanged(U) in outputs, "and on every console"
@@ -251,7 +251,9 @@ def test_positions_that_came_late_fill_the_trail_at_their_time(script: Remote) -
     payload = encode(msgspec.structs.replace(late, header=header, north_m=8.0))
     outputs = script.record(backfilled_key(AGENT, POSITION.suffix), payload)
     assert any(isinstance(one, TrailBackfilled) and one.unit_id == U for one in outputs)
-    assert [step.t_ns for step in script.unit.trail] == sorted(s.t_ns for s in script.unit.trail)
+    assert [step.t_ns for step in script.unit.trails.shown] == sorted(
+        s.t_ns for s in script.unit.trails.shown
+    )
 
 
 def test_a_second_copy_changes_nothing(script: Remote) -> None:

@@ -57,8 +57,8 @@ def test_agent_gives_positions_and_falls_of_unit_without_tracker(script: Script)
     assert any(isinstance(one, FusedPosition) for one in script.position(AGENT, 1.0, 2.0))
     script.event(AGENT, EventKind.MAYDAY)
     script.event(AGENT, EventKind.FALL)
-    assert unit.fall_ns == script.t_ns
-    assert unit.mayday_ns is None
+    assert unit.fall.t_ns == script.t_ns
+    assert unit.mayday.t_ns is None
 
 
 def test_agent_of_unit_with_tracker_reports_only_its_own_faults(script: Script) -> None:

@@ -33,7 +33,7 @@ def walked(screen: Screen) -> ConsolePublisher:
 def walked_in(pipeline: StationPipeline, screen: Screen) -> ConsolePublisher:
     for unit_id in UNITS:
         unit = pipeline.state.units[unit_id] = UnitState(unit_id)
-        unit.trail.append(TrailStep(NS_PER_S, 1.0, 2.0, 0))
+        unit.trails.shown.append(TrailStep(NS_PER_S, 1.0, 2.0, 0))
     return ConsolePublisher(pipeline, screen, lambda _: None)
 
 

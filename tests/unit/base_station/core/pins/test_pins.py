@@ -89,7 +89,7 @@ def test_removing_a_pin_leaves_exactly_what_would_be_without_it() -> None:
     assert theirs.fused is not None
     assert mine.fused.north_m == theirs.fused.north_m
     assert mine.fused.std_north_m == theirs.fused.std_north_m
-    assert mine.trail == theirs.trail
+    assert mine.trails.shown == theirs.trails.shown
     assert pinned.script.pipeline.state.pins == {}
 
 
@@ -405,7 +405,7 @@ def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
     both.script.act(ForgetWearers("FF-01"))
     state = both.script.pipeline.state
     assert state.pins.keys() == state.pin_verdicts.keys() == {"of FF-02", "of FF-03"}
-    assert state.units["FF-01"].unpinned_trail is None
+    assert state.units["FF-01"].trails.unpinned is None
     saved = read_checkpoint(both.script.pipeline.checkpoint())
     assert saved is not None
     assert "FF-01" not in saved.pinned

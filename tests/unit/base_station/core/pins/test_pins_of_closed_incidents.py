@@ -270,7 +270,12 @@ def test_of_who_is_forgotten_no_place_is_left() -> None:
     script.act(CloseIncident("i1"))
     script.act(ForgetWearers(A))
     unit = state.units[A]
-    assert (unit.fused, unit.position, unit.trail, unit.unpinned_trail) == (None, None, [], None)
+    assert (unit.fused, unit.position, unit.trails.shown, unit.trails.unpinned) == (
+        None,
+        None,
+        [],
+        None,
+    )
     assert A not in state.paths
     assert A not in state.learnt_floors.walks
     assert not script.joined().trails.get(A)
@@ -368,27 +373,27 @@ def test_a_plan_that_numbers_storeys_otherwise_numbers_trails_again() -> None:
     story.script.act(RemovePin("of B"))
     story.script.away.add(B)
     story.go(5)
-    before = story.script.pipeline.state.units[B].trail[:]
+    before = story.script.pipeline.state.units[B].trails.shown[:]
     assert before[-1].floor == 0
     story.script.act(SetPlan(PLAN))
     story.script.wait(8)
     units = story.script.pipeline.state.units
-    assert [step.floor for step in units[B].trail] == [2] * len(before)
-    assert [msgspec.structs.replace(step, floor=2) for step in before] == units[B].trail
+    assert [step.floor for step in units[B].trails.shown] == [2] * len(before)
+    assert [msgspec.structs.replace(step, floor=2) for step in before] == units[B].trails.shown
     assert {point.floor for point in story.script.console.trails[B]} == {2}
-    plain = units[A].unpinned_trail
+    plain = units[A].trails.unpinned
     assert plain is not None
-    assert {step.floor for step in (*plain, *units[A].trail)} == {2}
+    assert {step.floor for step in (*plain, *units[A].trails.shown)} == {2}
 
 
 def test_a_floor_that_is_said_of_one_numbers_the_trail_of_the_other_again() -> None:
     script = both_gone_upstairs()
     upstairs_ns = script.t_ns - 15 * 10**9
     state = script.pipeline.state
-    said = {step.floor for step in state.units[B].trail if step.t_ns > upstairs_ns}
+    said = {step.floor for step in state.units[B].trails.shown if step.t_ns > upstairs_ns}
     assert said == {3}
     script.act(SetPin("p", A, script.t_ns, 59.0, 0.0, 0.5, 4, None, 0.0, ""))
     script.wait(5)
-    assert {step.floor for step in state.units[B].trail if step.t_ns > upstairs_ns} == {4}
+    assert {step.floor for step in state.units[B].trails.shown if step.t_ns > upstairs_ns} == {4}
     drawn = script.console.trails[B]
     assert {point.floor for point in drawn if point.t_ms > upstairs_ns // 10**6} == {4}

@@ -70,7 +70,7 @@ def test_a_person_s_anchor_that_is_put_right_leaves_nothing_of_the_wrong_one(wro
         walk(one, range(120, 130), by=None)
     assert math.dist(shown_m(script), shown_m(right)) < 0.5
     assert math.dist(shown_m(script)[:2], truth(129)) < 3.0
-    trail = script.pipeline.state.units[U].trail
+    trail = script.pipeline.state.units[U].trails.shown
     assert max(math.dist((0.0, 0.0), (step.north_m, step.east_m)) for step in trail) < 60.0
 
 

@@ -63,7 +63,7 @@ def test_the_gap_in_the_trail_is_filled_at_its_own_time(walked):
         assert fused.t_meas_ns == START_NS + second * NS_PER_S
         assert fused.north_m == pytest.approx(second)
         assert any(isinstance(output, TrailBackfilled) for output in outputs)
-    trail = walked.unit.trail
+    trail = walked.unit.trails.shown
     assert [round(step.north_m) for step in trail] == list(range(31))
     assert [step.t_ns for step in trail] == sorted(step.t_ns for step in trail)
 
@@ -116,7 +116,7 @@ def test_where_the_run_before_led_is_filled_in(walked):
         assert fused.t_meas_ns == START_NS + second * NS_PER_S
         assert fused.north_m == pytest.approx(second)
     assert msgspec.msgpack.encode((walked.unit.fused, walked.unit.position)) == before
-    trail = [(step.t_ns - START_NS) // NS_PER_S for step in walked.unit.trail]
+    trail = [(step.t_ns - START_NS) // NS_PER_S for step in walked.unit.trails.shown]
     assert trail == [*range(45), 50], "which way the new run walks nobody knows"
 
 
@@ -147,7 +147,7 @@ def test_what_a_stranger_brings_out_of_its_journal_is_not_believed(walked):
         outputs = walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, payload))
         assert not any(isinstance(one, FusedPosition | TrailBackfilled) for one in outputs)
     stranger = walked.pipeline.state.units["FF-66"]
-    assert (stranger.fused, stranger.trail) == (None, [])
+    assert (stranger.fused, stranger.trails.shown) == (None, [])
 
 
 def test_what_cannot_be_read_has_come_all_the_same(walked):

@@ -156,10 +156,10 @@ def test_the_first_place_that_is_said_on_it_counts_as_if_it_had_been_there_befor
 
 def test_the_trail_begins_where_the_start_was_said(script: Outside) -> None:
     script.act(START)
-    trail = script.unit(A).trail
+    trail = script.unit(A).trails.shown
     assert math.dist((trail[0].north_m, trail[0].east_m), ENGINE_M) < 1.5
     assert len(trail) > 10
-    plain = script.unit(A).unpinned_trail
+    plain = script.unit(A).trails.unpinned
     assert plain is not None
     assert math.hypot(plain[0].north_m, plain[0].east_m) < 1.5, "about its own start, without"
 

@@ -132,7 +132,7 @@ def test_heard_again_they_go_on_from_there(script: Script) -> None:
 
 def test_the_trail_is_of_what_was_walked(script: Script) -> None:
     pin(script)
-    trail = script.pipeline.state.units[U].trail
+    trail = script.pipeline.state.units[U].trails.shown
     assert all(math.dist((step.north_m, step.east_m), STAIRS_M) > 5.0 for step in trail)
 
 

@@ -171,7 +171,7 @@ def test_the_status_tells_of_a_press_and_of_its_end_where_their_messages_were_lo
     script: Script,
 ) -> None:
     def maydays() -> tuple[int | None, int | None]:
-        return unit(script).mayday_ns, unit(script).mayday_cancelled_ns
+        return unit(script).mayday.t_ns, unit(script).mayday.cancelled_ns
 
     script.status(U)
     assert maydays() == (None, None)
@@ -264,11 +264,11 @@ def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
     script.act(SetPlan(STOREYS))
     after = unit(script).fused
     assert after is not None
-    place, last = (after.north_m, after.east_m), unit(script).trail[-1]
+    place, last = (after.north_m, after.east_m), unit(script).trails.shown[-1]
     assert place == pytest.approx((before.east_m, -111.3 - before.north_m), abs=1.0)
     assert place == pytest.approx((last.north_m, last.east_m), abs=0.5)
     assert place == pytest.approx(script.pipeline.state.paths[U].shown_m, abs=1.0)
-    unpinned_trail = unit(script).unpinned_trail
+    unpinned_trail = unit(script).trails.unpinned
     assert unpinned_trail is not None, "the pin is of use"
     assert place == pytest.approx((unpinned_trail[-1].north_m, unpinned_trail[-1].east_m), abs=1.0)
     assert after.t_meas_ns == before.t_meas_ns
@@ -283,7 +283,7 @@ def test_a_trail_is_thinned_and_bounded(script: Script) -> None:
     for step in range(3 * TRAIL_POINTS):
         script.now_s += 0.5
         script.position(U, 0.8 * step, 0.0)
-    trail = unit(script).trail
+    trail = unit(script).trails.shown
     assert RECENT_POINTS < len(trail) <= TRAIL_POINTS
     assert trail[0].north_m == pytest.approx(0.0, abs=1.0), "the way is whole"
     steps_ns = [after.t_ns - before.t_ns for before, after in pairwise(trail)]

@@ -355,7 +355,7 @@ def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) 
     script.act(OpenIncident("i1", "Mill Lane"))
     walk_a_minute(script)
     old = script.pipeline.state.anchor
-    before, trail = script.fused[-1], list(script.pipeline.state.units[U].trail)
+    before, trail = script.fused[-1], list(script.pipeline.state.units[U].trails.shown)
     assert old is not None
     script.act(SetAnchor(52.0003, 4.0004, 20.0, 0.8))
     script.position(U, 1.2 * 59, 0.0, distance_m=1.2 * 59)
@@ -364,7 +364,7 @@ def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) 
     was = old.to_geodetic(before.north_m, before.east_m, before.down_m)
     now = new.to_geodetic(after.north_m, after.east_m, after.down_m)
     assert now[:2] == pytest.approx(was[:2], abs=2e-8)
-    step, moved = trail[20], script.pipeline.state.units[U].trail[20]
+    step, moved = trail[20], script.pipeline.state.units[U].trails.shown[20]
     assert new.to_geodetic(moved.north_m, moved.east_m, 0.0)[:2] == pytest.approx(
         old.to_geodetic(step.north_m, step.east_m, 0.0)[:2], abs=2e-8
     )
@@ -412,6 +412,6 @@ def test_a_pin_after_the_frame_was_moved_means_the_plan_as_it_lies_now(script: S
     script.act(SetPin("p", U, begin_ns + 30 * NS_PER_S, *truth_m(30.0), 0.5, None, None, 0.0, ""))
     state = script.pipeline.state
     assert state.pin_verdicts["p"].state == "used"
-    for step in state.units[U].trail:
+    for step in state.units[U].trails.shown:
         true_m = truth_m((step.t_ns - begin_ns) / NS_PER_S)
         assert math.dist((step.north_m, step.east_m), true_m) < 3.0
