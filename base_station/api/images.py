@@ -13,7 +13,9 @@ from PIL import ExifTags, Image, ImageOps, UnidentifiedImageError
 from shared.errors import ConfigError
 
 MAX_BYTES = 10_000_000
-_MAX_PIXELS = {"JPEG": 50_000_000, "PNG": 24_000_000, "WEBP": 12_000_000}  # each takes 200 MB
+# A camera's 50 million are a few more.  Each takes 200 MB at most, of which a JPEG is less: it is
+# decoded at a part of its size.
+_MAX_PIXELS = {"JPEG": 52_000_000, "PNG": 24_000_000, "WEBP": 12_000_000}
 _MAX_PIXELS_PROGRESSIVE = 24_000_000  # held whole while it is decoded, however small
 SIDE_PX = 320
 MAX_MAP_BYTES = 10_000_000
@@ -61,12 +63,15 @@ def normalize_map(upload: bytes) -> tuple[bytes, str, tuple[int, int], float]:
             Image.open(io.BytesIO(upload), formats=_FORMATS) as opened,
         ):
             _require_pixel_limit(opened, "map")
-            picture, width_px = opened.convert("RGB"), opened.width
+            width_px = opened.width
+            smaller = min(1.0, MAP_SIDE_PX / max(opened.size))
+            opened.draft("RGB", (int(opened.width * smaller), int(opened.height * smaller)))
+            picture = _in_colours(opened)
+            picture.thumbnail((MAP_SIDE_PX, MAP_SIDE_PX), Image.Resampling.LANCZOS)
     except (Image.DecompressionBombWarning, Image.DecompressionBombError):
         raise ConfigError(_too_many_pixels("map")) from None
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
         raise ConfigError("the map cannot be read; send a JPEG, PNG or WebP file") from error
-    picture.thumbnail((MAP_SIDE_PX, MAP_SIDE_PX), Image.Resampling.LANCZOS)
     written = io.BytesIO()
     picture.save(written, "WEBP", quality=85)
     webp = written.getvalue()
@@ -79,8 +84,13 @@ def _square(upload: bytes) -> Image.Image:
         opened.draft("RGB", (2 * SIDE_PX, 2 * SIDE_PX))
         # Not ``ImageOps.exif_transpose``: it writes all metadata anew, and fails where that is odd.
         transposition = _EXIF_TRANSPOSITIONS.get(opened.getexif().get(ExifTags.Base.Orientation))
-        picture = ImageOps.fit(opened.convert("RGB"), (SIDE_PX, SIDE_PX), Image.Resampling.LANCZOS)
+        picture = ImageOps.fit(_in_colours(opened), (SIDE_PX, SIDE_PX), Image.Resampling.LANCZOS)
         return picture if transposition is None else picture.transpose(transposition)
+
+
+def _in_colours(opened: Image.Image) -> Image.Image:
+    """Decoded; ``convert`` would copy one that is in colours already, of 96 MB perhaps."""
+    return opened if opened.mode == "RGB" else opened.convert("RGB")
 
 
 def _require_pixel_limit(opened: Image.Image, kind: str) -> None:

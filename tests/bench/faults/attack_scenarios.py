@@ -14,6 +14,7 @@ from tests.rig.link_forwarder import Conditions
 from tests.rig.login_flood import Flood, LoginFlood, guesses, slow_bodies
 from tests.rig.lossy_link import CLEAN
 from tests.rig.pacing import wait_until
+from tests.rig.picture_flood import photographs_at_once
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +111,25 @@ class ConsoleFlood:
             time.sleep(self.seconds)
 
 
+@dataclass(frozen=True, slots=True)
+class Photographs:
+    """Users put large pictures, all at once."""
+
+    name: str
+    count: int
+    seconds: float = 15.0  # about
+    bench_only: bool = True
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        with ExitStack() as sent:
+            # The threads of the senders stay in the network of whoever starts them.
+            site.link.station.call(
+                lambda: sent.enter_context(photographs_at_once(site.station.api, self.count))
+            )
+            site.ask_par()
+
+
 _FLOODED_S = 120.0  # more than it lasts: it ends when the fault does
 _LINKED_WITHIN_S = 3.0  # to reach: else it is heard only after the fault's end
 
@@ -126,6 +146,7 @@ MEDDLING = (
     ConnectionFlood("attack: 200/s begin a handshake", "hello", held=500, per_s=200.0),
     ConsoleFlood("attack: 120 addresses guess passwords", guesses(1.0), 120),
     ConsoleFlood("attack: 1,440 slow bodies from 12 addresses", slow_bodies(120), 12),
+    Photographs("attack: 30 photographs of 50 megapixels", 30),
     Attack("attack: 50 sessions/s, revoked", "sessions", "revoked"),
     Attack("attack: a journal without end", "journal", "other"),
     Attack("attack: a token comes and goes", "toggle", "babbler"),
