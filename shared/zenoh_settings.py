@@ -15,9 +15,9 @@ _LEASE_MS = 3000
 LOCAL_LINK = "unixsock-stream"  # a socket in a folder of this machine, which is its owner's alone
 _KEEP_ALIVES_A_LEASE = 4
 _RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor": 1.5}
-# What is larger is not taken, whoever sends it: two stations tell each other plans and pictures.
-MOST_BYTES = 64 * 1024 * 1024
-MOST_BYTES_ALONE = 2 * 1024 * 1024
+# What is larger is not taken, whoever sends it. So much may be unfinished of one link in each of
+# Zenoh's eight priorities.
+MOST_BYTES = 2 * 1024 * 1024
 # What units say and answer is smaller by far: what is larger ends at the router.
 MOST_PUBLISHED_BYTES = 64 * 1024
 MOST_ANSWERED_BYTES = 1024 * 1024  # twice what is asked for at once
@@ -88,7 +88,7 @@ def settings_of(endpoint: Endpoint) -> dict[str, Any]:
     link: dict[str, Any] = {"tx": {"lease": _LEASE_MS, "keep_alive": _KEEP_ALIVES_A_LEASE}}
     if isinstance(endpoint, StationEndpoint):
         link["tx"]["queue"] = {"size": _ROUTER_QUEUES}
-        link["rx"] = {"max_message_size": MOST_BYTES if endpoint.links else MOST_BYTES_ALONE}
+        link["rx"] = {"max_message_size": MOST_BYTES}
     if endpoint.tls is not None:
         link["protocols"] = ["tls", LOCAL_LINK]
         link["tls"] = _tls_settings(_tls_roles(endpoint, endpoint.tls))

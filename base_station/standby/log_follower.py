@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 from base_station.core.log_position import START, LogPosition
 from base_station.standby.log_ancestry import find_divergence
 from base_station.standby.protocol import Batch, LogAncestry, ReplicationAck, key_of, pack, unpack
+from base_station.standby.rpc import ask
 from base_station.standby.shared_log import SharedLog
 from base_station.standby.standby_feed import StandbyFeed
 from shared.bus import Bus
@@ -149,7 +150,7 @@ class LogFollower:
             return True
 
     def _ask(self, leader: Leader, what: str, kind: type[Answer]) -> Answer | None:
-        for reply in self._bus.query(key_of(leader.station, what), b"", _TIMEOUT_S):
+        for reply in ask(self._bus, leader.station, what, timeout_s=_TIMEOUT_S):
             return unpack(reply, kind)
         return None
 

@@ -15,7 +15,7 @@ from shared.channels import STATIONS_ROOT
 from shared.errors import WireError
 from shared.messages.station import TakeOver
 
-PROTOCOL = 2  # stations that differ in it do not pair
+PROTOCOL = 3  # stations that differ in it do not pair
 
 Role = Literal["waiting", "standby", "active"]
 W = TypeVar("W")

@@ -21,10 +21,12 @@ from shared.tls import TlsIdentity
 from tests.rig import processes
 from tests.rig.connection_flood import connection_flood
 from tests.rig.station_process import free_port
+from tests.rig.unfinished_messages import unfinished_messages
 from tests.rig.waiting import until
 
 KEY = POSITION.key("anna")
 LINKED_WITHIN_S = 3.0
+UNFINISHED_MB = 110.0  # of four links, in each of seven priorities 2 MB, and what was read of them
 
 
 class Bus:
@@ -100,18 +102,21 @@ def test_refused_connections_are_told_with_where_they_come_from(bus: Bus) -> Non
     assert "docs/howto/when-attacked.md" in problem
 
 
-def test_units_of_an_earlier_authority_that_go_on_trying_hold_up_nobody(
+def test_forty_units_of_an_earlier_authority_that_go_on_trying_hold_up_nobody(
     bus: Bus, tmp_path: Path
 ) -> None:
     earlier = PkiFolder(tmp_path)
     earlier.create("Earlier", hosts=[], connect=[f"tls/127.0.0.1:{bus.port}"])
     theirs = earlier.enroll("anna").identity
+    # One knows this authority already, and shows the certificate of the other; one knows neither.
     mixed = TlsIdentity(bus.anna.identity.authority, theirs.certificate, theirs.private_key)
-    foreign = UnitEndpoint(bus.anna.connect, mixed)
+    before = bus.router.refused.total
     with ExitStack() as stack:
-        for _ in range(10):
+        for number in range(40):
+            foreign = UnitEndpoint(bus.anna.connect, mixed if number % 2 else theirs)
             stack.enter_context(closing(ZenohBus(foreign)))
-        assert max(bus.link_s() for _ in range(2)) < LINKED_WITHIN_S
+        until(lambda: bus.router.refused.total >= before + 120, "each has tried a few times")
+        assert max(bus.link_s() for _ in range(3)) < LINKED_WITHIN_S
 
 
 def greet(bus: Bus, identity: TlsIdentity) -> ssl.SSLSocket:
@@ -159,6 +164,20 @@ def test_one_holder_has_few_sessions_at_once(bus: Bus) -> None:
                 opened.append(stack.enter_context(greet(bus, many)))
         until(lambda: sum(not is_ended(one) for one in opened) <= 4, "the end of all but a few")
         assert time.monotonic() - began_s < 9.0  # sooner than silence ends any of them
+    assert bus.link_s() < LINKED_WITHIN_S
+
+
+def test_what_one_holder_leaves_unfinished_is_bounded(bus: Bus) -> None:
+    """In every priority of each link that it may have; as much beside a standby."""
+    many, key = bus.pki.enroll("unfinished"), POSITION.key("unfinished")
+    with closing(unit(many)) as linked:
+        until(lambda: linked.is_heard(key), "its place on the list")
+    before_mb = processes.memory_mb(bus.router.pid)
+    with ExitStack() as stack:
+        for size in (1_900_000, 60_000_000, 1_900_000, 60_000_000, 1_900_000, 60_000_000):
+            stack.enter_context(unfinished_messages(many, key, size))
+        time.sleep(2.0)  # what is on its way
+        assert processes.memory_mb(bus.router.pid) < before_mb + UNFINISHED_MB
     assert bus.link_s() < LINKED_WITHIN_S
 
 

@@ -119,10 +119,7 @@ def test_an_address_of_another_machine_is_said_without_a_place_in_the_library() 
     assert ".rs" not in str(refused.value)
 
 
-def test_a_message_too_large_for_anybody_is_not_taken_and_the_link_stays(
-    address: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("shared.zenoh_settings.MOST_BYTES", 1_000_000)
+def test_a_message_too_large_for_anybody_is_not_taken_and_the_link_stays(address: str) -> None:
     assert sizes_heard(address, "muster/stations/v1/a/have", (500_000, 3_000_000, 5)) == [
         500_000,
         5,
