@@ -26,6 +26,7 @@ from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.erasure import ids_of
 from base_station.storage.db.models import Incident
 from base_station.storage.db.records import Records
+from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.salvage import salvage_if_damaged
 from base_station.storage.db.smoothed import SmoothedTracks
@@ -66,8 +67,10 @@ def rebuild(
     try:
         salvage = salvage_if_damaged(folder.database, math.inf)
         if salvage is not None:
-            report(str(salvage))
+            report(salvage.described(alone=False))
         with Store(folder.database) as store:
+            if salvage is not None:
+                ReplicatedTables(store).note_lost(salvage.lost)
             return project_whole_log(store, folder.log, on_progress)
     finally:
         lock.close()

@@ -26,8 +26,9 @@ from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.projection import SqlProjection
 from base_station.storage.db.records import Records
+from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.db.roster import Roster
-from base_station.storage.db.salvage import GONE, salvage_if_damaged
+from base_station.storage.db.salvage import ONLY_HERE, gone, open_live
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.store import Store
 from base_station.storage.integrity_checker import IntegrityChecker
@@ -90,6 +91,11 @@ class StationStorage:
             return known_segments_of(self.records)
         except StoreError:  # a disk that hangs keeps no replay; the files tell of most
             return ()
+
+    def note_taken_back(self, what: str) -> None:
+        """What the database had lost with its file is there again."""
+        self.store.loss = ""
+        self.records.audit(STATION_ID, "TookBackAccounts", what)
 
     def post_processor(self, processes: ReplayProcesses) -> PostProcessingProcess:
         place = PostProcessingContext(
@@ -158,21 +164,21 @@ def open_storage(
 
     Raises StoreError where the database cannot be used, or is of another log.
     """
-    salvage = salvage_if_damaged(folder.database)
-    store = closing.enter_context(
-        Store(folder.database, lambda: recorder.hangs, memory_fallback=True)
-    )
+    store, salvage = open_live(folder.database, lambda: recorder.hangs)
+    closing.enter_context(store)
+    lost = () if salvage is None else salvage.lost
     known = known_segments_of(Records(store, clock))
     if _lacks_records(store, recorder, known):
         announce("the database lacks what the log knows: it is made again from the log")
         project_whole_log(store, folder.log, lambda _: None)
         if salvage is None and not Accounts(store, clock).users():
-            store.loss = GONE
+            store.loss, lost = gone(alone=alone), tuple(ONLY_HERE)
     if salvage is not None:
-        store.loss = str(salvage)
+        store.loss = salvage.described(alone=alone)
     if store.loss:
         announce(store.loss)
         Records(store, clock).audit(STATION_ID, "MadeDatabaseAgain", store.loss)
+        ReplicatedTables(store).note_lost(lost)
     projection = SqlProjection(store)
     closing.callback(projection.close)
     check = IntegrityChecker(_RESTORE if alone else _MENDED_FROM_THE_OTHER)

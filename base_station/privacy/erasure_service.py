@@ -34,9 +34,9 @@ from base_station.engine.ports import ActionResult
 from base_station.privacy.pending_erasure import PendingErasure
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.damaged_file import remove_damaged
 from base_station.storage.db.erasure import forget_in, known_names
 from base_station.storage.db.records import Records
-from base_station.storage.db.salvage import remove_damaged
 from base_station.storage.db.store import Store
 from base_station.storage.segment_index import segment_row
 from shared.channels import HEARTBEAT, OPERATOR, STATUS, tracker_id

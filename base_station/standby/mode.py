@@ -47,6 +47,7 @@ class Parts:
     records: Records
     pki: PkiFolder
     on_people: Callable[[], None]  # people or photos may have changed
+    on_taken_back: Callable[[str], None]  # what was lost with the database is there again
     on_lead: Callable[[], None]
     start_again: Callable[[LogPosition | None], None]
     step_again: Callable[[int], None]  # the log up to this time, in which something was missing
@@ -198,6 +199,7 @@ class Paired:
             on_people=parts.on_people,
             on_forgotten=parts.forget,
             on_dropped=lambda details: parts.records.audit(STATION_ID, "AccountsCopied", details),
+            on_taken_back=parts.on_taken_back,
         )
         merging = BranchMerge(
             parts.bus,

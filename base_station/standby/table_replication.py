@@ -2,8 +2,9 @@
 enrolled.
 
 The standby asks in every round whether anything has changed; the answer is all of it, or nothing.
-The one that leads asks the same, and takes what the other took away: users, tokens, roles.  The
-audit is added to, in both directions, in the order in which the other one got to know.
+The one that leads asks the same, and takes what the other took away: users, tokens, roles; and
+takes back what it has lost with its own database.  The audit is added to, in both directions, in
+the order in which the other one got to know.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ from base_station.security.pki.folder import PkiFolder
 from base_station.security.pki.registry import Registry
 from base_station.standby.protocol import pack, unpack
 from base_station.standby.rpc import RpcServer, ask
-from base_station.storage.db.replicated_tables import ReplicatedRows, ReplicatedTables, Row
+from base_station.storage.db.replicated_rows import ReplicatedRows, Row
+from base_station.storage.db.replicated_tables import ReplicatedTables
 from shared.bus import Bus
 
 _AUDIT_ENTRIES = 500
@@ -86,6 +88,7 @@ class TableReplication:
         on_people: Callable[[], None],
         on_forgotten: Callable[[str], None],
         on_dropped: Callable[[str], None],
+        on_taken_back: Callable[[str], None],
     ) -> None:
         """``leader``: whom to copy from, where that is another; ``other``: whose audit to add,
         when this station's log has ``caught_up``: what it tells to forget must be there.
@@ -93,7 +96,8 @@ class TableReplication:
 
         ``on_people`` is told when people or photos may have changed, ``on_forgotten`` of a person
         or an incident ("person ID") that the other station has forgotten, and again if that cannot
-        be noted, ``on_dropped`` in a sentence of what was only here.
+        be noted, ``on_dropped`` in a sentence of what was only here,
+        ``on_taken_back`` of what this one had lost.
         """
         self._bus = bus
         self._tables = tables
@@ -106,6 +110,7 @@ class TableReplication:
         self._on_forgotten = on_forgotten
         self._on_dropped = on_dropped
         self._copied_digest = self._enrolled_digest = self._standby_digest = b""
+        self._on_taken_back = on_taken_back
         self._base_map: tuple[Row, ...] = ()  # of the leader
         self._audit_number = 0  # up to which the other station's audit is here
         self._audit_run = 0  # of its program, in which that was counted
@@ -116,7 +121,7 @@ class TableReplication:
         if leader is not None:
             self._copy(leader, stop)
         elif other is not None:
-            self._take_away(other)
+            self._take_from_standby(other, stop)
         if other is not None:
             self._take_enrolled(other)
         if other is not None and self._caught_up():
@@ -126,30 +131,46 @@ class TableReplication:
         rows_bytes = self._ask(leader, "all", self._copied_digest)
         if rows_bytes is not None:
             rows = unpack(rows_bytes, ReplicatedRows)
+            lost = self._tables.lost()
             dropped = self._tables.copy(rows)
+            if lost and not self._tables.lost():
+                self._on_taken_back(f"copied again from the other station: {', '.join(lost)}")
             self._base_map = rows.base_map
             if dropped and not self._copied_digest:  # else the active station has removed them
                 self._on_dropped(f"only at this station, and gone: {', '.join(dropped)}")
             self._copied_digest = _hash(rows_bytes)
-        missing = self._tables.missing_photos()
-        for person_id in missing:
-            if stop.is_set():
-                return
-            photo = self._ask(leader, "photo", person_id.encode())
-            if photo is not None:
-                self._tables.put_photo(person_id, photo)
+        missing = self._copy_photos(leader, stop)
         self._copy_base_map(leader)
         if rows_bytes is not None or missing:
             self._on_people()
 
-    def _take_away(self, other: str) -> None:
+    def _take_from_standby(self, other: str, stop: Event) -> None:
         """Where nobody else leads."""
         rows_bytes = self._ask(other, "all", self._standby_digest)
         if rows_bytes is None:
             return
-        if self._tables.take_away(unpack(rows_bytes, ReplicatedRows)):
+        rows = unpack(rows_bytes, ReplicatedRows)
+        if self._tables.lacks_base_map():
+            self._base_map = rows.base_map
+            self._copy_base_map(other)
+        back = self._tables.take_back(rows)
+        if back:
+            self._on_taken_back(f"back from the other station: {', '.join(back)}")
+        taken_away, photos = self._tables.take_away(rows), self._copy_photos(other, stop)
+        if back or taken_away or photos:
             self._on_people()
         self._standby_digest = _hash(rows_bytes)
+
+    def _copy_photos(self, station: str, stop: Event) -> bool:
+        """Whether some had not come yet."""
+        missing = self._tables.missing_photos()
+        for person_id in missing:
+            if stop.is_set():
+                break
+            photo = self._ask(station, "photo", person_id.encode())
+            if photo is not None:
+                self._tables.put_photo(person_id, photo)
+        return bool(missing)
 
     def _copy_base_map(self, leader: str) -> None:
         for row in self._base_map:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 import shutil
-import sqlite3
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
@@ -23,6 +22,7 @@ from base_station.storage.recorder import Recorder
 from shared.clock import ManualClock
 from shared.errors import LogError, StoreError
 from shared.messages.station import OpenIncident
+from tests.rig.damaged_database import spoil_table
 from tests.rig.station_script import START_NS, Script
 
 
@@ -146,14 +146,7 @@ def served(tmp_path: Path) -> Path:
 
 
 def spoil(data: Path, table: str) -> None:
-    """Its first page is overwritten, as a disk that fails may do."""
-    with closing(sqlite3.connect(data / "station.sqlite")) as reading:
-        wanted = "SELECT rootpage FROM sqlite_master WHERE name = ?"
-        (page,) = reading.execute(wanted, [table]).fetchone()
-        (page_bytes,) = reading.execute("PRAGMA page_size").fetchone()
-    with (data / "station.sqlite").open("r+b") as file:
-        file.seek((page - 1) * page_bytes)
-        file.write(b"\xee" * page_bytes)
+    spoil_table(data / "station.sqlite", table)
 
 
 def shorten(data: Path) -> None:

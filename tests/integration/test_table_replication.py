@@ -299,6 +299,110 @@ def test_who_was_only_here_goes_and_is_named(sides: tuple[HaMode, HaMode]) -> No
     assert [user.username for user in standby.accounts.users()] == ["ada"]
 
 
+class Pair:
+    """A leader and its standby in rounds, of which either may lose its database."""
+
+    def __init__(self, leads: HaMode, follows: HaMode) -> None:
+        router = MemoryRouter()
+        self.taken_back: list[str] = []
+        for name, side in (("leads", leads), ("follows", follows)):
+            TableServer(name, router.attach_station(), side.tables, side.pki)
+        self._rounds = [
+            self._round(router, leads, None, "follows"),
+            self._round(router, follows, "leads", "leads"),
+        ]
+
+    def look(self, rounds: int = 3) -> None:
+        """The standby first, as it does where it has the leader's answer at once."""
+        for _ in range(rounds):
+            for one in reversed(self._rounds):
+                one.look(Event())
+
+    def _round(
+        self, router: MemoryRouter, side: HaMode, leader: str | None, other: str
+    ) -> TableReplication:
+        return TableReplication(
+            router.attach_station(),
+            side.tables,
+            side.pki,
+            leader=lambda: leader,
+            other=lambda: other,
+            others_run=lambda: 1,
+            caught_up=lambda: True,
+            on_people=side.roster.read_again,
+            on_forgotten=lambda _: None,
+            on_dropped=pytest.fail,
+            on_taken_back=self.taken_back.append,
+        )
+
+
+LOST = ("users", "api_tokens", "people", "base_map", "audit")
+
+
+@pytest.mark.parametrize("loser", ["who leads", "who follows"])
+def test_what_one_has_lost_with_its_database_comes_back_from_the_other(
+    tmp_path: Path, sides: tuple[HaMode, HaMode], loser: str
+) -> None:
+    had = sides[0]
+    had.accounts.add_user("ada", PASSWORD, Role.ADMINISTRATOR)
+    had.accounts.add_user("admin", PASSWORD, Role.VIEWER)
+    login = had.accounts.log_in("ada", PASSWORD)
+    _, token = had.accounts.add_token("ada", "cot", Role.VIEWER, None)
+    person = had.roster.add_person("Ada", "red", "leader")
+    had.roster.set_photo(person.person_id, b"jpeg", "hash")
+    had.base_maps.put(b"webp", "map", Corners((1.0, 2.0), (1.0, 3.0), (0.0, 2.0)))
+    had.records.audit("ada", "LoggedIn", "there")
+    with Store(tmp_path / "new.sqlite") as store:
+        lost = HaMode(tmp_path, store)
+        lost.tables.note_lost(LOST)
+        if loser == "who leads":
+            lost.accounts.add_user("admin", "another battery", Role.ADMINISTRATOR, generated=True)
+            lost.accounts.add_user("eve", PASSWORD, Role.VIEWER)  # entered since
+        pair = Pair(*((lost, had) if loser == "who leads" else (had, lost)))
+        pair.look()
+        for one in (lost, had):
+            names = {"ada", "admin", "eve"} if loser == "who leads" else {"ada", "admin"}
+            assert {user.username for user in one.accounts.users()} == names
+            assert one.accounts.log_in("admin", PASSWORD), "not the one that was made meanwhile"
+            assert login is not None
+            assert one.accounts.of_session(login)
+            assert one.accounts.of_token(token)
+            assert one.roster.photo(person.person_id) == (b"jpeg", "hash")
+            assert one.base_maps.image("map") == b"webp"
+            assert "there" in audit_of(one)
+            assert one.tables.lost() == ()
+    [told] = pair.taken_back
+    assert "user" in told
+
+
+def test_what_a_leader_has_lost_stays_at_the_standby_though_it_never_heard_of_it(
+    sides: tuple[HaMode, HaMode],
+) -> None:
+    leads, follows = sides
+    follows.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
+    follows.roster.add_person("Ada", "red", "leader")
+    leads.accounts.add_user("admin", PASSWORD, Role.ADMINISTRATOR, generated=True)
+    leads.tables.note_lost(["users", "api_tokens"])
+    follows.copy(leads)
+    assert [one.username for one in follows.accounts.users()] == ["ada"]
+    assert follows.roster.people() == [], "of which it has lost none"
+    leads.tables.take_back(follows.tables.read())
+    follows.copy(leads)
+    for one in sides:
+        assert [user.username for user in one.accounts.users()] == ["ada", "admin"]
+
+
+def test_two_that_have_both_lost_theirs_agree_again(sides: tuple[HaMode, HaMode]) -> None:
+    leads, follows = sides
+    leads.accounts.add_user("admin", PASSWORD, Role.ADMINISTRATOR, generated=True)
+    for one in sides:
+        one.tables.note_lost(LOST)
+    Pair(leads, follows).look()
+    for one in sides:
+        assert one.tables.lost() == ()
+        assert [user.username for user in one.accounts.users()] == ["admin"]
+
+
 def copy_over_the_bus(
     active: HaMode,
     standby: HaMode,
@@ -328,6 +432,7 @@ def copy_from(
         on_people=standby.roster.read_again,
         on_forgotten=on_forgotten,
         on_dropped=lambda _: None,
+        on_taken_back=lambda _: None,
     )
 
 

@@ -80,7 +80,9 @@ def copy_tables(
     source: sqlite3.Connection, target: sqlite3.Connection, tables: Collection[str]
 ) -> list[str]:
     """The rows of these tables, in the columns that both have; names those that cannot be read,
-    of which nothing is copied.
+    or are nothing that such a table holds: of these nothing is copied.
+
+    Raises sqlite3.Error where ``target`` does not take them.
     """
     unreadable = []
     for table in tables:
@@ -93,8 +95,12 @@ def copy_tables(
             continue
         marks = ", ".join("?" * len(columns))
         if rows:
-            target.executemany(f'INSERT INTO "{table}" ({names}) VALUES ({marks})', rows)  # noqa: S608  # as above
-    target.commit()
+            try:
+                target.executemany(f'INSERT INTO "{table}" ({names}) VALUES ({marks})', rows)  # noqa: S608  # as above
+            except sqlite3.IntegrityError:
+                target.rollback()
+                unreadable.append(table)
+        target.commit()
     return unreadable
 
 

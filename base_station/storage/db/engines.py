@@ -6,12 +6,16 @@ was committed survive a power cut.
 
 from __future__ import annotations
 
+import os
 import sqlite3
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from sqlalchemy import URL, Connection, Engine, QueuePool, create_engine, event
+
+from shared.own_files import open_own
 
 BUSY_TIMEOUT_S = 10.0  # another process (``muster base users add``) may be writing
 DAMAGE = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
@@ -59,6 +63,12 @@ def writing(engine: Engine, changes: list[Statement]) -> Engine:
     ``changes``.
     """
     return engine.execution_options(**{_BEGIN: "BEGIN IMMEDIATE", _CHANGES: changes})
+
+
+def make_private(path: Path) -> None:
+    """Where there is no database yet; what SQLite puts beside one has its mode and owner."""
+    with suppress(OSError):  # it is there; or SQLite says in a moment why it cannot be
+        os.close(open_own(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
 
 
 def code_of(error: BaseException) -> int:

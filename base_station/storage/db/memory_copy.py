@@ -7,15 +7,24 @@ the disk takes something: what others have changed there since stays.
 from __future__ import annotations
 
 import logging
+import os
 import secrets
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 from sqlalchemy import Engine, text
 from sqlalchemy.exc import SQLAlchemyError
 
 from base_station.storage.db.copying import copy_tables, reading_on_full_disk
-from base_station.storage.db.engines import BUSY_TIMEOUT_S, Statement, memory_engine, writing
+from base_station.storage.db.damaged_file import SALVAGED, copy_readable, set_aside
+from base_station.storage.db.engines import (
+    BUSY_TIMEOUT_S,
+    Statement,
+    make_private,
+    memory_engine,
+    writing,
+)
 from base_station.storage.db.migrate import migrate
 from base_station.storage.db.models import (
     Base,
@@ -24,6 +33,8 @@ from base_station.storage.db.models import (
     SmoothedIncident,
     TrackPoint,
 )
+from base_station.storage.db.reading import beside
+from shared.durable_names import sync_folder
 from shared.errors import StoreError
 
 WHOLE_BYTES_MAX = 256_000_000  # of a larger file the tracks are left out
@@ -36,11 +47,14 @@ _log = logging.getLogger(__name__)
 class MemoryCopy:
     """Not thread-safe: one changes it at a time."""
 
-    def __init__(self, path: Path, *, is_open: bool) -> None:
-        """An empty one where there is no file.  ``is_open``: this process has that open.  Raises
+    def __init__(self, path: Path, *, is_open: bool, is_damaged: bool = False) -> None:
+        """An empty one where there is no file.  ``is_open``: this process has that open;
+        ``is_damaged``: of it what can be read is taken, and all else is to be made again.  Raises
         StoreError where it cannot be read.
         """
-        self.is_new = not path.exists() or path.stat().st_size == 0
+        self.is_damaged = is_damaged
+        self.is_new = is_damaged or not path.exists() or path.stat().st_size == 0
+        self.unreadable: tuple[str, ...] = ()  # tables of a damaged file
         self.lacks_tracks = False
         self._path = path
         self._name = f"file:/muster-{secrets.token_hex(8)}?vfs=memdb"
@@ -51,6 +65,8 @@ class MemoryCopy:
             if not self.is_new:
                 self._fill(is_open=is_open)
             migrate(self.engine)
+            if is_damaged:
+                self.unreadable = copy_readable(path, self._keeper)
         except (sqlite3.Error, OSError, SQLAlchemyError) as error:
             self.close()
             raise StoreError(f"{path} cannot be read as the station's database: {error}") from error
@@ -68,8 +84,10 @@ class MemoryCopy:
         return len(self._waiting) >= _WAITING_MAX
 
     def keep(self, changes: list[Statement]) -> None:
-        """A transaction that has been committed here is to be done in the file, too."""
-        if changes:
+        """A transaction that has been committed here is to be done in the file, too; one that is to
+        be made gets all of it.
+        """
+        if changes and not self.is_new:
             self._waiting.append(changes)
 
     def execute(self, changes: list[Statement]) -> None:
@@ -100,14 +118,26 @@ class MemoryCopy:
         self._waiting.clear()
         return refused
 
-    def write_whole(self, target: sqlite3.Connection) -> None:
-        """Raises sqlite3.Error where the disk does not take it."""
-        self._keeper.backup(target)
-
-    def note_written(self) -> None:
-        """There is a file, which has all of it."""
-        self.is_new = False
-        self._waiting.clear()
+    def write_new(self) -> None:
+        """There was no file, or a damaged one, which is set aside: all of it is written.  Raises
+        sqlite3.Error or OSError where the disk does not take it.
+        """
+        making = beside(self._path, SALVAGED if self.is_damaged else ".part")
+        making.unlink(missing_ok=True)
+        make_private(making)
+        try:
+            with closing(sqlite3.connect(making)) as target:
+                self._keeper.backup(target)
+            with making.open("rb") as written:
+                os.fsync(written.fileno())
+        except BaseException:
+            making.unlink(missing_ok=True)
+            raise
+        if self.is_damaged:
+            _log.warning("the damaged database is set aside as %s", set_aside(self._path))
+        making.replace(self._path)
+        sync_folder(self._path.parent)
+        self.is_new = self.is_damaged = False
 
     def close(self) -> None:
         self.engine.dispose()

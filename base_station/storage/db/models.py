@@ -103,6 +103,16 @@ class Tombstone(Base):
     until_ns: Mapped[int | None]  # by itself it would have ended then; None: never
 
 
+class LostTable(Base):
+    """A kept table whose rows this database lost when it was made again: the other station has
+    them, until it has given them back.
+    """
+
+    __tablename__ = "lost_tables"
+
+    name: Mapped[str] = mapped_column(primary_key=True)
+
+
 class AuditEntry(Base):
     """Who did what; an entry of an operator's action carries the action's own id."""
 

@@ -2,20 +2,20 @@
 base map.
 
 A standby station copies it from the active one.  What either has taken away both take away
-(``tombstones``), and of a role and a password the later one holds.  Pictures travel by themselves,
-named by their hashes; the audit is only ever added to.
+(``tombstones``), and of a role and a password the later one holds.  What either has lost with its
+database (``lost_tables``) comes back from the other.  Pictures travel by themselves, named by their
+hashes; the audit is only ever added to.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Collection, Iterable, Sequence
 
-import msgspec
 from sqlalchemy import delete, func, select
 from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
+from base_station.storage.db.lost_tables import lost_tables, take_back, with_what_it_lost
 from base_station.storage.db.models import (
     ApiToken,
     AuditEntry,
@@ -23,36 +23,23 @@ from base_station.storage.db.models import (
     BaseMap,
     LoginSession,
     LoginTransferTicket,
+    LostTable,
     Person,
     Tombstone,
     User,
 )
+from base_station.storage.db.replicated_rows import (
+    ReplicatedRows,
+    Row,
+    end_what_ended,
+    row_of,
+    rows_of,
+    without_ended,
+)
 from base_station.storage.db.store import Store
-from base_station.storage.db.tombstones import name_of
 
-Row = dict[str, Any]
-_PICTURES = frozenset({"photo", "image"})
 _NUMBER = "number"  # of an audit entry, at the station that is asked
-_ENDED: tuple[type[Base], ...] = (
-    LoginTransferTicket,
-    LoginSession,
-    ApiToken,
-    User,
-    Person,
-)  # parts first
 _SINCE = {"role_ns": 0, "password_ns": 0}  # as a station says that is of an earlier version
-
-
-class ReplicatedRows(msgspec.Struct, frozen=True):
-    """Rows by column; pictures only as their hashes."""
-
-    users: tuple[Row, ...]
-    tokens: tuple[Row, ...]
-    sessions: tuple[Row, ...]
-    hand_overs: tuple[Row, ...]
-    people: tuple[Row, ...]
-    base_map: tuple[Row, ...]  # one or none
-    ended: tuple[Row, ...] = ()
 
 
 class ReplicatedTables:
@@ -64,24 +51,33 @@ class ReplicatedTables:
     def read(self) -> ReplicatedRows:
         with self._store.read() as session:
             return ReplicatedRows(
-                users=_rows(session, User),
-                tokens=_rows(session, ApiToken),
-                sessions=_rows(session, LoginSession),
-                hand_overs=_rows(session, LoginTransferTicket),
-                people=_rows(session, Person),
-                base_map=_rows(session, BaseMap),
-                ended=_rows(session, Tombstone),
+                users=rows_of(session, User),
+                tokens=rows_of(session, ApiToken),
+                sessions=rows_of(session, LoginSession),
+                hand_overs=rows_of(session, LoginTransferTicket),
+                people=rows_of(session, Person),
+                base_map=rows_of(session, BaseMap),
+                ended=rows_of(session, Tombstone),
+                lost=lost_tables(session),
             )
+
+    def note_lost(self, tables: Collection[str]) -> None:
+        """These were made again without their rows: they come back from the other station."""
+        with self._store.write() as session:
+            for name in tables:
+                session.merge(LostTable(name=name))
 
     def copy(self, active: ReplicatedRows) -> tuple[str, ...]:
         """Make these tables like the active station's.  Gives who and what was only here.
 
         Sessions that began here stay; photos are kept where their hash is the same, and a base map
-        stays until the other one has come.  What was taken away here does not come back.
+        stays until the other one has come.  What was taken away here does not come back, and what
+        the active station has lost stays here until it has taken it back.
         """
         with self._store.write() as session:
-            _end_what_ended(session, active.ended)
-            theirs = _without_ended(session, active)
+            end_what_ended(session, active.ended)
+            session.execute(delete(LostTable).where(LostTable.name.not_in(active.lost)))
+            theirs = with_what_it_lost(session, without_ended(session, active))
             dropped = (
                 *_only_here(session, User.username, "user", theirs.users),
                 *_only_here(session, ApiToken.token_id, "token", theirs.tokens),
@@ -97,17 +93,37 @@ class ReplicatedTables:
             ):
                 if rows:
                     session.execute(insert(table).on_conflict_do_nothing(), list(rows))
-            if not active.base_map:
+            if not theirs.base_map:
                 session.execute(delete(BaseMap))
         return dropped
+
+    def take_back(self, standby: ReplicatedRows) -> tuple[str, ...]:
+        """What this station lost with its database and the standby still has; who and what it is.
+        Pictures are asked for afterwards.
+
+        What was entered here since stays as it is.  An administrator whom the station made itself,
+        because it had no user, goes where there is another again.
+        """
+        with self._store.write() as session:
+            return take_back(session, standby)
+
+    def lost(self) -> tuple[str, ...]:
+        """Tables that were made again, and do not have their rows back so far."""
+        with self._store.read() as session:
+            return lost_tables(session)
+
+    def lacks_base_map(self) -> bool:
+        """Whether there is none because it was lost."""
+        with self._store.read() as session:
+            return "base_map" in lost_tables(session) and not rows_of(session, BaseMap)
 
     def take_away(self, standby: ReplicatedRows) -> bool:
         """What the standby took away while it could not be heard, and later roles and passwords;
         nothing else of it.  Whether there was any.
         """
         with self._store.write() as session:
-            some = _end_what_ended(session, standby.ended)
-            for row in _without_ended(session, standby).users:
+            some = end_what_ended(session, standby.ended)
+            for row in without_ended(session, standby).users:
                 user = session.get(User, row["username"])
                 if user is None or user.created_ns != row["created_ns"]:
                     continue
@@ -142,7 +158,7 @@ class ReplicatedTables:
 
     def has_base_map(self, row: Row) -> bool:
         with self._store.read() as session:
-            return row in _rows(session, BaseMap)
+            return row in rows_of(session, BaseMap)
 
     def put_base_map(self, row: Row, image: bytes) -> None:
         with self._store.write() as session:
@@ -161,7 +177,7 @@ class ReplicatedTables:
                 .order_by(AuditEntry.number)
                 .limit(limit)
             )
-            return [_row(entry) for entry in entries]
+            return [row_of(entry) for entry in entries]
 
     def unknown_audit(self, rows: Sequence[Row]) -> list[Row]:
         """Those that are not there yet."""
@@ -179,53 +195,6 @@ class ReplicatedTables:
                 session.execute(insert(AuditEntry).on_conflict_do_nothing(), new)
 
 
-def _rows(session: Session, table: type[Base]) -> tuple[Row, ...]:
-    return tuple(map(_row, session.scalars(select(table).order_by(*table.__table__.primary_key))))
-
-
-def _row(entry: Base) -> Row:
-    names = (column.name for column in entry.__table__.columns if column.name not in _PICTURES)
-    return {name: getattr(entry, name) for name in names}
-
-
-def _end_what_ended(session: Session, ended: tuple[Row, ...]) -> bool:
-    """Whether anything was not known to be over."""
-    known = set(session.scalars(select(Tombstone.what)))
-    new = {row["what"]: row for row in ended if row["what"] not in known}
-    if not new:
-        return False
-    session.execute(insert(Tombstone), list(new.values()))
-    for table in _ENDED:
-        for row in session.scalars(select(table)).all():
-            if name_of(row) in new:
-                session.delete(row)
-        session.flush()
-    return True
-
-
-def _without_ended(session: Session, rows: ReplicatedRows) -> ReplicatedRows:
-    """What is not over by what this station knows, and belongs to nothing that is."""
-    ended = set(session.scalars(select(Tombstone.what)))
-
-    def left(table: type[Base], rows: tuple[Row, ...]) -> tuple[Row, ...]:
-        return tuple(row for row in rows if name_of(table(**row)) not in ended)
-
-    users = left(User, rows.users)
-    names = {row["username"] for row in users}
-    sessions = tuple(r for r in left(LoginSession, rows.sessions) if r["username"] in names)
-    secrets = {row["token_hash"] for row in sessions}
-    return msgspec.structs.replace(
-        rows,
-        users=users,
-        tokens=tuple(r for r in left(ApiToken, rows.tokens) if r["username"] in names),
-        sessions=sessions,
-        hand_overs=tuple(
-            r for r in left(LoginTransferTicket, rows.hand_overs) if r["session_hash"] in secrets
-        ),
-        people=left(Person, rows.people),
-    )
-
-
 def _with_the_later(session: Session, theirs: Row) -> Row:
     """Another station's row of a user with the later role and password of the two.
 
@@ -235,7 +204,7 @@ def _with_the_later(session: Session, theirs: Row) -> Row:
     user = session.get(User, theirs["username"])
     if user is None or user.created_ns != theirs["created_ns"]:
         return theirs
-    mine, row = _row(user), _SINCE | theirs
+    mine, row = row_of(user), _SINCE | theirs
     if mine["role_ns"] > row["role_ns"]:
         row |= {name: mine[name] for name in ("role", "role_ns")}
     holds, other = (mine, row) if mine["password_ns"] > row["password_ns"] else (row, mine)

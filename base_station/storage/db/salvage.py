@@ -9,26 +9,23 @@ from __future__ import annotations
 import os
 import sqlite3
 import time
-from contextlib import closing
+from collections.abc import Callable, Collection
+from contextlib import closing, suppress
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
-from base_station.storage.db.copying import copy_tables, reading_on_full_disk
+from base_station.storage.db.copying import reading_on_full_disk
+from base_station.storage.db.damaged_file import SALVAGED, copy_readable, set_aside
 from base_station.storage.db.engines import DAMAGE, code_of
-from base_station.storage.db.models import PROJECTIONS, Base, IncidentTrails, TrackPoint
+from base_station.storage.db.models import IncidentTrails, TrackPoint
 from base_station.storage.db.reading import beside
 from base_station.storage.db.store import Store
 from shared.durable_names import sync_folder
-from shared.errors import StoreError
+from shared.errors import DiskFullError, StoreError
 
 CHECK_S = 0.5  # for the tables that grow without end
-_SALVAGED = ".salvaged"
-_DAMAGED = ".damaged-"
 _STEPS = 10_000  # of SQLite's machine, between two looks at the clock
 _LARGE = (TrackPoint.__tablename__, IncidentTrails.__tablename__)
-_PROJECTED = {table.__tablename__ for table in PROJECTIONS}
-_OF_USERS = ("sessions", "hand_overs", "api_tokens")  # without users they are of no use
 ONLY_HERE = {
     "users": "users and their passwords",
     "api_tokens": "API tokens",
@@ -37,41 +34,73 @@ ONLY_HERE = {
     "base_map": "the base map",
     "audit": "the audit of logins and of changes to users and people",
 }
-HOW_TO_GET_BACK = (
+_COPIED = ("users", "api_tokens", "people", "base_map")  # which the other station of two has too
+_BY_HAND = (
     "stop the station and put station.sqlite back from a backup, or enter them anew; where there "
     "is no user left, the administrator has a new password, which is in first-login.txt in the "
     "station's folder"
 )
-GONE = (
-    "The database was gone or empty and has been made again from the log; "
-    f"{', '.join(ONLY_HERE.values())} are lost: {HOW_TO_GET_BACK}"
+_FROM_THE_OTHER = (
+    "of two stations the other one has users, tokens, people and the base map too, and they come "
+    "back when it is heard; else"
 )
+
+
+def loss_of(tables: Collection[str], *, alone: bool) -> str:
+    """What a database that was made again lacks, and what to do, in words.  ``alone``: there is no
+    other station that has a copy.
+    """
+    lost = ", ".join(words for table, words in ONLY_HERE.items() if table in tables)
+    from_other = "" if alone or not set(_COPIED) & set(tables) else f"{_FROM_THE_OTHER} "
+    return f"{lost} are lost: {from_other}{_BY_HAND}"
+
+
+def gone(*, alone: bool) -> str:
+    """As ``Salvage.described``, of a file that is not there."""
+    lost = loss_of(ONLY_HERE, alone=alone)
+    return f"The database was gone or empty and has been made again from the log; {lost}"
 
 
 @dataclass(frozen=True)
 class Salvage:
     """Result for a damaged database: the file set aside, what was copied, what was lost."""
 
-    aside: Path
+    aside: Path | None  # None: it stays where it is until the disk takes another
     damage: str
     lost: tuple[str, ...]  # tables that are nowhere else
 
-    def __str__(self) -> str:
-        lost = ", ".join(words for table, words in ONLY_HERE.items() if table in self.lost)
-        kept = f"{lost} are lost: {HOW_TO_GET_BACK}" if lost else "users and people were kept"
+    def described(self, *, alone: bool) -> str:
+        kept = loss_of(self.lost, alone=alone) if self.lost else "users and people were kept"
+        file = (
+            f"The damaged file is {self.aside.name}"
+            if self.aside is not None
+            else "The damaged file is kept, and set aside when there is room for another"
+        )
         return (
             f"The database was damaged ({self.damage}) and has been made again from the log; "
-            f"{kept}. The damaged file is {self.aside.name}; check the disk"
+            f"{kept}. {file}; check the disk"
         )
+
+
+def open_live(path: Path, hangs: Callable[[], bool]) -> tuple[Store, Salvage | None]:
+    """A live station's database, made again where it was damaged: in memory where the disk does not
+    take a new file, beside the damaged one until it does.
+    """
+    try:
+        salvage = salvage_if_damaged(path)
+    except DiskFullError as error:
+        store = Store(path, hangs, memory_fallback=True, no_room_beside_damaged=str(error))
+        return store, Salvage(None, damage_of(path), store.unreadable)
+    return Store(path, hangs, memory_fallback=True), salvage
 
 
 def salvage_if_damaged(path: Path, patience_s: float = CHECK_S) -> Salvage | None:
     """None where nothing is wrong with it, or the disk does not let anybody tell.
 
     ``patience_s``: how long the large tables are checked; what is wrong behind that is found by
-    who reads it.  Raises StoreError where the disk does not take the new file.
+    who reads it.  Raises DiskFullError where the disk does not take the new file.
     """
-    salvaged = beside(path, _SALVAGED)
+    salvaged = beside(path, SALVAGED)
     try:
         if salvaged.exists():
             if not path.exists():  # it ended between its two renamings
@@ -80,19 +109,11 @@ def salvage_if_damaged(path: Path, patience_s: float = CHECK_S) -> Salvage | Non
         if not path.is_file() or path.stat().st_size == 0:
             return None
         damage = damage_of(path, patience_s)
-        return _set_aside(path, salvaged, damage) if damage else None
-    except OSError as error:
-        raise StoreError(
-            f"{path} is damaged and cannot be made again ({error.strerror}): free or mend the disk"
+        return _make_again(path, salvaged, damage) if damage else None
+    except (DiskFullError, OSError) as error:
+        raise DiskFullError(
+            f"{path} is damaged and cannot be made again ({error}): free or mend the disk"
         ) from error
-
-
-def remove_damaged(path: Path) -> int:
-    """Remove what was set aside of this database; the number of files."""
-    aside = list(path.parent.glob(f"{path.name}{_DAMAGED}*"))
-    for file in aside:
-        file.unlink()
-    return len(aside)
 
 
 def damage_of(path: Path, patience_s: float = CHECK_S) -> str:
@@ -127,49 +148,24 @@ def _damage_in(reading: sqlite3.Connection, patience_s: float) -> str:
     return ""
 
 
-def _set_aside(path: Path, salvaged: Path, damage: str) -> Salvage:
-    with Store(salvaged):
-        pass
-    lost = _copy_readable(path, salvaged)
+def _make_again(path: Path, salvaged: Path, damage: str) -> Salvage:
+    """Raises DiskFullError where there is no room for the new file, which then leaves nothing."""
+    try:
+        with Store(salvaged):
+            pass
+        with closing(sqlite3.connect(salvaged)) as writing:
+            lost = copy_readable(path, writing)
+            writing.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        with salvaged.open("rb") as written:
+            os.fsync(written.fileno())
+    except (DiskFullError, sqlite3.Error, OSError) as error:
+        for suffix in ("", "-wal", "-shm"):
+            with suppress(OSError):
+                beside(salvaged, suffix).unlink(missing_ok=True)
+        raise DiskFullError(str(error)) from error
     for suffix in ("-wal", "-shm"):
         beside(salvaged, suffix).unlink(missing_ok=True)
-    with salvaged.open("rb") as written:
-        os.fsync(written.fileno())
-    aside = _free_name(path)
-    for suffix in ("", "-wal"):
-        part = beside(path, suffix)
-        if part.exists() and part.stat().st_size:
-            part.rename(beside(aside, suffix))
-    for suffix in ("-wal", "-shm"):
-        beside(path, suffix).unlink(missing_ok=True)
+    aside = set_aside(path)
     salvaged.replace(path)
     sync_folder(path.parent)
-    return Salvage(aside, damage, tuple(sorted(lost)))
-
-
-def _copy_readable(path: Path, salvaged: Path) -> set[str]:
-    """Gives the tables that are nowhere else and cannot be read."""
-    tables = [name for name in Base.metadata.tables if name not in _PROJECTED]
-    with closing(sqlite3.connect(salvaged)) as writing:
-        try:
-            with reading_on_full_disk(path) as reading:
-                lost = set(copy_tables(reading, writing, tables))
-        except (sqlite3.Error, OSError, StoreError):
-            lost = set(tables)
-        if "users" in lost:
-            lost.update(_OF_USERS)
-        for table in _OF_USERS if "users" in lost else ():
-            writing.execute(f"DELETE FROM {table}")  # noqa: S608  # names of our own tables
-        writing.commit()
-        writing.execute("PRAGMA wal_checkpoint(TRUNCATE)")
-        return lost
-
-
-def _free_name(path: Path) -> Path:
-    at = datetime.now(UTC)
-    name = beside(path, f"{_DAMAGED}{at:%Y%m%dT%H%M%SZ}")
-    number = 1
-    while name.exists():
-        number += 1
-        name = beside(path, f"{_DAMAGED}{at:%Y%m%dT%H%M%SZ}-{number}")
-    return name
+    return Salvage(aside, damage, lost)

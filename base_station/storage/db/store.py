@@ -6,7 +6,6 @@ While its disk takes nothing, a live station works on a copy in memory (``memory
 from __future__ import annotations
 
 import logging
-import os
 import shutil
 import sqlite3
 import threading
@@ -27,12 +26,12 @@ from base_station.storage.db.engines import (
     Statement,
     code_of,
     file_engine,
+    make_private,
     writing,
 )
 from base_station.storage.db.memory_copy import MemoryCopy
 from base_station.storage.db.migrate import migrate
 from shared.errors import DiskFullError, DiskHangsError, StoreError
-from shared.own_files import open_own
 
 _log = logging.getLogger(__name__)
 
@@ -56,11 +55,14 @@ class Store:
         hangs: Callable[[], bool] = lambda: False,
         *,
         memory_fallback: bool = False,
+        no_room_beside_damaged: str = "",
     ) -> None:
         """``hangs``: whether the disk does not answer just now.  Nothing more is asked of it then:
         whoever does would wait for it, whatever else there is to do, and could not be ended.
 
         ``memory_fallback``: a disk that takes nothing does not keep it from opening.
+        ``no_room_beside_damaged``: why the disk takes no other file in place of this one, which is
+        damaged; it stays as it is until there is room.
         """
         self.hangs = hangs
         self.path = path
@@ -71,7 +73,10 @@ class Store:
         self._refused = 0
         self.loss = ""  # what it lacks since it was made again, as a sentence for a person
         self._damage = ""  # that was met since
-        self._reason = ""  # why the disk takes nothing
+        self._reason = no_room_beside_damaged  # why the disk takes nothing
+        if no_room_beside_damaged:
+            self._go_into_memory(is_open=False, is_damaged=True)
+            return
         try:
             self._engine = self._opened()
         except DiskFullError:
@@ -82,6 +87,11 @@ class Store:
     @property
     def engine(self) -> Engine:
         return self._engine
+
+    @property
+    def unreadable(self) -> tuple[str, ...]:
+        """Tables of the damaged file that nobody can give back, while it is kept in memory."""
+        return self._memory.unreadable if self._memory is not None else ()
 
     @property
     def in_memory(self) -> bool:
@@ -182,7 +192,7 @@ class Store:
     def _opened(self) -> Engine:
         """The file.  Raises StoreError."""
         _refuse_link(self.path)
-        _make_private(self.path)
+        make_private(self.path)
         engine = file_engine(self.path)
         try:
             migrate(engine)
@@ -204,8 +214,8 @@ class Store:
             not self.path.exists() or self.path.is_file()
         )
 
-    def _go_into_memory(self, *, is_open: bool) -> None:
-        self._memory = MemoryCopy(self.path, is_open=is_open)
+    def _go_into_memory(self, *, is_open: bool, is_damaged: bool = False) -> None:
+        self._memory = MemoryCopy(self.path, is_open=is_open, is_damaged=is_damaged)
         self._tried_s = time.monotonic()
         self._engine = self._memory.engine
 
@@ -256,8 +266,8 @@ class Store:
         try:
             if shutil.disk_usage(self.path.parent).free < _ROOM_BYTES:
                 return
-            if memory.is_new and not _has_content(self.path):
-                self._write_new(memory)
+            if memory.is_damaged or (memory.is_new and not _has_content(self.path)):
+                memory.write_new()
             engine = self._opened()
         except (StoreError, sqlite3.Error, OSError):
             return
@@ -268,19 +278,6 @@ class Store:
             return
         self._engine, self._memory = engine, None
         memory.close()
-
-    def _write_new(self, memory: MemoryCopy) -> None:
-        """There was no file: all of it is written, and nothing of it waits any more."""
-        making = self.path.with_name(f"{self.path.name}.part")
-        making.unlink(missing_ok=True)
-        _make_private(making)
-        try:
-            with closing(sqlite3.connect(making)) as target:
-                memory.write_whole(target)
-            making.replace(self.path)
-        finally:
-            making.unlink(missing_ok=True)
-        memory.note_written()
 
     # ---- what may go wrong
 
@@ -337,9 +334,3 @@ def _refuse_link(path: Path) -> None:
     """SQLite follows one; what it puts beside a database it opens without."""
     if path.is_symlink():
         raise StoreError(f"{path} is a link, which is not followed: put the database itself there")
-
-
-def _make_private(path: Path) -> None:
-    """Where there is no database yet; what SQLite puts beside one has its mode and owner."""
-    with suppress(OSError):  # it is there; or SQLite says in a moment why it cannot be
-        os.close(open_own(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
