@@ -10,10 +10,12 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 
 import pytest
+from sqlalchemy import select
 
 from base_station.accounts.principals import Role
 from base_station.storage.db import memory_copy
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.models import User
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.projection import SqlProjection
 from base_station.storage.db.records import FOREVER_NS, Records, Window
@@ -146,6 +148,19 @@ def test_what_is_decided_meanwhile_is_shown_and_is_in_the_file_later(
     store.close()
     assert on_disk(path, "SELECT count(*) FROM incidents") == [(3,)]
     assert on_disk(path, "SELECT north_m FROM tracks ORDER BY t_s") == [(1.0,), (2.0,), (3.0,)]
+
+
+def test_who_reads_in_memory_as_the_disk_takes_something_again_reads_on(
+    path: Path, clock: ManualClock
+) -> None:
+    with a_user(path, clock):
+        store = Store(path, memory_fallback=True)
+    with store.read() as session:  # which asks nothing until then
+        store.look_at_disk()
+        assert not store.in_memory
+        assert session.scalars(select(User.username)).all() == ["mia"]
+    assert [user.username for user in accounts_of(store, clock).users()] == ["mia"]
+    store.close()
 
 
 def test_there_may_be_no_database_at_all(path: Path, clock: ManualClock) -> None:

@@ -10,8 +10,10 @@ import logging
 import os
 import secrets
 import sqlite3
-from contextlib import closing
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
+from threading import Lock
 
 from sqlalchemy import Engine, text
 from sqlalchemy.exc import SQLAlchemyError
@@ -61,6 +63,8 @@ class MemoryCopy:
         self._keeper = self._connect()  # the database is there for as long as one is connected
         self.engine = memory_engine(self._connect)
         self._waiting: list[list[Statement]] = []
+        self._readers, self._is_left = 0, False
+        self._lock = Lock()
         try:
             if not self.is_new:
                 self._fill(is_open=is_open)
@@ -138,6 +142,28 @@ class MemoryCopy:
         making.replace(self._path)
         sync_folder(self._path.parent)
         self.is_new = self.is_damaged = False
+
+    @contextmanager
+    def kept_open(self) -> Iterator[bool]:
+        """For one reader; False where nobody reads here any more."""
+        with self._lock:
+            is_open = not self._is_left
+            self._readers += is_open
+        try:
+            yield is_open
+        finally:
+            with self._lock:
+                self._readers -= is_open
+                is_last = is_open and self._is_left and not self._readers
+            if is_last:
+                self.close()
+
+    def leave(self) -> None:
+        """Closed once its last reader is done: the database would be gone under him."""
+        with self._lock:
+            self._is_left, is_idle = True, not self._readers
+        if is_idle:
+            self.close()
 
     def close(self) -> None:
         self.engine.dispose()

@@ -126,7 +126,7 @@ class Store:
         """A consistent view for one reader.  Raises StoreError where the file cannot be read."""
         self._require_disk()
         try:
-            with Session(self._engine, expire_on_commit=False) as session:
+            with self._readable() as engine, Session(engine, expire_on_commit=False) as session:
                 yield session
         except SQLAlchemyError as error:
             raise StoreError(f"the database cannot be read: {self._cause(error)}") from error
@@ -188,6 +188,17 @@ class Store:
         self._engine.dispose()
 
     # ---- on the disk or in memory
+
+    @contextmanager
+    def _readable(self) -> Iterator[Engine]:
+        """For one reader, who goes on in memory though the disk takes something meanwhile."""
+        memory = self._memory
+        if memory is not None:
+            with memory.kept_open() as is_open:
+                if is_open:
+                    yield memory.engine
+                    return
+        yield self._engine
 
     def _opened(self) -> Engine:
         """The file.  Raises StoreError."""
@@ -277,7 +288,7 @@ class Store:
             engine.dispose()
             return
         self._engine, self._memory = engine, None
-        memory.close()
+        memory.leave()
 
     # ---- what may go wrong
 
