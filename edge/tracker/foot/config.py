@@ -38,6 +38,22 @@ class EskfConfig(NamedTuple):
     # What a foot on the ground may roll, 7 rad/s, by the weight of the rate; see decision 64.
     threshold_max_m2ps4: float = 2000.0
 
+    # A stance or a foot in the air (stance_belief.py).
+    stance_pause_s: float = 0.1  # a shorter one did not leave the ground
+    stance_pause_mps: float = 0.25  # ... nor did one so slow
+    doubt_longest_s: float = 5.0  # without a stance
+    slow_swing_mps: float = 2.0  # horizontal peak; that of a stride is 2.5 to 5
+    unlike_ratio: float = 6.0  # stillness statistic by that of the wearer's stances
+    usual_stance_min_m2ps4: float = 0.05  # stiller is sensor noise
+    usual_stance_share: float = 0.15  # of a stance that is less still
+    rest_speed_mps: float = 0.06  # the filter's velocity of a foot that rests
+    rest_ahead_s: float = 0.15  # ... for so long
+    sinking_gate: float = 3.0  # deviations of the vertical velocity
+    sinking_level_mps: float = 0.3  # a filter that is wrong is wrong along the floor as well
+    sinking_mps: float = 0.02  # deviation after a swing: the give of a shoe
+    sinking_drift_mps2: float = 0.02  # ... by its duration: tilt and bias of the accelerometer
+    sinking_strike_ratio: float = 1.5  # ... by the residual of this wearer's heel strikes
+
     # Pseudo-measurements in stance.
     # Variance of the velocity: (base + per_motion * motion) * (motion / stride minimum)^power.
     stance_velocity_mps_rthz: float = 5e-4

@@ -42,6 +42,7 @@ from edge.tracker.foot.preprocessing.saturation_recovery import recover_forces, 
 from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress, Step, Trail
 from edge.tracker.foot.zupt.level_walking import apply_level_constraint
+from edge.tracker.foot.zupt.stance_belief import is_believed, note_stillness, remember_stance
 from edge.tracker.foot.zupt.stance_consistency import begin_stance, inflate_for_misfit
 from edge.tracker.foot.zupt.stance_detection import stance_threshold, steady_rate, unrest
 from edge.tracker.foot.zupt.zupt import apply_zupt, is_gliding
@@ -73,21 +74,26 @@ def filter_sample(
     motion = ring[slot].motion_m2ps4
     still = good and motion <= stance_threshold(ring, state, slot, config)
     still = still and not is_gliding(ring, state, slot, config)
+    if still and not progress.in_stance:
+        still = is_believed(ring, progress, state, k, config)
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
         update_from_rest(state, config)
         if not progress.in_stance:
             on_footfall(ring, step, state, slot, config)
             begin_stance(ring, step, progress, state, slot, config)
+        note_stillness(progress, motion)
         apply_zupt(ring, step, state, slot, config)
         inflate_for_misfit(progress, state, ring[slot].t_s, config)
         state.swing_rad = 0.0
         state.faultless_var_m2ps2 = 0.0
         state.swing_speed_mps = 0.0
+        state.swing_level_speed_mps = 0.0
         if motion <= ring[slot].stride_minimum_m2ps4 and not state.barometer.riding:
             apply_level_constraint(ring, step, progress, state, slot, config)
     elif progress.in_stance:
         on_lift_off(state, config)
+        remember_stance(progress, config)
         accept_heading(state)
     inflate_bias(state, config)
     update_magnetometer(ring, step, state, slot, still, config)
@@ -159,7 +165,9 @@ def _predict(
     accumulate_heading_bias(state, dt_s)
     state.swing_rad += dt_s * math.sqrt(dot(state.gyro_radps, state.gyro_radps))
     speed_mps = math.sqrt(dot(state.velocity_n_mps, state.velocity_n_mps))
+    level_mps = math.hypot(state.velocity_n_mps[0], state.velocity_n_mps[1])
     state.swing_speed_mps = max(state.swing_speed_mps, speed_mps)
+    state.swing_level_speed_mps = max(state.swing_level_speed_mps, level_mps)
     _add_noise(ring, progress, state, k, dt_s, config)
     if lacks_samples(ring, slot, dt_s):
         state.faulty_stride = True

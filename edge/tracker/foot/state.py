@@ -188,6 +188,7 @@ FILTER = np.dtype(
         ("faultless_var_m2ps2", np.float64),  # of a velocity since it stood, but for faults
         ("zupt_residual_count", np.float64),  # from which landing_off is known
         ("swing_speed_mps", np.float64),  # the foot's highest since it stood
+        ("swing_level_speed_mps", np.float64),  # ... of what is horizontal of it
         (
             "mean_scale_residual",
             np.float64,
@@ -256,6 +257,8 @@ PROGRESS = np.dtype(
         ("in_stance", np.bool_),
         ("stance_since_s", np.float64),
         ("last_stance_s", np.float64),
+        ("stance_least_m2ps4", np.float64),  # stillness statistic of this stance
+        ("usual_stance_m2ps4", np.float64),  # ... of those before; see stance_belief
         ("gyro_saturated_s", np.float64),  # when last seen
         ("accel_saturated_s", np.float64),
         ("gap_s", np.float64),

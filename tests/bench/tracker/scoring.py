@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from edge.samples import Floats
 from edge.sources.recording import RecordedTruth
@@ -18,6 +19,8 @@ from edge.tracker.interface import Quality, TrackBatch
 
 _KNOWN_M = 0.02  # to which the truth is
 CHI2_95_2DOF = 5.991464547107979  # the 95 % quantile of chi-square with two degrees of freedom
+CHI2_95_1DOF = 3.841458820694124  # ... with one
+_SILENT = 3.0  # stated regions by which an error is off that a good quality must not have
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +39,9 @@ class Score:
     coverage_95: float | None  # share of reference points in the stated 95 % ellipse, fitted
     coverage_95_from_start: float | None  # the same, start held, turned by the first heading only
     mean_nees: float | None  # of the fitted horizontal error; 2 is honest
+    coverage_95_vertical: float | None  # share of heights in the stated 95 % interval, start held
+    stated_by_error: float | None  # RMS stated horizontally by RMS error, start held; 1 is honest
+    silently_wrong: float | None  # share of points over three stated regions off, quality good
 
 
 def score_track(
@@ -62,9 +68,14 @@ def score_track(
             "coverage_95",
             "coverage_95_from_start",
             "mean_nees",
+            "coverage_95_vertical",
+            "stated_by_error",
+            "silently_wrong",
         )
     )
     error_m = closure_m if closed_loop else None
+    if closed_loop:
+        figures |= _against_start(rows)
     if truth is not None:
         figures |= _against_truth(rows, truth, heading_known=heading_known)
         error_m = figures["ate_m"]
@@ -93,6 +104,10 @@ def _against_truth(
     if not heading_known:
         held_m, held_m2 = turn_about_start(held_m, covariance_m2, truth.position_n_m)
     nees_from_start = horizontal_nees(held_m[1:], truth.position_n_m[1:], held_m2[1:])
+    # By how well the truth is known, or millimetres of the first second would count.
+    nees_known = horizontal_nees(held_m, truth.position_n_m, held_m2 + _KNOWN_M**2 * np.eye(3))
+    up_nees = vertical_nees(held_m, truth.position_n_m, held_m2)[1:]
+    _, before = _rows_before(rows, truth.t_s)
     return {
         "ate_m": ate_m,
         "armse_2d_m": ate_m / np.sqrt(2.0),
@@ -100,17 +115,56 @@ def _against_truth(
         "coverage_95": float(np.mean(nees <= CHI2_95_2DOF)),
         "coverage_95_from_start": float(np.mean(nees_from_start <= CHI2_95_2DOF)),
         "mean_nees": float(np.mean(nees)),
+        "coverage_95_vertical": (
+            None if np.isnan(up_nees).any() else float(np.mean(up_nees <= CHI2_95_1DOF))
+        ),
+        "stated_by_error": float(
+            np.sqrt(np.mean(np.trace(held_m2[1:, :2, :2], axis1=1, axis2=2)))
+            / rms_distance(held_m[1:], truth.position_n_m[1:])
+        ),
+        "silently_wrong": float(
+            np.mean(is_silent(nees_known[1:], up_nees, rows.quality[before][1:]))
+        ),
     }
+
+
+def _against_start(rows: TrackBatch) -> dict[str, float | None]:
+    """Figures of a walk that ends where it began."""
+    first_m, last_m, last_m2 = (
+        rows.position_n_m[:1], rows.position_n_m[-1:], rows.position_cov_m2[-1:]
+    )  # fmt: skip
+    nees = horizontal_nees(last_m, first_m, last_m2)
+    silent = is_silent(nees, vertical_nees(last_m, first_m, last_m2), rows.quality[-1:])
+    closure_m = max(rms_distance(last_m, first_m), _KNOWN_M)
+    return {
+        "stated_by_error": float(np.sqrt(np.trace(last_m2[0, :2, :2])) / closure_m),
+        "silently_wrong": float(silent[0]),
+    }
+
+
+def is_silent(nees: Floats, up_nees: Floats, quality: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """True where an error is over three stated 95 % regions (n,) and the quality is good.
+
+    Where the truth has no height ``up_nees`` is NaN and decides nothing.
+    """
+    off = (nees > _SILENT**2 * CHI2_95_2DOF) | (up_nees > _SILENT**2 * CHI2_95_1DOF)
+    silent: NDArray[np.bool_] = off & (quality == Quality.GOOD)
+    return silent
 
 
 def rows_at(rows: TrackBatch, t_s: Floats) -> tuple[Floats, Floats]:
     """Return positions (m, 3), interpolated, and covariances (m, 3, 3) of the row before."""
-    row_s = rows.t_ns * 1e-9
+    row_s, before = _rows_before(rows, t_s)
     position_n_m = np.column_stack(
         [np.interp(t_s, row_s, rows.position_n_m[:, axis]) for axis in range(3)]
     )
-    before = np.clip(np.searchsorted(row_s, t_s, side="right") - 1, 0, len(rows) - 1)
     return position_n_m, rows.position_cov_m2[before]
+
+
+def _rows_before(rows: TrackBatch, t_s: Floats) -> tuple[Floats, NDArray[np.intp]]:
+    """Return the times of the rows, and the row (m,) at or before each of ``t_s``."""
+    row_s = np.asarray(rows.t_ns * 1e-9, np.float64)
+    return row_s, np.clip(np.searchsorted(row_s, t_s, side="right") - 1, 0, len(rows) - 1)
 
 
 def fit_yaw(
@@ -161,6 +215,18 @@ def vertical_rms(estimate_n_m: Floats, truth_n_m: Floats) -> float | None:
     """Return the RMS height error after taking out its mean; ``None`` for a flat truth."""
     error_m = estimate_n_m[:, 2] - truth_n_m[:, 2]
     return None if np.isnan(error_m).any() else float(np.std(error_m))
+
+
+def vertical_nees(estimate_n_m: Floats, truth_n_m: Floats, covariance_m2: Floats) -> Floats:
+    """Return the normalised squared height error (n,) from the first point, or NaN.
+
+    A truth's heights, and what a shoe gives way, are no better than 2 cm.
+    """
+    error_m = estimate_n_m[:, 2] - truth_n_m[:, 2]
+    if len(error_m) > 1:
+        error_m = error_m - error_m[0]
+    squares: Floats = error_m**2 / (covariance_m2[:, 2, 2] + _KNOWN_M**2)
+    return squares
 
 
 def horizontal_nees(estimate_n_m: Floats, truth_n_m: Floats, covariance_m2: Floats) -> Floats:

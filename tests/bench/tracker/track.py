@@ -55,12 +55,16 @@ COLUMNS = (
     Column("height", "vertical_rms_m", 3),
     Column("in 95 %", "coverage_95", 3),
     Column("held", "coverage_95_from_start", 3),
+    Column("up", "coverage_95_vertical", 3),
+    Column("stated", "stated_by_error", 1),
+    Column("silent", "silently_wrong", 3),
     Column("lost", "lost", 2),
 )
 UNITS = """metres; % of the distance walked; height: vertical RMS; in 95 %: share of the truth in
-the stated 95 % ellipse, the track fitted to the truth, or held at its start; lost: share of the
-rows that are flagged so"""
-WIDTH = 120  # that the tables need
+the stated 95 % ellipse, the track fitted to the truth, or held at its start; up: share of the
+heights in the stated 95 % interval; stated: RMS stated by RMS error, start held; silent: share
+over three stated regions off with quality good; lost: share of the rows that are flagged so"""
+WIDTH = 140  # that the tables need
 
 
 SimulatedOption = Annotated[

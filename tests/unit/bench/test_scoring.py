@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from edge.sources.recording import RecordedTruth
-from edge.tracker.interface import TrackBatch
+from edge.tracker.interface import Quality, TrackBatch
 from tests.bench.tracker.scoring import (
     fit_yaw,
     horizontal_nees,
@@ -130,3 +130,26 @@ def test_a_heading_that_drifts_is_not_spread_over_the_beginning():
 def test_rows_are_interpolated_at_the_reference_times():
     position, _ = rows_at(rows_along(np.linspace([0, 0, 0], [49, 0, 0], 50)), np.array([0.105]))
     assert position[0, 0] == pytest.approx(10.5)
+
+
+def test_silently_wrong_is_what_is_over_three_stated_regions_off_and_good():
+    truth = RecordedTruth(TIMES_S[:200], curve())
+    off_m = np.linspace(0.0, 2.0, 200)[:, np.newaxis]
+    high = rows_along(curve() + off_m * [0.0, 0.0, 1.0])  # deviations of 0.1 m: 0.59 m are too much
+    score = score_track(high, truth, closed_loop=False)
+    assert score.silently_wrong == pytest.approx(1.0 - 0.6 / 2.0, abs=0.02)
+    assert score.coverage_95_vertical == pytest.approx(0.2 / 2.0, abs=0.02)
+    high.quality[:] = Quality.DEGRADED
+    assert score_track(high, truth, closed_loop=False).silently_wrong == 0.0
+
+
+def test_a_closed_walk_is_silently_wrong_by_its_end():
+    rows = rows_along(curve())
+    assert score_track(rows, None, closed_loop=True).silently_wrong == 1.0
+    rows.quality[-1] = Quality.LOST
+    assert score_track(rows, None, closed_loop=True).silently_wrong == 0.0
+    wide = score_track(rows_along(curve(), std_m=5.0), None, closed_loop=True)
+    assert wide.silently_wrong == 0.0
+    assert wide.stated_by_error == pytest.approx(
+        5.0 * np.sqrt(2.0) / wide.closure_horizontal_m, rel=1e-3
+    )

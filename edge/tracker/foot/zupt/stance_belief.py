@@ -1,0 +1,110 @@
+"""Stance or foot in the air: two hypotheses for the stillest moment of a slow swing.
+
+The stillest moment of a stride is a stance where a stride fits into the window of the detector.  A
+foot that is raised and put down slowly, or held in the air, fills the window with its swing alone:
+then the stillest moment is in mid-air.  Evidence against a stance is
+
+- a *vertical* velocity that the filter knows well and that is not zero, while the horizontal one is
+  small.  An error of the tilt, of a bias or of samples that are missing shows along the floor
+  first, so this is no filter that is wrong;
+- after a slow swing, a stillness unlike that of the wearer's stances before it: in the air a foot
+  is less still by ten to a thousand times where the wearer rests in between.  It is outweighed
+  where the filter says that the foot rests, now and a moment later (at the top of its way a foot
+  rests for an instant only).
+
+A candidate that is not believed is decided by what follows: the swing goes on, at most for
+``doubt_longest_s``, and each later sample is a candidate of its own.  After a fast swing stillness
+does not count, or a change from walking to running would be doubted.
+
+The memory takes a stiller stance at once and a less still one by a share, because a person who has
+stood still can do so again.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.sample_ring import Ring, reach
+from edge.tracker.foot.state import FilterState, Progress
+
+
+@njit()
+def is_believed(
+    ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
+) -> bool:
+    """False where sample ``k``, which would begin a stance, is rather of a foot in the air."""
+    slot = k & (len(ring) - 1)
+    since_s = ring[slot].t_s - progress.last_stance_s
+    if since_s < config.stance_pause_s or since_s > config.doubt_longest_s:
+        return True
+    if state.swing_speed_mps < config.stance_pause_mps:
+        return True
+    if _rises_or_sinks(state, since_s, config):
+        return False
+    if state.swing_level_speed_mps > config.slow_swing_mps:
+        return True
+    usual = progress.usual_stance_m2ps4
+    if usual == 0.0 or ring[slot].stride_minimum_m2ps4 <= config.unlike_ratio * usual:
+        return True
+    return _rests(ring, progress, state, k, config)
+
+
+@njit()
+def _rises_or_sinks(state: FilterState, since_s: float, config: EskfConfig) -> bool:
+    """True where the foot goes up or down by more than the errors of its swing explain.
+
+    The filter's own variance is that of hard strides on poor sensors; how this wearer's strides
+    end is known better (see zupt_residuals), but for those with a fault.
+    """
+    north, east, down = state.velocity_n_mps[0], state.velocity_n_mps[1], state.velocity_n_mps[2]
+    if state.faulty_stride or north * north + east * east > config.sinking_level_mps**2:
+        return False
+    std_mps = config.sinking_mps + config.sinking_drift_mps2 * since_s
+    std_mps += config.sinking_strike_ratio * state.mean_strike_residual * state.swing_rad
+    return bool(abs(down) > config.sinking_gate * std_mps)
+
+
+@njit()
+def _rests(ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig) -> bool:
+    """True where the foot does not move, by what the filter knows, now and a moment later.
+
+    The attitude is taken as constant for that moment: a foot that rests does not turn.
+    """
+    mask = len(ring) - 1
+    stop = min(progress.measured, reach(ring, k))
+    now_s = ring[k & mask].t_s
+    north, east, down = state.velocity_n_mps[0], state.velocity_n_mps[1], state.velocity_n_mps[2]
+    rotation = state.rotation_nb
+    i = k
+    while north * north + east * east + down * down <= config.rest_speed_mps**2:
+        i += 1
+        if i >= stop or ring[i & mask].t_s - now_s > config.rest_ahead_s:
+            return True
+        dt_s = ring[i & mask].t_s - ring[(i - 1) & mask].t_s
+        down += config.gravity_mps2 * dt_s
+        for j in range(3):
+            gain_mps = (ring[i & mask].accel_mps2[j] - state.accel_bias_mps2[j]) * dt_s
+            north += rotation[0, j] * gain_mps
+            east += rotation[1, j] * gain_mps
+            down += rotation[2, j] * gain_mps
+    return False
+
+
+@njit()
+def note_stillness(progress: Progress, motion_m2ps4: float) -> None:
+    """Keep the statistic of the stillest sample of a stance, which begins unless ``in_stance``."""
+    if progress.in_stance:
+        motion_m2ps4 = min(progress.stance_least_m2ps4, motion_m2ps4)
+    progress.stance_least_m2ps4 = motion_m2ps4
+
+
+@njit()
+def remember_stance(progress: Progress, config: EskfConfig) -> None:
+    """Learn from a stance that has ended; ``stance_least_m2ps4`` is of its stillest sample."""
+    least = max(progress.stance_least_m2ps4, config.usual_stance_min_m2ps4)
+    usual = progress.usual_stance_m2ps4
+    if usual == 0.0 or least < usual:
+        progress.usual_stance_m2ps4 = least
+    else:
+        progress.usual_stance_m2ps4 = usual * (least / usual) ** config.usual_stance_share
