@@ -7,7 +7,6 @@ limit; its source plays motion and rest ten times as fast as they were.
 from __future__ import annotations
 
 import io
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import closing, redirect_stdout
@@ -27,6 +26,7 @@ from edge.sources.interface import OfflineSource
 from edge.storage.data_folder import UnitDataFolder
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
+from shared.channels import HEARTBEAT
 from shared.clock import NS_PER_S
 from shared.messages import Message
 
@@ -52,7 +52,7 @@ class _MovesAndRests(OfflineSource):
         for first in range(0, begin + self._rests * episode, _BATCH):
             k = np.arange(first, first + _BATCH)
             moves = (k < begin) | ((k - begin) % episode < moving)
-            swing = np.where(moves, np.sin(k / _RATE_HZ * 6.0), 0.0)[:, None]
+            swing = np.where(moves, np.sin(k / _RATE_HZ * 6.0), 1e-3 * np.sin(7.0 * k))[:, None]
             accel = np.array([[0.0, 0.0, 9.81]]) + 4.0 * swing * np.array([[1.0, 0.5, 0.3]])
             t_ns = (k * (NS_PER_S / _RATE_HZ)).astype(np.int64)
             yield SensorBatch(ImuBatch(t_ns, accel, 2.0 * swing * np.array([[0.2, 1.0, 0.1]])))
@@ -63,6 +63,8 @@ class _Station:
 
     def __init__(self) -> None:
         self._router = MemoryRouter()
+        self._bus = self._router.attach_station()
+        self._bus.subscribe(HEARTBEAT.key("*"), lambda _key, _payload: None)
 
     def open_bus(self) -> Bus:
         return self._router.attach_unit()
@@ -75,20 +77,15 @@ class _Station:
 
 
 class _Watched(io.TextIOBase):
-    """Standard output that notes when a pre-alert is printed."""
+    """Standard output of the agent, of which only when a pre-alert is printed is of interest."""
 
     def __init__(self) -> None:
-        self._out = sys.stdout
         self.begun_s: list[float] = []
 
     def write(self, text: str) -> int:
         if _PRE_ALERT in text:
             self.begun_s.append(time.monotonic())
-            return len(text)
-        return self._out.write(text)
-
-    def flush(self) -> None:
-        self._out.flush()
+        return len(text)
 
 
 def measure_pre_alerts(rests: int, folder: Path) -> list[float]:
