@@ -50,8 +50,3 @@ class MaydayProgress:
     def note_acknowledged(self, command_id: str) -> None:
         """The station has acknowledged the newest call."""
         self.acknowledgement = command_id
-
-    def end(self, command_id: str) -> None:
-        """The acknowledgement is over: whoever acknowledged it has spoken with the wearer."""
-        if command_id == self.acknowledgement:
-            self.acknowledgement = ""

@@ -53,10 +53,10 @@ def _of_unit(state: WearerState) -> Iterator[Notice]:
         yield Notice(Signal.PRE_ALERT)
     if state.maydays_called:
         yield Notice(Signal.MAYDAY_CALLED, str(state.maydays_called))
-    if state.maydays_received:
-        yield Notice(Signal.MAYDAY_SENT, str(state.maydays_received))
-    if state.mayday_acknowledgement:
+    if state.mayday_acknowledgement:  # so it has arrived
         yield Notice(Signal.MAYDAY_ACKNOWLEDGED, state.mayday_acknowledgement)
+    elif state.maydays_received:
+        yield Notice(Signal.MAYDAY_SENT, str(state.maydays_received))
     if not state.is_on_foot:
         yield Notice(Signal.NOT_ON_FOOT)
     if state.unlinked_s >= _LINK_LOST_S:

@@ -92,7 +92,6 @@ class WearerNotifier:
         """An order is over: the wearer has answered by radio, or the incident was closed."""
         self._open_commands.close_one(command_id)
         self._handler.end(command_id)
-        self._maydays.end(command_id)
 
     def _state(self) -> WearerState:
         now_ns = self._clock.monotonic_ns()

@@ -17,7 +17,7 @@ from shared.errors import ConfigError
 NOTIFIERS: tuple[NotifierKind, ...] = (
     NotifierKind("led", LedNotifier, "NAME"),
     NotifierKind("beeper", BeeperNotifier, "/dev/input/DEVICE"),
-    NotifierKind("sound", SoundNotifier, "default or a device of `aplay -L`"),
+    NotifierKind("sound", SoundNotifier, "DEVICE (default, or another of `aplay -L`)"),
     NotifierKind("speech", SpeechNotifier, "VOICE"),
     NotifierKind("terminal", TerminalNotifier, "TITLE"),
 )

@@ -45,7 +45,10 @@ def play_wave(wave: bytes, interrupt: Event, device: str = DEFAULT_DEVICE) -> No
                 return
         complaint = process.stderr.read()
     if process.returncode != 0:
-        raise OSError(f"{_PLAYER} plays nothing on {device}: {last_line(complaint)}")
+        raise OSError(
+            f"{_PLAYER} plays nothing on {device}: {last_line(complaint)}; `{_PLAYER} -L` lists "
+            "the devices"
+        )
 
 
 def last_line(text: bytes) -> str:
