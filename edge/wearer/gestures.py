@@ -3,11 +3,11 @@
 Pure: time comes with the changes.  What comes out depends on those alone, not on how often
 ``advance`` is called.
 
-- held for 3 s: MAYDAY, at once when the time is over;
+- held for 3 s, or as long as is set: MAYDAY, at once when the time is over;
 - two short presses: CANCEL;
 - one short press: ACKNOWLEDGE, when no second one has followed.
 
-A press of between one and three seconds is an abandoned hold, and means nothing.
+A press of between one second and that is an abandoned hold, and means nothing.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from shared.clock import NS_PER_MS, NS_PER_S
 BOUNCE_NS = 30 * NS_PER_MS  # a state that lasts shorter is none
 SHORT_NS = NS_PER_S  # a press in thick gloves
 SECOND_WITHIN_NS = 600 * NS_PER_MS  # from the release of the first press to the second one
-HOLD_NS = 3 * NS_PER_S
+HOLD_NS = 3 * NS_PER_S  # at most
+HOLD_LEAST_NS = 3 * NS_PER_S // 2  # well beyond a short press
 STUCK_NS = 60 * NS_PER_S
 
 
@@ -38,7 +39,9 @@ Gesture = ButtonPress | ButtonStuck
 class GestureRecognizer:
     """Recogniser of one button's gestures; changes are pushed in order of time."""
 
-    def __init__(self) -> None:
+    def __init__(self, hold_ns: int = HOLD_NS) -> None:
+        """``hold_ns``: after which a hold is a mayday."""
+        self._hold_ns = hold_ns
         self._raw = False  # the contact, bounce and all
         self._raw_ns = 0  # since when
         self._is_pressed = False
@@ -104,9 +107,9 @@ class GestureRecognizer:
         held_ns = now_ns - self._pressed_ns
         if self._first_ns is not None and held_ns > SHORT_NS:  # no second short one
             found.append(self._acknowledgement())
-        if held_ns >= HOLD_NS and not self._is_called:
+        if held_ns >= self._hold_ns and not self._is_called:
             self._is_called = True
-            found.append(ButtonPress(self._pressed_ns + HOLD_NS, MAYDAY))
+            found.append(ButtonPress(self._pressed_ns + self._hold_ns, MAYDAY))
         if held_ns > STUCK_NS and not self._is_stuck:
             self._is_stuck = True
             found.append(ButtonStuck(self._pressed_ns + STUCK_NS))

@@ -12,7 +12,7 @@ from collections import deque
 
 from edge.samples import ButtonPress
 from edge.sources.sysfs import explain_read_error
-from edge.wearer.gestures import STUCK_NS, ButtonStuck, Gesture, GestureRecognizer
+from edge.wearer.gestures import HOLD_NS, STUCK_NS, ButtonStuck, Gesture, GestureRecognizer
 from edge.wearer.interface import ButtonDriver, ButtonError
 from shared.clock import NS_PER_S, Clock
 from shared.worker import Worker
@@ -30,12 +30,14 @@ _JOIN_TIMEOUT_S = 1.0  # one that hangs is left behind
 class ButtonReader:
     """``start``, then ``take`` the presses; see ``edge.sources.interface.AuxiliarySource``."""
 
-    def __init__(self, title: str, driver: ButtonDriver, clock: Clock) -> None:
-        """``title``: for a person."""
+    def __init__(
+        self, title: str, driver: ButtonDriver, clock: Clock, hold_ns: int = HOLD_NS
+    ) -> None:
+        """``title``: for a person.  ``hold_ns``: after which a hold is a mayday."""
         self._title = title
         self._driver = driver
         self._clock = clock
-        self._gestures = GestureRecognizer()
+        self._gestures = GestureRecognizer(hold_ns)
         self._presses: deque[ButtonPress] = deque()
         self._faults: deque[str] = deque()
         self._reasons: set[str] = set()  # reported, and not over yet

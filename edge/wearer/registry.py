@@ -6,10 +6,11 @@ from difflib import get_close_matches
 from urllib.parse import parse_qsl
 
 from edge.wearer.evdev_button import EvdevButton
+from edge.wearer.gestures import HOLD_LEAST_NS, HOLD_NS
 from edge.wearer.interface import ButtonKind
 from edge.wearer.reader import ButtonReader
 from edge.wearer.socket_button import SocketButton
-from shared.clock import Clock
+from shared.clock import NS_PER_S, Clock
 from shared.errors import ConfigError
 
 BUTTONS: tuple[ButtonKind, ...] = (
@@ -26,12 +27,30 @@ def open_button(text: str, clock: Clock) -> ButtonReader:
     place, _, rest = text.partition("?")
     scheme, colon, argument = place.partition(":")
     options = dict(parse_qsl(rest, keep_blank_values=True))
+    hold_ns = _hold_ns(text, options.pop("hold", None))
     for kind in BUTTONS:
         if colon and argument and kind.scheme == scheme:
             driver = kind.make(argument, options, clock)
-            return ButtonReader(f"button {text}", driver, clock)
+            return ButtonReader(f"button {text}", driver, clock, hold_ns)
     choices = ", ".join(f"{kind.scheme}:{kind.argument}" for kind in BUTTONS)
     schemes = [kind.scheme for kind in BUTTONS]
     near = get_close_matches(scheme, schemes, n=1)
     hint = f"did you mean {near[0]}:? " if near and near[0] != scheme else ""
     raise ConfigError(f"{text!r} names no button; {hint}Known are {choices}")
+
+
+def _hold_ns(text: str, given: str | None) -> int:
+    """Return after how long a hold is a mayday.  Raises ConfigError."""
+    if given is None:
+        return HOLD_NS
+    least_s, most_s = HOLD_LEAST_NS / NS_PER_S, HOLD_NS / NS_PER_S
+    try:
+        hold_s = float(given)
+    except ValueError:
+        hold_s = 0.0
+    if not least_s <= hold_s <= most_s:
+        raise ConfigError(
+            f"{text}: hold is {given!r}; give the seconds after which a hold is a mayday, "
+            f"{least_s:g} to {most_s:g}"
+        )
+    return round(hold_s * NS_PER_S)

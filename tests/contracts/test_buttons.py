@@ -145,7 +145,8 @@ def test_one_that_is_removed_is_noticed_and_opened_when_it_is_back(emulated, dri
 def test_the_reader_hands_over_what_the_wearer_means(emulated, request) -> None:
     scheme = request.node.callspec.params["emulated"]
     button = emulated.plug_in()
-    reader = open_button(f"{scheme}:{emulated.argument}", SystemClock())
+    option = "&" if "?" in emulated.argument else "?"
+    reader = open_button(f"{scheme}:{emulated.argument}{option}hold=1.5", SystemClock())
     reader.start()
     until(lambda: button.opened, "the button is open")
     button.press()
@@ -172,6 +173,8 @@ def test_the_reader_hands_over_what_the_wearer_means(emulated, request) -> None:
         ("evdev:AB Button?kee=KEY_A", "unknown option 'kee'"),
         ("evdev:AB Button?key=116", "such as KEY_POWER"),
         ("evdev:AB Button?key=", "such as KEY_POWER"),
+        ("evdev:AB Button?hold=1", "hold is '1'; give the seconds"),
+        ("socket:/run/button?hold=nan", "1.5 to 3"),
     ],
 )
 def test_settings_that_cannot_work_are_explained(text: str, said: str) -> None:

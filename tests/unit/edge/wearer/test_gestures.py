@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from edge.samples import ACKNOWLEDGE, CANCEL, MAYDAY, ButtonPress
 from edge.wearer.gestures import (
+    HOLD_LEAST_NS,
     HOLD_NS,
     Gesture,
     GestureRecognizer,
@@ -92,6 +93,19 @@ def test_a_mayday_does_not_wait_for_the_release() -> None:
     assert recognizer.advance(BEGIN_NS + HOLD_NS - 1) == []
     assert recognizer.advance(BEGIN_NS + HOLD_NS) == [ButtonPress(BEGIN_NS + HOLD_NS, MAYDAY)]
     assert recognizer.advance(BEGIN_NS + 2 * HOLD_NS) == []
+
+
+def test_a_shorter_hold_can_be_set_and_less_than_that_is_abandoned() -> None:
+    recognizer = GestureRecognizer(HOLD_LEAST_NS)
+    recognizer.push(ContactChange(BEGIN_NS, is_pressed=True))
+    assert recognizer.advance(BEGIN_NS + HOLD_LEAST_NS - 1) == []
+    called = ButtonPress(BEGIN_NS + HOLD_LEAST_NS, MAYDAY)
+    assert recognizer.advance(BEGIN_NS + HOLD_LEAST_NS) == [called]
+    assert recognizer.advance(BEGIN_NS + 2 * HOLD_NS) == []
+    abandoned = GestureRecognizer(HOLD_LEAST_NS)
+    abandoned.push(ContactChange(BEGIN_NS, is_pressed=True))
+    abandoned.push(ContactChange(BEGIN_NS + HOLD_LEAST_NS - 1, is_pressed=False))
+    assert abandoned.advance(BEGIN_NS + 2 * HOLD_NS) == []
 
 
 PRESSES = st.lists(
