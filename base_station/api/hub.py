@@ -15,6 +15,7 @@ from concurrent.futures import Future
 
 import msgspec
 
+from base_station.api.position_ages import PositionAges
 from base_station.engine.ports import LiveSource, Trails
 from base_station.views.wire import Delta, HealthView, Snapshot, Trail
 from shared.errors import StoreError
@@ -94,6 +95,7 @@ class Hub:
         self._requested = False
         self._watched = False  # read in the source's thread: without clients nothing is encoded
         self.health: HealthView | None = None  # as last said
+        self.position_ages = PositionAges()
 
     def connect(self, loop: asyncio.AbstractEventLoop, source: LiveSource) -> None:
         """Connects the hub with its source; clients may join before."""
@@ -115,6 +117,7 @@ class Hub:
     def delta(self, delta: Delta) -> None:
         if delta.health is not None:
             self.health = delta.health
+        self.position_ages.observe(delta)
         if self._watched:
             self.broadcast_delta(self._encoder.encode(delta), tuple(delta.trails))
 

@@ -18,8 +18,14 @@ class ReportsProblems(Protocol):
 
 
 def health_facts(
-    resources: Resources, clock: SteadyClock, side: HaMode, others: Sequence[ReportsProblems]
+    resources: Resources,
+    clock: SteadyClock,
+    side: HaMode,
+    others: Sequence[ReportsProblems],
+    *,
+    missing: int,
 ) -> StationFacts:
+    """``missing``: numbers of messages that no journal has any more."""
     certificates = resources.expiry, resources.console_expiry, resources.renewal
     machine = resources.exposed, resources.router, resources.presence
     parts: tuple[ReportsProblems, ...] = (clock, *certificates, *machine, side, *others)
@@ -37,6 +43,8 @@ def health_facts(
         problems=tuple(problems),
         log_bytes=resources.recorder.log_bytes,
         disk_free_bytes=resources.recorder.disk_free_bytes,
+        left_out=resources.feed.overflowed,
+        missing=missing,
         insecure=bool(resources.config.unencrypted_endpoints()),
         standby=None if side.ha_status is None else side.ha_status.view(),
         recordings=resources.recordings.views(),

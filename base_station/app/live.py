@@ -409,7 +409,9 @@ class _Station:
         """
         self._manager.working()
         others = (self._forgettings, self._disk.check, self._stale_picture, self._ended)
-        return health_facts(self._resources, self._disk.clock, self._side, others)
+        return health_facts(
+            self._resources, self._disk.clock, self._side, others, missing=self._backfill.gone
+        )
 
     def _on_ready(self, line: str) -> None:
         """Consoles can connect."""

@@ -41,6 +41,8 @@ class StationFacts(msgspec.Struct, frozen=True):
     disk_free_bytes: int = 0
     messages_per_s: float = 0.0
     repeated: int = 0
+    left_out: int = 0
+    missing: int = 0
     insecure: bool = False
     standby: StandbyView | None = None
     recordings: tuple[RecordingView, ...] = ()
@@ -176,6 +178,8 @@ def health_view(state: StationState, facts: StationFacts) -> HealthView:
         disk_free_bytes=facts.disk_free_bytes,
         messages_per_s=facts.messages_per_s,
         repeated=facts.repeated,
+        left_out=facts.left_out,
+        missing=facts.missing,
         insecure=facts.insecure,
         standby=facts.standby,
         recordings=facts.recordings,

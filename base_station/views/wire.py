@@ -280,6 +280,8 @@ class HealthView(Answer, frozen=True):
     standby: StandbyView | None = None  # None: this is the only station
     recordings: tuple[RecordingView, ...] = ()
     repeated: int = 0  # messages since the station started that came again and were kept once
+    left_out: int = 0  # since then, as they came faster than this machine takes them
+    missing: int = 0  # since then, numbers of messages that no unit's journal has any more
     reading: float | None = None  # share of its log; nothing is live: what was last stored is shown
 
 

@@ -73,7 +73,7 @@ LEAST: dict[str, dict[str, Role | None]] = {
                 "GET /incidents/{incident_id}/export/{format_name}": V},
     "forgetting": {"GET /forgettings": A, "POST /people/{person_id}/forget": A,
                    "POST /incidents/{incident_id}/forget": A},
-    "health": {"GET /health": V},
+    "health": {"GET /health": V, "GET /metrics": V},
     "audit": {"GET /audit": A, "GET /idempotency-keys/{key}": V},
     "standby": {"GET /standby": V, "GET /standby/leads": NOBODY, "POST /standby/take-over": C},
 }  # fmt: skip

@@ -195,6 +195,8 @@ export interface Health {
   standby: StandbyView | null;
   recordings: RecordingView[];
   repeated: number;
+  left_out: number;
+  missing: number;
   reading: number | null;
   consoles: number;
   segments: LogSegmentAnswer[];

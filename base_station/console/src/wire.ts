@@ -223,6 +223,8 @@ export interface HealthView {
   standby: StandbyView | null;
   recordings: RecordingView[];
   repeated: number;
+  left_out: number;
+  missing: number;
   reading: number | null;
 }
 
