@@ -32,7 +32,7 @@ FIELDS: Mapping[str, str] = {
     "LogSegmentAnswer.name": "The file's name in the log's folder.",
     "label": "A short name for the card and the plan.",
     "crew": "The crew that the person belongs to; empty: none.",
-    "CrewTarget.crew": "The crew that is meant, as the wearers' assignments name it.",
+    "CrewTarget.crew": "The crew that is meant, as the roster names it: who is a member now.",
     "everyone": "Always true: everybody who wears a unit is meant.",
     "target": "Whom it is for: one unit, one crew, or everyone.",
     "role": "What a user may do: viewer, commander or administrator.",

@@ -18,6 +18,7 @@ from base_station.api.problems import Problem
 from base_station.api.replays import Replays
 from base_station.config import AccountabilityConfig
 from base_station.core.idempotency import is_same_request
+from base_station.core.person_references import with_references
 from base_station.engine.ports import ActionResult, OperatorGate
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.replay.post_processing import PostProcessor
@@ -64,13 +65,15 @@ class Services:
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
         """Have the drive take a person's action, and wait until it is decided and in the log; not
-        for the database, which has it later: who reads that waits (``current_tables``).
+        for the database, which has it later: who reads that waits (``current_tables``).  Names
+        of the roster in its words go into the log as references.
 
         Raises UserError with the reason where the action had no effect.  ``action_id``: as of
         ``OperatorGate``; Problem 422 where the client's key came with another request before.
         """
         try:
-            done = self.gate.submit(by, action, action_id).result(ACTION_TIMEOUT_S)
+            nameless = with_references(action, self.roster.ids_by_name())
+            done = self.gate.submit(by, nameless, action_id).result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
             advice = (
                 "with the same Idempotency-Key it is done once, however often it is sent"
@@ -83,7 +86,7 @@ class Services:
         if not is_same_request(action_id, done.action_id):
             raise idempotency_key_reused()
         if done.refused is not None:
-            raise UserError(done.refused.reason)
+            raise UserError(self.roster.shown(done.refused.reason))
         self.projection.hasten()
         return done
 

@@ -39,7 +39,7 @@ def replay_starter(
 
     def start(incident: Incident, speed: float, hub: Hub) -> ReplaySession:
         window = _window_of(incident, recorded_until_ns)
-        return ReplaySession(archive, window, speed, hub, roster.photo_url, clock)
+        return ReplaySession(archive, window, speed, hub, roster.known, clock)
 
     return start
 

@@ -155,13 +155,14 @@ class _Subject:
 
 def _subject(subject_name: str, store: Store) -> _Subject:
     """UserError where it is not one person, or an incident is open."""
-    records = Records(store, SystemClock())
-    _require_no_open_incident(records)
+    records, roster = Records(store, SystemClock()), Roster(store, SystemClock())
+    _require_no_open_incident(records, roster)
     incident = records.incident(subject_name)
     if incident is not None:
-        return _Subject("incident", subject_name, f"incident {incident.name!r} of {subject_name}")
+        name = roster.shown(incident.name)
+        return _Subject("incident", subject_name, f"incident {name!r} of {subject_name}")
     person_id = _person_id(subject_name, store)
-    worn = Roster(store, SystemClock()).worn_by(person_id)
+    worn = roster.worn_by(person_id)
     wears = f", who wears {', '.join(worn)} and is unassigned first" if worn else ""
     return _Subject("person", person_id, f"person {subject_name}{wears}", worn)
 
@@ -177,10 +178,11 @@ def _person_id(subject_name: str, store: Store) -> str:
     return named[0] if named else subject_name
 
 
-def _require_no_open_incident(records: Records) -> None:
+def _require_no_open_incident(records: Records, roster: Roster) -> None:
     for incident in records.incidents():
         if incident.closed_ns is None:
-            raise UserError(f"the incident {incident.name} is open; close it first")
+            name = roster.shown(incident.name)
+            raise UserError(f"the incident {name} is open; close it first")
 
 
 def _no_query(_unit_id: str, _question: str) -> None:

@@ -23,6 +23,7 @@ from base_station.app.factories import (
 )
 from base_station.app.folder_commands import FORGET_COMMAND, cut_log
 from base_station.app.health_facts import health_facts
+from base_station.app.older_assignments import OlderAssignments
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.app.resources import Resources, open_station
 from base_station.app.start_engine import start_drive
@@ -57,7 +58,7 @@ from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.segment_index import SegmentIndex
 from base_station.unit_sync.backfill import Backfill, Report
 from base_station.unit_sync.clock_server import ClockServer
-from base_station.unit_sync.command_sender import CommandSender
+from base_station.unit_sync.command_sender import CommandSender, without_text_of_commands
 from base_station.unit_sync.durable_ack import DurableAckGate
 from base_station.unit_sync.log_gap_detector import Lost
 from base_station.views.station import StationFacts
@@ -137,7 +138,7 @@ class _Station:
         self._past = closing.enter_context(ReplayProcesses())
         self._side = self._new_side()
         self._share = SenderRateLimiter(self._side.feed.offer, steady)
-        hearing = bus.subscribe(f"{ROOT}/**", self._share.offer)
+        hearing = bus.subscribe(f"{ROOT}/**", without_text_of_commands(self._share.offer))
         self._bans = SenderBans(resources.router.ban, steady)
         self._links = LivenessMonitor(bus, self._bans.ban, steady)
         closing.callback(self._links.close)
@@ -149,7 +150,7 @@ class _Station:
             bus, resources.feed.deliver, resources.clock, self._may_acknowledge
         )
         stamper = Stamper(STATION_ID, secrets.randbits(63), steady)
-        self._downlink = CommandSender(bus, stamper, steady)
+        self._downlink = CommandSender(bus, stamper, steady, self._disk.roster.shown)
         self._forgettings = self._disk.forgetting_desk(
             resources.recordings,
             self._submit_if_leader,
@@ -230,7 +231,7 @@ class _Station:
             live=self._resources.hub,
             projection=self._disk.projection,
             checkpoints=self._disk.checkpoints,
-            photo_urls=self._disk.roster.photo_url,
+            people=self._disk.roster.known,
             facts=self._facts,
             clock=self._disk.clock,
             boot_id=secrets.randbits(63),
@@ -280,7 +281,7 @@ class _Station:
             checkpoints=str(disk.folder.checkpoints),
             prepare=disk.recorder.flush,
             note_damage=disk.check.recheck,
-            photo_urls=disk.roster.photo_urls,
+            people=disk.roster.known_people,
             empty_pipeline=lambda: past_pipeline(None),
             known_segments=disk.known_segments,
         )
@@ -306,6 +307,7 @@ class _Station:
         )
 
         lost = self._disk.lost_from_log(self._mark_missing)
+        older = OlderAssignments(self._disk.roster, self._gate)
         requests = ErasureRequests(
             self._disk.folder,
             partial(accept_from_command, self._services, FORGET_COMMAND),
@@ -325,6 +327,7 @@ class _Station:
                 self._request_restart(None)
             if self._side.leads:
                 enrolled.update()
+                older.look()
                 if self._thresholds_in_use() != self._thresholds:
                     self._gate.submit(STATION_ID, SetThresholds(self._thresholds))
                 for monitor in (self._share, self._backfill.share, self._bans):

@@ -124,7 +124,7 @@ class StationStorage:
 
         def record_result(done: ErasureJob) -> None:
             if done.kind == "person":
-                self.roster.forget_photo(done.subject_id)
+                self.roster.forget(done.subject_id)  # it may have been done before this start
             save_soon()
 
         def obstacle(job: ErasureJob) -> str:
@@ -145,7 +145,7 @@ class StationStorage:
 
         forgetter = ErasureService(
             self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act,
-            mended_first,
+            mended_first, self.roster.forget,
         )  # fmt: skip
         return ErasureQueue(forgetter, self.folder.forgettings, obstacle, record_result)
 

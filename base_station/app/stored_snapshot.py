@@ -121,12 +121,12 @@ class StoredSnapshotSource:
         shown = Snapshot(
             seq=0,
             now_ms=to_ms(now_ns),
-            incident=None if incident is None else _incident(incident),
+            incident=None if incident is None else self._incident(incident),
             units=tuple(
                 self._unit(unit, worn, trails.get(unit.unit_id, []), open_alarms)
                 for unit, worn in self._roster.units()
             ),
-            alarms=tuple(map(alarm_view, open_alarms)),
+            alarms=tuple(alarm_view(alarm, self._roster.known) for alarm in open_alarms),
             commands=(),
             pins=(),
             beacons=(),
@@ -149,7 +149,7 @@ class StoredSnapshotSource:
     ) -> UnitView:
         return UnitView(
             unit_id=unit.unit_id,
-            label=unit.label,
+            label=self._roster.shown(unit.label),
             registered=unit.registered_ns is not None,
             person=None if worn is None else self._person(worn),
             link="lost" if unit.last_heard_ns is not None else "never",
@@ -178,8 +178,13 @@ class StoredSnapshotSource:
         )
 
     def _person(self, worn: models.Assignment) -> PersonView:
-        photo_url = self._roster.photo_url(worn.person_id)
-        return PersonView(worn.person_id, worn.person_name, worn.crew, worn.role, photo_url)
+        shown = self._roster.wearer(worn)
+        return PersonView(worn.person_id, *msgspec.structs.astuple(shown))
+
+    def _incident(self, incident: models.Incident) -> IncidentView:
+        """Nobody's check-in counts down while nothing is live."""
+        name, opened_ms = self._roster.shown(incident.name), to_ms(incident.opened_ns)
+        return IncidentView(incident.incident_id, name, opened_ms, None, 0.0, 0.0, 0.0)
 
 
 def _position(sample: TrackSample) -> PositionView:
@@ -229,9 +234,3 @@ def _points(trail: list[TrackSample]) -> msgspec.Raw:
         for before, one in zip(trail[:1] + trail, trail, strict=False)
     ]
     return msgspec.Raw(encoded_trail(points))
-
-
-def _incident(incident: models.Incident) -> IncidentView:
-    """Nobody's check-in counts down while nothing is live."""
-    opened_ms = to_ms(incident.opened_ns)
-    return IncidentView(incident.incident_id, incident.name, opened_ms, None, 0.0, 0.0, 0.0)

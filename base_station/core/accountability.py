@@ -63,13 +63,13 @@ def end(state: StationState, unit: UnitState) -> None:
 
 def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
     """PARs confirmed by radio.  UserError where nobody is on duty."""
-    if sum(map(bool, (action.unit_id, action.crew, action.everyone))) != 1:
-        raise UserError("say one of: a unit, a crew, everyone")
+    if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
+        raise UserError("say one of: a unit, a crew that has members, everyone")
     if action.check_in_id and _is_taken(state, action.check_in_id):
         raise UserError(f"a check-in needs an id of its own, not {action.check_in_id!r}")
     found = [unit for unit in state.units.values() if _is_addressed(unit, action)]
     if not found:
-        whom = action.unit_id or action.crew or "everyone"
+        whom = action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
         raise UserError(f"nobody of {whom} is on duty in an open incident")
     for unit in found:
         _confirm(state, unit, ParConfirmation(state.t_ns, "radio", by, action.check_in_id))
@@ -182,6 +182,8 @@ def _is_addressed(unit: UnitState, action: CheckIn) -> bool:
         return False
     if action.unit_id:
         return action.unit_id == unit.unit_id
+    if action.person_ids:
+        return unit.person.person_id in action.person_ids
     return action.everyone or action.crew == unit.person.crew
 
 

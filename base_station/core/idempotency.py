@@ -27,12 +27,13 @@ def idempotent_action_id(by: str, key: str, asked: bytes, own: str) -> str:
     """For an action: with the same key, the same person asks for the same thing again.  ``own``:
     32 hexadecimal digits, other ones for every action, however old a key is that comes again.
     """
-    return f"{_digest(f'{by} {key}'.encode())}.{_digest(asked)}.{own}"
+    return f"{_digest(f'{by} {key}'.encode())}.{_keyed_digest(by, key, asked)}.{own}"
 
 
 def row_id(by: str, key: str, asked: bytes) -> str:
     """For what is added to a table and is no action: its first ``KEY_DIGITS`` tell the key."""
-    return _digest(f"{by} {key}".encode())[:KEY_DIGITS] + _digest(asked)[:KEY_DIGITS]
+    of_key = _digest(f"{by} {key}".encode())
+    return of_key[:KEY_DIGITS] + _keyed_digest(by, key, asked)[:KEY_DIGITS]
 
 
 def audit_entry_prefixes(by: str, key: str) -> tuple[str, str]:
@@ -90,6 +91,13 @@ def _key_of(action_id: str) -> str:
     """Empty: the action came without a key."""
     telling = _ACTION_ID.fullmatch(action_id)
     return "" if telling is None else telling[1]
+
+
+def _keyed_digest(by: str, key: str, asked: bytes) -> str:
+    """Of what was asked, which may be a name, and stands in the log: nobody who does not know the
+    key finds it by trying names.
+    """
+    return _digest(f"{by} {key} ".encode() + asked)
 
 
 def _digest(said: bytes) -> str:

@@ -20,6 +20,7 @@ from base_station.core.events import (
 from base_station.core.pipeline import StationPipeline
 from base_station.engine.ports import LiveSink, Trails
 from base_station.engine.trail_encoder import TrailEncoder
+from base_station.storage.db.known_people import PersonLookup
 from base_station.views.station import (
     StationFacts,
     alarm_view,
@@ -29,7 +30,7 @@ from base_station.views.station import (
     pin_views,
     snapshot,
 )
-from base_station.views.units import PhotoUrls, unit_views
+from base_station.views.units import unit_views
 from base_station.views.wire import Delta, ReplayView, Snapshot
 from shared.clock import NS_PER_MS
 from shared.messages import AlarmChange, FusedPosition
@@ -40,9 +41,9 @@ TRAILS_PER_DELTA = 8  # trails whose past was filled in are told whole: so many 
 class ConsolePublisher:
     """Publisher of one pipeline, with the changes that consoles have not been sent."""
 
-    def __init__(self, pipeline: StationPipeline, sink: LiveSink, photo_urls: PhotoUrls) -> None:
+    def __init__(self, pipeline: StationPipeline, sink: LiveSink, people: PersonLookup) -> None:
         self._sink = sink
-        self._photo_urls = photo_urls
+        self._people = people
         self._seq = 0
         self.facts = StationFacts()  # of the station's surroundings, as last measured
         self.use_pipeline(pipeline)
@@ -103,16 +104,16 @@ class ConsolePublisher:
         delta = Delta(
             seq=self._seq,
             now_ms=state.t_ns // NS_PER_MS,
-            units=unit_views(state, map(state.units.__getitem__, self._units), self._photo_urls),
-            alarms=tuple(map(alarm_view, self._alarms)),
+            units=unit_views(state, map(state.units.__getitem__, self._units), self._people),
+            alarms=tuple(alarm_view(alarm, self._people) for alarm in self._alarms),
             commands=tuple(
-                command_view(state.commands[command_id])
+                command_view(state.commands[command_id], self._people)
                 for command_id in self._commands
                 if command_id in state.commands
             ),
             trails=self._backfilled_trails(),
-            pins=pin_views(state) if self._pins_changed else None,
-            beacons=beacon_views(state) if self._pins_changed else None,
+            pins=pin_views(state, self._people) if self._pins_changed else None,
+            beacons=beacon_views(state, self._people) if self._pins_changed else None,
             health=health_view(state, self.facts) if health else None,
             replay=replay,
         )
@@ -158,7 +159,7 @@ class ConsolePublisher:
 
     def _new_snapshot(self, replay: ReplayView | None) -> tuple[Snapshot, Trails]:
         state = self._pipeline.state
-        shown = snapshot(state, self._seq, self.facts, self._photo_urls, replay)
+        shown = snapshot(state, self._seq, self.facts, self._people, replay)
         return shown, self._trails.all(state.units.values())
 
     def _frame_now(self) -> tuple[object, ...]:

@@ -95,7 +95,7 @@ class StationEngine:
         self._ports = ports
         self._stamper = Stamper(STATION_ID, ports.boot_id, ports.clock)
         self._health = HealthMonitor()
-        self._publisher = ConsolePublisher(pipeline, ports.live, ports.photo_urls)
+        self._publisher = ConsolePublisher(pipeline, ports.live, ports.people)
         self._projector = Projector()
         self._write_ahead = WriteAhead(
             pipeline, ports.log, self._publisher, self._projector, self._health

@@ -19,10 +19,10 @@ from base_station.core.events import Refused
 from base_station.core.state import StationState
 from base_station.core.state.command import Order
 from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.db.known_people import PersonLookup
 from base_station.storage.projection import ProjectionSink
 from base_station.unit_sync.backfill import Report
 from base_station.views.station import StationFacts
-from base_station.views.units import PhotoUrls
 from base_station.views.wire import Delta, Snapshot
 from shared.clock import Clock
 from shared.messages.station import Action
@@ -145,7 +145,7 @@ class EnginePorts:
     live: LiveSink
     projection: ProjectionSink
     checkpoints: Checkpoints
-    photo_urls: PhotoUrls
+    people: PersonLookup  # who the person ids stand for
     facts: Callable[[], StationFacts]  # asked once a second; messages a second are filled in
     # Hears once a second what is there of each linked unit, and whether it may not be on the disk.
     report: Callable[[Report, bool], None]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 from base_station.exporters.interface import IncidentTracks, WornTrack
+from base_station.storage.db.known_people import PersonLookup, shown_wearer
 from base_station.storage.db.models import Assignment, Incident
 from base_station.storage.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.storage.db.roster import Roster
@@ -26,48 +28,54 @@ def incident_tracks(
         worn
         for unit_id, points in by_unit.items()
         for worn in _split(
-            unit_id,
-            points,
-            [one for one in assignments if one.unit_id == unit_id],
+            roster.known, unit_id, points, [one for one in assignments if one.unit_id == unit_id]
         )
     )
     return IncidentTracks(
         incident_id=incident.incident_id,
-        name=incident.name,
+        name=roster.shown(incident.name),
         anchor=records.anchor(window.until_ns),
         tracks=tracks,
     )
 
 
 def _split(
-    unit_id: str, points: Sequence[TrackSample], assignments: Sequence[Assignment]
+    people: PersonLookup,
+    unit_id: str,
+    points: Sequence[TrackSample],
+    assignments: Sequence[Assignment],
 ) -> Iterable[WornTrack]:
     """Consecutive points with the same wearer make one track."""
     run: list[TrackSample] = []
-    wearer: Assignment | None = None
+    wearer = _Wearer()
     for point in points:
-        now = _wearer_at(point.t_ns, assignments)
-        if run and _who(now) != _who(wearer):
-            yield _worn(unit_id, wearer, run)
+        now = _wearer(people, _assignment_at(point.t_ns, assignments))
+        if run and now != wearer:
+            yield WornTrack(unit_id, wearer.name, wearer.crew, tuple(run))
             run = []
         wearer = now
         run.append(point)
     if run:
-        yield _worn(unit_id, wearer, run)
+        yield WornTrack(unit_id, wearer.name, wearer.crew, tuple(run))
 
 
-def _who(wearer: Assignment | None) -> tuple[str, str, str] | None:
+class _Wearer(NamedTuple):
     """A person who is assigned anew, as with a new photo, is the same one."""
-    return None if wearer is None else (wearer.person_id, wearer.person_name, wearer.crew)
+
+    person_id: str = ""  # empty: nobody
+    name: str = ""
+    crew: str = ""
 
 
-def _wearer_at(t_ns: int, assignments: Sequence[Assignment]) -> Assignment | None:
+def _wearer(people: PersonLookup, worn: Assignment | None) -> _Wearer:
+    if worn is None:
+        return _Wearer()
+    shown = shown_wearer(worn, people)
+    return _Wearer(worn.person_id, shown.name, shown.crew)
+
+
+def _assignment_at(t_ns: int, assignments: Sequence[Assignment]) -> Assignment | None:
     for one in reversed(assignments):
         if one.from_ns <= t_ns and (one.until_ns is None or t_ns < one.until_ns):
             return one
     return None
-
-
-def _worn(unit_id: str, wearer: Assignment | None, run: Sequence[TrackSample]) -> WornTrack:
-    name, crew = ("", "") if wearer is None else (wearer.person_name, wearer.crew)
-    return WornTrack(unit_id, name, crew, tuple(run))

@@ -18,16 +18,16 @@ from pathlib import Path
 from threading import Lock
 from typing import Protocol
 
-import msgspec
-
 from base_station.core.erasure.erasure import (
     CaptureClocks,
     Erasure,
     Record,
+    actions_of,
     erasure_of_incident,
     erasure_of_person,
     first_erased_ns,
 )
+from base_station.core.erasure.names_in_older_logs import has_names
 from base_station.core.erasure.redaction import Redactor
 from base_station.core.events import Received, event_of
 from base_station.engine.ports import ActionResult
@@ -150,9 +150,11 @@ class ErasureService:
         pulls: RecordingTransfers,
         act: Act = lambda _by, _action: None,
         mended_first: RepairFirst = lambda _path, _damage: False,
+        forget_name: Callable[[str], None] = lambda _person_id: None,
     ) -> None:
         """``act`` has the running station forget what it holds in memory.  ``mended_first`` tells
         whether what is lost of a segment is about to be fetched from the other station.
+        ``forget_name`` has it show a person's name no more.
         """
         self._log = log
         self._store = store
@@ -162,6 +164,7 @@ class ErasureService:
         self._pulls = pulls
         self._act = act
         self._mended_first = mended_first
+        self._forget_name = forget_name
         self._begun = PendingErasure(DataFolder(log.folder.parent).begun)
 
     def person(
@@ -175,14 +178,15 @@ class ErasureService:
         gone but for the entry in the audit.
         """
         tally = tally or ErasureProgress()
-        erasure = self._erasure_of(person_id)
-        if not tally.again:
-            _require_known(erasure)
+        erasure, is_known = self._erasure_of(person_id)
+        if not (tally.again or is_known):
+            raise _unknown(person_id)
         return self._forget(by, erasure, f"person {person_id}", on_progress, tally)
 
     def require_person(self, person_id: str) -> None:
         """UserError where nobody has ever heard of that person."""
-        _require_known(self._erasure_of(person_id))
+        if not self._erasure_of(person_id)[1]:
+            raise _unknown(person_id)
 
     def incident(
         self,
@@ -200,12 +204,16 @@ class ErasureService:
             by, erasure, f"incident {incident_id}", on_progress, tally or ErasureProgress()
         )
 
-    def _erasure_of(self, person_id: str) -> Erasure:
+    def _erasure_of(self, person_id: str) -> tuple[Erasure, bool]:
+        """And whether anything knows the person.  Names matter where a log has any."""
         with self._store.read() as session:
             names = known_names(session, person_id)
-        found = erasure_of_person(self._actions(), person_id, "", self._clock.utc_ns())
-        everything = sorted({*names, *found.names}, key=lambda one: (-len(one), one))
-        return msgspec.structs.replace(found, names=tuple(everything))
+        actions = self._actions()
+        set_aside = (record for path in self._set_aside() for record in _actions_in(path))
+        has_older = has_names(one for _, one in actions_of((*actions, *set_aside)))
+        now_ns = self._clock.utc_ns()
+        found = erasure_of_person(actions, person_id, names if has_older else (), now_ns)
+        return found, bool(found.wearings or names)
 
     def _forget(
         self, by: str, erasure: Erasure, what: str, on_progress: Progress, tally: ErasureProgress
@@ -227,6 +235,8 @@ class ErasureService:
 
     def _forget_in_memory(self, by: str, erasure: Erasure) -> None:
         """Done when this returns: what the station saved before that would bring them back."""
+        if erasure.person_id:
+            self._forget_name(erasure.person_id)
         acted = [self._act(by, ForgetWearers(unit_id)) for unit_id in sorted(erasure.unit_ids)]
         try:
             for one in acted:
@@ -312,9 +322,8 @@ class ErasureService:
         return clocks
 
 
-def _require_known(erasure: Erasure) -> None:
-    if not (erasure.wearings or erasure.names):
-        raise UserError(f"neither the roster nor the log knows a person {erasure.person_id}")
+def _unknown(person_id: str) -> UserError:
+    return UserError(f"neither the roster nor the log knows a person {person_id}")
 
 
 def _actions_in(path: Path) -> Iterator[Record]:

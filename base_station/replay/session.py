@@ -14,7 +14,7 @@ from base_station.engine.ports import LiveSink, Trails
 from base_station.replay.playback import Archive, Playback
 from base_station.replay.unrecorded import RecordGap
 from base_station.replay.version_check import DIFFERS, VersionCheck
-from base_station.views.units import PhotoUrls
+from base_station.storage.db.known_people import PersonLookup
 from base_station.views.wire import GapView, ReplayView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
 from shared.errors import UserError
@@ -56,7 +56,7 @@ class ReplaySession:
         window: ReplayWindow,
         speed: float,
         sink: LiveSink,
-        photo_urls: PhotoUrls,
+        people: PersonLookup,
         clock: Clock,
     ) -> None:
         """It plays from the window's beginning.  Raises UserError for an impossible speed.
@@ -71,7 +71,7 @@ class ReplaySession:
         self._trouble = LogOnChange(_log, "whether the past was changed cannot be seen")
         self._playback: Playback
         self._version_check: VersionCheck | None = None  # until the first picture is shown
-        self._publisher = ConsolePublisher(archive.make_pipeline(None), sink, photo_urls)
+        self._publisher = ConsolePublisher(archive.make_pipeline(None), sink, people)
         self._looked_ns = self._whole_ns = clock.monotonic_ns()
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._lock = threading.Lock()  # guards what follows

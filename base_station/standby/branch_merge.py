@@ -27,13 +27,14 @@ from shared.channels import OPERATOR, Direction, backfilled_key, parse_key
 from shared.codec import decode
 from shared.errors import UnknownChannelError, WireError
 from shared.messages import STATION_ID, OperatorAction
-from shared.messages.station import DoneApart, ReportProblem
+from shared.messages.station import Assign, DoneApart, ReportProblem
 
 logger = logging.getLogger(__name__)
 
 _SETTLE_S = 0.05
 _BATCH = 1000  # events
 _MOST_LETTERS = 2000  # a note has 500
+_NAMES = ("person_name", "crew", "role")  # of a person in a log of an earlier version
 
 
 class PartServer(RpcServer):
@@ -173,7 +174,9 @@ def _persons_action(payload: bytes) -> OperatorAction | None:
 def _in_words(done: OperatorAction) -> str:
     """What was given with it: a note whole, of a drawing its beginning."""
     action = done.action
-    words = (_in_word(name, getattr(action, name)) for name in action.__struct_fields__)
+    left_out = _NAMES if isinstance(action, Assign) else ()
+    fields = (name for name in action.__struct_fields__ if name not in left_out)
+    words = (_in_word(name, getattr(action, name)) for name in fields)
     text = f"{type(action).__name__} {', '.join(filter(None, words))}"
     return text if len(text) <= _MOST_LETTERS else f"{text[:_MOST_LETTERS]}…"
 

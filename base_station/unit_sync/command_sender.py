@@ -4,19 +4,25 @@ The drive says once a second, and at once when there is a new one, which command
 answered (``report``); a thread of this module puts them on the bus.  The station hears itself
 there like anybody else, and so the log has every time that a command was sent.  Nothing is sent
 towards a unit that is away: it is told as soon as it is back.
+
+Names are put in on the way to the unit: the log has none.
 """
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+import msgspec
 
 from base_station.core.state.command import Order
 from shared.bus import Bus
 from shared.channels import COMMAND
 from shared.clock import NS_PER_S, Clock
-from shared.codec import encode
+from shared.codec import decode, encode
 from shared.envelope import Stamper
+from shared.errors import WireError
 from shared.log_on_change import LogOnChange
 from shared.messages import Command
 from shared.worker import UNTIL_WOKEN, Worker
@@ -25,6 +31,25 @@ logger = logging.getLogger(__name__)
 
 _AGAIN_AFTER_NS = 2 * NS_PER_S  # a reply takes a second on a bad link
 _LOOK_EVERY_S = 0.2  # whether a unit is back
+_COMMANDS = f"/{COMMAND.suffix}"
+
+Offer = Callable[[str, bytes], None]  # takes key and payload
+
+
+def without_text_of_commands(offer: Offer) -> Offer:
+    """What goes to units has names in it, which do not belong in the log: there the action has the
+    text that the command was sent for.
+    """
+
+    def take(key: str, payload: bytes) -> None:
+        if key.endswith(_COMMANDS):
+            with suppress(WireError):
+                sent = decode(COMMAND, payload)
+                if isinstance(sent, Command) and sent.text:
+                    payload = encode(msgspec.structs.replace(sent, text=""))
+        offer(key, payload)
+
+    return take
 
 
 class CommandSender:
@@ -33,8 +58,12 @@ class CommandSender:
     ``stamper`` is this module's own; ``clock`` gives station time.
     """
 
-    def __init__(self, bus: Bus, stamper: Stamper, clock: Clock) -> None:
+    def __init__(
+        self, bus: Bus, stamper: Stamper, clock: Clock, shown: Callable[[str], str] = str
+    ) -> None:
+        """``shown`` puts the names into a text."""
         self._bus = bus
+        self._shown = shown
         self._stamper = stamper
         self._clock = clock
         self._sent_ns: dict[tuple[str, str], int] = {}  # unit and command: when last
@@ -95,7 +124,7 @@ class CommandSender:
             kind=order.kind,
             issued_by=order.issued_by,
             expires_utc_ns=order.expires_ns,
-            text=order.text,
+            text=self._shown(order.text),
             position_rate_hz=order.position_rate_hz,
             ended_command_id=order.ended_command_id,
             mayday_boot_id=order.mayday_boot_id,

@@ -10,9 +10,10 @@ from base_station.core.state import Alarm, Incident, StationState
 from base_station.core.state.command import Delivery, SentCommand
 from base_station.core.state.pin import WAITING, Pin
 from base_station.core.units.unkept_messages import unkept_problem
+from base_station.storage.db.known_people import PersonLookup, shown_text
 from base_station.storage.db.models import Alarm as StoredAlarm
 from base_station.views.answer import to_ms, to_ms_or_none
-from base_station.views.units import PhotoUrls, unit_views
+from base_station.views.units import unit_views
 from base_station.views.wire import (
     AlarmView,
     AnchorView,
@@ -48,7 +49,7 @@ class StationFacts(msgspec.Struct, frozen=True):
     recordings: tuple[RecordingView, ...] = ()
 
 
-def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm) -> AlarmView:
+def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm, people: PersonLookup) -> AlarmView:
     changed_ns = alarm.header.t_utc_ns if isinstance(alarm, AlarmChange) else alarm.changed_ns
     return AlarmView(
         alarm_id=alarm.alarm_id,
@@ -57,31 +58,31 @@ def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm) -> AlarmView:
         priority=alarm.priority,
         state=alarm.state if isinstance(alarm, StoredAlarm) else alarm.state.name.lower(),
         level=alarm.level,
-        text=alarm.text,
-        by=alarm.by,
+        text=shown_text(alarm.text, people),
+        by=shown_text(alarm.by, people),
         raised_ms=to_ms(alarm.raised_ns),
         last_raised_ms=to_ms(alarm.last_raised_ns),
         changed_ms=to_ms(changed_ns),
     )
 
 
-def command_view(command: SentCommand) -> CommandView:
+def command_view(command: SentCommand, people: PersonLookup) -> CommandView:
     return CommandView(
         command_id=command.command_id,
         kind=command.kind.name.lower(),
-        text=command.text,
+        text=shown_text(command.text, people),
         issued_by=command.issued_by,
         issued_ms=to_ms(command.issued_ns),
         expires_ms=to_ms(command.expires_ns),
         asks_wearer=command.asks_wearer,
         notifies_wearer=command.notifies_wearer,
         open=command.is_open,
-        units=tuple(_delivery_view(command, one) for one in command.deliveries.values()),
+        units=tuple(_delivery_view(command, one, people) for one in command.deliveries.values()),
         incident_id=command.incident_id,
     )
 
 
-def _delivery_view(command: SentCommand, delivery: Delivery) -> DeliveryView:
+def _delivery_view(command: SentCommand, delivery: Delivery, people: PersonLookup) -> DeliveryView:
     return DeliveryView(
         unit_id=delivery.unit_id,
         state=command.state_of(delivery),
@@ -89,17 +90,17 @@ def _delivery_view(command: SentCommand, delivery: Delivery) -> DeliveryView:
         received_ms=to_ms_or_none(delivery.received_ns),
         notified_ms=to_ms_or_none(delivery.notified_ns),
         acknowledged_ms=to_ms_or_none(delivery.acknowledged_ns),
-        acknowledged_by=delivery.acknowledged_by,
+        acknowledged_by=shown_text(delivery.acknowledged_by, people),
         reason=delivery.reason,
         acknowledged_via=delivery.acknowledged_via,
         can_be_notified=delivery.can_be_notified,
     )
 
 
-def incident_view(incident: Incident) -> IncidentView:
+def incident_view(incident: Incident, people: PersonLookup) -> IncidentView:
     return IncidentView(
         incident_id=incident.incident_id,
-        name=incident.name,
+        name=shown_text(incident.name, people),
         opened_ms=to_ms(incident.opened_ns),
         closed_ms=to_ms_or_none(incident.closed_ns),
         par_interval_s=incident.par_interval_s,
@@ -108,12 +109,12 @@ def incident_view(incident: Incident) -> IncidentView:
     )
 
 
-def pin_views(state: StationState) -> tuple[PinView, ...]:
+def pin_views(state: StationState, people: PersonLookup) -> tuple[PinView, ...]:
     """All pins, in the order of setting."""
-    return tuple(_pin_view(state, pin) for pin in state.pins.values())
+    return tuple(_pin_view(state, pin, people) for pin in state.pins.values())
 
 
-def _pin_view(state: StationState, pin: Pin) -> PinView:
+def _pin_view(state: StationState, pin: Pin, people: PersonLookup) -> PinView:
     verdict = state.pin_verdicts.get(pin.pin_id, WAITING)
     at = location_of(state, pin)
     return PinView(
@@ -128,7 +129,7 @@ def _pin_view(state: StationState, pin: Pin) -> PinView:
         std_m=pin.std_m,
         heading_rad=pin.heading_rad,
         heading_std_rad=pin.heading_std_rad,
-        note=pin.note,
+        note=shown_text(pin.note, people),
         by=pin.by,
         set_ms=to_ms(pin.set_ns),
         state=verdict.state,
@@ -138,11 +139,11 @@ def _pin_view(state: StationState, pin: Pin) -> PinView:
     )
 
 
-def beacon_views(state: StationState) -> tuple[BeaconView, ...]:
+def beacon_views(state: StationState, people: PersonLookup) -> tuple[BeaconView, ...]:
     return tuple(
         BeaconView(
             beacon_id=beacon.beacon_id,
-            label=beacon.label,
+            label=shown_text(beacon.label, people),
             north_m=beacon.north_m,
             east_m=beacon.east_m,
             floor=beacon.floor,
@@ -190,7 +191,7 @@ def snapshot(
     state: StationState,
     seq: int,
     facts: StationFacts,
-    photo_urls: PhotoUrls,
+    people: PersonLookup,
     replay: ReplayView | None = None,
 ) -> Snapshot:
     """Everything that a console shows but trails."""
@@ -199,12 +200,12 @@ def snapshot(
     return Snapshot(
         seq=seq,
         now_ms=to_ms(state.t_ns),
-        incident=incident_view(state.incident) if state.incident else None,
-        units=unit_views(state, state.units.values(), photo_urls),
-        alarms=tuple(map(alarm_view, shown)),
-        commands=tuple(map(command_view, state.commands.values())),
-        pins=pin_views(state),
-        beacons=beacon_views(state),
+        incident=incident_view(state.incident, people) if state.incident else None,
+        units=unit_views(state, state.units.values(), people),
+        alarms=tuple(alarm_view(alarm, people) for alarm in shown),
+        commands=tuple(command_view(command, people) for command in state.commands.values()),
+        pins=pin_views(state, people),
+        beacons=beacon_views(state, people),
         plan=msgspec.Raw(state.plan.geojson) if state.plan else None,
         anchor=anchor_view(state.anchor) if state.anchor else None,
         health=health_view(state, facts),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from base_station.core.state import Alarm, Person, StationState, UnitState
@@ -11,6 +11,7 @@ from base_station.core.state.duty import Duty
 from base_station.core.trust.trust import conflicts_of, trust_of
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.plan import Ring
+from base_station.storage.db.known_people import KnownPerson, PersonLookup, shown_text
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.wire import (
     ClockView,
@@ -36,8 +37,6 @@ from shared.messages import (
 )
 from shared.quality import Quality
 
-PhotoUrls = Callable[[str], str | None]  # person id -> where the console finds the photo
-
 _ACTIVITY_WORDS = tuple(activity.name.lower() for activity in Activity)  # by number
 _BATTERY_WORDS = tuple(state.name.lower() for state in BatteryState)
 _QUALITY_WORDS = tuple(quality.name.lower() for quality in Quality)
@@ -46,7 +45,7 @@ _READY = PreflightView("ok", "")
 
 
 def unit_views(
-    state: StationState, units: Iterable[UnitState], photo_urls: PhotoUrls
+    state: StationState, units: Iterable[UnitState], people: PersonLookup
 ) -> tuple[UnitView, ...]:
     open_alarms: dict[str, list[Alarm]] = {}
     for alarm in state.alarms.values():
@@ -58,7 +57,7 @@ def unit_views(
             _unit_view(
                 state,
                 unit,
-                photo_urls,
+                people,
                 open_alarms.get(unit.unit_id, ()),
                 conflicts.get(unit.unit_id, 0),
             )
@@ -70,7 +69,7 @@ def unit_views(
 def _unit_view(
     state: StationState,
     unit: UnitState,
-    photo_urls: PhotoUrls,
+    people: PersonLookup,
     open_alarms: Sequence[Alarm],
     conflicts: int,
 ) -> UnitView:
@@ -79,9 +78,9 @@ def _unit_view(
     levels = {alarm.rule: alarm.level for alarm in open_alarms}
     return UnitView(  # by place: there are thousands a second
         unit.unit_id,
-        unit.label,
+        shown_text(unit.label, people),
         unit.registered,
-        person_view(unit.person, photo_urls) if unit.person else None,
+        person_view(unit.person, people) if unit.person else None,
         unit.link,
         to_ms_or_none(unit.heard_ns),
         _status_view(unit, status) if status else None,
@@ -91,7 +90,7 @@ def _unit_view(
         round(unit.heat_dose, 2),
         _position_view(state, unit.fused, unit.reach) if unit.fused else None,
         to_ms_or_none(unit.inside_since_ns),
-        _duty_view(state, unit, unit.duty) if unit.duty else None,
+        _duty_view(state, unit, unit.duty, people) if unit.duty else None,
         tuple([alarm.alarm_id for alarm in open_alarms]),
         TrustView(trust.level, trust.reason) if trust.reason else _GREEN,
         _clock_view(unit.heartbeat),
@@ -123,22 +122,25 @@ def _clock_view(heartbeat: Heartbeat | None) -> ClockView | None:
     return ClockView(1e3 * heartbeat.clock_ahead_s, 1e3 * heartbeat.clock_std_s)
 
 
-def person_view(person: Person, photo_urls: PhotoUrls) -> PersonView:
+def person_view(person: Person, people: PersonLookup) -> PersonView:
+    """The name of now; a log of an earlier version has that of then."""
+    known = people(person.person_id)
+    shown: KnownPerson | Person = person if person.name else known
     return PersonView(
         person_id=person.person_id,
-        name=person.name,
-        crew=person.crew,
-        role=person.role,
-        photo_url=photo_urls(person.person_id),
+        name=shown.name,
+        crew=shown.crew,
+        role=shown.role,
+        photo_url=known.photo_url,
     )
 
 
-def _duty_view(state: StationState, unit: UnitState, duty: Duty) -> DutyView:
+def _duty_view(state: StationState, unit: UnitState, duty: Duty, people: PersonLookup) -> DutyView:
     last = duty.confirmation
     opened_ns = 0 if state.incident is None else state.incident.opened_ns
     return DutyView(
         checked_in_ms=None if last is None else to_ms(last.t_ns),
-        checked_in_by="" if last is None else last.by,
+        checked_in_by="" if last is None else shown_text(last.by, people),
         due_ms=to_ms(duty.due_ns),
         asked_ms=to_ms_or_none(duty.open_request_ns),
         work_since_ms=to_ms_or_none(duty.work_since_ns),

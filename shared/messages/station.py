@@ -63,13 +63,13 @@ class CloseIncident(msgspec.Struct, frozen=True):
 
 
 class Assign(msgspec.Struct, frozen=True):
-    """Who wears which unit from now on."""
+    """Who wears which unit from now on; name, crew and role only in logs of earlier versions."""
 
     unit_id: str
     person_id: str
-    person_name: str
-    crew: str
-    role: str
+    person_name: str = ""
+    crew: str = ""
+    role: str = ""
 
 
 class Unassign(msgspec.Struct, frozen=True):
@@ -125,7 +125,7 @@ class ReportProblem(msgspec.Struct, frozen=True):
 
 
 class SendCommand(msgspec.Struct, frozen=True):
-    """To one unit, to a crew or to everyone: one of the three is said."""
+    """To a unit, to people, or to everyone; in logs of earlier versions, to a crew by its name."""
 
     command_id: str
     kind: CommandKind
@@ -135,6 +135,7 @@ class SendCommand(msgspec.Struct, frozen=True):
     text: str
     position_rate_hz: float  # for SET_POSITION_RATE
     lasts_s: float  # until it expires
+    person_ids: tuple[str, ...] = ()
 
 
 class ConfirmCommand(msgspec.Struct, frozen=True):
@@ -145,12 +146,13 @@ class ConfirmCommand(msgspec.Struct, frozen=True):
 
 
 class CheckIn(msgspec.Struct, frozen=True):
-    """PAR by radio, of a member, a crew or everyone: one of the three."""
+    """PAR by radio, of a unit's wearer, of people or of everyone; a crew as in ``SendCommand``."""
 
     unit_id: str
     crew: str
     everyone: bool
     check_in_id: str = ""  # by which it can be undone; empty: of an old log
+    person_ids: tuple[str, ...] = ()
 
 
 class UndoConfirmation(msgspec.Struct, frozen=True):

@@ -18,6 +18,7 @@ from base_station.exporters.gpx import GPX
 from base_station.exporters.incident import _split
 from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack
 from base_station.exporters.kml import KML
+from base_station.storage.db.known_people import FORGOTTEN, KnownPerson, person_lookup
 from base_station.storage.db.models import Assignment
 from base_station.storage.db.records import TrackSample
 from shared.clock import NS_PER_S
@@ -29,6 +30,7 @@ GPX_NAMESPACE = "http://www.topografix.com/GPX/1/1"
 T0_NS = 1_700_000_000 * NS_PER_S
 HOSTILE = 'Ada "<&>" ;,\n=1+1 \u00e4\U0001f692 \x0b\x00\ufffe]]>'  # the last of old logs
 
+NO_ROSTER = person_lookup({})
 anyone = pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda exporter: exporter.name)
 
 
@@ -135,14 +137,31 @@ def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
 
     points = incident(points=8).tracks[0].points
     hands = [worn("Ada", 1, 3), worn("Bea", 3, 5), worn("Ada", 6, None)]
-    tracks = [(one.person_name, len(one.points)) for one in _split("FF-01", points, hands)]
+    tracks = [
+        (one.person_name, len(one.points)) for one in _split(NO_ROSTER, "FF-01", points, hands)
+    ]
     assert tracks == [("", 1), ("Ada", 2), ("Bea", 2), ("", 1), ("Ada", 2)]
     # Assigned anew, as with another name: from the same instant on the later one counts.
     again = [worn("Ada", 0, None), worn("Ada B.", 0, None)]
-    assert [one.person_name for one in _split("FF-01", points, again)] == ["Ada B."]
+    assert [one.person_name for one in _split(NO_ROSTER, "FF-01", points, again)] == ["Ada B."]
     # With a new photo it is the same person who goes on.
     photo = [worn("Ada", 0, 3), worn("Ada", 3, None)]
-    assert [len(one.points) for one in _split("FF-01", points, photo)] == [8]
+    assert [len(one.points) for one in _split(NO_ROSTER, "FF-01", points, photo)] == [8]
+
+
+def test_tracks_have_the_names_that_the_roster_has_for_ids() -> None:
+    def worn(person_id: str, from_s: int, until_s: int) -> Assignment:
+        return Assignment(
+            unit_id="FF-01", person_id=person_id, person_name="", crew="", role="",
+            from_ns=T0_NS + from_s * NS_PER_S, until_ns=T0_NS + until_s * NS_PER_S,
+        )  # fmt: skip
+
+    people = person_lookup({"p1": KnownPerson("Ada", "red"), "p2": FORGOTTEN})
+    worn_by = [worn("p1", 0, 3), worn("p2", 3, 6), worn("p3", 6, 9)]
+    tracks = list(_split(people, "FF-01", incident(points=8).tracks[0].points, worn_by))
+    assert [(one.person_name, one.crew) for one in tracks] == [
+        ("Ada", "red"), ("(forgotten)", ""), ("person p3", ""),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("gap_s", "north_m", "pieces"), [(60, 30, 2), (19, 30, 1), (60, 0.5, 1)])

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.units import unit_views
 from shared.clock import NS_PER_S
 from shared.messages import AlarmState, Header, Position
@@ -57,7 +58,7 @@ def alarms(script: Script) -> list[AlarmState]:
 
 def is_shown_as_cloned(script: Script) -> bool:
     state = script.pipeline.state
-    return unit_views(state, [state.units[U]], lambda _: None)[0].cloned
+    return unit_views(state, [state.units[U]], person_lookup({}))[0].cloned
 
 
 @pytest.fixture

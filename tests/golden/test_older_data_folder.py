@@ -1,19 +1,26 @@
-"""A data folder of an older version: it opens, replays to the same decisions, and is queried."""
+"""A data folder of an older version: it opens, replays to the same decisions, is queried, and a
+person in it is forgotten.
+"""
 
 from __future__ import annotations
 
 import tarfile
 from pathlib import Path
 
-from base_station.core.events import is_decision
+from base_station.app import folder_commands
+from base_station.core.events import event_of, is_decision
+from base_station.core.state import ERASED_TEXT
 from base_station.replay.playback import compare
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.known_people import person_lookup
 from base_station.storage.db.records import EVER, Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.store import Store
+from base_station.views.station import StationFacts, snapshot
 from shared.clock import SystemClock
 from shared.mcap_log import read_log
+from tests.rig.erasure_scenario import names_in, stored_in
 from tests.rig.live_station import make_pipeline
 
 ARCHIVE = Path(__file__).parent / "data_folder" / "folder.tar.xz"
@@ -41,3 +48,30 @@ def test_database_of_older_version_is_queried(tmp_path: Path) -> None:
         assert kept.has("i1")
         assert kept.report("i1")
         assert [user.username for user in Accounts(store, SystemClock()).users()] == ["chief"]
+
+
+def test_person_in_log_of_older_version_is_shown_by_name_and_forgotten(tmp_path: Path) -> None:
+    with tarfile.open(ARCHIVE) as archive:
+        archive.extractall(tmp_path, filter="data")
+    assert "Mayday from Ana Horn" in mayday_texts(tmp_path)
+    assert names_in(stored_in(tmp_path), "Ana Horn")
+
+    folder_commands.forget(tmp_path, "Ana Horn", lambda _: None, lambda _: None)
+
+    assert names_in(stored_in(tmp_path), "Ana Horn") == []
+    assert names_in(stored_in(tmp_path), "Bo Lind")
+    assert mayday_texts(tmp_path) == {ERASED_TEXT}
+    pipeline = make_pipeline()
+    for record in read_log(tmp_path / "log"):
+        pipeline.step(event_of(*record))
+    shown = snapshot(pipeline.state, 1, StationFacts(), person_lookup({}))
+    worn = {one.unit_id: one.person.name for one in shown.units if one.person}
+    assert worn == {"FF-02": "Bo Lind"}, "who is forgotten hands back the unit"
+    folder_commands.rebuild(tmp_path, lambda _: None)
+    assert names_in(stored_in(tmp_path), "Ana Horn") == []
+
+
+def mayday_texts(folder: Path) -> set[str]:
+    with Store(folder / "station.sqlite") as store:
+        roster, records = Roster(store, SystemClock()), Records(store, SystemClock())
+        return {roster.shown(one.text) for one in records.alarms(EVER) if one.rule == "mayday"}

@@ -13,6 +13,7 @@ from base_station.core.events import is_decision
 from base_station.core.pipeline import StationPipeline
 from base_station.fusion import FUSERS
 from base_station.replay.playback import Playback, compare
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.station import command_view
 from shared.channels import OPERATOR, Qos, channel_of
 from shared.codec import decode, encode
@@ -182,7 +183,10 @@ def test_a_replay_shows_of_each_command_what_was_shown_live(told: Script) -> Non
         again.now_s = (t_ns - told.records[0][0]) / 1e9
         again.record(key, payload)
     live, replayed = (
-        [command_view(command) for command in script.pipeline.state.commands.values()]
+        [
+            command_view(command, person_lookup({}))
+            for command in script.pipeline.state.commands.values()
+        ]
         for script in (told, again)
     )
     assert [view.command_id for view in live] == ["c1", "c2"]

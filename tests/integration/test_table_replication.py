@@ -545,7 +545,7 @@ def test_people_photos_audit_and_enrolments_come_over_the_bus(sides: tuple[HaMod
     look = partial(copying.look, Event())
     look()
     assert standby.roster.photo(person.person_id) == (b"jpeg", "hash")
-    assert standby.roster.photo_url(person.person_id) is not None
+    assert standby.roster.known(person.person_id).photo_url is not None
     assert {one.by for one in standby.records.audit_entries(EVER)} == {"ada", "bob"}
     assert forgotten == ["person p9"]
     assert standby.pki.registry().entries == active.pki.registry().entries

@@ -22,6 +22,7 @@ from base_station.engine.ports import ActionResult, EnginePorts, Record
 from base_station.fusion import FUSERS
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.known_people import person_lookup
 from base_station.storage.db.projection import SqlProjection
 from base_station.storage.db.records import Records
 from base_station.storage.db.store import Store
@@ -80,7 +81,7 @@ class CompressedStation:
                 live=hub,
                 projection=projection,
                 checkpoints=Checkpoints(data.checkpoints),
-                photo_urls=lambda _: None,
+                people=person_lookup({}),
                 facts=StationFacts,
                 report=lambda *_: None,
                 linked=frozenset,

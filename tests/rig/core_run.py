@@ -12,6 +12,7 @@ from importlib.machinery import ExtensionFileLoader
 
 def digest() -> str:
     """Of all decisions, of the state that is saved, and of what consoles are shown."""
+    from base_station.storage.db.known_people import person_lookup  # noqa: PLC0415
     from base_station.views.station import StationFacts, snapshot  # noqa: PLC0415
     from tests.golden import test_pins_replay, test_replay_equals_live  # noqa: PLC0415
 
@@ -24,7 +25,7 @@ def digest() -> str:
         for t_ns, key, payload in records:
             told.update(f"{t_ns} {key} ".encode() + payload)
     told.update(everything.pipeline.checkpoint())
-    shown = snapshot(everything.pipeline.state, 1, StationFacts(), lambda _: None, None)
+    shown = snapshot(everything.pipeline.state, 1, StationFacts(), person_lookup({}), None)
     told.update(repr((shown.units, shown.alarms, shown.commands)).encode())
     return told.hexdigest()
 

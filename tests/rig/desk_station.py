@@ -121,8 +121,8 @@ class DeskDrive:
 
     def picture(self) -> Snapshot:
         with self._lock:
-            state, photo_url = self._pipeline.state, self._roster.photo_url
-            return snapshot(state, self._seq, StationFacts(), photo_url)
+            state = self._pipeline.state
+            return snapshot(state, self._seq, StationFacts(), self._roster.known)
 
 
 def no_replays(_incident: Incident, _speed: float, _hub: Hub) -> ReplayPlayer:

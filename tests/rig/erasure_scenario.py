@@ -11,6 +11,7 @@ from PIL import Image
 from base_station.api.images import normalize_photo
 from base_station.app import folder_commands as station_app
 from base_station.core.events import Received, event_of
+from base_station.core.person_references import with_references
 from base_station.core.state import Alarm
 from base_station.storage.db.models import Person
 from base_station.storage.db.records import Records
@@ -25,6 +26,7 @@ from shared.messages import (
 )
 from shared.messages.pins import SetPin
 from shared.messages.station import (
+    Action,
     Assign,
     CloseIncident,
     OpenIncident,
@@ -39,6 +41,7 @@ from tests.rig.station_script import Script
 from tests.rig.waiting import until
 
 ANA, BO, CEM = "Anastazja Kovač", "Bo Lind", "Cem Öz"
+PEOPLE = {"p-77": ANA, "p-bo": BO, "p-cem": CEM}
 
 
 class Walker:
@@ -82,10 +85,14 @@ def some_photo() -> bytes:
 
 
 class Story:
-    """A station's folder after an incident in which Ana and then Bo wore one unit."""
+    """A station's folder after an incident in which Ana and then Bo wore one unit.
 
-    def __init__(self, folder: Path) -> None:
+    ``older``: with names in the log, as earlier versions wrote it.
+    """
+
+    def __init__(self, folder: Path, *, older: bool = True) -> None:
         self.folder = folder
+        self._older = older
         self.ana_said: list[bytes] = []
         self.photo = some_photo()
         with LiveStation(folder) as station:
@@ -93,34 +100,48 @@ class Story:
         station_app.rebuild(folder, lambda _: None)
         with Store(folder / "station.sqlite") as store:
             roster = Roster(store, SystemClock())
-            for person_id, name in (("p-77", ANA), ("p-bo", BO)):
+            for person_id, name in PEOPLE.items():
                 put_person(store, person_id, name)
+            roster.read_again()
             roster.set_photo("p-77", self.photo, "1234")
-            Records(store, SystemClock()).audit("chief", "AddedPerson", f"p-77 {ANA}")
+            Records(store, SystemClock()).audit(
+                "chief", "AddedPerson", f"p-77 {ANA}" if self._older else "p-77"
+            )
         self.before = list(read_log(folder / "log"))
         self._keep_copies()
 
     def _tell(self, station: LiveStation) -> None:
+        def act(action: Action) -> None:
+            station.act(self._recorded(action))
+
         for unit_id in ("FF-01", "FF-02"):
-            station.act(RegisterUnit(unit_id, unit_id))
-        station.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
-        station.act(Assign("FF-01", "p-77", ANA, "Engine 1", "Nozzle"))
-        station.act(Assign("FF-02", "p-cem", CEM, "Engine 1", "Search"))
-        station.act(OpenIncident("i1", "Mill Lane"))
-        station.act(SetStart("FF-01", 1.0, 2.0, 0.0, 0.1, 0.5, 0.1))
-        station.act(SetPin("pin-1", "FF-01", 0, 3.25, 4.5, 1.0, None, None, 0.3, f"{ANA} here"))
+            act(RegisterUnit(unit_id, unit_id))
+        act(SetAnchor(52.0, 4.0, 0.0, 0.0))
+        act(Assign("FF-01", "p-77", ANA, "Engine 1", "Nozzle"))
+        act(Assign("FF-02", "p-cem", CEM, "Engine 1", "Search"))
+        act(OpenIncident("i1", "Mill Lane"))
+        act(SetStart("FF-01", 1.0, 2.0, 0.0, 0.1, 0.5, 0.1))
+        act(SetPin("pin-1", "FF-01", 0, 3.25, 4.5, 1.0, None, None, 0.3, f"{ANA} here"))
         shared, cem = Walker(station, "FF-01"), Walker(station, "FF-02")
         shared.walk(40, 7.125)
         shared.press_mayday()
         alarm = next(iter(station.pipeline.state.alarms.values()))
-        station.act(ResolveAlarm(alarm.alarm_id, f"spoke with {ANA.upper()}"))
+        act(ResolveAlarm(alarm.alarm_id, f"spoke with {ANA.upper()}"))
         self.ana_said, shared.said = shared.said[:], []
-        station.act(Unassign("FF-01"))
-        station.act(Assign("FF-01", "p-bo", BO, "Engine 2", "Search"))
+        act(Unassign("FF-01"))
+        act(Assign("FF-01", "p-bo", BO, "Engine 2", "Search"))
         shared.walk(20, 9.0)
         cem.walk(40, 5.0)
-        station.act(CloseIncident("i1"))
-        station.act(Unassign("FF-01"))
+        act(CloseIncident("i1"))
+        act(Unassign("FF-01"))
+
+    def _recorded(self, action: Action) -> Action:
+        """The action as it goes into the log."""
+        if self._older:
+            return action
+        if isinstance(action, Assign):
+            return Assign(action.unit_id, action.person_id)
+        return with_references(action, {name: person_id for person_id, name in PEOPLE.items()})
 
     def _keep_copies(self) -> None:
         """A part of the log that was set aside, a torn segment and a unit's own recording."""

@@ -17,10 +17,11 @@ from base_station.engine.station_clock import SteadyClock
 from base_station.fusion import FUSERS
 from base_station.replay.playback import Archive
 from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.db.known_people import KnownPerson, person_lookup
 from base_station.storage.projection import Projection
 from base_station.storage.recorder import Recorder
 from base_station.unit_sync.backfill import Report
-from base_station.unit_sync.command_sender import CommandSender
+from base_station.unit_sync.command_sender import CommandSender, without_text_of_commands
 from base_station.views.station import StationFacts
 from base_station.views.wire import Delta, Snapshot
 from shared.bus_memory import MemoryRouter
@@ -74,7 +75,7 @@ def ports_of(feed: Feed, log: Log, screen: Screen, folder: Path, clock: Clock) -
         live=screen,
         projection=Store(),
         checkpoints=Checkpoints(folder),
-        photo_urls=lambda _: None,
+        people=person_lookup({}),
         facts=StationFacts,
         report=lambda *_: None,
         linked=frozenset,
@@ -101,7 +102,9 @@ class LiveStation:
         self.log = LogFeed(self.recorder.folder, self.recorder.flush)
         self.router = MemoryRouter()
         self.bus = self.router.attach_station()
-        self._subscription = self.bus.subscribe("muster/v1/**", self.feed.offer)
+        self._subscription = self.bus.subscribe(
+            "muster/v1/**", without_text_of_commands(self.feed.offer)
+        )
         self._links = LivenessMonitor(self.bus, lambda *_: None, clock)
         stamper = Stamper(STATION_ID, clock.utc_ns(), clock)
         self.downlink = CommandSender(self.bus, stamper, clock)
@@ -115,7 +118,7 @@ class LiveStation:
                 live=self.screen,
                 projection=self.store,
                 checkpoints=self.checkpoints,
-                photo_urls=lambda person_id: f"/photos/{person_id}",
+                people=lambda one: KnownPerson(f"person {one}", photo_url=f"/photos/{one}"),
                 facts=StationFacts,
                 report=self._note_report,
                 linked=lambda: self._links.linked,

@@ -11,6 +11,7 @@ from base_station.core.events import Output
 from base_station.core.pipeline import StationPipeline
 from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.ports import Trails
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.wire import BeaconView, Delta, PinView, Snapshot, TrailPoint, UnitView
 from shared.channels import POSITION, TICK, backfilled_key
 from shared.codec import encode
@@ -71,7 +72,7 @@ class Watched(Script):
     def __init__(self, pipeline: StationPipeline | None = None) -> None:
         super().__init__(pipeline)
         self.console = Console()
-        self.publisher = ConsolePublisher(self.pipeline, self.console, lambda _: None)
+        self.publisher = ConsolePublisher(self.pipeline, self.console, person_lookup({}))
         self.away: set[str] = set()
         self.journal: list[Position] = []
 

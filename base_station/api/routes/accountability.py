@@ -12,7 +12,7 @@ from base_station.api.authentication import Viewer
 from base_station.api.forms import ID, Form, Id, UnitId, UnitIdOrNone
 from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
-from base_station.api.routes.commands import CrewTarget, Target, UnitTarget
+from base_station.api.routes.commands import EveryoneTarget, Target, UnitTarget, members_of
 from base_station.api.services import Station
 from base_station.core.accountability import LONGEST_S, SHORTEST_S
 from base_station.views.wire import DutyView, IncidentView, PersonView
@@ -89,12 +89,12 @@ def usual_times(station: Station, _: Viewer) -> Times:
 
 
 @router.post("/check-ins", status_code=204)
-def check_in(new: NewCheckIn, perform: Perform) -> None:
+def check_in(new: NewCheckIn, station: Station, perform: Perform) -> None:
     """PAR by radio.  It resolves the alarm that the PAR is overdue, and no other alarm."""
     unit_id = new.target.unit_id if isinstance(new.target, UnitTarget) else ""
-    crew = new.target.crew if isinstance(new.target, CrewTarget) else ""
-    everyone = not unit_id and not crew
-    perform(CheckIn(unit_id, crew, everyone, new.check_in_id or uuid.uuid4().hex))
+    everyone = isinstance(new.target, EveryoneTarget)
+    check_in_id = new.check_in_id or uuid.uuid4().hex
+    perform(CheckIn(unit_id, "", everyone, check_in_id, members_of(new.target, station)))
 
 
 @router.post("/check-ins/{check_in_id}/undo", status_code=204)

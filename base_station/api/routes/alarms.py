@@ -56,7 +56,9 @@ def list_alarms(
     station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[AlarmView]:
     """Those raised in the window, newest first."""
-    return [alarm_view(alarm) for alarm in station.records.alarms(when, limit)]
+    return [
+        alarm_view(alarm, station.roster.known) for alarm in station.records.alarms(when, limit)
+    ]
 
 
 @router.get("/alarms/{alarm_id}")
@@ -64,11 +66,15 @@ def get_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> AlarmWit
     alarm = station.records.alarm(alarm_id)
     if alarm is None:
         raise Problem(404, _NO_ALARM)
+    shown = station.roster.shown
     changes = tuple(
-        AlarmHistoryEntry(to_ms(life.t_ns), life.state, life.level, life.text, life.by)
+        AlarmHistoryEntry(
+            to_ms(life.t_ns), life.state, life.level, shown(life.text), shown(life.by)
+        )
         for life in station.records.alarm_life(alarm_id)
     )
-    return AlarmWithLife(**msgspec.structs.asdict(alarm_view(alarm)), changes=changes)
+    view = alarm_view(alarm, station.roster.known)
+    return AlarmWithLife(**msgspec.structs.asdict(view), changes=changes)
 
 
 @router.post("/alarms/{alarm_id}/acknowledge", status_code=204)

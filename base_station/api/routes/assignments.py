@@ -40,17 +40,18 @@ def list_assignments(
     station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[AssignmentAnswer]:
     """Those that held at some time of the window, newest first."""
+    held = station.roster.newest_assignments(when.from_ns, when.until_ns, limit)
     return [
         AssignmentAnswer(
             unit_id=one.unit_id,
             person_id=one.person_id,
-            person_name=one.person_name,
-            crew=one.crew,
-            role=one.role,
+            person_name=wearer.name,
+            crew=wearer.crew,
+            role=wearer.role,
             from_ms=to_ms(one.from_ns),
             until_ms=to_ms_or_none(one.until_ns),
         )
-        for one in station.roster.newest_assignments(when.from_ns, when.until_ns, limit)
+        for one, wearer in zip(held, map(station.roster.wearer, held), strict=True)
     ]
 
 
@@ -60,7 +61,7 @@ def assign(new: NewAssignment, station: Station, perform: Perform) -> None:
     person = station.roster.person(new.person_id)
     if person is None:
         raise Problem(404, "There is no such person.")
-    perform(Assign(new.unit_id, person.person_id, person.name, person.crew, person.role))
+    perform(Assign(new.unit_id, person.person_id))
 
 
 @router.delete("/assignments/{unit_id}", status_code=204)

@@ -58,7 +58,7 @@ def list_audit(
             t_ms=to_ms(entry.t_ns),
             by=entry.by,
             action=entry.action,
-            detail=entry.detail,
+            detail=station.roster.shown(entry.detail),
         )
         for entry in station.records.audit_entries(when, limit)
     ]

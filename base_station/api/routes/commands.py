@@ -58,6 +58,11 @@ Target = Annotated[
 ]
 
 
+def members_of(target: object, station: Services) -> tuple[str, ...]:
+    """Ids of the people who are a crew now; empty where the target is no crew."""
+    return station.roster.crew(target.crew) if isinstance(target, CrewTarget) else ()
+
+
 class NewCommand(Form):
     kind: Kind
     target: Target
@@ -88,11 +93,12 @@ def send(new: NewCommand, station: Station, perform: Perform) -> CommandView:
         command_id=uuid.uuid4().hex,
         kind=CommandKind[new.kind.name],
         unit_id=new.target.unit_id if isinstance(new.target, UnitTarget) else "",
-        crew=new.target.crew if isinstance(new.target, CrewTarget) else "",
+        crew="",
         everyone=isinstance(new.target, EveryoneTarget),
         text=new.text,
         position_rate_hz=new.position_rate_hz if new.kind is Kind.SET_POSITION_RATE else 0.0,
         lasts_s=new.expires_s,
+        person_ids=members_of(new.target, station),
     )
     return _command_or_404(station, perform(action).created_id)
 

@@ -70,7 +70,7 @@ def _export(
     _, trails = trails_of(station, incident, kind)
     tracks = incident_tracks(station.records, station.roster, incident, trails)
     body = exporter.export(
-        msgspec.structs.replace(tracks, name=f"{incident.name}, {_IN_WORDS[kind]}")
+        msgspec.structs.replace(tracks, name=f"{tracks.name}, {_IN_WORDS[kind]}")
     )
     try:
         station.records.audit(

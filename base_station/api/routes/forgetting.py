@@ -75,9 +75,10 @@ def forget_incident(
     """Who was there and where; its name, its times and that there were alarms stay."""
     _desk(station)
     incident = incident_or_404(station, incident_id)
-    _require_name(confirmation, {incident.name})
+    name = station.roster.shown(incident.name)
+    _require_name(confirmation, {name})
     if incident.closed_ns is None:
-        raise Problem(409, f"The incident {incident.name} is open; close it first.")
+        raise Problem(409, f"The incident {name} is open; close it first.")
     return _progress(_accept(station, who.username, "incident", incident_id))
 
 

@@ -24,6 +24,7 @@ from base_station.api.services import Services, Station
 from base_station.core.alarms import ALARMS
 from base_station.storage.db import models
 from base_station.storage.db.records import FOREVER_NS, Window
+from base_station.storage.db.roster import Roster
 from base_station.views.answer import Answer, to_ms, to_ms_or_none
 from base_station.views.station import alarm_view
 from base_station.views.wire import AlarmView
@@ -90,7 +91,7 @@ def list_incidents(
     station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
 ) -> list[IncidentAnswer]:
     """Those opened in the window, newest first."""
-    return [_incident(incident) for incident in station.records.incidents(when, limit)]
+    return [_incident(one, station.roster) for one in station.records.incidents(when, limit)]
 
 
 @router.post("/incidents", status_code=201)
@@ -120,7 +121,7 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
 
 @router.get("/incidents/{incident_id}")
 def get_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> IncidentAnswer:
-    return _incident(incident_or_404(station, incident_id))
+    return _incident(incident_or_404(station, incident_id), station.roster)
 
 
 @router.post("/incidents/{incident_id}/close", status_code=204)
@@ -160,7 +161,7 @@ def incident_alarms(
     was_open = window_of(incident_or_404(station, incident_id))
     alarms = station.records.alarms(when.within(was_open), limit)
     lives = station.records.alarm_lives([alarm.alarm_id for alarm in alarms])
-    return [_past_alarm(alarm, lives[alarm.alarm_id], was_open) for alarm in alarms]
+    return [_past_alarm(alarm, lives[alarm.alarm_id], was_open, station.roster) for alarm in alarms]
 
 
 def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
@@ -169,20 +170,23 @@ def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
     incident = station.records.incident(incident_id)
     if incident is None:
         raise Problem(503, "The incident was opened, but the database has not taken it yet.")
-    return _incident(incident)
+    return _incident(incident, station.roster)
 
 
 def _past_alarm(
-    alarm: models.Alarm, life: Sequence[models.AlarmTransition], was_open: Window
+    alarm: models.Alarm,
+    life: Sequence[models.AlarmTransition],
+    was_open: Window,
+    roster: Roster,
 ) -> PastAlarm:
     levels = _LEVELS.get(alarm.rule, ())
     anew = (now for before, now in pairwise(life) if _is_raised_anew(before, now, levels))
     raisings = tuple(
-        Raising(to_ms(one.t_ns), one.text)
+        Raising(to_ms(one.t_ns), roster.shown(one.text))
         for one in (*life[:1], *anew)
         if one.t_ns < was_open.until_ns
     )
-    return PastAlarm(**msgspec.structs.asdict(alarm_view(alarm)), raisings=raisings)
+    return PastAlarm(**msgspec.structs.asdict(alarm_view(alarm, roster.known)), raisings=raisings)
 
 
 def _is_raised_anew(
@@ -194,10 +198,10 @@ def _is_raised_anew(
     return now.state == "raised" and not eased
 
 
-def _incident(incident: models.Incident) -> IncidentAnswer:
+def _incident(incident: models.Incident, roster: Roster) -> IncidentAnswer:
     return IncidentAnswer(
         incident_id=incident.incident_id,
-        name=incident.name,
+        name=roster.shown(incident.name),
         opened_ms=to_ms(incident.opened_ns),
         opened_by=incident.opened_by,
         closed_ms=to_ms_or_none(incident.closed_ns),

@@ -35,7 +35,7 @@ def _person(person: models.Person, station: Services) -> PersonView:
         name=person.name,
         crew=person.crew,
         role=person.role,
-        photo_url=station.roster.photo_url(person.person_id),
+        photo_url=station.roster.known(person.person_id).photo_url,
     )
 
 
@@ -48,7 +48,7 @@ def list_people(station: Station, _: Viewer) -> list[PersonView]:
 def add_person(form: PersonForm, station: Station, perform: Perform) -> PersonView:
     person = station.roster.add_person(form.name, form.crew, form.role, perform.row_id)
     perform.require_row(person.person_id)
-    added = {f"added-{person.person_id}": ("AddedPerson", f"{person.person_id} {form.name}")}
+    added = {f"added-{person.person_id}": ("AddedPerson", person.person_id)}
     station.records.audit_once(perform.by, added)
     return _person(person, station)
 
@@ -68,8 +68,8 @@ def change_person(person_id: Id, form: PersonForm, station: Station, who: Comman
     if person is None:
         raise Problem(404, _NO_PERSON)
     for unit_id in station.worn_by(person_id):
-        station.perform(who.username, Assign(unit_id, person_id, form.name, form.crew, form.role))
-    station.records.audit(who.username, "ChangedPerson", f"{person_id} {form.name}")
+        station.perform(who.username, Assign(unit_id, person_id))  # shows it anew
+    station.records.audit(who.username, "ChangedPerson", person_id)
     return _person(person, station)
 
 
@@ -96,9 +96,7 @@ def set_photo(
     if person is None:
         raise Problem(404, _NO_PERSON)
     for unit_id in station.worn_by(person_id):
-        station.perform(
-            who.username, Assign(unit_id, person_id, person.name, person.crew, person.role)
-        )
+        station.perform(who.username, Assign(unit_id, person_id))  # shows it anew
     station.records.audit(who.username, "SetPhoto", person_id)
 
 

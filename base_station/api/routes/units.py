@@ -17,6 +17,7 @@ from base_station.api.problems import Problem
 from base_station.api.refusals import not_found_if_unknown
 from base_station.api.services import Services, Station
 from base_station.storage.db import models
+from base_station.storage.db.roster import Roster
 from base_station.views.answer import to_ms_or_none
 from base_station.views.wire import UnitView
 from shared.channels import validate_unit_id
@@ -67,7 +68,7 @@ class Reference(Form):
 
 @router.get("/units")
 def list_units(station: CurrentStation, _: Viewer) -> list[UnitAnswer]:
-    return [_unit(unit, worn) for unit, worn in station.roster.units()]
+    return [_unit(unit, worn, station.roster) for unit, worn in station.roster.units()]
 
 
 @router.post("/units", status_code=201)
@@ -140,10 +141,10 @@ def _unit_as_decided(station: Services, unit_id: str) -> UnitAnswer:
     )
 
 
-def _unit(unit: models.Unit, worn: models.Assignment | None) -> UnitAnswer:
+def _unit(unit: models.Unit, worn: models.Assignment | None, roster: Roster) -> UnitAnswer:
     return UnitAnswer(
         unit_id=unit.unit_id,
-        label=unit.label,
+        label=roster.shown(unit.label),
         registered=unit.registered_ns is not None,
         person_id=None if worn is None else worn.person_id,
         last_heard_ms=to_ms_or_none(unit.last_heard_ns),

@@ -19,9 +19,9 @@ from base_station.core.alarms.interface import (
     AlarmRule,
     Clear,
     Finding,
-    without_numbers,
 )
 from base_station.core.alarms.thresholds import Thresholds, with_thresholds
+from base_station.core.person_references import without_numbers
 from base_station.core.state import ERASED_TEXT, Alarm, StationState, UnitState
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import (

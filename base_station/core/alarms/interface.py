@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Protocol
 
 import msgspec
@@ -42,12 +41,6 @@ def switched_off(unit: UnitState) -> Clear | None:
 
 
 Verdict = Finding | Clear | None  # None: nothing is known either way
-_NUMBER = re.compile(r"\d+")
-
-
-def without_numbers(text: str) -> str:
-    """Text without its numbers, to compare problems that differ only in an amount."""
-    return _NUMBER.sub("", text)
 
 
 class AlarmRule(Protocol):

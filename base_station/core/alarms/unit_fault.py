@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from base_station.core.alarms.interface import WARNING, Finding, Verdict, without_numbers
+from base_station.core.alarms.interface import WARNING, Finding, Verdict
+from base_station.core.person_references import without_numbers
 from base_station.core.state import UnitState
 from shared.messages import Message
 

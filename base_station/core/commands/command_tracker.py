@@ -243,8 +243,8 @@ def _check(state: StationState, action: SendCommand) -> None:
         raise UserError(f"a command lasts up to a day, not {action.lasts_s} s")
     if not math.isfinite(action.position_rate_hz):
         raise UserError("a position rate is no finite number")
-    if sum(map(bool, (action.unit_id, action.crew, action.everyone))) != 1:
-        raise UserError("say one of: a unit, a crew, everyone")
+    if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
+        raise UserError("say one of: a unit, a crew that has members, everyone")
     most = 2 * MAX_OPEN if action.kind is CommandKind.EVACUATE else MAX_OPEN
     if sum(map(_is_open_order, state.commands.values())) >= most:
         raise UserError(f"{most} commands are open; wait until some are answered")
@@ -261,12 +261,14 @@ def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
     ours = [unit for unit in state.units.values() if unit.registered]
     if action.unit_id:
         found = [unit for unit in ours if unit.unit_id == action.unit_id]
+    elif action.person_ids:
+        found = [one for one in ours if one.person and one.person.person_id in action.person_ids]
     elif action.crew:
         found = [unit for unit in ours if unit.person and unit.person.crew == action.crew]
     else:
         found = [unit for unit in ours if unit.person or _is_in_use(unit)]
     if not found:
-        whom = action.unit_id or action.crew or "everyone"
+        whom = action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
         raise UserError(f"no registered unit can be told: {whom}")
     return found
 

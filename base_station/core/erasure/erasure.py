@@ -6,7 +6,7 @@ Found in the log alone, which knows it even where the database was lost.  Pure.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from types import MappingProxyType
 
 import msgspec
@@ -28,6 +28,7 @@ FOREVER_NS = 2**63 - 1
 Record = tuple[int, str, bytes]  # station time, key, payload
 # What these say is where somebody was.
 PLACE_ACTIONS = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
+TEXT_ACTIONS = frozenset({"SendCommand", "ResolveAlarm"})  # words to somebody, or about them
 
 
 class Wearing(msgspec.Struct, frozen=True):
@@ -42,7 +43,7 @@ class Erasure(msgspec.Struct, frozen=True):
     """Erasure of one person, or of all people in one incident."""
 
     wearings: tuple[Wearing, ...]
-    names: tuple[str, ...]  # longest first
+    names: tuple[str, ...]  # longest first; none where the log is of this version
     person_id: str = ""  # empty: everybody in the incident
     incident_id: str = ""
     from_ns: int = 0  # when the names are to be forgotten
@@ -52,6 +53,7 @@ class Erasure(msgspec.Struct, frozen=True):
     opening_id: str = ""  # of the action that opened it
     closing_id: str = ""
     about_until_ns: int = FOREVER_NS  # alarms of its units: until the next incident is opened
+    person_ids: frozenset[str] = frozenset()  # whose references go: of the people in the incident
 
     @property
     def unit_ids(self) -> frozenset[str]:
@@ -65,7 +67,7 @@ class Erasure(msgspec.Struct, frozen=True):
         """Erasure without the actions that a part of the log has already."""
         if not (self.returned_units or self.assigned_after):
             return self
-        there = {action.action_id for _, action in _actions(records)}
+        there = {action.action_id for _, action in actions_of(records)}
         return msgspec.structs.replace(
             self,
             returned_units=tuple(
@@ -98,6 +100,15 @@ class Erasure(msgspec.Struct, frozen=True):
         _, unit_id, raised_ns = [*alarm_id.rsplit(":", 2), "", ""][:3]
         return raised_ns.isdecimal() and self.is_about(unit_id, int(raised_ns))
 
+    def covers_alarm(self, alarm_id: str) -> bool:
+        """Whether an alarm is about who wore the unit then."""
+        _, unit_id, raised_ns = [*alarm_id.rsplit(":", 2), "", ""][:3]
+        return raised_ns.isdecimal() and self.covers(unit_id, int(raised_ns))
+
+    def is_of(self, person_ids: Iterable[str]) -> bool:
+        """Whether anybody of these is to be forgotten."""
+        return not {self.person_id, *self.person_ids}.isdisjoint({*person_ids} - {""})
+
     def covers_separate_action(self, t_ns: int, apart: DoneApart) -> bool:
         """Whether what was done apart, and written down at ``t_ns``, says where somebody was, or
         wore something, who is to be forgotten.  Of which time a place is, is one of its numbers.
@@ -107,8 +118,10 @@ class Erasure(msgspec.Struct, frozen=True):
             if self.person_id:
                 return self.person_id in values
             return self.from_ns <= apart.t_ns < self.until_ns
+        if kind in TEXT_ACTIONS and (self.is_of(values) or any(map(self.covers_alarm, values))):
+            return True
         times_ns = [t_ns, apart.t_ns, *(int(value) for value in values if value.isdecimal())]
-        told = self.unit_ids & {*values} if kind in PLACE_ACTIONS else ()
+        told = self.unit_ids & {*values} if kind in PLACE_ACTIONS | TEXT_ACTIONS else ()
         return any(self.covers(unit_id, one) for unit_id in told for one in times_ns)
 
 
@@ -118,10 +131,12 @@ def inserted_action_id(action_id: str, unit_id: str) -> str:
 
 
 def erasure_of_person(
-    records: Iterable[Record], person_id: str, name: str, until_ns: int
+    records: Iterable[Record], person_id: str, names: Collection[str], until_ns: int
 ) -> Erasure:
-    """``records``: the operators' actions of the whole log; ``name``: as in the roster."""
-    names = {name} if name else set()
+    """``records``: the operators' actions of the whole log; ``names``: as the database has them,
+    for a log of an earlier version.
+    """
+    names = {*names}
     since: dict[str, int] = {}  # by unit, while the person wears it
     wearings: list[Wearing] = []
 
@@ -129,7 +144,7 @@ def erasure_of_person(
         if unit_id in since:
             wearings.append(Wearing(unit_id, since.pop(unit_id), t_ns))
 
-    for t_ns, action in _actions(records):
+    for t_ns, action in actions_of(records):
         if isinstance(action.action, Assign):
             assign = action.action
             mine = assign.person_id == person_id
@@ -153,10 +168,10 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
     worn: dict[str, Assign] = {}  # by unit
     returned_units: dict[str, str] = {}  # units, by the action
     units: set[str] = set()
-    names: set[str] = set()
+    people: dict[str, str] = {}  # names by person id, or none
     opened_ns = closed_ns = None
     opening_id = closing_id = ""
-    told = iter(_actions(records))
+    told = iter(actions_of(records))
     for t_ns, action in told:
         done = action.action
         if isinstance(done, OpenIncident) and done.incident_id == incident_id:
@@ -166,7 +181,8 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
                 for action_id, unit_id in returned_units.items()
                 if action_id == inserted_action_id(opening_id, unit_id)
             }
-            units, names = before | set(worn), {one.person_name for one in worn.values()}
+            units = before | set(worn)
+            people = {one.person_id: one.person_name for one in worn.values()}
         elif isinstance(done, CloseIncident) and done.incident_id == incident_id:
             closed_ns, closing_id = t_ns, action.action_id
             break
@@ -175,7 +191,7 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
                 del worn[unit_id]
             worn[done.unit_id] = done
             units.add(done.unit_id)
-            names.add(done.person_name)
+            people[done.person_id] = done.person_name
         elif isinstance(done, Unassign):
             worn.pop(done.unit_id, None)
             returned_units[action.action_id] = done.unit_id
@@ -185,7 +201,7 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         raise UserError(f"the incident {incident_id} is open; close it first")
     return Erasure(
         tuple(Wearing(unit_id, opened_ns, closed_ns) for unit_id in sorted(units)),
-        _longest_first(names),
+        _longest_first(people.values()),
         incident_id=incident_id,
         from_ns=opened_ns,
         until_ns=closed_ns,
@@ -196,6 +212,7 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         about_until_ns=next(
             (t_ns for t_ns, later in told if isinstance(later.action, OpenIncident)), FOREVER_NS
         ),
+        person_ids=frozenset(people),
     )
 
 
@@ -208,7 +225,7 @@ def first_erased_ns(records: Iterable[Record], erasure: Erasure) -> dict[str, in
         for unit_id in erasure.unit_ids
     }
     settled: dict[str, int] = {}
-    for t_ns, action in _actions(records):
+    for t_ns, action in actions_of(records):
         match action.action:
             case ForgetWearers(unit_id=unit_id) if t_ns >= returned_units.get(unit_id, FOREVER_NS):
                 settled.setdefault(unit_id, t_ns)
@@ -246,7 +263,7 @@ class CaptureClocks:
         return header.t_utc_ns if header.utc_std_s > 0.0 else None
 
 
-def _actions(records: Iterable[Record]) -> Iterable[tuple[int, OperatorAction]]:
+def actions_of(records: Iterable[Record]) -> Iterable[tuple[int, OperatorAction]]:
     for record in records:
         event = event_of(*record)
         if isinstance(event, Received) and isinstance(event.message, OperatorAction):

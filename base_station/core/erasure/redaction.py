@@ -2,19 +2,22 @@
 
 What a unit said while somebody wore it who is to be forgotten becomes a bare sign of life with the
 same header: that a message came is kept, so that a station does not fetch it from the unit's
-journal again, and nothing of what it said.  Names become ``(forgotten)``.
+journal again, and nothing of what it said.  Words to them and about them become ``(forgotten)``,
+found by where they stand; names are in logs of earlier versions only (``names_in_older_logs``).
 """
 
 from __future__ import annotations
 
-import re
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
 from google.protobuf.message import Message as WireMessage
 
 from base_station.core.erasure.erasure import CaptureClocks, Erasure, Record, inserted_action_id
+from base_station.core.erasure.names_in_older_logs import OlderNames, is_program_text
 from base_station.core.events import Received, Rejected, event_of
+from base_station.core.person_references import reference_to, without_people
 from base_station.core.state import ERASED_TEXT
 from shared.channels import (
     DESCRIPTION,
@@ -40,17 +43,17 @@ from shared.messages import (
 )
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
 from shared.messages.station import (
+    Action,
     Assign,
+    CheckIn,
     CloseIncident,
     DoneApart,
     OpenIncident,
     ResolveAlarm,
+    SendCommand,
     SetStart,
     Unassign,
 )
-
-# The program's own, whoever is called Heat or Fall, and who did something.
-_PROGRAM_FIELDS = frozenset({"rule", "level", "part", "thresholds", "station", "who"})
 
 
 class Redactor:
@@ -59,14 +62,14 @@ class Redactor:
     def __init__(self, erasure: Erasure, clocks: CaptureClocks) -> None:
         self._erasure = erasure
         self._clocks = clocks
-        self._names = name_pattern(erasure.names)
-        self._letters = re.compile(_any_of(erasure.names), re.IGNORECASE)
+        self._older = OlderNames(erasure.names)
+        self._references = [reference_to(one).encode() for one in erasure.person_ids]
 
     def __call__(self, record: Record) -> list[Record]:
         t_ns, key, payload = record
         if is_derived(key):
             return self._derived(record)
-        if self._is_of_others(key) and not self._holds_a_name(payload):
+        if self._is_of_others(key) and not self._mentions(payload):
             return [record]
         event = event_of(t_ns, key, payload)
         if not isinstance(event, Received):
@@ -80,12 +83,12 @@ class Redactor:
         """
         t_ns, key, payload = record
         if event.number is None:
-            return [] if self._holds_a_name(payload) else [record]
+            return [] if self._mentions(payload) else [record]
         sender, boot_id, seq = event.number
         wearer = tracked_unit(sender) or sender
         came_late = is_backfilled(key) or parse_unread_key(key) is not None
         at_any_time = came_late and wearer in self._erasure.unit_ids
-        if not (at_any_time or self._erasure.covers(wearer, t_ns) or self._holds_a_name(payload)):
+        if not (at_any_time or self._erasure.covers(wearer, t_ns) or self._mentions(payload)):
             return [record]
         alive = Heartbeat(Header(sender, boot_id, seq, 0), 0, 0)
         return [(t_ns, backfilled_key(sender, HEARTBEAT.suffix), encode(alive))]
@@ -142,7 +145,7 @@ class Redactor:
         t_ns, key, _ = record
         if not self._erasure.covers(change.unit_id, change.raised_ns):
             return self._renamed(record, self._erasure.is_about(change.unit_id, change.raised_ns))
-        by = self._names.sub(ERASED_TEXT, change.by)
+        by = self._without_names(without_note(change.by))
         return t_ns, key, encode(msgspec.structs.replace(change, text=ERASED_TEXT, by=by))
 
     def _derived(self, record: Record) -> list[Record]:
@@ -158,19 +161,16 @@ class Redactor:
         instead = _in_incident(t_ns, message, erasure) if erasure.incident_id else [message]
         records = []
         for one in instead:
-            kept = self._without_places(t_ns, self._without_person(one))
+            kept = self._without_places(t_ns, self._without_words(t_ns, one))
             if kept is message:
                 records.append(record)
             elif kept is not None:
                 records.append((t_ns, key, encode(kept)))
         return records
 
-    def _without_person(self, message: OperatorAction) -> OperatorAction:
-        assign = message.action
-        if not isinstance(assign, Assign) or assign.person_id != self._erasure.person_id:
-            return message
-        nobody = msgspec.structs.replace(assign, person_name=ERASED_TEXT, crew="", role="")
-        return msgspec.structs.replace(message, action=nobody)
+    def _without_words(self, t_ns: int, message: OperatorAction) -> OperatorAction:
+        kept = without_words(t_ns, message.action, self._erasure)
+        return message if kept is message.action else msgspec.structs.replace(message, action=kept)
 
     def _without_places(self, t_ns: int, message: OperatorAction) -> OperatorAction | None:
         """None where all that it says is where somebody was who is to be forgotten."""
@@ -193,53 +193,73 @@ class Redactor:
                 fewer = msgspec.structs.replace(action, unit_ids=kept)
                 return msgspec.structs.replace(message, action=fewer) if kept else None
             case DoneApart(what=what):
-                left = remaining_text(action, t_ns, self._erasure, self._names)
+                left = remaining_text(action, t_ns, self._erasure, self._older)
                 untold = msgspec.structs.replace(action, what=left)
                 return message if left == what else msgspec.structs.replace(message, action=untold)
             case _:
                 return message
 
     def _renamed(self, record: Record, about: bool = False) -> Record:
-        """With every name replaced, wherever in the record it stands; who did something stays.
-        ``about``: also of a record of another time.
+        """With every name replaced, or reference to one in the incident, wherever it stands; who
+        did something stays.  ``about``: also of a record of another time.
         """
         t_ns, key, payload = record
         inside = self._erasure.from_ns <= t_ns < self._erasure.until_ns
-        if not (inside or about) or not self._holds_a_name(payload):
+        if not (inside or about) or not self._mentions(payload):
             return record
         wire_type = wire_type_of(key)
         assert wire_type is not None  # it could be read
         wire = wire_type.FromString(payload)
         by = wire.by if key == OPERATOR.key(STATION_ID) else None
-        _rename(wire, self._names)
+        _change_texts(wire, self._without_names)
         if by is not None:
             wire.by = by
         return t_ns, key, wire.SerializeToString()
 
-    def _holds_a_name(self, payload: bytes) -> bool:
-        """Or may: in bytes nothing tells where a word begins."""
-        return self._letters.search(payload.decode("utf-8", "replace")) is not None
+    def _mentions(self, payload: bytes) -> bool:
+        """Anybody who is to be forgotten, or perhaps."""
+        known = any(reference in payload for reference in self._references)
+        return known or self._older.may_be_in(payload)
+
+    def _without_names(self, text: str) -> str:
+        return without_people(self._older.erased(text), self._erasure.person_ids, ERASED_TEXT)
 
 
-def name_pattern(names: tuple[str, ...]) -> re.Pattern[str]:
-    """Matches any of the names, in whatever case; nothing where there are none.
-
-    A name is a word, or one with an s behind it: of Al and Ana, neither alarms nor Anabel are
-    forgotten.
+def without_words(t_ns: int, action: Action, erasure: Erasure) -> Action:
+    """The action without what was written to somebody or about them, and of an incident without
+    whom it was for; the same one where nothing has to go.
     """
-    return re.compile(rf"(?<!\w)(?:{_any_of(names)})(?=s?(?!\w))", re.IGNORECASE)
+    match action:
+        case Assign(person_id=erasure.person_id, person_name=name) if name:
+            return msgspec.structs.replace(action, person_name=ERASED_TEXT, crew="", role="")
+        case SendCommand() if erasure.covers(action.unit_id, t_ns) or erasure.is_of(
+            action.person_ids
+        ):
+            text = ERASED_TEXT if action.text else ""
+            people = () if erasure.incident_id else action.person_ids
+            return msgspec.structs.replace(action, text=text, person_ids=people)
+        case CheckIn(person_ids=people) if erasure.incident_id and erasure.is_of(people):
+            return msgspec.structs.replace(action, person_ids=())
+        case ResolveAlarm(alarm_id=alarm_id, note=note) if note and erasure.covers_alarm(alarm_id):
+            return msgspec.structs.replace(action, note=ERASED_TEXT)
+        case _:
+            return action
 
 
-def remaining_text(apart: DoneApart, t_ns: int, erasure: Erasure, names: re.Pattern[str]) -> str:
+def without_note(by: str) -> str:
+    """Who resolved an alarm, without the note that stands behind it."""
+    who, noted, _ = by.partition(": ")
+    return f"{who}{noted}{ERASED_TEXT}" if noted else by
+
+
+def remaining_text(apart: DoneApart, t_ns: int, erasure: Erasure, names: OlderNames) -> str:
     """Of what was done apart, and written down at ``t_ns``."""
     if erasure.covers_separate_action(t_ns, apart):
         return ERASED_TEXT
     inside = any(erasure.from_ns <= one < erasure.until_ns for one in (t_ns, apart.t_ns))
-    return names.sub(ERASED_TEXT, apart.what) if inside else apart.what
-
-
-def _any_of(names: tuple[str, ...]) -> str:
-    return "|".join(map(re.escape, names)) or r"(?!)"
+    if not inside:
+        return apart.what
+    return without_people(names.erased(apart.what), erasure.person_ids, ERASED_TEXT)
 
 
 def _in_incident(t_ns: int, message: OperatorAction, erasure: Erasure) -> list[OperatorAction]:
@@ -266,20 +286,15 @@ def _replacement(message: OperatorAction, actions: Any) -> list[OperatorAction]:
     ]
 
 
-def is_program_text(field: str) -> bool:
-    """Whether what is in a field of this name is what the program goes by, and nobody's name."""
-    return field in _PROGRAM_FIELDS or field.endswith(("_id", "_ids"))
-
-
-def _rename(wire: WireMessage, names: re.Pattern[str]) -> None:
-    """In every text of a message and of what is in it, but for what the program goes by."""
+def _change_texts(wire: WireMessage, change: Callable[[str], str]) -> None:
+    """Change every text of a message and of what is in it, but for what the program goes by."""
     for field, value in wire.ListFields():
         if is_program_text(field.name):
             continue
         if field.message_type is not None:
             for part in value if field.is_repeated else [value]:
-                _rename(part, names)
+                _change_texts(part, change)
         elif field.type == field.TYPE_STRING and field.is_repeated:
-            value[:] = [names.sub(ERASED_TEXT, one) for one in value]
+            value[:] = [change(one) for one in value]
         elif field.type == field.TYPE_STRING:
-            setattr(wire, field.name, names.sub(ERASED_TEXT, value))
+            setattr(wire, field.name, change(value))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from base_station.core.person_references import reference_to
 from base_station.core.state.boot_state import BootState
 from base_station.core.state.duty import Duty
 from base_station.core.state.exposure import ExposureInterval
@@ -29,10 +30,17 @@ STILL_NS = 300 * NS_PER_S  # after so long at the latest it is told who does not
 
 
 class Person(msgspec.Struct, frozen=True):
+    """Wearer of a unit; name, crew and role only where the log is of an earlier version."""
+
     person_id: str
-    name: str
-    crew: str
-    role: str
+    name: str = ""
+    crew: str = ""
+    role: str = ""
+
+    @property
+    def named(self) -> str:
+        """The name, or the reference in whose place it is shown."""
+        return self.name or reference_to(self.person_id)
 
 
 class FormerWearer(msgspec.Struct, frozen=True):
@@ -97,8 +105,8 @@ class UnitState(MessageStream):
 
     @property
     def name(self) -> str:
-        """Name of the unit for people."""
-        return self.person.name if self.person else self.label or self.unit_id
+        """Name of the unit for people, with a reference in the place of its wearer's."""
+        return self.person.named if self.person else self.label or self.unit_id
 
     def name_at(self, t_ns: int | None) -> str:
         """Name for people at that time, by its wearer then; None: the time is unknown."""
@@ -126,7 +134,7 @@ class UnitState(MessageStream):
     def end_wearing(self, t_ns: int) -> None:
         """Whoever wears it does so no more."""
         if self.person is not None:
-            former = FormerWearer(self.person.name, self.worn_since_ns, t_ns)
+            former = FormerWearer(self.person.named, self.worn_since_ns, t_ns)
             wearers = [*self.former_wearers, former]
             concerned = [one for one in wearers[:-WEARERS_KEPT] if self._concerns(one)]
             self.former_wearers = [*concerned, *wearers[-WEARERS_KEPT:]]

@@ -13,6 +13,7 @@ def wearers(roster: Roster, incident: Incident) -> dict[str, list[str]]:
     until_ns = incident.closed_ns or FOREVER_NS
     for one in roster.assignments(incident.opened_ns, until_ns):
         worn = names.setdefault(one.unit_id, [])
-        if one.person_name not in worn:
-            worn.append(one.person_name)
+        name = roster.wearer(one).name
+        if name not in worn:
+            worn.append(name)
     return names

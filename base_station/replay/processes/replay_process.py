@@ -22,7 +22,7 @@ from base_station.replay.processes.wire import (
     DeltaFrame,
     MessageStream,
     Pause,
-    Photos,
+    People,
     Play,
     ReplayJob,
     ReplayReport,
@@ -34,6 +34,7 @@ from base_station.replay.processes.wire import (
     read_replay,
 )
 from base_station.replay.session import GRACE_S, PAUSED_S, ReplayWindow, checked_speed
+from base_station.storage.db.known_people import KnownPerson, person_lookup
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import ReplayView, Snapshot
 from shared.clock import NS_PER_MS
@@ -60,7 +61,7 @@ class ReplayContext:
     checkpoints: str
     prepare: Callable[[], object]  # what is to be replayed is on the disk then
     note_damage: Callable[[str], None]  # of the log
-    photo_urls: Callable[[], Mapping[str, str]]  # by person
+    people: Callable[[], Mapping[str, KnownPerson]]  # by id
     empty_pipeline: Callable[[], StationPipeline]
     known_segments: Callable[[], Iterable[KnownSegment]] = tuple  # of the log, by the database
 
@@ -85,7 +86,7 @@ class ReplayProcess:
         self._commands = 0  # given so far
         self._view = _first_view(window, checked_speed(speed))
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
-        self._photos: Mapping[str, str] = {}  # as the process knows them
+        self._people: Mapping[str, KnownPerson] = {}  # as the process knows them
         self._is_shown = False  # what the process shows
         self._closed = threading.Event()
         self._over = threading.Event()
@@ -145,11 +146,11 @@ class ReplayProcess:
             self._send(command)
 
     def _ask(self) -> None:
-        photos = dict(self._place.photo_urls())
-        if photos != self._photos:
-            self._photos = photos
+        people = dict(self._place.people())
+        if people != self._people:
+            self._people = people
             self._commands += 1
-            self._send(Photos(photos))
+            self._send(People(people))
         self._commands += 1
         self._send(SnapshotRequest())
 
@@ -190,9 +191,9 @@ class ReplayProcess:
         line = self._place.processes.start(job)
         with self._lock:
             self._line = line
-            self._photos = dict(self._place.photo_urls())
+            self._people = dict(self._place.people())
             self._commands += 1
-            for command in (Photos(dict(self._photos)), *self._unsent):
+            for command in (People(dict(self._people)), *self._unsent):
                 self._send(command)
             if self._closed.is_set():
                 line.close()
@@ -200,7 +201,8 @@ class ReplayProcess:
         return line
 
     def _follow(self, line: MessageStream) -> None:
-        publisher = ConsolePublisher(self._place.empty_pipeline(), self._sink, self._photos.get)
+        people = person_lookup(self._people)
+        publisher = ConsolePublisher(self._place.empty_pipeline(), self._sink, people)
         waited_s = 0.0
         while not self._is_shown:
             if not line.has_message(_LOOK_S):

@@ -13,7 +13,7 @@ from base_station.replay.processes.wire import (
     DeltaFrame,
     MessageStream,
     Pause,
-    Photos,
+    People,
     Play,
     ReplayJob,
     Seek,
@@ -24,6 +24,7 @@ from base_station.replay.processes.wire import (
     read_command,
 )
 from base_station.replay.session import ReplaySession, ReplayWindow
+from base_station.storage.db.known_people import KnownPerson, person_lookup
 from base_station.views.wire import Delta, Snapshot
 from shared.clock import Clock
 from shared.errors import StoreError
@@ -33,7 +34,7 @@ def replay(job: ReplayJob, archive: Archive, clock: Clock, line: MessageStream) 
     """Until the line is closed, or the replay breaks off."""
     window = ReplayWindow(job.incident_id, job.start_ns, job.end_ns)
     work = _ReplayWork(line)
-    session = ReplaySession(archive, window, job.speed, work, work.photo_url, clock)
+    session = ReplaySession(archive, window, job.speed, work, work.person, clock)
     work.begin(session)
     while (encoded := line.receive()) is not None:
         work.follow(read_command(encoded))
@@ -46,7 +47,7 @@ class _ReplayWork:
     def __init__(self, line: MessageStream) -> None:
         self._line = line
         self._encoder = msgspec.json.Encoder()
-        self._photo_urls: dict[str, str] = {}
+        self._known: dict[str, KnownPerson] = {}
         self._commands = 0
         self._begun = threading.Event()
         self._session: ReplaySession
@@ -67,16 +68,16 @@ class _ReplayWork:
                 session.seek(t_ns)
             case SetSpeed(speed):
                 session.set_speed(speed)
-            case Photos(urls):
-                self._photo_urls = urls
+            case People(known):
+                self._known = known
             case SnapshotRequest():
                 session.request_snapshot(self._deliver)
         self._commands += 1
 
     # ---- in the replay's thread
 
-    def photo_url(self, person_id: str) -> str | None:
-        return self._photo_urls.get(person_id)
+    def person(self, person_id: str) -> KnownPerson:
+        return person_lookup(self._known)(person_id)
 
     def delta(self, delta: Delta) -> None:
         self._send_view()

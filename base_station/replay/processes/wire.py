@@ -10,6 +10,7 @@ from threading import Lock
 
 import msgspec
 
+from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import ReplayView
 from shared.errors import StoreError
@@ -60,10 +61,10 @@ class SetSpeed(msgspec.Struct, frozen=True, tag="speed"):
     speed: float
 
 
-class Photos(msgspec.Struct, frozen=True, tag="photos"):
-    """Where the console finds them, by person."""
+class People(msgspec.Struct, frozen=True, tag="people"):
+    """Who the person ids of the log stand for."""
 
-    urls: dict[str, str]
+    known: dict[str, KnownPerson]
 
 
 class SnapshotRequest(msgspec.Struct, frozen=True, tag="snapshot"):
@@ -122,7 +123,7 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
 
 
 Job = ReplayJob | PostProcessingJob
-Command = Play | Pause | Seek | SetSpeed | Photos | SnapshotRequest
+Command = Play | Pause | Seek | SetSpeed | People | SnapshotRequest
 ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
 PostProcessingReport = ProgressFrame | UnitTrails | PostProcessingResultFrame | Damage | Failure
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
-from typing import Any
-
 import msgspec
 from sqlalchemy import ColumnElement, and_, delete, or_, select, update
 from sqlalchemy.orm import Session
 
 from base_station.core.erasure.erasure import FOREVER_NS, PLACE_ACTIONS, Erasure, Wearing
-from base_station.core.erasure.redaction import is_program_text, name_pattern, remaining_text
+from base_station.core.erasure.names_in_older_logs import OlderNames
+from base_station.core.erasure.redaction import remaining_text, without_note, without_words
+from base_station.core.person_references import name_pattern, without_people
 from base_station.core.state import ERASED_TEXT
 from base_station.storage.db.models import (
     Alarm,
@@ -22,13 +21,20 @@ from base_station.storage.db.models import (
     Person,
     PostProcessingCache,
     SmoothedIncident,
+    Tombstone,
     TrackPoint,
     UnitStart,
 )
-from shared.messages.station import Assign, DoneApart, ResolveAlarm
+from base_station.storage.db.tombstones import PERSON
+from shared.messages.station import Assign, CheckIn, DoneApart, ResolveAlarm, SendCommand
 
 _APART, _RESOLVED, _ASSIGNED = (one.__name__ for one in (DoneApart, ResolveAlarm, Assign))
-_NAMED = AuditEntry.action.in_(("AddedPerson", "ChangedPerson"))  # "ID NAME" is their detail
+_WITH_WORDS: dict[str, type[SendCommand | CheckIn | ResolveAlarm]] = {
+    one.__name__: one for one in (SendCommand, CheckIn, ResolveAlarm)
+}
+_NAMED = AuditEntry.action.in_(
+    ("AddedPerson", "ChangedPerson")
+)  # "ID", or by an older version "ID NAME"
 _NOBODY = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
 
 
@@ -44,6 +50,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
         of_person = Assignment.person_id == erasure.person_id
         session.execute(update(Assignment).where(of_person).values(_NOBODY))
         session.execute(delete(Person).where(Person.person_id == erasure.person_id))
+        session.merge(Tombstone(what=f"{PERSON}{erasure.person_id}", until_ns=None))
     else:
         _cut_out(session, erasure)
 
@@ -85,32 +92,30 @@ def _within(table: type[TrackPoint | UnitStart], one: Wearing) -> ColumnElement[
 
 
 def _alarms(session: Session, erasure: Erasure) -> None:
-    names = name_pattern(erasure.names)
     for alarm in session.scalars(select(Alarm)):
         covered = erasure.covers(alarm.unit_id, alarm.raised_ns)
         if covered or erasure.is_about(
             alarm.unit_id, alarm.raised_ns
         ):  # what it said before may name others than what it says now
-            _rewrite_alarm(session, alarm, covered, names)
+            _rewrite_alarm(session, alarm, erasure, covered)
 
 
-def _rewrite_alarm(session: Session, alarm: Alarm, covered: bool, names: re.Pattern[str]) -> None:
+def _rewrite_alarm(session: Session, alarm: Alarm, erasure: Erasure, covered: bool) -> None:
     changes = session.scalars(
         select(AlarmTransition).where(AlarmTransition.alarm_id == alarm.alarm_id)
     ).all()
     rows: list[Alarm | AlarmTransition] = [alarm, *changes]
     for row in rows:
-        row.text = ERASED_TEXT if covered else names.sub(ERASED_TEXT, row.text)
-        row.by = names.sub(ERASED_TEXT, row.by)
+        row.text = ERASED_TEXT if covered else _without_names(row.text, erasure)
+        row.by = _without_names(without_note(row.by) if covered else row.by, erasure)
 
 
 def _audit(session: Session, erasure: Erasure) -> None:
-    """Names and places go; that it was done, when and by whom stays."""
-    names = name_pattern(erasure.names)
-    units = name_pattern(tuple(erasure.unit_ids))
+    """Names, words and places go; that it was done, when and by whom stays."""
+    units = name_pattern(erasure.unit_ids)
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
-        entry.detail = _without_names(entry.detail, names)
+        entry.detail = _without_names(_without_words(entry, erasure), erasure)
         if entry.action == _ASSIGNED:
             entry.detail = _nobodys(entry.detail, erasure)
         about = units.search(entry.detail) if entry.action in PLACE_ACTIONS else None
@@ -118,38 +123,29 @@ def _audit(session: Session, erasure: Erasure) -> None:
             entry.detail = ERASED_TEXT
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _RESOLVED)):
         if _is_about(entry, erasure):
-            entry.detail = _without_names(entry.detail, names)
+            entry.detail = _without_names(entry.detail, erasure)
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _APART)):
-        entry.detail = _apart(entry, erasure, names)
+        entry.detail = _apart(entry, erasure)
+    mine = AuditEntry.detail.startswith(f"{erasure.person_id} ", autoescape=True)
+    for entry in session.scalars(select(AuditEntry).where(_NAMED, mine)):
+        entry.detail = f"{erasure.person_id} {ERASED_TEXT}"
 
 
-def _without_names(detail: str, names: re.Pattern[str]) -> str:
-    """Of an action it is JSON, where a quotation mark within a name is written in another way, and
-    a field may be called like somebody.
-    """
+def _without_names(text: str, erasure: Erasure) -> str:
+    older = OlderNames(erasure.names).erased_in_json(text)
+    return without_people(older, erasure.person_ids, ERASED_TEXT)
+
+
+def _without_words(entry: AuditEntry, erasure: Erasure) -> str:
+    kind = _WITH_WORDS.get(entry.action)
+    if kind is None:
+        return entry.detail
     try:
-        said = msgspec.json.decode(detail)
-    except msgspec.DecodeError:
-        return names.sub(ERASED_TEXT, detail)
-    if not isinstance(said, dict):
-        return names.sub(ERASED_TEXT, detail)
-    left = _renamed(said, names)
-    return detail if left == said else msgspec.json.encode(left).decode()
-
-
-def _renamed(value: Any, names: re.Pattern[str]) -> Any:
-    match value:
-        case str():
-            return names.sub(ERASED_TEXT, value)
-        case list():
-            return [_renamed(one, names) for one in value]
-        case dict():
-            return {
-                field: one if is_program_text(field) else _renamed(one, names)
-                for field, one in value.items()
-            }
-        case _:
-            return value
+        done = msgspec.json.decode(entry.detail, type=kind)
+    except msgspec.DecodeError:  # nothing is left of it
+        return entry.detail
+    left = without_words(entry.t_ns, done, erasure)
+    return entry.detail if left is done else msgspec.json.encode(left).decode()
 
 
 def _nobodys(detail: str, erasure: Erasure) -> str:
@@ -160,7 +156,10 @@ def _nobodys(detail: str, erasure: Erasure) -> str:
         return detail
     if erasure.person_id not in ("", worn.person_id):
         return detail
-    return msgspec.json.encode(msgspec.structs.replace(worn, **_NOBODY)).decode()
+    nobody = msgspec.structs.replace(worn, **_NOBODY)
+    if erasure.incident_id:
+        nobody = msgspec.structs.replace(nobody, person_id=ERASED_TEXT)
+    return msgspec.json.encode(nobody).decode()
 
 
 def _is_about(entry: AuditEntry, erasure: Erasure) -> bool:
@@ -171,13 +170,13 @@ def _is_about(entry: AuditEntry, erasure: Erasure) -> bool:
     return erasure.is_about_alarm(noted.alarm_id)
 
 
-def _apart(entry: AuditEntry, erasure: Erasure, names: re.Pattern[str]) -> str:
+def _apart(entry: AuditEntry, erasure: Erasure) -> str:
     """What was done at the other station may have been written down long after it was done."""
     try:
         done = msgspec.json.decode(entry.detail, type=DoneApart)
     except msgspec.DecodeError:  # nothing is left of it, or nobody knows what it says
         return ERASED_TEXT
-    left = remaining_text(done, entry.t_ns, erasure, names)
+    left = remaining_text(done, entry.t_ns, erasure, OlderNames(erasure.names))
     return msgspec.json.encode(msgspec.structs.replace(done, what=left)).decode()
 
 

@@ -36,6 +36,8 @@ class BaseMap(Base):
 
 
 class Person(Base):
+    """Nothing else has a person's name: logs, and what is made of them, have the id."""
+
     __tablename__ = "people"
 
     person_id: Mapped[str] = mapped_column(primary_key=True)
@@ -45,6 +47,7 @@ class Person(Base):
     created_ns: Mapped[int]
     photo: Mapped[bytes | None] = mapped_column(LargeBinary, deferred=True)  # JPEG
     photo_hash: Mapped[str | None]
+    removed_ns: Mapped[int | None]  # from the roster; the name stays for incidents of before
 
 
 class User(Base):
@@ -162,7 +165,9 @@ class Incident(Base):
 
 
 class Assignment(Base):
-    """Who wore which unit, from when until when; names as they were then."""
+    """Who wore which unit, from when until when; name, crew and role as they were then only where
+    the log is of an earlier version, and otherwise empty.
+    """
 
     __tablename__ = "assignments"
     __table_args__ = (Index("ix_assignments_unit_id_from_ns", "unit_id", "from_ns"),)

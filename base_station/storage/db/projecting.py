@@ -11,6 +11,7 @@ from sqlalchemy import ColumnElement, func, select, update
 from sqlalchemy.dialects.sqlite import Insert, insert
 from sqlalchemy.orm import Session
 
+from base_station.core.person_references import reference_to
 from base_station.storage.db.models import (
     Alarm,
     AlarmTransition,
@@ -130,6 +131,8 @@ def _audit(session: Session, t_ns: int, done: OperatorAction) -> None:
     match done.action:
         case SetPlan(geojson=geojson):
             said = {"bytes": len(geojson)}
+        case Assign(person_id=person_id, person_name=""):
+            said["person_name"] = reference_to(person_id)
         case RemovePin(pin_id=pin_id):
             said |= _whose_pin(session, pin_id)
     _add(

@@ -12,6 +12,7 @@ from sqlalchemy.orm import InstrumentedAttribute
 
 from base_station.fusion.lazy_mapping import LastValueMapping
 from base_station.storage.db import models
+from base_station.storage.db.known_people import load_people, person_lookup, shown_text
 from base_station.storage.db.models import (
     PROJECTIONS,
     Alarm,
@@ -105,7 +106,11 @@ class Records:
         """Raises UserError, which names those that are known."""
         incident = self.incident(incident_id)
         if incident is None:
-            known = ", ".join(f"{one.incident_id} ({one.name})" for one in self.incidents())
+            with self._store.read() as session:
+                people = person_lookup(load_people(session))
+            known = ", ".join(
+                f"{one.incident_id} ({shown_text(one.name, people)})" for one in self.incidents()
+            )
             raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
         return incident
 

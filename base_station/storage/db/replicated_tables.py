@@ -38,6 +38,7 @@ from base_station.storage.db.replicated_rows import (
 )
 from base_station.storage.db.store import Store
 
+_REMOVED = "removed_ns"  # of an earlier version's rows there is none
 _NUMBER = "number"  # of an audit entry, at the station that is asked
 _SINCE = {"role_ns": 0, "password_ns": 0}  # as a station says that is of an earlier version
 
@@ -130,7 +131,7 @@ class ReplicatedTables:
                 for name, value in _with_the_later(session, row).items():
                     some = some or getattr(user, name) != value
                     setattr(user, name, value)
-        return some
+            return _remove_people(session, standby.people) or some
 
     def missing_photos(self) -> Sequence[str]:
         """Ids of people whose photo has not come yet."""
@@ -232,12 +233,27 @@ def _replace(
         session.execute(statement.on_conflict_do_update(index_elements=[key], set_=row))
 
 
+def _remove_people(session: Session, rows: tuple[Row, ...]) -> bool:
+    """Whoever was removed from the roster at the other station; whether anybody was."""
+    some = False
+    for row in rows:
+        person = session.get(Person, row["person_id"])
+        removed_ns = row.get(_REMOVED)
+        if person is not None and person.removed_ns is None and removed_ns is not None:
+            person.removed_ns, person.photo, person.photo_hash = removed_ns, None, None
+            some = True
+    return some
+
+
 def _put_people(session: Session, rows: tuple[Row, ...]) -> None:
+    """Who was removed here stays so."""
     session.execute(delete(Person).where(Person.person_id.not_in([r["person_id"] for r in rows])))
     for row in rows:
         person = session.get(Person, row["person_id"])
         if person is None:
             session.add(Person(**row, photo=None))
+            continue
+        if person.removed_ns is not None and row.get(_REMOVED) is None:
             continue
         if person.photo_hash != row["photo_hash"]:
             person.photo = None

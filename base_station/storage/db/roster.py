@@ -10,10 +10,18 @@ from sqlalchemy.orm import Session
 
 from base_station.core.idempotency import KEY_DIGITS
 from base_station.storage.db.erasure import known_names
+from base_station.storage.db.known_people import (
+    FORGOTTEN,
+    KnownPerson,
+    known_person,
+    load_people,
+    person_lookup,
+    shown_text,
+    shown_wearer,
+)
 from base_station.storage.db.models import Assignment, Person, Unit
 from base_station.storage.db.pages import newest
 from base_station.storage.db.store import Store
-from base_station.storage.db.tombstones import end
 from shared.clock import Clock
 from shared.errors import UserError
 
@@ -24,16 +32,43 @@ class Roster:
     def __init__(self, store: Store, clock: Clock) -> None:
         self._store = store
         self._clock = clock
-        self._photo_hashes = self._load_photo_hashes()
+        self._known = self._load_people()
 
     def people(self) -> Sequence[Person]:
         with self._store.read() as session:
-            by_name = select(Person).order_by(func.lower(Person.name), Person.person_id)
-            return session.scalars(by_name).all()
+            by_name = select(Person).where(Person.removed_ns.is_(None))
+            ordered = by_name.order_by(func.lower(Person.name), Person.person_id)
+            return session.scalars(ordered).all()
 
     def person(self, person_id: str) -> Person | None:
         with self._store.read() as session:
-            return session.get(Person, person_id)
+            return _on_roster(session, person_id)
+
+    # ---- names for what has ids, from memory: asked in the engine's thread, too
+
+    def known(self, person_id: str) -> KnownPerson:
+        """Whoever is or was on the roster."""
+        return person_lookup(self._known)(person_id)
+
+    def known_people(self) -> dict[str, KnownPerson]:
+        """The same of everybody, by id."""
+        return dict(self._known)
+
+    def shown(self, text: str) -> str:
+        """A text of the log, as people see it."""
+        return shown_text(text, self.known)
+
+    def wearer(self, assignment: Assignment) -> KnownPerson:
+        return shown_wearer(assignment, self.known)
+
+    def ids_by_name(self) -> dict[str, str]:
+        """Of everybody who is or was on the roster and is not forgotten."""
+        known = self.known_people().items()
+        return {one.name: person_id for person_id, one in known if one is not FORGOTTEN}
+
+    def crew(self, name: str) -> tuple[str, ...]:
+        """Ids of the members."""
+        return tuple(one.person_id for one in self.people() if one.crew == name)
 
     def names_of(self, person_id: str) -> Collection[str]:
         """How somebody is or was called, who may be in the roster no more."""
@@ -52,6 +87,7 @@ class Roster:
             created_ns=self._clock.utc_ns(),
             photo=None,
             photo_hash=None,
+            removed_ns=None,
         )
         with self._store.write() as session:
             if row_id:
@@ -60,40 +96,44 @@ class Roster:
                 if before is not None:
                     return before
             session.add(person)
+        self._known[person.person_id] = known_person(person)
         return person
 
     def change_person(self, person_id: str, name: str, crew: str, role: str) -> Person | None:
         with self._store.write() as session:
-            person = session.get(Person, person_id)
+            person = _on_roster(session, person_id)
             if person is not None:
                 person.name, person.crew, person.role = name, crew, role
+        if person is not None:
+            self._known[person_id] = known_person(person)
         return person
 
     def remove_person(self, person_id: str) -> bool:
-        """UserError while the person wears a unit."""
+        """The name stays for what was before.  UserError while the person wears a unit."""
         with self._store.write() as session:
-            person = session.get(Person, person_id)
+            person = _on_roster(session, person_id)
             if person is None:
                 return False
             worn = _worn_by(session, person_id)
             if worn:
                 raise UserError(f"{person.name} wears {', '.join(worn)}; unassign that first")
-            end(session, person)
-        self._photo_hashes.pop(person_id, None)
+            person.removed_ns = self._clock.utc_ns()
+            person.photo = person.photo_hash = None
+        self._known[person_id] = known_person(person)
         return True
 
     def set_photo(self, person_id: str, jpeg: bytes, photo_hash: str) -> Person | None:
         with self._store.write() as session:
-            person = session.get(Person, person_id)
+            person = _on_roster(session, person_id)
             if person is None:
                 return None
             person.photo, person.photo_hash = jpeg, photo_hash
-        self._photo_hashes[person_id] = photo_hash
+        self._known[person_id] = known_person(person)
         return person
 
-    def forget_photo(self, person_id: str) -> None:
-        """The person is in the tables no more."""
-        self._photo_hashes.pop(person_id, None)
+    def forget(self, person_id: str) -> None:
+        """Nobody is shown the name from now on; the row is deleted after that."""
+        self._known[person_id] = FORGOTTEN
 
     def photo(self, person_id: str) -> tuple[bytes, str] | None:
         """JPEG and its hash."""
@@ -106,17 +146,7 @@ class Roster:
 
     def read_again(self) -> None:
         """Somebody else has changed people and photos."""
-        self._photo_hashes = self._load_photo_hashes()
-
-    def photo_url(self, person_id: str) -> str | None:
-        """Where the console finds the photo; asked in the drive's thread, so from memory."""
-        photo_hash = self._photo_hashes.get(person_id)
-        return None if photo_hash is None else _photo_url(person_id, photo_hash)
-
-    def photo_urls(self) -> dict[str, str]:
-        """Of everybody who has one, by person."""
-        known = tuple(self._photo_hashes.items())
-        return {person_id: _photo_url(person_id, photo_hash) for person_id, photo_hash in known}
+        self._known = self._load_people()
 
     def registered_units(self) -> Sequence[str]:
         """Ids of the units that are ours."""
@@ -146,6 +176,15 @@ class Roster:
         with self._store.read() as session:
             return _worn_by(session, person_id)
 
+    def worn_by_name(self) -> Sequence[tuple[str, str]]:
+        """Unit and person of what a record of an earlier version assigned, and is worn still."""
+        with self._store.read() as session:
+            worn = select(Assignment.unit_id, Assignment.person_id).where(
+                Assignment.until_ns.is_(None), Assignment.person_name != ""
+            )
+            known = worn.join(Person, Person.person_id == Assignment.person_id)
+            return [(row[0], row[1]) for row in session.execute(known)]
+
     def assignments(self, from_ns: int, until_ns: int) -> Sequence[Assignment]:
         """Those that held at some time of the window, oldest first."""
         with self._store.read() as session:
@@ -158,14 +197,14 @@ class Roster:
             wanted = select(Assignment).where(*_held(from_ns, until_ns))
             return newest(session, wanted, Assignment.from_ns, Assignment.action_id, limit)
 
-    def _load_photo_hashes(self) -> dict[str, str]:
+    def _load_people(self) -> dict[str, KnownPerson]:
         with self._store.read() as session:
-            rows = session.execute(select(Person.person_id, Person.photo_hash))
-            return {row[0]: row[1] for row in rows if row[1] is not None}
+            return load_people(session)
 
 
-def _photo_url(person_id: str, photo_hash: str) -> str:
-    return f"/api/v1/people/{person_id}/photo?v={photo_hash}"
+def _on_roster(session: Session, person_id: str) -> Person | None:
+    person = session.get(Person, person_id)
+    return None if person is None or person.removed_ns is not None else person
 
 
 def _held(from_ns: int, until_ns: int) -> tuple[ColumnElement[bool], ColumnElement[bool]]:

@@ -30,7 +30,7 @@ ONLY_HERE = {
     "users": "users and their passwords",
     "api_tokens": "API tokens",
     "sessions": "logins",
-    "people": "the roster of people and their photos",
+    "people": "the roster: people's names, crews and photos, of which the log has the ids alone",
     "base_map": "the base map",
     "audit": "the audit of logins and of changes to users and people",
 }

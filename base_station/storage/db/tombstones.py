@@ -1,4 +1,4 @@
-"""Tombstones of users, sessions, tickets, API tokens and people that were removed.
+"""Tombstones of users, sessions, tickets and API tokens that were removed, of forgotten people.
 
 Of two stations one may do this while the other is off, or cannot be reached, and leads later.  So
 what is over is kept by name, goes to both in either direction, and nothing brings it back.
@@ -17,6 +17,8 @@ from base_station.storage.db.models import (
     Tombstone,
     User,
 )
+
+PERSON = "person "  # before the id
 
 
 def end(
@@ -40,5 +42,5 @@ def name_of(row: Base) -> str:
         case ApiToken():
             return f"token {row.token_id}"
         case Person():
-            return f"person {row.person_id}"
+            return f"{PERSON}{row.person_id}"
     raise TypeError(type(row))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.core.state.duty import CONFIRMATIONS_KEPT
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.units import unit_views
 from base_station.views.wire import DutyView
 from shared.messages import AlarmState, CommandKind, CommandState, EventKind
@@ -40,7 +41,7 @@ def script() -> Script:
 
 def shown(script: Script, unit_id: str = "FF-01") -> DutyView:
     state = script.pipeline.state
-    (view,) = unit_views(state, [state.units[unit_id]], lambda _: None)
+    (view,) = unit_views(state, [state.units[unit_id]], person_lookup({}))
     assert view.duty is not None
     return view.duty
 

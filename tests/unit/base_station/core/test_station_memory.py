@@ -20,6 +20,7 @@ from base_station.engine.health_monitor import HealthMonitor
 from base_station.engine.projector import Projector
 from base_station.engine.write_ahead import WriteAhead
 from base_station.fusion.odometry.path_history import PathHistory
+from base_station.storage.db.known_people import person_lookup
 from shared.channels import OPERATOR, POSITION, STATUS, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode
@@ -52,7 +53,7 @@ class Station:
 
     def __init__(self) -> None:
         self.pipeline, self.screen, self.projector = make_pipeline(), Screen(), Projector()
-        self.publisher = ConsolePublisher(self.pipeline, self.screen, lambda _: None)
+        self.publisher = ConsolePublisher(self.pipeline, self.screen, person_lookup({}))
         self.keeping = WriteAhead(
             self.pipeline, Room(), self.publisher, self.projector, HealthMonitor()
         )

@@ -16,6 +16,7 @@ from base_station.core.state import Incident, UnitState
 from base_station.core.state.trail import TrailStep
 from base_station.engine.console_publisher import TRAILS_PER_DELTA, ConsolePublisher
 from base_station.site.plan import read_plan
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.wire import Delta, ReplayView
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
@@ -34,7 +35,7 @@ def walked_in(pipeline: StationPipeline, screen: Screen) -> ConsolePublisher:
     for unit_id in UNITS:
         unit = pipeline.state.units[unit_id] = UnitState(unit_id)
         unit.trails.shown.append(TrailStep(NS_PER_S, 1.0, 2.0, 0))
-    return ConsolePublisher(pipeline, screen, lambda _: None)
+    return ConsolePublisher(pipeline, screen, person_lookup({}))
 
 
 def alarm_of(unit_id: str) -> AlarmChange:

@@ -15,6 +15,7 @@ from base_station.engine.ports import Trails
 from base_station.replay.playback import BURST, Archive
 from base_station.replay.session import MOST_FLAWS, ReplaySession, ReplayWindow
 from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.wire import Snapshot, TrailPoint
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
@@ -37,7 +38,7 @@ def screen() -> Screen:
 def session(tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(
-        archive(walk_with_mayday(), tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
+        archive(walk_with_mayday(), tmp_path), window, 1.0, screen, person_lookup({}), SystemClock()
     )
     yield session
     session.close()
@@ -133,7 +134,7 @@ def test_what_consoles_hear_once_a_second_is_told_as_it_is_played(
     clock = ManualClock()
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = archive(script.records, tmp_path)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), clock)
     until(lambda: len(screen.resets) == 1)
     session.seek(START_NS + 70 * NS_PER_S)
     until(lambda: len(screen.resets) == 2)
@@ -182,7 +183,7 @@ def test_sent_to_the_end_as_consoles_say_it_it_is_there_and_begins_again(
     script.now_s = 7.000_345_678
     script.act(CloseIncident("i1"))
     window, source = ReplayWindow("i1", START_NS, script.t_ns), archive(script.records, tmp_path)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, ManualClock())
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), ManualClock())
     session.pause()
     session.seek(session.view().end_ms * NS_PER_MS)
     incident = picture(session).incident
@@ -199,7 +200,7 @@ def test_its_pace_is_the_speed_asked_for(tmp_path: Path, screen: Screen) -> None
     clock = ManualClock()
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = archive(walk_with_mayday(), tmp_path)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), clock)
     until(lambda: len(screen.resets) == 1)
     session.set_speed(32.0)
     clock.advance(1.0)
@@ -233,7 +234,7 @@ def test_faster_than_this_machine_it_shows_what_it_comes_past(
     clock = ManualClock()
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(
-        slow_archive(clock, tmp_path), window, 1000.0, screen, lambda _: None, clock
+        slow_archive(clock, tmp_path), window, 1000.0, screen, person_lookup({}), clock
     )
     until(lambda: len(screen.resets) == 1)
     clock.advance(1.0)
@@ -251,7 +252,7 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
     clock = ManualClock()
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     slow = slow_archive(clock, tmp_path)
-    session = ReplaySession(slow, window, 1.0, screen, lambda _: None, clock)
+    session = ReplaySession(slow, window, 1.0, screen, person_lookup({}), clock)
     until(lambda: len(screen.resets) == 1)
     session.seek(START_NS + MAYDAY_S * NS_PER_S)
     until(lambda: len(screen.resets) == 2)
@@ -279,7 +280,7 @@ def test_one_that_is_closed_on_its_way_just_ends(
 
     window = ReplayWindow("i1", START_NS + 100 * NS_PER_S, START_NS + DURATION_S * NS_PER_S)
     source = Archive(waiting, Checkpoints(tmp_path), make_pipeline)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), clock)
     assert reached.wait(10.0)
     session._closed.set()  # as ``close``, which would wait for it
     go_on.set()
@@ -315,7 +316,7 @@ def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
     threads = set(threading.enumerate())
     window = ReplayWindow("i1", START_NS, START_NS + 10**9 * NS_PER_S)
     source = Archive(endless, Checkpoints(tmp_path), make_pipeline)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), clock)
     session.pause()
     under_way()
     session.seek(START_NS + 10 * NS_PER_S)
@@ -330,7 +331,7 @@ def test_played_on_it_goes_on_from_where_it_was_paused(tmp_path: Path, screen: S
     clock = ManualClock()
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(
-        archive(walk_with_mayday(), tmp_path), window, 1.0, screen, lambda _: None, clock
+        archive(walk_with_mayday(), tmp_path), window, 1.0, screen, person_lookup({}), clock
     )
     session.pause()
     session.seek(START_NS + 40 * NS_PER_S)
@@ -358,7 +359,7 @@ def test_an_impossible_speed_is_refused_in_words(session: ReplaySession, speed: 
 def test_an_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> None:
     window = ReplayWindow("i1", START_NS, START_NS + NS_PER_S)
     session = ReplaySession(
-        archive([], tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
+        archive([], tmp_path), window, 1.0, screen, person_lookup({}), SystemClock()
     )
     assert picture(session).units == ()
     session.close()
@@ -385,7 +386,7 @@ def test_who_is_forgotten_meanwhile_is_shown_no_more(
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     clock = ManualClock()
     monkeypatch.setattr("base_station.replay.playback.BURST", 7)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), clock)
     session.seek(START_NS + 100 * NS_PER_S)
     if not playing:
         session.pause()
@@ -415,7 +416,7 @@ def test_one_that_breaks_off_is_over(
 
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = Archive(torn, Checkpoints(tmp_path), make_pipeline)
-    session = ReplaySession(source, window, 1000.0, screen, lambda _: None, SystemClock())
+    session = ReplaySession(source, window, 1000.0, screen, person_lookup({}), SystemClock())
     until(lambda: session.is_over)
     session.close()
     assert "the replay of i1 broke off" in caplog.text
@@ -435,7 +436,7 @@ def test_a_disk_that_hangs_keeps_nobody_who_begins_or_ends_one(
 
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = Archive(hanging, Checkpoints(tmp_path), make_pipeline)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, SystemClock())
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), SystemClock())
     session.pause()
     assert session.view().incident_id == "i1"
     session.close()
@@ -458,7 +459,7 @@ def test_one_goes_on_where_it_cannot_be_seen_whether_the_past_was_changed(
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     records = list(walk_with_mayday())
     source = Archive(lambda _: iter(records), Checkpoints(tmp_path), make_pipeline, lambda: gone)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, clock)
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), clock)
     until(lambda: len(screen.resets) == 1)
     for looked in range(1, 4):
         clock.advance(2.0)
@@ -473,7 +474,7 @@ def test_it_says_what_of_its_log_cannot_be_shown_as_it_was(tmp_path: Path, scree
     flaws = ["segment 2 of the log is missing"]
     source = replace(archive(walk_with_mayday(), tmp_path), flaws=lambda: flaws)
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
-    session = ReplaySession(source, window, 1.0, screen, lambda _: None, SystemClock())
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), SystemClock())
     try:
         flaws.append("a part of the log cannot be read")
         shown = picture(session).replay

@@ -12,6 +12,7 @@ from base_station.engine.ports import Trails
 from base_station.replay.playback import Playback
 from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.replay.unrecorded import RecordGap
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.wire import GapView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, SystemClock
 from tests.rig.live_station import Screen
@@ -96,7 +97,7 @@ def screen() -> Screen:
 def session(tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
     window = ReplayWindow("i1", START_NS, at(END_S))
     session = ReplaySession(
-        archive(with_hole(), tmp_path), window, 1.0, screen, lambda _: None, SystemClock()
+        archive(with_hole(), tmp_path), window, 1.0, screen, person_lookup({}), SystemClock()
     )
     yield session
     session.close()

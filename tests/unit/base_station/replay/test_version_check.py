@@ -171,7 +171,7 @@ def redacted(whole: list[Record], *, incident: bool) -> list[Record]:
     if incident:
         erasure = erasure_of_incident(actions, "i1")
     else:
-        erasure = erasure_of_person(actions, "Ada", "Ada", whole[-1][0])
+        erasure = erasure_of_person(actions, "Ada", ["Ada"], whole[-1][0])
     redact = Redactor(erasure, clocks_of(whole))
     return [one for record in whole for one in redact(record)]
 

@@ -27,6 +27,7 @@ from shared.messages import STATION_ID, CommandKind, Header, OperatorAction, Tic
 from shared.messages.pins import StartTogether
 from shared.messages.station import (
     Action,
+    Assign,
     CloseIncident,
     DoneApart,
     ReportProblem,
@@ -155,6 +156,7 @@ def test_what_a_person_did_is_written_down_and_not_done(leading: Leading) -> Non
             "SendCommand c1, text, red, not everyone, come out, 0.0, 60.0",
         ),
         (ResolveAlarm("a1", "n" * 500), f"ResolveAlarm a1, {'n' * 500}, 0"),
+        (Assign("FF-01", "p1", "Ada", "red", "leader"), "Assign FF-01, p1"),
     ],
 )
 def test_what_a_person_did_is_told_in_words(tmp_path: Path, action: Action, what: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.station import command_view
 from base_station.views.units import unit_views
 from shared.messages import CommandKind, CommandState
@@ -34,9 +35,9 @@ def test_a_card_and_a_command_show_whether_the_unit_can_notify(
 ) -> None:
     script = sent(outputs=outputs)
     live = script.pipeline.state
-    (card,) = unit_views(live, [live.units[U]], lambda _: None)
+    (card,) = unit_views(live, [live.units[U]], person_lookup({}))
     assert card.can_be_notified is shown
-    view = command_view(live.commands["c1"])
+    view = command_view(live.commands["c1"], person_lookup({}))
     assert view.notifies_wearer
     assert [one.can_be_notified for one in view.units] == [shown]
 
@@ -45,7 +46,7 @@ def test_a_command_shows_when_the_wearer_was_notified() -> None:
     script = sent(CommandKind.LOCATE, ("led",))
     script.now_s += 1.0
     script.reply(U, "c1", CommandState.NOTIFIED)
-    (one,) = command_view(script.pipeline.state.commands["c1"]).units
+    (one,) = command_view(script.pipeline.state.commands["c1"], person_lookup({})).units
     assert (one.state, one.notified_ms) == ("notified", script.t_ns // 10**6)
     rate = sent(CommandKind.SET_POSITION_RATE).pipeline.state.commands["c1"]
-    assert not command_view(rate).notifies_wearer
+    assert not command_view(rate, person_lookup({})).notifies_wearer

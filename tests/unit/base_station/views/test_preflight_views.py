@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.units import unit_views
 from base_station.views.wire import PreflightView
 from shared.messages import PreflightFinding, PreflightLevel
@@ -36,7 +37,7 @@ def test_findings_are_one_text(
     script.register(U)
     script.say(message_factory.description(script.header(U), preflight=found))
     state = script.pipeline.state
-    (card,) = unit_views(state, state.units.values(), lambda _: None)
+    (card,) = unit_views(state, state.units.values(), person_lookup({}))
     assert card.preflight == shown
 
 
@@ -44,5 +45,5 @@ def test_a_unit_that_has_not_described_itself_has_not_checked_itself() -> None:
     script = Script()
     script.register(U)
     state = script.pipeline.state
-    (card,) = unit_views(state, state.units.values(), lambda _: None)
+    (card,) = unit_views(state, state.units.values(), person_lookup({}))
     assert card.preflight is None

@@ -166,5 +166,6 @@ def test_of_an_incident_the_audit_keeps_no_crew_and_role_of_who_was_given_a_unit
             forget_in(session, ana)
         with store.read() as session:
             said = {one.t_ns: one.detail for one in session.query(AuditEntry)}
-    gone = msgspec.json.encode(replace(worn, **NOBODY)).decode()
+    nobody = replace(worn, person_id=ERASED_TEXT, **NOBODY)
+    gone = msgspec.json.encode(nobody).decode()
     assert said == {10: detail, 20: gone, 30: detail}

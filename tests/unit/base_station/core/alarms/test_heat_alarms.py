@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.core.alarms.interface import WARNING
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.units import unit_views
 from shared.messages.station import (
     AcknowledgeAlarm,
@@ -68,7 +69,7 @@ def test_a_used_up_heat_budget_is_told_below_every_limit(script: Script) -> None
     raised_s = (script.alarms[0].raised_ns - script.records[0][0]) / 1e9
     assert raised_s == pytest.approx(1501.0, abs=2.0)
     state = script.pipeline.state
-    (shown,) = unit_views(state, [state.units[U]], lambda _: None)
+    (shown,) = unit_views(state, [state.units[U]], person_lookup({}))
     assert shown.heat_used == pytest.approx(1600.0 / 1500.0, abs=0.01), "as it is now"
 
 

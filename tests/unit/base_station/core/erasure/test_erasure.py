@@ -69,18 +69,18 @@ def bo(unit_id: str) -> Assign:
 def test_a_person_wears_a_unit_until_it_is_handed_back_or_on(
     actions: list[tuple[int, Action]], wearings: list[tuple[str, int, int]]
 ) -> None:
-    erasure = erasure_of_person(done(*actions), "p1", "", NOW_NS)
+    erasure = erasure_of_person(done(*actions), "p1", (), NOW_NS)
     assert erasure.wearings == tuple(Wearing(*one) for one in wearings)
 
 
 def test_every_name_that_a_person_had_is_known_the_longest_first() -> None:
     actions = done((10, ana("A")), (20, ana("A", " ")), (30, ana("A", "Ana Kovač")), (40, bo("A")))
     actions.insert(1, (15, OPERATOR.key(STATION_ID), b"\xffa newer program's"))
-    assert erasure_of_person(actions, "p1", "Anka", NOW_NS).names == ("Ana Kovač", "Anka", "Ana")
+    assert erasure_of_person(actions, "p1", ["Anka"], NOW_NS).names == ("Ana Kovač", "Anka", "Ana")
 
 
 def test_the_moment_of_handing_back_is_the_next_ones() -> None:
-    erasure = erasure_of_person(done((10, ana("A")), (20, Unassign("A"))), "p1", "", NOW_NS)
+    erasure = erasure_of_person(done((10, ana("A")), (20, Unassign("A"))), "p1", (), NOW_NS)
     assert [erasure.covers("A", t_ns) for t_ns in (9, 10, 19, 20)] == [False, True, True, False]
     assert not erasure.covers("B", 15)
 
@@ -189,7 +189,7 @@ def test_of_two_stations_the_one_that_forgets_later_places_every_message_as_the_
     """Though it has heard words of the unit since that were less delayed."""
     actions = done((10, ana("A")), (30, ForgetWearers("A")), (200, Unassign("A")),
                    (300, ForgetWearers("A")), (400, ForgetWearers("A")))  # fmt: skip
-    erasure = erasure_of_person(actions, "p1", "", NOW_NS)
+    erasure = erasure_of_person(actions, "p1", (), NOW_NS)
     clocks = CaptureClocks(first_erased_ns(actions, erasure))
     for t_ns, delay_ns in ((50, 9), (300, 5), (301, 3)):
         clocks.note(t_ns, Header(sender, 7, t_ns, t_ns - delay_ns - 100))
@@ -198,7 +198,7 @@ def test_of_two_stations_the_one_that_forgets_later_places_every_message_as_the_
 
 def test_of_a_run_that_was_not_heard_before_what_came_since_tells() -> None:
     actions = done((10, ana("A")), (200, Unassign("A")), (300, ForgetWearers("A")))
-    clocks = CaptureClocks(first_erased_ns(actions, erasure_of_person(actions, "p1", "", NOW_NS)))
+    clocks = CaptureClocks(first_erased_ns(actions, erasure_of_person(actions, "p1", (), NOW_NS)))
     for t_ns, delay_ns in ((400, 9), (500, 3)):
         clocks.note(t_ns, Header("A", 8, t_ns, t_ns - delay_ns - 100))
     assert clocks.captured_ns(Header("A", 8, 1, 10)) == 113

@@ -6,7 +6,8 @@ import msgspec
 import pytest
 
 from base_station.core.erasure.erasure import CaptureClocks, Erasure, Wearing
-from base_station.core.erasure.redaction import Redactor, name_pattern
+from base_station.core.erasure.redaction import Redactor
+from base_station.core.person_references import name_pattern
 from base_station.core.state import ERASED_TEXT
 from shared.channels import (
     ALARM,

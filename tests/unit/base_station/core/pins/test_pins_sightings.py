@@ -13,6 +13,7 @@ from base_station.fusion.odometry.path_history import PathHistory
 from base_station.fusion.odometry.points import PathArrays
 from base_station.fusion.smoothing.interface import EncounterConstraint, Solution, UnitEvidence
 from base_station.fusion.smoothing.path_graph import PathGraph
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.station import pin_views
 from shared.channels import SIGHTING, backfilled_key
 from shared.clock import NS_PER_S
@@ -176,7 +177,7 @@ def test_a_unit_that_is_met_is_no_beacon_of_the_same_name() -> None:
     state = walk.script.pipeline.state
     assert state.beacons["FF-02"].seen_ns is None
     assert reported_floors(state) == []
-    (met,) = pin_views(state)
+    (met,) = pin_views(state, person_lookup({}))
     assert (met.kind, met.north_m, met.floor) == ("meeting", None, None)
     sighting(walk, SightingKind.BEACON, "FF-02")
     assert [said.floor for said in reported_floors(state)] == [3]

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from base_station.core.checkpoint import read_checkpoint
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.station import StationFacts, snapshot
 from shared.messages import FusedPosition
 from shared.messages.pins import RemovePin, SetMeeting, SetPin
@@ -83,7 +84,7 @@ def test_the_region_grows_from_there(script: Script) -> None:
 
 
 def region_m(script: Script) -> float:
-    seen = snapshot(script.pipeline.state, 1, StationFacts(), lambda _: None)
+    seen = snapshot(script.pipeline.state, 1, StationFacts(), person_lookup({}))
     (view,) = (one for one in seen.units if one.unit_id == U)
     assert view.position is not None
     return view.position.ellipse_major_m

@@ -12,6 +12,7 @@ from base_station.core.checkpoint import read_checkpoint
 from base_station.core.events import Refused
 from base_station.core.positioning.building_entry import is_outside
 from base_station.site.reachability import SECTORS
+from base_station.storage.db.known_people import person_lookup
 from base_station.views.station import StationFacts, snapshot
 from edge.simulation.building import plan_path
 from shared.channels import GPS, backfilled_key
@@ -142,7 +143,7 @@ def test_who_is_not_heard_is_within_walls(script: Script) -> None:
     assert script.pipeline.state.units[U].reach == ()
     script.wait(20)
     state = script.pipeline.state
-    view = snapshot(state, 1, StationFacts(), lambda _: None).units[0].position
+    view = snapshot(state, 1, StationFacts(), person_lookup({})).units[0].position
     assert view is not None
     widths = [math.dist(point, (CORRIDOR_EAST_M, CORRIDOR_NORTH_M)) for point in view.reach]
     assert max(widths) > 9.0, "along the corridor"

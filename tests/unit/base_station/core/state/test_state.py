@@ -11,6 +11,7 @@ import pytest
 from base_station.core.events import Refused, UnitChanged
 from base_station.core.state import UnitState
 from base_station.core.state.trail import RECENT_POINTS, TRAIL_POINTS
+from base_station.storage.db.known_people import KnownPerson, person_lookup
 from base_station.views.station import StationFacts, health_view, snapshot
 from base_station.views.units import unit_views
 from base_station.views.wire import ClockView
@@ -154,7 +155,7 @@ def test_an_old_position_looks_old_and_its_region_grows(script: Script) -> None:
     state = script.pipeline.state
 
     def region_m() -> float:
-        [view] = unit_views(state, [unit(script)], lambda _: None)
+        [view] = unit_views(state, [unit(script)], person_lookup({}))
         assert view.position is not None
         return view.position.ellipse_major_m
 
@@ -312,7 +313,7 @@ def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
     unit(script).fused = msgspec.structs.replace(
         fused, std_north_m=2.0, std_east_m=1.0, correlation_ne=0.0
     )
-    view = unit_views(script.pipeline.state, [unit(script)], lambda _: None)[0].position
+    view = unit_views(script.pipeline.state, [unit(script)], person_lookup({}))[0].position
     assert view is not None
     assert view.ellipse_major_m == pytest.approx(2.0 * 2.4477, rel=1e-3)
     assert view.ellipse_minor_m == pytest.approx(1.0 * 2.4477, rel=1e-3)
@@ -320,7 +321,7 @@ def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
     unit(script).fused = msgspec.structs.replace(
         fused, std_north_m=1.0, std_east_m=1.0, correlation_ne=0.9
     )
-    view = unit_views(script.pipeline.state, [unit(script)], lambda _: None)[0].position
+    view = unit_views(script.pipeline.state, [unit(script)], person_lookup({}))[0].position
     assert view is not None
     assert view.ellipse_heading_rad == pytest.approx(math.pi / 4.0), "towards north-east"
 
@@ -329,7 +330,9 @@ def test_a_snapshot_shows_people_and_alarms(script: Script) -> None:
     script.act(Assign(U, "p1", "Ada", "red", "leader"))
     script.event(U, EventKind.MAYDAY)
     script.position(U, 1.0, 2.0)
-    shown = snapshot(script.pipeline.state, 7, StationFacts(), lambda p: f"/photo/{p}")
+    shown = snapshot(
+        script.pipeline.state, 7, StationFacts(), lambda p: KnownPerson("", photo_url=f"/photo/{p}")
+    )
     (view,) = shown.units
     assert view.person is not None
     assert view.person.photo_url == "/photo/p1"
@@ -358,7 +361,7 @@ def test_endless_strangers_do_not_fill_the_memory(script: Script) -> None:
 
 def test_a_card_says_that_the_unit_was_switched_off_until_it_speaks_again(script: Script) -> None:
     def is_off() -> bool:
-        (view,) = unit_views(script.pipeline.state, [unit(script)], lambda _: None)
+        (view,) = unit_views(script.pipeline.state, [unit(script)], person_lookup({}))
         return view.switched_off
 
     script.status(U)
@@ -373,7 +376,7 @@ def test_a_card_says_that_the_unit_was_switched_off_until_it_speaks_again(script
 
 def test_a_card_says_what_the_unit_knows_of_the_time(script: Script) -> None:
     def clock() -> ClockView | None:
-        return unit_views(script.pipeline.state, [unit(script)], lambda _: None)[0].clock
+        return unit_views(script.pipeline.state, [unit(script)], person_lookup({}))[0].clock
 
     script.say(Heartbeat(script.header(U), 1, 1))
     assert clock() is None, "the station never answered it"

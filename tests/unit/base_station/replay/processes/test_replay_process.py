@@ -23,6 +23,7 @@ from base_station.replay.processes.replay_process import ReplayContext, ReplayPr
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.replay.session import ReplayWindow
 from base_station.replay.version_check import DIFFERS
+from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import Delta, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S
@@ -72,7 +73,7 @@ def place(tmp_path: Path, processes: ReplayProcesses) -> ReplayContext:
         checkpoints=str(tmp_path / "checkpoints"),
         prepare=lambda: None,
         note_damage=lambda _: None,
-        photo_urls=lambda: {"p1": "/photo"},
+        people=lambda: {"p1": KnownPerson("Ada", photo_url="/photo")},
         empty_pipeline=lambda: past_pipeline(None),
     )
 
