@@ -14,6 +14,10 @@ class Quality(IntEnum):
     LOST = 3
 
 
+# For what every message passes: a member is looked up through its class ten times as slowly.
+GOOD, DEGRADED, LOST = Quality.GOOD, Quality.DEGRADED, Quality.LOST
+
+
 class Reason(IntFlag):
     """Why an estimate is not ``GOOD``, or no better; the bits are those on the wire."""
 

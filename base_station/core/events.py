@@ -11,9 +11,10 @@ import msgspec
 
 from shared.channels import (
     ALARM,
+    DOWN,
     FUSED,
     ROOT,
-    Direction,
+    UP,
     is_backfilled,
     parse_key,
     parse_unread_key,
@@ -23,7 +24,7 @@ from shared.errors import WireError
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, Header, Message
 
 
-class Received(msgspec.Struct, frozen=True):
+class Received(msgspec.Struct, frozen=True, gc=False):
     """Message that was decoded."""
 
     t_ns: int  # station time (UTC, never going back) at which it came
@@ -47,7 +48,7 @@ class Rejected(msgspec.Struct, frozen=True):
 StationEvent = Received | Rejected
 
 
-class UnitChanged(msgspec.Struct, frozen=True):
+class UnitChanged(msgspec.Struct, frozen=True, gc=False):
     """Change of a unit that the console may show."""
 
     unit_id: str
@@ -125,12 +126,12 @@ def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
         return _rejected(t_ns, key, payload, str(error))
     except Exception as error:  # noqa: BLE001  # a mistake of ours must not cost what was said
         return _rejected(t_ns, key, payload, f"{DECODER_FAILED}: {error!r}")
-    speaker = STATION_ID if channel.direction is Direction.DOWN else unit_id
+    speaker = STATION_ID if channel.direction is DOWN else unit_id
     if message.header.unit_id != speaker:
         return Rejected(
             t_ns, key, f"{message.header.unit_id!r} speaks under the key of {unit_id!r}"
         )
-    if channel.direction is Direction.UP and not _has_valid_times(message.header):
+    if channel.direction is UP and not _has_valid_times(message.header):
         return _rejected(t_ns, key, payload, f"the times of {speaker!r} make no sense")
     return Received(t_ns, unit_id, message, is_backfilled(key))
 

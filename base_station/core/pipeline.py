@@ -38,7 +38,7 @@ from base_station.fusion.interface import FuserKind
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.fusion.smoothing.interface import Smoother
 from base_station.site.plan_reader import PlanReader
-from shared.channels import Direction, channel_of
+from shared.channels import UP, channel_of
 from shared.errors import UserError
 from shared.messages import (
     Command,
@@ -93,7 +93,7 @@ class StationPipeline:
         if isinstance(event, Received):
             message = event.message
             channel = channel_of(message)
-            if channel.direction is Direction.UP:
+            if channel.direction is UP:
                 return self._unit_messages.step(state, event, channel)
             if isinstance(message, Tick):
                 return self._tick(message)

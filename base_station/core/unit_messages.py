@@ -49,7 +49,9 @@ from shared.messages import (
 MAX_UNREGISTERED = 200  # units that nobody registered: more are counted only
 LOCATION_MESSAGES = Position | GpsFix | Sighting
 _APPLIED_WHEN_LATE = UnitEvent | CommandReply | Sighting | GpsFix
-_DEFERRABLE = (Status, Temperature, Heartbeat)  # repeated in a second, and slow to change
+_DEFERRABLE = frozenset(
+    {Status, Temperature, Heartbeat}
+)  # repeated in a second, and slow to change
 
 
 _LATER: Any = None  # set by a stage, and read by none before it
@@ -227,7 +229,7 @@ def note_closed_incident(update: MessageUpdate) -> bool:
 def note_change(update: MessageUpdate) -> bool:
     """Note that the consoles may show the unit otherwise."""
     unit = update.unit
-    can_wait = isinstance(update.message, _DEFERRABLE) and update.link_before == unit.link
+    can_wait = type(update.message) in _DEFERRABLE and update.link_before == unit.link
     soon = update.is_of_agent or not can_wait
     update.outputs.append(UnitChanged(unit.unit_id, soon))
     return True

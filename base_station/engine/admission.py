@@ -6,7 +6,7 @@ from enum import Enum
 
 from base_station.core.events import MessageNumber, Received, StationEvent, number_of
 from base_station.core.state import StationState
-from shared.channels import Direction, Qos, parse_key
+from shared.channels import STATION, UP, Qos, parse_key
 from shared.errors import UnknownChannelError
 
 
@@ -31,9 +31,9 @@ def classify(key: str, event: StationEvent, state: StationState) -> Admission:
         return _reason_to_drop(event, state) or Admission.ACCEPT
     if not channel.logged:
         return Admission.IGNORE
-    if channel.direction is Direction.STATION:
+    if channel.direction is STATION:
         return Admission.FORGED
-    reason = _reason_to_drop(event, state) if channel.direction is Direction.UP else None
+    reason = _reason_to_drop(event, state) if channel.direction is UP else None
     return reason or (Admission.ACCEPT_URGENT if channel.qos is Qos.ALERT else Admission.ACCEPT)
 
 

@@ -253,18 +253,18 @@ class StationEngine:
         """Classify a record from the bus, and log and apply it."""
         event = self._write_ahead.event_of(max(t_ns, self._not_before_ns), key, payload)
         admission = classify(key, event, self._pipeline.state)
-        if admission is Admission.FORGED:
+        if admission is Admission.ACCEPT:  # nearly always
+            self._write_ahead.append(event, key, payload)
+        elif admission is Admission.ACCEPT_URGENT:
+            self._write_ahead.append(event, key, payload, urgent=True)
+        elif admission is Admission.DUPLICATE:
+            self._repeated += 1
+        elif admission is Admission.FORGED:
             text = f"Somebody on the bus speaks as the station ({key}): not believed"
             self._health.report("bus", text)
         elif admission is Admission.RESTART_STORM:
             text = f"More starts of a unit's program are said than can be ({key}): left out"
             self._health.report("bus", text)
-        elif admission is Admission.DUPLICATE:
-            self._repeated += 1
-        elif admission is not Admission.IGNORE:
-            self._write_ahead.append(
-                event, key, payload, urgent=admission is Admission.ACCEPT_URGENT
-            )
 
     def _take_actions(self) -> None:
         for _ in range(len(self._inbox)):

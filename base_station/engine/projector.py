@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import msgspec
 
@@ -27,15 +28,17 @@ class Projector:
         self._news: dict[str, None] = {}  # incidents; an ordered set
         self._heard_before: dict[str, int] = {}
         self._track_second: dict[str, int] = {}  # by unit, of its newest track point
+        self._collectors: dict[type[Output], Callable[[Any], None]] = {
+            AlarmChange: self._alarms.append,
+            FusedPosition: self._note_track,
+            ClosedIncidentChanged: self._note_news,
+        }
 
     def note(self, event: StationEvent, outputs: Sequence[Output]) -> None:
         for output in outputs:
-            if isinstance(output, AlarmChange):
-                self._alarms.append(output)
-            elif isinstance(output, FusedPosition):
-                self._note_track(output)
-            elif isinstance(output, ClosedIncidentChanged):
-                self._news[output.incident_id] = None
+            collect = self._collectors.get(type(output))
+            if collect is not None:
+                collect(output)
         if not isinstance(event, Received):
             return
         message = event.message
@@ -80,6 +83,9 @@ class Projector:
     def _note_heard(self, unit_id: str, t_ns: int) -> None:
         if t_ns - self._heard_before.get(unit_id, 0) >= HEARD_NS:
             self._heard_before[unit_id] = self._heard[unit_id] = t_ns
+
+    def _note_news(self, changed: ClosedIncidentChanged) -> None:
+        self._news[changed.incident_id] = None
 
     def _note_track(self, fused: FusedPosition) -> None:
         second = fused.t_meas_ns // NS_PER_S

@@ -35,7 +35,7 @@ class PlaceFix(msgspec.Struct, frozen=True):
     uncorrected_m: tuple[float, float] | None = None  # north and east before that was taken off
 
 
-class BarometricHeight(msgspec.Struct, frozen=True):
+class BarometricHeight(msgspec.Struct, frozen=True, gc=False):
     """Height by a barometer, up to its bias."""
 
     t_mono_ns: int
@@ -81,7 +81,7 @@ class FixVerdict(msgspec.Struct, frozen=True):
     faulty: bool = False  # it cannot be true: the receiver is wrong, or the site's place is
 
 
-class Estimate(msgspec.Struct, frozen=True):
+class Estimate(msgspec.Struct, frozen=True, gc=False):
     """NED metres in the incident frame."""
 
     t_mono_ns: int  # the unit's time to which it belongs

@@ -17,8 +17,9 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
+import msgspec
 import numpy as np
 from numba import from_dtype, njit
 from numba.core.types import UniTuple, boolean, float64, void
@@ -81,7 +82,7 @@ DRIFT_WINDOW_S = 60.0  # moved, over which that is judged
 SUDDEN_GROWTH = 3.0  # so much faster than that, a heading's uncertainty has grown by something else
 
 
-class HorizontalEstimate(NamedTuple):
+class HorizontalEstimate(msgspec.Struct, frozen=True, gc=False):
     """Place of a unit and turn of its own frame, from a state of ``HorizontalFilter``."""
 
     north_m: float
@@ -98,14 +99,15 @@ class HorizontalEstimate(NamedTuple):
         std_east_m = math.sqrt(self.std_east_m**2 + variance_m2)
         product = std_north_m * std_east_m
         shared = self.correlation_ne * self.std_north_m * self.std_east_m
-        return self._replace(
+        return msgspec.structs.replace(
+            self,
             std_north_m=std_north_m,
             std_east_m=std_east_m,
             correlation_ne=shared / product if product > 0.0 else 0.0,
         )
 
 
-class OdometryIncrement(NamedTuple):
+class OdometryIncrement(msgspec.Struct, frozen=True, gc=False):
     """Movement from one position to the next, in the unit's own frame."""
 
     north_m: float
@@ -123,8 +125,8 @@ _PLANE, _HEIGHT, _ODOMETRY, _PARAMS = (
     from_dtype(one)[::1] for one in (PLANE, HEIGHT, ODOMETRY, PARAMS)
 )
 _THREE = UniTuple(float64, 3)  # type: ignore[no-untyped-call]
-_HORIZONTAL_ESTIMATE = UniTuple(float64, len(HorizontalEstimate._fields))  # type: ignore[no-untyped-call]
-_INCREMENT = UniTuple(float64, len(OdometryIncrement._fields))  # type: ignore[no-untyped-call]
+_HORIZONTAL_ESTIMATE = UniTuple(float64, len(HorizontalEstimate.__struct_fields__))  # type: ignore[no-untyped-call]
+_INCREMENT = UniTuple(float64, len(OdometryIncrement.__struct_fields__))  # type: ignore[no-untyped-call]
 _compiled = partial(njit, cache=True, error_model="numpy")
 
 

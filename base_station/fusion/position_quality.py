@@ -7,7 +7,7 @@ import math
 from base_station.fusion.kernels import HorizontalEstimate
 from base_station.fusion.parameters import Parameters
 from shared.messages import Position
-from shared.quality import NOT_OF_STEPS, Quality, Reason, in_words
+from shared.quality import DEGRADED, GOOD, LOST, NOT_OF_STEPS, Quality, Reason, in_words
 
 
 def quality_of(
@@ -23,12 +23,12 @@ def quality_of(
     ``last``: the unit's own position; ``assumed``: nothing ties the own frame to the incident
     frame; ``split``: walls leave more than one place open.
     """
-    tracker = Quality.GOOD if last is None else last.path_quality
-    if tracker is Quality.LOST:
-        return Quality.LOST, f"the unit's tracker is lost{_why(last)}"
+    tracker = GOOD if last is None else last.path_quality
+    if tracker is LOST:
+        return LOST, f"the unit's tracker is lost{_why(last)}"
     std_m, reason = math.hypot(placed.std_north_m, placed.std_east_m), ""
     if std_m > kind.lost_m and not assumed:
-        return Quality.LOST, f"within {2.0 * std_m:.0f} m"
+        return LOST, f"within {2.0 * std_m:.0f} m"
     if assumed:
         reason = "start not known: shown about the unit's own start"
     elif placed.turn_std_rad > kind.aligned_rad:
@@ -37,11 +37,11 @@ def quality_of(
         reason = "walls leave more than one place open"
     elif std_m > kind.unsure_m:
         reason = f"within {2.0 * std_m:.0f} m"
-    elif tracker is Quality.DEGRADED:
+    elif tracker is DEGRADED:
         reason = f"the unit's tracker is unsure{_why(last)}"
     elif last is not None and last.reasons & Reason.UNSETTLED:
         reason = in_words(Reason.UNSETTLED)
-    return (Quality.DEGRADED, reason) if reason else (Quality.GOOD, "")
+    return (DEGRADED, reason) if reason else (GOOD, "")
 
 
 def _why(last: Position | None) -> str:

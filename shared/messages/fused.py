@@ -17,7 +17,7 @@ from shared.messages.quantise import (
 from shared.quality import Quality
 
 
-class FusedPosition(msgspec.Struct, frozen=True):
+class FusedPosition(msgspec.Struct, frozen=True, gc=False):
     """NED metres about the site anchor."""
 
     header: Header  # the station's

@@ -11,7 +11,7 @@ SCHEMA_REVISION = 1
 STATION_ID = "station"
 
 
-class Header(msgspec.Struct, frozen=True):
+class Header(msgspec.Struct, frozen=True, gc=False):
     """First part of every message; ``(unit_id, boot_id, seq)`` names it for ever."""
 
     unit_id: str

@@ -18,10 +18,10 @@ from shared.messages.quantise import (
     signed32,
     unsigned32,
 )
-from shared.quality import NOT_OF_STEPS, Quality, Reason
+from shared.quality import DEGRADED, GOOD, NOT_OF_STEPS, Quality, Reason
 
 
-class MagneticNorth(msgspec.Struct, frozen=True):
+class MagneticNorth(msgspec.Struct, frozen=True, gc=False):
     """Where a unit that has a calibrated compass believes magnetic north to be in its frame.
 
     What bends the field lasts, so many of these tell hardly more than one: not to be averaged.
@@ -31,7 +31,7 @@ class MagneticNorth(msgspec.Struct, frozen=True):
     std_rad: float
 
 
-class Position(msgspec.Struct, frozen=True):
+class Position(msgspec.Struct, frozen=True, gc=False):
     """NED about the unit's start; the frame's north is the unit's own unless it has a compass."""
 
     header: Header
@@ -62,14 +62,14 @@ class Position(msgspec.Struct, frozen=True):
         places knows how sure these are.  Nor is a heading that drifts, of which the unit says how
         much it may.
         """
-        if self.quality is Quality.GOOD or not self.reasons & NOT_OF_STEPS:
+        if self.quality is GOOD or not self.reasons & NOT_OF_STEPS:
             return self.quality
         others = self.reasons & ~NOT_OF_STEPS
         if not others:
-            return Quality.GOOD
+            return GOOD
         # Of what is against its steps only stances that are missing or wrong make a path lost.
         stances = Reason.NO_STANCE | Reason.INCONSISTENT | Reason.NOT_ON_FOOT
-        return self.quality if others & stances else min(self.quality, Quality.DEGRADED)
+        return self.quality if others & stances else min(self.quality, DEGRADED)
 
     def to_wire(self) -> position_pb2.Position:
         north = self.magnetic_north

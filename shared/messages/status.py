@@ -32,7 +32,7 @@ class BatteryState(IntEnum):
     FULL = 3  # on external power, and not charging
 
 
-class Status(msgspec.Struct, frozen=True):
+class Status(msgspec.Struct, frozen=True, gc=False):
     header: Header
     activity: Activity
     motionless_s: float  # since the last motion

@@ -25,7 +25,7 @@ class SensorTemperature(msgspec.Struct, frozen=True):
         return SensorTemperature(wire.name, wire.temperature_cdegc * 1e-2)
 
 
-class Temperature(msgspec.Struct, frozen=True):
+class Temperature(msgspec.Struct, frozen=True, gc=False):
     header: Header
     ambient_degc: float  # of several sensors, the hottest
     sensors: tuple[SensorTemperature, ...] = ()  # by name; empty: one sensor without a name

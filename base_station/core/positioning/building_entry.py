@@ -15,10 +15,11 @@ def is_outside(plan: Plan | None, history: PathHistory) -> bool:
     """True where a unit's barometer is in outside air. Estimated without pins, so that a pin does
     not change the state that is kept without pins.
     """
-    if history.shown_m is None:
+    shown_m = history.shown_m
+    if shown_m is None:
         return False
     if plan is not None and plan.outlines:
-        return plan.depth_m(*history.shown_m) < -OUTSIDE_M
+        return plan.depth_m(*shown_m) < -OUTSIDE_M
     return history.since_gps_s is not None and history.since_gps_s < OUTSIDE_FIX_S
 
 

@@ -9,7 +9,7 @@ from base_station.core.state.boot_state import BootState
 from base_station.fusion.interface import Estimate
 from base_station.site.storeys import floor_at, floor_probability
 from shared.messages import FusedPosition, Header
-from shared.quality import Quality
+from shared.quality import DEGRADED, LOST
 
 ASSUMED_STD_M = 6.0  # a unit may have been switched on upstairs
 
@@ -35,8 +35,8 @@ def fused_message(
     if floor is not None:
         sure = floor_probability(storeys, floor, estimate.down_m, std_down_m)
     quality, reason = estimate.quality, estimate.quality_reason
-    if state.plan is not state.placed_plan and quality is not Quality.LOST:
-        quality, reason = Quality.DEGRADED, "nobody has said where the plan lies"
+    if state.plan is not state.placed_plan and quality is not LOST:
+        quality, reason = DEGRADED, "nobody has said where the plan lies"
     return FusedPosition(  # by place: every position comes through here
         header,
         unit.unit_id,

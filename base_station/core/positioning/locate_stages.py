@@ -17,7 +17,7 @@ from base_station.core.state.boot_state import BootState
 from base_station.fusion.interface import Estimate
 from base_station.fusion.odometry.path_history import PathHistory
 from shared.messages import FusedPosition, Header
-from shared.quality import Quality
+from shared.quality import LOST
 
 _LATER: Any = None  # set by a stage, and read by none before it
 
@@ -79,7 +79,7 @@ def show(update: LocationUpdate) -> None:
     """Make it the unit's position in the live state."""
     unit, fused = update.unit, update.fused
     unit.fused, unit.reach = fused, ()
-    if fused.quality is not Quality.LOST:
+    if fused.quality is not LOST:
         unit.position_lost_since_ns = None
     elif unit.position_lost_since_ns is None:
         unit.position_lost_since_ns = update.state.t_ns

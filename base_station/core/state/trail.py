@@ -28,7 +28,7 @@ OLDER_POINTS = 500  # at most, of all that was before
 _DOUBLINGS = 10  # 512 m: what is left then are floors and gaps
 
 
-class TrailStep(msgspec.Struct, frozen=True, array_like=True):
+class TrailStep(msgspec.Struct, frozen=True, array_like=True, gc=False):
     t_ns: int
     north_m: float
     east_m: float

@@ -16,7 +16,7 @@ from shared.messages import (
     UnitDescription,
     UnitEvent,
 )
-from shared.quality import Quality
+from shared.quality import GOOD
 
 _FAULTS = frozenset({EventKind.SENSOR_FAULT, EventKind.STORAGE_FAULT})
 
@@ -42,7 +42,7 @@ def apply(unit: UnitState, message: Message, t_ns: int) -> None:
 
 def _apply_position(unit: UnitState, position: Position, t_ns: int) -> None:
     unit.position, unit.position_ns = position, t_ns
-    if position.path_quality is Quality.GOOD:
+    if position.path_quality is GOOD:
         unit.degraded_since_ns = None
     elif unit.degraded_since_ns is None:
         unit.degraded_since_ns = t_ns

@@ -101,7 +101,7 @@ class HorizontalFilter:
 
     def estimate_before(self, north_m: float, east_m: float) -> HorizontalEstimate:
         """Place before this much of own path was walked, and turn, as it looks now."""
-        return HorizontalEstimate._make(kernels.estimate_before(*self._current(), north_m, east_m))
+        return HorizontalEstimate(*kernels.estimate_before(*self._current(), north_m, east_m))
 
     def set_state(self, mean: Floats, covariance: Floats) -> None:
         """Go on from what another filter of the same state came to."""

@@ -107,7 +107,7 @@ class MapAidedFilter:
         """Estimate before this much of own path was walked."""
         if self._cloud is None:
             return self._plain.estimate_before(north_m, east_m)
-        return HorizontalEstimate._make(estimate_before(*self._cloud.moments(), north_m, east_m))
+        return HorizontalEstimate(*estimate_before(*self._cloud.moments(), north_m, east_m))
 
     def place_before(self, north_m: float, east_m: float) -> tuple[Floats, Floats]:
         """Place and covariance before this much of own path was walked, as it looks now."""

@@ -12,7 +12,7 @@ from base_station.fusion import kernels
 from base_station.fusion.kernels import ODOMETRY, PARAMS, OdometryIncrement, Record
 from base_station.fusion.parameters import Parameters
 from shared.messages import Position
-from shared.quality import Quality
+from shared.quality import GOOD
 
 
 class OdometryIncrements:
@@ -29,14 +29,14 @@ class OdometryIncrements:
 
     def increment(self, position: Position, duration_s: float) -> OdometryIncrement:
         """Increment to a position; ``duration_s``: time since the last one."""
-        return OdometryIncrement._make(
-            kernels.integrate_increment(
+        return OdometryIncrement(
+            *kernels.integrate_increment(
                 self._odometry,
                 self._params_of,
                 (position.north_m, position.east_m, position.down_m),
                 (position.std_north_m, position.std_east_m, position.heading_std_rad),
                 duration_s,
-                position.path_quality is Quality.GOOD,
+                position.path_quality is GOOD,
             )
         )
 

@@ -33,7 +33,7 @@ from base_station.fusion.odometry.start_correction import StartCorrection
 from base_station.fusion.odometry.straight_segment import StraightnessTest
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import Position
-from shared.quality import Quality
+from shared.quality import GOOD
 
 STEP_M = 1.0
 CLIMB_M = 0.5
@@ -114,7 +114,7 @@ class PathHistory(msgspec.Struct):
         if begins_run:
             self._begin_run(position.header.boot_id, t_ns)
         restarted = bool(self.points) and begins_run
-        flags = 0 if position.path_quality is Quality.GOOD else DOUBTFUL
+        flags = 0 if position.path_quality is GOOD else DOUBTFUL
         flags |= RESTART * restarted | BREAK * (jumped and not restarted)
         if not self.points:
             self.points.append(_point_of(position, t_ns, flags))
@@ -149,7 +149,7 @@ class PathHistory(msgspec.Struct):
         near = points[max(row - 1, 0) : row + 1]
         if min(abs(point.t_ns - t_ns) for point in near) < FILL_NS:
             return
-        late = _point_of(position, t_ns, 0 if position.path_quality is Quality.GOOD else DOUBTFUL)
+        late = _point_of(position, t_ns, 0 if position.path_quality is GOOD else DOUBTFUL)
         _set_live_estimate(late, estimate, floor)
         if joins(late, row):
             points.insert(row, late)

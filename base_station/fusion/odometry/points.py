@@ -43,7 +43,7 @@ NO_FLOOR = -(2**31)
 BREAK, RESTART, DOUBTFUL = 1, 2, 4  # flags: the path before and after do not join
 
 
-class Point(msgspec.Struct, array_like=True):
+class Point(msgspec.Struct, array_like=True, gc=False):
     """One place of the own path; fields as in the rows, not rounded yet."""
 
     t_ns: int = 0

@@ -23,7 +23,7 @@ PLACE_ROW = np.dtype(
 _MOST_MM = 2**31 - 1
 
 
-class PathPoint(msgspec.Struct, frozen=True, array_like=True):
+class PathPoint(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """In the unit's own frame."""
 
     t_ns: int

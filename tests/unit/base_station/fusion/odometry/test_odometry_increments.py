@@ -27,7 +27,8 @@ def go(
 
 def test_the_first_stretch_is_from_the_frame_s_origin_and_took_no_time() -> None:
     increment = go(OdometryIncrements(KIND), 3.0, 4.0, down_m=-1.0)
-    assert increment[:4] == (3.0, 4.0, -1.0, 5.0)
+    assert (increment.north_m, increment.east_m, increment.down_m) == (3.0, 4.0, -1.0)
+    assert increment.length_m == 5.0
     assert increment.moving_s == 0.0
     assert increment.place_var_m2 == pytest.approx(5.0 * KIND.walk_m_per_sqrt_m**2)
     assert increment.turn_var == pytest.approx(5.0 * KIND.turn_rad_per_sqrt_m**2)
