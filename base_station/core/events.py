@@ -138,10 +138,10 @@ def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
 
 def number_of(event: StationEvent) -> MessageNumber | None:
     """Boot and sequence number of an event's message."""
-    if isinstance(event, Rejected):
-        return event.number
-    header = event.message.header
-    return event.unit_id, header.boot_id, header.seq
+    if isinstance(event, Received):  # nearly always
+        header = event.message.header
+        return event.unit_id, header.boot_id, header.seq
+    return event.number
 
 
 def number_in(key: str, payload: bytes) -> MessageNumber | None:

@@ -46,14 +46,17 @@ class FoxgloveTopics:
 
         A unit's place is said once a second, and where the site has an anchor.
         """
-        if isinstance(decision, AlarmChange):
-            topic = log_topic(decision.unit_id or STATION_ID)
-            return topic, _log_line(decision).SerializeToString()
-        second = decision.t_meas_ns // NS_PER_S
-        if anchor is None or self._last_second.get(decision.unit_id) == second:
+        if isinstance(decision, FusedPosition):
+            return self._location_of(decision, anchor)
+        topic = log_topic(decision.unit_id or STATION_ID)
+        return topic, _log_line(decision).SerializeToString()
+
+    def _location_of(self, fused: FusedPosition, anchor: Anchor | None) -> tuple[str, bytes] | None:
+        second = fused.t_meas_ns // NS_PER_S
+        if anchor is None or self._last_second.get(fused.unit_id) == second:
             return None
-        self._last_second[decision.unit_id] = second
-        return location_topic(decision.unit_id), _location(decision, anchor).SerializeToString()
+        self._last_second[fused.unit_id] = second
+        return location_topic(fused.unit_id), _location(fused, anchor).SerializeToString()
 
     def plan(self, plan: Plan | None, anchor: Anchor | None, t_ns: int) -> tuple[str, bytes] | None:
         """The building on the Earth, where it is known: when it changes, and again now and then.

@@ -42,12 +42,12 @@ class Projector:
         if not isinstance(event, Received):
             return
         message = event.message
-        if isinstance(message, OperatorAction):
+        if type(message) is OperatorAction:
             if not any(isinstance(output, Refused) for output in outputs):
                 self._actions.append(_at_station_time(message, event.t_ns))
         elif outputs and message.header.unit_id != STATION_ID and not tracked_unit(event.unit_id):
             self._note_heard(event.unit_id, event.t_ns)
-            if isinstance(message, UnitDescription):
+            if type(message) is UnitDescription:
                 self._descriptions.append(message)
 
     @property

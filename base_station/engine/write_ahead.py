@@ -116,7 +116,7 @@ class WriteAhead:
     def _apply(self, event: StationEvent) -> list[Output]:
         outputs = self._step(event)
         for output in outputs:
-            if isinstance(output, _DECISIONS):
+            if type(output) is FusedPosition or type(output) is AlarmChange:
                 self._append_output(output)
         self._log_plan(event.t_ns)
         return outputs
@@ -134,7 +134,7 @@ class WriteAhead:
         return outputs
 
     def _append_output(self, output: FusedPosition | AlarmChange) -> None:
-        self._urgent = self._urgent or isinstance(output, AlarmChange)
+        self._urgent = self._urgent or type(output) is AlarmChange
         t_ns = output.header.t_utc_ns
         self._log.write(t_ns, _KEYS[type(output)], encode(output))
         shown = self._foxglove.of(output, self._pipeline.state.anchor)
