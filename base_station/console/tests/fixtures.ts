@@ -24,6 +24,8 @@ export const HEALTH: HealthView = {
   recordings: [],
   repeated: 0,
   reading: null,
+  left_out: 0,
+  missing: 0,
 };
 
 export const STATUS: StatusView = {
