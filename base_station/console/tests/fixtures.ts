@@ -23,6 +23,8 @@ export const HEALTH: HealthView = {
   standby: null,
   recordings: [],
   repeated: 0,
+  left_out: 0,
+  missing: 0,
   reading: null,
   left_out: 0,
   missing: 0,
