@@ -32,7 +32,8 @@ _TIMEOUT_S = 10.0
 _MOST_CAME = 8  # times what was asked for; what a unit says beyond is not kept
 _LEAST_KEPT_BYTES = 131_072  # of an answer, however little was asked for
 
-_FETCHING = ("range", "urgent")  # questions that bring messages
+_URGENT = "urgent"  # a question for alerts alone
+_FETCHING = ("range", _URGENT)  # questions that bring messages
 _ALERT = "alert/"  # a key behind the unit begins so
 
 Deliver = Callable[[str, bytes], None]  # key, payload; waits while the feed is full
@@ -155,16 +156,16 @@ class Backfill:
         self._turns = deque([*waiting, *idle])
 
     def _take(self, request: _Request, reply: bytes) -> None:
-        journal = self._journals[request.unit_id]
+        journal, is_urgent = self._journals[request.unit_id], request.question.what == _URGENT
         try:
             chunk = journal.take(request.question, reply, self._clock.monotonic_ns())
         except WireError as error:
             logger.warning("the journal of %s cannot be read: %s", request.unit_id, error)
-            self.share.note(request.unit_id, len(reply), 0, 0)
+            self.share.note(request.unit_id, len(reply), 0, 0, urgent=is_urgent)
             return
         entries = () if chunk is None else chunk.entries
         alerts = sum(entry.suffix.startswith(_ALERT) for entry in entries)
-        self.share.note(request.unit_id, len(reply), len(entries), alerts)
+        self.share.note(request.unit_id, len(reply), len(entries), alerts, urgent=is_urgent)
         if chunk is not None:
             for entry in chunk.entries:
                 self._deliver(_key_of(request.unit_id, chunk.boot_id, entry), entry.payload)
@@ -189,7 +190,7 @@ class Backfill:
             if question is None or (question.what == "acknowledge" and not self._may_forget()):
                 continue
             is_held_back = question.what in _FETCHING and not self.share.may_ask(
-                unit_id, urgent=question.what == "urgent"
+                unit_id, urgent=question.what == _URGENT
             )
             if is_held_back:
                 self._turns.append(unit_id)

@@ -18,6 +18,7 @@ from shared.messages.station import ReportProblem
 MESSAGES_AT_ONCE = 250_000
 BYTES_AT_ONCE = 64_000_000
 ALERTS_AT_ONCE = 500
+URGENT_BYTES_AT_ONCE, URGENT_BYTES_PER_S = 4_000_000, 200_000  # an alert has some hundred
 _REPORTED_AFTER_NS = 3 * NS_PER_S  # of waiting
 _OVER_AFTER_NS = 30 * NS_PER_S
 _PART = "journal share "  # and whose
@@ -31,12 +32,13 @@ _TEXT = (
 class _Unit:
     """Remaining share of one journal."""
 
-    __slots__ = ("alerts", "bytes", "messages")
+    __slots__ = ("alerts", "bytes", "messages", "urgent_bytes")
 
     def __init__(self, now_ns: int) -> None:
         self.messages = TokenBucket(MESSAGES_HZ, MESSAGES_AT_ONCE, now_ns)
         self.bytes = TokenBucket(BYTES_PER_S, BYTES_AT_ONCE, now_ns)
         self.alerts = TokenBucket(ALERTS_HZ, ALERTS_AT_ONCE, now_ns)
+        self.urgent_bytes = TokenBucket(URGENT_BYTES_PER_S, URGENT_BYTES_AT_ONCE, now_ns)
 
 
 class JournalRateLimit:
@@ -48,9 +50,16 @@ class JournalRateLimit:
         self._lock = Lock()
         self._waits: dict[str, tuple[int, int]] = {}  # since when, and when last; monotonic
 
-    def note(self, unit_id: str, came_bytes: int, messages: int, alerts: int) -> None:
-        """One reply of a journal: what of it is kept, and all its bytes."""
+    def note(
+        self, unit_id: str, came_bytes: int, messages: int, alerts: int, *, urgent: bool
+    ) -> None:
+        """One reply of a journal: what of it is kept, and all its bytes.  ``urgent``: alerts were
+        asked for; whatever else it brings counts as such, or it would not be bounded.
+        """
         now_ns, unit = self._clock.monotonic_ns(), self._unit(unit_id)
+        if urgent:
+            alerts = messages
+            unit.urgent_bytes.spend(came_bytes, now_ns)
         unit.bytes.spend(came_bytes, now_ns)
         unit.messages.spend(messages, now_ns)
         unit.alerts.spend(alerts, now_ns)
@@ -58,7 +67,8 @@ class JournalRateLimit:
     def may_ask(self, unit_id: str, *, urgent: bool) -> bool:
         """``urgent``: for alerts only, which have a share of their own."""
         now_ns, unit = self._clock.monotonic_ns(), self._unit(unit_id)
-        shares = (unit.alerts,) if urgent else (unit.alerts, unit.messages, unit.bytes)
+        of_alerts = (unit.alerts, unit.urgent_bytes)
+        shares = of_alerts if urgent else (unit.alerts, unit.messages, unit.bytes)
         if not any(share.wait_s(now_ns) for share in shares):
             return True
         with self._lock:

@@ -12,36 +12,31 @@ from threading import Event, Thread
 
 import pytest
 
-from shared.bus import QueryHandler
 from shared.bus_zenoh import ZenohBus
-from shared.channels import EVENT, POSITION, Qos, alive_key, parse_key
+from shared.channels import POSITION, Qos, alive_key, parse_key
 from shared.clock import NS_PER_S, SystemClock
 from shared.codec import decode, encode
 from shared.envelope import Stamper
-from shared.mcap_log import read_log
+from shared.mcap_log import read_log, segment_paths
 from shared.messages import (
-    EventKind,
     Header,
-    JournalBoot,
-    JournalChunk,
-    JournalEntry,
-    JournalIndex,
     Position,
-    UnitEvent,
 )
+from tests.rig.endless_journal import LAST, large_journal, mayday_journal
 from tests.rig.loaded_program import launch_loaded
 from tests.rig.message_factory import position
 from tests.rig.pacing import wait_until
 from tests.rig.simulated_units import BenchUnit, unit_names
 from tests.rig.station_process import Membership, StationProcess, station_process
 
-EVIL = "evil"
+EVIL, GREEDY = "evil", "greedy"
 SECONDS = 4
 FLOOD_S = 0.01
 AT_ONCE = 100  # 10,000 a second, where the machine can
 GROWN_MB = 150.0
 MAYDAYS = 3500  # 500 at once, and as many as one answer may bring beyond
 AT_ONCE_S = 0.3
+ON_ITS_WAY_MB = 8.0  # 500 alerts of that size, what one answer brings beyond, and the others
 
 Say = Callable[[ZenohBus, Header], None]
 
@@ -67,16 +62,18 @@ def say_16_mb(bus: ZenohBus, header: Header) -> None:
 class Scene:
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         names = unit_names(3)
-        member = Membership(folder, [*names, EVIL], plain=False)
+        member = Membership(folder, [*names, EVIL, GREEDY], plain=False)
         self.station: StationProcess = stack.enter_context(
             station_process(folder, member.address, launch=launch_loaded)
         )
         self.units = [BenchUnit(name, member.endpoint_of(name), stack) for name in names]
         self.evil = stack.enter_context(closing(ZenohBus(member.endpoint_of(EVIL))))
-        for name in [*names, EVIL]:
+        self.greedy = stack.enter_context(closing(ZenohBus(member.endpoint_of(GREEDY))))
+        for name in [*names, EVIL, GREEDY]:
             self.station.api.post("/units", {"unit_id": name})
         wait_until("the station listens", lambda: all(unit.is_heard for unit in self.units))
         wait_until("to the other one too", lambda: self.evil.is_heard(POSITION.key(EVIL)))
+        wait_until("and to that one", lambda: self.greedy.is_heard(POSITION.key(GREEDY)))
 
     def flood(self, say: Say, over: Event) -> None:
         stamper = Stamper(EVIL, secrets.randbits(63), SystemClock())
@@ -126,30 +123,6 @@ def test_others_are_heard_and_the_station_does_not_grow(scene: Scene, say: Say, 
     )
 
 
-def endless_journal(boot_id: int, suffix: str) -> QueryHandler:
-    """Has whatever it is asked for: as much as fits, of a run that never ends."""
-
-    def answer(key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
-        asked = dict(pair.split("=") for pair in parameters.split(";") if pair)
-        if key.endswith(("/index", "/acknowledge")):
-            yield JournalIndex((JournalBoot(boot_id, 1, 10**9, 0, 0),)).to_bytes()
-            return
-        first, last = int(asked["from"]), int(asked["to"])
-        for begin in range(first, min(last, first + 40_000), 400):
-            end = min(last, begin + 399)
-            payloads = (encode(mayday(Header(EVIL, boot_id, n, n))) for n in range(begin, end + 1))
-            entries = tuple(
-                JournalEntry(begin + i, suffix, payload) for i, payload in enumerate(payloads)
-            )
-            yield JournalChunk(boot_id, begin, end, entries, key.endswith("/urgent")).to_bytes()
-
-    return answer
-
-
-def mayday(header: Header) -> UnitEvent:
-    return UnitEvent(header, EventKind.MAYDAY)
-
-
 def maydays(scene: Scene) -> int:
     """In the log, of the one that runs wild."""
     return sum(f"/{EVIL}/" in key and "alert/" in key for _, key, _ in read_log(scene.station.log))
@@ -157,13 +130,11 @@ def maydays(scene: Scene) -> int:
 
 def test_a_journal_that_never_ends_fills_no_disk_and_is_told(scene: Scene) -> None:
     boot_id = secrets.randbits(63)
-    serving = scene.evil.serve(
-        f"muster/v1/{EVIL}/journal/**", endless_journal(boot_id, EVENT.suffix)
-    )
+    serving = scene.evil.serve(f"muster/v1/{EVIL}/journal/**", mayday_journal(EVIL, boot_id))
     token = scene.evil.declare_alive(alive_key(EVIL))  # who has a link is asked
     try:
         scene.evil.publish(
-            POSITION.key(EVIL), encode(position(Header(EVIL, boot_id, 10**9, 1))), Qos.LIVE
+            POSITION.key(EVIL), encode(position(Header(EVIL, boot_id, LAST, 1))), Qos.LIVE
         )
         wait_until("a person is told", lambda: "evil's journal brings more" in scene.problems())
         assert maydays(scene) < MAYDAYS
@@ -179,6 +150,51 @@ def test_a_journal_that_never_ends_fills_no_disk_and_is_told(scene: Scene) -> No
     finally:
         for declared in (serving, token):
             declared.close()
+
+
+def log_mb(scene: Scene) -> float:
+    return sum(one.stat().st_size for one in segment_paths(scene.station.log)) / 1e6
+
+
+def test_positions_that_a_journal_says_are_urgent_fill_no_disk_and_are_told(scene: Scene) -> None:
+    before_mb, before, began_s = log_mb(scene), time.time_ns(), time.monotonic()
+    boot_id, bus = secrets.randbits(63), scene.greedy
+    serving = bus.serve(f"muster/v1/{GREEDY}/journal/**", large_journal(GREEDY, boot_id))
+    token = bus.declare_alive(alive_key(GREEDY))
+    try:
+        first = encode(position(Header(GREEDY, boot_id, LAST, 1)))
+        bus.publish(POSITION.key(GREEDY), first, Qos.LIVE)
+        wait_until("a person is told", lambda: "greedy's journal brings more" in scene.problems())
+        for _ in range(7 * SECONDS):
+            for unit in scene.units:
+                unit.speak()
+            time.sleep(1.0 / 7.0)
+            since_mb = time.monotonic() - began_s
+            assert log_mb(scene) < before_mb + since_mb + ON_ITS_WAY_MB
+        wait_until(
+            "nothing of the others is missing",
+            lambda: logged(scene) == [unit.sent.messages for unit in scene.units],
+        )
+        print(
+            log_mb(scene) - before_mb,
+            time.monotonic() - began_s,
+            sorted(delays_s(scene, before))[-10:],
+        )
+        assert statistics.median(delays_s(scene, before)) < AT_ONCE_S
+    finally:
+        for declared in (serving, token):
+            declared.close()
+
+
+def delays_s(scene: Scene, since_ns: int) -> list[float]:
+    """Of the others' positions, from when they were sent until they were logged."""
+    return [
+        (t_ns - message.header.t_utc_ns) / NS_PER_S
+        for t_ns, key, payload in read_log(scene.station.log, start_ns=since_ns)
+        if "/up/position" in key
+        and isinstance(message := decode(POSITION, payload), Position)
+        and message.header.unit_id not in (EVIL, GREEDY)
+    ]
 
 
 def test_others_are_heard_at_once_beside_a_token_that_comes_and_goes(scene: Scene) -> None:
@@ -202,14 +218,7 @@ def test_others_are_heard_at_once_beside_a_token_that_comes_and_goes(scene: Scen
         "nothing of the others is missing",
         lambda: logged(scene) == [unit.sent.messages for unit in scene.units],
     )
-    delays_s = [
-        (t_ns - message.header.t_utc_ns) / NS_PER_S
-        for t_ns, key, payload in read_log(scene.station.log, start_ns=began_ns)
-        if "/up/position" in key
-        and isinstance(message := decode(POSITION, payload), Position)
-        and message.header.unit_id != EVIL
-    ]
-    assert statistics.median(delays_s) < AT_ONCE_S
+    assert statistics.median(delays_s(scene, began_ns)) < AT_ONCE_S
 
 
 def toggle(bus: ZenohBus, over: Event) -> None:

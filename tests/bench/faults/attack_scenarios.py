@@ -66,11 +66,22 @@ class ConnectionFlood:
 
     def happen(self, site: Site) -> None:
         with site.flooded(self.kind, _FLOODED_S, self.held, self.per_s):
-            site.agent.kill()
-            before = site.agent.said()
-            site.agent.start()
-            wait_until("the agent has begun", lambda: site.agent.said() > before)
-            time.sleep(_LINKED_WITHIN_S)
+            _link_again(site)
+
+
+@dataclass(frozen=True, slots=True)
+class EarlierUnits:
+    """Units of another authority try to link for ever; the unit has to link meanwhile."""
+
+    name: str
+    seconds: float = 15.0
+    bench_only: bool = True
+    after: Conditions = CLEAN
+
+    def happen(self, site: Site) -> None:
+        with site.attacked("retry", site.members.foreign, _FLOODED_S):
+            time.sleep(_BEGUN_S)
+            _link_again(site)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +141,16 @@ class Photographs:
             site.ask_par()
 
 
+def _link_again(site: Site) -> None:
+    """The unit's agent, from its start."""
+    site.agent.kill()
+    before = site.agent.said()
+    site.agent.start()
+    wait_until("the agent has begun", lambda: site.agent.said() > before)
+    time.sleep(_LINKED_WITHIN_S)
+
+
+_BEGUN_S = 4.0  # until forty have tried a few times
 _FLOODED_S = 120.0  # more than it lasts: it ends when the fault does
 _LINKED_WITHIN_S = 3.0  # to reach: else it is heard only after the fault's end
 
@@ -144,10 +165,12 @@ MEDDLING = (
     Crowd("200 consoles, and 5 that hardly read", 200, 5),
     ConnectionFlood("attack: 1,500 silent connections, 200/s", "silent", held=1500, per_s=200.0),
     ConnectionFlood("attack: 200/s begin a handshake", "hello", held=500, per_s=200.0),
+    EarlierUnits("attack: 40 units of another authority"),
     ConsoleFlood("attack: 120 addresses guess passwords", guesses(1.0), 120),
     ConsoleFlood("attack: 1,440 slow bodies from 12 addresses", slow_bodies(120), 12),
     Photographs("attack: 30 photographs of 50 megapixels", 30),
     Attack("attack: 50 sessions/s, revoked", "sessions", "revoked"),
     Attack("attack: a journal without end", "journal", "other"),
+    Attack("attack: a journal of 2 kB messages", "large journal", "other", seconds=25.0),
     Attack("attack: a token comes and goes", "toggle", "babbler"),
 )

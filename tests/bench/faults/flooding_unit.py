@@ -10,34 +10,27 @@ import socket
 import ssl
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import closing, suppress
+from collections.abc import Callable
+from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 
 from base_station.config import endpoint_address
 from base_station.security.router.internal_authority import load_identity
+from shared.bus import QueryHandler
 from shared.bus_zenoh import UnitEndpoint, ZenohBus
-from shared.channels import EVENT, POSITION, ROOT, Qos, alive_key
+from shared.channels import POSITION, ROOT, Qos, alive_key
 from shared.clock import SystemClock
 from shared.codec import encode
 from shared.enrolment import Enrolment, read_enrolment
 from shared.errors import MusterError
-from shared.messages import (
-    EventKind,
-    Header,
-    JournalBoot,
-    JournalChunk,
-    JournalEntry,
-    JournalIndex,
-    UnitEvent,
-)
+from shared.messages import Header
 from shared.tls import TlsIdentity
 from tests.rig import message_factory
+from tests.rig.endless_journal import LAST, large_journal, mayday_journal
 from tests.rig.pacing import paced, wait_until
 
 _MOST_SECONDS = 120.0
-_LAST = 10**9  # number of a journal that never ends
-_ENTRIES, _ANSWERED = 400, 40_000  # of one reply, and of one answer
+_RETRYING = 40
 _SESSIONS_HZ = 50.0
 
 
@@ -49,34 +42,40 @@ def toggle(enrolment: Enrolment, seconds: float) -> None:
             bus.declare_alive(alive_key(enrolment.name)).close()
 
 
-def serve_endless_journal(enrolment: Enrolment, seconds: float) -> None:
-    """It has whatever it is asked for, and all of it are maydays."""
+def serve_maydays(enrolment: Enrolment, seconds: float) -> None:
+    """Its journal never ends, and all of it are maydays."""
+    _serve_journal(enrolment, seconds, mayday_journal)
+
+
+def serve_large_messages(enrolment: Enrolment, seconds: float) -> None:
+    """Its journal never ends, and brings as many bytes as it is asked for."""
+    _serve_journal(enrolment, seconds, large_journal)
+
+
+def _serve_journal(
+    enrolment: Enrolment, seconds: float, journal_of: Callable[[str, int], QueryHandler]
+) -> None:
     name, boot_id = enrolment.name, secrets.randbits(63)
     clock = SystemClock()
-
-    def answer(key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
-        asked = dict(pair.split("=") for pair in parameters.split(";") if pair)
-        if key.endswith(("/index", "/acknowledge")):
-            yield JournalIndex((JournalBoot(boot_id, 1, _LAST, 0, 0),)).to_bytes()
-            return
-        first, last = int(asked["from"]), int(asked["to"])
-        for begin in range(first, min(last, first + _ANSWERED), _ENTRIES):
-            numbers = range(begin, min(last, begin + _ENTRIES - 1) + 1)
-            entries = tuple(JournalEntry(n, EVENT.suffix, mayday(n)) for n in numbers)
-            is_urgent = key.endswith("/urgent")
-            yield JournalChunk(boot_id, begin, numbers[-1], entries, is_urgent).to_bytes()
-
-    def mayday(number: int) -> bytes:
-        header = Header(name, boot_id, number, number, clock.utc_ns())
-        return encode(UnitEvent(header, EventKind.MAYDAY))
-
     with closing(_joined(enrolment)) as bus:
-        held = bus.serve(f"{ROOT}/{name}/journal/**", answer), bus.declare_alive(alive_key(name))
-        header = Header(name, boot_id, _LAST, clock.monotonic_ns(), clock.utc_ns())
+        held = (
+            bus.serve(f"{ROOT}/{name}/journal/**", journal_of(name, boot_id)),
+            bus.declare_alive(alive_key(name)),
+        )
+        header = Header(name, boot_id, LAST, clock.monotonic_ns(), clock.utc_ns())
         bus.publish(POSITION.key(name), encode(message_factory.position(header)), Qos.LIVE)
         time.sleep(seconds)
         for one in held:
             one.close()
+
+
+def retry_links(enrolment: Enrolment, seconds: float) -> None:
+    """Forty units that try for ever, with an enrolment that does not hold here perhaps."""
+    with ExitStack() as stack:
+        for _ in range(_RETRYING):
+            endpoint = UnitEndpoint(enrolment.connect, enrolment.identity)
+            stack.enter_context(closing(ZenohBus(endpoint)))
+        time.sleep(seconds)
 
 
 def open_sessions(enrolment: Enrolment, seconds: float) -> None:
@@ -92,7 +91,9 @@ def open_sessions(enrolment: Enrolment, seconds: float) -> None:
 
 ATTACKS: dict[str, Callable[[Enrolment, float], None]] = {
     "toggle": toggle,
-    "journal": serve_endless_journal,
+    "journal": serve_maydays,
+    "large journal": serve_large_messages,
+    "retry": retry_links,
     "sessions": open_sessions,
 }
 

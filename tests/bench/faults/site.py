@@ -166,10 +166,21 @@ class Site:
             raise BusError(f"{name} who may speak for itself is not heard, so nothing was tried")
 
     def attack(self, what: str, enrolment: str, seconds: float) -> None:
-        """Somebody does what ``attacker`` says, beside the unit."""
+        """Somebody does what ``flooding_unit`` says, beside the unit."""
+        subprocess.run(self._attack(what, enrolment, seconds), check=True)
+
+    @contextmanager
+    def attacked(self, what: str, enrolment: str, seconds: float) -> Iterator[None]:
+        """As ``attack``, while something else happens; ended at the latest after ``seconds``."""
+        with subprocess.Popen(self._attack(what, enrolment, seconds)) as process:
+            try:
+                yield
+            finally:
+                process.kill()
+
+    def _attack(self, what: str, enrolment: str, seconds: float) -> list[str]:
         module = [sys.executable, "-m", "tests.bench.faults.flooding_unit"]
-        command = [*self.link.units.inside(), *module, what, enrolment, str(seconds)]
-        subprocess.run(command, check=True)
+        return [*self.link.units.inside(), *module, what, enrolment, str(seconds)]
 
     @contextmanager
     def flooded(self, kind: str, seconds: float, held: int, per_s: float) -> Iterator[None]:

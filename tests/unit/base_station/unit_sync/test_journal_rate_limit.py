@@ -7,6 +7,8 @@ from base_station.unit_sync.journal_rate_limit import (
     ALERTS_AT_ONCE,
     BYTES_AT_ONCE,
     MESSAGES_AT_ONCE,
+    URGENT_BYTES_AT_ONCE,
+    URGENT_BYTES_PER_S,
     JournalRateLimit,
 )
 from shared.clock import ManualClock
@@ -18,13 +20,15 @@ class Watch:
         self.share = JournalRateLimit(self.clock)
         self.known: dict[str, str] = {}
 
-    def fetch(self, seconds: int, messages: int, size: int, alerts: int = 0) -> tuple[int, int]:
+    def fetch(
+        self, seconds: int, messages: int, size: int, alerts: int = 0, *, urgent: bool = False
+    ) -> tuple[int, int]:
         """How many messages, and bytes, come from a journal that always has more."""
         count = total = 0
         for _ in range(10 * seconds):
             self.clock.advance(0.1)
-            if self.share.may_ask("evil", urgent=False):
-                self.share.note("evil", messages * size, messages, alerts)
+            if self.share.may_ask("evil", urgent=urgent):
+                self.share.note("evil", messages * size, messages, alerts, urgent=urgent)
                 count, total = count + messages, total + messages * size
         return count, total
 
@@ -53,6 +57,17 @@ def test_large_messages_count_by_their_bytes() -> None:
     _, total = watch.fetch(60, 8, 60_000)
     assert 2 * total > BYTES_AT_ONCE
     assert total < BYTES_AT_ONCE + 60 * BYTES_PER_S + 480_000
+
+
+def test_whatever_comes_when_alerts_are_asked_for_counts_as_alerts() -> None:
+    """Positions of a journal that says of them that they are urgent were not bounded at all."""
+    count, _ = Watch().fetch(60, 10, 100, urgent=True)
+    assert ALERTS_AT_ONCE < count < ALERTS_AT_ONCE + 60 * ALERTS_HZ + 10
+
+
+def test_alerts_are_bounded_in_bytes_too() -> None:
+    _, total = Watch().fetch(60, 1, 500_000, urgent=True)
+    assert total < URGENT_BYTES_AT_ONCE + 60 * URGENT_BYTES_PER_S + 500_000
 
 
 def test_alerts_count_by_themselves_and_an_empty_share_of_others_holds_up_none() -> None:
