@@ -26,8 +26,6 @@ export const HEALTH: HealthView = {
   left_out: 0,
   missing: 0,
   reading: null,
-  left_out: 0,
-  missing: 0,
 };
 
 export const STATUS: StatusView = {
