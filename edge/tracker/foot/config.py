@@ -69,6 +69,8 @@ class EskfConfig(NamedTuple):
 
     # Stances that contradict the motion between them (stance_consistency.py).
     misfit_nis: float = 30.7  # chi-square with three degrees of freedom: one stance in a million
+    misfit_single_nis: float = 11.3  # ... one in a hundred: less adds nothing to a series
+    misfit_memory: float = 0.7  # of the stance before
     misfit_height_m: float = 0.75  # a deviation with which 95 % lie within half a storey of 3 m
 
     # The floor (level_walking.py).

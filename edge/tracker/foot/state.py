@@ -196,6 +196,7 @@ FILTER = np.dtype(
         ("faulty_stride", np.bool_),  # since the last lift-off
         # Whether stances and swings agree; see stance_consistency.
         ("stance_nis", np.float64),  # normalised innovation squared of this stance so far
+        ("recent_nis", np.float64),  # ... of the stances before it, the older the less
         ("stance_misfits", np.bool_),
         ("stance_off_n_mps", np.float64, 3),  # velocity that its first sample takes away
         ("stance_after_s", np.float64),  # since the stance before

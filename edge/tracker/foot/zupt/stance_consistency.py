@@ -11,6 +11,9 @@ Navigation", 2001, section 5.4).  The effect of scale errors on a swing is no no
 (see scale_misalignment), so it comes on top: their share of the swing's speed, and of the velocity
 that gravity adds while the attitude is off.
 
+What is left of the sum of the stances before is added, so that a series of contradictions counts
+that are each below the bound.
+
 Which of the two is wrong, stance or velocity, is not known.  So neither is left out; the distance
 that the rejected velocity would have covered since the stance before is reported as uncertainty of
 the position.  These distances add up one to one and not by their squares, for a person who raises a
@@ -33,6 +36,7 @@ def begin_stance(
     ring: Ring, step: Step, progress: Progress, state: FilterState, slot: int, config: EskfConfig
 ) -> None:
     """Record what the first still sample after a swing takes away, before it does."""
+    state.recent_nis = config.misfit_memory * (state.recent_nis + _unexplained_nis(state))
     state.stance_nis = 0.0
     state.stance_misfits = False
     state.stance_after_s = ring[slot].t_s - progress.last_stance_s
@@ -64,14 +68,20 @@ def inflate_for_misfit(
 
 @njit()
 def _contradicts(state: FilterState, config: EskfConfig) -> bool:
-    """True where this stance takes away more velocity than noise and gains explain."""
+    """True where this stance, or the last few, take away more velocity than noise explains."""
+    nis = _unexplained_nis(state)
+    return bool(nis > config.misfit_single_nis and nis + state.recent_nis > config.misfit_nis)
+
+
+@njit()
+def _unexplained_nis(state: FilterState) -> float:
+    """Return the stance's NIS so far, beyond what the gains may have done to its swing."""
     nis = state.stance_nis
-    if nis <= config.misfit_nis:
-        return False
     off = state.stance_off_n_mps
     square = dot(off, off)  # by the variance of the filter it is nis
-    variance = square / nis + state.stance_scale_error_mps**2
-    return bool(square > config.misfit_nis * variance)
+    if nis == 0.0 or square == 0.0:
+        return 0.0
+    return float(square / (square / nis + state.stance_scale_error_mps**2))
 
 
 @njit()
