@@ -12,7 +12,7 @@ from typing import Protocol
 
 from base_station.api.hub import Hub
 from base_station.engine.ports import LiveSource
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.views.wire import ReplayView
 from shared.errors import UserError
 
@@ -43,7 +43,7 @@ class ReplayPlayer(LiveSource, Protocol):
         ...
 
 
-StartReplay = Callable[[Incident, float, Hub], ReplayPlayer]  # incident, speed, its hub
+StartReplay = Callable[[IncidentRow, float, Hub], ReplayPlayer]  # incident, speed, its hub
 
 
 @dataclass
@@ -69,7 +69,7 @@ class Replays:
 
     def open(
         self,
-        incident: Incident,
+        incident: IncidentRow,
         speed: float,
         loop: asyncio.AbstractEventLoop,
         begun_by: str,

@@ -16,7 +16,7 @@ from base_station.replay.processes.replay_process import ReplayContext, ReplayPr
 from base_station.replay.rebuild import project_log
 from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.storage.db.accounts import Accounts
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
@@ -37,7 +37,7 @@ def replay_starter(
     ends that is open.
     """
 
-    def start(incident: Incident, speed: float, hub: Hub) -> ReplaySession:
+    def start(incident: IncidentRow, speed: float, hub: Hub) -> ReplaySession:
         window = _window_of(incident, recorded_until_ns)
         return ReplaySession(archive, window, speed, hub, roster.known, clock)
 
@@ -49,13 +49,13 @@ def replay_process_starter(
 ) -> StartReplay:
     """In processes of their own."""
 
-    def start(incident: Incident, speed: float, hub: Hub) -> ReplayProcess:
+    def start(incident: IncidentRow, speed: float, hub: Hub) -> ReplayProcess:
         return ReplayProcess(place, _window_of(incident, recorded_until_ns), speed, hub)
 
     return start
 
 
-def _window_of(incident: Incident, recorded_until_ns: Callable[[], int]) -> ReplayWindow:
+def _window_of(incident: IncidentRow, recorded_until_ns: Callable[[], int]) -> ReplayWindow:
     end_ns = incident.closed_ns or max(recorded_until_ns(), incident.opened_ns)
     return ReplayWindow(incident.incident_id, incident.opened_ns, end_ns)
 

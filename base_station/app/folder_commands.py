@@ -24,7 +24,7 @@ from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.erasure import ids_of
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.db.roster import Roster
@@ -48,7 +48,7 @@ class IncidentCommandContext:
 
     post_processor: PostProcessor
     records: Records
-    incident: Incident
+    incident: IncidentRow
     people: Mapping[str, Sequence[str]]  # who wore each unit
     keeps_result: bool  # what is worked out; else it is gone with the command
 

@@ -19,8 +19,8 @@ from base_station.replay.processes.post_processing_work import (
 from base_station.replay.processes.replay_work import replay
 from base_station.replay.processes.wire import (
     Damage,
+    FrameChannel,
     Job,
-    MessageStream,
     PostProcessingJob,
     ReplayJob,
     read_job,
@@ -33,7 +33,7 @@ from base_station.storage.log_defects import LogDefects
 from shared.clock import SystemClock
 
 
-def work(line: MessageStream) -> None:
+def work(line: FrameChannel) -> None:
     """The job that comes first, until it is done or the line is closed."""
     encoded = line.receive()
     if encoded is None:
@@ -78,7 +78,7 @@ def _flaws_of(job: Job) -> LogDefects:
             )
 
 
-def _look_back(job: PostProcessingJob, archive: Archive, line: MessageStream) -> None:
+def _look_back(job: PostProcessingJob, archive: Archive, line: FrameChannel) -> None:
     stand_back(line)
     with bounded(job, line), Store(Path(job.database)) as store:
         clock = StationTime(job.now_ns, SystemClock())

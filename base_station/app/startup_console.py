@@ -21,7 +21,7 @@ from base_station.app.stored_snapshot import StoredSnapshotSource
 from base_station.config import HttpConfig, StationConfig
 from base_station.engine.ports import Record
 from base_station.storage.db.base_maps import BaseMaps
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.projection import FinishedTables
 from shared.errors import UserError
 from shared.mcap_log import SegmentInfo
@@ -149,5 +149,5 @@ def startup_application(
     return create_app(services, started), known.report_progress
 
 
-def _no_replay(_incident: Incident, _speed: float, _hub: Hub) -> ReplayPlayer:
+def _no_replay(_incident: IncidentRow, _speed: float, _hub: Hub) -> ReplayPlayer:
     raise UserError("the station is reading its log; replay when it is done")

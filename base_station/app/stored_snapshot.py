@@ -145,7 +145,7 @@ class StoredSnapshotSource:
         unit: models.Unit,
         worn: models.Assignment | None,
         trail: list[TrackSample],
-        alarms: list[models.Alarm],
+        alarms: list[models.AlarmRow],
     ) -> UnitView:
         return UnitView(
             unit_id=unit.unit_id,
@@ -181,7 +181,7 @@ class StoredSnapshotSource:
         shown = self._roster.wearer(worn)
         return PersonView(worn.person_id, *msgspec.structs.astuple(shown))
 
-    def _incident(self, incident: models.Incident) -> IncidentView:
+    def _incident(self, incident: models.IncidentRow) -> IncidentView:
         """Nobody's check-in counts down while nothing is live."""
         name, opened_ms = self._roster.shown(incident.name), to_ms(incident.opened_ns)
         return IncidentView(incident.incident_id, name, opened_ms, None, 0.0, 0.0, 0.0)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from base_station.process import gc_tuning
-from base_station.replay.processes.wire import MessageStream
+from base_station.replay.processes.wire import FrameChannel
 from shared.log import set_up_logging
 
 _NICE = 10  # of copies: what is live goes before; loading is soon over
@@ -43,7 +43,7 @@ def _run_copy(fd: int) -> NoReturn:
     try:
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         os.nice(_NICE)
-        work(MessageStream(socket.socket(fileno=fd)))
+        work(FrameChannel(socket.socket(fileno=fd)))
         code = 0
     except Exception:  # noqa: BLE001  # said here: there is nobody to hand it to
         _log.exception("a process that looks at the past broke off")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from base_station.exporters.interface import IncidentTracks, WornTrack
 from base_station.storage.db.known_people import PersonLookup, shown_wearer
-from base_station.storage.db.models import Assignment, Incident
+from base_station.storage.db.models import Assignment, IncidentRow
 from base_station.storage.db.records import FOREVER_NS, Records, TrackSample, Window
 from base_station.storage.db.roster import Roster
 
@@ -15,7 +15,7 @@ from base_station.storage.db.roster import Roster
 def incident_tracks(
     records: Records,
     roster: Roster,
-    incident: Incident,
+    incident: IncidentRow,
     trails: Mapping[str, Sequence[TrackSample]] | None = None,
 ) -> IncidentTracks:
     """All of an incident's tracks, split where a unit changed hands; ``trails`` (by unit) in the

@@ -28,7 +28,7 @@ from base_station.replay.assessment.report import IncidentReport, assess
 from base_station.replay.late_arrivals import apply_late_arrivals
 from base_station.replay.playback import Archive, Playback, Record
 from base_station.site.floor_grid import FloorGrid
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import TrackSample
 from base_station.storage.db.smoothed import SmoothedTracks
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
@@ -94,17 +94,17 @@ class PostProcessor:
         self._keeping = LogOnChange(_log, "what is known of an incident afterwards cannot be kept")
         self._catching_up = LogOnChange(_log, "an incident that closed cannot be looked back on")
 
-    def smoothed(self, incident: Incident) -> Smoothed:
+    def smoothed(self, incident: IncidentRow) -> Smoothed:
         """As it was made with all that is known of the incident; made now where it was not."""
         return self._cached_or_made(incident, self._cached_trails, self.smooth)
 
-    def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
+    def smooth(self, incident: IncidentRow, on_progress: Progress = lambda _: None) -> Smoothed:
         """Make it again from the log; ``on_progress`` hears the fraction done."""
         return self._keep(incident, self.known(incident, on_progress), self._clock.utc_ns())
 
     def _keep(
         self,
-        incident: Incident,
+        incident: IncidentRow,
         known: SolvedIncident,
         made_ns: int,
         report: IncidentReport | None = None,
@@ -121,7 +121,9 @@ class PostProcessor:
                 is_kept = self._store.put(*what, _late_data_ns(incident), known.is_outdated)
         return Smoothed(incident_id, smoother, made_ns, tracks, is_kept)
 
-    def catch_up(self, incidents: Iterable[Incident], shown: Callable[[Incident], Tracks]) -> None:
+    def catch_up(
+        self, incidents: Iterable[IncidentRow], shown: Callable[[IncidentRow], Tracks]
+    ) -> None:
         """Smooth and assess an incident that closed lately and was not yet, or of which more is
         known since, so that it is there when somebody asks; ``shown`` gives what was.
         """
@@ -143,35 +145,35 @@ class PostProcessor:
                 self._again_ns = 0
             return
 
-    def _catch_up_with(self, incident: Incident, shown: Tracks) -> None:
+    def _catch_up_with(self, incident: IncidentRow, shown: Tracks) -> None:
         try:
             self.assess(incident, shown)
         except MemoryLimitError:
             self._given_up.add(incident.incident_id)
             raise
 
-    def _is_due(self, incident: Incident, now_ns: int) -> bool:
+    def _is_due(self, incident: IncidentRow, now_ns: int) -> bool:
         if incident.closed_ns is None:
             return False
         if self._store.has(incident.incident_id):
             return not self._is_enough(incident)
         return now_ns - incident.closed_ns < LATELY_NS
 
-    def is_newest(self, incident: Incident) -> bool:
+    def is_newest(self, incident: IncidentRow) -> bool:
         """Whether what is said of it was made with all that came of it since it was closed; what is
         not kept is always made anew.
         """
         return not self._store.has(incident.incident_id) or self._is_made(incident)
 
-    def _is_made(self, incident: Incident) -> bool:
+    def _is_made(self, incident: IncidentRow) -> bool:
         return self._store.has(incident.incident_id, _late_data_ns(incident))
 
-    def _is_enough(self, incident: Incident) -> bool:
+    def _is_enough(self, incident: IncidentRow) -> bool:
         """What is kept serves: nothing is newer, or a journal is still being read."""
         is_quiet = abs(self._clock.utc_ns() - _late_data_ns(incident)) >= QUIET_NS
         return self._is_made(incident) or (not is_quiet and self._store.has(incident.incident_id))
 
-    def raw(self, incident: Incident) -> Tracks:
+    def raw(self, incident: IncidentRow) -> Tracks:
         """Each unit's own path, placed where each of its frames began and never corrected; as it
         was made when the incident had closed.
         """
@@ -179,7 +181,7 @@ class PostProcessor:
             incident, lambda one: self._store.raw(one.incident_id), self._make_raw
         )
 
-    def assess(self, incident: Incident, live: Tracks) -> IncidentReport:
+    def assess(self, incident: IncidentRow, live: Tracks) -> IncidentReport:
         """How good the positions were, as it was made when the incident had closed; ``live`` is
         what was shown, by unit.
         """
@@ -189,9 +191,9 @@ class PostProcessor:
 
     def _cached_or_made(
         self,
-        incident: Incident,
-        kept: Callable[[Incident], Made | None],
-        make: Callable[[Incident], Made],
+        incident: IncidentRow,
+        kept: Callable[[IncidentRow], Made | None],
+        make: Callable[[IncidentRow], Made],
     ) -> Made:
         """What is kept of a closed incident, or else made of it: whoever asks meanwhile waits."""
         found = self._cached(incident, kept)
@@ -201,29 +203,31 @@ class PostProcessor:
             found = self._cached(incident, kept)
             return make(incident) if found is None else found
 
-    def _cached(self, incident: Incident, kept: Callable[[Incident], Made | None]) -> Made | None:
+    def _cached(
+        self, incident: IncidentRow, kept: Callable[[IncidentRow], Made | None]
+    ) -> Made | None:
         is_made = incident.closed_ns is not None and self._is_enough(incident)
         return kept(incident) if is_made else None
 
-    def _cached_trails(self, incident: Incident) -> Smoothed | None:
+    def _cached_trails(self, incident: IncidentRow) -> Smoothed | None:
         made = self._store.of(incident.incident_id)
         return None if made is None else Smoothed(incident.incident_id, *made)
 
-    def _cached_report(self, incident: Incident) -> IncidentReport | None:
+    def _cached_report(self, incident: IncidentRow) -> IncidentReport | None:
         kept = self._store.report(incident.incident_id)
         return None if kept is None else read_report(kept)
 
-    def _make_raw(self, incident: Incident) -> Tracks:
+    def _make_raw(self, incident: IncidentRow) -> Tracks:
         known = self.known(incident)
         if incident.closed_ns is not None:
             self._keep(incident, known, self._clock.utc_ns())
         return _raw_tracks(incident, known)
 
-    def _assess(self, incident: Incident, live: Tracks) -> IncidentReport:
+    def _assess(self, incident: IncidentRow, live: Tracks) -> IncidentReport:
         return self.post_process(incident, live).report
 
     def post_process(
-        self, incident: Incident, live: Tracks, on_progress: Progress = lambda _: None
+        self, incident: IncidentRow, live: Tracks, on_progress: Progress = lambda _: None
     ) -> PostProcessingResult:
         """Make all of it anew."""
         known, made_ns = self.known(incident, on_progress), self._clock.utc_ns()
@@ -250,7 +254,9 @@ class PostProcessor:
             pass
         return tuple(self._archive.flaws())
 
-    def known(self, incident: Incident, on_progress: Progress = lambda _: None) -> SolvedIncident:
+    def known(
+        self, incident: IncidentRow, on_progress: Progress = lambda _: None
+    ) -> SolvedIncident:
         with self._working:
             until_ns = incident.closed_ns or _EVER_NS
             is_outdated = self._archive.watch()
@@ -280,7 +286,7 @@ class PostProcessor:
         return takewhile(lambda record: record[0] <= until_ns, self._archive.open_log(after_ns + 1))
 
 
-def _late_data_ns(incident: Incident) -> int:
+def _late_data_ns(incident: IncidentRow) -> int:
     """When more came to be known of it, since it was closed; 0: nothing has."""
     return incident.late_data_ns or 0  # a row that was not read from the table has none
 
@@ -293,25 +299,25 @@ def read_report(kept: bytes) -> IncidentReport | None:
         return None
 
 
-def _smoothed_tracks(incident: Incident, known: SolvedIncident) -> Tracks:
+def _smoothed_tracks(incident: IncidentRow, known: SolvedIncident) -> Tracks:
     return LastValueMapping(
         _within(incident, known), lambda unit_id: _samples(incident, known, unit_id)
     )
 
 
-def _raw_tracks(incident: Incident, known: SolvedIncident) -> Tracks:
+def _raw_tracks(incident: IncidentRow, known: SolvedIncident) -> Tracks:
     return LastValueMapping(
         _within(incident, known), lambda unit_id: _raw(incident, known, unit_id)
     )
 
 
-def _within(incident: Incident, known: SolvedIncident) -> list[str]:
+def _within(incident: IncidentRow, known: SolvedIncident) -> list[str]:
     """Units of which anything is known while it was open."""
     paths = known.solution.paths
     return [unit_id for unit_id, path in paths.items() if _rows_within(incident, path)]
 
 
-def _samples(incident: Incident, known: SolvedIncident, unit_id: str) -> list[TrackSample]:
+def _samples(incident: IncidentRow, known: SolvedIncident, unit_id: str) -> list[TrackSample]:
     """With the floors that were known at the end; they may have been learnt late."""
     path = known.solution.paths[unit_id]
     points = known.state.paths[unit_id].arrays()
@@ -344,7 +350,7 @@ def _is_placed(known: SolvedIncident, unit_id: str, points: PathArrays) -> bool:
     return has_start or is_pinned or len(points.fix_t_ns) > 0
 
 
-def _raw(incident: Incident, known: SolvedIncident, unit_id: str) -> list[TrackSample]:
+def _raw(incident: IncidentRow, known: SolvedIncident, unit_id: str) -> list[TrackSample]:
     path, points = known.solution.paths[unit_id], known.state.paths[unit_id].arrays()
     begins = np.flatnonzero((points.flags & RESTART) != 0)
     begins = np.concatenate(([0], begins[begins > 0]))
@@ -371,7 +377,7 @@ def _raw(incident: Incident, known: SolvedIncident, unit_id: str) -> list[TrackS
     ]
 
 
-def _rows_within(incident: Incident, path: SmoothedPath) -> list[int]:
+def _rows_within(incident: IncidentRow, path: SmoothedPath) -> list[int]:
     until_ns = incident.closed_ns or _EVER_NS
     rows: list[int] = np.flatnonzero(
         (path.t_ns >= incident.opened_ns) & (path.t_ns <= until_ns)

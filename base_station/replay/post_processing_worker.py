@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from base_station.replay.post_processing import PostProcessor, Tracks
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from shared.worker import Worker
 
 EVERY_S = 5.0
@@ -20,8 +20,8 @@ class PostProcessingWorker:
     def __init__(
         self,
         post_processor: PostProcessor,
-        incidents: Callable[[], Iterable[Incident]],
-        shown: Callable[[Incident], Tracks],
+        incidents: Callable[[], Iterable[IncidentRow]],
+        shown: Callable[[IncidentRow], Tracks],
     ) -> None:
         self._hindsight = post_processor
         self._incidents = incidents

@@ -85,7 +85,7 @@ class LevelWalk(msgspec.Struct):
         return True
 
 
-class LearntBuilding(msgspec.Struct):
+class LandingGroup(msgspec.Struct):
     """Landings beside each other, with the storeys learnt from them."""
 
     landings: list[Landing]
@@ -103,7 +103,7 @@ class LearntBuilding(msgspec.Struct):
         self.pending_landings += _add_landing(self.landings, landing)
         self._widen(landing.north_m, landing.east_m, landing.north_m, landing.east_m)
 
-    def merge(self, other: LearntBuilding) -> None:
+    def merge(self, other: LandingGroup) -> None:
         """The storeys are to be worked out anew, of both."""
         self.landings = sorted([*self.landings, *other.landings], key=lambda one: one.t_ns)
         while len(self.landings) > MOST_LANDINGS:
@@ -120,7 +120,7 @@ class LearntFloors(msgspec.Struct):
     """Buildings and ground of the site."""
 
     ground: list[Landing] = msgspec.field(default_factory=list)
-    buildings: list[LearntBuilding] = msgspec.field(default_factory=list)
+    buildings: list[LandingGroup] = msgspec.field(default_factory=list)
     walks: dict[str, LevelWalk] = msgspec.field(default_factory=dict)
     reported_floors: tuple[ReportedFloor, ...] = ()
     open: tuple[Storey, ...] = ()  # where nobody has been in any building
@@ -211,12 +211,12 @@ class LearntFloors(msgspec.Struct):
             self._building_of(landing).add(landing)
         self._learn_all()
 
-    def _building_of(self, landing: Landing) -> LearntBuilding:
+    def _building_of(self, landing: Landing) -> LandingGroup:
         """The one that it is in or beside; where it lies between several, they are one."""
         place = landing.north_m, landing.east_m
         beside = [one for one in self.buildings if one.away_m(*place) < APART_M]
         if not beside:
-            self.buildings.append(LearntBuilding([], (*place, *place)))
+            self.buildings.append(LandingGroup([], (*place, *place)))
             return self.buildings[-1]
         first, *others = beside
         for other in others:
@@ -232,7 +232,7 @@ class LearntFloors(msgspec.Struct):
         for building in self.buildings:
             self._learn(building)
 
-    def _learn(self, building: LearntBuilding) -> None:
+    def _learn(self, building: LandingGroup) -> None:
         building.pending_landings = 0
         near = [
             one for one in self.ground if building.away_m(one.north_m, one.east_m) < GROUND_NEAR_M

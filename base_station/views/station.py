@@ -11,7 +11,7 @@ from base_station.core.state.command import Delivery, SentCommand
 from base_station.core.state.pin import WAITING, Pin
 from base_station.core.units.unkept_messages import unkept_problem
 from base_station.storage.db.known_people import PersonLookup, shown_text
-from base_station.storage.db.models import Alarm as StoredAlarm
+from base_station.storage.db.models import AlarmRow as StoredAlarm
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.units import unit_views
 from base_station.views.wire import (

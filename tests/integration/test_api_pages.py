@@ -48,8 +48,8 @@ def fill(store: Store, times_ns: Sequence[int]) -> None:
             session.add_all(entries(t_ns, str(number)))
 
 
-def incident(incident_id: str, opened_ns: int) -> models.Incident:
-    return models.Incident(
+def incident(incident_id: str, opened_ns: int) -> models.IncidentRow:
+    return models.IncidentRow(
         incident_id=incident_id, name="", opened_ns=opened_ns, opened_by="", closed_by=""
     )
 
@@ -59,7 +59,7 @@ def entries(t_ns: int, number: str) -> list[models.Base]:
     worn = {"person_name": "", "crew": "", "role": "", "until_ns": None}
     return [
         incident(f"i-{t_ns}", t_ns),
-        models.Alarm(alarm_id=number, unit_id="FF-01", raised_ns=t_ns, changed_ns=t_ns, **alarm),
+        models.AlarmRow(alarm_id=number, unit_id="FF-01", raised_ns=t_ns, changed_ns=t_ns, **alarm),
         models.Assignment(
             action_id=number, unit_id="FF-01", person_id=number, from_ns=t_ns, **worn
         ),

@@ -10,12 +10,12 @@ import pytest
 from base_station.accounts.principals import Role
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Window
 from tests.rig.desk_station import DeskStation
 from tests.rig.recording_replay import NotedReplay
 
-INCIDENT = Incident(incident_id="i-1", name="Kitchen", opened_ns=0)
+INCIDENT = IncidentRow(incident_id="i-1", name="Kitchen", opened_ns=0)
 
 
 @pytest.fixture

@@ -24,7 +24,7 @@ from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.alembic_migration import alembic_config
 from base_station.storage.db.copying import copy_database, known_segments
 from base_station.storage.db.migrate import newest_revision
-from base_station.storage.db.models import Base, Person
+from base_station.storage.db.models import Base, PersonRow
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.projection import SqlProjection
 from base_station.storage.db.records import FOREVER_NS, Records, Window
@@ -191,7 +191,7 @@ def test_a_copy_can_be_taken_while_someone_writes(
     roster.add_person("Ada", "A", "")
     with store.write() as session:
         session.add(
-            Person(person_id="x", name="half", crew="", role="", created_ns=0, photo_hash=None)
+            PersonRow(person_id="x", name="half", crew="", role="", created_ns=0, photo_hash=None)
         )
         session.flush()
         copy_database(path, tmp_path / "copy.sqlite")

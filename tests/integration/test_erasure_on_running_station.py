@@ -17,7 +17,7 @@ from base_station.privacy import erasure_service as forgetter_module
 from base_station.privacy.erasure_service import ClosedLog, ErasureService
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import EVER, Records
 from base_station.storage.db.store import Store
 from base_station.storage.recorder import Recorder
@@ -91,7 +91,7 @@ def test_what_was_wished_before_an_incident_opened_waits_for_its_end(tmp_path: P
         disk = open_storage(folder, recorder, clock, lambda _: None, closing)
         with disk.store.write() as session:
             session.add(
-                Incident(
+                IncidentRow(
                     incident_id="i1", name="", opened_ns=1, opened_by="bo", closed_ns=None,
                     closed_by="",
                 )

@@ -25,10 +25,10 @@ from base_station.replay.processes.post_processing_process import (
     PostProcessingProcess,
 )
 from base_station.replay.processes.server import ReplayProcesses
-from base_station.replay.processes.wire import Job, MessageStream
+from base_station.replay.processes.wire import FrameChannel, Job
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.store import Store
@@ -58,7 +58,7 @@ class Desk:
         )
 
     @property
-    def incident(self) -> Incident:
+    def incident(self) -> IncidentRow:
         incident = self.records.incident("i1")
         assert incident is not None
         return incident
@@ -145,7 +145,7 @@ def test_what_the_log_lacks_is_in_the_report(desk: Desk, processes: ReplayProces
 def test_of_an_open_incident_it_is_told_and_not_kept(
     desk: Desk, processes: ReplayProcesses
 ) -> None:
-    is_open = Incident(
+    is_open = IncidentRow(
         incident_id="i1", name="Mill Lane", opened_ns=desk.incident.opened_ns, closed_ns=None
     )
     fractions: list[float] = []
@@ -165,7 +165,7 @@ def test_beyond_its_memory_it_is_refused_in_plain_words_and_given_up(
         post_processor.smoothed(desk.incident)
     asked: list[str] = []
 
-    def shown(incident: Incident) -> dict[str, list[object]]:
+    def shown(incident: IncidentRow) -> dict[str, list[object]]:
         asked.append(incident.incident_id)
         return {}
 
@@ -181,7 +181,7 @@ class KilledAtWork(ReplayProcesses):
 
     is_killed = False
 
-    def start(self, job: Job) -> MessageStream:
+    def start(self, job: Job) -> FrameChannel:
         line = super().start(job)
         if not self.is_killed:
             self.is_killed = True
@@ -209,11 +209,11 @@ class AtWork(ReplayProcesses):
         self.begun = threading.Event()
         self.far_end: socket.socket | None = None
 
-    def start(self, job: Job) -> MessageStream:
+    def start(self, job: Job) -> FrameChannel:
         assert job.incident_id == "i1"
         ours, self.far_end = socket.socketpair()
         self.begun.set()
-        return MessageStream(ours)
+        return FrameChannel(ours)
 
 
 def test_a_station_that_stops_does_not_wait_for_it(desk: Desk) -> None:

@@ -33,7 +33,7 @@ from base_station.privacy.erasure_service import ClosedLog, ErasureService
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.projection import SqlProjection
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
@@ -125,7 +125,7 @@ class DeskDrive:
             return snapshot(state, self._seq, StationFacts(), self._roster.known)
 
 
-def no_replays(_incident: Incident, _speed: float, _hub: Hub) -> ReplayPlayer:
+def no_replays(_incident: IncidentRow, _speed: float, _hub: Hub) -> ReplayPlayer:
     raise UserError("this station has no log")
 
 

@@ -13,7 +13,7 @@ from base_station.app import folder_commands as station_app
 from base_station.core.events import Received, event_of
 from base_station.core.person_references import with_references
 from base_station.core.state import Alarm
-from base_station.storage.db.models import Person
+from base_station.storage.db.models import PersonRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
@@ -172,7 +172,7 @@ def stored_in(folder: Path) -> bytes:
 def put_person(store: Store, person_id: str, name: str) -> None:
     with store.write() as session:
         session.add(
-            Person(
+            PersonRow(
                 person_id=person_id,
                 name=name,
                 crew="",

@@ -71,7 +71,7 @@ class ClosingForm(Form):
     despite_unit_ids: Annotated[tuple[UnitIdText, ...], Field(max_length=MOST_NAMED)] = ()
 
 
-def incident_or_404(station: Services, incident_id: str) -> models.Incident:
+def incident_or_404(station: Services, incident_id: str) -> models.IncidentRow:
     incident = station.records.incident(incident_id)
     if incident is None:
         raise Problem(404, _no_incident(incident_id))
@@ -82,7 +82,7 @@ def _no_incident(incident_id: str) -> str:
     return f"There is no incident {incident_id}."
 
 
-def window_of(incident: models.Incident) -> Window:
+def window_of(incident: models.IncidentRow) -> Window:
     return Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
 
 
@@ -174,7 +174,7 @@ def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
 
 
 def _past_alarm(
-    alarm: models.Alarm,
+    alarm: models.AlarmRow,
     life: Sequence[models.AlarmTransition],
     was_open: Window,
     roster: Roster,
@@ -198,7 +198,7 @@ def _is_raised_anew(
     return now.state == "raised" and not eased
 
 
-def _incident(incident: models.Incident, roster: Roster) -> IncidentAnswer:
+def _incident(incident: models.IncidentRow, roster: Roster) -> IncidentAnswer:
     return IncidentAnswer(
         incident_id=incident.incident_id,
         name=roster.shown(incident.name),

@@ -29,7 +29,7 @@ class PersonForm(Form):
     role: ShortText = ""
 
 
-def _person(person: models.Person, station: Services) -> PersonView:
+def _person(person: models.PersonRow, station: Services) -> PersonView:
     return PersonView(
         person_id=person.person_id,
         name=person.name,

@@ -82,7 +82,9 @@ def hindsight_of(station: Services) -> PostProcessor:
     return station.post_processor
 
 
-def trails_of(station: Services, incident: models.Incident, kind: TrailKind) -> tuple[int, Tracks]:
+def trails_of(
+    station: Services, incident: models.IncidentRow, kind: TrailKind
+) -> tuple[int, Tracks]:
     """When they were worked out, and the trails by unit."""
     if kind is TrailKind.SMOOTHED:
         smoothed = hindsight_of(station).smoothed(incident)

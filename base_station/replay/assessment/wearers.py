@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import FOREVER_NS
 from base_station.storage.db.roster import Roster
 
 
-def wearers(roster: Roster, incident: Incident) -> dict[str, list[str]]:
+def wearers(roster: Roster, incident: IncidentRow) -> dict[str, list[str]]:
     """Names by unit, each once, in the order of wearing it."""
     names: dict[str, list[str]] = {}
     until_ns = incident.closed_ns or FOREVER_NS

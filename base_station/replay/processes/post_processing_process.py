@@ -22,7 +22,7 @@ from base_station.replay.post_processing import (
 )
 from base_station.replay.processes import wire
 from base_station.replay.processes.server import ReplayProcesses
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.smoothed import SmoothedTracks, Tracks, unpacked
 from base_station.storage.missing_segments import KnownSegment
 from shared.clock import Clock
@@ -59,17 +59,17 @@ class PostProcessingProcess(PostProcessor):
         super().__init__(archive, smoother, store, clock)
         self._place = place
         self._lock = Lock()  # guards what follows
-        self._line: wire.MessageStream | None = None  # to the process that is at work
+        self._line: wire.FrameChannel | None = None  # to the process that is at work
         self._closed = False
 
-    def smooth(self, incident: Incident, on_progress: Progress = lambda _: None) -> Smoothed:
+    def smooth(self, incident: IncidentRow, on_progress: Progress = lambda _: None) -> Smoothed:
         made = self.post_process(incident, {}, on_progress)
         name = self._smoother.name
         return Smoothed(incident.incident_id, name, made.made_ns, made.smoothed, made.is_kept)
 
     def post_process(
         self,
-        incident: Incident,
+        incident: IncidentRow,
         live: Tracks,  # noqa: ARG002  # the process reads what was shown by itself
         on_progress: Progress = lambda _: None,
     ) -> PostProcessingResult:
@@ -91,7 +91,7 @@ class PostProcessingProcess(PostProcessor):
             if self._line is not None:
                 self._line.hang_up()
 
-    def _begin(self, incident: Incident) -> wire.MessageStream:
+    def _begin(self, incident: IncidentRow) -> wire.FrameChannel:
         self._place.prepare()
         with self._lock:
             if self._closed:
@@ -99,10 +99,10 @@ class PostProcessingProcess(PostProcessor):
             self._line = self._place.processes.start(self._job(incident))
             return self._line
 
-    def _make_raw(self, incident: Incident) -> Tracks:
+    def _make_raw(self, incident: IncidentRow) -> Tracks:
         return self.post_process(incident, {}).raw
 
-    def _job(self, incident: Incident) -> wire.PostProcessingJob:
+    def _job(self, incident: IncidentRow) -> wire.PostProcessingJob:
         return wire.PostProcessingJob(
             log=self._place.log,
             checkpoints=self._place.checkpoints,
@@ -117,14 +117,14 @@ class PostProcessingProcess(PostProcessor):
         )
 
     def _follow(
-        self, incident: Incident, line: wire.MessageStream, on_progress: Progress
+        self, incident: IncidentRow, line: wire.FrameChannel, on_progress: Progress
     ) -> PostProcessingResult:
         smoothed, raw = dict[str, bytes](), dict[str, bytes]()
         while (encoded := line.receive()) is not None:
             match wire.read_look_back(encoded):
                 case wire.ProgressFrame(done):
                     on_progress(done)
-                case wire.UnitTrails(unit_id, of_unit, own):
+                case wire.UnitTrailsFrame(unit_id, of_unit, own):
                     smoothed |= {} if of_unit is None else {unit_id: of_unit}
                     raw |= {} if own is None else {unit_id: own}
                 case wire.PostProcessingResultFrame() as made:
@@ -142,7 +142,7 @@ class PostProcessingProcess(PostProcessor):
 
     def _made(
         self,
-        incident: Incident,
+        incident: IncidentRow,
         made: wire.PostProcessingResultFrame,
         smoothed: Tracks,
         raw: Tracks,

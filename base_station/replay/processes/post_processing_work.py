@@ -15,13 +15,13 @@ from base_station.process import gc_tuning
 from base_station.replay.post_processing import PostProcessingResult, PostProcessor, Tracks
 from base_station.replay.processes.wire import (
     Failure,
-    MessageStream,
+    FrameChannel,
     PostProcessingJob,
     PostProcessingResultFrame,
     ProgressFrame,
-    UnitTrails,
+    UnitTrailsFrame,
 )
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.smoothed import packed
 from shared.clock import Clock
 from shared.errors import MusterError
@@ -44,7 +44,7 @@ class StationTime:
         return self._clock.monotonic_ns()
 
 
-def stand_back(line: MessageStream) -> None:
+def stand_back(line: FrameChannel) -> None:
     """Lowers its priority below live work, and ends when the socket is closed."""
     os.nice(_NICE)
     gc_tuning.return_free_memory()
@@ -52,7 +52,7 @@ def stand_back(line: MessageStream) -> None:
 
 
 @contextmanager
-def bounded(job: PostProcessingJob, line: MessageStream) -> Iterator[None]:
+def bounded(job: PostProcessingJob, line: FrameChannel) -> Iterator[None]:
     """Beyond so much memory it is told that it is not done, and why."""
     before, most = resource.getrlimit(resource.RLIMIT_DATA)
     resource.setrlimit(resource.RLIMIT_DATA, (job.memory_mb * 1_000_000, most))
@@ -67,8 +67,8 @@ def bounded(job: PostProcessingJob, line: MessageStream) -> Iterator[None]:
         line.send(Failure(str(error), is_memory=False))
 
 
-def incident_of(job: PostProcessingJob) -> Incident:
-    return Incident(
+def incident_of(job: PostProcessingJob) -> IncidentRow:
+    return IncidentRow(
         incident_id=job.incident_id,
         name="",
         opened_ns=job.opened_ns,
@@ -78,7 +78,7 @@ def incident_of(job: PostProcessingJob) -> Incident:
 
 
 def post_process(
-    job: PostProcessingJob, post_processor: PostProcessor, live: Tracks, line: MessageStream
+    job: PostProcessingJob, post_processor: PostProcessor, live: Tracks, line: FrameChannel
 ) -> None:
     reported = [0.0]
 
@@ -90,11 +90,13 @@ def post_process(
     _send_result(post_processor.post_process(incident_of(job), live, report_progress), line)
 
 
-def _send_result(made: PostProcessingResult, line: MessageStream) -> None:
+def _send_result(made: PostProcessingResult, line: FrameChannel) -> None:
     if not made.is_kept:
         for unit_id in sorted({*made.smoothed, *made.raw}):
             line.send(
-                UnitTrails(unit_id, *(_packed(one, unit_id) for one in (made.smoothed, made.raw)))
+                UnitTrailsFrame(
+                    unit_id, *(_packed(one, unit_id) for one in (made.smoothed, made.raw))
+                )
             )
     line.send(
         PostProcessingResultFrame(made.made_ns, msgspec.msgpack.encode(made.report), made.is_kept)
@@ -113,7 +115,7 @@ def _too_large(job: PostProcessingJob) -> str:
     )
 
 
-def _end_with(line: MessageStream) -> None:
+def _end_with(line: FrameChannel) -> None:
     while line.receive() is not None:
         pass
     os._exit(1)

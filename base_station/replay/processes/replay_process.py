@@ -20,7 +20,7 @@ from base_station.replay.processes.wire import (
     Command,
     Damage,
     DeltaFrame,
-    MessageStream,
+    FrameChannel,
     Pause,
     People,
     Play,
@@ -81,7 +81,7 @@ class ReplayProcess:
         """
         self._place, self._window, self._sink = place, window, sink
         self._lock = threading.Lock()  # guards what follows
-        self._line: MessageStream | None = None  # to the process, as soon as that is there
+        self._line: FrameChannel | None = None  # to the process, as soon as that is there
         self._unsent: list[Command] = []
         self._commands = 0  # given so far
         self._view = _first_view(window, checked_speed(speed))
@@ -176,7 +176,7 @@ class ReplayProcess:
             )
         self._over.set()
 
-    def _begin(self) -> MessageStream | None:
+    def _begin(self) -> FrameChannel | None:
         self._place.prepare()
         window = self._window
         job = ReplayJob(
@@ -200,7 +200,7 @@ class ReplayProcess:
                 return None
         return line
 
-    def _follow(self, line: MessageStream) -> None:
+    def _follow(self, line: FrameChannel) -> None:
         people = person_lookup(self._people)
         publisher = ConsolePublisher(self._place.empty_pipeline(), self._sink, people)
         waited_s = 0.0
@@ -225,7 +225,7 @@ class ReplayProcess:
         while self._asked:
             self._asked.popleft()(*publisher.snapshot(view))
 
-    def _take_next(self, line: MessageStream) -> bool:
+    def _take_next(self, line: FrameChannel) -> bool:
         encoded = line.receive()
         if encoded is None or self._closed.is_set():
             return False

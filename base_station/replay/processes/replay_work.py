@@ -11,7 +11,7 @@ from base_station.replay.playback import Archive
 from base_station.replay.processes.wire import (
     Command,
     DeltaFrame,
-    MessageStream,
+    FrameChannel,
     Pause,
     People,
     Play,
@@ -30,7 +30,7 @@ from shared.clock import Clock
 from shared.errors import StoreError
 
 
-def replay(job: ReplayJob, archive: Archive, clock: Clock, line: MessageStream) -> None:
+def replay(job: ReplayJob, archive: Archive, clock: Clock, line: FrameChannel) -> None:
     """Until the line is closed, or the replay breaks off."""
     window = ReplayWindow(job.incident_id, job.start_ns, job.end_ns)
     work = _ReplayWork(line)
@@ -44,7 +44,7 @@ def replay(job: ReplayJob, archive: Archive, clock: Clock, line: MessageStream) 
 class _ReplayWork:
     """The replay's ``LiveSink``, and who moves it."""
 
-    def __init__(self, line: MessageStream) -> None:
+    def __init__(self, line: FrameChannel) -> None:
         self._line = line
         self._encoder = msgspec.json.Encoder()
         self._known: dict[str, KnownPerson] = {}

@@ -17,7 +17,7 @@ from collections.abc import Callable
 from threading import Lock
 from types import TracebackType
 
-from base_station.replay.processes.wire import Job, MessageStream
+from base_station.replay.processes.wire import FrameChannel, Job
 from shared.errors import StoreError
 
 IDLE_S = 600.0  # after the last use it is ended: its memory may be wanted
@@ -48,7 +48,7 @@ class ReplayProcesses:
     ) -> None:
         self.close()
 
-    def start(self, job: Job) -> MessageStream:
+    def start(self, job: Job) -> FrameChannel:
         """A process that does this; it ends when the line to it is closed.
 
         Raises StoreError where no process can be started.
@@ -66,7 +66,7 @@ class ReplayProcesses:
                     ours = self._new_process()
                 except OSError as error:
                     raise StoreError(f"no process can be started: {error}") from error
-        line = MessageStream(ours)
+        line = FrameChannel(ours)
         line.send(job)
         return line
 

@@ -99,7 +99,7 @@ class ProgressFrame(msgspec.Struct, frozen=True, tag="progress"):
     done: float
 
 
-class UnitTrails(msgspec.Struct, frozen=True, tag="trails"):
+class UnitTrailsFrame(msgspec.Struct, frozen=True, tag="trails"):
     """Result that was not kept (``base_station.storage.db.smoothed.packed``)."""
 
     unit_id: str
@@ -125,10 +125,12 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
 Job = ReplayJob | PostProcessingJob
 Command = Play | Pause | Seek | SetSpeed | People | SnapshotRequest
 ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
-PostProcessingReport = ProgressFrame | UnitTrails | PostProcessingResultFrame | Damage | Failure
+PostProcessingReport = (
+    ProgressFrame | UnitTrailsFrame | PostProcessingResultFrame | Damage | Failure
+)
 
 
-class MessageStream:
+class FrameChannel:
     """One end of a stream of messages; ``send`` and ``hang_up`` from any thread, one reads."""
 
     def __init__(self, end: socket.socket) -> None:

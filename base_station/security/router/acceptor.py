@@ -17,7 +17,7 @@ from functools import partial
 from threading import Thread
 
 from base_station.security.networks import network_of
-from base_station.security.router.admission import Admission
+from base_station.security.router.admission import ConnectionAdmission
 from base_station.security.router.handshakes import (
     accept_secure,
     connect_secure,
@@ -25,7 +25,7 @@ from base_station.security.router.handshakes import (
     server_context,
 )
 from base_station.security.router.internal_authority import InternalAuthority
-from base_station.security.router.links import Link, Links
+from base_station.security.router.links import Links, RelayedLink
 from base_station.security.router.listening import listen_on
 from base_station.security.router.pending import PendingConnections, RoundRobin
 from base_station.security.router.refusals import Refusal, Refusals, RefusalSummary, RefusedError
@@ -48,7 +48,7 @@ class Acceptor:
     """Listens from its making until it is closed, in a thread of its own."""
 
     def __init__(
-        self, listen: Sequence[str], admission: Admission, authority: InternalAuthority
+        self, listen: Sequence[str], admission: ConnectionAdmission, authority: InternalAuthority
     ) -> None:
         """Raises BusError where it cannot listen."""
         self._sockets = listen_on(listen)
@@ -66,7 +66,7 @@ class Acceptor:
         self._thread = Thread(target=self._run, name="acceptor", daemon=True)
         self._thread.start()
 
-    def set_admission(self, admission: Admission) -> None:
+    def set_admission(self, admission: ConnectionAdmission) -> None:
         """Sets who may connect; a holder that is no longer enrolled loses its links at once."""
         self._loop.call_soon_threadsafe(self._set_admission, admission)
 
@@ -108,7 +108,7 @@ class Acceptor:
         self._loop.run_until_complete(asyncio.gather(*tasks, return_exceptions=True))
         self._loop.close()
 
-    def _set_admission(self, admission: Admission) -> None:
+    def _set_admission(self, admission: ConnectionAdmission) -> None:
         if admission.identity != self._identity:
             self._context, self._identity = server_context(admission), admission.identity
         self._links.set_admission(admission)
@@ -198,7 +198,7 @@ class Acceptor:
 
     async def _authenticate(
         self, connection: socket.socket, network: str, task: asyncio.Task[None]
-    ) -> Link:
+    ) -> RelayedLink:
         """Until its holder has said its first word; costs nothing until something comes."""
         await readable(connection)
         if not connection.recv(1, socket.MSG_PEEK):
@@ -215,7 +215,7 @@ class Acceptor:
             raise
         return link
 
-    async def _connect(self, link: Link) -> None:
+    async def _connect(self, link: RelayedLink) -> None:
         """Hands it on to the router, which may be away for a moment."""
         try:
             async with asyncio.timeout(_ROUTER_TIMEOUT_S):

@@ -17,16 +17,16 @@ _NEW_LINKS_PER_S = 2.0  # a unit tries every second at most
 
 
 @dataclass(frozen=True, slots=True)
-class Admission:
+class ConnectionAdmission:
     """``identity``: what the acceptor shows; ``holders``: who is enrolled, by common name."""
 
     identity: TlsIdentity
     holders: Mapping[str, Holder]
 
     @staticmethod
-    def of(identity: TlsIdentity, registry: Registry) -> Admission:
+    def of(identity: TlsIdentity, registry: Registry) -> ConnectionAdmission:
         entries = (entry for entry in registry.entries if entry.revoked is None)
-        return Admission(identity, {entry.common_name: entry.holder for entry in entries})
+        return ConnectionAdmission(identity, {entry.common_name: entry.holder for entry in entries})
 
     def max_links(self, common_name: str) -> int:
         """0: of whom the authority has not enrolled, or has revoked."""

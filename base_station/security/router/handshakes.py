@@ -10,12 +10,12 @@ import asyncio
 import socket
 import ssl
 
-from base_station.security.router.admission import Admission
+from base_station.security.router.admission import ConnectionAdmission
 from base_station.security.router.internal_authority import load_identity
 from base_station.security.router.pending import RoundRobin
 
 
-def server_context(admission: Admission) -> ssl.SSLContext:
+def server_context(admission: ConnectionAdmission) -> ssl.SSLContext:
     """Asks for a certificate of the authority; resumes no session, which would ask for none."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.verify_mode = ssl.CERT_REQUIRED

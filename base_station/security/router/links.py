@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from base_station.security.router.admission import Admission, LinkRates
+from base_station.security.router.admission import ConnectionAdmission, LinkRates
 from base_station.security.router.handshakes import holder_of
 from base_station.security.router.internal_authority import InternalAuthority
 from base_station.security.router.refusals import Refusal, RefusedError
@@ -24,14 +24,14 @@ _SMALL_BUFFER_HOLDERS = (Holder.UNIT, Holder.TRACKER)
 
 
 @dataclass(eq=False, slots=True)
-class Link:
+class RelayedLink:
     """A verified connection, on its way to the router or handed on to it."""
 
     common_name: str
     expires_s: float  # its certificate, UTC
     secured: ssl.SSLSocket
     task: asyncio.Task[None]  # that has the connection until it is handed on
-    on_close: Callable[[Link], None]
+    on_close: Callable[[RelayedLink], None]
     relay: Relay | None = None
     is_closed: bool = False
 
@@ -49,13 +49,13 @@ class Link:
 class Links:
     """For one thread."""
 
-    def __init__(self, admission: Admission, authority: InternalAuthority) -> None:
+    def __init__(self, admission: ConnectionAdmission, authority: InternalAuthority) -> None:
         self._admission = admission
         self._authority = authority
-        self._links: dict[str, list[Link]] = {}  # oldest first
+        self._links: dict[str, list[RelayedLink]] = {}  # oldest first
         self._rates = LinkRates()
 
-    def add(self, secured: ssl.SSLSocket, task: asyncio.Task[None], now_s: float) -> Link:
+    def add(self, secured: ssl.SSLSocket, task: asyncio.Task[None], now_s: float) -> RelayedLink:
         """The oldest of a holder's links ends where there would be too many.
 
         Raises RefusedError.
@@ -71,7 +71,7 @@ class Links:
         links = list(self._links.get(common_name, ()))
         for oldest in links[: max(0, len(links) + 1 - max_links)]:
             oldest.close()
-        link = Link(common_name, expires_s, secured, task, self._remove)
+        link = RelayedLink(common_name, expires_s, secured, task, self._remove)
         self._links.setdefault(common_name, []).append(link)
         return link
 
@@ -82,7 +82,7 @@ class Links:
             common_name
         ), _UNIT_BUFFER_BYTES if has_small_buffer else None
 
-    def set_admission(self, admission: Admission) -> None:
+    def set_admission(self, admission: ConnectionAdmission) -> None:
         removed = self._admission.holders.keys() - admission.holders.keys()
         self._admission = admission
         for common_name in removed:
@@ -105,14 +105,14 @@ class Links:
         for link in self._all():
             link.close()
 
-    def _all(self) -> list[Link]:
+    def _all(self) -> list[RelayedLink]:
         return [link for links in self._links.values() for link in links]
 
     def _close_all(self, common_name: str) -> None:
         for link in list(self._links.get(common_name, ())):
             link.close()
 
-    def _remove(self, link: Link) -> None:
+    def _remove(self, link: RelayedLink) -> None:
         links = self._links[link.common_name]
         links.remove(link)
         if not links:

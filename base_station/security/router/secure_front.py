@@ -8,7 +8,7 @@ from base_station.security.pki.access import access_control, rate_limited_querie
 from base_station.security.pki.folder import PkiFolder
 from base_station.security.pki.registry import Registry
 from base_station.security.router.acceptor import Acceptor
-from base_station.security.router.admission import Admission
+from base_station.security.router.admission import ConnectionAdmission
 from base_station.security.router.internal_authority import InternalAuthority
 from base_station.security.router.refusals import RefusalSummary
 from shared.channels import tracker_id
@@ -72,8 +72,8 @@ class SecureFront:
     def close(self) -> None:
         self._acceptor.close()
 
-    def _admission(self) -> Admission:
-        return Admission.of(self.identity, self._registry)
+    def _admission(self) -> ConnectionAdmission:
+        return ConnectionAdmission.of(self.identity, self._registry)
 
 
 def _enrolled(registry: Registry) -> frozenset[str]:

@@ -12,13 +12,13 @@ from base_station.core.erasure.redaction import remaining_text, without_note, wi
 from base_station.core.person_references import name_pattern, without_people
 from base_station.core.state import ERASED_TEXT
 from base_station.storage.db.models import (
-    Alarm,
+    AlarmRow,
     AlarmTransition,
     Assignment,
     AuditEntry,
-    Incident,
+    IncidentRow,
     IncidentTrails,
-    Person,
+    PersonRow,
     PostProcessingCache,
     SmoothedIncident,
     Tombstone,
@@ -49,7 +49,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
     if erasure.person_id:
         of_person = Assignment.person_id == erasure.person_id
         session.execute(update(Assignment).where(of_person).values(_NOBODY))
-        session.execute(delete(Person).where(Person.person_id == erasure.person_id))
+        session.execute(delete(PersonRow).where(PersonRow.person_id == erasure.person_id))
         session.merge(Tombstone(what=f"{PERSON}{erasure.person_id}", until_ns=None))
     else:
         _cut_out(session, erasure)
@@ -58,7 +58,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
 def _looked_back(session: Session, erasure: Erasure) -> None:
     """What was worked out of incidents in which anybody is forgotten; it can be again."""
     spans = [(one.from_ns, one.until_ns) for one in erasure.wearings]
-    for incident in session.scalars(select(Incident)).all():
+    for incident in session.scalars(select(IncidentRow)).all():
         until_ns = incident.closed_ns or FOREVER_NS
         if any(begin < until_ns and end > incident.opened_ns for begin, end in spans):
             for table in (SmoothedIncident, IncidentTrails, PostProcessingCache):
@@ -67,7 +67,7 @@ def _looked_back(session: Session, erasure: Erasure) -> None:
 
 def known_names(session: Session, person_id: str) -> set[str]:
     """How the tables call a person, now and before."""
-    names = set(session.scalars(select(Person.name).where(Person.person_id == person_id)))
+    names = set(session.scalars(select(PersonRow.name).where(PersonRow.person_id == person_id)))
     names |= set(
         session.scalars(select(Assignment.person_name).where(Assignment.person_id == person_id))
     )
@@ -79,7 +79,7 @@ def known_names(session: Session, person_id: str) -> set[str]:
 
 def ids_of(session: Session, name: str) -> set[str]:
     """Who is called so, or was, whether or not they are on the roster still."""
-    ids = set(session.scalars(select(Person.person_id).where(Person.name == name)))
+    ids = set(session.scalars(select(PersonRow.person_id).where(PersonRow.name == name)))
     worn = Assignment.person_name == name
     ids |= set(session.scalars(select(Assignment.person_id).where(worn)))
     theirs = AuditEntry.detail.endswith(f" {name}", autoescape=True)
@@ -92,7 +92,7 @@ def _within(table: type[TrackPoint | UnitStart], one: Wearing) -> ColumnElement[
 
 
 def _alarms(session: Session, erasure: Erasure) -> None:
-    for alarm in session.scalars(select(Alarm)):
+    for alarm in session.scalars(select(AlarmRow)):
         covered = erasure.covers(alarm.unit_id, alarm.raised_ns)
         if covered or erasure.is_about(
             alarm.unit_id, alarm.raised_ns
@@ -100,11 +100,11 @@ def _alarms(session: Session, erasure: Erasure) -> None:
             _rewrite_alarm(session, alarm, erasure, covered)
 
 
-def _rewrite_alarm(session: Session, alarm: Alarm, erasure: Erasure, covered: bool) -> None:
+def _rewrite_alarm(session: Session, alarm: AlarmRow, erasure: Erasure, covered: bool) -> None:
     changes = session.scalars(
         select(AlarmTransition).where(AlarmTransition.alarm_id == alarm.alarm_id)
     ).all()
-    rows: list[Alarm | AlarmTransition] = [alarm, *changes]
+    rows: list[AlarmRow | AlarmTransition] = [alarm, *changes]
     for row in rows:
         row.text = ERASED_TEXT if covered else _without_names(row.text, erasure)
         row.by = _without_names(without_note(row.by) if covered else row.by, erasure)

@@ -13,7 +13,7 @@ from sqlalchemy.orm import Session
 
 from base_station.core.person_references import with_names
 from base_station.core.state import ERASED_TEXT
-from base_station.storage.db.models import Assignment, Person, Tombstone
+from base_station.storage.db.models import Assignment, PersonRow, Tombstone
 from base_station.storage.db.tombstones import PERSON
 
 _ID_SHOWN = 8  # digits of an id that has no name
@@ -58,10 +58,10 @@ def load_people(session: Session) -> dict[str, KnownPerson]:
     """Everybody on the roster, who was removed from it, and who was forgotten."""
     gone = session.scalars(select(Tombstone.what).where(Tombstone.what.startswith(PERSON)))
     known = {what.removeprefix(PERSON): FORGOTTEN for what in gone}
-    return known | {one.person_id: known_person(one) for one in session.scalars(select(Person))}
+    return known | {one.person_id: known_person(one) for one in session.scalars(select(PersonRow))}
 
 
-def known_person(person: Person) -> KnownPerson:
+def known_person(person: PersonRow) -> KnownPerson:
     url = _photo_url(person.person_id, person.photo_hash) if person.photo_hash else None
     return KnownPerson(person.name, person.crew, person.role, url)
 

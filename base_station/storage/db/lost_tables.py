@@ -20,7 +20,7 @@ from base_station.storage.db.models import (
     BaseMap,
     LoginSession,
     LostTable,
-    Person,
+    PersonRow,
     User,
 )
 from base_station.storage.db.replicated_rows import (
@@ -46,7 +46,7 @@ def with_what_it_lost(session: Session, theirs: ReplicatedRows) -> ReplicatedRow
         tokens = rows_of(session, ApiToken)
         own["tokens"] = tuple(row for row in tokens if row["username"] in users)
     if "people" in theirs.lost:
-        own["people"] = rows_of(session, Person)
+        own["people"] = rows_of(session, PersonRow)
     if "base_map" in theirs.lost:
         own["base_map"] = rows_of(session, BaseMap)
     return msgspec.structs.replace(theirs, **own)
@@ -70,7 +70,7 @@ def take_back(session: Session, standby: ReplicatedRows) -> tuple[str, ...]:
         tokens = (row for row in theirs.tokens if row["username"] in users)
         back += _added(session, ApiToken, "token", ApiToken.token_id, tokens)
     if "people" in lost:
-        back += _added(session, Person, "person", Person.person_id, theirs.people)
+        back += _added(session, PersonRow, "person", PersonRow.person_id, theirs.people)
     session.execute(delete(LostTable))
     return tuple(back)
 

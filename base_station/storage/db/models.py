@@ -35,7 +35,7 @@ class BaseMap(Base):
     corners: Mapped[bytes]  # JSON of ``base_station.site.base_map.Corners``
 
 
-class Person(Base):
+class PersonRow(Base):
     """Nothing else has a person's name: logs, and what is made of them, have the id."""
 
     __tablename__ = "people"
@@ -151,7 +151,7 @@ class Unit(Base):
     has_gps: Mapped[bool]
 
 
-class Incident(Base):
+class IncidentRow(Base):
     __tablename__ = "incidents"
 
     incident_id: Mapped[str] = mapped_column(primary_key=True)
@@ -182,7 +182,7 @@ class Assignment(Base):
     until_ns: Mapped[int | None]
 
 
-class Alarm(Base):
+class AlarmRow(Base):
     """An alarm as it stands."""
 
     __tablename__ = "alarms"
@@ -232,7 +232,7 @@ class TrackPoint(Base):
     quality: Mapped[str]
 
 
-class Anchor(Base):
+class AnchorRow(Base):
     """Where the incident frame lay on the Earth from then on."""
 
     __tablename__ = "anchors"
@@ -245,7 +245,7 @@ class Anchor(Base):
     plan_rotation_rad: Mapped[float]
 
 
-class Plan(Base):
+class PlanRow(Base):
     """The building's plan from then on, as site GeoJSON."""
 
     __tablename__ = "plans"
@@ -318,13 +318,13 @@ class LogSegment(Base):
 
 PROJECTIONS: tuple[type[Base], ...] = (
     Unit,
-    Incident,
+    IncidentRow,
     Assignment,
-    Alarm,
+    AlarmRow,
     AlarmTransition,
     TrackPoint,
-    Anchor,
-    Plan,
+    AnchorRow,
+    PlanRow,
     UnitStart,
     SmoothedIncident,
     IncidentTrails,

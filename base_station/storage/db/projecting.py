@@ -13,13 +13,13 @@ from sqlalchemy.orm import Session
 
 from base_station.core.person_references import reference_to
 from base_station.storage.db.models import (
-    Alarm,
+    AlarmRow,
     AlarmTransition,
-    Anchor,
+    AnchorRow,
     Assignment,
     AuditEntry,
-    Incident,
-    Plan,
+    IncidentRow,
+    PlanRow,
     TrackPoint,
     Unit,
     UnitStart,
@@ -74,8 +74,8 @@ def project_into(session: Session, projections: Sequence[Projection]) -> int:
         for description in projection.descriptions:
             _unit(session, description.header.unit_id, **_described(description))
         if projection.news:
-            touched = Incident.incident_id.in_(projection.news)
-            session.execute(update(Incident).where(touched).values(late_data_ns=projection.t_ns))
+            touched = IncidentRow.incident_id.in_(projection.news)
+            session.execute(update(IncidentRow).where(touched).values(late_data_ns=projection.t_ns))
         tracks += projection.tracks
         heard.update(projection.heard)
     left_out = _tracks(session, tracks)
@@ -88,13 +88,13 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
     match done.action:
         case OpenIncident(incident_id=incident_id, name=name):
             _add(
-                session, Incident, incident_id=incident_id, name=name, opened_ns=t_ns,
+                session, IncidentRow, incident_id=incident_id, name=name, opened_ns=t_ns,
                 opened_by=done.by, closed_ns=None, closed_by="",
             )  # fmt: skip
         case CloseIncident(incident_id=incident_id):
             session.execute(
-                update(Incident)
-                .where(Incident.incident_id == incident_id, Incident.closed_ns.is_(None))
+                update(IncidentRow)
+                .where(IncidentRow.incident_id == incident_id, IncidentRow.closed_ns.is_(None))
                 .values(closed_ns=t_ns, closed_by=done.by)
             )
         case Assign() as assign:
@@ -109,9 +109,9 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
         case RegisterUnit(unit_id=unit_id, label=label):
             _unit(session, unit_id, label=label, registered_ns=t_ns)
         case SetAnchor() as anchor:
-            _add(session, Anchor, **key, **msgspec.structs.asdict(anchor))
+            _add(session, AnchorRow, **key, **msgspec.structs.asdict(anchor))
         case SetPlan(geojson=geojson):
-            _add(session, Plan, **key, geojson=geojson)
+            _add(session, PlanRow, **key, geojson=geojson)
         case SetStart() as start:
             columns = {name: getattr(start, name) for name in _START_COLUMNS}
             _add(session, UnitStart, **key, **columns)
@@ -169,10 +169,10 @@ def _alarm(session: Session, change: AlarmChange) -> None:
         "changed_ns": t_ns,
     }
     session.execute(
-        insert(Alarm)
+        insert(AlarmRow)
         .values(alarm_id=change.alarm_id, **current)
         .on_conflict_do_update(
-            index_elements=[Alarm.alarm_id], set_=current, where=Alarm.changed_ns <= t_ns
+            index_elements=[AlarmRow.alarm_id], set_=current, where=AlarmRow.changed_ns <= t_ns
         )
     )
     _add(

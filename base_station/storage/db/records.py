@@ -15,12 +15,12 @@ from base_station.storage.db import models
 from base_station.storage.db.known_people import load_people, person_lookup, shown_text
 from base_station.storage.db.models import (
     PROJECTIONS,
-    Alarm,
+    AlarmRow,
     AlarmTransition,
     AuditEntry,
-    Incident,
+    IncidentRow,
     LogSegment,
-    Plan,
+    PlanRow,
     TrackPoint,
     Unit,
 )
@@ -92,17 +92,17 @@ class Records:
 
     # ---- incidents
 
-    def incidents(self, opened: Window = EVER, limit: int | None = None) -> Sequence[Incident]:
+    def incidents(self, opened: Window = EVER, limit: int | None = None) -> Sequence[IncidentRow]:
         """Those opened in the window, newest first (``pages.newest``)."""
-        wanted = select(Incident).where(*_in(opened, Incident.opened_ns))
+        wanted = select(IncidentRow).where(*_in(opened, IncidentRow.opened_ns))
         with self._store.read() as session:
-            return newest(session, wanted, Incident.opened_ns, Incident.incident_id, limit)
+            return newest(session, wanted, IncidentRow.opened_ns, IncidentRow.incident_id, limit)
 
-    def incident(self, incident_id: str) -> Incident | None:
+    def incident(self, incident_id: str) -> IncidentRow | None:
         with self._store.read() as session:
-            return session.get(Incident, incident_id)
+            return session.get(IncidentRow, incident_id)
 
-    def require_incident(self, incident_id: str) -> Incident:
+    def require_incident(self, incident_id: str) -> IncidentRow:
         """Raises UserError, which names those that are known."""
         incident = self.incident(incident_id)
         if incident is None:
@@ -133,7 +133,7 @@ class Records:
         with self._store.read() as session:
             return [TrackSample(*row) for row in session.execute(wanted)]
 
-    def tracks_of(self, incident: Incident) -> Mapping[str, Sequence[TrackSample]]:
+    def tracks_of(self, incident: IncidentRow) -> Mapping[str, Sequence[TrackSample]]:
         """What was shown of every unit while the incident was open; each is read when it is asked
         for.
         """
@@ -142,15 +142,15 @@ class Records:
             self.track_units(window), lambda unit_id: self.track(unit_id, window)
         )
 
-    def alarms(self, raised: Window, limit: int | None = None) -> Sequence[Alarm]:
+    def alarms(self, raised: Window, limit: int | None = None) -> Sequence[AlarmRow]:
         """Those raised in the window, newest first (``pages.newest``)."""
-        wanted = select(Alarm).where(*_in(raised, Alarm.raised_ns))
+        wanted = select(AlarmRow).where(*_in(raised, AlarmRow.raised_ns))
         with self._store.read() as session:
-            return newest(session, wanted, Alarm.raised_ns, Alarm.alarm_id, limit)
+            return newest(session, wanted, AlarmRow.raised_ns, AlarmRow.alarm_id, limit)
 
-    def alarm(self, alarm_id: str) -> Alarm | None:
+    def alarm(self, alarm_id: str) -> AlarmRow | None:
         with self._store.read() as session:
-            return session.get(Alarm, alarm_id)
+            return session.get(AlarmRow, alarm_id)
 
     def alarm_life(self, alarm_id: str) -> Sequence[AlarmTransition]:
         return self.alarm_lives([alarm_id])[alarm_id]
@@ -173,9 +173,9 @@ class Records:
     def anchor(self, until_ns: int = FOREVER_NS) -> Anchor | None:
         """The last one set before ``until_ns``; without one, the first set later."""
         with self._store.read() as session:
-            t_ns = models.Anchor.t_ns
-            before = select(models.Anchor).where(t_ns < until_ns).order_by(t_ns.desc()).limit(1)
-            first = select(models.Anchor).order_by(t_ns).limit(1)
+            t_ns = models.AnchorRow.t_ns
+            before = select(models.AnchorRow).where(t_ns < until_ns).order_by(t_ns.desc()).limit(1)
+            first = select(models.AnchorRow).order_by(t_ns).limit(1)
             row = session.scalars(before).first() or session.scalars(first).first()
         if row is None:
             return None
@@ -185,7 +185,10 @@ class Records:
         """The last one set before ``until_ns``, as site GeoJSON."""
         with self._store.read() as session:
             return session.scalars(
-                select(Plan.geojson).where(Plan.t_ns < until_ns).order_by(Plan.t_ns.desc()).limit(1)
+                select(PlanRow.geojson)
+                .where(PlanRow.t_ns < until_ns)
+                .order_by(PlanRow.t_ns.desc())
+                .limit(1)
             ).first()
 
     # ---- log segments

@@ -14,7 +14,7 @@ from base_station.storage.db.models import (
     Base,
     LoginSession,
     LoginTransferTicket,
-    Person,
+    PersonRow,
     Tombstone,
     User,
 )
@@ -27,7 +27,7 @@ _ENDED: tuple[type[Base], ...] = (
     LoginSession,
     ApiToken,
     User,
-    Person,
+    PersonRow,
 )  # parts first
 
 
@@ -87,5 +87,5 @@ def without_ended(session: Session, rows: ReplicatedRows) -> ReplicatedRows:
         hand_overs=tuple(
             r for r in left(LoginTransferTicket, rows.hand_overs) if r["session_hash"] in secrets
         ),
-        people=left(Person, rows.people),
+        people=left(PersonRow, rows.people),
     )

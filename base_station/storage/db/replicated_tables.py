@@ -24,7 +24,7 @@ from base_station.storage.db.models import (
     LoginSession,
     LoginTransferTicket,
     LostTable,
-    Person,
+    PersonRow,
     Tombstone,
     User,
 )
@@ -56,7 +56,7 @@ class ReplicatedTables:
                 tokens=rows_of(session, ApiToken),
                 sessions=rows_of(session, LoginSession),
                 hand_overs=rows_of(session, LoginTransferTicket),
-                people=rows_of(session, Person),
+                people=rows_of(session, PersonRow),
                 base_map=rows_of(session, BaseMap),
                 ended=rows_of(session, Tombstone),
                 lost=lost_tables(session),
@@ -82,7 +82,7 @@ class ReplicatedTables:
             dropped = (
                 *_only_here(session, User.username, "user", theirs.users),
                 *_only_here(session, ApiToken.token_id, "token", theirs.tokens),
-                *_only_here(session, Person.person_id, "person", theirs.people),
+                *_only_here(session, PersonRow.person_id, "person", theirs.people),
             )
             users = tuple(_with_the_later(session, row) for row in theirs.users)
             _replace(session, User, User.username, users)
@@ -137,18 +137,18 @@ class ReplicatedTables:
         """Ids of people whose photo has not come yet."""
         with self._store.read() as session:
             return session.scalars(
-                select(Person.person_id).where(
-                    Person.photo_hash.is_not(None), Person.photo.is_(None)
+                select(PersonRow.person_id).where(
+                    PersonRow.photo_hash.is_not(None), PersonRow.photo.is_(None)
                 )
             ).all()
 
     def photo(self, person_id: str) -> bytes | None:
         with self._store.read() as session:
-            return session.scalar(select(Person.photo).where(Person.person_id == person_id))
+            return session.scalar(select(PersonRow.photo).where(PersonRow.person_id == person_id))
 
     def put_photo(self, person_id: str, jpeg: bytes) -> None:
         with self._store.write() as session:
-            person = session.get(Person, person_id)
+            person = session.get(PersonRow, person_id)
             if person is not None:
                 person.photo = jpeg
 
@@ -237,7 +237,7 @@ def _remove_people(session: Session, rows: tuple[Row, ...]) -> bool:
     """Whoever was removed from the roster at the other station; whether anybody was."""
     some = False
     for row in rows:
-        person = session.get(Person, row["person_id"])
+        person = session.get(PersonRow, row["person_id"])
         removed_ns = row.get(_REMOVED)
         if person is not None and person.removed_ns is None and removed_ns is not None:
             person.removed_ns, person.photo, person.photo_hash = removed_ns, None, None
@@ -247,11 +247,13 @@ def _remove_people(session: Session, rows: tuple[Row, ...]) -> bool:
 
 def _put_people(session: Session, rows: tuple[Row, ...]) -> None:
     """Who was removed here stays so."""
-    session.execute(delete(Person).where(Person.person_id.not_in([r["person_id"] for r in rows])))
+    session.execute(
+        delete(PersonRow).where(PersonRow.person_id.not_in([r["person_id"] for r in rows]))
+    )
     for row in rows:
-        person = session.get(Person, row["person_id"])
+        person = session.get(PersonRow, row["person_id"])
         if person is None:
-            session.add(Person(**row, photo=None))
+            session.add(PersonRow(**row, photo=None))
             continue
         if person.removed_ns is not None and row.get(_REMOVED) is None:
             continue

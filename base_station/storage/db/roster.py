@@ -19,7 +19,7 @@ from base_station.storage.db.known_people import (
     shown_text,
     shown_wearer,
 )
-from base_station.storage.db.models import Assignment, Person, Unit
+from base_station.storage.db.models import Assignment, PersonRow, Unit
 from base_station.storage.db.pages import newest
 from base_station.storage.db.store import Store
 from shared.clock import Clock
@@ -34,13 +34,13 @@ class Roster:
         self._clock = clock
         self._known = self._load_people()
 
-    def people(self) -> Sequence[Person]:
+    def people(self) -> Sequence[PersonRow]:
         with self._store.read() as session:
-            by_name = select(Person).where(Person.removed_ns.is_(None))
-            ordered = by_name.order_by(func.lower(Person.name), Person.person_id)
+            by_name = select(PersonRow).where(PersonRow.removed_ns.is_(None))
+            ordered = by_name.order_by(func.lower(PersonRow.name), PersonRow.person_id)
             return session.scalars(ordered).all()
 
-    def person(self, person_id: str) -> Person | None:
+    def person(self, person_id: str) -> PersonRow | None:
         with self._store.read() as session:
             return _on_roster(session, person_id)
 
@@ -75,11 +75,11 @@ class Roster:
         with self._store.read() as session:
             return known_names(session, person_id)
 
-    def add_person(self, name: str, crew: str, role: str, row_id: str = "") -> Person:
+    def add_person(self, name: str, crew: str, role: str, row_id: str = "") -> PersonRow:
         """``row_id`` (``core.idempotency.row_id``): whoever was added with that key before is
         the one.
         """
-        person = Person(
+        person = PersonRow(
             person_id=row_id or secrets.token_hex(8),
             name=name,
             crew=crew,
@@ -91,15 +91,15 @@ class Roster:
         )
         with self._store.write() as session:
             if row_id:
-                same_key = Person.person_id.startswith(row_id[:KEY_DIGITS])
-                before = session.scalars(select(Person).where(same_key)).first()
+                same_key = PersonRow.person_id.startswith(row_id[:KEY_DIGITS])
+                before = session.scalars(select(PersonRow).where(same_key)).first()
                 if before is not None:
                     return before
             session.add(person)
         self._known[person.person_id] = known_person(person)
         return person
 
-    def change_person(self, person_id: str, name: str, crew: str, role: str) -> Person | None:
+    def change_person(self, person_id: str, name: str, crew: str, role: str) -> PersonRow | None:
         with self._store.write() as session:
             person = _on_roster(session, person_id)
             if person is not None:
@@ -122,7 +122,7 @@ class Roster:
         self._known[person_id] = known_person(person)
         return True
 
-    def set_photo(self, person_id: str, jpeg: bytes, photo_hash: str) -> Person | None:
+    def set_photo(self, person_id: str, jpeg: bytes, photo_hash: str) -> PersonRow | None:
         with self._store.write() as session:
             person = _on_roster(session, person_id)
             if person is None:
@@ -138,7 +138,9 @@ class Roster:
     def photo(self, person_id: str) -> tuple[bytes, str] | None:
         """JPEG and its hash."""
         with self._store.read() as session:
-            wanted = select(Person.photo, Person.photo_hash).where(Person.person_id == person_id)
+            wanted = select(PersonRow.photo, PersonRow.photo_hash).where(
+                PersonRow.person_id == person_id
+            )
             found = session.execute(wanted).one_or_none()
         if found is None or found[0] is None or found[1] is None:
             return None
@@ -182,7 +184,7 @@ class Roster:
             worn = select(Assignment.unit_id, Assignment.person_id).where(
                 Assignment.until_ns.is_(None), Assignment.person_name != ""
             )
-            known = worn.join(Person, Person.person_id == Assignment.person_id)
+            known = worn.join(PersonRow, PersonRow.person_id == Assignment.person_id)
             return [(row[0], row[1]) for row in session.execute(known)]
 
     def assignments(self, from_ns: int, until_ns: int) -> Sequence[Assignment]:
@@ -202,8 +204,8 @@ class Roster:
             return load_people(session)
 
 
-def _on_roster(session: Session, person_id: str) -> Person | None:
-    person = session.get(Person, person_id)
+def _on_roster(session: Session, person_id: str) -> PersonRow | None:
+    person = session.get(PersonRow, person_id)
     return None if person is None or person.removed_ns is not None else person
 
 

@@ -13,7 +13,7 @@ from base_station.storage.db.models import (
     Base,
     LoginSession,
     LoginTransferTicket,
-    Person,
+    PersonRow,
     Tombstone,
     User,
 )
@@ -22,7 +22,7 @@ PERSON = "person "  # before the id
 
 
 def end(
-    session: Session, row: User | LoginSession | LoginTransferTicket | ApiToken | Person
+    session: Session, row: User | LoginSession | LoginTransferTicket | ApiToken | PersonRow
 ) -> None:
     """Delete it, for good."""
     until_ns = getattr(row, "expires_ns", None)
@@ -41,6 +41,6 @@ def name_of(row: Base) -> str:
             return f"ticket {row.ticket_hash}"
         case ApiToken():
             return f"token {row.token_id}"
-        case Person():
+        case PersonRow():
             return f"{PERSON}{row.person_id}"
     raise TypeError(type(row))

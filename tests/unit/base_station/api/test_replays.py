@@ -8,11 +8,11 @@ import pytest
 
 from base_station.api.hub import Hub
 from base_station.api.replays import MAX_REPLAYS, UNWATCHED_S, Replays
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from shared.errors import UserError
 from tests.rig.recording_replay import NotedReplay
 
-INCIDENT = Incident(incident_id="i-1", name="Kitchen", opened_ns=0)
+INCIDENT = IncidentRow(incident_id="i-1", name="Kitchen", opened_ns=0)
 
 
 async def test_a_replay_that_nobody_looks_at_ends() -> None:

@@ -15,7 +15,7 @@ from base_station.replay.playback import Archive
 from base_station.replay.post_processing import QUIET_NS, PostProcessor
 from base_station.replay.rebuild import project_log
 from base_station.storage.checkpoints import Checkpoints
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.records import Records, TrackSample
 from base_station.storage.db.smoothed import SmoothedTracks
@@ -101,7 +101,7 @@ class Station:
         self.clock.advance((self.script.t_ns - self.clock.utc_ns()) / 1e9)
 
     @property
-    def incident(self) -> Incident:
+    def incident(self) -> IncidentRow:
         """As the store has it by what the log says up to now."""
 
         def write(projection: object) -> None:

@@ -18,7 +18,7 @@ from base_station.replay.playback import Archive, Record
 from base_station.replay.post_processing import LATELY_NS, PostProcessor
 from base_station.replay.rebuild import project_log
 from base_station.storage.checkpoints import Checkpoints
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.records import Records, TrackSample
 from base_station.storage.db.roster import Roster
@@ -62,7 +62,7 @@ class Past:
         self.post_processor = PostProcessor(archive, SMOOTHERS[0], self.kept, clock)
         incident = self.records.incident("i1")
         assert incident is not None
-        self.incident: Incident = incident
+        self.incident: IncidentRow = incident
 
     def mean_off_m(self, track: Sequence[TrackSample]) -> float:
         begin_ns = self.walk.script.t_ns - self.walk.walked_s * 10**9
@@ -168,12 +168,12 @@ def test_an_incident_that_cannot_be_looked_back_on_is_given_up_and_the_next_is_n
     )
     asked: list[str] = []
 
-    def shown(incident: Incident) -> dict[str, Sequence[TrackSample]]:
+    def shown(incident: IncidentRow) -> dict[str, Sequence[TrackSample]]:
         asked.append(incident.incident_id)
         raise ZeroDivisionError("a mistake")
 
     incidents = [
-        Incident(incident_id=one, name=one, opened_ns=1, closed_ns=2) for one in ("i1", "i2")
+        IncidentRow(incident_id=one, name=one, opened_ns=1, closed_ns=2) for one in ("i1", "i2")
     ]
     for _ in range(4):
         post_processor.catch_up(incidents, shown)
@@ -228,7 +228,7 @@ def test_of_an_open_incident_all_is_known_that_was_recorded_whatever_the_clock_s
     """`muster base smooth` on a machine whose clock was set back: times went on from the last."""
     behind = ManualClock(utc_ns=past.incident.opened_ns + 10 * 10**9)
     post_processor = PostProcessor(past.archive, SMOOTHERS[0], SmoothedTracks(store), behind)
-    is_open = Incident(
+    is_open = IncidentRow(
         incident_id="i1", name="Mill Lane", opened_ns=past.incident.opened_ns, closed_ns=None
     )
     fractions: list[float] = []
@@ -257,7 +257,7 @@ def test_the_own_path_begins_anew_where_its_unit_did(store: Store, tmp_path: Pat
             script.position("FF-01", 1.0 * second, 0.0)
     script.act(CloseIncident("i1"))
     post_processor = hindsight_of(script, store, tmp_path)
-    incident = Incident(
+    incident = IncidentRow(
         incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
     )
     raw = post_processor.raw(incident)["FF-01"]
@@ -288,7 +288,7 @@ def test_trails_are_of_the_incident_and_of_whom_it_heard(store: Store, tmp_path:
             script.position(unit_id, 1.0 * second, 0.0)
     script.act(CloseIncident("i1"))
     post_processor = hindsight_of(script, store, tmp_path)
-    incident = Incident(
+    incident = IncidentRow(
         incident_id="i1", name="Mill Lane", opened_ns=opened_ns, closed_ns=script.t_ns
     )
     for tracks in (post_processor.smoothed(incident).tracks, post_processor.raw(incident)):
@@ -322,7 +322,7 @@ def test_whose_beginning_nothing_told_is_not_called_well_known(
         script.act(SetPin("p", "FF-01", script.t_ns, 40.0, 0.0, 0.5, None, None, 0.0, ""))
     script.act(CloseIncident("i1"))
     post_processor = hindsight_of(script, store, tmp_path)
-    incident = Incident(
+    incident = IncidentRow(
         incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
     )
     last = post_processor.smoothed(incident).tracks["FF-01"][-1]
@@ -348,7 +348,7 @@ def test_raw_trails_and_the_assessment_are_kept_until_it_is_worked_out_again(pas
 class SmoothedBeside(SmoothedTracks):
     """Somebody else works it out again as soon as something has been kept of it."""
 
-    def __init__(self, store: Store, incident: Incident) -> None:
+    def __init__(self, store: Store, incident: IncidentRow) -> None:
         super().__init__(store)
         self.incident = incident
         self.beside: PostProcessor | None = None

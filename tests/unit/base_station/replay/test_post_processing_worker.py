@@ -11,7 +11,7 @@ import pytest
 from base_station.replay import post_processing_worker
 from base_station.replay.post_processing import PostProcessor, Tracks
 from base_station.replay.post_processing_worker import PostProcessingWorker
-from base_station.storage.db.models import Incident
+from base_station.storage.db.models import IncidentRow
 from shared.errors import StoreError
 
 WAIT_S = 20.0
@@ -31,7 +31,7 @@ class LongWork:
         self.over = threading.Event()
         self.ended = threading.Event()
 
-    def catch_up(self, incidents: Iterable[Incident], _shown: object) -> None:
+    def catch_up(self, incidents: Iterable[IncidentRow], _shown: object) -> None:
         assert [one.incident_id for one in incidents] == ["i1"]
         self.begun.set()
         assert self.over.wait(WAIT_S)
@@ -46,11 +46,11 @@ def work() -> Iterator[LongWork]:
     assert not work.begun.is_set() or work.ended.wait(WAIT_S)
 
 
-def incidents() -> list[Incident]:
-    return [Incident(incident_id="i1", name="Mill Lane", opened_ns=1, closed_ns=2)]
+def incidents() -> list[IncidentRow]:
+    return [IncidentRow(incident_id="i1", name="Mill Lane", opened_ns=1, closed_ns=2)]
 
 
-def shown(_incident: Incident) -> Tracks:
+def shown(_incident: IncidentRow) -> Tracks:
     return {}
 
 
@@ -67,7 +67,7 @@ def test_when_the_database_cannot_be_read_it_is_tried_again(
 ) -> None:
     tries: list[int] = []
 
-    def at_last() -> list[Incident]:
+    def at_last() -> list[IncidentRow]:
         tries.append(1)
         if len(tries) < 3:
             raise StoreError("the disk does not answer")

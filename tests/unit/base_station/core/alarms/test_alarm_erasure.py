@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from base_station.core.erasure.erasure import Erasure, Wearing
 from base_station.core.state import ERASED_TEXT
 from base_station.storage.db.erasure import forget_in
-from base_station.storage.db.models import Alarm, AlarmTransition, AuditEntry
+from base_station.storage.db.models import AlarmRow, AlarmTransition, AuditEntry
 from base_station.storage.db.store import Store
 from shared.messages.station import Action, Assign, DoneApart, ResolveAlarm
 
@@ -27,7 +27,7 @@ def test_an_alarm_raised_anew_by_another_wearer_keeps_nothing_of_the_one_between
     with Store(tmp_path / "station.sqlite") as store:
         with store.write() as session:
             session.add(
-                Alarm(
+                AlarmRow(
                     **FALL, rule="fall", unit_id="FF-01", priority=1, text=texts[30],
                     raised_ns=10, changed_ns=30,
                 )
@@ -56,7 +56,7 @@ def test_what_was_raised_and_noted_after_an_incident_about_it_names_nobody(
             for alarm_id in ids:
                 _, unit_id, raised_ns = alarm_id.split(":")
                 session.add(
-                    Alarm(
+                    AlarmRow(
                         **fields, alarm_id=alarm_id, unit_id=unit_id, text="Mayday from Ana",
                         by="eve: spoke to Ana", raised_ns=int(raised_ns), changed_ns=70,
                     )
@@ -72,7 +72,7 @@ def test_what_was_raised_and_noted_after_an_incident_about_it_names_nobody(
             with store.write() as session:
                 forget_in(session, ana)
         with store.read() as session:
-            told = {one.alarm_id: (one.text, one.by) for one in session.query(Alarm)}
+            told = {one.alarm_id: (one.text, one.by) for one in session.query(AlarmRow)}
             noted_of = {one.entry_id: "Ana" in one.detail for one in session.query(AuditEntry)}
     kept = "Mayday from Ana", "eve: spoke to Ana"
     gone = f"Mayday from {ERASED_TEXT}", f"eve: spoke to {ERASED_TEXT}"

@@ -6,7 +6,7 @@ import asyncio
 
 import pytest
 
-from base_station.security.router.admission import Admission, LinkRates
+from base_station.security.router.admission import ConnectionAdmission, LinkRates
 from base_station.security.router.pending import PendingConnections, RoundRobin
 from base_station.security.router.refusals import Refusal, Refusals, RefusalSummary, refusal_problem
 from shared.enrolment import Holder
@@ -63,7 +63,7 @@ async def test_who_has_gone_takes_no_turn() -> None:
 
 
 def test_only_who_is_enrolled_has_links_and_a_unit_few() -> None:
-    admission = Admission(NOBODY, {"anna": Holder.UNIT, "station:base": Holder.STATION})
+    admission = ConnectionAdmission(NOBODY, {"anna": Holder.UNIT, "station:base": Holder.STATION})
     assert admission.max_links("ben") == 0
     assert 2 <= admission.max_links("anna") < admission.max_links("station:base")
 

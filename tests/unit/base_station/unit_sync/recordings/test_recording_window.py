@@ -9,7 +9,7 @@ import pytest
 from base_station.app.recordings_app import since, window_of
 from base_station.config import StationConfig
 from base_station.storage.data_folder import DataFolder
-from base_station.storage.db.models import Incident, LogSegment
+from base_station.storage.db.models import IncidentRow, LogSegment
 from base_station.storage.db.records import Records
 from base_station.storage.db.store import Store
 from shared.clock import NS_PER_S, SystemClock
@@ -28,12 +28,12 @@ def recorded_ns(tmp_path: Path) -> int:
         Records(store, SystemClock()).put_segments([segment])
         with store.write() as session:
             session.add(
-                Incident(
+                IncidentRow(
                     incident_id="i1", name="Mill Lane", opened_ns=5, opened_by="", closed_by=""
                 )
             )
             session.add(
-                Incident(
+                IncidentRow(
                     incident_id="i0",
                     name="Before",
                     opened_ns=2,
