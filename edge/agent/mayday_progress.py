@@ -1,4 +1,4 @@
-"""How far the wearer's maydays have got: called, received by the station, acknowledged there."""
+"""Progress of the wearer's maydays: called, received by the station, acknowledged there."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ _EARLY_NS = 10 * NS_PER_S  # after its start: a tracker that fails by then will 
 _CALLS_NS = 30 * NS_PER_S  # after its start, for which the button works without the tracker
 
 
-class StartCheck(Protocol):
+class SelfTest(Protocol):
     """Check of the unit at its start, beside all else; see ``edge.preflight.start_check``."""
 
     def start(self, mono_ns: int) -> None: ...
@@ -89,7 +89,7 @@ class AgentParts:
     link: Link
     commands: SimpleQueue[bytes]  # filled by the link
     manager: ServiceManager
-    start_check: StartCheck | None = None  # None: of an agent that has no sensors of its own
+    start_check: SelfTest | None = None  # None: of an agent that has no sensors of its own
 
 
 class Agent:

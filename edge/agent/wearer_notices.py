@@ -1,4 +1,4 @@
-"""What a unit's wearer is to be notified of now, from the state of the unit."""
+"""Notices that a unit's wearer is due now, from the state of the unit."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from edge.app.zenoh_station import ZenohStation
 from edge.config import EdgeConfig
 from edge.identity import bus_unit, unit_connection
 from edge.preflight.auxiliary_survey import AuxiliarySurvey
-from edge.preflight.finding import Finding, Level, worst
+from edge.preflight.finding import CheckFinding, Severity, worst
 from edge.preflight.inertial_survey import InertialSurvey
 from edge.preflight.installation import (
     calibration_finding,
@@ -43,17 +43,17 @@ def print_check(config: EdgeConfig, survey_s: float, *, as_json: bool) -> bool:
     unit_id = unit_connection(config).unit_id
     console = Console(stderr=as_json)
     console.print(f"Checking unit {unit_id}; lay it down still, and press its button once.")
-    findings: list[Finding] = []
+    findings: list[CheckFinding] = []
     for finding in check_unit(config, survey_s):
         findings.append(finding)
         print_finding(finding, console)
     print_verdict(unit_id, findings, console)
     if as_json:
         print(encode_report(unit_id, findings))
-    return worst(findings) is not Level.FAILED
+    return worst(findings) is not Severity.FAILED
 
 
-def check_unit(config: EdgeConfig, survey_s: float) -> Iterator[Finding]:
+def check_unit(config: EdgeConfig, survey_s: float) -> Iterator[CheckFinding]:
     """Yield findings as they are made; takes ``survey_s`` for the sensors, and some seconds."""
     if bus_unit(config) is not None:
         raise ConfigError(f"{config.source} has no sensors of its own; check the unit itself")
@@ -72,7 +72,7 @@ def check_unit(config: EdgeConfig, survey_s: float) -> Iterator[Finding]:
         yield from station_findings(member.unit_id, ZenohStation(member), SystemClock())
 
 
-def _sensor_findings(config: EdgeConfig, source: Source, survey_s: float) -> Iterator[Finding]:
+def _sensor_findings(config: EdgeConfig, source: Source, survey_s: float) -> Iterator[CheckFinding]:
     reader = SourceReader(source, SystemClock(), config.speed, open_auxiliaries(config))
     inertial = InertialSurvey(source.description)
     auxiliary = AuxiliarySurvey(config, source_kind(config.source).gives)
@@ -93,6 +93,6 @@ def _sensor_findings(config: EdgeConfig, source: Source, survey_s: float) -> Ite
         auxiliary.push(press)
     if reader.failure is not None:
         faults.append(reader.failure)
-    yield from (Finding("sensors", Level.FAILED, fault) for fault in faults)
+    yield from (CheckFinding("sensors", Severity.FAILED, fault) for fault in faults)
     yield from inertial.findings()
     yield from auxiliary.findings()

@@ -30,7 +30,7 @@ from edge.clocks.station import StationClock
 from edge.clocks.timeline import Follower, Timekeeper
 from edge.config import EdgeConfig
 from edge.notifiers.outputs import Outputs
-from edge.preflight.finding import Finding
+from edge.preflight.finding import CheckFinding
 from edge.preflight.installation import (
     calibration_finding,
     certificate_finding,
@@ -152,7 +152,7 @@ def _start_check(
     if speed is None or isinstance(source, BusSource):
         return None
 
-    def installation() -> Iterator[Finding]:
+    def installation() -> Iterator[CheckFinding]:
         now = datetime.now(UTC)
         yield certificate_finding(certificate, now)
         yield calibration_finding(calibration, now)

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from edge.agent.batteries import Batteries
 from edge.config import EdgeConfig
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from edge.samples import (
     AmbientSample,
     BatterySample,
@@ -66,14 +66,16 @@ class AuxiliarySurvey:
             case ButtonPress():
                 self._buttons.add(sample.button)
 
-    def findings(self, *, asks_press: bool = True) -> Iterator[Finding]:
+    def findings(self, *, asks_press: bool = True) -> Iterator[CheckFinding]:
         """``asks_press``: somebody was asked to press the button."""
         yield from self._temperature()
         yield from self._battery()
         yield from self._satellites()
         if self._config.sightings:
             text = f"{self._sightings} sightings"
-            yield Finding("beacons", Level.OK, text if self._sightings else "none in reach now")
+            yield CheckFinding(
+                "beacons", Severity.OK, text if self._sightings else "none in reach now"
+            )
         yield from self._button(asks_press=asks_press)
 
     def _note_fix(self, fix: GpsSample) -> None:
@@ -83,65 +85,73 @@ class AuxiliarySurvey:
         ):
             self._best_fix = fix
 
-    def _temperature(self) -> Iterator[Finding]:
+    def _temperature(self) -> Iterator[CheckFinding]:
         subject = "temperature"
         if not self._config.temperatures and not self._temperatures:
-            yield Finding(subject, Level.WARNING, "the unit has no sensor", _NO_HEAT_ALARM)
+            yield CheckFinding(subject, Severity.WARNING, "the unit has no sensor", _NO_HEAT_ALARM)
         for sensor in map(sensor_name, self._config.temperatures):
             if sensor not in self._temperatures:
-                yield Finding(f"{subject} {sensor}", Level.FAILED, "no reading", _NO_HEAT_ALARM)
+                yield CheckFinding(
+                    f"{subject} {sensor}", Severity.FAILED, "no reading", _NO_HEAT_ALARM
+                )
         least_degc, most_degc = _TEMPERATURE_DEGC
         for sensor, degc in sorted(self._temperatures.items()):
             is_plausible = least_degc <= degc <= most_degc
-            yield Finding(
+            yield CheckFinding(
                 f"{subject} {sensor}".strip(),
-                Level.OK if is_plausible else Level.WARNING,
+                Severity.OK if is_plausible else Severity.WARNING,
                 f"{degc:.1f} °C",
                 "" if is_plausible else "out here it makes no sense: check the sensor's wiring",
             )
 
-    def _battery(self) -> Iterator[Finding]:
+    def _battery(self) -> Iterator[CheckFinding]:
         battery = self._batteries.emptiest(self._newest_ns)
         if battery is None:
             is_set = bool(self._config.battery)
-            level = Level.FAILED if is_set else Level.WARNING
+            level = Severity.FAILED if is_set else Severity.WARNING
             text = "no reading" if is_set else "the unit does not know its battery"
-            yield Finding("battery", level, text, _NO_LOW_BATTERY)
+            yield CheckFinding("battery", level, text, _NO_LOW_BATTERY)
             return
         text = f"{battery.level:.0%} of {battery.battery or 'the sensor'}"
         if math.isfinite(battery.left_s):
             text += f", {battery.left_s / 3600.0:.1f} h left"
         if battery.level < _BATTERY_EMPTY:
-            yield Finding("battery", Level.FAILED, text, "charge or change it")
+            yield CheckFinding("battery", Severity.FAILED, text, "charge or change it")
         elif battery.level < _BATTERY_LOW or battery.left_s < _LEFT_MIN_S:
-            yield Finding("battery", Level.WARNING, text, "it may not last the incident")
+            yield CheckFinding("battery", Severity.WARNING, text, "it may not last the incident")
         else:
-            yield Finding("battery", Level.OK, text)
+            yield CheckFinding("battery", Severity.OK, text)
 
-    def _satellites(self) -> Iterator[Finding]:
+    def _satellites(self) -> Iterator[CheckFinding]:
         subject, fix = "satellites", self._best_fix
         if not self._config.gps and Quantity.FIX not in self._gives:
-            yield Finding(
+            yield CheckFinding(
                 subject,
-                Level.WARNING,
+                Severity.WARNING,
                 "the unit has no receiver",
                 "its place on the map has to come from a pin, a beacon or the others",
             )
         elif not self._has_receiver_answered:
             if self._config.gps:
-                yield Finding(subject, Level.FAILED, "the receiver is silent", "check its cable")
+                yield CheckFinding(
+                    subject, Severity.FAILED, "the receiver is silent", "check its cable"
+                )
         elif fix is None or not fix.horizontal_std_m <= _FIX_STD_MAX_M:
-            yield Finding(
-                subject, Level.WARNING, "no fix yet", "wait under the open sky before going in"
+            yield CheckFinding(
+                subject, Severity.WARNING, "no fix yet", "wait under the open sky before going in"
             )
         else:
             text = f"fix of {fix.satellites} satellites, {fix.horizontal_std_m:.0f} m"
-            yield Finding(subject, Level.OK, text)
+            yield CheckFinding(subject, Severity.OK, text)
 
-    def _button(self, *, asks_press: bool) -> Iterator[Finding]:
+    def _button(self, *, asks_press: bool) -> Iterator[CheckFinding]:
         if Quantity.MAYDAY_BUTTON not in self._gives:
-            yield Finding("mayday button", Level.WARNING, "the unit has none", _NO_MAYDAY)
+            yield CheckFinding("mayday button", Severity.WARNING, "the unit has none", _NO_MAYDAY)
         if self._buttons:
-            yield Finding("button", Level.OK, f"pressed: {', '.join(sorted(self._buttons))}")
+            yield CheckFinding(
+                "button", Severity.OK, f"pressed: {', '.join(sorted(self._buttons))}"
+            )
         elif asks_press and not self._gives.isdisjoint(_BUTTONS):
-            yield Finding("button", Level.WARNING, "not pressed during the check", "press it once")
+            yield CheckFinding(
+                "button", Severity.WARNING, "not pressed during the check", "press it once"
+            )

@@ -8,7 +8,7 @@ from enum import StrEnum
 import msgspec
 
 
-class Level(StrEnum):
+class Severity(StrEnum):
     """How much a finding matters."""
 
     OK = "ok"
@@ -16,16 +16,18 @@ class Level(StrEnum):
     FAILED = "failed"  # the wearer is not tracked, or not heard
 
 
-class Finding(msgspec.Struct, frozen=True):
+class CheckFinding(msgspec.Struct, frozen=True):
     """Result of one check, for a person."""
 
     subject: str  # a word or two: link, clock, inertial sensor
-    level: Level
+    level: Severity
     text: str  # what was found, with numbers
     remedy: str = ""  # what it costs or what to do; empty where all is well
 
 
-def worst(findings: Iterable[Finding]) -> Level:
+def worst(findings: Iterable[CheckFinding]) -> Severity:
     """Return the gravest level; OK where there is no finding."""
     levels = {finding.level for finding in findings}
-    return next((level for level in (Level.FAILED, Level.WARNING) if level in levels), Level.OK)
+    return next(
+        (level for level in (Severity.FAILED, Severity.WARNING) if level in levels), Severity.OK
+    )

@@ -11,7 +11,7 @@ import numpy as np
 
 from edge.agent.sensor_health import SensorHealth
 from edge.calibration.rest_detector import RestDetector, RestWindow, mean_of, seconds
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from edge.samples import Floats, ImuBatch, SensorDescription
 from shared.clock import NS_PER_S
 
@@ -57,17 +57,17 @@ class InertialSurvey:
         if imu.pressure_pa is not None:
             self._pressure_pa.append(imu.pressure_pa)
 
-    def findings(self, *, asks_rest: bool = True) -> Iterator[Finding]:
+    def findings(self, *, asks_rest: bool = True) -> Iterator[CheckFinding]:
         """``asks_rest``: somebody was asked to lay the unit down."""
         if self._count < 2:  # two times make a rate
-            yield Finding(
+            yield CheckFinding(
                 _SENSOR,
-                Level.FAILED,
+                Severity.FAILED,
                 f"{self._sensor.name or 'the source'} gave no samples",
                 "check its power and cable; nobody is tracked without it",
             )
             return
-        yield from (Finding(_SENSOR, Level.FAILED, fault) for fault in self._faults)
+        yield from (CheckFinding(_SENSOR, Severity.FAILED, fault) for fault in self._faults)
         yield self._rate()
         yield from self._ranges()
         yield from self._at_rest(asks_rest=asks_rest)
@@ -88,42 +88,48 @@ class InertialSurvey:
         self._count += len(imu)
         self._last_ns = int(imu.t_ns[-1])
 
-    def _rate(self) -> Finding:
+    def _rate(self) -> CheckFinding:
         elapsed_s = max((self._last_ns - self._first_ns) / NS_PER_S, 1e-9)
         rate_hz, gap_s = (self._count - 1) / elapsed_s, self._longest_gap_ns / NS_PER_S
         stated_hz = self._sensor.rate_hz
         text = f"{rate_hz:.1f} samples/s of {stated_hz:g}, longest gap {1e3 * gap_s:.0f} ms"
         if rate_hz < _RATE_MIN_HZ:
-            return Finding(
-                _RATE, Level.FAILED, text, f"the tracker needs {_RATE_MIN_HZ:g}; set a higher rate"
+            return CheckFinding(
+                _RATE,
+                Severity.FAILED,
+                text,
+                f"the tracker needs {_RATE_MIN_HZ:g}; set a higher rate",
             )
         if abs(rate_hz - stated_hz) > _RATE_TOLERANCE * stated_hz or gap_s > _GAP_MAX_S:
-            return Finding(
-                _RATE, Level.WARNING, text, "samples are lost on the way: check cable, radio, load"
+            return CheckFinding(
+                _RATE,
+                Severity.WARNING,
+                text,
+                "samples are lost on the way: check cable, radio, load",
             )
-        return Finding(_RATE, Level.OK, text)
+        return CheckFinding(_RATE, Severity.OK, text)
 
-    def _ranges(self) -> Iterator[Finding]:
+    def _ranges(self) -> Iterator[CheckFinding]:
         accel_mps2 = self._sensor.accel_full_scale_mps2
         gyro_radps = self._sensor.gyro_full_scale_radps
         if accel_mps2 is None or gyro_radps is None:
             return
         text = f"{accel_mps2 / _GRAVITY_MPS2:.0f} g and {np.degrees(gyro_radps):.0f} deg/s"
         if accel_mps2 < _ACCEL_RANGE_MIN_MPS2 or gyro_radps < _GYRO_RANGE_MIN_RADPS:
-            yield Finding(
-                _RANGE, Level.WARNING, text, "steps go beyond it: set 16 g and 2000 deg/s"
+            yield CheckFinding(
+                _RANGE, Severity.WARNING, text, "steps go beyond it: set 16 g and 2000 deg/s"
             )
         else:
-            yield Finding(_RANGE, Level.OK, text)
+            yield CheckFinding(_RANGE, Severity.OK, text)
 
-    def _at_rest(self, *, asks_rest: bool) -> Iterator[Finding]:
+    def _at_rest(self, *, asks_rest: bool) -> Iterator[CheckFinding]:
         rest = self._longest_rest()
         if seconds(rest) < _REST_MIN_S:
             if not asks_rest:
                 return
-            yield Finding(
+            yield CheckFinding(
                 "rest",
-                Level.WARNING,
+                Severity.WARNING,
                 "it was never still for a second",
                 "lay the unit down and check again: gravity, bias and noise were not seen",
             )
@@ -132,16 +138,16 @@ class InertialSurvey:
         force_mps2 = float(np.linalg.norm(mean.accel_mps2))
         rate_degps = float(np.degrees(np.linalg.norm(mean.gyro_radps)))
         is_gravity = abs(force_mps2 - _GRAVITY_MPS2) <= _GRAVITY_TOLERANCE_MPS2
-        yield Finding(
+        yield CheckFinding(
             _ACCELEROMETER,
-            Level.OK if is_gravity else Level.FAILED,
+            Severity.OK if is_gravity else Severity.FAILED,
             f"{force_mps2:.2f} m/s2 at rest, gravity is {_GRAVITY_MPS2}",
             "" if is_gravity else f"its scale or bias is wrong: {_CALIBRATE}, or replace it",
         )
         is_slow = rate_degps <= np.degrees(_RATE_AT_REST_MAX_RADPS)
-        yield Finding(
+        yield CheckFinding(
             _GYROSCOPE,
-            Level.OK if is_slow else Level.FAILED,
+            Severity.OK if is_slow else Severity.FAILED,
             f"{rate_degps:.2f} deg/s at rest",
             "" if is_slow else f"its bias is too large to be found while walking: {_CALIBRATE}",
         )
@@ -157,21 +163,21 @@ def _quantity(
     per_unit: float,
     unit: str,
     remedy: str,
-) -> Iterator[Finding]:
+) -> Iterator[CheckFinding]:
     """Yield a finding on the median of a quantity that the sensor has; none where it has not."""
     if not columns:
         return
     values = np.concatenate(columns)
     values = values[np.isfinite(values)]
     if not len(values):
-        yield Finding(subject, Level.WARNING, "no reading", remedy)
+        yield CheckFinding(subject, Severity.WARNING, "no reading", remedy)
         return
     median = float(np.median(values))
     is_plausible = limits[0] <= median <= limits[1]
     text = f"{median / per_unit:.1f} {unit}"
-    yield Finding(
+    yield CheckFinding(
         subject,
-        Level.OK if is_plausible else Level.WARNING,
+        Severity.OK if is_plausible else Severity.WARNING,
         text,
         "" if is_plausible else remedy,
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 from edge.calibration.file import identity
 from edge.calibration.model import Calibration
 from edge.config import StorageConfig
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from edge.storage.data_folder import UnitDataFolder
 from shared.tls import TlsIdentity, parse_certificate, validity_problem
 
@@ -18,65 +18,69 @@ _CERTIFICATE_WARNING = timedelta(days=30)  # as the station warns
 _DISK_MIN_BYTES = 100_000_000  # half an hour of raw samples and hours of a journal
 
 
-def certificate_finding(certificate: TlsIdentity | None, now: datetime) -> Finding:
+def certificate_finding(certificate: TlsIdentity | None, now: datetime) -> CheckFinding:
     """``now``: aware, by this machine's clock."""
     subject = "certificate"
     if certificate is None:
-        return Finding(
+        return CheckFinding(
             subject,
-            Level.WARNING,
+            Severity.WARNING,
             "none: the link is not secured",
             "anyone on this network can listen and forge; give --enrolment",
         )
     problem = validity_problem(certificate, now)
     if problem is not None:
-        return Finding(subject, Level.FAILED, problem, "no link is made with it")
+        return CheckFinding(subject, Severity.FAILED, problem, "no link is made with it")
     ends = parse_certificate(certificate.certificate, subject).not_valid_after_utc
     text = f"valid to {ends:%Y-%m-%d}"
     if ends - now < _CERTIFICATE_WARNING:
-        return Finding(subject, Level.WARNING, text, "renew it at the station: `muster pki renew`")
-    return Finding(subject, Level.OK, text)
+        return CheckFinding(
+            subject, Severity.WARNING, text, "renew it at the station: `muster pki renew`"
+        )
+    return CheckFinding(subject, Severity.OK, text)
 
 
-def calibration_finding(calibration: Calibration | None, now: datetime) -> Finding:
+def calibration_finding(calibration: Calibration | None, now: datetime) -> CheckFinding:
     subject = "calibration"
     if calibration is None:
-        return Finding(
+        return CheckFinding(
             subject,
-            Level.WARNING,
+            Severity.WARNING,
             "none",
             "positions drift more, and the more so the colder it is: `muster edge calibrate`",
         )
     text = f"{identity(calibration)} of {calibration.made:%Y-%m-%d}"
     if calibration.is_old(now):
-        return Finding(subject, Level.WARNING, text, "it is old: make a new one")
+        return CheckFinding(subject, Severity.WARNING, text, "it is old: make a new one")
     if faults := list(calibration.faults()):
-        return Finding(subject, Level.WARNING, f"{text}: {'; '.join(faults)}", "make a new one")
-    return Finding(subject, Level.OK, text)
+        return CheckFinding(
+            subject, Severity.WARNING, f"{text}: {'; '.join(faults)}", "make a new one"
+        )
+    return CheckFinding(subject, Severity.OK, text)
 
 
-def storage_findings(folder: UnitDataFolder, limits: StorageConfig) -> Iterator[Finding]:
+def storage_findings(folder: UnitDataFolder, limits: StorageConfig) -> Iterator[CheckFinding]:
     """Yield findings on the disk below the data folder, and on what was set aside in it."""
     free_bytes = shutil.disk_usage(folder.path).free
     wanted_bytes = 1e6 * (limits.journal_mb + limits.black_box_mb) - _size_bytes(folder.path)
     text = f"{free_bytes / 1e9:.1f} GB free"
     if free_bytes < _DISK_MIN_BYTES:
-        yield Finding(
-            "disk", Level.FAILED, text, "messages are kept nowhere while the link is away"
+        yield CheckFinding(
+            "disk", Severity.FAILED, text, "messages are kept nowhere while the link is away"
         )
     elif free_bytes < wanted_bytes:
-        yield Finding(
+        yield CheckFinding(
             "disk",
-            Level.WARNING,
+            Severity.WARNING,
             f"{text} of the {wanted_bytes / 1e9:.1f} GB that journal and black box may take",
             "make room, or lower storage.black_box_mb",
         )
     else:
-        yield Finding("disk", Level.OK, text)
+        yield CheckFinding("disk", Severity.OK, text)
     if folder.quarantine is not None:
-        yield Finding(
+        yield CheckFinding(
             "data folder",
-            Level.WARNING,
+            Severity.WARNING,
             f"it held another unit's journal, which is now in {folder.quarantine.name}",
             "copy no data folder from unit to unit",
         )

@@ -8,15 +8,15 @@ from threading import Event
 
 from edge.notifiers.registry import open_notifier
 from edge.notifiers.signals import Notice, Signal
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from edge.sources.sysfs import SYSFS, explain_read_error
 
 _TEST = Notice(Signal.TEXT, text="this is a test.")
 _NOBODY_NOTIFIED = "the wearer cannot be notified of orders; it takes the voice radio"
-NO_OUTPUT = Finding("output", Level.WARNING, "the unit has none", _NOBODY_NOTIFIED)
+NO_OUTPUT = CheckFinding("output", Severity.WARNING, "the unit has none", _NOBODY_NOTIFIED)
 
 
-def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[Finding]:
+def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[CheckFinding]:
     """Play a test message on each output, as in the settings.  Raises ConfigError."""
     notifiers = {text: open_notifier(text, sysfs) for text in texts}
     if not notifiers:
@@ -27,6 +27,10 @@ def output_findings(texts: Iterable[str], sysfs: Path = SYSFS) -> Iterator[Findi
             notifier.play(_TEST, Event())
             notifier.close()
         except OSError as error:
-            yield Finding(subject, Level.FAILED, explain_read_error(error), _NOBODY_NOTIFIED)
+            yield CheckFinding(
+                subject, Severity.FAILED, explain_read_error(error), _NOBODY_NOTIFIED
+            )
         else:
-            yield Finding(subject, Level.OK, "has played a test message; was it seen or heard?")
+            yield CheckFinding(
+                subject, Severity.OK, "has played a test message; was it seen or heard?"
+            )

@@ -8,17 +8,17 @@ import msgspec
 from rich.console import Console
 from rich.text import Text
 
-from edge.preflight.finding import Finding, Level, worst
+from edge.preflight.finding import CheckFinding, Severity, worst
 
-_STYLES = {Level.OK: "green", Level.WARNING: "yellow", Level.FAILED: "bold red"}
+_STYLES = {Severity.OK: "green", Severity.WARNING: "yellow", Severity.FAILED: "bold red"}
 _VERDICTS = {
-    Level.OK: "is ready",
-    Level.WARNING: "works; read the warnings before its wearer goes in",
-    Level.FAILED: "is NOT ready: its wearer must not rely on it",
+    Severity.OK: "is ready",
+    Severity.WARNING: "works; read the warnings before its wearer goes in",
+    Severity.FAILED: "is NOT ready: its wearer must not rely on it",
 }
 
 
-def print_finding(finding: Finding, console: Console) -> None:
+def print_finding(finding: CheckFinding, console: Console) -> None:
     """Print a line, and below it what the finding costs or what to do."""
     line = Text.assemble(
         (f"{finding.level:8}", _STYLES[finding.level]), f"{finding.subject}: {finding.text}"
@@ -28,12 +28,12 @@ def print_finding(finding: Finding, console: Console) -> None:
         console.print(Text(f"        -> {finding.remedy}"), soft_wrap=True)
 
 
-def print_verdict(unit_id: str, findings: Sequence[Finding], console: Console) -> None:
+def print_verdict(unit_id: str, findings: Sequence[CheckFinding], console: Console) -> None:
     level = worst(findings)
     console.print(Text(f"Unit {unit_id} {_VERDICTS[level]}.", _STYLES[level]), soft_wrap=True)
 
 
-def encode_report(unit_id: str, findings: Sequence[Finding]) -> str:
+def encode_report(unit_id: str, findings: Sequence[CheckFinding]) -> str:
     """Return unit, gravest level and findings as JSON."""
     report = {"unit": unit_id, "level": worst(findings), "findings": findings}
     return msgspec.json.format(msgspec.json.encode(report)).decode()

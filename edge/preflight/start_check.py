@@ -14,7 +14,7 @@ from threading import Thread
 
 from edge.config import EdgeConfig
 from edge.preflight.auxiliary_survey import AuxiliarySurvey
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from edge.preflight.inertial_survey import InertialSurvey
 from edge.preflight.output_check import NO_OUTPUT
 from edge.samples import SensorBatch, SensorDescription
@@ -26,9 +26,9 @@ logger = logging.getLogger(__name__)
 
 SURVEY_S = 10.0  # as `muster edge check` does
 _AGAIN_NS = 5 * NS_PER_S
-_LEVELS = {Level.FAILED: PreflightLevel.FAILED, Level.WARNING: PreflightLevel.WARNING}
-_NO_ANSWER = Finding(
-    "disk", Level.WARNING, "it does not answer", "messages may be kept nowhere: look at its log"
+_LEVELS = {Severity.FAILED: PreflightLevel.FAILED, Severity.WARNING: PreflightLevel.WARNING}
+_NO_ANSWER = CheckFinding(
+    "disk", Severity.WARNING, "it does not answer", "messages may be kept nowhere: look at its log"
 )
 
 
@@ -42,16 +42,16 @@ class StartCheck:
         config: EdgeConfig,
         sensor: SensorDescription,
         gives: frozenset[Quantity],
-        installation: Callable[[], Iterable[Finding]],
+        installation: Callable[[], Iterable[CheckFinding]],
     ) -> None:
         """``installation``: makes the findings that need the disk, in a thread of its own."""
         self._inertial: InertialSurvey | None = InertialSurvey(sensor)  # None: it is over
-        self._of_inertial: list[Finding] = []
+        self._of_inertial: list[CheckFinding] = []
         self._auxiliary = AuxiliarySurvey(config, gives)
         self._has_output = bool(config.outputs)
         self._installation = installation
         self._of_disk = [_NO_ANSWER]
-        self._left: list[Finding] | None = None  # None: the survey goes on
+        self._left: list[CheckFinding] | None = None  # None: the survey goes on
         self._due_ns: int | None = None  # when it looks next; None: not started, or given up
         self._error: Exception | None = None
         self._thread = Thread(target=self._look_at_disk, name="start-check", daemon=True)
@@ -83,7 +83,7 @@ class StartCheck:
             logger.exception("the check at the start has failed")
             self._due_ns = None
             text = f"it has failed ({type(error).__name__}: {error})"
-            return _as_message([Finding("check at the start", Level.WARNING, text)])
+            return _as_message([CheckFinding("check at the start", Severity.WARNING, text)])
 
     def _look(self) -> tuple[PreflightFinding, ...] | None:
         if self._error is not None:
@@ -91,7 +91,7 @@ class StartCheck:
         if self._inertial is not None:
             self._of_inertial = list(self._inertial.findings(asks_rest=False))
             self._inertial = None
-        now = [one for one in self._found() if one.level is not Level.OK]
+        now = [one for one in self._found() if one.level is not Severity.OK]
         if self._left is None:
             for finding in now:
                 _log(finding)
@@ -104,7 +104,7 @@ class StartCheck:
         self._left = left
         return _as_message(left)
 
-    def _found(self) -> Iterator[Finding]:
+    def _found(self) -> Iterator[CheckFinding]:
         yield from self._of_disk
         yield from self._of_inertial
         yield from self._auxiliary.findings(asks_press=False)
@@ -116,16 +116,16 @@ class StartCheck:
             self._of_disk = list(self._installation())
         except Exception as error:  # a unit must start in any case
             logger.exception("the data folder cannot be checked")
-            self._of_disk = [Finding("disk", Level.FAILED, str(error))]
+            self._of_disk = [CheckFinding("disk", Severity.FAILED, str(error))]
 
 
-def _log(finding: Finding) -> None:
-    level = logging.WARNING if finding.level is Level.FAILED else logging.INFO
+def _log(finding: CheckFinding) -> None:
+    level = logging.WARNING if finding.level is Severity.FAILED else logging.INFO
     costs = f" ({finding.remedy})" if finding.remedy else ""
     logger.log(level, "check at the start: %s: %s%s", finding.subject, finding.text, costs)
 
 
-def _as_message(findings: Iterable[Finding]) -> tuple[PreflightFinding, ...]:
+def _as_message(findings: Iterable[CheckFinding]) -> tuple[PreflightFinding, ...]:
     """Return the findings as they are published, the gravest first."""
     sent = (
         PreflightFinding(_LEVELS[one.level], one.subject, one.text, one.remedy) for one in findings

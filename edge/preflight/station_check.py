@@ -9,7 +9,7 @@ from contextlib import suppress
 
 from edge.agent.link import StationConnector
 from edge.clocks.station import StationClock
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from shared.bus import Bus, ReplyHandler
 from shared.channels import HEARTBEAT, clock_key
 from shared.clock import Clock
@@ -26,19 +26,21 @@ _CLOCK_AHEAD_MAX_S = 60.0  # the station's time is used all the same, once the l
 _NO_LINK = "messages are kept and sent later; until then the commander sees nothing of this wearer"
 
 
-def station_findings(unit_id: str, station: StationConnector, machine: Clock) -> Iterator[Finding]:
+def station_findings(
+    unit_id: str, station: StationConnector, machine: Clock
+) -> Iterator[CheckFinding]:
     """Open the link as the unit would, and close it again."""
     try:
         bus = _opened(station)
     except BusError as error:
-        yield Finding("link", Level.FAILED, str(error), _NO_LINK)
+        yield CheckFinding("link", Severity.FAILED, str(error), _NO_LINK)
         return
     try:
         began_s = time.monotonic()
         if not _wait_for_subscriber(bus, HEARTBEAT.key(unit_id)):
-            yield Finding("link", Level.FAILED, station.why_no_link(), _NO_LINK)
+            yield CheckFinding("link", Severity.FAILED, station.why_no_link(), _NO_LINK)
             return
-        yield Finding("link", Level.OK, f"linked within {time.monotonic() - began_s:.1f} s")
+        yield CheckFinding("link", Severity.OK, f"linked within {time.monotonic() - began_s:.1f} s")
         yield _clock_finding(unit_id, bus, machine)
     finally:
         bus.close()
@@ -62,7 +64,7 @@ def _wait_for_subscriber(bus: Bus, key: str) -> bool:
     return False
 
 
-def _clock_finding(unit_id: str, bus: Bus, machine: Clock) -> Finding:
+def _clock_finding(unit_id: str, bus: Bus, machine: Clock) -> CheckFinding:
     clock = StationClock(machine)
 
     def ask(on_reply: ReplyHandler) -> None:
@@ -76,16 +78,16 @@ def _clock_finding(unit_id: str, bus: Bus, machine: Clock) -> Finding:
         clock.turn(ask)
         time.sleep(_POLL_S)
     if clock.estimate() is None:
-        return Finding(
+        return CheckFinding(
             "clock",
-            Level.WARNING,
+            Severity.WARNING,
             "the station did not tell its time",
             "times of this unit are those of its own clock",
         )
     ahead_s = clock.machine_ahead_s()
     text = f"{abs(ahead_s):.3f} s {'ahead of' if ahead_s > 0 else 'behind'} the station's"
     if abs(ahead_s) > _CLOCK_AHEAD_MAX_S:
-        return Finding(
-            "clock", Level.WARNING, text, "set it: without a link its times would be wrong"
+        return CheckFinding(
+            "clock", Severity.WARNING, text, "set it: without a link its times would be wrong"
         )
-    return Finding("clock", Level.OK, text)
+    return CheckFinding("clock", Severity.OK, text)

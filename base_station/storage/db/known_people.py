@@ -1,4 +1,4 @@
-"""Who the person ids of the log stand for: name, crew, role and photo of everybody in the database.
+"""Directory of people by the person ids of the log: name, crew, role and photo, of the database.
 
 Kept in memory, for it is asked in the engine's thread whenever somebody is shown.
 """

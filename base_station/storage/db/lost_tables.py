@@ -1,4 +1,4 @@
-"""What a database lost when it was made again comes back from the other station, which has a copy.
+"""Recovery of tables that a database lost when it was made again: the other station has a copy.
 
 Until then its tables are not taken for what users have done: the other station keeps its rows.
 """

@@ -8,7 +8,7 @@ import pytest
 
 from edge.config import EdgeConfig
 from edge.preflight.auxiliary_survey import AuxiliarySurvey
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from edge.samples import (
     ACKNOWLEDGE,
     BEACON,
@@ -38,7 +38,7 @@ def fix(std_m: float, fix_type: int = 3) -> GpsSample:
 
 def survey(
     config: EdgeConfig, *samples: OtherSample, gives: frozenset[Quantity] = frozenset()
-) -> dict[str, Finding]:
+) -> dict[str, CheckFinding]:
     found = AuxiliarySurvey(config, gives)
     for sample in samples:
         found.push(sample)
@@ -49,21 +49,21 @@ def test_what_a_unit_does_not_have_is_a_warning_with_what_it_costs() -> None:
     found = survey(BARE)
     assert set(found) == {"temperature", "battery", "satellites", "mayday button"}
     for finding in found.values():
-        assert finding.level is Level.WARNING
+        assert finding.level is Severity.WARNING
         assert finding.remedy
 
 
 def test_what_was_set_and_is_silent_has_failed() -> None:
     found = survey(FULL)
     for subject in ("temperature front", "temperature 2", "battery", "satellites"):
-        assert found[subject].level is Level.FAILED
+        assert found[subject].level is Severity.FAILED
     assert found["beacons"].text == "none in reach now"  # out here there may be none
 
 
 def test_one_silent_sensor_of_two_is_named() -> None:
     found = survey(FULL, AmbientSample(1, 21.5, "front"))
     levels = {name: one.level for name, one in found.items() if "temperature" in name}
-    assert levels == {"temperature 2": Level.FAILED, "temperature front": Level.OK}
+    assert levels == {"temperature 2": Severity.FAILED, "temperature front": Severity.OK}
 
 
 def test_nobody_is_asked_for_a_press_at_the_start() -> None:
@@ -82,7 +82,7 @@ def test_a_unit_that_has_everything_is_ok() -> None:
         ButtonPress(1, ACKNOWLEDGE),
         gives=BUTTONS,
     )
-    assert {finding.level for finding in found.values()} == {Level.OK}
+    assert {finding.level for finding in found.values()} == {Severity.OK}
     assert found["temperature front"].text == "21.5 °C"
     assert found["battery"].text == "90% of the sensor, 5.6 h left"
     assert found["satellites"].text == "fix of 9 satellites, 4 m"
@@ -92,24 +92,24 @@ def test_a_unit_that_has_everything_is_ok() -> None:
 @pytest.mark.parametrize(
     ("sample", "subject", "level"),
     [
-        (AmbientSample(1, 350.0, "front"), "temperature front", Level.WARNING),
-        (AmbientSample(1, math.nan, "front"), "temperature front", Level.WARNING),
-        (BatterySample(1, 0.1), "battery", Level.FAILED),
-        (BatterySample(1, 0.4), "battery", Level.WARNING),
-        (BatterySample(1, 0.9, 600.0), "battery", Level.WARNING),
-        (fix(80.0), "satellites", Level.WARNING),
-        (fix(math.nan), "satellites", Level.WARNING),
-        (fix(3.0, fix_type=0), "satellites", Level.WARNING),
+        (AmbientSample(1, 350.0, "front"), "temperature front", Severity.WARNING),
+        (AmbientSample(1, math.nan, "front"), "temperature front", Severity.WARNING),
+        (BatterySample(1, 0.1), "battery", Severity.FAILED),
+        (BatterySample(1, 0.4), "battery", Severity.WARNING),
+        (BatterySample(1, 0.9, 600.0), "battery", Severity.WARNING),
+        (fix(80.0), "satellites", Severity.WARNING),
+        (fix(math.nan), "satellites", Severity.WARNING),
+        (fix(3.0, fix_type=0), "satellites", Severity.WARNING),
     ],
 )
 def test_what_makes_no_sense_or_may_not_last_is_found(
-    sample: OtherSample, subject: str, level: Level
+    sample: OtherSample, subject: str, level: Severity
 ) -> None:
     assert survey(FULL, sample)[subject].level is level
 
 
 def test_a_button_that_nobody_pressed_is_not_known_to_work() -> None:
-    assert survey(BARE, gives=BUTTONS)["button"].level is Level.WARNING
+    assert survey(BARE, gives=BUTTONS)["button"].level is Severity.WARNING
 
 
 def test_a_button_beside_the_source_calls_a_mayday() -> None:
@@ -117,4 +117,4 @@ def test_a_button_beside_the_source_calls_a_mayday() -> None:
     assert "mayday button" not in survey(with_one)
     assert survey(with_one)["button"].text == "not pressed during the check"
     pressed = survey(with_one, ButtonPress(1, ACKNOWLEDGE))
-    assert pressed["button"].level is Level.OK
+    assert pressed["button"].level is Severity.OK

@@ -13,7 +13,7 @@ import pytest
 from base_station.security.pki.folder import PkiFolder
 from edge.calibration.model import Calibration
 from edge.config import StorageConfig
-from edge.preflight.finding import Level
+from edge.preflight.finding import Severity
 from edge.preflight.installation import calibration_finding, certificate_finding, storage_findings
 from edge.storage.data_folder import UnitDataFolder
 from shared.tls import TlsIdentity
@@ -37,10 +37,10 @@ def folder(tmp_path: Path) -> Iterator[UnitDataFolder]:
 
 @pytest.mark.parametrize(
     ("days", "level"),
-    [(-400, Level.FAILED), (1, Level.OK), (4000, Level.FAILED)],
+    [(-400, Severity.FAILED), (1, Severity.OK), (4000, Severity.FAILED)],
 )
 def test_a_certificate_is_valid_now_or_has_failed(
-    identity: TlsIdentity, days: int, level: Level
+    identity: TlsIdentity, days: int, level: Severity
 ) -> None:
     assert certificate_finding(identity, NOW + timedelta(days=days)).level is level
 
@@ -48,24 +48,24 @@ def test_a_certificate_is_valid_now_or_has_failed(
 def test_a_certificate_that_ends_soon_and_none_at_all_are_warnings(identity: TlsIdentity) -> None:
     ends = certificate_finding(identity, NOW + timedelta(days=1)).text.removeprefix("valid to ")
     soon = datetime.fromisoformat(ends).replace(tzinfo=UTC) - timedelta(days=20)
-    assert certificate_finding(identity, soon).level is Level.WARNING
-    assert certificate_finding(None, NOW).level is Level.WARNING
+    assert certificate_finding(identity, soon).level is Severity.WARNING
+    assert certificate_finding(None, NOW).level is Severity.WARNING
 
 
 def test_a_calibration_is_there_and_new_enough() -> None:
     made = Calibration("u1", "sensor", NOW)
-    assert calibration_finding(None, NOW).level is Level.WARNING
-    assert calibration_finding(made, NOW).level is Level.OK
-    assert calibration_finding(made, NOW + timedelta(days=400)).level is Level.WARNING
+    assert calibration_finding(None, NOW).level is Severity.WARNING
+    assert calibration_finding(made, NOW).level is Severity.OK
+    assert calibration_finding(made, NOW + timedelta(days=400)).level is Severity.WARNING
 
 
 @pytest.mark.parametrize(
     ("free_mb", "limits", "level"),
     [
-        (10, SMALL, Level.FAILED),
-        (500, SMALL, Level.OK),
-        (500, StorageConfig(), Level.WARNING),
-        (5000, StorageConfig(), Level.OK),
+        (10, SMALL, Severity.FAILED),
+        (500, SMALL, Severity.OK),
+        (500, StorageConfig(), Severity.WARNING),
+        (5000, StorageConfig(), Severity.OK),
     ],
 )
 def test_there_is_room_for_what_may_be_stored(
@@ -73,7 +73,7 @@ def test_there_is_room_for_what_may_be_stored(
     monkeypatch: pytest.MonkeyPatch,
     free_mb: int,
     limits: StorageConfig,
-    level: Level,
+    level: Severity,
 ) -> None:
     usage = shutil.disk_usage(folder.path)._replace(free=free_mb * 1_000_000)
     monkeypatch.setattr(shutil, "disk_usage", lambda _: usage)
@@ -86,4 +86,4 @@ def test_another_units_journal_is_named(tmp_path: Path) -> None:
     shutil.copytree(tmp_path / "u1", tmp_path / "u2")
     with closing(UnitDataFolder(tmp_path / "u2")) as folder:
         levels = {one.subject: one.level for one in storage_findings(folder, SMALL)}
-    assert levels["data folder"] is Level.WARNING
+    assert levels["data folder"] is Severity.WARNING

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from edge.config import EdgeConfig
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from edge.preflight.start_check import SURVEY_S, StartCheck
 from edge.samples import (
     AmbientSample,
@@ -38,8 +38,8 @@ OTHERS: tuple[OtherSample, ...] = (
 END_NS = round(SURVEY_S * NS_PER_S)
 
 
-def all_well() -> Iterator[Finding]:
-    yield Finding("disk", Level.OK, "20 GB free")
+def all_well() -> Iterator[CheckFinding]:
+    yield CheckFinding("disk", Severity.OK, "20 GB free")
 
 
 def samples(duration_s: float, *others: OtherSample, rate_hz: float = RATE_HZ) -> SensorBatch:
@@ -77,8 +77,8 @@ def test_a_unit_that_has_everything_is_ready_though_its_wearer_walks() -> None:
 
 
 def test_what_is_missing_is_said_the_gravest_first() -> None:
-    def full_disk() -> Iterator[Finding]:
-        yield Finding("disk", Level.WARNING, "1 GB free", "make room")
+    def full_disk() -> Iterator[CheckFinding]:
+        yield CheckFinding("disk", Severity.WARNING, "1 GB free", "make room")
 
     check = started(EdgeConfig("bench:1", battery="auto"), full_disk, frozenset())
     check.push(samples(SURVEY_S, rate_hz=20.0))
@@ -114,9 +114,9 @@ def test_what_comes_right_later_is_struck_off_and_nothing_is_added() -> None:
 def test_a_disk_that_hangs_holds_up_nothing_and_is_said() -> None:
     answers = threading.Event()
 
-    def hanging() -> Iterator[Finding]:
+    def hanging() -> Iterator[CheckFinding]:
         answers.wait()
-        yield Finding("disk", Level.OK, "20 GB free")
+        yield CheckFinding("disk", Severity.OK, "20 GB free")
 
     check = started(installation=hanging)
     check.push(samples(SURVEY_S, *OTHERS))
@@ -127,7 +127,7 @@ def test_a_disk_that_hangs_holds_up_nothing_and_is_said() -> None:
 
 
 def test_a_disk_that_cannot_be_looked_at_is_a_failure() -> None:
-    def broken() -> list[Finding]:
+    def broken() -> list[CheckFinding]:
         raise OSError(5, "Input/output error")
 
     check = started(installation=broken)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.unit_sync.clock_server import ClockServer
-from edge.preflight.finding import Finding, Level
+from edge.preflight.finding import CheckFinding, Severity
 from edge.preflight.station_check import station_findings
 from shared.bus import Bus
 from shared.bus_memory import MemoryRouter
@@ -40,7 +40,7 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("edge.preflight.station_check._LINK_WAIT_S", 0.3)
 
 
-def findings(router: MemoryRouter | None, machine: SystemClock) -> list[Finding]:
+def findings(router: MemoryRouter | None, machine: SystemClock) -> list[CheckFinding]:
 
     return list(station_findings("u1", Endpoint(router), machine))
 
@@ -50,7 +50,7 @@ def test_a_station_that_listens_and_tells_its_time_is_ok(router: MemoryRouter) -
     station.subscribe(HEARTBEAT.key("*"), lambda _key, _payload: None)
     station.serve(clock_key("*"), ClockServer(SystemClock()).replies)
     link, clock = findings(router, SystemClock())
-    assert (link.level, clock.level) == (Level.OK, Level.OK)
+    assert (link.level, clock.level) == (Severity.OK, Severity.OK)
     assert "the station's" in clock.text
 
 
@@ -69,7 +69,7 @@ def test_a_station_at_another_of_its_places_is_found(router: MemoryRouter) -> No
     station = router.attach_station()
     station.subscribe(HEARTBEAT.key("*"), lambda _key, _payload: None)
     link, *_ = station_findings("u1", MovedStation(router), SystemClock())
-    assert link.level is Level.OK
+    assert link.level is Severity.OK
 
 
 def test_a_clock_that_is_an_hour_off_is_a_warning(router: MemoryRouter) -> None:
@@ -82,7 +82,7 @@ def test_a_clock_that_is_an_hour_off_is_a_warning(router: MemoryRouter) -> None:
 
     station.serve(clock_key("*"), ClockServer(HourBehind()).replies)
     _, clock = findings(router, SystemClock())
-    assert clock.level is Level.WARNING
+    assert clock.level is Severity.WARNING
     assert clock.text.startswith("3600.0")
 
 
@@ -92,11 +92,11 @@ def test_a_station_that_tells_no_time_is_a_warning(
     monkeypatch.setattr("edge.preflight.station_check._CLOCK_WAIT_S", 0.3)
     router.attach_station().subscribe(HEARTBEAT.key("*"), lambda _key, _payload: None)
     link, clock = findings(router, SystemClock())
-    assert (link.level, clock.level) == (Level.OK, Level.WARNING)
+    assert (link.level, clock.level) == (Severity.OK, Severity.WARNING)
 
 
 def test_no_station_and_no_bus_have_failed_with_the_reason(router: MemoryRouter) -> None:
     (nobody,) = findings(router, SystemClock())
-    assert (nobody.level, nobody.text) == (Level.FAILED, "nothing listens")
+    assert (nobody.level, nobody.text) == (Severity.FAILED, "nothing listens")
     (no_bus,) = findings(None, SystemClock())
-    assert (no_bus.level, no_bus.text) == (Level.FAILED, "the bus cannot be opened")
+    assert (no_bus.level, no_bus.text) == (Severity.FAILED, "the bus cannot be opened")
