@@ -90,7 +90,10 @@ def _square(upload: bytes) -> Image.Image:
 
 def _in_colours(opened: Image.Image) -> Image.Image:
     """Decoded; ``convert`` would copy one that is in colours already, of 96 MB perhaps."""
-    return opened if opened.mode == "RGB" else opened.convert("RGB")
+    if opened.mode != "RGB":
+        return opened.convert("RGB")
+    opened.load()  # while the upload is open
+    return opened
 
 
 def _require_pixel_limit(opened: Image.Image, kind: str) -> None:

@@ -6,6 +6,7 @@ import socket
 import ssl
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 
@@ -87,11 +88,19 @@ def test_links_come_back_at_once_when_somebody_is_enrolled_under_a_flood(bus: Bu
     with closing(unit(bus.anna)) as anna:
         until(lambda: anna.is_heard(KEY), "the link")
         with connection_flood("hello", "127.0.0.1", bus.port, 60.0, held=200, per_s=100):
-            bus.pki.enroll("ben")
-            until(lambda: not anna.is_heard(KEY), "the router opens again", look_every_s=0.002)
-            closed_s = time.monotonic()
-            until(lambda: anna.is_heard(KEY), "the link is back")
-            assert time.monotonic() - closed_s < LINKED_WITHIN_S
+            # Watched from before: on a busy machine the link may be back when enrolling returns.
+            with ThreadPoolExecutor(1) as watcher:
+                outage_s = watcher.submit(next_outage_s, anna)
+                bus.pki.enroll("ben")
+                assert outage_s.result() < LINKED_WITHIN_S
+
+
+def next_outage_s(anna: ZenohBus) -> float:
+    """How long the link is lost, once it is."""
+    until(lambda: not anna.is_heard(KEY), "the router opens again", look_every_s=0.002)
+    closed_s = time.monotonic()
+    until(lambda: anna.is_heard(KEY), "the link is back")
+    return time.monotonic() - closed_s
 
 
 def test_refused_connections_are_told_with_where_they_come_from(bus: Bus) -> None:

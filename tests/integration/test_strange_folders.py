@@ -68,7 +68,7 @@ def test_a_database_that_is_gone_or_empty_is_made_again(tmp_path: Path, left: by
                 disk.accounts.add_user("mia", "something long enough", Role.ADMINISTRATOR)
     assert len(said) == 2, "once"
     assert "made again from the log" in said[0]
-    for what in ("users and their passwords", "the roster of people", "first-login.txt"):
+    for what in ("users and their passwords", "the roster: people's names", "first-login.txt"):
         assert what in said[1]
     with opened(tmp_path) as disk:  # whoever comes later finds it
         assert "MadeDatabaseAgain" in [one.action for one in disk.records.audit_entries(EVER)]
