@@ -87,12 +87,14 @@ def test_a_unit_links_at_once_beside_a_flood_of_connections(
 def test_links_come_back_at_once_when_somebody_is_enrolled_under_a_flood(bus: Bus) -> None:
     with closing(unit(bus.anna)) as anna:
         until(lambda: anna.is_heard(KEY), "the link")
-        with connection_flood("hello", "127.0.0.1", bus.port, 60.0, held=200, per_s=100):
+        with (
+            connection_flood("hello", "127.0.0.1", bus.port, 60.0, held=200, per_s=100),
+            ThreadPoolExecutor(1) as watcher,
+        ):
             # Watched from before: on a busy machine the link may be back when enrolling returns.
-            with ThreadPoolExecutor(1) as watcher:
-                outage_s = watcher.submit(next_outage_s, anna)
-                bus.pki.enroll("ben")
-                assert outage_s.result() < LINKED_WITHIN_S
+            outage_s = watcher.submit(next_outage_s, anna)
+            bus.pki.enroll("ben")
+            assert outage_s.result() < LINKED_WITHIN_S
 
 
 def next_outage_s(anna: ZenohBus) -> float:
