@@ -3,7 +3,7 @@
 Pure: time comes with the changes.  What comes out depends on those alone, not on how often
 ``advance`` is called.
 
-- held for 3 s, or as long as is set: MAYDAY, at once when the time is over;
+- held for 2 s, or as long as is set: MAYDAY, at once when the time is over;
 - two short presses: CANCEL;
 - one short press: ACKNOWLEDGE, when no second one has followed.
 
@@ -21,8 +21,9 @@ from shared.clock import NS_PER_MS, NS_PER_S
 BOUNCE_NS = 30 * NS_PER_MS  # a state that lasts shorter is none
 SHORT_NS = NS_PER_S  # a press in thick gloves
 SECOND_WITHIN_NS = 600 * NS_PER_MS  # from the release of the first press to the second one
-HOLD_NS = 3 * NS_PER_S  # at most
+HOLD_NS = 2 * NS_PER_S
 HOLD_LEAST_NS = 3 * NS_PER_S // 2  # well beyond a short press
+HOLD_MOST_NS = 5 * NS_PER_S  # longer is long for who is in danger
 STUCK_NS = 60 * NS_PER_S
 
 

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from urllib.parse import parse_qsl
 
 from edge.wearer.evdev_button import EvdevButton
-from edge.wearer.gestures import HOLD_LEAST_NS, HOLD_NS
+from edge.wearer.gestures import HOLD_LEAST_NS, HOLD_MOST_NS, HOLD_NS
 from edge.wearer.interface import ButtonKind
 from edge.wearer.reader import ButtonReader
 from edge.wearer.socket_button import SocketButton
@@ -43,7 +43,7 @@ def _hold_ns(text: str, given: str | None) -> int:
     """Return after how long a hold is a mayday.  Raises ConfigError."""
     if given is None:
         return HOLD_NS
-    least_s, most_s = HOLD_LEAST_NS / NS_PER_S, HOLD_NS / NS_PER_S
+    least_s, most_s = HOLD_LEAST_NS / NS_PER_S, HOLD_MOST_NS / NS_PER_S
     try:
         hold_s = float(given)
     except ValueError:

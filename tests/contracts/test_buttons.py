@@ -174,7 +174,7 @@ def test_the_reader_hands_over_what_the_wearer_means(emulated, request) -> None:
         ("evdev:AB Button?key=116", "such as KEY_POWER"),
         ("evdev:AB Button?key=", "such as KEY_POWER"),
         ("evdev:AB Button?hold=1", "hold is '1'; give the seconds"),
-        ("socket:/run/button?hold=nan", "1.5 to 3"),
+        ("socket:/run/button?hold=nan", "1.5 to 5"),
     ],
 )
 def test_settings_that_cannot_work_are_explained(text: str, said: str) -> None:

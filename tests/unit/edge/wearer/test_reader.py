@@ -71,7 +71,7 @@ def test_one_that_has_been_read_for_a_while_is_reported_anew(button: ScriptedBut
 
 
 def test_a_hold_ends_with_the_connection(button: ScriptedButton) -> None:
-    button.press(2.0)
+    button.press(1.5)
     button.is_there = False
     button.let_look()
     button.release()
