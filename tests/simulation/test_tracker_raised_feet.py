@@ -10,6 +10,8 @@ from edge.simulation.legs import StairsLeg, Stand, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import UNCALIBRATED_SENSORS, Simulation
 from edge.sources.recording import RecordingSource, read_truth
+from edge.sources.registry import open_source
+from edge.sources.simulated import SimulatedSource
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import Quality, Reason
@@ -66,6 +68,18 @@ def test_after_a_rest_other_gaits_are_believed_at_once(legs, rise_m):
     rows = join_rows([*batches, tracker.finish()])
     assert not np.any(rows.reasons & Reason.NO_STANCE)
     assert -rows.position_n_m[-1, 2] == pytest.approx(rise_m, abs=0.4)
+
+
+def test_restless_stances_after_short_steps_are_believed():
+    """On a landing, less still than those before: the filter is off along the floor only."""
+    source = open_source("simulated:stairs?seed=71")
+    assert isinstance(source, SimulatedSource)
+    tracker = EskfTracker(source.description)
+    batches = [tracker.push(batch.imu) for batch in source.batches()]
+    rows = join_rows([*batches, tracker.finish()])
+    t_s = (rows.t_ns - rows.t_ns[0]) * 1e-9
+    for footfall_s in source.simulation.plan.footfall_s:
+        assert rows.stationary[(t_s > footfall_s) & (t_s < footfall_s + 0.3)].any(), footfall_s
 
 
 def test_a_filter_that_is_wrong_along_the_floor_is_still_corrected():

@@ -46,8 +46,10 @@ class EskfConfig(NamedTuple):
     unlike_ratio: float = 6.0  # stillness statistic by that of the wearer's stances
     usual_stance_min_m2ps4: float = 0.05  # stiller is sensor noise
     usual_stance_share: float = 0.15  # of a stance that is less still
-    rest_speed_mps: float = 0.06  # the filter's velocity of a foot that rests
+    rest_down_mps: float = 0.06  # the filter's vertical velocity of a foot that rests
     rest_ahead_s: float = 0.15  # ... for so long
+    rest_level_mps: float = 0.2  # along the floor; faster
+    rest_moving_ahead_s: float = 0.3  # ... for so long
     sinking_gate: float = 3.0  # deviations of the vertical velocity
     sinking_level_mps: float = 0.3  # a filter that is wrong is wrong along the floor as well
     sinking_mps: float = 0.02  # deviation after a swing: the give of a shoe

@@ -2,25 +2,28 @@
 
 The stillest moment of a stride is a stance where a stride fits into the window of the detector.  A
 foot that is raised and put down slowly, or held in the air, fills the window with its swing alone:
-then the stillest moment is in mid-air.  Evidence against a stance is
+then the stillest moment is in mid-air.  Evidence against a stance, after a slow swing, is
 
 - a *vertical* velocity that the filter knows well and that is not zero, while the horizontal one is
   small.  An error of the tilt, of a bias or of samples that are missing shows along the floor
   first, so this is no filter that is wrong;
-- after a slow swing, a stillness unlike that of the wearer's stances before it: in the air a foot
-  is less still by ten to a thousand times where the wearer rests in between.  It is outweighed
-  where the filter says that the foot rests, now and a moment later (at the top of its way a foot
-  rests for an instant only).
+- a stillness unlike that of the wearer's stances before it: in the air a foot is less still by ten
+  to a thousand times where the wearer rests in between.  It is outweighed where the filter says
+  that the foot neither rises nor sinks, now and a moment later (at the top of its way it does so
+  for an instant only).  For the same reason as above the velocity along the floor does not refuse.
 
-A candidate that is not believed is decided by what follows: the swing goes on, at most for
-``doubt_longest_s``, and each later sample is a candidate of its own.  After a fast swing stillness
-does not count, or a change from walking to running would be doubted.
+After a fast swing there is no doubt: it is a stride, its strike may leave more vertical velocity
+than those before, and a walk may become a run.  A candidate that is not believed is decided by what
+follows: the swing goes on, at most for ``doubt_longest_s``, and each later sample is a candidate of
+its own.
 
 The memory takes a stiller stance at once and a less still one by a share, because a person who has
 stood still can do so again.
 """
 
 from __future__ import annotations
+
+import math
 
 from numba import njit
 
@@ -40,14 +43,14 @@ def is_believed(
         return True
     if state.swing_speed_mps < config.stance_pause_mps:
         return True
-    if _rises_or_sinks(state, since_s, config):
-        return False
     if state.swing_level_speed_mps > config.slow_swing_mps:
         return True
+    if _rises_or_sinks(state, since_s, config):
+        return False
     usual = progress.usual_stance_m2ps4
     if usual == 0.0 or ring[slot].stride_minimum_m2ps4 <= config.unlike_ratio * usual:
         return True
-    return _rests(ring, progress, state, k, config)
+    return _stays_level(ring, progress, state, k, config)
 
 
 @njit()
@@ -66,28 +69,32 @@ def _rises_or_sinks(state: FilterState, since_s: float, config: EskfConfig) -> b
 
 
 @njit()
-def _rests(ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig) -> bool:
-    """True where the foot does not move, by what the filter knows, now and a moment later.
+def _stays_level(
+    ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
+) -> bool:
+    """True where the filter says that the foot neither rises nor sinks, now and a moment later.
 
-    The attitude is taken as constant for that moment: a foot that rests does not turn.
+    A velocity along the floor is weak evidence, for there a tilt that is wrong shows: it makes the
+    moment longer, because a foot that is carried stays level for an instant only.  The attitude is
+    taken as constant: of the force upwards a foot that rolls on the floor loses what is of second
+    order only.
     """
     mask = len(ring) - 1
     stop = min(progress.measured, reach(ring, k))
     now_s = ring[k & mask].t_s
-    north, east, down = state.velocity_n_mps[0], state.velocity_n_mps[1], state.velocity_n_mps[2]
-    rotation = state.rotation_nb
+    moving = math.hypot(state.velocity_n_mps[0], state.velocity_n_mps[1]) > config.rest_level_mps
+    ahead_s = config.rest_moving_ahead_s if moving else config.rest_ahead_s
+    down_mps = state.velocity_n_mps[2]
     i = k
-    while north * north + east * east + down * down <= config.rest_speed_mps**2:
+    while abs(down_mps) <= config.rest_down_mps:
         i += 1
-        if i >= stop or ring[i & mask].t_s - now_s > config.rest_ahead_s:
+        if i >= stop or ring[i & mask].t_s - now_s > ahead_s:
             return True
         dt_s = ring[i & mask].t_s - ring[(i - 1) & mask].t_s
-        down += config.gravity_mps2 * dt_s
+        down_mps += config.gravity_mps2 * dt_s
         for j in range(3):
-            gain_mps = (ring[i & mask].accel_mps2[j] - state.accel_bias_mps2[j]) * dt_s
-            north += rotation[0, j] * gain_mps
-            east += rotation[1, j] * gain_mps
-            down += rotation[2, j] * gain_mps
+            force_mps2 = ring[i & mask].accel_mps2[j] - state.accel_bias_mps2[j]
+            down_mps += state.rotation_nb[2, j] * force_mps2 * dt_s
     return False
 
 
