@@ -29,14 +29,10 @@ _MS_PER_S = 1000.0
 class StationCollector(Collector):
     """Metrics of one moment."""
 
-    def __init__(
-        self, picture: Snapshot, ages: PositionAges, *, consoles: int, temperatures: bool = True
-    ) -> None:
-        """``temperatures``: those of the machine are read, too."""
+    def __init__(self, picture: Snapshot, ages: PositionAges, *, consoles: int) -> None:
         self._picture = picture
         self._ages = ages
         self._consoles = consoles
-        self._temperatures = temperatures
 
     def collect(self) -> Iterator[Metric]:
         yield from _of_messages(self._picture.health)
@@ -58,8 +54,7 @@ class StationCollector(Collector):
             value=len(self._picture.health.problems),
         )
         yield from _of_standby(self._picture.health)
-        if self._temperatures:
-            yield _machine_temperatures()
+        yield _machine_temperatures()
 
 
 def exposition(picture: Snapshot, ages: PositionAges, *, consoles: int) -> bytes:
