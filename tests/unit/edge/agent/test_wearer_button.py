@@ -246,7 +246,7 @@ def test_a_mayday_that_is_being_called_as_the_source_fails_is_sent(tmp_path: Pat
 
     unit = Unit(tmp_path, Failing("1"))
     unit.start()
-    unit.button.press(2.9)
+    unit.button.press(1.9)
     fails.set()
     until(lambda: unit.button.reader._is_deciding and unit.agent._parts.reader.ended, "the end")
     unit.button.clock.advance(0.2)
