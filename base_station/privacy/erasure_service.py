@@ -39,7 +39,7 @@ from base_station.storage.db.erasure import forget_in, known_names
 from base_station.storage.db.records import Records
 from base_station.storage.db.store import Store
 from base_station.storage.segment_index import segment_row
-from shared.channels import HEARTBEAT, OPERATOR, STATUS, tracker_id
+from shared.channels import CHANNELS, OPERATOR, Direction, tracker_id
 from shared.clock import Clock
 from shared.errors import StoreError, UserError
 from shared.mcap_log import (
@@ -311,9 +311,12 @@ class ErasureService:
         return list(read_log(self._log.folder, keys={_ACTIONS}))
 
     def _clocks(self, erasure: Erasure) -> CaptureClocks:
-        """From signs of life, which come once a second while a unit is linked."""
+        """From all that came live.  What was erased has left a heartbeat with the same header, so a
+        station that forgets again, or later than the other one, places every message as before.
+        """
         senders = [*erasure.unit_ids, *map(tracker_id, erasure.unit_ids)]
-        keys = {channel.key(one) for channel in (HEARTBEAT, STATUS) for one in senders}
+        upwards = [one for one in CHANNELS if one.logged and one.direction is Direction.UP]
+        keys = {channel.key(one) for channel in upwards for one in senders}
         clocks = CaptureClocks(first_erased_ns(self._actions(), erasure))
         for record in read_log(self._log.folder, keys=keys):
             event = event_of(*record)
