@@ -183,7 +183,7 @@ def find_node() -> Node:
 
 
 def new_enough(node: str) -> bool:
-    """Whether Vite runs on it: 20.19 and later in 20, or 22.12 and later."""
+    """True if Vite runs on it: 20.19 and later in 20, or 22.12 and later."""
     said = subprocess.run([node, "--version"], capture_output=True, text=True, check=False)
     match = re.fullmatch(r"v(\d+)\.(\d+)\..*", said.stdout.strip())
     if match is None:
@@ -211,7 +211,7 @@ class Stamp(NamedTuple):
         return digest.hexdigest()
 
     def holds(self, outputs: Iterable[Path]) -> bool:
-        """Whether the outputs are there and were made from these inputs."""
+        """True if the outputs are there and were made from these inputs."""
         if not all(path.is_file() for path in outputs) or not self._file.is_file():
             return False
         return self._file.read_text(encoding="ascii") == self._digest()

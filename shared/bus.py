@@ -65,11 +65,11 @@ class Bus(Protocol):
         ...
 
     def is_linked(self) -> bool:
-        """Whether another end is there at this moment, as far as this one has noticed."""
+        """True if another end is there at this moment, as far as this one has noticed."""
         ...
 
     def is_heard(self, key: str) -> bool:
-        """Whether another end would be sent what is published under ``key``: false without a
+        """True if another end would be sent what is published under ``key``: false without a
         link or a subscriber, and where the access rules forbid this end to hear of one.
         """
         ...

@@ -62,7 +62,7 @@ class HandlerGate:
 
 @lru_cache(maxsize=65_536)
 def intersects(first: str, second: str) -> bool:
-    """Whether a key can match both expressions: ``*`` is one chunk, ``**`` any number."""
+    """True if a key can match both expressions: ``*`` is one chunk, ``**`` any number."""
     return _chunks_intersect(tuple(first.split("/")), tuple(second.split("/")))
 
 

@@ -172,7 +172,7 @@ class MemoryBus:
         self._linked = True
 
     def reaches(self, other: MemoryBus) -> bool:
-        """Whether messages pass between the two, as a Zenoh router passes them to its peers."""
+        """True if messages pass between the two, as a Zenoh router passes them to its peers."""
         if other is self:
             return True
         return self._linked and other._linked and (self._is_station or other._is_station)

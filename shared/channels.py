@@ -143,7 +143,7 @@ def backfilled_key(unit_id: str, suffix: str) -> str:
 
 @lru_cache(maxsize=_KEYS_KNOWN)
 def is_backfilled(key: str) -> bool:
-    """Whether a logged message came out of a unit's journal rather than live."""
+    """True if a logged message came out of a unit's journal rather than live."""
     parts = key.split("/", 3)
     return len(parts) == 4 and parts[3].startswith(_BACKFILLED)
 

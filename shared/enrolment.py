@@ -131,7 +131,7 @@ def read_enrolment(path: Path) -> Enrolment:
 
 
 def _is_picture(beginning: bytes) -> bool:
-    """Whether a file that begins like this is a picture, whatever its name; text never is."""
+    """True if a file that begins like this is a picture, whatever its name; text never is."""
     return beginning.startswith(_PICTURES) or beginning[4:8] == _HEIC
 
 

@@ -63,7 +63,7 @@ class FolderLock:
 
     @staticmethod
     def is_held(folder: Path) -> bool:
-        """Whether a program holds it now; who asks holds it for no longer than that takes."""
+        """True if a program holds it now; who asks holds it for no longer than that takes."""
         for path in (folder, folder / _NAME):
             try:
                 descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW * (path != folder))

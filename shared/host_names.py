@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 def can_be_looked_up(host: str) -> bool:
-    """Whether it is a name at all; the name server may not know it yet.
+    """True if it is a name at all; the name server may not know it yet.
 
     Of what is none, ``socket`` says a UnicodeError and no OSError.
     """

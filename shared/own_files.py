@@ -47,7 +47,7 @@ def open_own(path: Path, flags: int, mode: int) -> int:
 
 
 def _is_of_another(found: os.stat_result, folder: Path) -> bool:
-    """Whether it has a second name, and root would give it away; what a snapshot shares with the
+    """True if it has a second name, and root would give it away; what a snapshot shares with the
     folder has the folder's owner.
     """
     return os.geteuid() == 0 and found.st_nlink > 1 and found.st_uid != folder.stat().st_uid

@@ -350,7 +350,7 @@ def _unassign(state: StationState, unit: UnitState) -> UnitState:
 
 
 def _is_first_known_place(state: StationState) -> bool:
-    """Whether a place that is said now is the first one that is said on a plan, of which nobody
+    """True if a place that is said now is the first one that is said on a plan, of which nobody
     knows where it lies: people are where satellites have them.
     """
     pinned = any(pin.kind in {"place", "start"} for pin in state.pins.values())

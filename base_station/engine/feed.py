@@ -62,7 +62,7 @@ class LiveFeed:
 
     @property
     def late_waits(self) -> bool:
-        """Whether anything that was delivered may not be in the log yet: it waits here, or whoever
+        """True if anything that was delivered may not be in the log yet: it waits here, or whoever
         took it has not come for more.
         """
         return self._late_pending

@@ -36,7 +36,7 @@ class Feed(Protocol):
 
     @property
     def follows(self) -> bool:
-        """Whether what ``take`` gave last is another station's log, ticks and actions included:
+        """True if what ``take`` gave last is another station's log, ticks and actions included:
         it is kept and stepped as it is, and nothing is decided here.
         """
         ...

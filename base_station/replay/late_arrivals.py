@@ -75,7 +75,7 @@ def _late(records: Iterable[Record]) -> dict[Run, list[Received]]:
 
 
 def _is_recorded(pipeline: StationPipeline, run: Run) -> bool:
-    """Whether it was live before the incident was closed: its times can be told."""
+    """True if it was live before the incident was closed: its times can be told."""
     sender_id, boot_id = run
     sender = pipeline.state.sender(sender_id)
     boots = () if sender is None else sender.boots

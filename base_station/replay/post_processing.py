@@ -160,7 +160,7 @@ class PostProcessor:
         return now_ns - incident.closed_ns < LATELY_NS
 
     def is_newest(self, incident: IncidentRow) -> bool:
-        """Whether what is said of it was made with all that came of it since it was closed; what is
+        """True if what is said of it was made with all that came of it since it was closed; what is
         not kept is always made anew.
         """
         return not self._store.has(incident.incident_id) or self._is_made(incident)
@@ -342,7 +342,7 @@ def _samples(incident: IncidentRow, known: SolvedIncident, unit_id: str) -> list
 
 
 def _is_placed(known: SolvedIncident, unit_id: str, points: PathArrays) -> bool:
-    """Whether anything ties its path to the incident frame; else it lies about its own start."""
+    """True if anything ties its path to the incident frame; else it lies about its own start."""
     verdicts, state = known.solution.verdicts, known.state
     pins = (pin_id for pin_id, pin in state.pins.items() if unit_id in units_of(pin))
     is_pinned = any(pin_id in verdicts and verdicts[pin_id].used for pin_id in pins)

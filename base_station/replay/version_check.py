@@ -30,7 +30,7 @@ DIFFERS = (
 
 
 def decisions_differ(records: Iterable[Record], pipeline: StationPipeline) -> bool:
-    """Whether anybody who looks on would see it, at the beginning of a log."""
+    """True if anybody who looks on would see it, at the beginning of a log."""
     return any(_differences(islice(records, FIRST), pipeline))
 
 

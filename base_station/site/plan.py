@@ -72,7 +72,7 @@ class Plan(msgspec.Struct, frozen=True):
         return floor_at(self.storeys, down_m, floor)
 
     def is_inside(self, north_m: float, east_m: float, inside: bool) -> bool:
-        """Whether a place is in the building; near a wall, as it was before."""
+        """True if a place is in the building; near a wall, as it was before."""
         depth_m = self.depth_m(north_m, east_m)
         return depth_m > (-OUTLINE_HYSTERESIS_M if inside else OUTLINE_HYSTERESIS_M)
 

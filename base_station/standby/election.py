@@ -66,11 +66,11 @@ class Election:
         self._witness_ns = None
 
     def note_token(self, *, there: bool) -> None:
-        """Whether the other one's liveliness token is on the bus."""
+        """True if the other one's liveliness token is on the bus."""
         self._token_there = there
 
     def is_there(self, now_ns: int) -> bool:
-        """Whether the other station is heard."""
+        """True if the other station is heard."""
         if self._other is None:
             return False
         patience_ns = self._lease_ns * (1.0 if self._token_there else _TOKEN_GONE_SHARE)
@@ -115,13 +115,13 @@ class Election:
             self._witness_ns = now_ns
 
     def _has_witness(self, now_ns: int) -> bool:
-        """Whether it is the other station that is gone, and not this one."""
+        """True if it is the other station that is gone, and not this one."""
         if self.is_undecided:
             return True
         return self._witness_ns is not None and now_ns - self._witness_ns >= _WITNESS_NS
 
     def _is_awaited(self, now_ns: int) -> bool:
-        """Whether the other station may only be out of reach while the routers link again, or has
+        """True if the other station may only be out of reach while the routers link again, or has
         what nobody else has and may come back with it.
         """
         silent_ns = now_ns - self._received_ns

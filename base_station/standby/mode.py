@@ -73,7 +73,7 @@ class HaMode(Protocol):
 
     @property
     def leads(self) -> bool:
-        """Whether this station decides, commands and acknowledges."""
+        """True if this station decides, commands and acknowledges."""
         ...
 
     @property
@@ -86,7 +86,7 @@ class HaMode(Protocol):
         ...
 
     def may_forget(self) -> bool:
-        """Whether units may forget what the report before the last one told of."""
+        """True if units may forget what the report before the last one told of."""
         ...
 
     def note_report(self) -> None:

@@ -23,7 +23,7 @@ class StaleState:
         self.is_stale = self.is_stale or self._from_ns < end_ns <= self._to_ns
 
     def can_be_made_good(self, *, leads: bool, spared: bool, in_incident: bool) -> bool:
-        """Whether to start again and step it: a standby at once, one that leads when the other
+        """True if to start again and step it: a standby at once, one that leads when the other
         can take over (``spared``) and nobody is in action.
         """
         return self.is_stale and (not leads or (spared and not in_incident))

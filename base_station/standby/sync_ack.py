@@ -72,7 +72,7 @@ class ReplicaProgress:
 
     @property
     def is_there(self) -> bool:
-        """Whether a standby fetches this log."""
+        """True if a standby fetches this log."""
         now_ns = self._clock.monotonic_ns()
         return self._received_ns is not None and now_ns - self._received_ns < _STANDBY_TIMEOUT_NS
 
@@ -88,7 +88,7 @@ class ReplicaProgress:
             self._reported = self._reported[1], self._place()
 
     def previous_report_is_durable(self) -> bool:
-        """Whether what the report before the last one told of is on the standby's disk too."""
+        """True if what the report before the last one told of is on the standby's disk too."""
         with self._lock:
             return START < self._reported[0] <= self._has
 

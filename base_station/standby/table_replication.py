@@ -162,7 +162,7 @@ class TableReplication:
         self._standby_digest = _hash(rows_bytes)
 
     def _copy_photos(self, station: str, stop: Event) -> bool:
-        """Whether some had not come yet."""
+        """True if some had not come yet."""
         missing = self._tables.missing_photos()
         for person_id in missing:
             if stop.is_set():

@@ -110,7 +110,7 @@ class Checkpoints:
         return None
 
     def has_any(self, after_ns: int, until_ns: int) -> bool:
-        """Whether one was saved of a time behind ``after_ns``, until ``until_ns``."""
+        """True if one was saved of a time behind ``after_ns``, until ``until_ns``."""
         return any(after_ns < int(path.stem) <= until_ns for path in self._paths())
 
     def _paths(self) -> list[Path]:

@@ -99,7 +99,7 @@ class IntegrityChecker:
             return frozenset(self._lacks)
 
     def has_lost(self, t_ns: int) -> bool:
-        """Whether the log had records of about this time and has them no more."""
+        """True if the log had records of about this time and has them no more."""
         with self._lock:
             return any(lack.covers(t_ns) for lack in self._lacks.values())
 

@@ -218,13 +218,13 @@ class Recorder:
 
     @property
     def is_behind(self) -> bool:
-        """Whether records of a second ago may not be on the disk yet."""
+        """True if records of a second ago may not be on the disk yet."""
         stuck = self._turn_ns > _STUCK_NS
         return stuck or bool(self._failure or self._writer.problem)
 
     @property
     def hangs(self) -> bool:
-        """Whether the disk does not answer at all: records wait in memory for it."""
+        """True if the disk does not answer at all: records wait in memory for it."""
         return self._turn_ns > _HANGS_NS and not self._failure
 
     @property
@@ -242,7 +242,7 @@ class Recorder:
 
     @property
     def refuses(self) -> bool:
-        """Whether memory is full of what the disk does not take.  For alerts, and for what people
+        """True if memory is full of what the disk does not take.  For alerts, and for what people
         do, of which nobody else has a copy, there is some room left then.
         """
         return bool(self._failure) or self._waiting_bytes > self._waiting_max

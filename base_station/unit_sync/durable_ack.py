@@ -30,6 +30,6 @@ class DurableAckGate:
         self._written = self._written[1], self._disk.written
 
     def previous_report_is_durable(self) -> bool:
-        """Whether all that the report before the last one told of is on the disk."""
+        """True if all that the report before the last one told of is on the disk."""
         written = self._written[0]
         return written is not None and written <= self._disk.on_disk

@@ -37,7 +37,7 @@ class MaydayProgress:
             self.received += 1
 
     def is_acknowledged_by(self, command: Command) -> bool:
-        """Whether the command is of the newest call: the station knew of the mayday by that
+        """True if the command is of the newest call: the station knew of the mayday by that
         message or a later one.  It knows of none from before this boot, which called anew.
         """
         call = self._active

@@ -123,7 +123,7 @@ def _record_at(file: SegmentFile, offset: int) -> tuple[int, Chunk | None]:
 
 
 def _is_behind_chunks(file: SegmentFile, offset: int) -> bool:
-    """Whether what begins there and cannot be read is no record: an index, or what ends a file."""
+    """True if what begins there and cannot be read is no record: an index, or what ends a file."""
     try:
         opcode, length = file.record_at(offset)
     except ValueError:

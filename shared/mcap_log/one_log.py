@@ -58,7 +58,7 @@ def _log_of(paths: Sequence[Path], heads: _Heads) -> tuple[str, int]:
 
 
 def _follows(path: Path, heads: _Heads, before: set[str]) -> bool:
-    """Whether it was begun behind one of these, as far as can be known: that one may be lost."""
+    """True if it was begun behind one of these, as far as can be known: that one may be lost."""
     head = heads[path]
     assert head is not None
     number = segment_number(Path(head.follows))

@@ -138,7 +138,7 @@ class SegmentReader:
                 yield from self._records_at(data, offsets, wanted)
 
     def is_whole(self) -> bool:
-        """Whether every chunk is as it was written."""
+        """True if every chunk is as it was written."""
         return self._file.is_given and all(map(self._chunk_data, self._contents.chunks))
 
     def intact_chunks(self) -> Iterator[IntactChunk]:

@@ -30,7 +30,7 @@ def log_topic(unit_id: str) -> str:
 
 
 def is_derived(key: str) -> bool:
-    """Whether a topic only repeats others for Foxglove."""
+    """True if a topic only repeats others for Foxglove."""
     return key.startswith(DERIVED)
 
 

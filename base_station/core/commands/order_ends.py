@@ -16,7 +16,7 @@ WITHDRAWN = "its incident was closed"
 
 
 def is_owed(command: SentCommand, delivery: Delivery, t_ns: int) -> bool:
-    """Whether the unit is still to be told that the order is over."""
+    """True if the unit is still to be told that the order is over."""
     is_over = delivery.acknowledged_via == "radio" or delivery.reason == WITHDRAWN
     may_notify = delivery.sent_ns is not None and delivery.refused_ns is None
     is_told = delivery.ended_ns is not None

@@ -89,7 +89,7 @@ class Erasure(msgspec.Struct, frozen=True):
         )
 
     def is_about(self, unit_id: str, raised_ns: int) -> bool:
-        """Whether an alarm may name who is to be forgotten: also where it was raised when an
+        """True if an alarm may name who is to be forgotten: also where it was raised when an
         incident was over, of what a unit could not say before.
         """
         until_ns = self.about_until_ns if unit_id in self.unit_ids else self.until_ns
@@ -101,16 +101,16 @@ class Erasure(msgspec.Struct, frozen=True):
         return raised_ns.isdecimal() and self.is_about(unit_id, int(raised_ns))
 
     def covers_alarm(self, alarm_id: str) -> bool:
-        """Whether an alarm is about who wore the unit then."""
+        """True if an alarm is about who wore the unit then."""
         _, unit_id, raised_ns = [*alarm_id.rsplit(":", 2), "", ""][:3]
         return raised_ns.isdecimal() and self.covers(unit_id, int(raised_ns))
 
     def is_of(self, person_ids: Iterable[str]) -> bool:
-        """Whether anybody of these is to be forgotten."""
+        """True if anybody of these is to be forgotten."""
         return not {self.person_id, *self.person_ids}.isdisjoint({*person_ids} - {""})
 
     def covers_separate_action(self, t_ns: int, apart: DoneApart) -> bool:
-        """Whether what was done apart, and written down at ``t_ns``, says where somebody was, or
+        """True if what was done apart, and written down at ``t_ns``, says where somebody was, or
         wore something, who is to be forgotten.  Of which time a place is, is one of its numbers.
         """
         kind, *values = re.split(r"[\s,]+", apart.what)

@@ -72,5 +72,5 @@ class OlderNames:
 
 
 def is_program_text(field: str) -> bool:
-    """Whether what is in a field of this name is what the program goes by, and nobody's name."""
+    """True if what is in a field of this name is what the program goes by, and nobody's name."""
     return field in _PROGRAM_FIELDS or field.endswith(("_id", "_ids"))

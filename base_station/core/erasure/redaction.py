@@ -112,7 +112,7 @@ class Redactor:
                 return [self._renamed(record)]
 
     def _is_of_others(self, key: str) -> bool:
-        """Whether it comes from a unit that nobody wore who is to be forgotten."""
+        """True if it comes from a unit that nobody wore who is to be forgotten."""
         try:
             unit_id, channel = parse_key(key)
         except UnknownChannelError:
@@ -247,13 +247,13 @@ def without_words(t_ns: int, action: Action, erasure: Erasure) -> Action:
 
 
 def without_note(by: str) -> str:
-    """Who resolved an alarm, without the note that stands behind it."""
+    """Name of who resolved an alarm, without the note that stands behind it."""
     who, noted, _ = by.partition(": ")
     return f"{who}{noted}{ERASED_TEXT}" if noted else by
 
 
 def remaining_text(apart: DoneApart, t_ns: int, erasure: Erasure, names: OlderNames) -> str:
-    """Of what was done apart, and written down at ``t_ns``."""
+    """Text of what was done apart and written down at ``t_ns``, without what is forgotten."""
     if erasure.covers_separate_action(t_ns, apart):
         return ERASED_TEXT
     inside = any(erasure.from_ns <= one < erasure.until_ns for one in (t_ns, apart.t_ns))

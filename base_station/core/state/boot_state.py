@@ -38,7 +38,7 @@ class BootState(msgspec.Struct):
 
     @property
     def is_placed(self) -> bool:
-        """Whether its times can be told in station time."""
+        """True if its times can be told in station time."""
         return self.min_offset_t_ns != 0
 
     @property

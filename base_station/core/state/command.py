@@ -57,12 +57,12 @@ class SentCommand(msgspec.Struct):
 
     @property
     def asks_wearer(self) -> bool:
-        """Whether it is done only when somebody has acknowledged it."""
+        """True if it is done only when somebody has acknowledged it."""
         return self.kind in ASKS_WEARER
 
     @property
     def notifies_wearer(self) -> bool:
-        """Whether an output of the unit is to notify the wearer of it."""
+        """True if an output of the unit is to notify the wearer of it."""
         return self.kind in NOTIFIES_WEARER
 
     @property
@@ -70,7 +70,7 @@ class SentCommand(msgspec.Struct):
         return any(map(self.awaits, self.deliveries.values()))
 
     def awaits(self, delivery: Delivery) -> bool:
-        """Whether anything more is to come of it in time."""
+        """True if anything more is to come of it in time."""
         state = self.state_of(delivery)
         if state in {"queued", "sent"}:
             return True

@@ -141,7 +141,7 @@ class UnitState(MessageStream):
         self.person, self.worn_since_ns, self.inside_since_ns = None, t_ns, None
 
     def _concerns(self, worn: FormerWearer) -> bool:
-        """Whether a press, a fall or a rest that it told last was in that time: whose that was does
+        """True if a press, a fall or a rest that it told last was in that time: whose that was does
         not change with the next wearers.
         """
         alerts = [alert for alert in (self.mayday, self.fall) if alert.t_ns is not None]
@@ -170,7 +170,7 @@ class UnitState(MessageStream):
 
     @property
     def can_be_notified(self) -> bool | None:
-        """Whether it has an output that notifies its wearer; None: it has not described itself."""
+        """True if it has an output that notifies its wearer; None: it has not described itself."""
         return None if self.description is None else bool(self.description.outputs)
 
     @property

@@ -188,7 +188,7 @@ class Accounts:
         return Principal(found.username, Role.of(found.role), must_change_password=generated)
 
     def _is_open(self) -> ColumnElement[bool]:
-        """Whether a session is a user's, and not over."""
+        """True if a session is a user's, and not over."""
         return and_(
             LoginSession.username == User.username,
             LoginSession.generation == User.generation,

@@ -96,7 +96,7 @@ class SqlProjection:
             return self._write_now(self._decided)
 
     def _write_now(self, goal: int) -> Callable[[], bool]:
-        """Whether the projections up to ``goal`` are in the tables, or the store takes none."""
+        """True if the projections up to ``goal`` are in the tables, or the store takes none."""
         # A try that is under way may have begun before this call: two tell.
         given_up = self._failed_tries + 2
 

@@ -54,7 +54,7 @@ def row_of(entry: Base) -> Row:
 
 
 def end_what_ended(session: Session, ended: tuple[Row, ...]) -> bool:
-    """Whether anything was not known to be over."""
+    """True if anything was not known to be over."""
     known = set(session.scalars(select(Tombstone.what)))
     new = {row["what"]: row for row in ended if row["what"] not in known}
     if not new:

@@ -114,7 +114,7 @@ class ReplicatedTables:
             return lost_tables(session)
 
     def lacks_base_map(self) -> bool:
-        """Whether there is none because it was lost."""
+        """True if there is none because it was lost."""
         with self._store.read() as session:
             return "base_map" in lost_tables(session) and not rows_of(session, BaseMap)
 

@@ -91,7 +91,7 @@ class SmoothedTracks:
             return self._tracks(session, incident_id, IncidentTrails.raw)
 
     def has(self, incident_id: str, late_data_ns: int = 0) -> bool:
-        """Whether it was made, with the incident's news until then."""
+        """True if it was made, with the incident's news until then."""
         with self._store.read() as session:
             made = session.get(SmoothedIncident, incident_id)
             return made is not None and made.known_ns >= late_data_ns

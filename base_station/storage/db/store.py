@@ -95,7 +95,7 @@ class Store:
 
     @property
     def in_memory(self) -> bool:
-        """Whether the disk takes nothing, and what is changed waits for it."""
+        """True if the disk takes nothing, and what is changed waits for it."""
         return self._memory is not None
 
     @property
@@ -220,7 +220,7 @@ class Store:
         return engine
 
     def _is_readable(self, error: SQLAlchemyError) -> bool:
-        """Whether it failed at a disk that takes nothing, and may give what is there."""
+        """True if it failed at a disk that takes nothing, and may give what is there."""
         return code_of(getattr(error, "orig", None) or error) in _CAN_BE_READ and (
             not self.path.exists() or self.path.is_file()
         )
