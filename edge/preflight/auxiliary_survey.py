@@ -70,7 +70,7 @@ class AuxiliarySurvey:
         """``asks_press``: somebody was asked to press the button."""
         yield from self._temperature()
         yield from self._battery()
-        yield from self._satellites()
+        yield from self._gnss()
         if self._config.sightings:
             text = f"{self._sightings} sightings"
             yield CheckFinding(
@@ -122,7 +122,7 @@ class AuxiliarySurvey:
         else:
             yield CheckFinding("battery", Severity.OK, text)
 
-    def _satellites(self) -> Iterator[CheckFinding]:
+    def _gnss(self) -> Iterator[CheckFinding]:
         subject, fix = "satellites", self._best_fix
         if not self._config.gps and Quantity.FIX not in self._gives:
             yield CheckFinding(

@@ -42,7 +42,7 @@ from edge.tracker.foot.preprocessing.saturation_recovery import recover_forces, 
 from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress, Step, Trail
 from edge.tracker.foot.zupt.level_walking import apply_level_constraint
-from edge.tracker.foot.zupt.stance_belief import is_believed, note_stillness, remember_stance
+from edge.tracker.foot.zupt.stance_belief import is_accepted, note_stillness, remember_stance
 from edge.tracker.foot.zupt.stance_consistency import begin_stance, inflate_for_misfit
 from edge.tracker.foot.zupt.stance_detection import stance_threshold, steady_rate, unrest
 from edge.tracker.foot.zupt.zupt import apply_zupt, is_gliding
@@ -75,7 +75,7 @@ def filter_sample(
     still = good and motion <= stance_threshold(ring, state, slot, config)
     still = still and not is_gliding(ring, state, slot, config)
     if still and not progress.in_stance:
-        still = is_believed(ring, progress, state, k, config)
+        still = is_accepted(ring, progress, state, k, config)
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
         update_from_rest(state, config)

@@ -33,7 +33,7 @@ from edge.tracker.foot.state import FilterState, Progress
 
 
 @njit()
-def is_believed(
+def is_accepted(
     ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
 ) -> bool:
     """False where sample ``k``, which would begin a stance, is rather of a foot in the air."""
