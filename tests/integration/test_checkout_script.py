@@ -39,7 +39,7 @@ def test_an_environment_without_its_installer_is_made_anew(tmp_path: Path) -> No
     assert "the step 'Building Muster and its console' failed" in ran.stderr  # there is no project
 
 
-def test_the_quick_tests_are_one_for_each_core_and_leave_out_slow_ones(
+def test_the_quick_tests_are_two_for_each_core_and_leave_out_slow_ones(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     script = load_script()
@@ -56,7 +56,7 @@ def test_the_quick_tests_are_one_for_each_core_and_leave_out_slow_ones(
         script.main(["test", "--quick", "-x"])
     assert ended.value.code == 0
     (arguments,) = ran
-    assert arguments[:2] == ("-n", str(os.cpu_count()))
+    assert arguments[:2] == ("-n", str(2 * (os.cpu_count() or 1)))
     assert arguments[-1] == "-x"
     assert "not slow" in arguments
     folders = [CHECKOUT / one for one in arguments if one.startswith("tests/")]
