@@ -10,6 +10,7 @@ from shared.messages.status import Activity
 
 SENSOR_HEIGHT_M = 0.08  # of the instep above the sole
 STANDING_PELVIS_M = 0.87  # of the pelvis above the instep
+LEG_LENGTH_M = STANDING_PELVIS_M  # of the pendulum that a leg is about the foot it stands on
 
 
 class BodyPlan:
@@ -32,7 +33,8 @@ class BodyPlan:
         self.roll = Curve(0.0)
         self.pivot = Curve(0.0)
         self.rock = Curve(0.0)
-        self.shank_pitch = Curve(0.0)
+        self.shank_pitch = Curve(0.0)  # besides the lean of the whole leg, as the knee bends
+        self.thigh_pitch = Curve(0.0)  # likewise
         self.pelvis_height = Curve(STANDING_PELVIS_M)
         self.trunk_pitch = Curve(0.0)
         self.bounce = Curve(0.0)  # of the trunk, down positive, twice a stride

@@ -1,9 +1,10 @@
-"""Body segments that can wear a unit: foot, shank, hip and chest.
+"""Body segments that can wear a unit: foot, shank, thigh (in a pocket), hip, waist and chest.
 
 Axes of each are forward, right, down when the person stands upright.  The foot is
 rigid and rolls about its ball when the heel rises and about its heel when it
-lands; the shank is hinged at the ankle; hip and chest ride on one rigid trunk
-whose pelvis follows the feet.
+lands; hip, waist and chest ride on one rigid trunk whose pelvis follows the feet.
+The leg is a pendulum between foot and pelvis: shank and thigh, hinged at ankle and
+hip, lean as it does, and apart by what the knee bends.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from collections.abc import Callable
 import numpy as np
 
 from edge.samples import Floats
-from edge.simulation.body_plan import BodyPlan
-from edge.simulation.jet import Jet, constant, oscillation
+from edge.simulation.body_plan import LEG_LENGTH_M, BodyPlan
+from edge.simulation.jet import Jet, arctangent, constant, cosine, oscillation, sine
 from edge.simulation.kinematics import Attitude, Motion, Place, motion
 from edge.simulation.planner import HALF_TRACK_M
 
@@ -24,6 +25,9 @@ _HEEL_TO_INSTEP_X_M = 0.13
 _SOLE_TO_INSTEP_Z_M = -0.08
 _INSTEP_TO_ANKLE_M = (-0.07, 0.0, -0.01)
 _ANKLE_TO_SHANK_M = (0.04, 0.0, -0.22)
+_PELVIS_TO_HIP_JOINT_M = (0.0, 0.09, 0.04)
+_HIP_JOINT_TO_POCKET_M = (0.07, 0.03, 0.18)
+_PELVIS_TO_WAIST_M = (-0.13, 0.0, -0.06)  # of the belt, at the back
 _PELVIS_TO_HIP_M = (-0.02, 0.17, 0.0)
 _PELVIS_TO_CHEST_M = (0.10, 0.0, -0.40)
 
@@ -56,6 +60,9 @@ class Tremor:
         return [total * scale for total in sums]
 
 
+_SegmentMotion = Callable[[BodyPlan, Tremor, Floats], tuple[Place, Attitude]]
+
+
 def _foot(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]:
     shake = tremor.jets(t_s, plan.tremor.jet(t_s))
     roll, yaw = plan.roll.jet(t_s) + shake[3], plan.yaw.jet(t_s) + shake[5]
@@ -79,11 +86,35 @@ def _shank(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude
     instep, foot = _foot(plan, tremor, t_s)
     shank = Attitude(
         roll=plan.roll.jet(t_s).scaled(0.5),
-        pitch=plan.shank_pitch.jet(t_s),
+        pitch=_leg_pitch(plan, t_s) + plan.shank_pitch.jet(t_s),
         yaw=plan.yaw.jet(t_s),
     )
     ankle = instep + foot.turned(*_levers(t_s, _INSTEP_TO_ANKLE_M))
     return ankle + shank.turned(*_levers(t_s, _ANKLE_TO_SHANK_M)), shank
+
+
+def _leg_pitch(plan: BodyPlan, t_s: Floats) -> Jet:
+    """How the leg leans from the pelvis to its foot, forward positive.
+
+    While the foot stands it turns by the body's speed over its length.
+    """
+    yaw = plan.yaw.smoothed(t_s, _FOLLOW_S)
+    north = plan.north.jet(t_s) - plan.north.smoothed(t_s, _FOLLOW_S)
+    east = plan.east.jet(t_s) - plan.east.smoothed(t_s, _FOLLOW_S)
+    ahead = north * cosine(yaw) + east * sine(yaw)
+    return arctangent(ahead.scaled(1.0 / LEG_LENGTH_M))
+
+
+def _pocket(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]:
+    pelvis, trunk = _pelvis(plan, t_s, twist=1.0)
+    shake = tremor.jets(t_s, plan.tremor.jet(t_s))
+    thigh = Attitude(
+        roll=plan.roll.jet(t_s).scaled(0.3),
+        pitch=_leg_pitch(plan, t_s) + plan.thigh_pitch.jet(t_s),
+        yaw=plan.yaw.smoothed(t_s, _FOLLOW_S),
+    )
+    joint = pelvis + trunk.turned(*_levers(t_s, _PELVIS_TO_HIP_JOINT_M)) + Place(*shake[:3])
+    return joint + thigh.turned(*_levers(t_s, _HIP_JOINT_TO_POCKET_M)), thigh
 
 
 def _pelvis(plan: BodyPlan, t_s: Floats, twist: float) -> tuple[Place, Attitude]:
@@ -108,17 +139,15 @@ def _pelvis(plan: BodyPlan, t_s: Floats, twist: float) -> tuple[Place, Attitude]
     return feet + middle, attitude
 
 
-def _hip(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]:
-    pelvis, attitude = _pelvis(plan, t_s, twist=1.0)
-    shake = tremor.jets(t_s, plan.tremor.jet(t_s))
-    return pelvis + attitude.turned(*_levers(t_s, _PELVIS_TO_HIP_M)) + Place(*shake[:3]), attitude
+def _on_trunk(lever_m: tuple[float, float, float], twist: float) -> _SegmentMotion:
+    """Return the motion of what is fixed to the trunk; the shoulders turn against the pelvis."""
 
+    def place(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]:
+        pelvis, attitude = _pelvis(plan, t_s, twist)
+        shake = tremor.jets(t_s, plan.tremor.jet(t_s))
+        return pelvis + attitude.turned(*_levers(t_s, lever_m)) + Place(*shake[:3]), attitude
 
-def _chest(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude]:
-    # The shoulders turn against the pelvis.
-    pelvis, attitude = _pelvis(plan, t_s, twist=-0.6)
-    shake = tremor.jets(t_s, plan.tremor.jet(t_s))
-    return pelvis + attitude.turned(*_levers(t_s, _PELVIS_TO_CHEST_M)) + Place(*shake[:3]), attitude
+    return place
 
 
 def _levers(t_s: Floats, lever_m: tuple[float, float, float]) -> tuple[Jet, Jet, Jet]:
@@ -126,11 +155,13 @@ def _levers(t_s: Floats, lever_m: tuple[float, float, float]) -> tuple[Jet, Jet,
     return constant(t_s, x_m), constant(t_s, y_m), constant(t_s, z_m)
 
 
-_SEGMENTS: dict[str, Callable[[BodyPlan, Tremor, Floats], tuple[Place, Attitude]]] = {
+_SEGMENTS: dict[str, _SegmentMotion] = {
     "foot": _foot,
     "shank": _shank,
-    "hip": _hip,
-    "chest": _chest,
+    "pocket": _pocket,
+    "hip": _on_trunk(_PELVIS_TO_HIP_M, twist=1.0),
+    "waist": _on_trunk(_PELVIS_TO_WAIST_M, twist=1.0),
+    "chest": _on_trunk(_PELVIS_TO_CHEST_M, twist=-0.6),
 }
 
 

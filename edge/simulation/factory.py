@@ -31,7 +31,7 @@ def open_simulation(text: str) -> Simulation:
     """
     name, _, query = text.partition("?")
     options = dict(parse_qsl(query, keep_blank_values=True))
-    scenario = _find(name)
+    scenario = find_scenario(name)
     worn_on = options.pop("worn_on", scenario.worn_on)
     if worn_on not in get_args(Segment):
         known = ", ".join(get_args(Segment))
@@ -76,7 +76,11 @@ def _arriving(scenario: Scenario, start: Point) -> Scenario:
     )
 
 
-def _find(name: str) -> Scenario:
+def find_scenario(name: str) -> Scenario:
+    """Return the built-in scenario of that name, or that of a .toml file.
+
+    Raises ``ConfigError``.
+    """
     if name.endswith(".toml"):
         return read_scenario(Path(name))
     for scenario in SCENARIOS:

@@ -21,6 +21,7 @@ _FOOT_SHIFT_RAD = radians(8)
 _FOOT_LIFT_M = 0.03
 _KNEELING_SHIFT_RAD = radians(3)
 _SIT_PELVIS_M = 0.40
+_SIT_THIGH_RAD = radians(80)
 _CROSSED_LIFT_M = 0.35
 _CROSSED_FORWARD_M = 0.12
 _CROSSED_PITCH_RAD = radians(-25)
@@ -56,11 +57,13 @@ def sit(plan: BodyPlan, rng: _Rng, duration_s: float) -> None:
     """Sit down; cross the legs now and then, which takes the foot off the ground; get up."""
     plan.begin(Activity.STILL)
     plan.pelvis_height.move(plan.duration_s, plan.duration_s + 1.5, _SIT_PELVIS_M)
+    plan.thigh_pitch.move(plan.duration_s, plan.duration_s + 1.5, _SIT_THIGH_RAD)
     plan.duration_s += 1.5
     end_s = plan.duration_s + duration_s
     _fidget(plan, rng, end_s, _cross_legs)
     _tip(plan, end_s, 0.4, 0.0, 0.0)
     plan.pelvis_height.move(end_s + 0.4, end_s + 1.9, STANDING_PELVIS_M)
+    plan.thigh_pitch.move(end_s + 0.4, end_s + 1.9, 0.0)
     plan.duration_s = end_s + 1.9
 
 

@@ -50,6 +50,11 @@ def cosine(angle: Jet) -> Jet:
     return _through(angle, np.cos(angle.value), -np.sin(angle.value), -np.cos(angle.value))
 
 
+def arctangent(slope: Jet) -> Jet:
+    flat = 1.0 / (1.0 + slope.value**2)
+    return _through(slope, np.arctan(slope.value), flat, -2.0 * slope.value * flat**2)
+
+
 def _through(x: Jet, value: Floats, slope: Floats, curvature: Floats) -> Jet:
     """Chain rule for a function with the given value and derivatives at ``x``."""
     return Jet(value, slope * x.rate, slope * x.accel + curvature * x.rate**2)

@@ -24,7 +24,7 @@ Pace = Literal[
 Risers = Annotated[int, Meta(ge=1, le=200)]
 AtOnce = Annotated[int, Meta(ge=1, le=3)]  # risers that one step takes
 StairsPace = Literal["walk", "run"]
-Segment = Literal["foot", "shank", "hip", "chest"]
+Segment = Literal["foot", "shank", "pocket", "hip", "waist", "chest"]
 
 
 class Walk(msgspec.Struct, frozen=True, tag="walk", forbid_unknown_fields=True):

@@ -28,6 +28,8 @@ _CREEPS_FREEDOM = 3.0
 _CREEPS_MOST_MPS = 0.1  # none of 511 recorded stances rose or sank faster
 _DEFORMS_S = 0.15  # before it is down altogether
 _CURVE_PEAK = 140.0 / 64.0  # of a curve's speed by its mean
+_SHANK_BY_TOE_OFF = 0.6  # by which the bending knee folds the shank back
+_THIGH_BY_TOE_OFF = -0.3  # by which the knee is raised in the swing
 _CRAWL_PITCH_RAD = radians(-72)
 _CRAWL_TRUNK_RAD = radians(-75)
 _CRAWL_PELVIS_M = 0.45
@@ -41,7 +43,7 @@ _LIFT_DOORS_S = 2.0
 def stand(plan: BodyPlan, duration_s: float) -> None:
     plan.begin(Activity.STILL)
     settled_s = plan.duration_s + max(2.0 * _FLATTENS_S, min(0.4, duration_s))
-    for curve in (plan.pitch, plan.roll, plan.shank_pitch):
+    for curve in (plan.pitch, plan.roll, plan.shank_pitch, plan.thigh_pitch):
         if curve.last != 0.0:
             curve.move(max(plan.duration_s, curve.end_s), settled_s, 0.0)
     plan.duration_s += duration_s
@@ -92,10 +94,11 @@ def stride(
     # The toes point outward in mid-swing.
     plan.yaw.move(*window(0.25, 0.55), (plan.yaw.last + yaw_rad) / 2.0 + radians(6))
     plan.yaw.move(*window(0.55, 0.95), yaw_rad)
-    # The shank leans forward over the standing foot, folds back and swings out.
-    plan.shank_pitch.move(begin_s, off_s, radians(-14))
-    plan.shank_pitch.move(*window(0.00, 0.45), 0.85 * toe_off_rad)
-    plan.shank_pitch.move(*window(0.45, 0.90), 0.8 * gait.strike_rad)
+    # The knee bends in the swing: the shank folds back and swings out under the thigh.
+    plan.shank_pitch.move(*window(0.00, 0.45), _SHANK_BY_TOE_OFF * toe_off_rad)
+    plan.shank_pitch.move(*window(0.45, 0.90), 0.0)
+    plan.thigh_pitch.move(*window(0.05, 0.55), _THIGH_BY_TOE_OFF * toe_off_rad)
+    plan.thigh_pitch.move(*window(0.55, 1.00), 0.0)
     _swing_trunk(plan, gait, begin_s, end_s)
     plan.duration_s = end_s
     plan.footfall_s.append(end_s)
@@ -184,6 +187,7 @@ def lie(plan: BodyPlan, duration_s: float, fall: bool) -> None:
         plan.pitch.move(start_s, end_s, down * _LIE_PITCH_RAD)
         plan.roll.move(start_s, end_s, down * _LIE_ROLL_RAD)
         plan.shank_pitch.move(start_s, end_s, down * _LIE_TRUNK_RAD)
+        plan.thigh_pitch.move(start_s, end_s, down * _LIE_TRUNK_RAD)
         plan.trunk_pitch.move(start_s, end_s, down * _LIE_TRUNK_RAD)
         plan.pelvis_height.move(start_s, end_s, _LIE_PELVIS_M if down else STANDING_PELVIS_M)
         plan.tremor.move(start_s, end_s, float(not down))

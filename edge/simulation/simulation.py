@@ -66,12 +66,18 @@ UNCALIBRATED_SENSORS = SensorErrors(UNCALIBRATED_IMU, UNCALIBRATED_MAG, CONSUMER
 class Simulation:
     """Simulation of a scenario; equal seeds give equal samples to the last bit.
 
-    The sensor sits on its part of the body at an angle drawn from the seed.  Navigation axes
-    are those of the site frame (NED, origin at its anchor); time starts at 0.
+    Simulations of one seed are of one person on one walk; of several sensors that this person
+    wears each has a number, and errors and a mount of its own.  The sensor sits on its part of
+    the body at an angle drawn from the seed.  Navigation axes are those of the site frame (NED,
+    origin at its anchor); time starts at 0.
     """
 
     def __init__(
-        self, scenario: Scenario, seed: int = 0, sensors: SensorErrors = CONSUMER_SENSORS
+        self,
+        scenario: Scenario,
+        seed: int = 0,
+        sensors: SensorErrors = CONSUMER_SENSORS,
+        number: int = 0,
     ) -> None:
         self.scenario = scenario
         self.sensors = sensors
@@ -79,6 +85,8 @@ class Simulation:
         self._building = house if scenario.building else None
         self._anchor = scenario.anchor or house.anchor
         walk_seed, mount_seed, self._sensor_seed = np.random.SeedSequence(seed).spawn(3)
+        if number:
+            _, mount_seed, self._sensor_seed = np.random.SeedSequence([seed, number]).spawn(3)
         walk_rng = np.random.default_rng(walk_seed)
         self.plan = _plan(scenario, walk_rng)
         self._tremor = Tremor(walk_rng)

@@ -1,4 +1,4 @@
-"""Foot, shank, hip and chest belong to one body and move as people do."""
+"""Foot, leg and trunk belong to one body and move as people do."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ import pytest
 from edge.samples import Floats
 from edge.simulation.factory import open_simulation
 from edge.simulation.kinematics import Motion
+from edge.simulation.legs import Segment
 from edge.simulation.lift_motion import ACCEL_MPS2, LiftMotion
 from shared.messages.status import Activity
+from tests.rig.inertial_walk import InertialWalk, inertial_walk, of_one_person
 
 
 def worn(segment: str, scenario: str, t_s: Floats) -> Motion:
@@ -17,7 +19,15 @@ def worn(segment: str, scenario: str, t_s: Floats) -> Motion:
 
 
 @pytest.mark.parametrize(
-    ("segment", "height_m"), [("foot", 0.08), ("shank", 0.31), ("hip", 0.95), ("chest", 1.35)]
+    ("segment", "height_m"),
+    [
+        ("foot", 0.08),
+        ("shank", 0.31),
+        ("pocket", 0.73),
+        ("hip", 0.95),
+        ("waist", 1.01),
+        ("chest", 1.35),
+    ],
 )
 def test_standing_height(segment: str, height_m: float) -> None:
     motion = worn(segment, "straight", np.array([1.0]))
@@ -25,7 +35,7 @@ def test_standing_height(segment: str, height_m: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("segment", ["shank", "hip", "chest"])
+@pytest.mark.parametrize("segment", ["shank", "pocket", "hip", "waist", "chest"])
 def test_all_parts_go_where_the_foot_goes(segment: str) -> None:
     t_s = np.arange(0.0, 300.0, 0.5)
     foot = worn("foot", "climbs-stairs", t_s).position_n_m
@@ -35,7 +45,52 @@ def test_all_parts_go_where_the_foot_goes(segment: str) -> None:
     assert np.ptp(other[:, 2]) == pytest.approx(3.2, abs=0.4)
 
 
-@pytest.mark.parametrize("segment", ["hip", "chest"])
+def standing_leg_radps(walk: InertialWalk) -> Floats:
+    """Return the rate at which the shank passes the vertical, once a stride."""
+    side_s = walk.truth.rotation_nb[0].T @ np.array([0.0, 1.0, 0.0])  # it starts facing north
+    front_s = walk.truth.rotation_nb[0].T @ np.array([1.0, 0.0, 0.0])
+    down = (walk.truth.rotation_nb @ front_s)[:, 2]
+    passes = np.flatnonzero((down[:-1] < 0.0) & (down[1:] >= 0.0))
+    return -(walk.truth.rate_b_radps @ side_s)[passes]
+
+
+def test_the_standing_leg_turns_by_the_speed_of_the_body_over_its_length() -> None:
+    chest, shank = of_one_person("straight", ("chest", "shank"))
+    far_m = np.linalg.norm(chest.truth.position_n_m[-1, :2] - chest.truth.position_n_m[0, :2])
+    rates_radps = standing_leg_radps(shank)
+    assert len(rates_radps) == pytest.approx(len(shank.simulation.plan.footfall_s), abs=2)
+    walked_s = len(rates_radps) * 1.06
+    assert np.median(rates_radps) * shank.leg_length_m == pytest.approx(far_m / walked_s, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("segment", "least_deg", "most_deg"),
+    [("shank", (-70, -45), (15, 30)), ("pocket", (-25, -10), (20, 45))],
+)
+def test_shank_and_thigh_swing_as_legs_do(
+    segment: Segment, least_deg: tuple[float, float], most_deg: tuple[float, float]
+) -> None:
+    walk = inertial_walk("straight", worn_on=segment)
+    front_s = walk.truth.rotation_nb[0].T @ np.array([1.0, 0.0, 0.0])
+    pitch_deg = -np.degrees(np.arcsin((walk.truth.rotation_nb @ front_s)[:, 2]))
+    assert least_deg[0] < pitch_deg.min() < least_deg[1]
+    assert most_deg[0] < pitch_deg.max() < most_deg[1]
+
+
+def test_sensors_of_one_person_share_the_walk_and_nothing_else() -> None:
+    first, second = of_one_person("straight", ("waist", "waist"))
+    np.testing.assert_array_equal(first.truth.position_n_m, second.truth.position_n_m)
+    assert not np.allclose(first.truth.rotation_nb[0], second.truth.rotation_nb[0], atol=0.01)
+    standing = slice(0, 400)
+    norms_mps2 = [
+        np.linalg.norm(walk.imu.accel_mps2[standing].mean(axis=0)) for walk in (first, second)
+    ]
+    assert abs(norms_mps2[0] - norms_mps2[1]) > 1e-3, "another bias"
+    assert first.imu.mag_ut is not None
+    assert first.imu.pressure_pa is not None
+
+
+@pytest.mark.parametrize("segment", ["hip", "waist", "chest"])
 def test_the_trunk_glides_while_the_foot_stops_and_goes(segment: str) -> None:
     t_s = np.arange(15.0, 35.0, 0.01)
     speed = np.linalg.norm(worn(segment, "straight", t_s).velocity_n_mps[:, :2], axis=1)
