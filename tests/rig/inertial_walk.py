@@ -62,11 +62,11 @@ def inertial_walk(
 
 
 def of_one_person(
-    scenario: Scenario | str, worn_on: Sequence[Segment], seed: int = 0, **changes: object
+    scenario: Scenario | str, worn_on: Sequence[Segment], seed: int = 0
 ) -> list[InertialWalk]:
     """Return the same walk as sensors on several segments have it, each with its own errors."""
     return [
-        inertial_walk(scenario, seed, segment, number=number, **changes)
+        inertial_walk(scenario, seed, segment, number=number)
         for number, segment in enumerate(worn_on)
     ]
 

@@ -51,7 +51,8 @@ def standing_leg_radps(walk: InertialWalk) -> Floats:
     front_s = walk.truth.rotation_nb[0].T @ np.array([1.0, 0.0, 0.0])
     down = (walk.truth.rotation_nb @ front_s)[:, 2]
     passes = np.flatnonzero((down[:-1] < 0.0) & (down[1:] >= 0.0))
-    return -(walk.truth.rate_b_radps @ side_s)[passes]
+    rates: Floats = -(walk.truth.rate_b_radps @ side_s)[passes]
+    return rates
 
 
 def test_the_standing_leg_turns_by_the_speed_of_the_body_over_its_length() -> None:
