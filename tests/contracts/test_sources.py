@@ -219,7 +219,7 @@ def test_radio_outages_are_in_order(source: Source) -> None:
         ("", "unknown source"),
         ("simulated:climbs-stair", "did you mean climbs-stairs"),
         ("simulated:stairs?seed=x", "seed is 'x'"),
-        ("simulated:stairs?worn_on=hat", "known are foot, shank, hip, chest"),
+        ("simulated:stairs?worn_on=hat", "known are foot, shank, pocket, hip, waist"),
         ("simulated:stairs?speed=2", "unknown option 'speed'"),
         ("ximu3:ttyACM0", "ximu3:/dev/ttyACM0"),
         ("ximu3:tcp://", "tcp://HOST:PORT"),
