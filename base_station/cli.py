@@ -272,7 +272,7 @@ def _load_settings(config: Path | None, flags: Mapping[str, object]) -> StationC
 
     settings = load_config(config, StationConfig, flags)
     settings.require_encryption()
-    set_up_logging(settings.log_level)
+    set_up_logging(settings.log_level, settings.log_format)
     logging.getLogger("alembic").setLevel(logging.WARNING)
     os.umask(0o077)  # people's photos and tracks are nobody else's business
     return settings

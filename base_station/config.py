@@ -13,7 +13,7 @@ from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError
 from shared.host_names import can_be_looked_up
-from shared.log import LogLevel
+from shared.log import LogFormat, LogLevel
 
 _ENDPOINT = re.compile(r"(?:tls|tcp)/(\[[^\]\s]+\]|[^\s/:]+):(\d{1,5})(?:[?#]\S*)?")
 
@@ -94,6 +94,7 @@ class StationConfig:
     data: Path = Path("muster-data")  # log, database and first login; one station a folder
     insecure: bool = False  # accept plain connections from other machines
     log_level: LogLevel = "INFO"
+    log_format: LogFormat = "text"
     bus: BusConfig = field(default_factory=BusConfig)
     http: HttpConfig = field(default_factory=HttpConfig)
     log: LogConfig = field(default_factory=LogConfig)

@@ -147,7 +147,7 @@ def run(
         "speed": speed,
     }
     settings = load_config(config, EdgeConfig, flags)
-    set_up_logging(settings.log_level)
+    set_up_logging(settings.log_level, settings.log_format)
     stop = end_requested()
     run_agent(settings, stop, for_s=for_s, paced=not as_fast_as_possible)
 

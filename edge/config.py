@@ -9,7 +9,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from edge.samples import ApproximatePosition
-from shared.log import LogLevel
+from shared.log import LogFormat, LogLevel
 
 POSITION_RATE_HZ = (0.1, 50.0)
 
@@ -49,4 +49,5 @@ class EdgeConfig:
     position_rate_hz: Annotated[float, Meta(ge=POSITION_RATE_HZ[0], le=POSITION_RATE_HZ[1])] = 5.0
     speed: Annotated[float, Meta(ge=0.01, le=1000.0)] = 1.0  # at which recordings are played
     log_level: LogLevel = "INFO"
+    log_format: LogFormat = "text"
     storage: StorageConfig = field(default_factory=StorageConfig)

@@ -1,23 +1,27 @@
-"""The programs' own log: one line a record, UTC, to standard error and, where asked, a file."""
+"""The programs' own log: one line a record, UTC, to standard error.
+
+As text for people, or as JSON for a log collector.
+"""
 
 from __future__ import annotations
 
 import logging
+import os
 import re
 import time
-from io import TextIOWrapper
-from logging.handlers import RotatingFileHandler
-from pathlib import Path
-from typing import Literal
+from datetime import UTC, datetime
+from typing import Literal, cast
 
-from shared.own_files import append_own
+import msgspec
 
 LogLevel = Literal["DEBUG", "INFO", "WARNING", "ERROR"]
+LogFormat = Literal["text", "json"]
+
+# The format for this program's child processes, whose lines go to the same place.
+_FORMAT_VARIABLE = "MUSTER_LOG_FORMAT"
 
 # What ends a line, or does more to a terminal than be shown: what others say gets into messages.
 _UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
-_FILE_BYTES = 5_000_000
-_FILES_KEPT = 3
 
 
 class OneLineFormatter(logging.Formatter):
@@ -34,24 +38,37 @@ class OneLineFormatter(logging.Formatter):
         return _UNPRINTABLE.sub(_escaped, super().formatMessage(record))
 
 
-class _PlainFileHandler(RotatingFileHandler):
-    """Follows no link: whoever may write to the folder does not choose where root writes."""
+class JsonFormatter(logging.Formatter):
+    """One JSON object a line: ``time``, ``level``, ``logger``, ``message``, ``pid`` and, with a
+    traceback, ``exception``.
+    """
 
-    def _open(self) -> TextIOWrapper:
-        return TextIOWrapper(append_own(Path(self.baseFilename)), encoding=self.encoding)
+    def format(self, record: logging.LogRecord) -> str:
+        time_utc = datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds")
+        line: dict[str, object] = {
+            "time": time_utc.replace("+00:00", "Z"),
+            "level": record.levelname,
+            "logger": record.name,
+            "message": record.getMessage(),
+            "pid": record.process,
+        }
+        if record.exc_info:
+            line["exception"] = self.formatException(record.exc_info)
+        return msgspec.json.encode(line).decode()
 
 
-def set_up_logging(level: LogLevel = "INFO", file: Path | None = None) -> None:
-    """For a program's start, once: replaces whatever handlers the root logger had."""
-    handlers: list[logging.Handler] = [logging.StreamHandler()]
-    if file is not None:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        handlers.append(
-            _PlainFileHandler(file, maxBytes=_FILE_BYTES, backupCount=_FILES_KEPT, encoding="utf-8")
-        )
-    for handler in handlers:
-        handler.setFormatter(OneLineFormatter())
-    logging.basicConfig(level=level, handlers=handlers, force=True)
+def set_up_logging(level: LogLevel = "INFO", log_format: LogFormat | None = None) -> None:
+    """For a program's start, once: replaces whatever handlers the root logger had.
+
+    ``log_format``: None as the parent process has it, text where there is none.
+    """
+    if log_format is None:
+        log_format = cast("LogFormat", os.environ.get(_FORMAT_VARIABLE, "text"))
+    else:
+        os.environ[_FORMAT_VARIABLE] = log_format
+    handler = logging.StreamHandler()
+    handler.setFormatter(JsonFormatter() if log_format == "json" else OneLineFormatter())
+    logging.basicConfig(level=level, handlers=[handler], force=True)
 
 
 def _escaped(found: re.Match[str]) -> str:

@@ -4,7 +4,6 @@ whoever may write to the folder has chosen.
 
 from __future__ import annotations
 
-import logging
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -27,7 +26,6 @@ from edge.storage.black_box.station_time import write_clock_offset
 from edge.storage.data_folder import UnitDataFolder as UnitFolder
 from shared.clock import ManualClock
 from shared.errors import MusterError
-from shared.log import set_up_logging
 from shared.out_file import whole
 from tests.rig.quick_hash import QUICK_HASH
 from tests.unit.shared import test_own_files as writes
@@ -196,17 +194,6 @@ def note_time(data: Path) -> None:
     write_clock_offset(data, 1)
 
 
-def write_log_file(data: Path) -> None:
-    root = logging.getLogger()
-    handlers, root.handlers = root.handlers, []  # pytest's own, which it would close
-    try:
-        set_up_logging("INFO", data / "program.log")
-    finally:
-        for handler in root.handlers:
-            handler.close()
-        root.handlers = handlers
-
-
 def write_out(data: Path) -> None:
     with whole(data / "out.csv") as making:
         making.write_text("1,2")
@@ -239,7 +226,7 @@ ACTS: tuple[Callable[[Path], None], ...] = (
     writes.fill_database,
     writes.pull_recording,
     writes.make_backup,
-    *(save_unit, note_time, write_log_file, write_out, make_login, make_pki),
+    *(save_unit, note_time, write_out, make_login, make_pki),
 )
 _opened: list[Path] | None = None  # for writing, while an act is watched
 
