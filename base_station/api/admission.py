@@ -1,8 +1,8 @@
 """Admission of requests: slow ones take no thread from operator actions.
 
 All routes share the framework's forty threads.  Log-ins are worked on by threads of their own, of
-what reads much only some at a time, pictures wait in the senders' machines until it is their turn,
-and whoever has tried too many passwords is refused before the request is read.
+what reads much only some at a time, and whoever has tried too many passwords is refused before the
+request is read.  Uploads take turns in ``uploads``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from typing import Annotated, TypeVar
 from fastapi import Depends, Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from base_station.api.image_lock import MAX_WAITING as MAX_IMAGES_WAITING
 from base_station.api.login_throttle import LoginThrottle, too_many_attempts
 from base_station.api.problems import Problem, problem_response
 
@@ -24,31 +23,26 @@ T = TypeVar("T")
 
 _LOGIN = re.compile(r"^/api/v1/login(/hand-over)?$")
 _LARGE_READ = re.compile(r"^/api/v1/.*/(tracks?|trails|assessment|export/[^/]+)$")
-_IMAGE = re.compile(r"^/api/v1/(people/[^/]+/photo|site/base-map)$")
 _MAX_CONCURRENT_READS = 4
-_MAX_CONCURRENT_IMAGES = 1 + MAX_IMAGES_WAITING  # whose bodies of 10 MB are in memory
 _MAX_WAITING_KNOWN = 20  # that wait: each takes a core a quarter of a second
 _MAX_WAITING_UNKNOWN = 6
 
 
 class AdmissionMiddleware:
-    """ASGI middleware that limits log-ins, large reads and pictures."""
+    """ASGI middleware that limits log-ins and large reads."""
 
     def __init__(self, app: ASGIApp, throttle: LoginThrottle, queue: LoginQueue) -> None:
         self._app = app
         self._throttle = throttle
         self._queue = queue
         self._reading = asyncio.Semaphore(_MAX_CONCURRENT_READS)
-        self._images = asyncio.Semaphore(_MAX_CONCURRENT_IMAGES)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         path = scope.get("path", "")
         if scope["type"] == "http" and _LOGIN.match(path) and scope["method"] == "POST":
             await self._log_in(scope, receive, send)
         elif scope["type"] == "http" and _LARGE_READ.match(path):
-            await self._take_turn(self._reading, scope, receive, send)
-        elif scope["type"] == "http" and _IMAGE.match(path) and scope["method"] == "PUT":
-            await self._take_turn(self._images, scope, receive, send)
+            await self._read_in_turn(scope, receive, send)
         else:
             await self._app(scope, receive, send)
 
@@ -66,11 +60,9 @@ class AdmissionMiddleware:
         answer = problem_response(refusal.status_code, str(refusal.detail), headers)
         await answer(scope, receive, send)
 
-    async def _take_turn(
-        self, slots: asyncio.Semaphore, scope: Scope, receive: Receive, send: Send
-    ) -> None:
-        """Releases the slot when the response begins: a slow reader delays nobody else."""
-        await slots.acquire()
+    async def _read_in_turn(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Releases its place when the response begins: a slow reader delays nobody else."""
+        await self._reading.acquire()
         held = True
 
         async def send_and_release(message: Message) -> None:
@@ -81,7 +73,7 @@ class AdmissionMiddleware:
             nonlocal held
             if held:
                 held = False
-                slots.release()
+                self._reading.release()
 
         try:
             await self._app(scope, receive, send_and_release)

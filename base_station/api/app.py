@@ -26,6 +26,7 @@ from base_station.api.problems import (
 from base_station.api.route_table import DOCUMENT_PATH, PREFIX, allowed_methods, check_query
 from base_station.api.routes import ROUTERS
 from base_station.api.services import Services
+from base_station.api.uploads import UploadTurns
 
 _REPLAY_CHECK_S = 5.0
 
@@ -59,6 +60,7 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
     throttle = app.state.login_throttle = LoginThrottle()
     queue = app.state.login_queue = LoginQueue()
     app.state.known_networks = KnownNetworks()
+    app.state.upload_turns = UploadTurns()
     ha_status = services.ha_status
     app.add_middleware(UnhandledErrorMiddleware)
     # The framework's own limit stands outside of what answers like a problem, with its headers.

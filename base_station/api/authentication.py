@@ -7,15 +7,13 @@ something must come with the station's own ``Origin``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Coroutine
+from collections.abc import Collection
 from enum import StrEnum
-from typing import Annotated, Any
+from typing import Annotated
 from urllib.parse import urlsplit
 
-from fastapi import Depends, Request, Response
-from fastapi.routing import APIRoute
+from fastapi import Depends, Request
 from fastapi.security import APIKeyCookie, HTTPBearer
-from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection
 
 from base_station.accounts.principals import Principal, Role
@@ -104,7 +102,7 @@ def _authenticated(
 ) -> Principal:
     principal = principal_of(request, services)
     if principal is None:
-        raise _unauthenticated()
+        raise unauthenticated()
     tags = request.scope["route"].tags
     if not scope_covers(principal, tags):
         allowed = ", ".join(sorted(principal.scopes))
@@ -120,7 +118,7 @@ def must_change_password(principal: Principal, services: Services) -> bool:
     return principal.must_change_password and not services.is_replay_only
 
 
-def _unauthenticated() -> Problem:
+def unauthenticated() -> Problem:
     return Problem(401, "Log in first.", {"WWW-Authenticate": "Bearer"})
 
 
@@ -145,20 +143,6 @@ def _require_role(principal: Principal, role: Role) -> Principal:
             403, f"This needs the role {role.word}; {principal.username} is {principal.role.word}."
         )
     return principal
-
-
-class AuthenticatedRoute(APIRoute):
-    """Route with a large body, which is read only after authentication."""
-
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        handle = super().get_route_handler()
-
-        async def checked(request: Request) -> Response:
-            if await run_in_threadpool(principal_of, request, services_of(request)) is None:
-                raise _unauthenticated()
-            return await handle(request)
-
-        return checked
 
 
 class Scope(StrEnum):

@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass, field
+from threading import Lock
 from typing import Annotated
 
 from fastapi import Depends
@@ -13,7 +14,6 @@ from starlette.requests import HTTPConnection
 
 from base_station.api.ha_status import HaStatus
 from base_station.api.hub import Hub
-from base_station.api.image_lock import ImageLock
 from base_station.api.problems import Problem
 from base_station.api.replays import Replays
 from base_station.config import AccountabilityConfig
@@ -58,7 +58,7 @@ class Services:
     pki: PkiFolder | None = None  # None: a station that enrols nobody
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     plans: PlanReader = field(default_factory=PlanReader)  # of the drive that acts
-    image_lock: ImageLock = field(default_factory=ImageLock)
+    image_lock: Lock = field(default_factory=Lock)  # decoding takes up to 200 MB: one at a time
     # One whole incident at a time: an hour of a hundred units takes 300 MB.  Who waits holds no
     # thread: those are for who acts.
     export_lock: asyncio.Lock = field(default_factory=asyncio.Lock)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import io
 import xml.etree.ElementTree as ET
 from collections.abc import AsyncIterator, Callable
@@ -14,7 +13,6 @@ import pytest_asyncio
 from PIL import Image
 
 from base_station.accounts.principals import Role
-from base_station.api.image_lock import MAX_WAITING
 from base_station.exporters import EXPORTERS
 from shared.clock import NS_PER_MS, ManualClock
 from shared.envelope import Stamper
@@ -99,31 +97,6 @@ async def test_what_is_no_photo_is_refused(
     )
     assert answer.status_code == 422
     assert reason in answer.json()["detail"]
-
-
-async def test_of_many_pictures_at_once_few_wait_and_the_others_are_told_to_come_again(
-    station: DeskStation, commander: httpx.AsyncClient
-) -> None:
-    person_id = (await commander.post("/people", json={"name": "Ada"})).json()["person_id"]
-    image_lock = station.services.image_lock
-
-    async def send() -> httpx.Response:
-        headers = {"content-type": "image/png"}
-        path = f"/people/{person_id}/photo"
-        return await commander.put(path, content=photo(), headers=headers)
-
-    with image_lock:  # somebody else's
-        sent = [asyncio.create_task(send()) for _ in range(10)]
-        refused: list[httpx.Response] = []
-        for one in asyncio.as_completed(sent):
-            refused.append(await one)
-            if len(refused) == 10 - MAX_WAITING:
-                break
-    answers = [await task for task in sent]
-    assert sorted(answer.status_code for answer in answers) == [204] * 3 + [429] * 7
-    assert all(one.status_code == 429 for one in refused)
-    assert "in some seconds" in refused[0].json()["detail"]
-    assert int(refused[0].headers["retry-after"]) > 0
 
 
 async def test_an_incident_is_opened_once_and_closed(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator
 
 import httpx
@@ -10,13 +11,18 @@ import pytest_asyncio
 
 from base_station.accounts.principals import Role
 from base_station.api.forms import MAX_BYTES, MAX_UPLOAD_BYTES
+from base_station.api.uploads import UploadTurns
 from tests.rig.desk_station import DeskStation
+from tests.rig.waiting import PATIENCE_S
 
 
 @pytest_asyncio.fixture
 async def commander(station: DeskStation) -> AsyncIterator[httpx.AsyncClient]:
     async with station.client(Role.COMMANDER) as client:
         yield client
+
+
+JSON = {"content-type": "application/json"}
 
 
 async def chunks(count: int) -> AsyncIterator[bytes]:
@@ -35,8 +41,7 @@ async def chunks(count: int) -> AsyncIterator[bytes]:
 async def test_a_body_without_end_is_refused(
     commander: httpx.AsyncClient, method: str, path: str, most: int
 ) -> None:
-    length = {"content-type": "application/json"}
-    told = await commander.request(method, path, content=b"x" * (most + 1), headers=length)
+    told = await commander.request(method, path, content=b"x" * (most + 1), headers=JSON)
     untold = await commander.request(method, path, content=chunks(most // 100_000 + 1))
     for answer in (told, untold):
         assert (answer.status_code, answer.json()["status"]) == (413, 413)
@@ -67,6 +72,43 @@ async def test_json_that_is_a_trap_is_refused(commander: httpx.AsyncClient, bomb
     for path in ("/people", "/commands", "/tokens"):
         assert (await commander.post(path, content=bomb)).status_code in (400, 422)
     assert (await commander.put("/site/plan", content=bomb)).status_code in (400, 422)
+
+
+async def test_users_who_send_slowly_delay_no_picture_and_no_plan_of_others(
+    station: DeskStation, commander: httpx.AsyncClient
+) -> None:
+    station.app.state.upload_turns = UploadTurns(turn_s=0.1)
+    read, may_end = 0, asyncio.Event()
+
+    async def slow_body() -> AsyncIterator[bytes]:
+        nonlocal read
+        read += 1
+        yield b" "
+        await may_end.wait()
+
+    async with (
+        station.client(Role.VIEWER) as viewer,
+        station.client(Role.ADMINISTRATOR) as administrator,
+    ):
+        slow = [
+            asyncio.create_task(client.put("/people/x/photo", content=slow_body(), headers=JSON))
+            for client in (viewer, viewer, administrator, administrator)
+        ]
+        async with asyncio.timeout(PATIENCE_S):
+            while read < len(slow):  # all that are read at once
+                await asyncio.sleep(0.01)
+            answers = [
+                await commander.put(path, content=b"{}", headers=JSON)
+                for path in ("/people/x/photo", "/site/plan")
+            ]
+            refused, *_ = await asyncio.wait(slow, return_when=asyncio.FIRST_COMPLETED)
+            may_end.set()
+            statuses = [answer.status_code for answer in await asyncio.gather(*slow)]
+    assert [answer.status_code for answer in answers] == [422, 422]  # read, and of no use
+    assert statuses.count(408) == len(refused) == 1  # one was enough
+    ended = next(iter(refused)).result()
+    assert "others waited" in ended.json()["detail"]
+    assert ended.headers["connection"] == "close"
 
 
 FORM = b'{"name": "Ada"}'

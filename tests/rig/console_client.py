@@ -61,7 +61,9 @@ class Api:
         return json.load(self._open("GET", path, None, self.cookie))
 
     def post(self, path: str, body: dict[str, Any]) -> Any:
-        return json.load(self._open("POST", path, body, self.cookie))
+        """What is answered; None where that is empty."""
+        with self._open("POST", path, body, self.cookie) as answer:
+            return json.loads(answer.read() or b"null")
 
     def _open(self, method: str, path: str, body: dict[str, Any] | None, cookie: str) -> Any:
         request = urllib.request.Request(  # our own station's address

@@ -1,14 +1,20 @@
-"""Pictures that are put to a station: a camera's, and one that is larger than it looks."""
+"""Pictures that are put to a station: a camera's, one that is larger than it looks, and one that
+hardly comes.
+"""
 
 from __future__ import annotations
 
 import io
+import socket
 import urllib.error
 import urllib.request
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from threading import Event, Thread
+from typing import Self
+from urllib.parse import urlsplit
 
 from PIL import Image
 
@@ -42,6 +48,40 @@ def put_picture(api: Api, path: str, picture: bytes) -> int:
             return int(answer.status)
     except urllib.error.HTTPError as error:
         return error.code
+
+
+class SlowUpload:
+    """A picture that comes with so many bytes a second, in a thread of its own while entered."""
+
+    def __init__(self, api: Api, path: str, bytes_per_s: int) -> None:
+        origin = urlsplit(api.origin)
+        assert origin.hostname is not None
+        self._address = origin.hostname, origin.port
+        self._head = (
+            f"PUT /api/v1{path} HTTP/1.1\r\nHost: {origin.netloc}\r\nOrigin: {api.origin}\r\n"
+            f"Cookie: {api.cookie}\r\nContent-Type: image/jpeg\r\nContent-Length: 10000000\r\n\r\n"
+        )
+        self._bytes_per_s = bytes_per_s
+        self.answer = b""  # its first line, once it has come
+        self._end = Event()
+        self._thread = Thread(target=self._send, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end.set()
+        self._thread.join()
+
+    def _send(self) -> None:
+        with suppress(OSError), socket.create_connection(self._address) as connection:
+            connection.sendall(self._head.encode())
+            connection.settimeout(1.0)
+            while not self.answer and not self._end.is_set():
+                connection.sendall(bytes(self._bytes_per_s))
+                with suppress(TimeoutError):
+                    self.answer = connection.recv(4096).partition(b"\r\n")[0] or b"closed"
 
 
 @contextmanager

@@ -7,15 +7,16 @@ from typing import Annotated
 from fastapi import APIRouter, Body, Query, Response
 from pydantic import BaseModel
 
-from base_station.api.authentication import Administrator, AuthenticatedRoute, Viewer
+from base_station.api.authentication import Administrator, Viewer
 from base_station.api.document import file_response
 from base_station.api.forms import MAX_UPLOAD_BYTES, Id
 from base_station.api.images import normalize_map
 from base_station.api.problems import Problem
 from base_station.api.services import Station
+from base_station.api.uploads import UploadRoute
 from base_station.site.base_map import DEGREES, Corners, corners_of
 
-router = APIRouter(tags=["site"], route_class=AuthenticatedRoute)
+router = APIRouter(tags=["site"], route_class=UploadRoute)
 
 LatLon = tuple[float, float]
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Query, Response
 
-from base_station.api.authentication import AuthenticatedRoute, Commander, Viewer
+from base_station.api.authentication import Commander, Viewer
 from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
 from base_station.api.forms import MAX_UPLOAD_BYTES, Form, Id, Name, ShortText
@@ -14,11 +14,12 @@ from base_station.api.idempotent_request import Perform
 from base_station.api.images import normalize_photo
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station
+from base_station.api.uploads import UploadRoute
 from base_station.storage.db import models
 from base_station.views.wire import PersonView
 from shared.messages.station import Assign
 
-router = APIRouter(tags=["people"], route_class=AuthenticatedRoute)
+router = APIRouter(tags=["people"], route_class=UploadRoute)
 
 _NO_PERSON = "There is no such person."
 

@@ -9,19 +9,20 @@ import msgspec
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import Field
 
-from base_station.api.authentication import AuthenticatedRoute, Viewer
+from base_station.api.authentication import Viewer
 from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
 from base_station.api.forms import MAX_UPLOAD_BYTES, Form
 from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
 from base_station.api.services import Station
+from base_station.api.uploads import UploadRoute
 from base_station.views.station import anchor_view
 from base_station.views.wire import AnchorView
 from shared.errors import UserError
 from shared.messages.station import SetAnchor, SetPlan
 
-router = APIRouter(tags=["site"], route_class=AuthenticatedRoute)
+router = APIRouter(tags=["site"], route_class=UploadRoute)
 
 
 class AnchorForm(Form):
