@@ -346,7 +346,7 @@ def _is_placed(known: SolvedIncident, unit_id: str, points: PathArrays) -> bool:
     verdicts, state = known.solution.verdicts, known.state
     pins = (pin_id for pin_id, pin in state.pins.items() if unit_id in units_of(pin))
     is_pinned = any(pin_id in verdicts and verdicts[pin_id].used for pin_id in pins)
-    has_start = state.paths[unit_id].start_in_path is not None
+    has_start = state.paths[unit_id].start.in_path is not None
     return has_start or is_pinned or len(points.fix_t_ns) > 0
 
 

@@ -91,7 +91,7 @@ def receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:
     """Evidence of the reference unit at the station, if its start position is set; by unit."""
     unit_id = state.barometers.reference_id or ""
     history = state.paths.get(unit_id)
-    if history is None or history.begin_ns is None or history.start is None:
+    if history is None or history.begin_ns is None or history.start.position is None:
         return {}
     return {unit_id: evidence_of_one(state, unit_id, own_places(state, unit_id, history), None)}
 
@@ -160,7 +160,7 @@ def evidence_of_one(
     """
     history = state.paths[unit_id]
     stays = unit_id == state.barometers.reference_id
-    start = history.start if stays else history.start_in_path
+    start = history.start.position if stays else history.start.in_path
     return UnitEvidence(
-        history.arrays(), start, history.start_ns, places, grid, history.height_assumed
+        history.arrays(), start, history.start.begin_ns, places, grid, history.latest.height_assumed
     )

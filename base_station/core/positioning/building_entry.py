@@ -20,7 +20,8 @@ def is_outside(plan: Plan | None, history: PathHistory) -> bool:
         return False
     if plan is not None and plan.outlines:
         return plan.depth_m(*shown_m) < -OUTSIDE_M
-    return history.since_gps_s is not None and history.since_gps_s < OUTSIDE_FIX_S
+    since_gps_s = history.latest.since_gps_s
+    return since_gps_s is not None and since_gps_s < OUTSIDE_FIX_S
 
 
 def note_inside(state: StationState, unit: UnitState) -> None:

@@ -81,7 +81,7 @@ def without_common_mode_error(state: StationState, unit: UnitState, fix: PlaceFi
     if unit.unit_id != state.barometers.reference_id:
         return state.common_mode_error.correct(fix, t_ns)
     history = state.paths.get(unit.unit_id)
-    start = None if history is None else history.start
+    start = None if history is None else history.start.position
     walked_m = unit.position.distance_m if unit.position is not None else 0.0
     if start is not None and walked_m < STAYS_M:
         off_m = fix.north_m - start.north_m, fix.east_m - start.east_m

@@ -96,7 +96,7 @@ def learn_storey(update: PositionUpdate) -> None:
     if estimate is None:
         return
     place = estimate.north_m, estimate.east_m
-    start = update.history.start
+    start = update.history.start.position
     state.learnt_floors.add_landing(
         Landing(update.t_ns, unit.unit_id, *place, estimate.down_m, estimate.std_down_m),
         is_outside=update.is_outside,

@@ -41,7 +41,7 @@ def find_floor(update: LocationUpdate) -> None:
     """Find the floor, without pins and with them; it changes only well beyond its border."""
     fused, history = update.unit.fused, update.history
     held = None if fused is None else fused.floor
-    _make_messages(update, held if history is None else history.floor, held)
+    _make_messages(update, held if history is None else history.latest.floor, held)
 
 
 def find_earlier_floor(update: LocationUpdate) -> None:

@@ -36,7 +36,7 @@ def replay_from_start(
     correction = None
     if unit.position is not None and before is not None and after is not None:
         correction = _start_correction(
-            history.boot_begin_ns, unit, fuser, after.down_m - before.down_m
+            history.runs.begin_ns, unit, fuser, after.down_m - before.down_m
         )
     if correction is None:  # it has not gone anywhere yet
         return

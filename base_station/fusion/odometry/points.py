@@ -13,9 +13,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.fusion.interface import PlaceFix
+from base_station.fusion.interface import Estimate, PlaceFix
 from base_station.fusion.odometry.packed_rows import Records
 from shared.clock import NS_PER_MS
+from shared.messages import Position
 
 _MOST_CM = 2**31 - 1  # the other side of the Earth is nearer
 _TURN_RAD = 2.0 * math.pi
@@ -59,6 +60,38 @@ class Point(msgspec.Struct, array_like=True, gc=False):
     shown_down_std_m: float = 0.0
     floor: int = NO_FLOOR
     flags: int = 0
+
+    @staticmethod
+    def of(position: Position, t_ns: int, flags: int) -> Point:
+        """Point at a position, not estimated yet."""
+        point = Point(t_ns, flags=flags)
+        point.follow(position)
+        return point
+
+    def follow(self, position: Position) -> None:
+        """The point is where the own path is now."""
+        self.north_m, self.east_m = position.north_m, position.east_m
+        self.std_m = max(position.std_north_m, position.std_east_m)
+        self.heading_rad = position.heading_rad
+
+    def set_live_estimate(self, estimate: Estimate, floor: int | None) -> None:
+        """Set the live estimate; a place that is only assumed counts as unknown."""
+        self.shown_north_m, self.shown_east_m = estimate.north_m, estimate.east_m
+        stated_m = max(estimate.std_north_m, estimate.std_east_m)
+        self.shown_std_m = 0.0 if estimate.assumed else stated_m
+        self.shown_down_m, self.shown_down_std_m = estimate.down_m, estimate.std_down_m
+        self.floor = NO_FLOOR if floor is None else floor
+
+    def continued(self) -> Point:
+        """A point about which nothing is known but where this one was shown."""
+        return Point(
+            shown_north_m=self.shown_north_m,
+            shown_east_m=self.shown_east_m,
+            shown_std_m=self.shown_std_m,
+            shown_down_m=self.shown_down_m,
+            shown_down_std_m=self.shown_down_std_m,
+            floor=self.floor,
+        )
 
 
 @dataclass(frozen=True)

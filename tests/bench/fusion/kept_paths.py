@@ -46,7 +46,10 @@ class PathKeeping:
             for fix in run.taken:
                 history.fix(fix, fix.t_mono_ns)
             found[str(number)] = UnitEvidence(
-                history.arrays(), history.start, history.start_ns, grid=self._known.grid
+                history.arrays(),
+                history.start.position,
+                history.start.begin_ns,
+                grid=self._known.grid,
             )
         return found
 
@@ -62,7 +65,7 @@ def engine_evidence(person: Person) -> dict[str, UnitEvidence]:
     history.set_start(Start(*person.engine_m, 0.0, 0.0, ENGINE_STD_M, math.pi))
     for fix in person.engine_fixes.values():
         history.fix(fix, fix.t_mono_ns)
-    return {ENGINE: UnitEvidence(history.arrays(), history.start, history.start_ns)}
+    return {ENGINE: UnitEvidence(history.arrays(), history.start.position, history.start.begin_ns)}
 
 
 @dataclass

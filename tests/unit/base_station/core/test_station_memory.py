@@ -131,7 +131,7 @@ def grown() -> tuple[int, int]:
     sizes = []
     for until_s in (FULL_S, LATE_S):
         walk_on(station, walk, rng, until_s)
-        sizes.append((size_bytes([station.path.packed]), station.own_bytes))
+        sizes.append((size_bytes([station.path.own.packed]), station.own_bytes))
     (path, rest), (path_later, rest_later) = sizes
     return path_later - path, rest_later - rest
 

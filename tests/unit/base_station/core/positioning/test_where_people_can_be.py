@@ -112,7 +112,7 @@ def test_without_a_plan_who_had_a_fix_just_now_is_outside(
 ) -> None:
     script.position(U, 0.0, 0.0)
     history = script.pipeline.state.paths[U]
-    history.since_gps_s = since_gps_s
+    history.latest.since_gps_s = since_gps_s
     assert is_outside(None, history) is outside
 
 

@@ -107,7 +107,7 @@ def test_what_was_estimated_with_fixes_that_lie_elsewhere_tells_nothing() -> Non
         history.append(at(second, 1.0 * second), second * NS_PER_S, jumped=False)
         place = 1.0 * second, 0.0, 0.0, 0.5, 0.5, 0.5
         history.set_live_estimate(Estimate(0, *place, 0.0, 0.0, 0.1, Quality.GOOD, "", None), None)
-    assert history.packed
+    assert history.own.packed
     assert (history.arrays().shown_std_m == 0.5).all()
     assert history.move_fixes(0.0, 0.0, 2.0)
     assert not history.arrays().shown_std_m.any()

@@ -27,7 +27,7 @@ def test_a_moved_frame_moves_what_is_of_the_frame_only() -> None:
     assert np.array_equal(after.own_m, before.own_m)
     assert after.fix_m[0].tolist() == pytest.approx([1.0, 12.0], abs=1e-3)
     assert after.down_m == pytest.approx(before.down_m + 3.0), "packed or not"
-    start = history.start
+    start = history.start.position
     assert start is not None
     assert (start.north_m, start.east_m, start.down_m) == pytest.approx((1.0, 12.0, 4.0))
     assert start.heading_rad == pytest.approx(math.pi / 2.0)
@@ -50,7 +50,7 @@ def test_a_frame_that_is_moved_twice_moves_whatever_was_packed_when() -> None:
             0, north_m, east_m, place.down_m, *stds_m, 0.0, 0.0, 0.1, Quality.GOOD, "", None
         )
         history.set_live_estimate(shown, None)
-    assert len(history.packed.chunks) > 4
+    assert len(history.own.packed.chunks) > 4
     arrays = history.arrays()
     north_m, east_m = moves[800].apply(*moves[400].apply(1000.0, 5.0))
     row = int(np.searchsorted(arrays.t_ns, 1000 * NS_PER_S))
@@ -67,7 +67,7 @@ def test_where_a_run_led_is_shown_there_and_what_was_before_it_stays(seconds: in
     history.reframe(0.4, 3.0, -2.0, 1.5)
     before = history.arrays()
     begin_ns = int(before.t_ns[10])
-    assert bool(history.packed) is (seconds == 800)
+    assert bool(history.own.packed) is (seconds == 800)
     history.apply_start_correction(StartCorrection(begin_ns, 50.0, -20.0, 0.6, 0.8, 2.5))
     after = history.arrays()
     run = before.t_ns >= begin_ns

@@ -33,14 +33,14 @@ def test_of_a_run_nothing_lies_within_the_one_before() -> None:
     before = history.arrays()
     insert_late(history, at(15.0, 3.0, boot_id=2))
     assert np.array_equal(history.arrays().t_ns, before.t_ns)
-    assert history.boot_begin_ns == 30 * NS_PER_S
+    assert history.runs.begin_ns == 30 * NS_PER_S
 
 
 def test_a_gap_behind_what_is_packed_is_not_filled() -> None:
     history = walked(400)
-    del history.points[:30]
-    before, first_ns = history.arrays(), history.points[0].t_ns
-    assert history.packed
+    del history.own.points[:30]
+    before, first_ns = history.arrays(), history.own.points[0].t_ns
+    assert history.own.packed
     insert_late(history, at(first_ns / NS_PER_S - 10.0, 0.0))
     assert np.array_equal(history.arrays().t_ns, before.t_ns)
 
@@ -101,14 +101,14 @@ def test_a_run_of_which_the_end_was_heard_first_begins_where_it_began() -> None:
         for late_s in range(heard_s - 15 * second, heard_s - 15 * (second + 1), -1):
             insert_late(history, at(late_s, late_s))
     arrays = history.arrays()
-    assert history.begin_ns == history.boot_begin_ns == 2 * NS_PER_S
-    assert history.start_ns == history.begin_ns, "nobody had been heard when that was said"
+    assert history.begin_ns == history.runs.begin_ns == 2 * NS_PER_S
+    assert history.start.begin_ns == history.begin_ns, "nobody had been heard when that was said"
     assert np.diff(arrays.t_ns).max() <= 2 * NS_PER_S
     assert (np.diff(arrays.t_ns) > 0).all()
     assert arrays.moving_s.sum() == pytest.approx(3600 + 239 - 2)
     for second in range(400):
         history.append(at(3840 + second, 3840 + second), (3840 + second) * NS_PER_S, False)
-    assert len(history.points) <= 2 * CHUNK, "packed once nothing comes late any more"
+    assert len(history.own.points) <= 2 * CHUNK, "packed once nothing comes late any more"
 
 
 def test_a_run_that_was_heard_late_begins_after_the_one_before() -> None:
@@ -122,7 +122,7 @@ def test_a_run_that_was_heard_late_begins_after_the_one_before() -> None:
     arrays = history.arrays()
     assert arrays.own_m[:, 0].tolist() == [5.0, 10.0, 15.0, 20.0, 30.0, 31.0]
     assert np.flatnonzero(arrays.flags & RESTART).tolist() == [1]
-    assert history.start_ns == 40 * NS_PER_S
+    assert history.start.begin_ns == 40 * NS_PER_S
 
 
 def test_what_was_before_an_incident_is_not_brought_back() -> None:

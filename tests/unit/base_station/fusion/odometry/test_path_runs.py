@@ -43,7 +43,7 @@ def two_runs(seconds: int) -> PathHistory:
 def test_an_incident_begins_with_the_run_that_goes_on_in_it(seconds: int) -> None:
     history = two_runs(seconds)
     history.begin_incident((60 + seconds) * NS_PER_S, 0)
-    assert bool(history.packed) is (seconds == 600)
+    assert bool(history.own.packed) is (seconds == 600)
     arrays = history.arrays()
     assert arrays.own_m[0, 0] == 60.0, "all of it"
     assert arrays.fix_t_ns[0] == 60 * NS_PER_S
@@ -89,17 +89,19 @@ def test_a_start_is_of_the_path_as_long_as_its_run_is() -> None:
     history.append(at(1.0, 0.0), NS_PER_S, jumped=False)
     history.begin_incident(2 * NS_PER_S, 2 * NS_PER_S)
     history.append(at(3.0, 1.0), 3 * NS_PER_S, jumped=False)
-    held.append(history.start_in_path)
+    held.append(history.start.in_path)
     history.append(at(4.0, 0.0, boot_id=2), 4 * NS_PER_S, jumped=False)
-    held.append(history.start_in_path)
+    held.append(history.start.in_path)
     history.begin_incident(5 * NS_PER_S, 2 * NS_PER_S)
-    held.append(history.start_in_path)
+    held.append(history.start.in_path)
     history.set_start(start)
-    held.append(history.start_in_path)
+    held.append(history.start.in_path)
     history.append(at(6.0, 0.0, boot_id=3), 6 * NS_PER_S, jumped=False)
-    held.append(history.start_in_path)
+    held.append(history.start.in_path)
     assert held == [start, start, None, start, None]
-    assert history.start == start, "a receiver that stays where it is stands there whatever runs"
+    assert history.start.position == start, (
+        "a receiver that stays where it is stands there whatever runs"
+    )
 
 
 def test_a_run_that_seems_to_begin_before_the_last_one_ended_begins_behind_it() -> None:
@@ -111,8 +113,8 @@ def test_a_run_that_seems_to_begin_before_the_last_one_ended_begins_behind_it() 
     history.set_start(Start(1.0, 2.0, 0.0, 0.1, 0.5, 0.2))
     arrays = history.arrays()
     (restart,) = np.flatnonzero(arrays.flags & RESTART)
-    assert arrays.t_ns[restart] == history.start_ns == history.boot_begin_ns
+    assert arrays.t_ns[restart] == history.start.begin_ns == history.runs.begin_ns
     history.apply_start_correction(
-        StartCorrection(history.boot_begin_ns, 50.0, -20.0, 1.0, 0.0, 0.0)
+        StartCorrection(history.runs.begin_ns, 50.0, -20.0, 1.0, 0.0, 0.0)
     )
     assert history.arrays().shown_m[restart - 1].tolist() == [0.0, 0.0]

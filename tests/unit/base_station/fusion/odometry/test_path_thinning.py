@@ -127,7 +127,7 @@ def test_a_heading_of_many_turns_breaks_nothing() -> None:
     for second in range(3 * CHUNK):
         position = at(second, float(second), heading_rad=math.tau * 60_000.0)
         history.append(position, second * NS_PER_S, jumped=False)
-    assert history.packed
+    assert history.own.packed
 
 
 def test_it_is_written_out_and_read_back_the_same() -> None:
@@ -136,7 +136,7 @@ def test_it_is_written_out_and_read_back_the_same() -> None:
     history.set_start(Start(1.0, 2.0, 0.0, 0.1, 0.5, 0.2))
     again = msgspec.msgpack.decode(msgspec.msgpack.encode(history), type=PathHistory)
     assert again == history
-    assert history.packed
+    assert history.own.packed
     one, two = again.arrays(), history.arrays()
     assert np.array_equal(one.own_m, two.own_m)
     assert np.array_equal(one.fix_m, two.fix_m)

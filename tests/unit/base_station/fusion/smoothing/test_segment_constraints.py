@@ -34,7 +34,7 @@ def smoothed(smoother: Smoother, directions_rad: list[float]) -> SmoothedPath:
         t_ns = second * NS_PER_S
         header = Header("FF-01", 1, second + 1, t_ns)
         history.append(position(header, north_m=place.real, east_m=place.imag), t_ns, jumped=False)
-    evidence = UnitEvidence(history.arrays(), history.start, history.start_ns)
+    evidence = UnitEvidence(history.arrays(), history.start.position, history.start.begin_ns)
     return smoother.smooth({"FF-01": evidence}).paths["FF-01"]
 
 
@@ -59,7 +59,7 @@ def test_each_building_has_walls_of_its_own(smoother: Smoother, angle_deg: float
         history.append(position(header, north_m=place.real, east_m=place.imag), t_ns, jumped=False)
         if second in outside:
             history.fix(PlaceFix(t_ns, place.real, place.imag, 0.0, 1.5, None), t_ns)
-    evidence = UnitEvidence(history.arrays(), history.start, history.start_ns)
+    evidence = UnitEvidence(history.arrays(), history.start.position, history.start.begin_ns)
     path = smoother.smooth({"FF-01": evidence}).paths["FF-01"]
     assert np.ptp(path.turn_rad) < math.radians(1.0)
 

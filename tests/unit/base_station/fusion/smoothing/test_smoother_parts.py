@@ -36,8 +36,8 @@ def a_climber(unit_id: str, east_of_start_m: float, start_off_m: float) -> UnitE
         header = Header(unit_id, 1, row + 1, row * NS_PER_S)
         said = position(header, north_m=float(own_m[0]), east_m=float(own_m[1]))
         history.append(said, row * NS_PER_S, jumped=False)
-        history.points[-1].shown_down_m = down_m
-    return UnitEvidence(history.arrays(), history.start, history.start_ns)
+        history.own.points[-1].shown_down_m = down_m
+    return UnitEvidence(history.arrays(), history.start.position, history.start.begin_ns)
 
 
 def test_who_climbs_the_same_stairs_is_at_the_same_place() -> None:

@@ -69,7 +69,7 @@ def searched(start_m: tuple[float, float], std_m: float, seed: int, down_m: floa
         place = corner
     path = history.arrays()
     lies = replace(path, down_m=np.full(len(path), down_m))
-    return UnitEvidence(lies, history.start, history.start_ns)
+    return UnitEvidence(lies, history.start.position, history.start.begin_ns)
 
 
 def _corners(rng: np.random.Generator) -> list[NDArray[np.float64]]:
