@@ -12,9 +12,11 @@ from shared.mcap_log.folder import (
     segment_paths,
     segments_within,
 )
-from shared.mcap_log.foreign import LEFT_OUT, foreign_in_words, own_segments
+from shared.mcap_log.foreign import LEFT_OUT, foreign_in_words, identity_in_log, own_segments
+from shared.mcap_log.identity import identity_of
 from shared.mcap_log.one_log import segments_of_one_log
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
+from shared.mcap_log.rebuilding import RebuiltSegment
 from shared.mcap_log.recovery import Recovery, recover_log
 from shared.mcap_log.rewriting import remove_torn, rewrite_segment, write_segment_like
 from shared.mcap_log.schemas import (
@@ -25,6 +27,7 @@ from shared.mcap_log.schemas import (
     wire_type_of,
 )
 from shared.mcap_log.writing import (
+    Segment,
     SegmentInfo,
     SegmentPolicy,
     SegmentState,
@@ -35,13 +38,17 @@ __all__ = [
     "LEFT_OUT",
     "PLAN_TOPIC",
     "LogRecord",
+    "RebuiltSegment",
     "Recovery",
+    "Segment",
     "SegmentInfo",
     "SegmentPolicy",
     "SegmentReader",
     "SegmentState",
     "SegmentWriter",
     "foreign_in_words",
+    "identity_in_log",
+    "identity_of",
     "is_derived",
     "location_topic",
     "log_topic",

@@ -18,7 +18,15 @@ import numpy as np
 import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import DataEnd, Footer, Header, McapRecord, MetadataIndex, Statistics
+from mcap.records import (
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Statistics,
+)
 from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
 from shared.mcap_log.container import (
@@ -31,7 +39,7 @@ from shared.mcap_log.container import (
     RECORD,
 )
 from shared.mcap_log.durable_file import DurableFile
-from shared.mcap_log.identity import METADATA_NAME, PROFILE, SegmentIdentity
+from shared.mcap_log.identity import PROFILE, SegmentIdentity
 
 _MESSAGE = struct.Struct(MESSAGE.format + "Q")  # and when it was said
 _INDEX = struct.Struct("<BQHI")  # opcode, length, topic, bytes of entries
@@ -138,7 +146,9 @@ class McapFile:
         self._end_ns = 0
         self.file.write(MCAP0_MAGIC)
         self.file.write(bytes_of(Header(PROFILE, LIBRARY_IDENTIFIER)))
-        self._metadata_index = self._write_identity(identity)
+        self._metadata_indexes: list[bytes] = []
+        if identity.log_id:  # none of a segment of an earlier version
+            self.add_metadata(identity.metadata())
 
     def add(self, chunk: MadeChunk) -> None:
         offset = self.file.tell()
@@ -151,25 +161,23 @@ class McapFile:
         self._start_ns = min(earliest_ns, chunk.start_ns)
         self._end_ns = max(self._end_ns, chunk.end_ns)
 
+    def add_metadata(self, metadata: Metadata) -> None:
+        """It stands between the chunks, and in the file's index."""
+        offset, record = self.file.tell(), bytes_of(metadata)
+        self.file.write(record)
+        self._metadata_indexes.append(bytes_of(MetadataIndex(offset, len(record), metadata.name)))
+
     def finish(self) -> None:
         """Write what makes the file complete."""
         self.file.write(bytes_of(DataEnd(0)))
         start = self.file.tell()
         summary = b"".join((*self.schemas.values(), *self.topics.values()))
-        parts = (bytes_of(self._statistics()), *self._chunks, self._metadata_index)
+        parts = (bytes_of(self._statistics()), *self._chunks, *self._metadata_indexes)
         summary += b"".join(parts)
         checked = summary + RECORD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", start, 0)
         self.file.write(summary)
         self.file.write(bytes_of(Footer(start, 0, zlib.crc32(checked))))
         self.file.write(MCAP0_MAGIC)
-
-    def _write_identity(self, identity: SegmentIdentity) -> bytes:
-        """Its record in the file's index; nothing of a segment of an earlier version."""
-        if not identity.log_id:
-            return b""
-        offset, record = self.file.tell(), bytes_of(identity.metadata())
-        self.file.write(record)
-        return bytes_of(MetadataIndex(offset, len(record), METADATA_NAME))
 
     def _statistics(self) -> Statistics:
         return Statistics(
@@ -180,7 +188,7 @@ class McapFile:
             message_count=sum(self.counts.values()),
             message_end_time=self._end_ns,
             message_start_time=self._start_ns or 0,
-            metadata_count=bool(self._metadata_index),
+            metadata_count=len(self._metadata_indexes),
             schema_count=len(self.schemas),
         )
 

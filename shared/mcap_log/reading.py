@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -42,7 +42,7 @@ class _Wanted:
 
     low_ns: int
     high_ns: int
-    keys: Collection[str] | None
+    keys: Container[str] | None
     derived: bool
 
     def has_key(self, key: str) -> bool:
@@ -88,17 +88,23 @@ class SegmentReader:
         """
         return self._file.size - self._contents.readable_bytes
 
+    @property
+    def topic_counts(self) -> dict[str, int] | None:
+        """Messages a topic, as the end of a complete file states them; else None."""
+        if self._contents.counts is None:
+            return None
+        topics = self._contents.topics
+        return {topics.get(key, ""): count for key, count in self._contents.counts.items()}
+
     def info(self) -> SegmentInfo:
         """Counts the messages of a segment that is not complete by reading it."""
         chunks, identity = self._contents.chunks, identity_of(self.path)
-        if self._contents.counts is None:
+        counts = self.topic_counts
+        if counts is None:
             messages = sum(1 for _ in self.records())
         else:
-            topics = self._contents.topics
             messages = sum(
-                count
-                for topic, count in self._contents.counts.items()
-                if not topics.get(topic, "").startswith(DERIVED)
+                count for topic, count in counts.items() if not topic.startswith(DERIVED)
             )
         return SegmentInfo(
             self.path,
@@ -114,7 +120,7 @@ class SegmentReader:
         self,
         start_ns: int | None = None,
         end_ns: int | None = None,
-        keys: Collection[str] | None = None,
+        keys: Container[str] | None = None,
         *,
         derived: bool = False,
     ) -> Iterator[LogRecord]:
@@ -174,9 +180,7 @@ class SegmentReader:
             self._file.note(f"the chunk at byte {chunk.offset} is lost ({error})")
             return b""
 
-    def _indexed_offsets(
-        self, chunk: Chunk, keys: Collection[str], data: bytes
-    ) -> list[int] | None:
+    def _indexed_offsets(self, chunk: Chunk, keys: Container[str], data: bytes) -> list[int] | None:
         """Offsets of the wanted topics' messages inside the chunk, in the order of writing.
 
         None where there is no index.  The index has no checksum, so it is held against the data.
@@ -214,7 +218,7 @@ def read_log(
     folder: Path,
     start_ns: int | None = None,
     end_ns: int | None = None,
-    keys: Collection[str] | None = None,
+    keys: Container[str] | None = None,
     on_damage: Callable[[str], object] = lambda _: None,
 ) -> Iterator[LogRecord]:
     """The records of a folder of segments in the order of writing: ``(t_ns, key, payload)``.

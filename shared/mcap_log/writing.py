@@ -10,7 +10,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from mcap.records import Channel, Schema
+from mcap.records import Channel, Metadata, Schema
 
 from shared.clock import NS_PER_S
 from shared.errors import LogError
@@ -93,6 +93,11 @@ class Segment:
         self.start_ns = self.start_ns or t_ns
         self.end_ns = max(self.end_ns, t_ns)
         self.messages += counts
+
+    def add_metadata(self, name: str, contents: dict[str, str]) -> None:
+        """A metadata record behind what was added so far, for any reader of MCAP."""
+        self.end_chunk()
+        self._mcap.add_metadata(Metadata(name, contents))
 
     def end_chunk(self) -> None:
         """Everything added so far is in the file, which may still have to reach the disk."""

@@ -1,0 +1,1 @@
+"""``muster log``: look into, check, mend and cut the logs of stations and units."""
