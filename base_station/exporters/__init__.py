@@ -7,5 +7,6 @@ from base_station.exporters.geojson import GEOJSON
 from base_station.exporters.gpx import GPX
 from base_station.exporters.interface import Exporter
 from base_station.exporters.kml import KML
+from base_station.exporters.parquet import PARQUET
 
-EXPORTERS: tuple[Exporter, ...] = (GPX, KML, GEOJSON, CSV)
+EXPORTERS: tuple[Exporter, ...] = (GPX, KML, GEOJSON, CSV, PARQUET)

@@ -10,6 +10,7 @@ from xml.etree import ElementTree as ET
 
 import msgspec
 import pytest
+from pyarrow import parquet
 
 from base_station.exporters import EXPORTERS
 from base_station.exporters.csv_tracks import CSV
@@ -48,6 +49,7 @@ def incident(anchor: Anchor | None = None, points: int = 3) -> IncidentTracks:
 
 
 ANCHOR = Anchor(52.0, 13.0, 40.0)
+BYTES_A_POINT = {"parquet": 2}  # compressed; of the others 10 at least
 
 
 @anyone
@@ -77,7 +79,8 @@ def test_every_unit_is_in_it_and_every_point_counts(exporter: Exporter) -> None:
     written = exporter.export(incident(ANCHOR))
     assert b"FF-01" in written
     assert b"FF-02" in written
-    assert len(exporter.export(incident(ANCHOR, points=50))) > len(written) + 47 * 10
+    longest = exporter.export(incident(ANCHOR, points=50_000))
+    assert len(longest) > len(written) + 49_950 * BYTES_A_POINT.get(exporter.suffix, 10)
 
 
 @anyone
@@ -86,22 +89,23 @@ def test_an_incident_without_tracks_can_be_written(exporter: Exporter) -> None:
     assert exporter.export(empty)
 
 
-# By the file's suffix, who can tell whether it is well formed.
-READERS: dict[str, Callable[[str], object]] = {
+# By the file's suffix, a reader that tells whether it is well formed.
+READERS: dict[str, Callable[[bytes], object]] = {
     "gpx": ET.fromstring,
     "kml": ET.fromstring,
     "geojson": msgspec.json.decode,
-    "csv": lambda text: list(csv.reader(io.StringIO(text), strict=True)),
+    "csv": lambda content: list(csv.reader(io.StringIO(content.decode()), strict=True)),
+    "parquet": lambda content: parquet.read_table(io.BytesIO(content)),
 }
 
 
 @anyone
 def test_it_can_be_read_whatever_people_are_called(exporter: Exporter) -> None:
-    text = exporter.export(incident(ANCHOR)).decode()
+    content = exporter.export(incident(ANCHOR))
     read = READERS.get(exporter.suffix)
     if read is None:
         pytest.skip(f"nobody here reads {exporter.suffix}")
-    assert read(text) is not None
+    assert read(content) is not None
 
 
 def test_every_format_says_the_same_millisecond() -> None:
@@ -110,13 +114,15 @@ def test_every_format_says_the_same_millisecond() -> None:
     sample = msgspec.structs.replace(incident().tracks[0].points[0], t_ns=T0_NS + late_ns)
     track = msgspec.structs.replace(incident().tracks[0], points=(sample,))
     of = {
-        one.name: one.export(msgspec.structs.replace(incident(ANCHOR), tracks=(track,))).decode()
+        one.name: one.export(msgspec.structs.replace(incident(ANCHOR), tracks=(track,)))
         for one in EXPORTERS
     }
-    assert "1700000000.455," in of["csv"]
-    assert '"times_ms":[1700000000455]' in of["geojson"]
-    assert "<time>2023-11-14T22:13:20.455Z</time>" in of["gpx"]
-    assert "<when>2023-11-14T22:13:20.455Z</when>" in of["kml"]
+    assert b"1700000000.455," in of["csv"]
+    assert b'"times_ms":[1700000000455]' in of["geojson"]
+    assert b"<time>2023-11-14T22:13:20.455Z</time>" in of["gpx"]
+    assert b"<when>2023-11-14T22:13:20.455Z</when>" in of["kml"]
+    (t_utc,) = parquet.read_table(io.BytesIO(of["parquet"]))["t_utc"].to_pylist()
+    assert round(t_utc.timestamp() * 1000) == 1_700_000_000_455
 
 
 @pytest.mark.parametrize("name", ["=1+1", "+1", "-1+1", "@SUM(1)", "\t=1+1", "\r=1+1"])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import tomllib
 
+import pytest
+
 from tests.conftest import PROJECT_ROOT
 
 PIN = re.compile(r"^(\S+==\S+).*((?:\n +--hash=\S+(?: \\)?)+)", re.MULTILINE)
@@ -32,10 +34,11 @@ def test_the_library_of_a_button_is_that_which_is_tested():
     assert required.replace("evdev==", "evdev-binary==") in pinned("requirements.lock")
 
 
-def test_the_library_of_pictures_is_that_which_is_tested():
+@pytest.mark.parametrize("part", ["parquet", "pictures"])
+def test_the_library_of_an_optional_part_is_that_which_is_tested(part: str) -> None:
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
-    (required,) = project["optional-dependencies"]["pictures"]
-    (installed,) = pinned("deploy/requirements-pictures.lock").items()
+    (required,) = project["optional-dependencies"][part]
+    (installed,) = pinned(f"deploy/requirements-{part}.lock").items()
     assert installed == (required, pinned("requirements.lock")[required])
 
 
