@@ -18,7 +18,7 @@ from tests.rig.picture_flood import (
     bomb,
     photograph,
     photographs_at_once,
-    put_picture,
+    put_file,
 )
 from tests.rig.processes import peak_memory_mb
 from tests.rig.station_process import StationProcess, free_port, station_process
@@ -61,7 +61,7 @@ def test_users_who_send_slowly_delay_no_picture_of_others(station: StationProces
             slow += [stack.enter_context(SlowUpload(user, path, SLOW_BYTES_PER_S)) for _ in "123"]
         time.sleep(2.0)  # until all are read that are read at once
         for _ in range(2):
-            assert put_picture(station.api, path, picture) == 204
+            assert put_file(station.api, path, picture) == 204
         ended = [one.answer for one in slow if one.answer]
         assert ended
         assert all(b" 408 " in answer for answer in ended)
@@ -70,7 +70,7 @@ def test_users_who_send_slowly_delay_no_picture_of_others(station: StationProces
 
 def test_a_map_of_50_megapixels_is_decoded_at_a_part_of_its_size(station: StationProcess) -> None:
     before_mb = peak_memory_mb(station.pid)
-    assert put_picture(station.api, MAP, photograph()) == 200
+    assert put_file(station.api, MAP, photograph()) == 200
     assert peak_memory_mb(station.pid) < before_mb + GROWN_BY_MAP_MB
 
 
@@ -78,5 +78,5 @@ def test_a_picture_that_is_larger_than_it_looks_is_refused(station: StationProce
     person_id = station.api.post("/people", {"name": "Mallory"})["person_id"]
     before_mb = peak_memory_mb(station.pid)
     for path in (f"/people/{person_id}/photo", MAP):
-        assert put_picture(station.api, path, bomb()) == 422
+        assert put_file(station.api, path, bomb()) == 422
     assert peak_memory_mb(station.pid) < before_mb + GROWN_MB

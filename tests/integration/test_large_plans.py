@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 import time
 from collections.abc import Callable
@@ -11,12 +10,12 @@ from pathlib import Path
 import msgspec
 from websockets.sync.client import connect
 
+from tests.rig.large_plan import large_plan
 from tests.rig.served_station import MakePosition, greet, prepare
 from tests.rig.station_command import Browser, Command, Unit
 from tests.rig.waiting import until
 
 PLAN_BYTES = 11_000_000
-FLOORS = 10
 LONGEST_AGE_S = 2.0  # on a machine with much else to do; it was 3 to 12
 
 
@@ -33,41 +32,10 @@ class _Told(msgspec.Struct):
     units: list[_Shown] = []
 
 
-def large_plan() -> bytes:
-    """Walls and round rooms of 20 points each on ten floors."""
-    outline = [[0, 0], [120, 0], [120, 90], [0, 90], [0, 0]]
-    features = [feature("outline", 0, {"type": "Polygon", "coordinates": [outline]})]
-    size = 0
-    while size < PLAN_BYTES:
-        number = len(features)
-        east_m, north_m = 5.0 + number % 110, 5.0 + number // 110 % 80
-        if number % 2:
-            line = [[round(east_m + 0.1 * i, 3), north_m] for i in range(20)]
-            geometry: dict[str, object] = {"type": "LineString", "coordinates": line}
-        else:
-            turns = [math.tau * i / 20.0 for i in range(20)]
-            ring = [
-                [round(east_m + math.cos(turn), 3), round(north_m + math.sin(turn), 3)]
-                for turn in turns
-            ]
-            geometry = {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
-        features.append(feature("wall" if number % 2 else "room", number % FLOORS, geometry))
-        size += len(msgspec.json.encode(features[-1])) + 1
-    floors = [{"floor": floor, "down_m": -3.2 * floor} for floor in range(FLOORS)]
-    muster = {"frame": "site-m", "floors": floors}
-    plan = {"type": "FeatureCollection", "muster": muster, "features": features}
-    return msgspec.json.encode(plan)
-
-
-def feature(kind: str, floor: int, geometry: dict[str, object]) -> dict[str, object]:
-    properties = {"kind": kind, "floor": floor, "name": "store"}
-    return {"type": "Feature", "properties": properties, "geometry": geometry}
-
-
 def test_positions_are_shown_while_a_plan_of_11_mb_is_laid(
     serve: Callable[..., Command], data: Path, unit: Unit, make_position: MakePosition
 ) -> None:
-    station, plan = serve(), large_plan()
+    station, plan = serve(), large_plan(PLAN_BYTES)
     over = threading.Event()
     ages_s: list[float] = []
     plans: list[int] = []

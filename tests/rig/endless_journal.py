@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from google.protobuf.internal.encoder import TagBytes
 from google.protobuf.internal.wire_format import WIRETYPE_LENGTH_DELIMITED
@@ -42,13 +42,13 @@ def _endless_journal(
     """
 
     def answer(key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
-        asked = dict(pair.split("=") for pair in parameters.split(";") if pair)
+        asked = _asked(parameters)
         if key.endswith(("/index", "/acknowledge")):
             yield JournalIndex((JournalBoot(boot_id, 1, LAST, 0, 0),)).to_bytes()
             return
         first, last = int(asked["from"]), int(asked["to"])
         total = 0
-        for begin in range(first, min(last, first + _ANSWERED), entries):
+        for begin in range(first, min(last, first + _ANSWERED) + 1, entries):
             end = min(last, begin + entries - 1)
             headers = (Header(unit_id, boot_id, number, number) for number in range(begin, end + 1))
             found = tuple(JournalEntry(one.seq, suffix, payload_of(one)) for one in headers)
@@ -72,9 +72,27 @@ def large_journal(unit_id: str, boot_id: int) -> QueryHandler:
     )
 
 
+def ordinary_large_journal(unit_id: str, boot_id: int) -> QueryHandler:
+    """As ``large_journal``, and without alerts."""
+    answer = large_journal(unit_id, boot_id)
+
+    def ordinary(key: str, parameters: str, payload: bytes) -> Iterable[bytes]:
+        if not key.endswith("/urgent"):
+            return answer(key, parameters, payload)
+        asked = _asked(parameters)
+        chunk = JournalChunk(boot_id, int(asked["from"]), int(asked["to"]), (), urgent_only=True)
+        return [chunk.to_bytes()]
+
+    return ordinary
+
+
 def mayday_journal(unit_id: str, boot_id: int) -> QueryHandler:
     """All that it ever had to say are maydays."""
     return _endless_journal(unit_id, boot_id, EVENT.suffix, _mayday)
+
+
+def _asked(parameters: str) -> dict[str, str]:
+    return dict(pair.split("=") for pair in parameters.split(";") if pair)
 
 
 def _mayday(header: Header) -> bytes:

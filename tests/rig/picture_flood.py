@@ -35,13 +35,13 @@ def bomb() -> bytes:
     return _written(Image.new("1", (30_000, 30_000)), "PNG")
 
 
-def put_picture(api: Api, path: str, picture: bytes) -> int:
+def put_file(api: Api, path: str, file: bytes, media_type: str = "image/jpeg") -> int:
     """The status of the answer."""
     request = urllib.request.Request(  # our own station's address
         f"{api.origin}/api/v1{path}",
         method="PUT",
-        data=picture,
-        headers={"Content-Type": "image/jpeg", "Origin": api.origin, "Cookie": api.cookie},
+        data=file,
+        headers={"Content-Type": media_type, "Origin": api.origin, "Cookie": api.cookie},
     )
     try:
         with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
@@ -91,7 +91,7 @@ def photographs_at_once(api: Api, count: int) -> Iterator[Counter[int]]:
     people = [api.post("/people", {"name": f"P{n}"})["person_id"] for n in range(count)]
     with ThreadPoolExecutor(count) as senders:
         coming = [
-            senders.submit(put_picture, api, f"/people/{person_id}/photo", picture)
+            senders.submit(put_file, api, f"/people/{person_id}/photo", picture)
             for person_id in people
         ]
         yield answered

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from base_station.security.pki.folder import PkiFolder
+from shared.enrolment import Enrolment
 from shared.errors import StoreError
 from tests.bench.standby.station_of_pair import MessageId, Place, Station
 from tests.rig.first_login import first_login
@@ -65,13 +66,17 @@ class TwoStations:
         """A unit that prefers the router of one station; it sends raw samples, several a second."""
         far = self.second if near is self.first else self.first
         file = self._folder / f"{unit_id}.toml"
-        self._pki.enroll(unit_id, connect=(near.bus, far.bus)).write(file)
+        self.enroll(unit_id, near, far).write(file)
         flags = ["--enrolment", str(file), "--data", str(self._folder / "units")]
         flags += ["--source", "simulated:search-ground-floor", "--tracker", "none"]
         output = self._folder / f"{unit_id}.txt"
         unit = self._launch("edge", ("run", *flags), output, near.place.namespace)
         self.units[unit_id] = unit
         self._closing.callback(end_hard, unit)
+
+    def enroll(self, unit_id: str, *stations: Station) -> Enrolment:
+        """With the addresses of these stations."""
+        return self._pki.enroll(unit_id, connect=[one.bus for one in stations])
 
     def wait_heard(self, station: Station) -> None:
         """And known as ours."""
