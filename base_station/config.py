@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated
 
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from base_station.forwarders.tak.config import TakConfig
 from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError
@@ -101,6 +102,7 @@ class StationConfig:
     standby: StandbyConfig = field(default_factory=StandbyConfig)
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
+    tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
 
     def unencrypted_endpoints(self) -> tuple[str, ...]:
         """Endpoints that are not encrypted and leave this machine, where others could listen in."""

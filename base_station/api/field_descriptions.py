@@ -288,6 +288,15 @@ FIELDS: Mapping[str, str] = {
     "insecure": "Whether the bus runs without TLS.",
     "standby": "Which of two stations this is; null: it is the only one.",
     "recordings": "Recordings that are on their way over the bus.",
+    # ---- forwarders
+    "forwarders": "Live connections with other systems, such as TAK servers.",
+    "ForwarderView.name": "The connection's name in the station's settings.",
+    "ForwarderView.kind": "tak.",
+    "ForwarderView.address": "Where the other system is.",
+    "ForwarderView.state": "connected, connecting, or standby: the other of two stations forwards.",
+    "ForwarderView.since_ms": "Since when it is in that state; null: since the station started.",
+    "ForwarderView.sent": "Events sent since the station started.",
+    "ForwarderView.text": "Why it is not connected, or why less is sent; empty: all is well.",
     "repeated": "How many messages came again since the start, and were kept once.",
     "left_out": "How many messages since the start came faster than the station takes them; they "
     "are fetched from the units' journals.",

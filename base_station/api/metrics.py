@@ -54,6 +54,7 @@ class StationCollector(Collector):
             value=len(self._picture.health.problems),
         )
         yield from _of_standby(self._picture.health)
+        yield from _of_forwarders(self._picture.health)
         yield _machine_temperatures()
 
 
@@ -150,6 +151,22 @@ def _of_standby(health: HealthView) -> Iterator[Metric]:
         "1 while the standby has what the active station has.",
         value=health.standby.in_step,
     )
+
+
+def _of_forwarders(health: HealthView) -> Iterator[Metric]:
+    labels = ["kind", "name"]
+    connected = GaugeMetricFamily(
+        "muster_forwarder_connected",
+        "1 while the connection with another system, such as a TAK server, is there.",
+        labels=labels,
+    )
+    sent = CounterMetricFamily(
+        "muster_forwarder_sent", "Events sent to another system.", labels=labels
+    )
+    for one in health.forwarders:
+        connected.add_metric([one.kind, one.name], one.state == "connected")
+        sent.add_metric([one.kind, one.name], one.sent)
+    yield from (connected, sent)
 
 
 def _position_ages(ages: PositionAges) -> Metric:

@@ -9,6 +9,7 @@ from base_station.app.resources import Resources
 from base_station.engine.station_clock import SteadyClock
 from base_station.standby.mode import HaMode
 from base_station.views.station import StationFacts
+from base_station.views.wire import ForwarderView
 
 
 class ReportsProblems(Protocol):
@@ -24,6 +25,7 @@ def health_facts(
     others: Sequence[ReportsProblems],
     *,
     missing: int,
+    forwarders: tuple[ForwarderView, ...],
 ) -> StationFacts:
     """``missing``: numbers of messages that no journal has any more."""
     certificates = resources.expiry, resources.console_expiry, resources.renewal
@@ -48,4 +50,5 @@ def health_facts(
         insecure=bool(resources.config.unencrypted_endpoints()),
         standby=None if side.ha_status is None else side.ha_status.view(),
         recordings=resources.recordings.views(),
+        forwarders=forwarders,
     )

@@ -23,6 +23,7 @@ from base_station.app.factories import (
 )
 from base_station.app.folder_commands import FORGET_COMMAND, cut_log
 from base_station.app.health_facts import health_facts
+from base_station.app.live_fan_out import LiveFanOut
 from base_station.app.older_assignments import OlderAssignments
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.app.resources import Resources, open_station
@@ -37,6 +38,8 @@ from base_station.engine.liveness import LivenessMonitor
 from base_station.engine.ports import ActionResult, EnginePorts
 from base_station.engine.rate_limiter import SenderRateLimiter
 from base_station.engine.sender_bans import SenderBans
+from base_station.forwarders.interface import Surroundings
+from base_station.forwarders.running import make_forwarders
 from base_station.privacy.erasure_service import BY_OTHER_STATION
 from base_station.privacy.requests import ErasureRequests
 from base_station.process import gc_tuning
@@ -149,6 +152,10 @@ class _Station:
         self._backfill = Backfill(
             bus, resources.feed.deliver, resources.clock, self._may_acknowledge
         )
+        self._forwarders = make_forwarders(
+            {"tak": resources.config.tak}, Surroundings(steady, self._is_leader)
+        )
+        self._shown = LiveFanOut(resources.hub, self._forwarders)
         stamper = Stamper(STATION_ID, secrets.randbits(63), steady)
         self._downlink = CommandSender(bus, stamper, steady, self._disk.roster.shown)
         self._forgettings = self._disk.forgetting_desk(
@@ -178,6 +185,8 @@ class _Station:
         for thread in (self._backfill, self._downlink):
             thread.start()
             closing.callback(thread.close)
+        closing.callback(self._forwarders.close)
+        self._shown.start(self._drive)
         closing.callback(self._side.feed.close)
         post_processor, records = self._disk.post_processor(self._past), self._disk.records
         closing.enter_context(
@@ -228,7 +237,7 @@ class _Station:
         return EnginePorts(
             feed=self._side.feed,
             log=self._side.log,
-            live=self._resources.hub,
+            live=self._shown,
             projection=self._disk.projection,
             checkpoints=self._disk.checkpoints,
             people=self._disk.roster.known,
@@ -330,7 +339,7 @@ class _Station:
                 older.look()
                 if self._thresholds_in_use() != self._thresholds:
                     self._gate.submit(STATION_ID, SetThresholds(self._thresholds))
-                for monitor in (self._share, self._backfill.share, self._bans):
+                for monitor in (self._share, self._backfill.share, self._bans, self._forwarders):
                     for report in monitor.changes(self._reported):
                         self._gate.submit(STATION_ID, report)
 
@@ -413,7 +422,12 @@ class _Station:
         self._manager.working()
         others = (self._forgettings, self._disk.check, self._stale_picture, self._ended)
         return health_facts(
-            self._resources, self._disk.clock, self._side, others, missing=self._backfill.gone
+            self._resources,
+            self._disk.clock,
+            self._side,
+            others,
+            missing=self._backfill.gone,
+            forwarders=self._forwarders.views(),
         )
 
     def _on_ready(self, line: str) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -20,7 +19,6 @@ from shared.geo import Anchor
 # Somebody at rest leaves a point every 15 s; over a longer gap nobody knows the way.
 LONGEST_STEP_NS = 20 * NS_PER_S
 _SAME_PLACE_M = 1.0
-_NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 class WornTrack(msgspec.Struct, frozen=True):
@@ -74,11 +72,6 @@ def time_of(point: TrackSample) -> str:
     """ISO 8601 to the millisecond, which is that of the API."""
     at = datetime.fromtimestamp(to_ms(point.t_ns) / 1000, UTC)
     return f"{at:%Y-%m-%dT%H:%M:%S}.{at.microsecond // 1000:03}Z"
-
-
-def in_xml(text: str) -> str:
-    """With a mark for each character that XML has no place for: old logs have names with such."""
-    return _NOT_IN_XML.sub("\ufffd", text)
 
 
 @dataclass(frozen=True, slots=True)

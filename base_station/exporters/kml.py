@@ -7,9 +7,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
-from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack, in_xml, time_of
+from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack, time_of
 from base_station.storage.db.records import TrackSample
 from shared.geo import Anchor
+from shared.xml_text import in_xml
 
 _GX = "http://www.google.com/kml/ext/2.2"
 

@@ -20,6 +20,7 @@ from base_station.views.wire import (
     BeaconView,
     CommandView,
     DeliveryView,
+    ForwarderView,
     HealthView,
     IncidentView,
     PinView,
@@ -47,6 +48,7 @@ class StationFacts(msgspec.Struct, frozen=True):
     insecure: bool = False
     standby: StandbyView | None = None
     recordings: tuple[RecordingView, ...] = ()
+    forwarders: tuple[ForwarderView, ...] = ()
 
 
 def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm, people: PersonLookup) -> AlarmView:
@@ -184,6 +186,7 @@ def health_view(state: StationState, facts: StationFacts) -> HealthView:
         insecure=facts.insecure,
         standby=facts.standby,
         recordings=facts.recordings,
+        forwarders=facts.forwarders,
     )
 
 

@@ -266,6 +266,19 @@ class RecordingView(Answer, frozen=True):
     total_bytes: int  # 0: not known yet
 
 
+class ForwarderView(Answer, frozen=True):
+    """A live connection with another system, such as a TAK server."""
+
+    name: str  # as in the settings
+    kind: str  # tak
+    address: str
+    state: Annotated[str, one_of("connected", "connecting", "standby")]  # standby: the other of
+    # two stations forwards
+    since_ms: int | None  # of that state; None: since the station started
+    sent: int  # events since the station started
+    text: str  # for a person: why it is not connected, or why less is sent; empty: all is well
+
+
 class HealthView(Answer, frozen=True):
     """The station's own state; ``problems`` are sentences for a person."""
 
@@ -282,6 +295,7 @@ class HealthView(Answer, frozen=True):
     repeated: int = 0  # messages since the station started that came again and were kept once
     left_out: int = 0  # since then, as they came faster than this machine takes them
     missing: int = 0  # since then, numbers of messages that no unit's journal has any more
+    forwarders: tuple[ForwarderView, ...] = ()  # live connections with other systems
     reading: float | None = None  # share of its log; nothing is live: what was last stored is shown
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import tomllib
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from base_station.config import StationConfig
 from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import limits_of
+from base_station.forwarders.tak.config import TakConfig
 from edge.config import EdgeConfig
 from shared.config import load_config
 from tests.conftest import PROJECT_ROOT
@@ -25,7 +27,9 @@ LEFT_OUT = {
     "http.private_key",
     "place",
     "speed",
+    "tak",  # the last test
 }
+_COMMENTED = re.compile(r"^# (\[tak\.\w+\]|\w+ = .*)$", re.MULTILINE)
 
 
 def keys_of(config_class: type, prefix: str = "") -> set[str]:
@@ -69,3 +73,16 @@ def test_the_example_names_every_threshold_with_its_default():
         for rule in ALARMS
         if (limits := limits_of(rule))
     }
+
+
+def test_the_example_of_tak_names_every_setting_with_its_default(tmp_path: Path):
+    """It is a comment: what it connects to is elsewhere."""
+    text = (EXAMPLES / "station.toml").read_text()
+    file = tmp_path / "tak.toml"
+    file.write_text("\n".join(_COMMENTED.findall(text[text.index("# [tak.") :])))
+    county = load_config(file, StationConfig).tak["county"]
+    named = tomllib.loads(file.read_text())["tak"]["county"]
+    assert named.keys() == {each.name for each in dataclasses.fields(TakConfig)}
+    for each in dataclasses.fields(TakConfig):
+        if each.default not in (None, dataclasses.MISSING):
+            assert getattr(county, each.name) == each.default

@@ -178,6 +178,16 @@ export interface Format {
   needs_anchor: boolean;
 }
 
+export interface ForwarderView {
+  name: string;
+  kind: string;
+  address: string;
+  state: string;
+  since_ms: number | null;
+  sent: number;
+  text: string;
+}
+
 export interface GapView {
   from_ms: number;
   until_ms: number;
@@ -197,6 +207,7 @@ export interface Health {
   repeated: number;
   left_out: number;
   missing: number;
+  forwarders: ForwarderView[];
   reading: number | null;
   consoles: number;
   segments: LogSegmentAnswer[];

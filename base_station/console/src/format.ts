@@ -2,6 +2,7 @@
 import type {
   AlarmView,
   ClockView,
+  ForwarderView,
   HealthView,
   Link,
   PositionView,
@@ -293,4 +294,18 @@ export function bytes(count: number): string {
 
 function pad(whole: number): string {
   return String(whole).padStart(2, "0");
+}
+
+const FORWARDER_STATES: Record<ForwarderView["state"], string> = {
+  connected: "connected",
+  connecting: "not connected",
+  standby: "the other station forwards",
+};
+
+/** A connection with another system in one line. */
+export function forwarderLine(one: ForwarderView): string {
+  const state = FORWARDER_STATES[one.state];
+  const line = `${one.kind.toUpperCase()} ${one.name} (${one.address}): ${state}`;
+  const sent = `${one.sent.toLocaleString("en")} events sent`;
+  return [line, sent, one.text].filter(Boolean).join("; ");
 }

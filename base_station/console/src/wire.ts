@@ -211,6 +211,16 @@ export interface RecordingView {
   total_bytes: number;
 }
 
+export interface ForwarderView {
+  name: string;
+  kind: string;
+  address: string;
+  state: "connected" | "connecting" | "standby";
+  since_ms: number | null;
+  sent: number;
+  text: string;
+}
+
 export interface HealthView {
   problems: string[];
   messages: number;
@@ -225,6 +235,7 @@ export interface HealthView {
   repeated: number;
   left_out: number;
   missing: number;
+  forwarders: ForwarderView[];
   reading: number | null;
 }
 

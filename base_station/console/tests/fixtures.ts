@@ -25,6 +25,7 @@ export const HEALTH: HealthView = {
   repeated: 0,
   left_out: 0,
   missing: 0,
+  forwarders: [],
   reading: null,
 };
 

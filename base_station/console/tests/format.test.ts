@@ -225,3 +225,28 @@ describe("words", () => {
     expect(format.preflightText(preflight)).toBe(text);
   });
 });
+
+describe("a connection with another system", () => {
+  const county = {
+    name: "county",
+    kind: "tak",
+    address: "tls://tak.test:8089",
+    state: "connecting" as const,
+    since_ms: null,
+    sent: 1200,
+    text: "does not answer",
+  };
+
+  it("says where it goes, how it stands and why", () => {
+    expect(format.forwarderLine(county)).toBe(
+      "TAK county (tls://tak.test:8089): not connected; 1,200 events sent; does not answer",
+    );
+  });
+
+  it("says no reason where all is well", () => {
+    const well = { ...county, state: "connected" as const, text: "" };
+    expect(format.forwarderLine(well)).toBe(
+      "TAK county (tls://tak.test:8089): connected; 1,200 events sent",
+    );
+  });
+});

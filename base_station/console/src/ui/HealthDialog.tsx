@@ -1,6 +1,7 @@
 import { picture } from "../sessions";
 import { bytes, problemsOf } from "../format";
 import { Dialog } from "./Dialog";
+import { Forwarders } from "./Forwarders";
 import { Recordings } from "./Recording";
 
 export function HealthDialog() {
@@ -27,6 +28,7 @@ export function HealthDialog() {
         <Figure name="Recorded" value={bytes(health.log_bytes)} />
         <Figure name="Free disk space" value={bytes(health.disk_free_bytes)} />
       </dl>
+      <Forwarders forwarders={health.forwarders} />
       <Recordings pulls={health.recordings} />
     </Dialog>
   );

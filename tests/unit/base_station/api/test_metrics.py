@@ -11,7 +11,7 @@ from prometheus_client.parser import text_string_to_metric_families
 
 from base_station.api.metrics import exposition
 from base_station.api.position_ages import PositionAges
-from base_station.views.wire import Delta, Snapshot, StandbyView
+from base_station.views.wire import Delta, ForwarderView, Snapshot, StandbyView
 from tests.e2e import scenes
 
 Samples = dict[tuple[str, frozenset[tuple[str, str]]], float]
@@ -26,7 +26,7 @@ def samples(picture: Snapshot, ages: PositionAges | None = None) -> Samples:
     }
 
 
-def value(found: Samples, name: str, **labels: str) -> float:
+def value(found: Samples, name: str, /, **labels: str) -> float:
     return found[name, frozenset(labels.items())]
 
 
@@ -91,3 +91,14 @@ def test_prometheus_own_check_finds_nothing_to_say() -> None:
         ["promtool", "check", "metrics"], input=text, capture_output=True, check=False
     )
     assert (checked.returncode, checked.stderr.decode()) == (0, "")
+
+
+def test_forwarders_are_counted_by_kind_and_name() -> None:
+    away = ForwarderView("county", "tak", "tcp://127.0.0.1:8087", "connecting", None, 7, "away")
+    there = msgspec.structs.replace(away, name="army", state="connected")
+    picture = scenes.quiet()
+    health = msgspec.structs.replace(picture.health, forwarders=(away, there))
+    found = samples(msgspec.structs.replace(picture, health=health))
+    assert value(found, "muster_forwarder_connected", kind="tak", name="county") == 0
+    assert value(found, "muster_forwarder_connected", kind="tak", name="army") == 1
+    assert value(found, "muster_forwarder_sent_total", kind="tak", name="county") == 7

@@ -1,0 +1,29 @@
+"""Gives what consoles are shown to forwarders too."""
+
+from __future__ import annotations
+
+from base_station.engine.ports import LiveSink, LiveSource, Trails
+from base_station.forwarders.running import Forwarders
+from base_station.views.wire import Delta, Snapshot
+
+
+class LiveFanOut:
+    """A ``LiveSink``: the console hub first, then the forwarders."""
+
+    def __init__(self, hub: LiveSink, forwarders: Forwarders) -> None:
+        self._hub = hub
+        self._forwarders = forwarders
+
+    def delta(self, delta: Delta) -> None:
+        self._hub.delta(delta)
+        self._forwarders.delta(delta)
+
+    def reset(self, snapshot: Snapshot, trails: Trails) -> None:
+        self._hub.reset(snapshot, trails)
+        self._forwarders.reset(snapshot)
+
+    def start(self, source: LiveSource) -> None:
+        """Start the forwarders with the picture of now."""
+        if not self._forwarders.is_empty:  # a picture of everybody costs the engine something
+            source.request_snapshot(lambda snapshot, _: self._forwarders.reset(snapshot))
+        self._forwarders.start()

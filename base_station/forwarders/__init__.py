@@ -1,0 +1,1 @@
+"""Forwarders: live connections with other systems."""

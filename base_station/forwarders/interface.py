@@ -1,0 +1,54 @@
+"""Interface of a forwarder: a live connection with another system of the incident.
+
+A forwarder is given what consoles are shown, in the engine's thread, and returns at once; a thread
+of its own does the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from base_station.views.wire import Delta, ForwarderView, Snapshot
+from shared.clock import Clock
+
+
+class Forwarder(Protocol):
+    """One configured connection; ``start`` once, ``close`` once."""
+
+    def delta(self, delta: Delta) -> None:
+        """Take what changed; in the engine's thread."""
+        ...
+
+    def reset(self, snapshot: Snapshot) -> None:
+        """Take the whole picture: what was before is void; in the engine's thread."""
+        ...
+
+    def start(self) -> None: ...
+
+    def close(self) -> None: ...
+
+    def view(self) -> ForwarderView:
+        """State of the connection, for the station's health."""
+        ...
+
+    def problem(self) -> str:
+        """Sentence for an alarm: the other system is away for long; empty: it is not."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """Parts of the station that every forwarder uses."""
+
+    clock: Clock
+    leads: Callable[[], bool]  # False: the other one of two stations forwards
+
+
+@dataclass(frozen=True, slots=True)
+class ForwarderKind:
+    """Kind of forwarder, and the table of the settings in which each has a name."""
+
+    table: str
+    make: Callable[[str, Any, Surroundings], Forwarder]

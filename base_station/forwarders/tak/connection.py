@@ -1,0 +1,133 @@
+"""Connection to a TAK server or multicast group, over the library ``pytak``."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import ssl
+import warnings
+from collections.abc import Awaitable
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from base_station.forwarders.tak.config import TakConfig
+
+_CONNECT_S = 10.0
+_DRAIN_S = 10.0  # a server that takes nothing for so long has stalled
+_READ_BYTES = 65_536
+_SEND_BUFFER_BYTES = 131_072  # what waits in it is not the newest any more
+_GONE_AFTER_MS = 20_000  # what was sent and is not confirmed by the other machine
+_DATAGRAM_BYTES = 65_000
+
+
+class ConnectionLostError(Exception):
+    """Loss of the connection, as a phrase for a person."""
+
+
+class TakConnection:
+    """Open connection of either kind."""
+
+    def __init__(self, reader: Any, writer: Any) -> None:
+        self._reader, self._writer = reader, writer
+
+    async def send(self, event: bytes) -> None:
+        """Raises ConnectionLostError where the other end does not take it."""
+        if hasattr(self._writer, "drain"):
+            self._writer.write(event)
+            await _within(self._writer.drain(), _DRAIN_S, "takes nothing that is sent")
+        elif len(event) <= _DATAGRAM_BYTES:
+            await _within(self._writer.send(event), _DRAIN_S, "takes nothing that is sent")
+
+    async def receive(self) -> bytes:
+        """What came, at most a datagram or ``_READ_BYTES``; raises ConnectionLostError."""
+        try:
+            if hasattr(self._reader, "recv"):
+                data, _ = await self._reader.recv()
+                is_over = data is None  # an empty datagram is rubbish, and no end
+            else:
+                data = await self._reader.read(_READ_BYTES)
+                is_over = not data
+        except OSError as error:
+            raise ConnectionLostError(f"has broken the connection: {error}") from error
+        if is_over:
+            raise ConnectionLostError("has closed the connection")
+        return bytes(data)
+
+    def close(self) -> None:
+        """End it at once: nothing that waits is worth waiting for."""
+        for end in (self._writer, self._reader):
+            transport = getattr(end, "transport", None)
+            if transport is not None:
+                transport.abort()
+            elif hasattr(end, "close"):
+                end.close()
+
+
+async def open_connection(config: TakConfig) -> TakConnection:
+    """Raises ConnectionLostError with the reason."""
+    reader, writer = await _within(
+        _library().protocol_factory(_pytak_settings(config)), _CONNECT_S, "does not answer"
+    )
+    if not config.is_datagram:
+        _bound_buffers(writer)
+    return TakConnection(reader, writer)
+
+
+def _library() -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of its enrolment over HTTP, which is not used
+        # A seventh of a second of a start, which a station without TAK does without.
+        import pytak  # noqa: PLC0415
+    return pytak
+
+
+def _bound_buffers(writer: asyncio.StreamWriter) -> None:
+    connected: socket.socket = writer.get_extra_info("socket")
+    connected.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
+    connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _GONE_AFTER_MS)
+
+
+def _pytak_settings(config: TakConfig) -> dict[str, str]:
+    settings = {
+        "COT_URL": config.url,
+        "PYTAK_MULTICAST_LOCAL_ADDR": config.interface,
+        "PYTAK_TLS_CLIENT_CIPHERS": "HIGH:!aNULL:!eNULL",
+        "PYTAK_TLS_SERVER_EXPECTED_HOSTNAME": config.server_name or urlsplit(config.url).hostname,
+        "PYTAK_TLS_CLIENT_CERT": _text(config.certificate),
+        "PYTAK_TLS_CLIENT_KEY": _text(config.private_key or config.certificate),
+        "PYTAK_TLS_CLIENT_CAFILE": _text(config.ca),
+        "PYTAK_TLS_CLIENT_PASSWORD": _password(config.password_file),
+    }
+    return {key: value for key, value in settings.items() if value}
+
+
+def _text(path: Path | None) -> str:
+    return "" if path is None else str(path)
+
+
+def _password(path: Path | None) -> str:
+    if path is None:
+        return ""
+    try:
+        return path.read_text(encoding="utf-8").strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConnectionLostError(f"cannot be reached: {path} cannot be read ({error})") from error
+
+
+async def _within(work: Awaitable[Any], timeout_s: float, phrase: str) -> Any:
+    try:
+        return await asyncio.wait_for(work, timeout_s)
+    except TimeoutError:
+        raise ConnectionLostError(phrase) from None
+    except ConnectionLostError:
+        raise
+    except ssl.SSLError as error:
+        raise ConnectionLostError(f"does not agree on TLS: {_reason_of(error)}") from error
+    except (OSError, SyntaxError, ValueError) as error:  # pytak's own of certificates, too
+        raise ConnectionLostError(f"cannot be reached: {_reason_of(error)}") from error
+
+
+def _reason_of(error: Exception) -> str:
+    cause = error.__cause__ if isinstance(error, SyntaxError | ValueError) else None
+    return str(cause or error) or type(cause or error).__name__

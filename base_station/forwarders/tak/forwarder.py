@@ -1,0 +1,207 @@
+"""Forwarder to TAK: keeps a connection and sends what the outbox has due."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from dataclasses import dataclass
+
+from base_station.forwarders.interface import Surroundings
+from base_station.forwarders.tak.config import TakConfig
+from base_station.forwarders.tak.connection import (
+    ConnectionLostError,
+    TakConnection,
+    open_connection,
+)
+from base_station.forwarders.tak.cot import CotEvents
+from base_station.forwarders.tak.mailbox import Mailbox
+from base_station.forwarders.tak.outbox import TakOutbox
+from base_station.views.answer import to_ms, to_ms_or_none
+from base_station.views.wire import Delta, ForwarderView, Snapshot
+from shared.clock import NS_PER_S
+from shared.worker import Worker
+
+_FIRST_RETRY_S = 1.0
+_RETRY_MAX_S = 30.0
+_STANDBY_S = 1.0
+_PING_NS = 10 * NS_PER_S
+_SILENT_NS = 35 * NS_PER_S  # three pings without an answer, of a server that has answered
+_CLOSE_S = 5.0
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(slots=True)
+class _Status:
+    """State of the connection; written by the forwarder's thread alone."""
+
+    state: str = "connecting"
+    since_ns: int | None = None  # station time of the last change
+    away_since_ns: int | None = None  # monotonic; None: connected, or not to be
+    reason: str = ""
+    sent: int = 0
+    received_bytes: int = 0
+
+
+class TakForwarder:
+    """A ``Forwarder`` for one ``[tak.NAME]``."""
+
+    def __init__(self, name: str, config: TakConfig, surroundings: Surroundings) -> None:
+        self._name, self._config = name, config
+        self._clock, self._leads = surroundings.clock, surroundings.leads
+        events = CotEvents(config.uid_prefix, config.team, names=config.names)
+        self._events = events
+        self._outbox = TakOutbox(events, config.every_s, breadcrumbs=config.breadcrumbs)
+        self._mailbox = Mailbox()
+        self._status = _Status(away_since_ns=self._clock.monotonic_ns())
+        self._retry_s = _FIRST_RETRY_S
+        self._awake: asyncio.Event | None = None  # of the connection that is open
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._heard_ns: int | None = None  # monotonic; None: this connection has said nothing
+        self._worker = Worker(
+            f"tak-{name}", self._step, f"the TAK connection {name!r} does not go on"
+        )
+
+    # ---- from other threads
+
+    def delta(self, delta: Delta) -> None:
+        self._mailbox.put_delta(delta)
+        self._wake()
+
+    def reset(self, snapshot: Snapshot) -> None:
+        self._mailbox.put_picture(snapshot)
+        self._wake()
+
+    def start(self) -> None:
+        self._worker.start()
+
+    def close(self) -> None:
+        self._worker.stop()
+        self._wake()
+        self._worker.join(_CLOSE_S)
+
+    def view(self) -> ForwarderView:
+        status = self._status
+        text = status.reason if status.state == "connecting" else self._outbox.hint
+        return ForwarderView(
+            name=self._name,
+            kind="tak",
+            address=self._config.url,
+            state=status.state,
+            since_ms=to_ms_or_none(status.since_ns),
+            sent=status.sent,
+            text=text,
+        )
+
+    def problem(self) -> str:
+        since_ns = self._status.away_since_ns
+        if since_ns is None:
+            return ""
+        away_s = (self._clock.monotonic_ns() - since_ns) / NS_PER_S
+        if away_s < self._config.alarm_after_s:
+            return ""
+        return (
+            f"The TAK connection {self._name!r} ({self._config.url}) has been away for "
+            f"{away_s:.0f} s: it {self._status.reason or 'does not answer'}"
+        )
+
+    def _wake(self) -> None:
+        loop, awake = self._loop, self._awake
+        if loop is None or awake is None:
+            return
+        try:
+            loop.call_soon_threadsafe(awake.set)
+        except RuntimeError:  # the connection has ended meanwhile
+            return
+
+    # ---- in the forwarder's thread
+
+    def _step(self) -> float:
+        """One connection from beginning to end; gives the pause before the next one."""
+        if not self._leads():
+            self._set_state("standby")
+            return _STANDBY_S
+        if self._status.state == "standby":
+            self._set_state("connecting")
+        try:
+            asyncio.run(self._connect_and_serve())
+        except ConnectionLostError as error:
+            self._set_state("connecting", str(error))
+        else:
+            return 0.0  # another one leads, or the station stops
+        pause_s, self._retry_s = self._retry_s, min(2.0 * self._retry_s, _RETRY_MAX_S)
+        return pause_s
+
+    def _set_state(self, state: str, reason: str = "") -> None:
+        status = self._status
+        if state != status.state:
+            status.state, status.since_ns = state, self._clock.utc_ns()
+            logger.info("TAK %s (%s): %s %s", self._name, self._config.url, state, reason)
+        if state == "connecting" and status.away_since_ns is None:
+            status.away_since_ns = self._clock.monotonic_ns()
+        elif state != "connecting":
+            status.away_since_ns = None
+        status.reason = reason
+
+    async def _connect_and_serve(self) -> None:
+        """Raises ConnectionLostError when the connection is over."""
+        connection = await open_connection(self._config)
+        self._loop, self._awake = asyncio.get_running_loop(), asyncio.Event()
+        self._heard_ns = None
+        self._outbox.begin_connection()
+        self._set_state("connected")
+        receiving = asyncio.create_task(self._receive(connection))
+        sending = asyncio.create_task(self._send(connection))
+        try:
+            await asyncio.wait((receiving, sending), return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._loop = self._awake = None
+            over = [task for task in (sending, receiving) if task.done()]
+            for task in (receiving, sending):
+                task.cancel()
+            await asyncio.gather(receiving, sending, return_exceptions=True)
+            connection.close()
+        for task in over:
+            task.result()
+
+    async def _send(self, connection: TakConnection) -> None:
+        """Until the station stops or leaves the lead to another one."""
+        assert self._awake is not None
+        clock, ping_ns = self._clock, self._clock.monotonic_ns() + _PING_NS
+        while self._leads() and not self._worker.stopping.is_set():
+            self._awake.clear()
+            now_ns, now_ms = clock.monotonic_ns(), to_ms(clock.utc_ns())
+            self._outbox.apply(self._mailbox.take(), now_ms)
+            if now_ns >= ping_ns:
+                ping_ns = now_ns + _PING_NS
+                await self._ping(connection, now_ms)
+            for event in self._outbox.due(now_ns, now_ms):
+                await connection.send(event)
+                self._status.sent += 1
+                if self._awake.is_set():  # an emergency may have come: it goes first
+                    break
+            else:
+                await self._wait(self._outbox.next_due_ns(now_ns) - now_ns)
+
+    async def _wait(self, duration_ns: int) -> None:
+        assert self._awake is not None
+        try:
+            await asyncio.wait_for(self._awake.wait(), min(duration_ns / NS_PER_S, 1.0))
+        except TimeoutError:
+            return
+
+    async def _ping(self, connection: TakConnection, now_ms: int) -> None:
+        """Ask a server whether it is there; a connection that has lasted so long works."""
+        self._retry_s = _FIRST_RETRY_S
+        if self._config.is_datagram or self._outbox.anchor is None:
+            return
+        heard_ns = self._heard_ns
+        if heard_ns is not None and self._clock.monotonic_ns() - heard_ns > _SILENT_NS:
+            raise ConnectionLostError("does not answer any more")
+        await connection.send(self._events.ping(self._outbox.anchor, now_ms))
+
+    async def _receive(self, connection: TakConnection) -> None:
+        while True:
+            data = await connection.receive()
+            self._heard_ns = self._clock.monotonic_ns()
+            self._status.received_bytes += len(data)

@@ -1,0 +1,190 @@
+"""Outbox of one connection: what is to be sent next, newest position of each person, alerts first.
+
+Events are made when they are sent and not before, so that a connection that was away for an hour
+begins with where people are now.  Pure: times are given.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from base_station.forwarders.tak.cot import (
+    CotEvents,
+    GeodeticPlace,
+    GroundMotion,
+    motion_between,
+    place_of,
+)
+from base_station.forwarders.tak.emergencies import Emergencies, EmergencyAlert
+from base_station.forwarders.tak.mailbox import Changes
+from base_station.views.wire import AnchorView, PositionView, UnitView
+from shared.clock import NS_PER_S
+
+_LIVE = "live"
+_NOT_LIVE_EVERY_NS = 10 * NS_PER_S  # of who is not heard only the uncertainty grows
+_UNPLACED_NS = NS_PER_S // 5  # then it is looked again whether an emergency has a place
+_WAY_EVERY_NS = 15 * NS_PER_S
+_WAY_PLACES = 60
+_WAY_STEP_M = 2.0
+_METRES_PER_DEG = 111_195.0
+_NO_PLACE = "nothing is sent, as the site has no place on the Earth: set the anchor"
+_NO_INCIDENT = "people are sent while an incident is open"
+_SOONEST_NS = NS_PER_S // 50
+
+
+@dataclass(slots=True)
+class _Person:
+    """What was sent of a unit's wearer, and what is not sent yet."""
+
+    unit: UnitView
+    is_waiting: bool = True
+    sent_ns: int | None = None  # monotonic
+    sent_link: str = ""
+    sent_place: tuple[int, GeodeticPlace] | None = None  # with the time of the position
+    way: deque[GeodeticPlace] = field(default_factory=lambda: deque(maxlen=_WAY_PLACES))
+    way_is_new: bool = False
+    way_sent_ns: int | None = None
+
+
+class TakOutbox:
+    """``apply`` changes, then send what ``due`` gives."""
+
+    def __init__(self, events: CotEvents, every_s: float, *, breadcrumbs: bool) -> None:
+        self._events = events
+        self._every_ns = round(every_s * NS_PER_S)
+        self._breadcrumbs = breadcrumbs
+        self._people: dict[str, _Person] = {}
+        self._emergencies = Emergencies()
+        self._incident_is_open = False
+        self.anchor: AnchorView | None = None
+
+    def apply(self, changes: Changes, now_ms: int) -> None:
+        picture = changes.picture
+        if picture is not None:
+            self.anchor = picture.anchor
+            incident = picture.incident
+            self._incident_is_open = incident is not None and incident.closed_ms is None
+            present = {unit.unit_id for unit in picture.units}
+            self._people = {one: person for one, person in self._people.items() if one in present}
+            for unit in picture.units:
+                self._note(unit)
+            self._emergencies.use_picture(picture.alarms, now_ms)
+        for unit in changes.units.values():
+            self._note(unit)
+        for alarm in changes.alarms.values():
+            self._emergencies.note(alarm)
+
+    def _note(self, unit: UnitView) -> None:
+        person = self._people.get(unit.unit_id)
+        if person is None:
+            self._people[unit.unit_id] = _Person(unit)
+        else:
+            person.unit, person.is_waiting = unit, True
+
+    def begin_connection(self) -> None:
+        """Make everything due: whoever is at the other end has seen nothing of it."""
+        for person in self._people.values():
+            person.is_waiting, person.sent_ns, person.sent_link = True, None, ""
+            person.way_sent_ns, person.way_is_new = None, len(person.way) > 1
+        self._emergencies.repeat_all()
+
+    def due(self, now_ns: int, now_ms: int) -> Iterator[bytes]:
+        """Events to send now; what was taken from here has been sent."""
+        for alert in self._emergencies.due(now_ns):
+            event = self._alert(alert, now_ms)
+            if event is None:
+                alert.due_ns = now_ns + _UNPLACED_NS
+            else:
+                self._emergencies.note_sent(alert, now_ns)
+                yield event
+        if not self._incident_is_open:
+            return
+        waiting = [one for one in self._people.values() if one.is_waiting]
+        # Longest waiting first: where the other end is slow, everybody has a turn.
+        for person in sorted(waiting, key=self._due_ns):
+            if now_ns < self._due_ns(person):
+                break
+            event = self._position(person, now_ns)
+            if event is not None:
+                yield event
+        if self._breadcrumbs:
+            yield from self._ways(now_ns)
+
+    def next_due_ns(self, now_ns: int) -> int:
+        """Monotonic time of the next event, where nothing changes before."""
+        people = self._people.values() if self._incident_is_open else ()
+        times = [self._due_ns(one) for one in people if one.is_waiting]
+        alert_ns = self._emergencies.next_due_ns
+        if alert_ns is not None:
+            times.append(alert_ns)
+        return max(min(times, default=now_ns + NS_PER_S), now_ns + _SOONEST_NS)
+
+    def _due_ns(self, person: _Person) -> int:
+        if person.sent_ns is None or person.unit.link != person.sent_link:
+            return 0
+        return person.sent_ns + (
+            self._every_ns if person.unit.link == _LIVE else _NOT_LIVE_EVERY_NS
+        )
+
+    def _alert(self, alert: EmergencyAlert, now_ms: int) -> bytes | None:
+        placed = self._placed(alert.unit_id)
+        if placed is None:
+            return None
+        if alert.is_open:
+            return self._events.emergency(*placed, alert.rules, now_ms)
+        return self._events.emergency_cancelled(*placed, now_ms)
+
+    def _placed(self, unit_id: str) -> tuple[UnitView, PositionView, GeodeticPlace] | None:
+        person = self._people.get(unit_id)
+        if person is None or person.unit.position is None:
+            return None
+        place = place_of(person.unit.position, self.anchor)
+        return None if place is None else (person.unit, person.unit.position, place)
+
+    def _position(self, person: _Person, now_ns: int) -> bytes | None:
+        """None: of a unit that is not ours, was switched off or has no place nothing is sent."""
+        unit, person.is_waiting = person.unit, False
+        placed = self._placed(unit.unit_id)
+        if placed is None or not unit.registered or unit.switched_off:
+            return None
+        _, position, place = placed
+        person.sent_ns, person.sent_link = now_ns, unit.link
+        motion = GroundMotion(0.0, 0.0)
+        if self.anchor is not None and unit.link == _LIVE:
+            rotation_rad = self.anchor.plan_rotation_rad
+            motion = motion_between(person.sent_place, position, place, rotation_rad)
+        if person.sent_place is None or position.t_ms > person.sent_place[0]:
+            person.sent_place = position.t_ms, place
+            self._extend_way(person, place)
+        return self._events.person(unit, position, place, motion)
+
+    def _extend_way(self, person: _Person, place: GeodeticPlace) -> None:
+        if not person.way or _apart_m(person.way[-1], place) >= _WAY_STEP_M:
+            person.way.append(place)
+            person.way_is_new = len(person.way) > 1
+
+    def _ways(self, now_ns: int) -> Iterator[bytes]:
+        for person in self._people.values():
+            position = person.unit.position
+            if not person.way_is_new or position is None:
+                continue
+            if person.way_sent_ns is None or now_ns - person.way_sent_ns >= _WAY_EVERY_NS:
+                person.way_sent_ns, person.way_is_new = now_ns, False
+                yield self._events.way(person.unit, position, tuple(person.way))
+
+    @property
+    def hint(self) -> str:
+        """Why less is sent than somebody may expect; empty: there is no reason."""
+        if self.anchor is None:
+            return _NO_PLACE
+        unplaced = [one for one in self._emergencies.open_units if self._placed(one) is None]
+        if unplaced:
+            return f"the emergency of {', '.join(unplaced)} cannot be shown: nobody knows where"
+        return "" if self._incident_is_open else _NO_INCIDENT
+
+
+def _apart_m(one: GeodeticPlace, other: GeodeticPlace) -> float:
+    """Distance along the meridian or the parallel, whichever is longer; near enough for a step."""
+    return _METRES_PER_DEG * max(abs(one.lat_deg - other.lat_deg), abs(one.lon_deg - other.lon_deg))

@@ -1,0 +1,174 @@
+"""A station with TAK beside it: a real server over TCP and TLS, and a multicast group."""
+
+from __future__ import annotations
+
+import socket
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from shared.messages import EventKind, UnitEvent
+from tests.rig.cot_schema import check_event
+from tests.rig.served_station import MakePosition, greet, prepare
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.tak_server import TakCertificates, TakClient, TakServer
+from tests.rig.waiting import PATIENCE_S, until
+
+ANCHOR = {"lat_deg": 52.5, "lon_deg": 13.4, "height_m": 40.0}
+PERSON, ALERT = "county.FF-01", "county.FF-01-9-1-1"
+
+
+@pytest.fixture
+def tak(tmp_path: Path) -> Iterator[TakServer]:
+    with TakServer(tmp_path / "tak") as server:
+        yield server
+
+
+def settings(folder: Path, url: str, *more: str) -> str:
+    file = folder / "station.toml"
+    lines = ["[tak.county]", f'url = "{url}"', 'uid_prefix = "county"', *more]
+    file.write_text("\n".join(lines))
+    return str(file)
+
+
+def health(browser: Browser) -> dict[str, Any]:
+    (forwarder,) = browser.call("GET", "/health")["forwarders"]
+    return dict(forwarder)
+
+
+def test_people_and_emergencies_reach_a_tak_server(
+    serve: Callable[..., Command],
+    data: Path,
+    unit: Unit,
+    make_position: MakePosition,
+    tak: TakServer,
+    tmp_path: Path,
+) -> None:
+    station = serve("--config", settings(tmp_path, tak.url))
+    with TakClient(tak.port) as client, Browser(station.wait_ready(), data) as browser:
+        prepare(browser)
+        greet(browser, unit, make_position)
+        until(lambda: "no place" in health(browser)["text"], "the console says what is missing")
+        assert not [one for one in client.events if one.kind.startswith("a-")]
+        browser.call("PUT", "/site/anchor", json=ANCHOR)
+        unit.say(make_position(header=unit.stamper.header(), north_m=7.0))
+        event = client.wait_for(lambda one: one.uid == PERSON, "the person is there")
+        checked = check_event(event.raw)
+        callsign = checked.find("detail/contact")
+        assert callsign is not None
+        assert callsign.get("callsign") == "Ada"
+        assert float(checked[0].get("lat", "")) == pytest.approx(52.5, abs=1e-3)
+
+        unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+        client.wait_for(lambda one: one.uid == ALERT and one.kind == "b-a-o-tbl", "the alert")
+        (alarm,) = browser.call("GET", "/alarms")
+        seen = {"last_raised_ms": alarm["last_raised_ms"]}
+        path = f"/alarms/{alarm['alarm_id']}"
+        browser.call("POST", f"{path}/acknowledge", json=seen)
+        browser.call("POST", f"{path}/resolve", json={**seen, "note": "found"})
+        client.wait_for(lambda one: one.uid == ALERT and one.kind == "b-a-o-can", "its end")
+        until(lambda: health(browser)["sent"] > 0, "the console counts")
+        assert health(browser)["state"] == "connected"
+        metrics = browser._client.get("/metrics").text
+        assert 'muster_forwarder_connected{kind="tak",name="county"} 1.0' in metrics
+    assert station.stop() == 0
+
+
+def test_after_the_server_was_away_the_newest_comes_and_an_alarm_tells(
+    serve: Callable[..., Command],
+    data: Path,
+    unit: Unit,
+    make_position: MakePosition,
+    tak: TakServer,
+    tmp_path: Path,
+) -> None:
+    tak.kill()
+    station = serve("--config", settings(tmp_path, tak.url, "alarm_after_s = 5.0"))
+    with Browser(station.wait_ready(), data) as browser:
+        prepare(browser)
+        browser.call("PUT", "/site/anchor", json=ANCHOR)
+        greet(browser, unit, make_position)
+
+        def away() -> list[dict[str, Any]]:
+            return [
+                one
+                for one in browser.call("GET", "/alarms")
+                if one["rule"] == "station" and "county" in one["text"]
+            ]
+
+        until(away, "an alarm tells that it is away")
+        unit.say(UnitEvent(unit.stamper.header(), EventKind.MAYDAY))
+        tak.start()
+        with TakClient(tak.port) as client:
+            until(lambda: client.latest(ALERT), "the emergency of before comes")
+            unit.say(make_position(header=unit.stamper.header()))
+            until(lambda: client.latest(PERSON), "the person comes")
+        until(lambda: away()[0]["state"] == "resolved", "the alarm is over")
+
+
+def test_over_tls_both_ends_are_certified(
+    serve: Callable[..., Command],
+    data: Path,
+    unit: Unit,
+    make_position: MakePosition,
+    tmp_path: Path,
+) -> None:
+    made = TakCertificates(tmp_path)
+    with TakServer(tmp_path / "tak", made) as tak, TakClient(tak.port, made) as client:
+        flags = [f'certificate = "{made.client}"', f'private_key = "{made.client_key}"']
+        file = settings(tmp_path, tak.url, *flags, f'ca = "{made.ca}"')
+        station = serve("--config", file)
+        with Browser(station.wait_ready(), data) as browser:
+            prepare(browser)
+            browser.call("PUT", "/site/anchor", json=ANCHOR)
+            greet(browser, unit, make_position)
+            client.wait_for(lambda one: one.uid == PERSON, "the person is there")
+        assert station.stop() == 0
+        other = TakCertificates(_folder(tmp_path / "other"))
+        again = serve("--config", settings(tmp_path, tak.url, *flags, f'ca = "{other.ca}"'))
+        with Browser(again.wait_ready(), data) as browser:
+            until(lambda: "cannot be reached" in health(browser)["text"], "another's is refused")
+            assert "certificate verify failed" in health(browser)["text"]
+
+
+def _folder(path: Path) -> Path:
+    path.mkdir()
+    return path
+
+
+def test_a_multicast_group_gets_an_event_in_each_datagram(
+    serve: Callable[..., Command],
+    data: Path,
+    unit: Unit,
+    make_position: MakePosition,
+    port: int,
+    tmp_path: Path,
+) -> None:
+    group = "239.2.3.1"
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as member:
+        member.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        member.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        member.bind((group, port))
+        joined = struct.pack("4s4s", socket.inet_aton(group), socket.inet_aton("127.0.0.1"))
+        member.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, joined)
+        member.settimeout(PATIENCE_S)
+        file = settings(
+            tmp_path, f"udp://{group}:{port}", "plain = true", 'interface = "127.0.0.1"'
+        )
+        station = serve("--config", file)
+        with Browser(station.wait_ready(), data) as browser:
+            prepare(browser)
+            browser.call("PUT", "/site/anchor", json=ANCHOR)
+            greet(browser, unit, make_position)
+            assert check_event(member.recv(65_536)).get("uid") == PERSON
+
+
+def test_an_open_server_elsewhere_is_refused_at_the_start(
+    serve: Callable[..., Command], tmp_path: Path
+) -> None:
+    station = serve("--config", settings(tmp_path, "tcp://192.0.2.1:8087"))
+    assert station.wait() != 0
+    assert "plain = true" in station.said()
