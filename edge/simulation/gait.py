@@ -28,6 +28,9 @@ class Gait:
     sway_m: float = 0.02  # of the trunk to either side
     forward: tuple[float, float] = (0.22, 0.95)  # when the foot goes forward
     upward: tuple[float, float] = (0.25, 0.90)  # when it goes to another height
+    raised: tuple[float, float] = (0.30, 0.60)  # when it rises by its clearance
+    lowered: tuple[float, float] = (0.60, 0.90)  # ... and is put down
+    tipped: tuple[float, float] = (0.42, 0.84)  # when its toe is lowest, and when it has come back
     facing_rad: float = 0.0  # of the body, clockwise from where it goes
     lands_on_heel: bool = True  # ... or on the ball
     leaves_on_heel: bool = False
@@ -35,6 +38,15 @@ class Gait:
     uneven_m: float = 0.0  # of what lies on the floor, root mean square
     tilt_rad: float = 0.0  # deviation of its slopes
     slip_m: float = 0.0  # by which the shoe slips back when it pushes off
+    flattens_s: float = 0.05  # after it has touched down it is flat
+    leaves: float = 0.75  # fraction of the stance after which it rolls over the ball (or the heel)
+    rolls_radps: float = radians(6.0)  # in mid-stance, mean
+    creeps_mps: float = 0.0106  # along the floor and into it, in mid-stance
+    strike_mps: float = 0.0  # down, at which the floor stops the foot
+    strike_ahead_mps: float = 0.0  # likewise forward
+    rings_rad: float = 0.0  # by which the struck shoe rocks
+    scrapes_m: float = 0.0  # of the floor's roughness, for a foot that is dragged along it
+    turns: float = 1.0  # how far it rolls and points outward in mid-swing, by a walker's
 
 
 WALK = Gait(Activity.WALKING, 1.36, 1.06, 0.34, radians(-62), radians(20), 0.04)
@@ -103,6 +115,95 @@ STAIRS_DOWN = Gait(
     upward=(0.4, 0.96),
 )
 
+
+# As rough as recorded feet, by the statistics that tests/unit/edge/simulation compares.
+JOG = Gait(
+    activity=Activity.RUNNING,
+    stride_m=1.95,
+    stride_s=0.85,
+    flat=0.27,
+    toe_off_rad=radians(-75),
+    strike_rad=radians(10),
+    clearance_m=0.10,
+    bounce_m=0.035,
+    sway_m=0.01,
+    forward=(0.0, 1.0),
+    lowered=(0.60, 1.0),
+    leaves=0.5,
+    rolls_radps=1.8,
+    creeps_mps=0.03,
+    strike_mps=0.5,
+    strike_ahead_mps=0.4,
+    rings_rad=0.008,
+)
+RACE = Gait(
+    activity=Activity.RUNNING,
+    stride_m=3.3,
+    stride_s=0.61,
+    flat=0.18,
+    toe_off_rad=radians(-105),
+    strike_rad=radians(-12),
+    clearance_m=0.18,
+    bounce_m=0.03,
+    sway_m=0.01,
+    forward=(0.0, 1.0),
+    lowered=(0.60, 1.0),
+    lands_on_heel=False,
+    flattens_s=0.035,
+    leaves=0.40,
+    rolls_radps=1.5,
+    creeps_mps=0.06,
+    strike_mps=1.5,
+    strike_ahead_mps=1.0,
+    rings_rad=0.018,
+)
+CAREFUL = Gait(  # each foot is raised, held ahead and slowly put down, flat
+    activity=Activity.WALKING,
+    stride_m=0.70,
+    stride_s=3.0,
+    flat=0.42,
+    toe_off_rad=radians(-30),
+    strike_rad=radians(2),
+    clearance_m=0.22,
+    bounce_m=0.008,
+    forward=(0.20, 0.70),
+    raised=(0.05, 0.45),
+    lowered=(0.50, 1.00),
+    tipped=(0.25, 0.55),
+)
+DRAG = Gait(  # in a brace: the knee is stiff, the shoe never leaves the floor
+    activity=Activity.WALKING,
+    stride_m=0.60,
+    stride_s=1.80,
+    flat=0.25,
+    toe_off_rad=radians(-4),
+    strike_rad=radians(1),
+    clearance_m=0.004,
+    bounce_m=0.03,
+    sway_m=0.05,
+    forward=(0.08, 0.98),
+    scrapes_m=0.0001,
+    turns=0.15,
+)
+STAIRS_DOWN_CAREFUL = replace(
+    STAIRS_DOWN,
+    stride_s=3.2,
+    strike_rad=radians(2),
+    clearance_m=0.08,
+    forward=(0.10, 0.50),
+    upward=(0.40, 0.99),
+    raised=(0.10, 0.40),
+    lowered=(0.60, 0.99),
+    tipped=(0.25, 0.50),
+)
+STAIRS_UP_CAREFUL = replace(
+    STAIRS_UP,
+    stride_s=3.0,
+    upward=(0.05, 0.50),
+    lowered=(0.60, 1.00),
+    tipped=(0.30, 0.65),
+)
+
 STAIRS_UP_RUN = replace(  # on the balls of the feet, the heels over the edge
     STAIRS_UP,
     stride_s=0.78,
@@ -122,7 +223,11 @@ STAIRS_DOWN_RUN = replace(
     sink_rad=radians(4),
 )
 
-STAIRS_PACES = {"walk": (STAIRS_DOWN, STAIRS_UP), "run": (STAIRS_DOWN_RUN, STAIRS_UP_RUN)}
+STAIRS_PACES = {  # down, up
+    "walk": (STAIRS_DOWN, STAIRS_UP),
+    "run": (STAIRS_DOWN_RUN, STAIRS_UP_RUN),
+    "careful": (STAIRS_DOWN_CAREFUL, STAIRS_UP_CAREFUL),
+}
 PACES: dict[str, Gait] = {
     "search": SEARCH,
     "walk": WALK,
@@ -135,4 +240,8 @@ PACES: dict[str, Gait] = {
     "sideways": SIDEWAYS,
     "hose": HOSE,
     "rubble": RUBBLE,
+    "jog": JOG,
+    "race": RACE,
+    "careful": CAREFUL,
+    "drag": DRAG,
 }

@@ -1,4 +1,4 @@
-"""Movements of a body that stays where it is: standing about, kneeling, sitting.
+"""Movements of a body that stays where it is: standing about, raising a foot, kneeling, sitting.
 
 Nobody is still for minutes.  The weight goes from one leg to the other, a foot is put anew,
 the foot of crossed legs dangles.
@@ -26,6 +26,11 @@ _CROSSED_LIFT_M = 0.35
 _CROSSED_FORWARD_M = 0.12
 _CROSSED_PITCH_RAD = radians(-25)
 _DANGLES_RAD = radians(4)
+
+_NEAR = 0.15  # of its height: from there on a raised foot is put down ever slower
+_RAISED_SWAY_M = 0.02
+_RAISED_TILT_RAD = radians(-35), radians(8)
+_RAISED_KNEE_RAD_PER_M = 1.6
 
 _Rng = np.random.Generator
 _Fidget = Callable[[BodyPlan, _Rng, float], float]  # at a time; returns when it ends
@@ -65,6 +70,35 @@ def sit(plan: BodyPlan, rng: _Rng, duration_s: float) -> None:
     plan.pelvis_height.move(end_s + 0.4, end_s + 1.9, STANDING_PELVIS_M)
     plan.thigh_pitch.move(end_s + 0.4, end_s + 1.9, 0.0)
     plan.duration_s = end_s + 1.9
+
+
+def raise_foot(plan: BodyPlan, rng: _Rng, height_m: float) -> None:
+    """Raise the foot and put it down slowly, ever slower; it turns back on the whole way down."""
+    plan.begin(Activity.WALKING)
+    start_s = plan.duration_s + float(rng.uniform(0.2, 1.2))
+    slows_s = start_s + float(rng.uniform(0.4, 0.7))
+    sinks_s = slows_s + float(rng.uniform(0.25, 0.45))
+    down_s = sinks_s + float(rng.uniform(0.8, 1.3))
+    high_m = height_m * float(rng.uniform(0.6, 1.2))
+    near_s = sinks_s + 0.6 * (down_s - sinks_s)
+    near_m = _NEAR * high_m
+    plan.lift.move(start_s, slows_s, -high_m, -high_m / (slows_s - start_s))
+    plan.lift.move(slows_s, sinks_s, -high_m, (high_m - near_m) / (near_s - sinks_s))
+    plan.lift.move(sinks_s, near_s, -near_m, near_m / (down_s - near_s))
+    plan.lift.move(near_s, down_s, 0.0)
+    plan.duration_s = down_s
+    top_s = 0.5 * (slows_s + sinks_s)
+    sways_m, tilts_rad = rng.normal(0.0, _RAISED_SWAY_M, 2), rng.normal(*_RAISED_TILT_RAD)
+    for curve, there in (
+        (plan.north, plan.north.last + float(sways_m[0])),
+        (plan.east, plan.east.last + float(sways_m[1])),
+        (plan.pitch, float(tilts_rad)),
+        (plan.thigh_pitch, _RAISED_KNEE_RAD_PER_M * high_m),
+    ):
+        back = curve.last
+        curve.move(start_s, top_s, there)
+        curve.move(top_s, down_s, back)
+    plan.footfall_s.append(down_s)
 
 
 def _fidget(plan: BodyPlan, rng: _Rng, end_s: float, more: _Fidget) -> None:

@@ -107,21 +107,28 @@ class Triad:
         self._per_force = rng.normal(0.0, 1.0, (3, 3)) * errors.g_sensitivity_std
 
     def measure(self, true: Floats, force_mps2: Floats, temperature_degc: Floats) -> Floats:
-        """Return the readings (n, 3) where ``true`` (n, 3) is; all in sensor axes."""
-        errors = self._errors
-        steps = self._rng.normal(0.0, 1.0, true.shape) * (errors.bias_walk / self._rate_hz**0.5)
+        """Return the readings (n, 3) where ``true`` (m, 3) is; all in sensor axes.
+
+        ``m`` is a multiple of the ``n`` temperatures: the converter is faster than the readings,
+        each of which is the mean of as many conversions, clipped one by one.
+        """
+        errors, count = self._errors, len(temperature_degc)
+        conversions = len(true) // count
+        steps = self._rng.normal(0.0, 1.0, (count, 3)) * (errors.bias_walk / self._rate_hz**0.5)
         bias = self._bias + np.cumsum(steps, axis=0)
         self._bias = bias[-1]
         warmth = (temperature_degc - _CALIBRATED_AT_DEGC)[:, None]
-        noise = self._rng.normal(0.0, 1.0, true.shape)
+        noise = self._rng.normal(0.0, 1.0, (count, 3))
         reading = (
             true @ self._gain.T
-            + bias
-            + warmth * self._per_degc
+            + np.repeat(bias, conversions, axis=0)
+            + np.repeat(warmth * self._per_degc, conversions, axis=0)
             + force_mps2 @ self._per_force.T
-            + noise * (errors.noise_density * self._rate_hz**0.5)
+            + np.repeat(noise * (errors.noise_density * self._rate_hz**0.5), conversions, axis=0)
         )
         reading = np.clip(reading, -errors.full_scale, errors.full_scale)
+        if conversions > 1:
+            reading = reading.reshape(count, conversions, 3).mean(axis=1)
         if errors.resolution:
             reading = np.rint(reading / errors.resolution) * errors.resolution
         return np.asarray(reading, dtype=np.float64)
@@ -138,7 +145,10 @@ class Imu:
         self._gyro = Triad(errors.gyro, rate_hz, rng)
 
     def measure(self, motion: Motion, temperature_degc: Floats) -> tuple[Floats, Floats]:
-        """Specific force and angular rate (n, 3), sensor axes."""
+        """Specific force and angular rate (n, 3), sensor axes, of ``n`` temperatures.
+
+        The motion is that at every conversion, one or more a reading.
+        """
         accel_n = motion.accel_n_mps2.copy()
         accel_n[:, 2] -= GRAVITY_MPS2
         force_b = np.einsum("nji,nj->ni", motion.rotation_nb, accel_n)

@@ -19,11 +19,11 @@ Points = Annotated[tuple[Point, ...], Meta(min_length=1)]
 Seconds = Annotated[float, Meta(ge=1e-3, le=1e6)]
 Pace = Literal[
     "search", "walk", "hurry", "run", "sprint", "laden", "limp", "backwards", "sideways", "hose",
-    "rubble",
+    "rubble", "jog", "race", "careful", "drag",
 ]  # fmt: skip
 Risers = Annotated[int, Meta(ge=1, le=200)]
 AtOnce = Annotated[int, Meta(ge=1, le=3)]  # risers that one step takes
-StairsPace = Literal["walk", "run"]
+StairsPace = Literal["walk", "run", "careful"]
 Segment = Literal["foot", "shank", "pocket", "hip", "waist", "chest"]
 
 
@@ -80,6 +80,13 @@ class Sit(msgspec.Struct, frozen=True, tag="sit", forbid_unknown_fields=True):
     duration_s: Seconds
 
 
+class RaiseFoot(msgspec.Struct, frozen=True, tag="raise_foot", forbid_unknown_fields=True):
+    """Raise the foot where one stands and put it down slowly, again and again."""
+
+    times: Annotated[int, Meta(ge=1, le=1000)]
+    height_m: Annotated[float, Meta(gt=0.0, le=1.0)] = 0.5  # now more, now less
+
+
 class Ride(msgspec.Struct, frozen=True, tag="ride", forbid_unknown_fields=True):
     """Stand in a lift that goes up (``rise_m`` positive) or down without a stop."""
 
@@ -106,4 +113,4 @@ class Crawl(msgspec.Struct, frozen=True, tag="crawl", forbid_unknown_fields=True
     to: Points
 
 
-Leg = Walk | StairsLeg | Spiral | Stand | Wait | Kneel | Sit | Ride | Turn | Lie | Crawl
+Leg = Walk | StairsLeg | Spiral | Stand | Wait | Kneel | Sit | RaiseFoot | Ride | Turn | Lie | Crawl

@@ -14,18 +14,16 @@ from edge.simulation.body_plan import STANDING_PELVIS_M, BodyPlan
 from edge.simulation.curve import Curve
 from edge.simulation.gait import Gait
 from edge.simulation.legs import Point
+from edge.simulation.swings import Swing, go_forward, raise_and_lower
 from shared.messages.status import Activity
 
 _SETTLE_RAD = radians(1.0)  # how far a shoe tips when it touches down
-_FLATTENS_S = 0.05  # after it has touched down it is flat
-_LEAVES = 0.75  # of the time on the ground: then it begins to roll over the ball (or the heel)
 # What is left of a foot's motion in the middle of its stance, as motion capture and gyroscopes of
 # recorded walks have it: a median of 1.7 cm/s along the floor, 0.8 up or down, and 5.6 deg/s; the
-# deviation of one axis is about 2 cm/s.
-_ROLLS_RADPS = radians(6.0)
-_CREEPS_MPS = 0.0106  # each way, of Student's t: some strides creep far more than most
+# deviation of one axis is about 2 cm/s: of Student's t, as some strides creep far more than most.
 _CREEPS_FREEDOM = 3.0
-_CREEPS_MOST_MPS = 0.1  # none of 511 recorded stances rose or sank faster
+_CREEPS_MOST = 0.1 / 0.0106  # by the gait's: none of 511 recorded stances rose or sank faster
+_SETTLES_S = 0.1  # of who stops
 _DEFORMS_S = 0.15  # before it is down altogether
 _CURVE_PEAK = 140.0 / 64.0  # of a curve's speed by its mean
 _SHANK_BY_TOE_OFF = 0.6  # by which the bending knee folds the shank back
@@ -42,7 +40,7 @@ _LIFT_DOORS_S = 2.0
 
 def stand(plan: BodyPlan, duration_s: float) -> None:
     plan.begin(Activity.STILL)
-    settled_s = plan.duration_s + max(2.0 * _FLATTENS_S, min(0.4, duration_s))
+    settled_s = plan.duration_s + max(_SETTLES_S, min(0.4, duration_s))
     for curve in (plan.pitch, plan.roll, plan.shank_pitch, plan.thigh_pitch):
         if curve.last != 0.0:
             curve.move(max(plan.duration_s, curve.end_s), settled_s, 0.0)
@@ -70,29 +68,27 @@ def stride(
     begin_s = plan.duration_s
     end_s = begin_s + gait.stride_s * float(jitter[0])
     off_s = begin_s + gait.flat * (end_s - begin_s)
-
-    def window(start: float, end: float) -> tuple[float, float]:
-        return off_s + start * (end_s - off_s), off_s + end * (end_s - off_s)
-
+    swing = Swing(off_s, end_s)
+    window = swing.window
+    _, lifted_s = window(0.0, min(0.20, gait.forward[0], gait.raised[0]))
     _stand_on_it(plan, rng, gait, begin_s, off_s)
-    _deform_ground(plan, rng, gait, begin_s, off_s + 0.20 * (end_s - off_s))
+    _deform_ground(plan, rng, gait, begin_s, lifted_s)
     plan.rock.move(*window(0.20, 0.80), 0.0)
     plan.pivot.move(*window(0.40, 0.85), float(gait.lands_on_heel))
-    plan.north.move(*window(*gait.forward), foothold[0])
-    plan.east.move(*window(*gait.forward), foothold[1])
+    go_forward(plan, gait, swing, foothold)
     if down_m is not None:
         plan.down.move(*window(*gait.upward), down_m)
-    plan.lift.move(*window(0.30, 0.60), -gait.clearance_m * float(jitter[1]))
-    plan.lift.move(*window(0.60, 0.90), 0.0)
+    raise_and_lower(plan, rng, gait, swing, float(jitter[1]))
     toe_off_rad = gait.toe_off_rad * float(jitter[2])
-    tips_s, down_s = window(0.42, 0.84)
-    plan.pitch.move(begin_s + _LEAVES * (off_s - begin_s), tips_s, toe_off_rad)
+    tips_s, down_s = window(*gait.tipped)
+    leaves_s = max(plan.pitch.end_s, begin_s + gait.leaves * (off_s - begin_s))
+    plan.pitch.move(leaves_s, tips_s, toe_off_rad)
     plan.pitch.move(tips_s, down_s, gait.strike_rad * float(jitter[3]))
-    plan.pitch.move(down_s, end_s + _FLATTENS_S, _tilt_rad(rng, gait))
-    plan.roll.move(*window(0.15, 0.50), float(rng.normal(radians(7), radians(2))))
+    plan.pitch.move(down_s, end_s + gait.flattens_s, _tilt_rad(rng, gait))
+    plan.roll.move(*window(0.15, 0.50), gait.turns * float(rng.normal(radians(7), radians(2))))
     plan.roll.move(*window(0.50, 0.95), _tilt_rad(rng, gait) or _settle_rad(rng))
     # The toes point outward in mid-swing.
-    plan.yaw.move(*window(0.25, 0.55), (plan.yaw.last + yaw_rad) / 2.0 + radians(6))
+    plan.yaw.move(*window(0.25, 0.55), (plan.yaw.last + yaw_rad) / 2.0 + gait.turns * radians(6))
     plan.yaw.move(*window(0.55, 0.95), yaw_rad)
     # The knee bends in the swing: the shank folds back and swings out under the thigh.
     plan.shank_pitch.move(*window(0.00, 0.45), _SHANK_BY_TOE_OFF * toe_off_rad)
@@ -128,10 +124,10 @@ def _stand_on_it(
     # The pivot changes while the foot is flat, where it has no effect.
     plan.pivot.move(flat_s, rise_s, float(gait.leaves_on_heel))
     if gait.sink_rad:
-        plan.pitch.move(begin_s + _FLATTENS_S, rise_s, gait.sink_rad)
+        plan.pitch.move(begin_s + gait.flattens_s, rise_s, gait.sink_rad)
     if gait.slip_m:
         slip_m = abs(float(rng.normal(0.0, gait.slip_m)))
-        slips_s = begin_s + _LEAVES * (off_s - begin_s)
+        slips_s = begin_s + gait.leaves * (off_s - begin_s)
         plan.north.move(slips_s, off_s, plan.north.last - slip_m * cos(plan.yaw.last))
         plan.east.move(slips_s, off_s, plan.east.last - slip_m * sin(plan.yaw.last))
 
@@ -149,9 +145,10 @@ def _deform_ground(
         start_s = max(curve.end_s, begins_s)
         curve.move(start_s, lifted_s, curve.last + per_s * (lifted_s - start_s) / _CURVE_PEAK)
 
-    creeps_mps = _CREEPS_MPS * rng.standard_t(_CREEPS_FREEDOM, 3)
-    north_mps, east_mps, down_mps = creeps_mps.clip(-_CREEPS_MOST_MPS, _CREEPS_MOST_MPS).tolist()
-    rolls_radps = copysign(rng.normal(_ROLLS_RADPS, 0.5 * _ROLLS_RADPS), gait.toe_off_rad)
+    most_mps = _CREEPS_MOST * gait.creeps_mps
+    creeps_mps = gait.creeps_mps * rng.standard_t(_CREEPS_FREEDOM, 3)
+    north_mps, east_mps, down_mps = creeps_mps.clip(-most_mps, most_mps).tolist()
+    rolls_radps = copysign(rng.normal(gait.rolls_radps, 0.5 * gait.rolls_radps), gait.toe_off_rad)
     creep(plan.lift, down_mps)
     if not gait.sink_rad:
         creep(plan.rock, rolls_radps)

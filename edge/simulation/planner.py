@@ -8,12 +8,13 @@ import numpy as np
 
 from edge.simulation.body_plan import BodyPlan
 from edge.simulation.gait import PACES, STAIRS_PACES, TURN, Gait
-from edge.simulation.idle_movements import sit, stay_kneeling, wait
+from edge.simulation.idle_movements import raise_foot, sit, stay_kneeling, wait
 from edge.simulation.legs import (
     Kneel,
     Leg,
     Lie,
     Point,
+    RaiseFoot,
     Ride,
     Sit,
     Spiral,
@@ -56,6 +57,9 @@ class Planner:
             stay_kneeling(self.plan, self._rng, leg.duration_s)
         elif isinstance(leg, Sit):
             sit(self.plan, self._rng, leg.duration_s)
+        elif isinstance(leg, RaiseFoot):
+            for _ in range(leg.times):
+                raise_foot(self.plan, self._rng, leg.height_m)
         elif isinstance(leg, Ride):
             ride(self.plan, leg.rise_m, leg.speed_mps)
         elif isinstance(leg, Turn):

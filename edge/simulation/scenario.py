@@ -46,6 +46,9 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     acknowledges_every_s: Annotated[int, Meta(ge=1)] | None = None  # looks at the unit so often
     worn_on: Segment = "foot"
     rate_hz: Annotated[float, Meta(ge=20.0, le=5000.0)] = 200.0
+    conversions: Annotated[int, Meta(ge=1, le=64)] = 1  # of which an inertial reading is the mean
+    gyro_full_scale_degps: Annotated[float, Meta(ge=100.0, le=10_000.0)] | None = None  # else 2000
+    accel_full_scale_g: Annotated[float, Meta(ge=1.0, le=1000.0)] | None = None  # else 16
 
     def __post_init__(self) -> None:
         times_s = [t_s for t_s, _ in self.ambient_degc]

@@ -1,4 +1,4 @@
-"""Built-in scenarios: four working days in the training house, and measured paths."""
+"""Built-in scenarios: working days in the training house, measured paths, and hard motions."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from math import pi
 
 from edge.simulation.beacons import BeaconPlace
 from edge.simulation.building import load_building
+from edge.simulation.hard_motions import HARD_MOTIONS
 from edge.simulation.legs import Crawl, Leg, Lie, Point, Ride, Stand, Turn, Walk
 from edge.simulation.polyline import arc
 from edge.simulation.scenario import Scenario
@@ -231,4 +232,5 @@ SCENARIOS: tuple[Scenario, ...] = (
         Lie(10.0),
         Walk(((0.0, 0.0),), pace="search"),
     ),
+    *HARD_MOTIONS,
 )

@@ -39,7 +39,14 @@ from edge.simulation.environment import (
     earth_n_ut,
 )
 from edge.simulation.gps import Gps
-from edge.simulation.imu import CONSUMER_IMU, IDEAL_IMU, UNCALIBRATED_IMU, Imu, ImuErrors
+from edge.simulation.imu import (
+    CONSUMER_IMU,
+    GRAVITY_MPS2,
+    IDEAL_IMU,
+    UNCALIBRATED_IMU,
+    Imu,
+    ImuErrors,
+)
 from edge.simulation.kinematics import Motion
 from edge.simulation.planner import Planner
 from edge.simulation.scenario import Scenario
@@ -80,7 +87,7 @@ class Simulation:
         number: int = 0,
     ) -> None:
         self.scenario = scenario
-        self.sensors = sensors
+        self.sensors = _limited(sensors, scenario)
         house = load_building()
         self._building = house if scenario.building else None
         self._anchor = scenario.anchor or house.anchor
@@ -133,6 +140,15 @@ class Simulation:
     def _body(self, t_s: Floats) -> Motion:
         return segment_motion(self.scenario.worn_on, self.plan, self._tremor, t_s)
 
+    def _converted(self, t_s: Floats, body: Motion) -> Motion:
+        """Return the motion at every conversion, evenly about the times of the readings."""
+        conversions = self.scenario.conversions
+        if conversions == 1:
+            return body
+        offsets = (np.arange(conversions) - 0.5 * (conversions - 1)) / conversions
+        each_s = (t_s[:, np.newaxis] + offsets / self.scenario.rate_hz).reshape(-1)
+        return self._body(np.maximum(each_s, 0.0))
+
     def batches(self, batch_s: float = 0.05) -> Iterator[SensorBatch]:
         """The whole walk from its start, generated as it is asked for."""
         rate_hz = self.scenario.rate_hz
@@ -155,7 +171,7 @@ class Simulation:
             t_s = index / rate_hz
             body = self._body(t_s)
             temperature_degc = self._imu_temperature_degc(t_s)
-            accel_mps2, gyro_radps = imu.measure(body, temperature_degc)
+            accel_mps2, gyro_radps = imu.measure(self._converted(t_s, body), temperature_degc)
             rotation_ns = body.rotation_nb @ self._rotation_bs
             yield SensorBatch(
                 ImuBatch(
@@ -236,6 +252,16 @@ class _Others:
             (float(place[1, 0]), float(place[1, 1]), float(place[1, 2])),
             (float(velocity[0]), float(velocity[1])),
         )
+
+
+def _limited(sensors: SensorErrors, scenario: Scenario) -> SensorErrors:
+    """Return the sensors with the full scales that the scenario has."""
+    accel, gyro = sensors.imu.accel, sensors.imu.gyro
+    if scenario.accel_full_scale_g is not None:
+        accel = replace(accel, full_scale=scenario.accel_full_scale_g * GRAVITY_MPS2)
+    if scenario.gyro_full_scale_degps is not None:
+        gyro = replace(gyro, full_scale=radians(scenario.gyro_full_scale_degps))
+    return replace(sensors, imu=replace(sensors.imu, accel=accel, gyro=gyro))
 
 
 def _plan(scenario: Scenario, rng: np.random.Generator) -> BodyPlan:

@@ -68,13 +68,18 @@ def _quaternion(rotation_nb: Floats) -> Floats:
         ("gaits", "shank", 90.0),
         ("gaits", "hip", 90.0),
         ("climbs-stairs", "chest", 60.0),
+        ("raised-feet", "foot", 40.0),
+        ("changing-gaits", "foot", 30.0),
+        ("dragged-foot", "pocket", 40.0),
     ],
 )
 def test_ideal_sensors_integrate_to_the_truth(
     name: str, worn_on: Segment, duration_s: float
 ) -> None:
     scenario = next(scenario for scenario in SCENARIOS if scenario.name == name)
-    scenario = replace(scenario, rate_hz=RATE_HZ, duration_s=duration_s, worn_on=worn_on)
+    scenario = replace(
+        scenario, rate_hz=RATE_HZ, duration_s=duration_s, worn_on=worn_on, conversions=1
+    )
     simulation = Simulation(scenario, seed=3, sensors=IDEAL_SENSORS)
     start = simulation.truth(np.zeros(1))
     state = np.concatenate(

@@ -21,6 +21,7 @@ from edge.tracker.registry import TRACKERS
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import UserError
 from tests.bench.tracker.cross_validation import cross_validate, left_out_table
+from tests.bench.tracker.hard_motions import hard_motions_table, measure_hard_motions
 from tests.bench.tracker.honesty import honesty_table, measure_honesty
 from tests.bench.tracker.perturbed_walks import perturbed_table, score_perturbed
 from tests.bench.tracker.scoring import Score, score_track
@@ -68,7 +69,8 @@ WIDTH = 140  # that the tables need
 
 
 SimulatedOption = Annotated[
-    bool, typer.Option("--simulated", help="Also score the thesis's walks, simulated.")
+    bool,
+    typer.Option("--simulated", help="Also score simulated walks: the thesis's, and hard motions."),
 ]
 SpeedOption = Annotated[
     bool, typer.Option("--speed", help="Also measure samples per second and live latency.")
@@ -120,6 +122,10 @@ def bench_track(
         "trials": [{"dataset": s.dataset, "trial": s.trial, **asdict(s.score)} for s in scores],
         "datasets": summarise(scores),
     }
+    if simulated:
+        hard = measure_hard_motions(tracker)
+        console.print(hard_motions_table(hard))
+        report["hard_motions"] = [asdict(one) for one in hard]
     if speed:
         report["speed"] = _speed(first[0], tracker, console)
     if perturbed:

@@ -80,6 +80,14 @@ def test_scale_misalignment_temperature_and_g_sensitivity() -> None:
     assert np.abs(measure(TriadErrors(g_sensitivity_std=0.01), zero)).max() > 0.0
 
 
+def test_a_reading_is_the_mean_of_clipped_conversions() -> None:
+    spikes = np.zeros((8, 3))
+    spikes[2] = 9.0
+    triad = Triad(TriadErrors(full_scale=2.0), RATE_HZ, np.random.default_rng(0))
+    readings = triad.measure(spikes, np.zeros((8, 3)), np.full(2, WARM))
+    assert readings == pytest.approx(np.array([[0.5] * 3, [0.0] * 3]))
+
+
 def test_clipping_and_quantisation() -> None:
     ramp = np.repeat(np.linspace(-3.0, 3.0, 601)[:, None], 3, axis=1)
     clipped = measure(TriadErrors(full_scale=2.0), ramp)

@@ -286,7 +286,7 @@ def test_no_gait_goes_through_the_floor(pace: Pace) -> None:
     height_m = -simulation.truth(np.arange(0.0, simulation.duration_s, 0.005)).position_n_m[:, 2]
     # A heel on a slope in the rubble has the instep low.
     assert height_m.min() > (0.02 if pace == "rubble" else 0.055)
-    assert height_m.max() > 0.1
+    assert (height_m.max() > 0.1) == (pace != "drag")
 
 
 @pytest.mark.parametrize("leg", [Wait(60.0), Kneel(30.0), Sit(90.0)], ids=["wait", "kneel", "sit"])
