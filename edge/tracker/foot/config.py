@@ -199,6 +199,16 @@ class EskfConfig(NamedTuple):
     gap_rate_s: float = 0.07  # for which a rate goes its way
     gap_force_s: float = 0.05  # the same of a force
 
+    # Lost samples that the stamps do not show (unstamped_loss.py).
+    loss_field_ut: float = 2.0  # change of the field beyond the expected one, between two samples
+    loss_even_ut: float = 0.5  # change before and after, or the foot does not turn
+    loss_ratio: float = 1.5  # change by those before and after
+    loss_bend_ratio: float = 2.0  # unexpected change by how much those around differ
+    loss_longest_s: float = 0.25
+    loss_std_share: float = 0.5  # deviation of the duration by itself
+    loss_std_s: float = 0.005  # ... and at least
+    loss_unseen_ratio: float = 2.0  # way that others hide, by that of losses that are seen
+
     # A longer gap (reinitialisation.py).
     gap_speed_std_mps: float = 1.5
     gap_turn_std_radps: float = 1.0

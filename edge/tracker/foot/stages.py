@@ -33,12 +33,14 @@ from edge.tracker.foot.filter.reinitialisation import open_gap_s, reinitialise
 from edge.tracker.foot.filter.scale_misalignment import propagate_scale_errors
 from edge.tracker.foot.filter.strapdown import dot, rotation_matrix
 from edge.tracker.foot.filter.temperature_bias import update_temperature_bias
+from edge.tracker.foot.filter.unstamped_loss_propagation import hold_readings, inflate_for_loss
 from edge.tracker.foot.output.quality import assign_quality, note_faults
 from edge.tracker.foot.output.reported_covariance import accumulate_heading_bias, report_covariance
-from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES
+from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
 from edge.tracker.foot.preprocessing.sample_times import lacks_samples
 from edge.tracker.foot.preprocessing.saturation_detection import ACCEL_SATURATED, GYRO_SATURATED
 from edge.tracker.foot.preprocessing.saturation_recovery import recover_forces, recover_rates
+from edge.tracker.foot.preprocessing.unstamped_loss import unstamped_loss_s
 from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress, Step, Trail
 from edge.tracker.foot.zupt.level_walking import apply_level_constraint
@@ -155,6 +157,12 @@ def _predict(
     if dt_s == 0.0:
         return
     mean_readings(ring, progress, state, k, config)
+    lost_s = unstamped_loss_s(ring, progress, k, config)
+    if lost_s > 0.0:
+        hold_readings(ring, state, slot, config)
+        dt_s += lost_s
+        ring[slot].flags |= SAMPLE_GAP
+        state.faulty_stride = True
     if progress.similar_count:
         propagate_through_gap(ring, progress, state, k, dt_s, config)
     else:
@@ -169,7 +177,9 @@ def _predict(
     state.swing_speed_mps = max(state.swing_speed_mps, speed_mps)
     state.swing_level_speed_mps = max(state.swing_level_speed_mps, level_mps)
     _add_noise(ring, progress, state, k, dt_s, config)
-    if lacks_samples(ring, slot, dt_s):
+    if lost_s > 0.0:
+        inflate_for_loss(state, lost_s, config)
+    elif lacks_samples(ring, slot, dt_s):
         state.faulty_stride = True
         inflate_for_gap(ring, progress, state, k, dt_s, config)
     ring[slot].interval_s = dt_s
