@@ -84,9 +84,11 @@ class TrackerPipeline:
         *,
         mayday: bool = False,
         raw_uplink: RawUplink | None = None,
+        worn_on_foot: bool = True,
     ) -> None:
         """``mayday``: one was latched when the unit last came to a sudden end.  ``raw_uplink``:
-        of a unit that sends its samples for somebody else to track with.
+        of a unit that sends its samples for somebody else to track with.  ``worn_on_foot``: false
+        for a tracker that is made for another part of the body.
         """
         self._identity = identity
         self._correction = (
@@ -98,7 +100,7 @@ class TrackerPipeline:
         self._stamper = stamper
         self._positions = PositionPublisher(stamper, position_rate_hz)
         self._monitor = ActivityMonitor()
-        self._mounting = MountingCheck()
+        self._mounting = MountingCheck() if worn_on_foot else None
         self._health = SensorHealth()
         self._expected_field = ExpectedField(identity.place)
         self._status_times = Decimator(_rate_hz(STATUS))
@@ -140,7 +142,8 @@ class TrackerPipeline:
 
     @property
     def is_on_foot(self) -> bool:
-        return self._mounting.is_on_foot
+        """False once the motion has contradicted what the tracker needs."""
+        return self._mounting is None or self._mounting.is_on_foot
 
     @property
     def battery(self) -> float | None:
@@ -176,8 +179,9 @@ class TrackerPipeline:
             messages += self._take_other(sample, timeline)
         if self._raw_uplink is not None:
             messages += self._raw_uplink.push(batch.imu, timeline)
-        self._mounting.push(imu)
-        self._positions.set_mounting(is_on_foot=self._mounting.is_on_foot)
+        if self._mounting is not None:
+            self._mounting.push(imu)
+            self._positions.set_mounting(is_on_foot=self._mounting.is_on_foot)
         self._positions.take_pressure(batch.imu)
         messages += self._positions.push(track, timeline)
         if self._monitor.push(imu, track):

@@ -49,7 +49,8 @@ from edge.storage.data_folder import UnitDataFolder
 from edge.storage.journal.journal import Journal, open_journal
 from edge.storage.journal.server import JournalServer
 from edge.storage.journal.writer import JournalWriter
-from edge.tracker.registry import NoTracker, make_tracker
+from edge.tracker.interface import FOOT
+from edge.tracker.registry import NoTracker, find_tracker
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import SystemClock
 from shared.envelope import Stamper
@@ -223,6 +224,7 @@ def _pipeline(
     if calibration is not None:
         sensor = calibration.described(sensor)
     tracks = config.tracker != NO_TRACKER
+    entry = find_tracker(config.tracker, (NO_TRACKER,)) if tracks else None
     return TrackerPipeline(
         UnitIdentity(
             _version(),
@@ -233,11 +235,12 @@ def _pipeline(
             outputs=outputs.kinds,
             place=config.place,
         ),
-        make_tracker(config.tracker, sensor, (NO_TRACKER,)) if tracks else NoTracker(),
+        NoTracker() if entry is None else entry.make(sensor),
         stamper,
         position_rate_before(journal, clock.monotonic_ns()) or config.position_rate_hz,
         mayday=latch.was_active or mayday_before(journal),
         raw_uplink=None if tracks else RawUplink(stamper),
+        worn_on_foot=entry is None or FOOT in entry.worn_on,
     )
 
 

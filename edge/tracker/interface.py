@@ -17,7 +17,9 @@ from edge.samples import Floats, ImuBatch, Nanoseconds, SensorDescription
 from shared.earth_field import EarthField
 from shared.quality import Quality, Reason
 
-__all__ = ["Quality", "Reason", "TrackBatch", "Tracker", "TrackerEntry"]
+__all__ = ["FOOT", "Quality", "Reason", "TrackBatch", "Tracker", "TrackerEntry"]
+
+FOOT = "foot"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,3 +80,4 @@ class TrackerEntry:
     name: str
     summary: str
     make: Callable[[SensorDescription], Tracker]
+    worn_on: tuple[str, ...] = (FOOT,)  # parts of the body, the one it is meant for first

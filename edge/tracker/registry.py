@@ -7,6 +7,7 @@ from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.huang.tracker import HuangTracker
 from edge.tracker.interface import TrackBatch, Tracker, TrackerEntry
+from edge.tracker.waist.tracker import WaistTracker
 from shared.earth_field import EarthField
 from shared.errors import ConfigError
 
@@ -33,6 +34,12 @@ TRACKERS: tuple[TrackerEntry, ...] = (
     TrackerEntry(
         "huang", "the thesis's method: pitch-rate stance, quasi-static resets", HuangTracker
     ),
+    TrackerEntry(
+        "waist",
+        "steps of a sensor on the waist, lengths by their frequency",
+        WaistTracker,
+        ("hip",),
+    ),
 )
 
 
@@ -43,8 +50,13 @@ def make_tracker(
 
     ``other_names``: what else the caller would have taken for a name.
     """
+    return find_tracker(name, other_names).make(description)
+
+
+def find_tracker(name: str, other_names: tuple[str, ...] = ()) -> TrackerEntry:
+    """Return the line of ``TRACKERS`` with this name; see ``make_tracker``."""
     for entry in TRACKERS:
         if entry.name == name:
-            return entry.make(description)
+            return entry
     known = ", ".join((*(entry.name for entry in TRACKERS), *other_names))
     raise ConfigError(f"There is no tracker '{name}'. Known trackers: {known}.")

@@ -8,15 +8,19 @@ from pathlib import Path
 
 import pytest
 
+from edge.tracker.interface import FOOT
 from edge.tracker.registry import TRACKERS
+from tests.bench.tracker.documented_routes import ROUTES
 from tests.bench.tracker.simulated_walks import simulated_walks
 from tests.bench.tracker.track import find_trials, score_simulation, score_trial, summarise
 from tests.golden.documented_figures import figures, read_table
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "benchmarks.md"
-NAMES = [entry.name for entry in TRACKERS]
-BESIDE = ("walks", "figure")  # the table of all trackers
+NAMES = [entry.name for entry in TRACKERS if FOOT in entry.worn_on]
+ELSEWHERE = [entry.name for entry in TRACKERS if FOOT not in entry.worn_on]
+BESIDE = ("walks", "figure")  # the table of all trackers of a foot
+ROUTE = ("route", "document")  # that of all others
 RECORDED = {  # how a row of it begins, and the dataset
     "motion capture": "vicon",
     "footprints": "footprints",
@@ -46,7 +50,7 @@ def recorded(folder, name):
 
 @cache
 def simulated(name, walk):
-    return [score_simulation(one, name) for one in simulated_walks() if one.startswith(walk)]
+    return [score_simulation(one, name) for one in simulated_walks(name) if one.startswith(walk)]
 
 
 def statistic_of(figure):
@@ -94,6 +98,21 @@ def test_figures_of_simulated_walks_are_those_of_a_run(name):
         (stated,) = figures(row[f"`{name}`"])
         measured = summarise(scores)["simulated"][field][statistic]
         assert stated.holds(measured), f"{label}: {stated.value}, {measured:.3f}"
+
+
+def test_every_tracker_worn_elsewhere_has_a_column_and_every_route_a_row():
+    rows = read_table(PAGE, *ROUTE)
+    assert [title.strip("`") for title in rows[0]][len(ROUTE) :] == ELSEWHERE
+    assert [row["route"].strip("`") for row in rows] == [*ROUTES]
+
+
+@pytest.mark.parametrize("name", ELSEWHERE)
+def test_figures_of_documented_routes_are_those_of_a_run(name):
+    for row in read_table(PAGE, *ROUTE):
+        scores = simulated(name, row["route"].strip("`"))
+        (stated,) = figures(row[f"`{name}`"])
+        measured = summarise(scores)["simulated"]["per_cent_of_distance"]["mean"]
+        assert stated.holds(measured), f"{row['route']}: {stated.value}, {measured:.3f}"
 
 
 def test_figures_of_hard_walks_are_those_of_a_run(hard_walks):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from edge.tracker.registry import TRACKERS
-from tests.golden.tracker_figures import GOLDEN, TRIALS, golden_path, measure, read_golden
+from tests.golden.tracker_figures import GOLDEN, golden_path, measure, read_golden, trials_of
 
 NAMES = [entry.name for entry in TRACKERS]
 
@@ -30,4 +30,4 @@ def test_trajectories_and_figures_change_only_on_purpose(name, hard_walks):
 
 def test_each_golden_file_is_of_a_registered_tracker_and_has_every_trial():
     assert {path.stem for path in GOLDEN.glob("*.json")} == set(NAMES)
-    assert all(list(read_golden(name)) == list(TRIALS) for name in NAMES)
+    assert all(list(read_golden(name)) == list(trials_of(name)) for name in NAMES)

@@ -1,14 +1,22 @@
-"""The thesis's walks (Huang 2009, chapter 4), simulated, for ``muster bench track --simulated``."""
+"""The documents' walks, simulated, for ``muster bench track --simulated``.
+
+Trackers of a foot walk those of Huang 2009, chapter 4; others those of their own documents
+(``documented_routes``).
+"""
 
 from __future__ import annotations
 
 import numpy as np
+from msgspec.structs import replace
 
 from edge.simulation.factory import open_simulation
+from edge.simulation.simulation import Simulation
 from edge.sources.recording import RecordedTruth
 from edge.tracker.foot.filter.strapdown import rotation_matrix
 from edge.tracker.foot.output.track_rows import join_rows
-from edge.tracker.registry import make_tracker
+from edge.tracker.interface import FOOT, TrackBatch
+from edge.tracker.registry import find_tracker, make_tracker
+from tests.bench.tracker.documented_routes import ROUTES
 from tests.bench.tracker.scoring import Score, score_track
 
 WALKS = ("square-60m", "rectangle", "j-shape", "track-400m")
@@ -16,14 +24,23 @@ SEEDS = range(3)
 _TRUTH_STEP_S = 0.5
 
 
-def simulated_walks() -> tuple[str, ...]:
-    """Every walk with every seed, as ``NAME?seed=N``."""
-    return tuple(f"{walk}?seed={seed}" for walk in WALKS for seed in SEEDS)
+def simulated_walks(tracker: str) -> tuple[str, ...]:
+    """Every walk for a tracker with every seed, as ``NAME?seed=N``."""
+    walks = WALKS if FOOT in find_tracker(tracker).worn_on else tuple(ROUTES)
+    return tuple(f"{walk}?seed={seed}" for walk in walks for seed in SEEDS)
 
 
 def score_simulated(walk: str, tracker: str) -> Score:
     """Run one simulated walk through a tracker and score it against its exact truth."""
-    simulation = open_simulation(walk)
+    rows, truth = track_simulated(walk, tracker)
+    # Where a sensor faces on a trunk is not known, so the frame of its attitude is not the path's.
+    heading_known = FOOT in find_tracker(tracker).worn_on
+    return score_track(rows, truth, closed_loop=False, heading_known=heading_known)
+
+
+def track_simulated(walk: str, tracker: str) -> tuple[TrackBatch, RecordedTruth]:
+    """Return the rows of ``NAME?seed=N`` and the truth in their frame."""
+    simulation = _open(walk, find_tracker(tracker).worn_on[0])
     tracking = make_tracker(tracker, simulation.description)
     rows = join_rows([*(tracking.push(batch.imu) for batch in simulation.batches()),
                       tracking.finish()])  # fmt: skip
@@ -35,5 +52,11 @@ def score_simulated(walk: str, tracker: str) -> Score:
     yaw_rad = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
     c, s = np.cos(yaw_rad), np.sin(yaw_rad)
     to_walk = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    truth = RecordedTruth(t_s, motion.position_n_m @ to_walk.T)
-    return score_track(rows, truth, closed_loop=False, heading_known=True)
+    return rows, RecordedTruth(t_s, motion.position_n_m @ to_walk.T)
+
+
+def _open(walk: str, worn_on: str) -> Simulation:
+    name, _, seed = walk.partition("?seed=")
+    if name in ROUTES:
+        return Simulation(replace(ROUTES[name], worn_on=worn_on), int(seed))
+    return open_simulation(f"{walk}&worn_on={worn_on}")

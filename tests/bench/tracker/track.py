@@ -17,7 +17,8 @@ from rich.table import Table
 
 from edge.app.track import run_tracker
 from edge.sources.recording import RecordingSource, read_truth
-from edge.tracker.registry import TRACKERS
+from edge.tracker.interface import FOOT
+from edge.tracker.registry import TRACKERS, find_tracker
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import UserError
 from tests.bench.tracker.cross_validation import cross_validate, left_out_table
@@ -70,7 +71,9 @@ WIDTH = 140  # that the tables need
 
 SimulatedOption = Annotated[
     bool,
-    typer.Option("--simulated", help="Also score simulated walks: the thesis's, and hard motions."),
+    typer.Option(
+        "--simulated", help="Also score simulated walks: the document's, and hard motions."
+    ),
 ]
 SpeedOption = Annotated[
     bool, typer.Option("--speed", help="Also measure samples per second and live latency.")
@@ -122,7 +125,7 @@ def bench_track(
         "trials": [{"dataset": s.dataset, "trial": s.trial, **asdict(s.score)} for s in scores],
         "datasets": summarise(scores),
     }
-    if simulated:
+    if simulated and FOOT in find_tracker(tracker).worn_on:
         hard = measure_hard_motions(tracker)
         console.print(hard_motions_table(hard))
         report["hard_motions"] = [asdict(one) for one in hard]
@@ -152,7 +155,7 @@ def _scores(sets: Mapping[Path, Sequence[Path]], tracker: str, simulated: bool) 
         for path in trials
     ]
     if simulated:
-        scorings += [partial(score_simulation, walk, tracker) for walk in simulated_walks()]
+        scorings += [partial(score_simulation, walk, tracker) for walk in simulated_walks(tracker)]
     return [
         scoring()
         for scoring in progress_bar(
