@@ -22,6 +22,8 @@ def test_errors_stay_below_three_per_cent_of_the_way(route, seed):
     """Li et al. 2014: 5 m at most on 174 m."""
     rows, truth = tracked(f"{route}?seed={seed}")
     score = score_track(rows, truth, closed_loop=False)
+    assert score.per_cent_of_distance is not None
+    assert score.coverage_95_from_start is not None
     assert score.per_cent_of_distance < 3.0
     assert score.coverage_95_from_start > 0.9
     assert score.silently_wrong == 0.0
@@ -39,4 +41,5 @@ def test_stairs_are_stated_as_less_certain():
     """The formula of the step length is for level ways: half as long on stairs."""
     rows, truth = tracked("five-floors?seed=0")
     score = score_track(rows, truth, closed_loop=False)
+    assert score.coverage_95_from_start is not None
     assert score.coverage_95_from_start > 0.9

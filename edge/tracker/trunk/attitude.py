@@ -18,7 +18,7 @@ from edge.samples import Floats
 from edge.tracker.foot.filter.quasi_static import static_orientation
 from edge.tracker.foot.filter.strapdown import rotate_attitude, rotation_matrix
 from edge.tracker.foot.sample_ring import Ring
-from edge.tracker.trunk.state import TrunkConfig, TrunkState
+from edge.tracker.trunk.state import Row, TrunkConfig, TrunkState
 
 _FIELD_GAP_S = 0.1  # a field that is older says nothing of the time between
 _LEAST_FORCE_MPS2, _MOST_FORCE_MPS2 = 5.0, 15.0  # beyond these it is no gravity
@@ -59,7 +59,7 @@ def follow_attitude(
 
 
 @njit()
-def _follow_rest(here: Ring, trunk: TrunkState, dt_s: float, config: TrunkConfig) -> None:
+def _follow_rest(here: Row, trunk: TrunkState, dt_s: float, config: TrunkConfig) -> None:
     norm_mps2 = norm_of(here.accel_mps2)
     off_mps2 = abs(norm_mps2 - trunk.rest_norm_mps2)
     trunk.rest_norm_mps2 += (norm_mps2 - trunk.rest_norm_mps2) * dt_s / config.norm_memory_s
@@ -75,7 +75,7 @@ def _follow_rest(here: Ring, trunk: TrunkState, dt_s: float, config: TrunkConfig
 
 @njit()
 def _add_tilt(
-    here: Ring, trunk: TrunkState, dt_s: float, angle_b_rad: Floats, config: TrunkConfig
+    here: Row, trunk: TrunkState, dt_s: float, angle_b_rad: Floats, config: TrunkConfig
 ) -> None:
     """Add a share of the error of the tilt, as the paper's S_a x S_g."""
     force, rotation_nb = here.accel_mps2, trunk.rotation_nb
@@ -90,7 +90,7 @@ def _add_tilt(
 
 
 @njit()
-def _add_heading(here: Ring, trunk: TrunkState, angle_b_rad: Floats, config: TrunkConfig) -> None:
+def _add_heading(here: Row, trunk: TrunkState, angle_b_rad: Floats, config: TrunkConfig) -> None:
     """Add a share of the error of the heading, as the paper's S_m x S_b about the vertical."""
     field, rotation_nb = here.mag_ut, trunk.rotation_nb
     north_ut = rotation_nb[0, 0] * field[0] + rotation_nb[0, 1] * field[1]

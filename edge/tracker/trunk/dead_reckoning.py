@@ -17,7 +17,7 @@ from edge.tracker.foot.sample_ring import Ring, history
 from edge.tracker.interface import Quality, Reason
 from edge.tracker.trunk.attitude import add_forward
 from edge.tracker.trunk.pressure_height import height_var_m2
-from edge.tracker.trunk.state import TrunkConfig, TrunkState
+from edge.tracker.trunk.state import Row, TrunkConfig, TrunkState
 
 GOOD, DEGRADED, LOST = int(Quality.GOOD), int(Quality.DEGRADED), int(Quality.LOST)
 UNCERTAIN, UNSETTLED = int(Reason.UNCERTAIN), int(Reason.UNSETTLED)
@@ -135,7 +135,7 @@ def place_row(ring: Ring, trunk: TrunkState, k: int, config: TrunkConfig) -> Non
 
 
 @njit()
-def state_errors(trunk: TrunkState, row: Ring, config: TrunkConfig) -> None:
+def state_errors(trunk: TrunkState, row: Row, config: TrunkConfig) -> None:
     """Write the stated covariance of the place into ``row``, and the quality that follows."""
     length_m, heading_m = trunk.length_error_m, trunk.heading_error_m
     covariance = row.position_cov_m2

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from edge.tracker.foot.sample_ring import Ring
-from edge.tracker.trunk.state import TrunkConfig, TrunkState
+from edge.tracker.trunk.state import Row, TrunkConfig, TrunkState
 
 _STANDARD_PA = 101_325.0
 _SCALE_M, _EXPONENT = 44_330.0, 5.255
@@ -22,7 +21,7 @@ def pressure_height_m(pressure_pa: float) -> float:
 
 
 @njit()
-def follow_height(here: Ring, trunk: TrunkState, config: TrunkConfig) -> None:
+def follow_height(here: Row, trunk: TrunkState, config: TrunkConfig) -> None:
     """Take the pressure of a sample, if there is one, into the smoothed height."""
     pressure_pa = here.pressure_pa
     if not _THINNEST_PA < pressure_pa < _DENSEST_PA:

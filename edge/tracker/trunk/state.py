@@ -10,6 +10,7 @@ from edge.samples import SensorDescription
 from edge.tracker.kernel_cache import SOURCES
 
 TrunkState: TypeAlias = Any  # one record of TRUNK
+Row: TypeAlias = Any  # one record of a ring
 
 TRUNK = np.dtype(
     [
