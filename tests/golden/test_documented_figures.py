@@ -11,7 +11,7 @@ import pytest
 from edge.tracker.interface import FOOT
 from edge.tracker.registry import TRACKERS
 from tests.bench.tracker.documented_routes import ROUTES
-from tests.bench.tracker.simulated_walks import simulated_walks
+from tests.bench.tracker.simulated_walks import CALIBRATED, simulated_walks
 from tests.bench.tracker.track import find_trials, score_simulation, score_trial, summarise
 from tests.golden.documented_figures import figures, read_table
 
@@ -31,8 +31,12 @@ SIMULATED = {
     "square of 60 m": "square-60m",
     "rectangle": "rectangle",
     "J-shape": "j-shape",
+    "square of 60 m, calibrated": f"square-60m{CALIBRATED}",
+    "rectangle, calibrated": f"rectangle{CALIBRATED}",
+    "J-shape, calibrated": f"j-shape{CALIBRATED}",
 }
-TOO_LONG = {"track of 400 m"}  # takes as much time as all others: muster bench track --simulated
+# These take as much time as all others: muster bench track --simulated.
+TOO_LONG = {"track of 400 m", "track of 400 m, calibrated"}
 FIGURES = {
     "2D ARMSE": "armse_2d_m",
     "ATE": "ate_m",
@@ -50,7 +54,13 @@ def recorded(folder, name):
 
 @cache
 def simulated(name, walk):
-    return [score_simulation(one, name) for one in simulated_walks(name) if one.startswith(walk)]
+    """Scores of a walk with every seed; the suffix says which sensors."""
+    route, calibrated, _ = walk.partition(CALIBRATED)
+    return [
+        score_simulation(one, name)
+        for one in simulated_walks(name)
+        if one.startswith(f"{route}?") and one.endswith(CALIBRATED) == bool(calibrated)
+    ]
 
 
 def statistic_of(figure):

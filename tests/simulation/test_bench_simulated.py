@@ -7,7 +7,7 @@ from tests.bench.tracker.simulated_walks import score_simulated, simulated_walks
 
 def test_every_walk_comes_with_every_seed():
     walks = simulated_walks("eskf")
-    assert len(set(walks)) == len(walks) == 12
+    assert len(set(walks)) == len(walks) == 24
 
 
 def test_the_square_is_scored_against_its_truth():

@@ -1,7 +1,7 @@
 """The documents' walks, simulated, for ``muster bench track --simulated``.
 
-Trackers of a foot walk those of Huang 2009, chapter 4; others those of their own documents
-(``documented_routes``).
+Trackers of a foot walk those of Huang 2009, chapter 4, with sensors as they are and calibrated;
+others those of their own documents (``documented_routes``).
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from msgspec.structs import replace
 
+from edge.calibration.correction import Correction
 from edge.simulation.factory import open_simulation
 from edge.simulation.simulation import Simulation
 from edge.sources.recording import RecordedTruth
@@ -18,16 +19,24 @@ from edge.tracker.interface import FOOT, TrackBatch
 from edge.tracker.registry import find_tracker, make_tracker
 from tests.bench.tracker.documented_routes import ROUTES
 from tests.bench.tracker.scoring import Score, score_track
+from tests.bench.tracker.simulated_calibration import calibration_of
 
 WALKS = ("square-60m", "rectangle", "j-shape", "track-400m")
 SEEDS = range(3)
+CALIBRATED = "&calibrated"
 _TRUTH_STEP_S = 0.5
 
 
 def simulated_walks(tracker: str) -> tuple[str, ...]:
-    """Every walk for a tracker with every seed, as ``NAME?seed=N``."""
-    walks = WALKS if FOOT in find_tracker(tracker).worn_on else tuple(ROUTES)
-    return tuple(f"{walk}?seed={seed}" for walk in walks for seed in SEEDS)
+    """Every walk for a tracker with every seed, as ``NAME?seed=N``, ``&calibrated`` or not."""
+    if FOOT not in find_tracker(tracker).worn_on:
+        return tuple(f"{route}?seed={seed}" for route in ROUTES for seed in SEEDS)
+    return tuple(
+        f"{walk}?seed={seed}{sensors}"
+        for sensors in ("", CALIBRATED)
+        for walk in WALKS
+        for seed in SEEDS
+    )
 
 
 def score_simulated(walk: str, tracker: str) -> Score:
@@ -39,11 +48,18 @@ def score_simulated(walk: str, tracker: str) -> Score:
 
 
 def track_simulated(walk: str, tracker: str) -> tuple[TrackBatch, RecordedTruth]:
-    """Return the rows of ``NAME?seed=N`` and the truth in their frame."""
-    simulation = _open(walk, find_tracker(tracker).worn_on[0])
-    tracking = make_tracker(tracker, simulation.description)
-    rows = join_rows([*(tracking.push(batch.imu) for batch in simulation.batches()),
-                      tracking.finish()])  # fmt: skip
+    """Return the rows of a walk and the truth in their frame."""
+    calibrated = walk.endswith(CALIBRATED)
+    simulation = _open(walk.removesuffix(CALIBRATED), find_tracker(tracker).worn_on[0])
+    description = simulation.description
+    imus = [batch.imu for batch in simulation.batches()]
+    if calibrated:
+        calibration = calibration_of(simulation)
+        correction = Correction(calibration, description)
+        imus = [correction.push(imu) for imu in imus]
+        description = calibration.described(description)
+    tracking = make_tracker(tracker, description)
+    rows = join_rows([*map(tracking.push, imus), tracking.finish()])
     t_s = np.arange(rows.t_ns[0] * 1e-9, rows.t_ns[-1] * 1e-9, _TRUTH_STEP_S)
     motion = simulation.truth(t_s)
     start_nb = np.zeros((3, 3))
