@@ -1,1 +1,1 @@
-"""What trackers of a sensor on the trunk share: attitude, height, dead reckoning by steps."""
+"""Parts that trackers of a sensor on the trunk share: attitude, height, dead reckoning by steps."""
