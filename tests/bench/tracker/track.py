@@ -72,7 +72,7 @@ WIDTH = 140  # that the tables need
 SimulatedOption = Annotated[
     bool,
     typer.Option(
-        "--simulated", help="Also score simulated walks: the document's, and hard motions."
+        "--simulated", help="Also score the document's walks and hard motions, simulated."
     ),
 ]
 SpeedOption = Annotated[
