@@ -50,7 +50,7 @@ def change_intervals(state: StationState, action: SetAccountability) -> Iterator
 def begin(state: StationState, unit: UnitState) -> None:
     """Put the wearer of this unit on duty, where an incident is open."""
     incident = state.incident
-    if incident is not None and incident.closed_ns is None and unit.person is not None:
+    if incident is not None and incident.closed_ns is None and unit.wearer.person is not None:
         unit.duty = Duty(state.t_ns, ready_ns=state.t_ns)
         _update_due(state, unit.duty)
 
@@ -130,9 +130,9 @@ def update_work(state: StationState, unit: UnitState) -> bool:
     duty = unit.duty
     if duty is None or duty.rest_since_ns is not None or duty.work_since_ns is not None:
         return False
-    if unit.inside_since_ns is None:
+    if unit.place.inside_since_ns is None:
         return False
-    duty.work_since_ns = max(unit.inside_since_ns, duty.ready_ns)
+    duty.work_since_ns = max(unit.place.inside_since_ns, duty.ready_ns)
     _update_due(state, duty)
     return True
 
@@ -178,13 +178,13 @@ def _update_due(state: StationState, duty: Duty) -> None:
 
 
 def _is_addressed(unit: UnitState, action: CheckIn) -> bool:
-    if unit.duty is None or unit.person is None:
+    if unit.duty is None or unit.wearer.person is None:
         return False
     if action.unit_id:
         return action.unit_id == unit.unit_id
     if action.person_ids:
-        return unit.person.person_id in action.person_ids
-    return action.everyone or action.crew == unit.person.crew
+        return unit.wearer.person.person_id in action.person_ids
+    return action.everyone or action.crew == unit.wearer.person.crew
 
 
 def _open_incident(state: StationState) -> Incident:

@@ -6,11 +6,8 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import assert_never
 
-import msgspec
-
 from base_station.core import accountability, idempotency
 from base_station.core.alarms.alarm_manager import AlarmManager
-from base_station.core.closed_incidents import add_closed_incident
 from base_station.core.commands import command_tracker, mayday_acknowledgements
 from base_station.core.events import (
     ClosedIncidentChanged,
@@ -18,15 +15,17 @@ from base_station.core.events import (
     PinsChanged,
     TrailBackfilled,
 )
+from base_station.core.people_actions import (
+    PeopleAction,
+    apply_people_action,
+)
 from base_station.core.pins import pin_registry
 from base_station.core.pins.incident_scope import concerns_closed_incident
 from base_station.core.pins.pin_registry import PinAction, change_pins, units_of
 from base_station.core.positioning.positioning import Positioning
-from base_station.core.state import Alarm, Person, StationState, UnitState
+from base_station.core.state import Alarm, StationState, UnitState
 from base_station.core.state.command import SentCommand
 from base_station.core.state.resolve_queue import request_resolve
-from base_station.core.state.trust_tally import TrustTally
-from base_station.core.units import thermal_dose
 from base_station.fusion.gnss.common_mode_error import CommonModeError
 from base_station.fusion.interface import Start
 from base_station.site.plan_reader import PlanReader
@@ -36,8 +35,6 @@ from shared.messages.pins import PlaceBeacon, SetPin, StartTogether
 from shared.messages.station import (
     AcknowledgeAlarm,
     Action,
-    Assign,
-    CheckIn,
     CloseIncident,
     ConfirmCommand,
     DoneApart,
@@ -47,15 +44,12 @@ from shared.messages.station import (
     ReportProblem,
     ResolveAlarm,
     SendCommand,
-    SetAccountability,
     SetAnchor,
     SetPlan,
     SetReference,
-    SetRest,
     SetStart,
     SetThresholds,
     TakeOver,
-    Unassign,
     UndoConfirmation,
 )
 
@@ -121,14 +115,14 @@ class ActionHandler:
             case CloseIncident():
                 return self._close(state, by, action)
             case _:
-                return self._with_alarms(state, _apply_people_action(state, by, action))
+                return self._with_alarms(state, apply_people_action(state, by, action))
 
     def _site(self, state: StationState, action: SetAnchor | SetPlan | SetReference) -> None:
         if isinstance(action, SetAnchor):
             self._positioning.set_anchor(state, _anchor(action))
         elif isinstance(action, SetReference):
             _require_finite(action.down_m)
-            unit_id = _registered(state, action.unit_id).unit_id if action.unit_id else None
+            unit_id = state.registered_unit(action.unit_id).unit_id if action.unit_id else None
             state.barometers.set_reference(unit_id, action.down_m)
             state.common_mode_error = CommonModeError()
         else:
@@ -217,31 +211,31 @@ class ActionHandler:
         yield from self._with_alarms(state, units)
 
     def _close(self, state: StationState, by: str, action: CloseIncident) -> Iterator[StateChange]:
-        units = list(_apply_people_action(state, by, action))
+        units = list(apply_people_action(state, by, action))
         yield from command_tracker.withdraw(state, action.incident_id)
         yield from self._with_alarms(state, units)
 
     def _open(self, state: StationState, by: str, action: OpenIncident) -> Iterator[StateChange]:
         before = state.incident
-        units = list(_apply_people_action(state, by, action))
+        units = list(apply_people_action(state, by, action))
         before_ns = 0 if before is None else before.closed_ns or 0
         yield _pins_changed(self._positioning.begin_incident(state, before_ns))
         yield from self._with_alarms(state, units)
 
     def _forget(self, state: StationState, action: ForgetWearers) -> list[StateChange]:
-        unit = _registered(state, action.unit_id)
+        unit = state.registered_unit(action.unit_id)
         if state.incident is not None and state.incident.closed_ns is None:
             raise UserError("an incident is open; close it first")
         self._positioning.forget(state, unit)
         met = pin_registry.forget(state, unit.unit_id)
         self._alarms.erase_names(state, unit)
         idempotency.erase_reasons(state)
-        unit.forget_wearers()
+        unit.wearer.erase_names()
         told = command_tracker.erase_names(state, unit)
         return [unit, TrailBackfilled(unit.unit_id), *told, _pins_changed(met), NamesErased()]
 
     def _start(self, state: StationState, action: SetStart) -> Iterator[StateChange]:
-        unit = _registered(state, action.unit_id)
+        unit = state.registered_unit(action.unit_id)
         _require_finite(action.north_m, action.east_m, action.down_m, action.heading_rad)
         _require_finite(action.std_m, action.heading_std_rad)
         if action.std_m < 0.0 or action.heading_std_rad < 0.0:
@@ -260,93 +254,6 @@ class ActionHandler:
         self._positioning.start(state, unit, start)
         yield _pins_changed(touched)
         yield from map(TrailBackfilled, sorted(touched))
-
-
-PeopleAction = (
-    OpenIncident | CloseIncident | Assign | Unassign | CheckIn | SetAccountability | SetRest
-)
-
-
-def _apply_people_action(state: StationState, by: str, action: PeopleAction) -> Iterable[UnitState]:
-    """Apply an action about who is there and accounted for."""
-    changed: Iterable[UnitState]
-    match action:
-        case OpenIncident():
-            changed = _open(state, action)
-        case CloseIncident():
-            changed = _close(state, action)
-        case Assign():
-            changed = _assign(state, action)
-        case Unassign():
-            changed = [_unassign(state, _registered(state, action.unit_id))]
-        case CheckIn():
-            changed = accountability.check_in(state, by, action)
-        case SetAccountability():
-            changed = accountability.change_intervals(state, action)
-        case SetRest():
-            unit = _registered(state, action.unit_id)
-            accountability.set_rest(state, unit, action.resting)
-            changed = [unit]
-        case _:
-            assert_never(action)
-    return changed
-
-
-def _open(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
-    running = state.incident
-    if running is not None and running.closed_ns is None:
-        raise UserError(f"the incident {running.name!r} is open; close it first")
-    state.incident = accountability.new_incident(state, action)
-    for unit in state.units.values():
-        unit.trails.shown.clear()
-        unit.trust = TrustTally()
-        unit.inside_since_ns = None
-        unit.heat_dose = unit.late_heat_dose = 0.0
-        thermal_dose.restart_intervals(unit.exposures)
-        unit.rejected_counts.clear()
-        accountability.begin(state, unit)
-    return state.units.values()
-
-
-def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
-    running = state.incident
-    if (
-        running is None
-        or running.incident_id != action.incident_id
-        or running.closed_ns is not None
-    ):
-        raise UserError(f"no open incident {action.incident_id}")
-    state.incident = msgspec.structs.replace(running, closed_ns=state.t_ns)
-    add_closed_incident(state, state.incident)
-    for unit in state.units.values():
-        accountability.end(state, unit)
-    return state.units.values()
-
-
-def _assign(state: StationState, action: Assign) -> Iterator[UnitState]:
-    unit = _registered(state, action.unit_id)
-    before, duty = unit.person, None
-    for other in state.units.values():
-        if other is not unit and other.person and other.person.person_id == action.person_id:
-            duty = other.duty
-            yield _unassign(state, other)
-    same = before is not None and before.person_id == action.person_id
-    if before is not None and not same:
-        unit.end_wearing(state.t_ns)
-    unit.person = Person(action.person_id, action.person_name, action.crew, action.role)
-    if not same:
-        unit.worn_since_ns = state.t_ns
-        if duty is None:
-            accountability.begin(state, unit)
-        else:  # with another unit, which is no word of theirs, and no rest
-            unit.duty = duty
-    yield unit
-
-
-def _unassign(state: StationState, unit: UnitState) -> UnitState:
-    unit.end_wearing(state.t_ns)
-    accountability.end(state, unit)
-    return unit
 
 
 def _is_first_known_place(state: StationState) -> bool:
@@ -373,13 +280,6 @@ def _or_raise(outcome: Alarm | str) -> Alarm:
     if isinstance(outcome, str):
         raise UserError(outcome)
     return outcome
-
-
-def _registered(state: StationState, unit_id: str) -> UnitState:
-    unit = state.units.get(unit_id)
-    if unit is None or not unit.registered:
-        raise UserError(f"no registered unit {unit_id!r}; register it first")
-    return unit
 
 
 def _require_finite(*values: float) -> None:

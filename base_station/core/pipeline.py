@@ -143,7 +143,7 @@ class StationPipeline:
         if link == unit.link and link not in {"stale", "lost"}:  # an old position looks older
             return []
         unit.link = link
-        unit.reach = self._positioning.reach(self.state, unit)
+        unit.place.reach = self._positioning.reach(self.state, unit)
         return [UnitChanged(unit.unit_id)]
 
     def _apply_action(self, message: OperatorAction) -> list[Output]:
@@ -166,7 +166,7 @@ class StationPipeline:
             else:
                 outputs.append(UnitChanged(effect.unit_id))
         if isinstance(message.action, SetAnchor | SetPlan):  # who is silent was seen there too
-            shown = [unit for unit in self.state.units.values() if unit.fused is not None]
+            shown = [unit for unit in self.state.units.values() if unit.place.fused is not None]
             for unit in shown:
                 outputs.extend(self._positioning.locate(self.state, unit))
         return outputs

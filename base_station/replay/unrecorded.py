@@ -28,7 +28,7 @@ class UnrecordedTime:
         self._pipeline = pipeline
         state = pipeline.state
         self._t_ns = state.t_ns
-        self._shown = {name: (unit.link, unit.reach) for name, unit in state.units.items()}
+        self._shown = {name: (unit.link, unit.place.reach) for name, unit in state.units.items()}
 
     def advance_time(self, t_ns: int) -> list[Output]:
         return self._pipeline.advance_time(t_ns)
@@ -37,5 +37,5 @@ class UnrecordedTime:
         state = self._pipeline.state
         state.t_ns = self._t_ns
         for name, (link, reach) in self._shown.items():
-            state.units[name].link, state.units[name].reach = link, reach
+            state.units[name].link, state.units[name].place.reach = link, reach
         return [UnitChanged(name) for name in self._shown]

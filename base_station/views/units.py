@@ -73,23 +73,23 @@ def _unit_view(
     open_alarms: Sequence[Alarm],
     conflicts: int,
 ) -> UnitView:
-    status = unit.shown_status
+    status, place, heat = unit.shown_status, unit.place, unit.heat
     trust = trust_of(unit, conflicts)
     levels = {alarm.rule: alarm.level for alarm in open_alarms}
     return UnitView(  # by place: there are thousands a second
         unit.unit_id,
         shown_text(unit.label, people),
         unit.registered,
-        person_view(unit.person, people) if unit.person else None,
+        person_view(unit.wearer.person, people) if unit.wearer.person else None,
         unit.link,
         to_ms_or_none(unit.heard_ns),
         _status_view(unit, status) if status else None,
         to_ms_or_none(unit.status_ns) if unit.status else None,
-        unit.temperature.ambient_degc if unit.temperature else None,
+        heat.temperature.ambient_degc if heat.temperature else None,
         levels.get("heat", ""),
-        round(unit.heat_dose, 2),
-        _position_view(state, unit.fused, unit.reach) if unit.fused else None,
-        to_ms_or_none(unit.inside_since_ns),
+        round(heat.dose, 2),
+        _position_view(state, place.fused, place.reach) if place.fused else None,
+        to_ms_or_none(place.inside_since_ns),
         _duty_view(state, unit, unit.duty, people) if unit.duty else None,
         tuple([alarm.alarm_id for alarm in open_alarms]),
         TrustView(trust.level, trust.reason) if trust.reason else _GREEN,
@@ -97,8 +97,8 @@ def _unit_view(
         "cloned-unit" in levels,
         unit.gps.reason if unit.gps else None,
         unit.stopped_ns is not None,
-        to_ms_or_none(unit.temperature_ns) if unit.temperature else None,
-        _sensors_view(unit.temperature.sensors) if unit.temperature else (),
+        to_ms_or_none(heat.temperature_ns) if heat.temperature else None,
+        _sensors_view(heat.temperature.sensors) if heat.temperature else (),
         unit.can_be_notified,
         preflight_view(unit.description.preflight) if unit.description else None,
     )

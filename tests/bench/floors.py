@@ -97,7 +97,7 @@ def floors_shown(people: list[Person], way: str) -> list[list[tuple[int | None, 
         station.hear_reference(people[0], row)
         for number, person in enumerate(people):
             station.update(person, row)
-            fused = station.pipeline.state.units[person.unit_id].fused
+            fused = station.pipeline.state.units[person.unit_id].place.fused
             floor = None if fused is None else fused.floor
             sure = 0.0 if fused is None else fused.floor_probability or 0.0
             shown[number].append((floor, sure))

@@ -15,6 +15,8 @@ from base_station.core.alarms.worn_wrong import WornWrong
 from base_station.core.state import Fault, GpsUse, StationState, UnitState
 from base_station.core.state.boot_state import BootState
 from base_station.core.state.duty import Duty
+from base_station.core.state.unit_heat import UnitHeat
+from base_station.core.state.unit_place import UnitPlace
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
@@ -38,11 +40,10 @@ def calm(seen_ns: int = T_NS) -> UnitState:
         link="live",
         status=message_factory.status(HEADER),
         status_ns=seen_ns,
-        temperature=Temperature(HEADER, 20.0),
-        temperature_ns=seen_ns,
+        heat=UnitHeat(Temperature(HEADER, 20.0), seen_ns),
         position=message_factory.position(HEADER),
         position_ns=seen_ns,
-        fused=message_factory.fused(HEADER, "FF-01"),
+        place=UnitPlace(message_factory.fused(HEADER, "FF-01")),
         description=message_factory.description(HEADER),
         boots=[BootState(1, first_live_ns=seen_ns - 600 * NS_PER_S, last_live_ns=seen_ns)],
         gps=GpsUse(seen_ns),
@@ -71,16 +72,16 @@ def in_trouble(seen_ns: int = T_NS, rule: AlarmRule | None = None) -> UnitState:
     unit.registered = False
     unit.heard_ns = seen_ns - 60 * NS_PER_S
     unit.status = msgspec.structs.replace(unit.status, motionless_s=60.0, battery=0.05, mayday=True)
-    unit.temperature = Temperature(HEADER, 300.0)
-    unit.heat_dose = 2.0
+    unit.heat.temperature = Temperature(HEADER, 300.0)
+    unit.heat.dose = 2.0
     unit.gps = GpsUse(seen_ns, "the receiver is stuck", seen_ns - 60 * NS_PER_S)
     unit.position = msgspec.structs.replace(
         unit.position, quality=Quality.LOST, reasons=reasons, distance_m=3000.0
     )
     unit.degraded_since_ns = seen_ns - 60 * NS_PER_S
     unit.mayday.t_ns = unit.fall.t_ns = seen_ns
-    unit.fused = lost_place(seen_ns)
-    unit.position_lost_since_ns = seen_ns - 60 * NS_PER_S
+    unit.place.fused = lost_place(seen_ns)
+    unit.place.lost_since_ns = seen_ns - 60 * NS_PER_S
     unit.duty = Duty(
         seen_ns - 3600 * NS_PER_S, work_since_ns=seen_ns - 3600 * NS_PER_S,
         due_ns=seen_ns - NS_PER_S, rest_due_ns=seen_ns - NS_PER_S,

@@ -66,7 +66,7 @@ def test_it_is_done_while_the_station_runs(tmp_path: Path) -> None:
         forgetter.person("admin", "p-77")
         unit = station.pipeline.state.units["FF-01"]
         assert unit.trails.shown == []
-        assert unit.fused is None
+        assert unit.place.fused is None
         saved = station.pipeline.checkpoint()
         assert ANA.encode() not in saved
         assert BO in station.pipeline.state.alarms["mayday|FF-02"].text

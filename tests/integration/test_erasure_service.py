@@ -154,9 +154,11 @@ def test_an_incident_is_forgotten_with_everybody_in_it(story: Story) -> None:
     for record in read_log(story.folder / "log"):
         pipeline.step(event_of(*record))
         if pipeline.state.incident is not None and pipeline.state.incident.closed_ns is None:
-            worn += [unit.person for unit in pipeline.state.units.values() if unit.person]
+            worn += [
+                unit.wearer.person for unit in pipeline.state.units.values() if unit.wearer.person
+            ]
     assert worn == []
-    assert pipeline.state.units["FF-02"].person is not None  # as it was afterwards
+    assert pipeline.state.units["FF-02"].wearer.person is not None  # as it was afterwards
     with Store(story.folder / "station.sqlite") as store:
         records = Records(store, SystemClock())
         incident = records.incident("i1")
@@ -215,7 +217,7 @@ def test_who_wears_a_unit_is_unassigned_first(story: Story) -> None:
         actions = [one.action for one in Records(store, SystemClock()).audit_entries(EVER)]
     assert "Unassign" in actions
     with LiveStation(story.folder) as station:
-        assert station.pipeline.state.units["FF-01"].person is None
+        assert station.pipeline.state.units["FF-01"].wearer.person is None
 
 
 def test_who_is_not_confirmed_stays_assigned(story: Story) -> None:

@@ -48,8 +48,8 @@ def test_with_all_pins_taken_back_everything_is_as_it_was(
     for pin_id, second, off_m, taken_back in pins:
         walk.pin(pin_id, "FF-01", second, off_m)
         unit = walk.script.pipeline.state.units["FF-01"]
-        assert unit.fused is not None
-        assert all(map(math.isfinite, (unit.fused.north_m, unit.fused.std_north_m)))
+        assert unit.place.fused is not None
+        assert all(map(math.isfinite, (unit.place.fused.north_m, unit.place.fused.std_north_m)))
         assert all(math.isfinite(step.north_m) for step in unit.trails.shown)
         state = walk.script.pipeline.state
         assert state.pin_verdicts.keys() == state.pins.keys()
@@ -60,7 +60,7 @@ def test_with_all_pins_taken_back_everything_is_as_it_was(
     walk.go(10)
     mine, theirs = (one.script.pipeline.state.units["FF-01"] for one in (walk, plain))
     assert mine.trails.shown == theirs.trails.shown
-    assert mine.fused is not None
-    assert theirs.fused is not None
-    assert mine.fused.north_m == theirs.fused.north_m
-    assert mine.fused.std_east_m == theirs.fused.std_east_m
+    assert mine.place.fused is not None
+    assert theirs.place.fused is not None
+    assert mine.place.fused.north_m == theirs.place.fused.north_m
+    assert mine.place.fused.std_east_m == theirs.place.fused.std_east_m

@@ -81,7 +81,7 @@ class Walk:
         return self.script.pipeline.state.pin_verdicts[pin_id].state
 
     def now_off_m(self, unit_id: str) -> float:
-        fused = self.script.pipeline.state.units[unit_id].fused
+        fused = self.script.pipeline.state.units[unit_id].place.fused
         assert fused is not None
         return math.dist((fused.north_m, fused.east_m), truth(self.walked_s))
 

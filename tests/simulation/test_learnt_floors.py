@@ -52,12 +52,12 @@ class People:
             self._say(unit_id, 0.0, -storeys / abs(storeys) * storey_m / 17.0, 0.3)
 
     def floor(self, unit_id: str) -> int | None:
-        fused = self.script.pipeline.state.units[unit_id].fused
+        fused = self.script.pipeline.state.units[unit_id].place.fused
         assert fused is not None
         return fused.floor
 
     def sure(self, unit_id: str) -> float:
-        fused = self.script.pipeline.state.units[unit_id].fused
+        fused = self.script.pipeline.state.units[unit_id].place.fused
         assert fused is not None
         return fused.floor_probability or 0.0
 
@@ -202,7 +202,7 @@ def test_heights_move_with_the_frame_and_floors_stay(people: People) -> None:
     people.script.gps("FF-01", 52.0, 4.0)
     people.script.act(SetAnchor(52.0, 4.0001, 20.0, 0.3))
     people.walk("FF-01", 1)
-    fused = people.script.pipeline.state.units["FF-01"].fused
+    fused = people.script.pipeline.state.units["FF-01"].place.fused
     assert fused is not None
     assert people.floor("FF-01") == 3
 

@@ -29,5 +29,5 @@ class Fall:
             seen_ns=fall.t_ns,
             onset_ns=fall.t_ns,
             latched=True,
-            about=unit.worn_from_ns(fall.dated_ns),
+            about=unit.wearer.from_ns(fall.dated_ns),
         )

@@ -36,18 +36,19 @@ class Heat:
             raise ConfigError("caution_degc, warning_degc and critical_degc must rise")
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.temperature is None:
+        heat = unit.heat
+        if heat.temperature is None:
             return None
-        ambient_degc = unit.temperature.ambient_degc
+        ambient_degc = heat.temperature.ambient_degc
         found = self._level(ambient_degc, level)
         if not found:
-            return Clear(unit.temperature_ns, "cooled down")
+            return Clear(heat.temperature_ns, "cooled down")
         return Finding(
             found,
             _PRIORITIES[found],
             f"{ambient_degc:.0f} °C around the equipment of {unit.name}, "
-            f"{unit.heat_dose:.0%} of its heat budget used",
-            seen_ns=unit.temperature_ns,
+            f"{heat.dose:.0%} of its heat budget used",
+            seen_ns=heat.temperature_ns,
         )
 
     def _level(self, ambient_degc: float, level: str) -> str:

@@ -25,15 +25,16 @@ class HeatDose:
     triggered_by: tuple[type[Message], ...] = (Temperature,)
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.temperature is None:
+        heat = unit.heat
+        if heat.temperature is None:
             return None
-        if unit.heat_dose < self.used_up:
-            return Clear(unit.temperature_ns, "another incident")
-        is_late = unit.heat_dose - unit.late_heat_dose < self.used_up
+        if heat.dose < self.used_up:
+            return Clear(heat.temperature_ns, "another incident")
+        is_late = heat.dose - heat.late_dose < self.used_up
         told = ", as only its journal told, so some time ago" if is_late else ""
         return Finding(
             "used up",
             WARNING,
             f"The equipment of {unit.name} has used up its heat budget{told}: it may fail",
-            seen_ns=unit.temperature_ns,
+            seen_ns=heat.temperature_ns,
         )

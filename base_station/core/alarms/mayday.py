@@ -31,5 +31,5 @@ class Mayday:
             seen_ns=call.t_ns,
             onset_ns=call.t_ns,
             latched=True,
-            about=unit.worn_from_ns(call.dated_ns),
+            about=unit.wearer.from_ns(call.dated_ns),
         )

@@ -31,7 +31,7 @@ class MissedCheckIn:
             return Clear(unit.off_duty_ns, "off duty")
         if t_ns < duty.due_ns:
             why = f"not overdue; {duty.confirmation_text}"
-            return Clear(duty.counts_from_ns, why, about=unit.worn_from_ns(t_ns))
+            return Clear(duty.counts_from_ns, why, about=unit.wearer.from_ns(t_ns))
         answers_due_ns = [open_request_ns + ANSWER_NS for open_request_ns in duty.open_requests_ns]
         onset_ns = max(due_ns for due_ns in (duty.due_ns, *answers_due_ns) if due_ns <= t_ns)
         return Finding(
@@ -40,7 +40,7 @@ class MissedCheckIn:
             f"{unit.name}: PAR overdue, {_words(duty, onset_ns)}",
             seen_ns=duty.counts_from_ns,
             onset_ns=onset_ns,
-            about=unit.worn_from_ns(t_ns),
+            about=unit.wearer.from_ns(t_ns),
         )
 
 

@@ -51,5 +51,5 @@ class NoMotion:
             seen_ns=seen_ns,
             onset_ns=onset_ns,
             latched=full,
-            about=unit.worn_from_ns(lies_from_ns),
+            about=unit.wearer.from_ns(lies_from_ns),
         )

@@ -23,20 +23,21 @@ class PositionLost:
     triggered_by: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        off, fused = switched_off(unit), unit.fused
+        off, place = switched_off(unit), unit.place
+        fused = place.fused
         if off is not None:
             return off
         if fused is None or fused.t_meas_ns < unit.began_ns:
             return None
         seen_ns = fused.header.t_utc_ns
-        if unit.position_lost_since_ns is None:
+        if place.lost_since_ns is None:
             return Clear(seen_ns, "the position is known again")
-        if seen_ns - unit.position_lost_since_ns < self.after_s * NS_PER_S:
+        if seen_ns - place.lost_since_ns < self.after_s * NS_PER_S:
             return None
         return Finding(
             "lost",
             WARNING,
             f"The position of {unit.name} is lost ({fused.quality_reason})",
             seen_ns=seen_ns,
-            onset_ns=unit.position_lost_since_ns,
+            onset_ns=place.lost_since_ns,
         )

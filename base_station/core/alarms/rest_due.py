@@ -25,7 +25,7 @@ class RestDue:
         duty = unit.duty
         if duty is None:
             return Clear(unit.off_duty_ns, "off duty")
-        whose = unit.worn_from_ns(t_ns)
+        whose = unit.wearer.from_ns(t_ns)
         if duty.rest_since_ns is not None:
             return Clear(duty.rest_since_ns, "rests", about=whose)
         if duty.work_since_ns is None or duty.rest_due_ns is None or t_ns < duty.rest_due_ns:

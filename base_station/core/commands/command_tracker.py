@@ -262,11 +262,13 @@ def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
     if action.unit_id:
         found = [unit for unit in ours if unit.unit_id == action.unit_id]
     elif action.person_ids:
-        found = [one for one in ours if one.person and one.person.person_id in action.person_ids]
+        found = [one for one in ours if one.wearer.person_id in action.person_ids]
     elif action.crew:
-        found = [unit for unit in ours if unit.person and unit.person.crew == action.crew]
+        found = [
+            unit for unit in ours if unit.wearer.person and unit.wearer.person.crew == action.crew
+        ]
     else:
-        found = [unit for unit in ours if unit.person or _is_in_use(unit)]
+        found = [unit for unit in ours if unit.wearer.person or _is_in_use(unit)]
     if not found:
         whom = action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
         raise UserError(f"no registered unit can be told: {whom}")

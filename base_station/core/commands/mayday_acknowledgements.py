@@ -26,7 +26,7 @@ def acknowledge(state: StationState, by: str, alarm: Alarm, incident_id: str) ->
     unit = state.units.get(alarm.unit_id)
     if alarm.rule != MAYDAY_RULE or unit is None or not unit.mayday.is_active:
         return None
-    if alarm.about != unit.worn_from_ns(unit.mayday.dated_ns):
+    if alarm.about != unit.wearer.from_ns(unit.mayday.dated_ns):
         return None
     command = SentCommand(
         command_id=f"mayday-{unit.unit_id}-{state.t_ns}",

@@ -117,7 +117,7 @@ def _set(state: StationState, pins: Sequence[Pin]) -> set[str]:
 
 
 def _place_pin(state: StationState, by: str, action: SetPin) -> Pin:
-    _check_unit(state, action.unit_id)
+    state.registered_unit(action.unit_id)
     _check_time(state, action.unit_id, action.t_ns)
     _check_place(state, action)
     return Pin(kind="place", set_ns=state.t_ns, by=by, **msgspec.structs.asdict(action))
@@ -132,7 +132,7 @@ def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin
     del common["pin_id"], common["unit_ids"], common["t_ns"]
     pins = []
     for unit_id in dict.fromkeys(action.unit_ids):
-        _check_unit(state, unit_id)
+        state.registered_unit(unit_id)
         t_ns = 0 if _early_s(state, unit_id, action.t_ns) else action.t_ns
         _check_time(state, unit_id, t_ns)
         pin_id = f"{action.pin_id}:{unit_id}"
@@ -144,7 +144,7 @@ def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
     if action.unit_id == action.other_unit_id:
         raise UserError("a unit cannot meet itself: name two units")
     for unit_id in (action.unit_id, action.other_unit_id):
-        _check_unit(state, unit_id)
+        state.registered_unit(unit_id)
         _check_time(state, unit_id, action.t_ns)
     _check_std(action.std_m)
     return Pin(
@@ -198,12 +198,6 @@ def _sightings_of(state: StationState, beacon_id: str) -> list[Pin]:
         for pin in state.pins.values()
         if pin.kind in {"beacon", "tag"} and pin.other_id == beacon_id
     ]
-
-
-def _check_unit(state: StationState, unit_id: str) -> None:
-    unit = state.units.get(unit_id)
-    if unit is None or not unit.registered:
-        raise UserError(f"no registered unit {unit_id!r}; register it first")
 
 
 def _check_time(state: StationState, unit_id: str, t_ns: int) -> None:

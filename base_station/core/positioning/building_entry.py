@@ -26,18 +26,19 @@ def is_outside(plan: Plan | None, history: PathHistory) -> bool:
 
 def note_inside(state: StationState, unit: UnitState) -> None:
     """Since when the wearer is in the building; without an outline, since work began."""
-    fused = unit.fused
+    place = unit.place
+    fused = place.fused
     if fused is None:
         return
     plan = state.placed_plan
     if plan is not None and plan.outlines:
-        was_inside = unit.inside_since_ns is not None
+        was_inside = place.inside_since_ns is not None
         is_inside = plan.is_inside(fused.north_m, fused.east_m, was_inside)
     else:
         at_work = state.incident is not None and state.incident.closed_ns is None
         walked_m = unit.position.distance_m if unit.position else 0.0
-        is_inside = at_work and (unit.inside_since_ns is not None or walked_m > WORK_BEGINS_M)
+        is_inside = at_work and (place.inside_since_ns is not None or walked_m > WORK_BEGINS_M)
     if not is_inside:
-        unit.inside_since_ns = None
-    elif unit.inside_since_ns is None:
-        unit.inside_since_ns = state.t_ns
+        place.inside_since_ns = None
+    elif place.inside_since_ns is None:
+        place.inside_since_ns = state.t_ns

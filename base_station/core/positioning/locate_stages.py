@@ -17,7 +17,6 @@ from base_station.core.state.boot_state import BootState
 from base_station.fusion.interface import Estimate
 from base_station.fusion.odometry.path_history import PathHistory
 from shared.messages import FusedPosition, Header
-from shared.quality import LOST
 
 _LATER: Any = None  # set by a stage, and read by none before it
 
@@ -39,7 +38,7 @@ class LocationUpdate(msgspec.Struct, gc=False):
 
 def find_floor(update: LocationUpdate) -> None:
     """Find the floor, without pins and with them; it changes only well beyond its border."""
-    fused, history = update.unit.fused, update.history
+    fused, history = update.unit.place.fused, update.history
     held = None if fused is None else fused.floor
     _make_messages(update, held if history is None else history.latest.floor, held)
 
@@ -77,12 +76,7 @@ def apply_reported_place(update: LocationUpdate) -> None:
 
 def show(update: LocationUpdate) -> None:
     """Make it the unit's position in the live state."""
-    unit, fused = update.unit, update.fused
-    unit.fused, unit.reach = fused, ()
-    if fused.quality is not LOST:
-        unit.position_lost_since_ns = None
-    elif unit.position_lost_since_ns is None:
-        unit.position_lost_since_ns = update.state.t_ns
+    update.unit.place.show(update.fused, update.state.t_ns)
 
 
 def note_inside(update: LocationUpdate) -> None:

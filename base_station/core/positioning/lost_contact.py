@@ -22,7 +22,7 @@ class LostContact:
         """Border of the area reachable since the last contact, on the floor of the last position;
         empty with contact, without a plan, or where the area is too large.
         """
-        fused = unit.fused
+        fused = unit.place.fused
         reachable_area = None if unit.link == "live" else self._reachable_area(unit.unit_id, fused)
         if fused is None or reachable_area is None:
             self._areas.pop(unit.unit_id, None)

@@ -139,12 +139,12 @@ class Positioning:
         for fuser in self._fusers.of(unit):
             fuser.insert_late_position(position)
         second = t_ns // NS_PER_S
-        if second == unit.last_backfill_s:
+        if second == unit.place.last_backfill_s:
             return []
         estimate, *others = [one.estimate_at(position) for one in self._fusers.of(unit)]
         if estimate is None:
             return []
-        unit.last_backfill_s = second
+        unit.place.last_backfill_s = second
         pinned = others[0] if others else None
         history, name = state.paths.get(unit.unit_id), self._fusers.kind.name
         update = LocationUpdate(state, unit, history, boot, name, header, estimate, pinned)
@@ -231,7 +231,7 @@ class Positioning:
             drop_learnt(state, unit_id)
             unit.trails.replace_plain(0, [])
             if unit.position is None:
-                unit.fused = None
+                unit.place.fused = None
                 continue
             self._fusers.plain(unit).predict(unit.position)
             was = None if before is None else before.estimate()
@@ -245,7 +245,7 @@ class Positioning:
         state.learnt_floors.forget(unit.unit_id)
         state.learnt_building = state.learnt_building.without(unit.unit_id)
         state.late.pop(unit.unit_id, None)
-        unit.fused, unit.position = None, None
+        unit.place.fused, unit.position = None, None
         unit.trails.shown.clear()
 
     def set_anchor(self, state: StationState, anchor: Anchor) -> None:

@@ -37,7 +37,7 @@ def solve_pins(
     if floors.numbers != numbers:
         renumber(state)
     if floors.storeys != storeys:
-        shown = [one for one, unit in state.units.items() if unit.fused is not None]
+        shown = [one for one, unit in state.units.items() if unit.place.fused is not None]
         for unit_id in shown:
             if unit_id not in solved:
                 solved[unit_id] = False

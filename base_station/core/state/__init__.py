@@ -8,16 +8,8 @@ the core.
 from base_station.core.state.alarm import Alarm
 from base_station.core.state.incident import Incident
 from base_station.core.state.station import Counts, IdempotencyRecord, StationState
-from base_station.core.state.unit import (
-    ERASED_TEXT,
-    STILL_NS,
-    WEARERS_KEPT,
-    Fault,
-    FormerWearer,
-    GpsUse,
-    Person,
-    UnitState,
-)
+from base_station.core.state.unit import STILL_NS, Fault, GpsUse, UnitState
+from base_station.core.state.unit_wearer import ERASED_TEXT, WEARERS_KEPT, FormerWearer, Person
 
 __all__ = [
     "ERASED_TEXT",

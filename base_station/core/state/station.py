@@ -18,6 +18,7 @@ from base_station.site.learnt_floors import LearntFloors
 from base_station.site.plan import Plan
 from base_station.site.storeys import Storey
 from shared.channels import tracked_unit
+from shared.errors import UserError
 from shared.geo import Anchor
 from shared.messages import STATION_ID, Header
 from shared.messages.station import TakeOver
@@ -86,6 +87,13 @@ class StationState(msgspec.Struct):
             return unit
         unit = self.units.get(tracked_unit(unit_id) or unit_id)
         return None if unit is None else unit.tracker
+
+    def registered_unit(self, unit_id: str) -> UnitState:
+        """Registered unit of that id; UserError where there is none."""
+        unit = self.units.get(unit_id)
+        if unit is None or not unit.registered:
+            raise UserError(f"no registered unit {unit_id!r}; register it first")
+        return unit
 
     def path_of(self, unit_id: str) -> PathHistory:
         """Path of a unit, which begins here where there is none."""

@@ -4,51 +4,25 @@ from __future__ import annotations
 
 import msgspec
 
-from base_station.core.person_references import reference_to
 from base_station.core.state.boot_state import BootState
 from base_station.core.state.duty import Duty
-from base_station.core.state.exposure import ExposureInterval
 from base_station.core.state.message_stream import STALE_AFTER_S, Link, MessageStream
 from base_station.core.state.trust_tally import TrustTally
 from base_station.core.state.unit_alert import MaydayCall, UnitAlert
+from base_station.core.state.unit_heat import UnitHeat
+from base_station.core.state.unit_place import UnitPlace
 from base_station.core.state.unit_trails import UnitTrails
-from base_station.site.plan import Ring
+from base_station.core.state.unit_wearer import FormerWearer, UnitWearer
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
-    FusedPosition,
     Heartbeat,
     Position,
     Status,
-    Temperature,
     UnitDescription,
 )
 
-ERASED_TEXT = "(forgotten)"  # in place of what was said of a person
-WEARERS_KEPT = 20  # of a unit, beside those whom an alarm may be about; the log has all of them
 STILL_NS = 300 * NS_PER_S  # after so long at the latest it is told who does not move
-
-
-class Person(msgspec.Struct, frozen=True):
-    """Wearer of a unit; name, crew and role only where the log is of an earlier version."""
-
-    person_id: str
-    name: str = ""
-    crew: str = ""
-    role: str = ""
-
-    @property
-    def named(self) -> str:
-        """The name, or the reference in whose place it is shown."""
-        return self.name or reference_to(self.person_id)
-
-
-class FormerWearer(msgspec.Struct, frozen=True):
-    """Former wearer of a unit; station times, ``until_ns`` excluded."""
-
-    name: str
-    from_ns: int
-    until_ns: int
 
 
 class Fault(msgspec.Struct, frozen=True):
@@ -69,32 +43,22 @@ class UnitState(MessageStream):
 
     label: str = ""
     registered: bool = False
-    person: Person | None = None
-    worn_since_ns: int = 0  # by that person, or by nobody
-    former_wearers: list[FormerWearer] = msgspec.field(default_factory=list)  # oldest first
+    wearer: UnitWearer = msgspec.field(default_factory=UnitWearer)
     link: Link = "never"
     status: Status | None = None
     status_ns: int = 0
-    temperature: Temperature | None = None
-    temperature_ns: int = 0
-    heat_dose: float = 0.0  # in this incident; 1: the equipment's heat budget is used up
-    late_heat_dose: float = 0.0  # of that, what came out of the journal
-    exposures: list[ExposureInterval] = msgspec.field(default_factory=list)
+    heat: UnitHeat = msgspec.field(default_factory=UnitHeat)
     position: Position | None = None
     position_ns: int = 0
     degraded_since_ns: int | None = None
     description: UnitDescription | None = None
     heartbeat: Heartbeat | None = None
-    fused: FusedPosition | None = None
-    position_lost_since_ns: int | None = None  # the fused position is lost
-    last_backfill_s: int = 0  # of which second of station time it was told last, late, where it was
+    place: UnitPlace = msgspec.field(default_factory=UnitPlace)
     trails: UnitTrails = msgspec.field(default_factory=UnitTrails)
     trust: TrustTally = msgspec.field(default_factory=TrustTally)  # in this incident
     mayday: MaydayCall = msgspec.field(default_factory=MaydayCall)
     fall: UnitAlert = msgspec.field(default_factory=UnitAlert)
     fault: Fault | None = None
-    inside_since_ns: int | None = None
-    reach: Ring = ()  # not heard: the border of what can be walked to by now, where a plan tells
     duty: Duty | None = None  # somebody wears it and an incident is open
     off_duty_ns: int = 0  # when that was last over
     tracker: UnitState | None = None  # what is known of its tracking agent as a sender
@@ -106,42 +70,27 @@ class UnitState(MessageStream):
     @property
     def name(self) -> str:
         """Name of the unit for people, with a reference in the place of its wearer's."""
-        return self.person.named if self.person else self.label or self.unit_id
+        person = self.wearer.person
+        return person.named if person else self.label or self.unit_id
 
     def name_at(self, t_ns: int | None) -> str:
         """Name for people at that time, by its wearer then; None: the time is unknown."""
+        wearer = self.wearer
         if t_ns is None:
-            before = [one.name for one in self.former_wearers if one.name != self.name]
+            before = [one.name for one in wearer.former if one.name != self.name]
             return " or, before, ".join([self.name, *before[-1:]])
-        if t_ns >= self.worn_since_ns:
+        if t_ns >= wearer.since_ns:
             return self.name
-        worn = self._worn_at(t_ns)
+        worn = wearer.former_at(t_ns)
         return worn.name if worn else self.label or self.unit_id
 
-    def worn_from_ns(self, t_ns: int | None) -> int | None:
-        """When whoever wore it then began to, 0: nobody did; names one wearing of this unit."""
-        if t_ns is None:
-            return None
-        if t_ns >= self.worn_since_ns:
-            return self.worn_since_ns if self.person else 0
-        worn = self._worn_at(t_ns)
-        return worn.from_ns if worn else 0
-
-    def _worn_at(self, t_ns: int) -> FormerWearer | None:
-        worn = [one for one in self.former_wearers if one.from_ns <= t_ns < one.until_ns]
-        return worn[-1] if worn else None
-
     def end_wearing(self, t_ns: int) -> None:
-        """Whoever wears it does so no more."""
-        if self.person is not None:
-            former = FormerWearer(self.person.named, self.worn_since_ns, t_ns)
-            wearers = [*self.former_wearers, former]
-            concerned = [one for one in wearers[:-WEARERS_KEPT] if self._concerns(one)]
-            self.former_wearers = [*concerned, *wearers[-WEARERS_KEPT:]]
-        self.person, self.worn_since_ns, self.inside_since_ns = None, t_ns, None
+        """The person who wears it does so no more."""
+        self.wearer.end(t_ns, self._concerns)
+        self.place.inside_since_ns = None
 
     def _concerns(self, worn: FormerWearer) -> bool:
-        """True if a press, a fall or a rest that it told last was in that time: whose that was does
+        """True if its last press, fall or rest was in that time: the wearer to whom it belongs does
         not change with the next wearers.
         """
         alerts = [alert for alert in (self.mayday, self.fall) if alert.t_ns is not None]
@@ -151,12 +100,6 @@ class UnitState(MessageStream):
             return False
         still_ns = self.status_ns - round(self.status.motionless_s * NS_PER_S)
         return worn.from_ns < still_ns + STILL_NS and still_ns < worn.until_ns
-
-    def forget_wearers(self) -> None:
-        """Erase the names of former wearers; that the unit was worn stays."""
-        self.former_wearers = [
-            msgspec.structs.replace(one, name=ERASED_TEXT) for one in self.former_wearers
-        ]
 
     @property
     def began_ns(self) -> int:

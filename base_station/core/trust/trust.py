@@ -52,7 +52,7 @@ def update_trust_tallies(state: StationState) -> None:
     for unit in state.units.values():
         if not unit.registered or unit.stopped_ns is not None:
             continue
-        if unit.fused is not None or unit.person is not None:
+        if unit.place.fused is not None or unit.wearer.person is not None:
             trust = trust_of(unit, conflicts.get(unit.unit_id, 0))
             unit.trust.note(trust.level, trust.cause, lasted_s)
 
@@ -70,7 +70,7 @@ def conflicts_of(state: StationState) -> Counter[str]:
 def _red_causes(unit: UnitState) -> Iterator[Trust]:
     if not unit.registered:
         yield Trust("red", "not a registered unit: not believed", "not a registered unit")
-    fused = unit.fused
+    fused = unit.place.fused
     if fused is None:
         yield Trust("red", "no position yet", "no position yet")
         return
@@ -85,7 +85,7 @@ def _red_causes(unit: UnitState) -> Iterator[Trust]:
 
 def _amber_causes(unit: UnitState, conflicts: int) -> Iterator[Trust]:
     """Amber causes of a unit that has a position."""
-    fused = unit.fused
+    fused = unit.place.fused
     assert fused is not None
     if unit.link == "stale":
         yield _no_contact("amber")

@@ -63,10 +63,11 @@ def _apply_status(unit: UnitState, status: Status, t_ns: int) -> None:
 
 def _apply_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> None:
     header = temperature.header
-    unit.heat_dose += thermal_dose.add_live(
-        unit.exposures, header.boot_id, header.t_mono_ns, temperature.ambient_degc
+    heat = unit.heat
+    heat.dose += thermal_dose.add_live(
+        heat.exposures, header.boot_id, header.t_mono_ns, temperature.ambient_degc
     )
-    unit.temperature, unit.temperature_ns = temperature, t_ns
+    heat.temperature, heat.temperature_ns = temperature, t_ns
 
 
 def apply_late_temperature(
@@ -79,11 +80,12 @@ def apply_late_temperature(
     event_ns = event_time_ns(unit.boots, header, t_ns)
     if event_ns is None or event_ns < since_ns:
         return
+    heat = unit.heat
     added = thermal_dose.add_late(
-        unit.exposures, header.boot_id, header.t_mono_ns, temperature.ambient_degc
+        heat.exposures, header.boot_id, header.t_mono_ns, temperature.ambient_degc
     )
-    unit.heat_dose += added
-    unit.late_heat_dose += added
+    heat.dose += added
+    heat.late_dose += added
 
 
 def _apply_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
@@ -93,8 +95,8 @@ def _apply_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
     match event.kind:
         case EventKind.MAYDAY:
             # Of one that stands a status may have told before, where the radio lost the press.
-            worn_from_ns = unit.worn_from_ns(mayday.event_ns)
-            stands = mayday.is_active and unit.worn_from_ns(event_ns) == worn_from_ns
+            worn_from_ns = unit.wearer.from_ns(mayday.event_ns)
+            stands = mayday.is_active and unit.wearer.from_ns(event_ns) == worn_from_ns
             if not stands or event_ns > mayday.event_ns:
                 mayday.press(event.header, t_ns, event_ns, is_dated=is_dated)
         case EventKind.MAYDAY_CANCELLED:

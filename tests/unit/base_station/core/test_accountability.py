@@ -148,7 +148,7 @@ def test_who_takes_a_unit_after_the_incident_is_on_no_duty(script: Script) -> No
     script.act(CloseIncident("i1"))
     script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
     assert refusals(script) == []
-    assert (unit(script).person is not None, unit(script).duty) == (True, None)
+    assert (unit(script).wearer.person is not None, unit(script).duty) == (True, None)
 
 
 def test_there_are_no_times_to_change_where_no_incident_is_open() -> None:
@@ -185,19 +185,21 @@ def test_who_takes_over_a_unit_has_not_been_inside_since_the_other_went_in(
         script.position("FF-01", 9.0, 0.0, distance_m=9.0)
 
     script.wait(20, walk)
-    went_in_ns = unit(script).inside_since_ns
+    went_in_ns = unit(script).place.inside_since_ns
     assert went_in_ns == script.t_ns - 19 * NS_PER_S
     script.act(Assign("FF-01", "p1", "Person One", "red", "officer"))
-    assert unit(script).inside_since_ns == went_in_ns, "it is the same person"
+    assert unit(script).place.inside_since_ns == went_in_ns, "it is the same person"
     script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
-    assert unit(script).inside_since_ns is None
+    assert unit(script).place.inside_since_ns is None
     script.wait(5, walk)
-    assert unit(script).inside_since_ns == script.t_ns - 4 * NS_PER_S
+    assert unit(script).place.inside_since_ns == script.t_ns - 4 * NS_PER_S
     script.act(Unassign("FF-01"))
-    assert unit(script).inside_since_ns is None
+    assert unit(script).place.inside_since_ns is None
     script.wait(5, walk)
     script.act(Assign("FF-01", "p1", "Person 1", "red", ""))
-    assert unit(script).inside_since_ns == script.t_ns - 4 * NS_PER_S, "said late who wears it"
+    assert unit(script).place.inside_since_ns == script.t_ns - 4 * NS_PER_S, (
+        "said late who wears it"
+    )
 
 
 def test_a_new_name_for_the_same_person_is_no_check_in(script: Script) -> None:

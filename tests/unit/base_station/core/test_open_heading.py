@@ -53,7 +53,7 @@ class Walk:
         return self.script.pipeline.state.pin_verdicts[pin_id].state
 
     def off_m(self) -> float:
-        shown = self.script.pipeline.state.units[U].fused
+        shown = self.script.pipeline.state.units[U].place.fused
         assert shown is not None
         return math.dist((shown.north_m, shown.east_m), self.there_m)
 

@@ -62,9 +62,9 @@ def test_work_lasts_until_the_rest_wherever_it_goes_on(script: Script) -> None:
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(1)
     assert rest_left_s(script) == 119.0
-    unit(script).inside_since_ns = None  # out for a moment, and in again
+    unit(script).place.inside_since_ns = None  # out for a moment, and in again
     script.wait(1)
-    unit(script).inside_since_ns = script.t_ns
+    unit(script).place.inside_since_ns = script.t_ns
     script.wait(1)
     assert rest_left_s(script) == 117.0
     script.act(SetRest("FF-01", True))

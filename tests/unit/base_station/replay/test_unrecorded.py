@@ -51,8 +51,8 @@ def test_links_and_places_age_in_a_hole(playback: Playback, second: int, link: s
     unit = state.units["FF-01"]
     assert unit.link == link
     assert state.t_ns == at(second)
-    assert unit.fused is not None
-    assert state.t_ns - unit.fused.t_meas_ns >= (second - FROM_S) * NS_PER_S
+    assert unit.place.fused is not None
+    assert state.t_ns - unit.place.fused.t_meas_ns >= (second - FROM_S) * NS_PER_S
     assert not state.alarms, "nothing is decided of what is not known"
     is_in = second > FROM_S
     assert playback.gap == (RecordGap(at(FROM_S), at(UNTIL_S)) if is_in else None)

@@ -24,6 +24,8 @@ from base_station.core.alarms.tracker_gone import TrackerGone
 from base_station.core.alarms.worn_wrong import WornWrong
 from base_station.core.state import UnitState
 from base_station.core.state.boot_state import BootState
+from base_station.core.state.unit_heat import UnitHeat
+from base_station.core.state.unit_place import UnitPlace
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import Header, Temperature
@@ -78,14 +80,14 @@ def test_the_battery(battery: float | None, standing: str, found: str | None) ->
     ],
 )
 def test_heat(ambient_degc: float, standing: str, found: str) -> None:
-    unit = UnitState("FF-01", temperature=Temperature(HEADER, ambient_degc))
+    unit = UnitState("FF-01", heat=UnitHeat(Temperature(HEADER, ambient_degc)))
     assert judged(Heat(), unit, standing) == found
 
 
 @pytest.mark.parametrize(("dose", "found"), [(0.99, "over"), (1.0, "used up")])
 @pytest.mark.parametrize("ambient_degc", [20.0, 300.0])
 def test_heat_dose(dose: float, ambient_degc: float, found: str) -> None:
-    unit = UnitState("FF-01", temperature=Temperature(HEADER, ambient_degc), heat_dose=dose)
+    unit = UnitState("FF-01", heat=UnitHeat(Temperature(HEADER, ambient_degc), dose=dose))
     assert judged(HeatDose(), unit) == found
 
 
@@ -93,7 +95,7 @@ def test_heat_dose(dose: float, ambient_degc: float, found: str) -> None:
     ("ambient_degc", "priority"), [(100.0, ADVISORY), (160.0, WARNING), (260.0, EMERGENCY)]
 )
 def test_how_soon_somebody_should_look_at_heat(ambient_degc: float, priority: int) -> None:
-    unit = UnitState("FF-01", temperature=Temperature(HEADER, ambient_degc))
+    unit = UnitState("FF-01", heat=UnitHeat(Temperature(HEADER, ambient_degc)))
     verdict = Heat().judge(unit, NOW_NS, "")
     assert isinstance(verdict, Finding)
     assert verdict.priority == priority
@@ -166,12 +168,13 @@ def test_a_position_that_is_not_known(lasted_s: float, found: str | None) -> Non
         position=message_factory.position(HEADER, quality=Quality.LOST),
         position_ns=NOW_NS,
         degraded_since_ns=NOW_NS - ns(lasted_s),
-        fused=message_factory.fused(HEADER, "FF-01"),
-        position_lost_since_ns=NOW_NS - ns(lasted_s),
+        place=UnitPlace(
+            message_factory.fused(HEADER, "FF-01"), lost_since_ns=NOW_NS - ns(lasted_s)
+        ),
     )
     assert judged(TrackerDegraded(), unit) == found
     assert judged(PositionLost(), unit) == found
-    unit.degraded_since_ns = unit.position_lost_since_ns = None
+    unit.degraded_since_ns = unit.place.lost_since_ns = None
     assert isinstance(TrackerDegraded().judge(unit, NOW_NS, ""), Clear)
     assert isinstance(PositionLost().judge(unit, NOW_NS, ""), Clear)
 

@@ -389,5 +389,5 @@ def test_an_alarm_stays_the_same_however_often_the_unit_is_handed_over(
         script.status(U, motionless_s=still_s, mayday=rule == "mayday")
         script.wait(20)
     assert [one.text for one in script.alarms[before:] if one.rule == rule] == []
-    former_wearers = script.pipeline.state.units[U].former_wearers
+    former_wearers = script.pipeline.state.units[U].wearer.former
     assert len(former_wearers) <= 2 * WEARERS_KEPT, "and nothing grows"

@@ -91,6 +91,6 @@ def test_a_used_up_heat_budget_hides_no_heat_and_is_whole_in_another_incident(
     script.act(CloseIncident("i1"))
     script.act(OpenIncident("i2", "Dock Street"))
     hot(20.0, 5.0)
-    assert script.pipeline.state.units[U].heat_dose == 0.0
+    assert script.pipeline.state.units[U].heat.dose == 0.0
     hot(300.0, 65.0)
     assert changes(script, "heat-dose")[2:] == [("RAISED", "used up")]

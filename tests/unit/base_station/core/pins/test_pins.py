@@ -43,7 +43,7 @@ def test_a_start_that_is_said_before_anybody_speaks_holds_once_they_do() -> None
     script.act(StartTogether("s", ("FF-01",), 0, -30.0, 9.0, 1.0, None, None, 0.3, ""))
     verdicts = [script.pipeline.state.pin_verdicts["s:FF-01"].state]
     script.position("FF-01", 0.0, 0.0)
-    fused = script.pipeline.state.units["FF-01"].fused
+    fused = script.pipeline.state.units["FF-01"].place.fused
     verdicts.append(script.pipeline.state.pin_verdicts["s:FF-01"].state)
     assert verdicts == ["waiting", "used"]
     assert fused is not None
@@ -56,7 +56,7 @@ def test_a_pin_with_a_floor_holds_a_path_of_a_single_point() -> None:
     script.act(SetPlan(PLAN))
     script.position("FF-01", 0.0, 0.0)
     script.act(SetPin("p1", "FF-01", 0, 3.0, 4.0, 1.0, 1, None, 0.35, ""))
-    fused = script.pipeline.state.units["FF-01"].fused
+    fused = script.pipeline.state.units["FF-01"].place.fused
     assert fused is not None
     assert (fused.north_m, fused.east_m) == pytest.approx((3.0, 4.0), abs=0.1)
     assert fused.floor == 1
@@ -85,10 +85,10 @@ def test_removing_a_pin_leaves_exactly_what_would_be_without_it() -> None:
     for walk in (plain, pinned):
         walk.go(30)
     mine, theirs = (walk.script.pipeline.state.units["FF-01"] for walk in (pinned, plain))
-    assert mine.fused is not None
-    assert theirs.fused is not None
-    assert mine.fused.north_m == theirs.fused.north_m
-    assert mine.fused.std_north_m == theirs.fused.std_north_m
+    assert mine.place.fused is not None
+    assert theirs.place.fused is not None
+    assert mine.place.fused.north_m == theirs.place.fused.north_m
+    assert mine.place.fused.std_north_m == theirs.place.fused.std_north_m
     assert mine.trails.shown == theirs.trails.shown
     assert pinned.script.pipeline.state.pins == {}
 
@@ -141,7 +141,7 @@ def test_removing_one_of_two_leaves_the_trail_of_the_other() -> None:
     both.script.act(RemovePin("p2"))
     one.pin("p1", "FF-01", 100.0)
     assert both.trail("FF-01") == one.trail("FF-01")
-    fused = [walk.script.pipeline.state.units["FF-01"].fused for walk in (one, both)]
+    fused = [walk.script.pipeline.state.units["FF-01"].place.fused for walk in (one, both)]
     assert fused[0] is not None
     assert fused[1] is not None
     assert fused[0].north_m == fused[1].north_m
@@ -353,9 +353,9 @@ def test_whom_nobody_knows_well_tells_nothing_of_whom_he_met() -> None:
         script.position("FF-01", 0.0, 0.0)
         script.position("FF-02", float(second), 0.0, distance_m=float(second))
     units, verdicts = script.pipeline.state.units, script.pipeline.state.pin_verdicts
-    before, vague = units["FF-01"].fused, units["FF-02"].fused
+    before, vague = units["FF-01"].place.fused, units["FF-02"].place.fused
     script.act(SetMeeting("m", "FF-01", "FF-02", script.t_ns, 1.0, ""))
-    after, sharp = units["FF-01"].fused, units["FF-02"].fused
+    after, sharp = units["FF-01"].place.fused, units["FF-02"].place.fused
     assert before is not None
     assert vague is not None
     assert after is not None
@@ -420,7 +420,7 @@ def test_a_pin_on_a_floor_brings_the_height() -> None:
     walk.script.act(SetPlan(PLAN))
     north_m, east_m = truth(300.0)
     walk.script.act(SetPin("p", "FF-01", walk.script.t_ns, north_m, east_m, 1.0, 1, None, 0.0, ""))
-    fused = walk.script.pipeline.state.units["FF-01"].fused
+    fused = walk.script.pipeline.state.units["FF-01"].place.fused
     assert fused is not None
     assert fused.floor == 1
 

@@ -77,7 +77,7 @@ class Wearer:
 
     @property
     def fused(self) -> FusedPosition:
-        fused = self.script.pipeline.state.units[self.unit_id].fused
+        fused = self.script.pipeline.state.units[self.unit_id].place.fused
         assert fused is not None
         return fused
 

@@ -26,7 +26,7 @@ def go_north(script: Script, seconds: int, since_m: float = 0.0) -> None:
 
 
 def fused_of(script: Script) -> FusedPosition:
-    fused = script.pipeline.state.units["FF-01"].fused
+    fused = script.pipeline.state.units["FF-01"].place.fused
     assert fused is not None
     return fused
 

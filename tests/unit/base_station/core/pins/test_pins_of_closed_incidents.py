@@ -164,7 +164,7 @@ def markers(script: Script) -> dict[str, tuple[object, ...]]:
     return {
         unit.unit_id: (one.north_m, one.east_m, one.down_m, one.floor)
         for unit in units
-        if (one := unit.fused) is not None
+        if (one := unit.place.fused) is not None
     }
 
 
@@ -270,7 +270,7 @@ def test_of_who_is_forgotten_no_place_is_left() -> None:
     script.act(CloseIncident("i1"))
     script.act(ForgetWearers(A))
     unit = state.units[A]
-    assert (unit.fused, unit.position, unit.trails.shown, unit.trails.unpinned) == (
+    assert (unit.place.fused, unit.position, unit.trails.shown, unit.trails.unpinned) == (
         None,
         None,
         [],

@@ -29,7 +29,7 @@ def walk(script: Script, seconds: range, by: Anchor | None = SITE, std_m: float 
 
 
 def shown_m(script: Script) -> tuple[float, float, float]:
-    fused = script.pipeline.state.units[U].fused
+    fused = script.pipeline.state.units[U].place.fused
     assert fused is not None
     return fused.north_m, fused.east_m, fused.down_m
 

@@ -86,9 +86,13 @@ def test_where_somebody_was_is_said_once_for_each_second(walked):
 
 
 def test_the_present_stays(walked):
-    before = msgspec.msgpack.encode((walked.unit.fused, walked.unit.position, walked.unit.heard_ns))
+    before = msgspec.msgpack.encode(
+        (walked.unit.place.fused, walked.unit.position, walked.unit.heard_ns)
+    )
     walked.late(15, at_second=31)
-    after = msgspec.msgpack.encode((walked.unit.fused, walked.unit.position, walked.unit.heard_ns))
+    after = msgspec.msgpack.encode(
+        (walked.unit.place.fused, walked.unit.position, walked.unit.heard_ns)
+    )
     assert after == before
 
 
@@ -109,13 +113,13 @@ def test_where_the_run_before_led_is_filled_in(walked):
     """The unit's program was started again where the radio did not reach."""
     for second in range(50, 56):
         walked.live(second, boot_id=8)
-    before = msgspec.msgpack.encode((walked.unit.fused, walked.unit.position))
+    before = msgspec.msgpack.encode((walked.unit.place.fused, walked.unit.position))
     for second in (*range(11, 20), *range(31, 45)):
         outputs = walked.late(second, at_second=56)
         fused = next(output for output in outputs if isinstance(output, FusedPosition))
         assert fused.t_meas_ns == START_NS + second * NS_PER_S
         assert fused.north_m == pytest.approx(second)
-    assert msgspec.msgpack.encode((walked.unit.fused, walked.unit.position)) == before
+    assert msgspec.msgpack.encode((walked.unit.place.fused, walked.unit.position)) == before
     trail = [(step.t_ns - START_NS) // NS_PER_S for step in walked.unit.trails.shown]
     assert trail == [*range(45), 50], "which way the new run walks nobody knows"
 
@@ -147,7 +151,7 @@ def test_what_a_stranger_brings_out_of_its_journal_is_not_believed(walked):
         outputs = walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, payload))
         assert not any(isinstance(one, FusedPosition | TrailBackfilled) for one in outputs)
     stranger = walked.pipeline.state.units["FF-66"]
-    assert (stranger.fused, stranger.trails.shown) == (None, [])
+    assert (stranger.place.fused, stranger.trails.shown) == (None, [])
 
 
 def test_what_cannot_be_read_has_come_all_the_same(walked):

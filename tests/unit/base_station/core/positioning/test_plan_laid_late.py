@@ -50,7 +50,7 @@ class Outside(Script):
         return self.pipeline.state.units[unit_id]
 
     def place_m(self, unit_id: str) -> tuple[float, float]:
-        fused = self.unit(unit_id).fused
+        fused = self.unit(unit_id).place.fused
         assert fused is not None
         return fused.north_m, fused.east_m
 
@@ -98,10 +98,10 @@ def test_who_is_inside_is_not_asked_of_a_plan_that_lies_nowhere(script: Outside)
     elsewhere = b"[900,0],[940,0],[940,30],[900,30],[900,0]"
     script.act(SetPlan(PLAN.replace(b"[0,0],[40,0],[40,30],[0,30],[0,0]", elsewhere)))
     script.walk(1)
-    assert script.unit(A).inside_since_ns is not None, "as without a plan: work has begun"
+    assert script.unit(A).place.inside_since_ns is not None, "as without a plan: work has begun"
     script.act(SetAnchor(LIES.lat_deg, LIES.lon_deg, LIES.height_m, LIES.rotation_rad))
     script.walk(1)
-    assert script.unit(A).inside_since_ns is None
+    assert script.unit(A).place.inside_since_ns is None
 
 
 def test_its_walls_hold_nobody(script: Outside) -> None:
@@ -110,12 +110,12 @@ def test_its_walls_hold_nobody(script: Outside) -> None:
     begun.act(SetPlan(plan_path().read_bytes()))
     for one in (script, begun):
         one.walk(1)
-        fused = one.unit(A).fused
+        fused = one.unit(A).place.fused
         assert fused is not None
         in_corridor = msgspec.structs.replace(fused, north_m=7.0, east_m=12.0, floor=0)
-        one.unit(A).fused = in_corridor
+        one.unit(A).place.fused = in_corridor
         one.wait(15)
-        assert (one.unit(A).reach == ()) is (one is script)
+        assert (one.unit(A).place.reach == ()) is (one is script)
 
 
 @pytest.mark.parametrize(
@@ -138,7 +138,7 @@ def test_the_first_place_that_is_said_on_it_counts_as_if_it_had_been_there_befor
         assert not any(isinstance(output, Refused) for output in one.act(said))
     for number in range(2):
         for unit_id in (A, B):
-            mine, theirs = script.unit(unit_id).fused, earlier.unit(unit_id).fused
+            mine, theirs = script.unit(unit_id).place.fused, earlier.unit(unit_id).place.fused
             assert mine is not None
             assert theirs is not None
             assert (mine.north_m, mine.east_m) == pytest.approx(
@@ -201,6 +201,6 @@ def test_who_has_satellites_only_is_nowhere_on_it(script: Outside) -> None:
     script.now_s += 1.0
     script.status("FF-03")
     script.gps("FF-03", *LIES.to_geodetic(*ENGINE_M, 0.0)[:2])
-    assert script.unit("FF-03").fused is not None
+    assert script.unit("FF-03").place.fused is not None
     script.act(START)
-    assert script.unit("FF-03").fused is None
+    assert script.unit("FF-03").place.fused is None

@@ -55,7 +55,7 @@ def test_outage_is_time_since_last_position_of_path() -> None:
 def test_location_is_shown_and_ends_loss_of_position() -> None:
     script = walked(2)
     state, unit = script.pipeline.state, script.pipeline.state.units[U]
-    unit.position_lost_since_ns = NS_PER_S
+    unit.place.lost_since_ns = NS_PER_S
     fuser = FUSERS[0].new()
     assert unit.position is not None
     fuser.predict(unit.position)
@@ -67,5 +67,5 @@ def test_location_is_shown_and_ends_loss_of_position() -> None:
     find_floor(update)
     assert update.fused is update.plain
     show(update)
-    assert unit.fused is update.fused
-    assert unit.position_lost_since_ns is None
+    assert unit.place.fused is update.fused
+    assert unit.place.lost_since_ns is None

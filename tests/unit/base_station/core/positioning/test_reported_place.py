@@ -53,7 +53,7 @@ def pin(
 
 
 def shown(script: Script) -> FusedPosition:
-    fused = script.pipeline.state.units[U].fused
+    fused = script.pipeline.state.units[U].place.fused
     assert fused is not None
     return fused
 
@@ -146,4 +146,4 @@ def test_a_meeting_does_not_place_them(script: Script) -> None:
 def test_a_station_that_starts_again_shows_the_same(script: Script) -> None:
     pin(script)
     again = make_pipeline(read_checkpoint(script.pipeline.checkpoint()))
-    assert again.state.units[U].fused == shown(script)
+    assert again.state.units[U].place.fused == shown(script)

@@ -140,7 +140,7 @@ def test_a_pin_that_turns_fixes_away_changes_nothing_of_the_weather() -> None:
 
 def test_who_is_not_heard_is_within_walls(script: Script) -> None:
     script.wait(3, lambda: script.position(U, 0.0, 0.0))
-    assert script.pipeline.state.units[U].reach == ()
+    assert script.pipeline.state.units[U].place.reach == ()
     script.wait(20)
     state = script.pipeline.state
     view = snapshot(state, 1, StationFacts(), person_lookup({})).units[0].position
@@ -149,7 +149,7 @@ def test_who_is_not_heard_is_within_walls(script: Script) -> None:
     assert max(widths) > 9.0, "along the corridor"
     assert min(widths) < view.ellipse_minor_m / 2.0, "the walls"
     script.wait(1, lambda: script.position(U, 0.0, 0.0))
-    assert state.units[U].reach == ()
+    assert state.units[U].place.reach == ()
 
 
 @pytest.mark.parametrize(("away_s", "most_m"), [(5, 8.0), (20, 11.0), (60, 27.0), (3600, 110.0)])
@@ -198,6 +198,6 @@ def test_a_station_that_starts_shows_the_same_as_one_that_walked_on(script: Scri
     reaches = []
     for station in (script, anew):
         station.wait(1)
-        reaches.append(station.pipeline.state.units[U].reach)
+        reaches.append(station.pipeline.state.units[U].place.reach)
     assert len(reaches[0]) == SECTORS
     assert reaches[0] == reaches[1]

@@ -69,7 +69,7 @@ def test_an_older_message_does_not_set_the_state_back(script: Script) -> None:
     late = script.header(U, captured_s=-5.0)
     script.position(U, 1.0, 2.0)
     script.position(U, 9.0, 9.0, header=late)
-    position, fused = unit(script).position, unit(script).fused
+    position, fused = unit(script).position, unit(script).place.fused
     assert position is not None
     assert fused is not None
     assert (position.north_m, fused.north_m) == pytest.approx((1.0, 1.0))
@@ -215,9 +215,9 @@ def test_who_wears_a_unit_follows_the_last_assignment(script: Script) -> None:
     script.register("FF-02")
     script.act(Assign(U, "p1", "Ada", "red", "leader"))
     script.act(Assign("FF-02", "p1", "Ada", "red", "leader"))
-    assert unit(script).person is None, "nobody wears two units"
+    assert unit(script).wearer.person is None, "nobody wears two units"
     script.act(Unassign("FF-02"))
-    assert script.pipeline.state.units["FF-02"].person is None
+    assert script.pipeline.state.units["FF-02"].wearer.person is None
 
 
 def test_an_action_on_an_unknown_unit_is_refused_in_words(script: Script) -> None:
@@ -259,11 +259,11 @@ def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
     script.register("FF-02")
     script.act(SetMeeting("m", U, "FF-02", script.t_ns, 1.0, ""))
     script.wait(60)
-    before = unit(script).fused
+    before = unit(script).place.fused
     assert before is not None
     script.act(SetAnchor(51.999, 4.0, 0.0, math.pi / 2.0))
     script.act(SetPlan(STOREYS))
-    after = unit(script).fused
+    after = unit(script).place.fused
     assert after is not None
     place, last = (after.north_m, after.east_m), unit(script).trails.shown[-1]
     assert place == pytest.approx((before.east_m, -111.3 - before.north_m), abs=1.0)
@@ -295,22 +295,22 @@ def test_a_trail_is_thinned_and_bounded(script: Script) -> None:
 def test_time_inside_begins_at_the_outline_or_at_the_first_steps(script: Script) -> None:
     script.act(OpenIncident("i1", "Mill Lane"))
     script.position(U, 0.0, 0.0, distance_m=0.0)
-    assert unit(script).inside_since_ns is None
+    assert unit(script).place.inside_since_ns is None
     script.position(U, 6.0, 0.0, distance_m=6.0)
-    assert unit(script).inside_since_ns == script.t_ns
+    assert unit(script).place.inside_since_ns == script.t_ns
     script.act(SetPlan(OUTLINE))
     script.position(U, 0.0, 0.0)
-    assert unit(script).inside_since_ns is None
+    assert unit(script).place.inside_since_ns is None
     script.wait(20, lambda: None)
     script.position(U, 20.0, 0.0)
-    assert unit(script).inside_since_ns == script.t_ns
+    assert unit(script).place.inside_since_ns == script.t_ns
 
 
 def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
     script.position(U, 0.0, 0.0)
-    fused = unit(script).fused
+    fused = unit(script).place.fused
     assert fused is not None
-    unit(script).fused = msgspec.structs.replace(
+    unit(script).place.fused = msgspec.structs.replace(
         fused, std_north_m=2.0, std_east_m=1.0, correlation_ne=0.0
     )
     view = unit_views(script.pipeline.state, [unit(script)], person_lookup({}))[0].position
@@ -318,7 +318,7 @@ def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
     assert view.ellipse_major_m == pytest.approx(2.0 * 2.4477, rel=1e-3)
     assert view.ellipse_minor_m == pytest.approx(1.0 * 2.4477, rel=1e-3)
     assert view.ellipse_heading_rad == pytest.approx(0.0)
-    unit(script).fused = msgspec.structs.replace(
+    unit(script).place.fused = msgspec.structs.replace(
         fused, std_north_m=1.0, std_east_m=1.0, correlation_ne=0.9
     )
     view = unit_views(script.pipeline.state, [unit(script)], person_lookup({}))[0].position

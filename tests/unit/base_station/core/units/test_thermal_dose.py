@@ -52,10 +52,10 @@ def test_a_reading_counts_until_the_next_but_not_through_a_silence(
 ) -> None:
     script.now_s += silent_s
     script.temperature(U, 20.0)
-    assert unit(script).heat_dose == pytest.approx(counted_s / 60.0)
+    assert unit(script).heat.dose == pytest.approx(counted_s / 60.0)
     script.now_s += 60.0
     script.temperature(U, 20.0)
-    assert unit(script).heat_dose == pytest.approx(counted_s / 60.0)
+    assert unit(script).heat.dose == pytest.approx(counted_s / 60.0)
 
 
 @pytest.mark.parametrize(("after_degc", "limit_s"), [(270.0, 60.0), (400.0, 60.0), (200.0, 300.0)])
@@ -65,20 +65,20 @@ def test_who_is_hot_before_and_after_a_silence_was_so_throughout(
     """As hot as the cooler one of both; the fire that takes the radio heats the equipment on."""
     script.now_s += 50.0
     script.temperature(U, after_degc)
-    assert unit(script).heat_dose == pytest.approx(10.0 / 60.0 + 40.0 / limit_s)
+    assert unit(script).heat.dose == pytest.approx(10.0 / 60.0 + 40.0 / limit_s)
 
 
 def test_a_unit_whose_clock_is_set_back_takes_nothing_from_its_dose(script: Script) -> None:
     script.say(Temperature(script.header(U, captured_s=-500.0), 300.0))
-    assert unit(script).temperature is not None
-    assert unit(script).heat_dose == 0.0
+    assert unit(script).heat.temperature is not None
+    assert unit(script).heat.dose == 0.0
 
 
 def test_the_time_between_two_runs_of_a_unit_is_not_known(script: Script) -> None:
     script.now_s += 6.0
     script.boot_ids[U] = 8
     script.temperature(U, 300.0)
-    assert unit(script).heat_dose == 0.0
+    assert unit(script).heat.dose == 0.0
 
 
 def degc_at(second: int) -> float:
@@ -111,9 +111,9 @@ def test_what_a_journal_brings_counts_as_what_came_live(
     lost: range, boots: dict[int, int], pieces: int
 ) -> None:
     all_live, some_late = told(range(0), boots), told(lost, boots, pieces)
-    assert unit(all_live).heat_dose > 0.4
-    assert unit(some_late).heat_dose == pytest.approx(unit(all_live).heat_dose)
-    shown = unit(some_late).temperature
+    assert unit(all_live).heat.dose > 0.4
+    assert unit(some_late).heat.dose == pytest.approx(unit(all_live).heat.dose)
+    shown = unit(some_late).heat.temperature
     assert shown is not None
     assert shown.ambient_degc == (degc_at(119) if 119 not in lost else degc_at(lost[0] - 1))
 
@@ -146,7 +146,7 @@ def test_a_budget_that_was_used_up_out_of_reach_is_told_as_what_it_is() -> None:
 
 def test_what_was_before_this_incident_does_not_count_in_it() -> None:
     script = told(range(20, 70), {})
-    before = unit(script).heat_dose
+    before = unit(script).heat.dose
     late = script.header(U, captured_s=script.now_s + 5.0)
     script.act(CloseIncident("i1"))
     script.now_s += 60.0
@@ -155,11 +155,11 @@ def test_what_was_before_this_incident_does_not_count_in_it() -> None:
     script.now_s += 10.0
     script.temperature(U, 20.0)
     assert before > 0.0
-    assert unit(script).heat_dose == 0.0
+    assert unit(script).heat.dose == 0.0
     for header, counts in ((late, False), (script.header(U, script.now_s - 5.0), True)):
         hot = encode(Temperature(header, 300.0))
         script.record(backfilled_key(U, TEMPERATURE.suffix), hot)
-        assert (unit(script).heat_dose > 0.0) == counts
+        assert (unit(script).heat.dose > 0.0) == counts
 
 
 def on_a_link_that_stutters(lost: set[int]) -> JournaledScript:
@@ -183,11 +183,11 @@ def test_on_a_link_that_stutters_for_long_the_fire_at_its_beginning_counts_once(
     in_the_fire: range,
 ) -> None:
     script = on_a_link_that_stutters({*in_the_fire, *range(200, 6 * MAX_INTERVALS, 3)})
-    assert len(unit(script).exposures) == MAX_INTERVALS
+    assert len(unit(script).heat.exposures) == MAX_INTERVALS
     script.fetch(U, 50)
     # Give or take a second at either end of it.
-    assert unit(script).heat_dose == pytest.approx(40.0 / 60.0, abs=2.0 / 60.0)
-    assert len(unit(script).exposures) <= MAX_INTERVALS
+    assert unit(script).heat.dose == pytest.approx(40.0 / 60.0, abs=2.0 / 60.0)
+    assert len(unit(script).heat.exposures) <= MAX_INTERVALS
 
 
 @pytest.mark.parametrize("late_s", [5.0, 11.0 * MAX_INTERVALS - 5.0])
@@ -203,8 +203,8 @@ def test_a_reading_of_a_silence_that_is_counted_as_known_changes_nothing(late_s:
 
 def test_stretches_that_are_known_take_no_more_room_the_longer_it_lasts() -> None:
     script = told(range(20, 70), {})
-    assert len(unit(script).exposures) == 1
+    assert len(unit(script).heat.exposures) == 1
     for _ in range(MAX_INTERVALS + 300):
         script.now_s += 11.0
         script.temperature(U, 20.0)
-    assert len(unit(script).exposures) == MAX_INTERVALS
+    assert len(unit(script).heat.exposures) == MAX_INTERVALS

@@ -177,7 +177,7 @@ def north_m(script: Script) -> float:
 
 
 def place_m(script: Script) -> tuple[float, float]:
-    fused = script.pipeline.state.units["FF-01"].fused
+    fused = script.pipeline.state.units["FF-01"].place.fused
     assert fused is not None
     return fused.north_m, fused.east_m
 

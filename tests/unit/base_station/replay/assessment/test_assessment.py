@@ -7,6 +7,7 @@ import pytest
 
 from base_station.core.state import StationState, UnitState
 from base_station.core.state.pin import Pin, PinKind, PinVerdict
+from base_station.core.state.unit_place import UnitPlace
 from base_station.core.trust.trust import conflicts_of, trust_of
 from base_station.replay.assessment.figures import (
     errors_against,
@@ -77,7 +78,7 @@ def fused(**changes: object) -> FusedPosition:
 
 
 def known(**changes: object) -> UnitState:
-    return UnitState("FF-01", registered=True, link="live", fused=fused(**changes))
+    return UnitState("FF-01", registered=True, link="live", place=UnitPlace(fused(**changes)))
 
 
 @pytest.mark.parametrize(
