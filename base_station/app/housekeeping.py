@@ -1,0 +1,68 @@
+"""Housekeeping of a live station: what is looked at now and then, beside the engine."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from base_station.api.routes.forgetting import accept_from_command
+from base_station.api.services import Services
+from base_station.app.folder_commands import FORGET_COMMAND
+from base_station.app.live_parts import LiveParts
+from base_station.app.older_assignments import OlderAssignments
+from base_station.privacy.requests import ErasureRequests
+from base_station.security.pki.enrolled_units import EnrolledUnits
+from base_station.storage.segment_index import SegmentIndex
+from base_station.unit_sync.log_gap_detector import Lost
+from shared.messages import STATION_ID
+from shared.messages.station import SetThresholds
+
+
+class Housekeeping:
+    """Each round looks at everything once; actions are a leader's alone."""
+
+    def __init__(self, parts: LiveParts, services: Services) -> None:
+        self._parts = parts
+        disk, recorder = parts.resources.disk, parts.resources.recorder
+        recoveries = {one.path: str(one) for one in recorder.recoveries}
+        self._index = SegmentIndex(disk.records, recoveries, lambda: disk.check.lacking)
+        self._enrolled = EnrolledUnits(
+            parts.resources.pki, parts.gate, disk.roster.registered_units, disk.records
+        )
+        self._lost = disk.lost_from_log(self._mark_missing)
+        self._older = OlderAssignments(disk.roster, parts.gate)
+        self._requests = ErasureRequests(
+            disk.folder, partial(accept_from_command, services, FORGET_COMMAND)
+        )
+
+    def run(self) -> None:
+        """One round."""
+        parts, resources = self._parts, self._parts.resources
+        self._index.update(resources.recorder.segments())
+        resources.disk.check.look(resources.recorder.segments())
+        if not resources.config.standby.name:  # else it comes from the other station
+            self._lost.look()
+        parts.restarts.restart_if_stale()
+        self._requests.look()
+        resources.presence.update()
+        parts.replays.end_idle()
+        if resources.renewal.is_due(in_incident=parts.live.is_in_incident()):
+            parts.announce("the renewed certificate is taken up")
+            parts.restarts.request(None)
+        if parts.side.leads:
+            self._submit_actions()
+
+    def _submit_actions(self) -> None:
+        """Submit what the station itself has to change in the live state."""
+        parts, live = self._parts, self._parts.live
+        self._enrolled.update()
+        self._older.look()
+        if live.thresholds != live.configured_thresholds:
+            parts.gate.submit(STATION_ID, SetThresholds(live.configured_thresholds))
+        monitors = (parts.limiter, parts.reports.backfill.share, parts.bans, parts.forwarders)
+        for monitor in monitors:
+            for report in monitor.changes(live.problems):
+                parts.gate.submit(STATION_ID, report)
+
+    def _mark_missing(self, lost: Lost) -> None:
+        self._parts.engine.mark_missing(lost)
+        self._parts.reports.count_missing()

@@ -1,0 +1,67 @@
+"""API and console of a live station: services, application and server."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from base_station.api.app import create_app
+from base_station.api.replays import Replays
+from base_station.api.server import ConsoleServer
+from base_station.api.services import Services
+from base_station.app.factories import replay_process_starter
+from base_station.app.live_parts import LiveParts
+from base_station.app.pipeline_factory import past_pipeline
+from base_station.replay.processes.replay_process import ReplayContext
+from base_station.storage.db.base_maps import BaseMaps
+
+
+def new_services(parts: LiveParts) -> Services:
+    """Services of the API."""
+    resources, disk = parts.resources, parts.resources.disk
+    return Services(
+        accounts=disk.accounts,
+        roster=disk.roster,
+        records=disk.records,
+        base_maps=BaseMaps(disk.store),
+        hub=resources.hub,
+        gate=parts.gate,
+        projection=disk.projection,
+        replays=Replays(replay_process_starter(_replay_context(parts), disk.clock.utc_ns)),
+        forgettings=parts.erasures,
+        clock=disk.clock,
+        secure=resources.config.http.certificate is not None,
+        ha_status=parts.side.ha_status,
+        recordings=resources.recordings,
+        post_processor=parts.post_processor,
+        plans=parts.plans,
+        pki=resources.pki,
+        accountability=resources.config.accountability,
+    )
+
+
+def new_server(parts: LiveParts, services: Services, on_stop: Callable[[], None]) -> ConsoleServer:
+    """Server of consoles and API; ``on_stop`` is called as it begins to stop."""
+    hub, http = parts.resources.hub, parts.resources.config.http
+    app = create_app(services, started=lambda loop: hub.connect(loop, parts.engine))
+    return ConsoleServer(
+        app,
+        parts.resources.listening,
+        http.certificate,
+        http.private_key,
+        on_stop=on_stop,
+        is_known=app.state.known_networks.__contains__,
+    )
+
+
+def _replay_context(parts: LiveParts) -> ReplayContext:
+    disk = parts.resources.disk
+    return ReplayContext(
+        processes=parts.replays,
+        log=str(disk.folder.log),
+        checkpoints=str(disk.folder.checkpoints),
+        prepare=disk.recorder.flush,
+        note_damage=disk.check.recheck,
+        people=disk.roster.known_people,
+        empty_pipeline=lambda: past_pipeline(None),
+        known_segments=disk.known_segments,
+    )

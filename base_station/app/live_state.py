@@ -1,0 +1,36 @@
+"""Live state as the station's parts ask for it, which has none until the log has been read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from base_station.core.alarms.thresholds import Thresholds
+from base_station.core.state import StationState
+
+
+class LiveState:
+    """From any thread."""
+
+    def __init__(self, configured: Thresholds) -> None:
+        """``configured``: thresholds of the alarm rules, by the settings."""
+        self.configured_thresholds = configured
+        self._state: StationState | None = None
+
+    def begin(self, state: StationState) -> None:
+        """The log has been read."""
+        self._state = state
+
+    def is_in_incident(self) -> bool:
+        """True while an incident is open."""
+        incident = None if self._state is None else self._state.incident
+        return incident is not None and incident.closed_ns is None
+
+    @property
+    def problems(self) -> Mapping[str, str]:
+        """Problems of the station's parts, by the log."""
+        return {} if self._state is None else self._state.problems
+
+    @property
+    def thresholds(self) -> Thresholds:
+        """Thresholds of the alarm rules in use, by the log."""
+        return self.configured_thresholds if self._state is None else self._state.thresholds

@@ -1,0 +1,54 @@
+"""Restart of a running station: on request, and where its live state was made of a damaged log."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from base_station.core.log_position import LogPosition
+from base_station.standby.stale_state import StaleState
+
+
+class Restart(NamedTuple):
+    """The station is to start anew; where there is another one that leads, as its standby."""
+
+    cut_from: LogPosition | None  # behind which the log goes its own way
+    is_repaired: bool = False  # what was saved of it was made without what was missing
+
+
+class RestartControl:
+    """From any thread."""
+
+    def __init__(
+        self,
+        stop: Callable[[], None],
+        *,
+        is_leader: Callable[[], bool],
+        has_standby: Callable[[], bool],
+        is_in_incident: Callable[[], bool],
+    ) -> None:
+        """``stop`` ends the station; ``has_standby``: another one can take over."""
+        self._stop = stop
+        self._is_leader = is_leader
+        self._has_standby = has_standby
+        self._is_in_incident = is_in_incident
+        self.stale = StaleState()
+        self.requested: Restart | None = None
+
+    def request(self, cut_from: LogPosition | None) -> None:
+        """End the station, to start anew."""
+        self.requested = self.requested or Restart(cut_from, self.stale.is_stale)
+        self._stop()
+
+    def note_repaired(self, end_ns: int) -> None:
+        """A segment of the log that ends there is whole again."""
+        self.stale.note_mended(end_ns)
+        self.restart_if_stale()
+
+    def restart_if_stale(self) -> None:
+        """Start anew where the live state is stale, and nobody is in action meanwhile."""
+        has_standby, in_incident = self._has_standby(), self._is_in_incident()
+        if self.stale.can_be_made_good(
+            leads=self._is_leader(), spared=has_standby, in_incident=in_incident
+        ):
+            self.request(None)
