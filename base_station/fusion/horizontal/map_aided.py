@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from base_station.fusion.gaussian import jeffrey_update
 from base_station.fusion.horizontal.compass_aided import CompassAidedFilter, SavedCompassAided
 from base_station.fusion.horizontal.heading_hypotheses import GnssObservation
-from base_station.fusion.horizontal.map_particle_filter import MapParticleFilter, SavedParticles
+from base_station.fusion.horizontal.map_particle_filter import MapParticleFilter, SavedMapParticles
 from base_station.fusion.horizontal.state import place_jacobian, turn_and_std
 from base_station.fusion.interface import CompassHeading
 from base_station.fusion.kernels import DRIFT, HorizontalEstimate, estimate_before
@@ -34,7 +34,7 @@ RETRY_M = 25.0  # walked after a cloud was given up until another begins
 
 class SavedMapAided(msgspec.Struct, frozen=True):
     plain: SavedCompassAided
-    cloud: SavedParticles | None
+    cloud: SavedMapParticles | None
     clouds: int
     to_walk_m: float
     floor: int | None

@@ -1,4 +1,4 @@
-"""A cloud of particles that is told where the past leads keeps what walls have told it."""
+"""A cloud of particles that is reweighted to a posterior keeps what walls have shown."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.fusion.horizontal.map_particle_filter import PARTICLES, MapParticleFilter
+from base_station.fusion.horizontal.map_particle_filter import MapParticleFilter
+from base_station.fusion.horizontal.particles import PARTICLES
 
 MEAN = np.eye(9)[2]
 SPREAD = np.diag([4.0, 0.01, 1e-4, 1e-4, *[1e-6] * 4, 1e-10])
@@ -16,12 +17,13 @@ SPREAD = np.diag([4.0, 0.01, 1e-4, 1e-4, *[1e-6] * 4, 1e-10])
 def cloud() -> MapParticleFilter:
     """On both sides of a wall along north 0, and nobody within a metre of it."""
     begun = MapParticleFilter(MEAN, SPREAD, 5).save()
-    particles = np.frombuffer(begun.particles).reshape(PARTICLES, 4).copy()
-    particles[:, 0] += np.where(particles[:, 0] > 0.0, 1.0, -1.0)
-    return MapParticleFilter.restore(msgspec.structs.replace(begun, particles=particles.tobytes()))
+    states = np.frombuffer(begun.particles.states).reshape(PARTICLES, 4).copy()
+    states[:, 0] += np.where(states[:, 0] > 0.0, 1.0, -1.0)
+    particles = msgspec.structs.replace(begun.particles, states=states.tobytes())
+    return MapParticleFilter.restore(msgspec.structs.replace(begun, particles=particles))
 
 
-def told(cloud: MapParticleFilter, north_m: float, std_m: float) -> bool:
+def is_reweighted(cloud: MapParticleFilter, north_m: float, std_m: float) -> bool:
     mean, covariance = cloud.moments()
     known = [0, 1, 2, 3, 8]
     mean, covariance = mean[known], covariance[np.ix_(known, known)]
@@ -31,25 +33,25 @@ def told(cloud: MapParticleFilter, north_m: float, std_m: float) -> bool:
 
 
 def norths(cloud: MapParticleFilter) -> np.ndarray:
-    return np.frombuffer(cloud.save().particles).reshape(PARTICLES, 4)[:, 0]
+    return np.frombuffer(cloud.save().particles.states).reshape(PARTICLES, 4)[:, 0]
 
 
-def test_told_what_it_knows_it_stays_as_it_is(cloud: MapParticleFilter) -> None:
+def test_posterior_like_the_cloud_changes_little(cloud: MapParticleFilter) -> None:
     (before, spread), std_m = cloud.moments(), float(np.sqrt(cloud.moments()[1][0, 0]))
-    assert told(cloud, float(before[0]), std_m)
+    assert is_reweighted(cloud, float(before[0]), std_m)
     after, again = cloud.moments()
     assert after[0] == pytest.approx(before[0], abs=0.1)
     assert again[0, 0] == pytest.approx(spread[0, 0], rel=0.1)
 
 
-def test_told_one_side_it_stays_off_the_wall_there(cloud: MapParticleFilter) -> None:
+def test_posterior_on_one_side_leaves_the_wall_free(cloud: MapParticleFilter) -> None:
     """A normal distribution would put a third of itself into the wall."""
-    assert told(cloud, 1.2, 1.0)
+    assert is_reweighted(cloud, 1.2, 1.0)
     assert np.mean(norths(cloud) > 0.8) > 0.95
     assert cloud.moments()[0][0] > 1.0
 
 
-def test_told_of_another_place_it_says_so_and_changes_nothing(cloud: MapParticleFilter) -> None:
+def test_posterior_elsewhere_is_refused_and_changes_nothing(cloud: MapParticleFilter) -> None:
     before = cloud.save()
-    assert not told(cloud, 40.0, 0.5)
+    assert not is_reweighted(cloud, 40.0, 0.5)
     assert cloud.save() == before
