@@ -16,34 +16,29 @@ from dataclasses import dataclass
 
 import msgspec
 
-from base_station.core import idempotency
 from base_station.core.commands import command_tracker
-from base_station.core.events import Refused
 from base_station.core.pipeline import StationPipeline
+from base_station.engine.action_queue import ActionQueue
 from base_station.engine.admission import Admission, classify, mark_missing
 from base_station.engine.checkpoint_writer import CheckpointWriter
 from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.health_monitor import HealthMonitor
+from base_station.engine.message_report import message_report
 from base_station.engine.ports import ActionResult, EnginePorts, Record, Trails
 from base_station.engine.projector import Projector
 from base_station.engine.write_ahead import WriteAhead
-from base_station.unit_sync.backfill import Report
-from base_station.unit_sync.journal_client import Held
 from base_station.unit_sync.log_gap_detector import Lost
 from base_station.views.wire import Snapshot
-from shared.channels import OPERATOR, TICK
+from shared.channels import TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.envelope import Stamper
-from shared.errors import StoreError
-from shared.messages import STATION_ID, OperatorAction, Tick
+from shared.messages import STATION_ID, Tick
 from shared.messages.station import (
     AcknowledgeAlarm,
     Action,
     CloseIncident,
     ConfirmCommand,
-    ForgetWearers,
-    ReportProblem,
     SendCommand,
     UndoConfirmation,
 )
@@ -63,8 +58,6 @@ MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
 FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
 STOP_TIMEOUT_S = 10.0
 
-_OPERATOR_KEY = OPERATOR.key(STATION_ID)
-_APPLIED_WITHOUT_LOG = (SendCommand, ReportProblem)  # an evacuation waits for no disk
 # What is to be sent to units changes with these at once; with all else at the next tick.
 _CHANGES_ORDERS = (
     SendCommand,
@@ -101,7 +94,7 @@ class StationEngine:
             pipeline, ports.log, self._publisher, self._projector, self._health
         )
         self._checkpoint_writer = CheckpointWriter(ports.log, ports.checkpoints, self._health)
-        self._inbox: deque[tuple[str, Action, str, Future[ActionResult]]] = deque()
+        self._actions = ActionQueue(pipeline, self._write_ahead, self._stamper)
         self._lost: deque[Lost] = deque()
         self._snapshot_requests: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._unlinked: frozenset[str] = frozenset()  # as was told last
@@ -117,8 +110,6 @@ class StationEngine:
         self._due = _Due(now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
-        # What waited while somebody acted is news to that person, and so it is later by the log.
-        self._not_before_ns = 0
         self._health_due = False  # consoles hear of the station's health with the next delta
 
     # ---- from any thread
@@ -134,11 +125,10 @@ class StationEngine:
         self._worker.join(STOP_TIMEOUT_S)
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
-        future: Future[ActionResult] = Future()
-        self._inbox.append((by, action, action_id, future))
+        future = self._actions.put(by, action, action_id)
         self._ports.feed.wake()
         if self._worker.stopping.is_set() and not self._worker.is_alive:
-            self._refuse_waiting()
+            self._actions.refuse_waiting()
         return future
 
     def save_soon(self) -> None:
@@ -251,7 +241,7 @@ class StationEngine:
 
     def _admit(self, t_ns: int, key: str, payload: bytes) -> None:
         """Classify a record from the bus, and log and apply it."""
-        event = self._write_ahead.event_of(max(t_ns, self._not_before_ns), key, payload)
+        event = self._write_ahead.event_of(max(t_ns, self._actions.not_before_ns), key, payload)
         admission = classify(key, event, self._pipeline.state)
         if admission is Admission.ACCEPT:  # nearly always
             self._write_ahead.append(event, key, payload)
@@ -267,25 +257,12 @@ class StationEngine:
             self._health.report("bus", text)
 
     def _take_actions(self) -> None:
-        for _ in range(len(self._inbox)):
-            by, action, action_id, future = self._inbox.popleft()
-            if isinstance(action, ForgetWearers) and self._checkpoint_writer.is_under_way:
-                # What is being saved has them in it.
-                self._inbox.append((by, action, action_id, future))
-                continue
-            before = ActionResult.before(self._pipeline.state, action_id)
-            try:
-                done = before or self._perform(by, action, action_id)
-            except StoreError as error:
-                if future.set_running_or_notify_cancel():
-                    future.set_exception(error)
-                continue
+        for done in self._actions.perform_waiting(lambda: self._checkpoint_writer.is_under_way):
             self._flush_urgent()
-            if isinstance(action, _CHANGES_ORDERS):
+            if isinstance(done.action, _CHANGES_ORDERS):
                 self._ports.say(command_tracker.open_orders(self._pipeline.state))
-            if future.set_running_or_notify_cancel():
-                future.set_result(done)
-            self._due.delta_ns = 0  # who did something sees it at once
+            done.answer()
+            self._due.delta_ns = 0  # its operator sees it at once
 
     def _mark_missing(self) -> None:
         for _ in range(len(self._lost)):
@@ -293,33 +270,16 @@ class StationEngine:
                 for seq in (seq for run in runs for seq in range(run.first, run.last + 1)):
                     mark_missing((sender_id, boot_id, seq), self._pipeline.state)
 
-    def _perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
-        """Raises StoreError where the log does not take it: it is not done then, but for what
-        people are to hear in any case.
-        """
-        header = self._stamper.header()
-        action_id = action_id or f"{header.boot_id:016x}-{header.seq}"
-        payload = encode(OperatorAction(header, action_id, by, action))
-        t_ns = max(header.t_utc_ns, self._not_before_ns)
-        if isinstance(action, _APPLIED_WITHOUT_LOG):
-            outputs = self._write_ahead.append_and_apply(t_ns, _OPERATOR_KEY, payload, urgent=True)
-        else:
-            outputs = self._write_ahead.append_or_fail(t_ns, _OPERATOR_KEY, payload)
-        self._not_before_ns = self._pipeline.state.t_ns + 1
-        refused = next((output for output in outputs if isinstance(output, Refused)), None)
-        return ActionResult(
-            action_id, self._pipeline.state.t_ns, refused, idempotency.created_id_of(action)
-        )
-
     def _tick(self) -> None:
         header = self._stamper.header()
-        t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns, self._not_before_ns)
+        t_ns = max(header.t_utc_ns, self._pipeline.state.t_ns, self._actions.not_before_ns)
         tick = Tick(header, t_ns, tuple(sorted(self._unlinked & self._pipeline.state.units.keys())))
         self._write_ahead.append_and_apply(t_ns, TICK.key(STATION_ID), encode(tick))
         self._report_problems()
         is_behind = self._ports.log.is_behind  # and what is reported perhaps in memory only
         if not (is_behind and self._ports.log.refuses):  # else what is fetched would be lost
-            self._ports.report(self._message_report(), is_behind)
+            held = message_report(self._pipeline.state, self._ports.linked())
+            self._ports.report(held, is_behind)
         self._ports.say(command_tracker.open_orders(self._pipeline.state))
 
     def _update_health(self) -> None:
@@ -364,21 +324,7 @@ class StationEngine:
         }
         for report in list(self._health.check(seen, self._pipeline.state.problems)):
             log.warning("%s: %s", report.part, report.text or "works again")
-            self._perform(STATION_ID, report)
-
-    def _message_report(self) -> Report:
-        """Messages that are here, of units with a token or recent messages."""
-        state, linked = self._pipeline.state, self._ports.linked()
-        return {
-            sender.unit_id: tuple(
-                Held(boot.boot_id, tuple(boot.seen.runs())) for boot in sender.boots
-            )
-            for unit in state.units.values()
-            if unit.registered
-            for sender in (unit, unit.tracker)
-            if sender is not None
-            if sender.unit_id in linked or sender.link_at(state.t_ns) == "live"
-        }
+            self._actions.perform(STATION_ID, report)
 
     def _finish(self) -> None:
         until_ns = self._ports.clock.monotonic_ns() + FINISH_NS
@@ -388,9 +334,4 @@ class StationEngine:
         self._project()
         self._save_checkpoint()
         self._checkpoint_writer.finish()
-        self._refuse_waiting()
-
-    def _refuse_waiting(self) -> None:
-        while self._inbox:
-            future = self._inbox.popleft()[-1]
-            future.set_exception(StoreError("the station is stopping; do it again when it runs"))
+        self._actions.refuse_waiting()

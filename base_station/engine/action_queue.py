@@ -1,0 +1,98 @@
+"""Operator actions on their way into the log and the live state."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from typing import NamedTuple
+
+from base_station.core import idempotency
+from base_station.core.events import Refused
+from base_station.core.pipeline import StationPipeline
+from base_station.engine.ports import ActionResult
+from base_station.engine.write_ahead import WriteAhead
+from shared.channels import OPERATOR
+from shared.codec import encode
+from shared.envelope import Stamper
+from shared.errors import StoreError
+from shared.messages import STATION_ID, OperatorAction
+from shared.messages.station import Action, ForgetWearers, ReportProblem, SendCommand
+
+_OPERATOR_KEY = OPERATOR.key(STATION_ID)
+_APPLIED_WITHOUT_LOG = (SendCommand, ReportProblem)  # an evacuation waits for no disk
+
+
+class PerformedAction(NamedTuple):
+    """An action that was logged and applied, and not answered yet."""
+
+    action: Action
+    result: ActionResult
+    future: Future[ActionResult]
+
+    def answer(self) -> None:
+        if self.future.set_running_or_notify_cancel():
+            self.future.set_result(self.result)
+
+
+class ActionQueue:
+    """``put`` from any thread; all else in the engine's, or where that has ended."""
+
+    def __init__(
+        self, pipeline: StationPipeline, write_ahead: WriteAhead, stamper: Stamper
+    ) -> None:
+        self._pipeline = pipeline
+        self._write_ahead = write_ahead
+        self._stamper = stamper
+        self._waiting: deque[tuple[str, Action, str, Future[ActionResult]]] = deque()
+        # What waited during an action is news to its operator, and so it is later by the log.
+        self.not_before_ns = 0
+
+    def put(self, by: str, action: Action, action_id: str) -> Future[ActionResult]:
+        """Queue an action; ``OperatorGate.submit`` says what the future gives."""
+        future: Future[ActionResult] = Future()
+        self._waiting.append((by, action, action_id, future))
+        return future
+
+    def perform_waiting(self, is_saving: Callable[[], bool]) -> Iterator[PerformedAction]:
+        """Perform the actions that wait, one after another; ``is_saving``: a checkpoint is being
+        written.
+        """
+        for _ in range(len(self._waiting)):
+            by, action, action_id, future = self._waiting.popleft()
+            if isinstance(action, ForgetWearers) and is_saving():
+                # What is being saved has them in it.
+                self._waiting.append((by, action, action_id, future))
+                continue
+            before = ActionResult.before(self._pipeline.state, action_id)
+            try:
+                result = before or self.perform(by, action, action_id)
+            except StoreError as error:
+                if future.set_running_or_notify_cancel():
+                    future.set_exception(error)
+                continue
+            yield PerformedAction(action, result, future)
+
+    def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
+        """Raises StoreError where the log does not take it: it is not done then, but for what
+        people are to hear in any case.
+        """
+        header = self._stamper.header()
+        action_id = action_id or f"{header.boot_id:016x}-{header.seq}"
+        payload = encode(OperatorAction(header, action_id, by, action))
+        t_ns = max(header.t_utc_ns, self.not_before_ns)
+        if isinstance(action, _APPLIED_WITHOUT_LOG):
+            outputs = self._write_ahead.append_and_apply(t_ns, _OPERATOR_KEY, payload, urgent=True)
+        else:
+            outputs = self._write_ahead.append_or_fail(t_ns, _OPERATOR_KEY, payload)
+        self.not_before_ns = self._pipeline.state.t_ns + 1
+        refused = next((output for output in outputs if isinstance(output, Refused)), None)
+        return ActionResult(
+            action_id, self._pipeline.state.t_ns, refused, idempotency.created_id_of(action)
+        )
+
+    def refuse_waiting(self) -> None:
+        """Refuse what waits still, as the engine has ended."""
+        while self._waiting:
+            future = self._waiting.popleft()[-1]
+            future.set_exception(StoreError("the station is stopping; do it again when it runs"))
