@@ -236,7 +236,7 @@ class _Station:
             report=self._reports.report,
             linked=lambda: self._links.linked,
             unlinked=lambda: self._links.unlinked,
-            say=lambda orders: self._downlink.report(orders if self._side.leads else ()),
+            send_orders=lambda orders: self._downlink.report(orders if self._side.leads else ()),
         )
 
     def _startup_console(self) -> AbstractContextManager[Watch]:

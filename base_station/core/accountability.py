@@ -69,8 +69,10 @@ def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
         raise UserError(f"a check-in needs an id of its own, not {action.check_in_id!r}")
     found = [unit for unit in state.units.values() if _is_addressed(unit, action)]
     if not found:
-        whom = action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
-        raise UserError(f"nobody of {whom} is on duty in an open incident")
+        recipients = (
+            action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
+        )
+        raise UserError(f"nobody of {recipients} is on duty in an open incident")
     for unit in found:
         _confirm(state, unit, ParConfirmation(state.t_ns, "radio", by, action.check_in_id))
     return found

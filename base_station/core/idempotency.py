@@ -23,17 +23,17 @@ _DIGEST = "[0-9a-f]{32}"
 _ACTION_ID = re.compile(rf"({_DIGEST})\.({_DIGEST})\.{_DIGEST}")
 
 
-def idempotent_action_id(by: str, key: str, asked: bytes, own: str) -> str:
+def idempotent_action_id(by: str, key: str, request: bytes, own: str) -> str:
     """For an action: with the same key, the same person asks for the same thing again.  ``own``:
     32 hexadecimal digits, other ones for every action, however old a key is that comes again.
     """
-    return f"{_digest(f'{by} {key}'.encode())}.{_keyed_digest(by, key, asked)}.{own}"
+    return f"{_digest(f'{by} {key}'.encode())}.{_keyed_digest(by, key, request)}.{own}"
 
 
-def row_id(by: str, key: str, asked: bytes) -> str:
+def row_id(by: str, key: str, request: bytes) -> str:
     """For what is added to a table and is no action: its first ``KEY_DIGITS`` tell the key."""
     of_key = _digest(f"{by} {key}".encode())
-    return of_key[:KEY_DIGITS] + _keyed_digest(by, key, asked)[:KEY_DIGITS]
+    return of_key[:KEY_DIGITS] + _keyed_digest(by, key, request)[:KEY_DIGITS]
 
 
 def audit_entry_prefixes(by: str, key: str) -> tuple[str, str]:
@@ -93,12 +93,12 @@ def _key_of(action_id: str) -> str:
     return "" if telling is None else telling[1]
 
 
-def _keyed_digest(by: str, key: str, asked: bytes) -> str:
+def _keyed_digest(by: str, key: str, request: bytes) -> str:
     """Of what was asked, which may be a name, and stands in the log: nobody who does not know the
     key finds it by trying names.
     """
-    return _digest(f"{by} {key} ".encode() + asked)
+    return _digest(f"{by} {key} ".encode() + request)
 
 
-def _digest(said: bytes) -> str:
-    return sha256(said).hexdigest()[:32]
+def _digest(content: bytes) -> str:
+    return sha256(content).hexdigest()[:32]

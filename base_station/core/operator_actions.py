@@ -227,12 +227,18 @@ class ActionHandler:
         if state.incident is not None and state.incident.closed_ns is None:
             raise UserError("an incident is open; close it first")
         self._positioning.forget(state, unit)
-        met = pin_registry.forget(state, unit.unit_id)
+        pinned = pin_registry.forget(state, unit.unit_id)
         self._alarms.erase_names(state, unit)
         idempotency.erase_reasons(state)
         unit.wearer.erase_names()
-        told = command_tracker.erase_names(state, unit)
-        return [unit, TrailBackfilled(unit.unit_id), *told, _pins_changed(met), NamesErased()]
+        commands = command_tracker.erase_names(state, unit)
+        return [
+            unit,
+            TrailBackfilled(unit.unit_id),
+            *commands,
+            _pins_changed(pinned),
+            NamesErased(),
+        ]
 
     def _start(self, state: StationState, action: SetStart) -> Iterator[StateChange]:
         unit = state.registered_unit(action.unit_id)
@@ -261,8 +267,8 @@ def _is_first_known_place(state: StationState) -> bool:
     knows where it lies: people are where satellites have them.
     """
     pinned = any(pin.kind in {"place", "start"} for pin in state.pins.values())
-    said = state.start_set or pinned or bool(state.beacons)
-    return state.plan is not state.placed_plan and not said
+    is_known = state.start_set or pinned or bool(state.beacons)
+    return state.plan is not state.placed_plan and not is_known
 
 
 def _anchor(action: SetAnchor) -> Anchor:

@@ -86,7 +86,7 @@ class ConsolePublisher:
     def publish_delta(self, health: bool = False, replay: ReplayView | None = None) -> None:
         """Publish what changed, and on request the station's health."""
         frames = zip(self._frame_now(), self._frame, strict=True)
-        if self._names_erased or any(now is not told for now, told in frames):
+        if self._names_erased or any(now is not before for now, before in frames):
             self.reset(replay)
             return
         if health or replay:

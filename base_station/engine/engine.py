@@ -260,7 +260,7 @@ class StationEngine:
         for done in self._actions.perform_waiting(lambda: self._checkpoint_writer.is_under_way):
             self._flush_urgent()
             if isinstance(done.action, _CHANGES_ORDERS):
-                self._ports.say(command_tracker.open_orders(self._pipeline.state))
+                self._ports.send_orders(command_tracker.open_orders(self._pipeline.state))
             done.answer()
             self._due.delta_ns = 0  # its operator sees it at once
 
@@ -280,7 +280,7 @@ class StationEngine:
         if not (is_behind and self._ports.log.refuses):  # else what is fetched would be lost
             held = message_report(self._pipeline.state, self._ports.linked())
             self._ports.report(held, is_behind)
-        self._ports.say(command_tracker.open_orders(self._pipeline.state))
+        self._ports.send_orders(command_tracker.open_orders(self._pipeline.state))
 
     def _update_health(self) -> None:
         messages = self._pipeline.state.counts.messages

@@ -64,8 +64,8 @@ class FoxgloveTopics:
         """
         if plan is None or anchor is None:
             return None
-        told = self._building
-        if told is None or told[0] is not plan or told[1] is not anchor:
+        logged = self._building
+        if logged is None or logged[0] is not plan or logged[1] is not anchor:
             self._building, self._plan = (plan, anchor), b""
             self._placing = _plan_in_wgs84(plan, anchor)
         elif self._plan and t_ns - self._plan_logged_ns < _PLAN_EVERY_NS:

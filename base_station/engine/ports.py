@@ -151,6 +151,6 @@ class EnginePorts:
     report: Callable[[Report, bool], None]
     linked: Callable[[], frozenset[str]]  # units whose link is there
     unlinked: Callable[[], frozenset[str]]  # whose link was there and is gone
-    say: Callable[[Sequence[Order]], None]  # hears what no unit has answered
+    send_orders: Callable[[Sequence[Order]], None]  # those that no unit has answered
     clock: Clock
     boot_id: int

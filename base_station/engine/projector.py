@@ -13,7 +13,7 @@ from shared.channels import tracked_unit
 from shared.clock import NS_PER_S
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, UnitDescription
 
-HEARD_NS = 5 * NS_PER_S  # the store follows when units were heard in such steps
+LAST_MESSAGE_STEP_NS = 5 * NS_PER_S  # the store follows when units were heard in such steps
 
 
 class Projector:
@@ -24,9 +24,9 @@ class Projector:
         self._tracks: list[FusedPosition] = []
         self._actions: list[OperatorAction] = []
         self._descriptions: list[UnitDescription] = []
-        self._heard: dict[str, int] = {}
+        self._last_messages: dict[str, int] = {}
         self._news: dict[str, None] = {}  # incidents; an ordered set
-        self._heard_before: dict[str, int] = {}
+        self._projected: dict[str, int] = {}
         self._track_second: dict[str, int] = {}  # by unit, of its newest track point
         self._collectors: dict[type[Output], Callable[[Any], None]] = {
             AlarmChange: self._alarms.append,
@@ -46,7 +46,7 @@ class Projector:
             if not any(isinstance(output, Refused) for output in outputs):
                 self._actions.append(_at_station_time(message, event.t_ns))
         elif outputs and message.header.unit_id != STATION_ID and not tracked_unit(event.unit_id):
-            self._note_heard(event.unit_id, event.t_ns)
+            self._note_message(event.unit_id, event.t_ns)
             if type(message) is UnitDescription:
                 self._descriptions.append(message)
 
@@ -62,7 +62,7 @@ class Projector:
             self._tracks,
             self._actions,
             self._descriptions,
-            self._heard,
+            self._last_messages,
             self._news,
         )
         if not any(parts):
@@ -73,16 +73,16 @@ class Projector:
             tracks=tuple(self._tracks),
             actions=tuple(self._actions),
             descriptions=tuple(self._descriptions),
-            heard=tuple(self._heard.items()),
+            heard=tuple(self._last_messages.items()),
             news=tuple(self._news),
         )
         for part in parts:
             part.clear()
         return projection
 
-    def _note_heard(self, unit_id: str, t_ns: int) -> None:
-        if t_ns - self._heard_before.get(unit_id, 0) >= HEARD_NS:
-            self._heard_before[unit_id] = self._heard[unit_id] = t_ns
+    def _note_message(self, unit_id: str, t_ns: int) -> None:
+        if t_ns - self._projected.get(unit_id, 0) >= LAST_MESSAGE_STEP_NS:
+            self._projected[unit_id] = self._last_messages[unit_id] = t_ns
 
     def _note_news(self, changed: ClosedIncidentChanged) -> None:
         self._news[changed.incident_id] = None

@@ -56,19 +56,23 @@ class SenderBans:
         now_ns = self._clock.monotonic_ns()
         with self._lock:
             self._drop_old(now_ns)
-            told = {
+            reports = {
                 f"{_PART}{sender_id}": _text(sender_id, one)
                 for sender_id, one in self._bans.items()
                 if now_ns < one.end_ns + _REPORT_FOR_NS
             }
-        for part, text in told.items():
+        for part, text in reports.items():
             if known.get(part) != text:
                 yield ReportProblem(part, text)
-        for part in [one for one in known if one.startswith(_PART) and one not in told]:
+        for part in [one for one in known if one.startswith(_PART) and one not in reports]:
             yield ReportProblem(part, "")
 
     def _drop_old(self, now_ns: int) -> None:
-        well = [who for who, o in self._bans.items() if now_ns >= o.end_ns + _WELL_AFTER_NS]
+        well = [
+            sender_id
+            for sender_id, ban in self._bans.items()
+            if now_ns >= ban.end_ns + _WELL_AFTER_NS
+        ]
         for sender_id in well:
             del self._bans[sender_id]
 

@@ -61,7 +61,7 @@ class GnssUpdater:
         if self._unguided_m2(fix.t_mono_ns) == 0.0:
             memory.receiver.update_inflation(distance2)
             memory.receiver.update_white_part(fix, then)
-        self._horizontal.update(self._observation(fix, then, self._kind.doubt_lasts))
+        self._horizontal.update(self._observation(fix, then, self._kind.correlated_fixes))
         memory.receiver.on_accepted(fix)
         if fix.vertical_std_m is not None:
             std_m = max(fix.vertical_std_m, self._kind.height_std_floor_m)
@@ -74,7 +74,7 @@ class GnssUpdater:
 
     def _update_late(self, fix: PlaceFix, then: PathPoint) -> FixVerdict:
         """A fix of a time before the newest one: the state then, less the path walked since."""
-        observation = self._observation(fix, then, self._kind.doubt_lasts)
+        observation = self._observation(fix, then, self._kind.correlated_fixes)
         slow_m2 = observation.slow_m**2
         own_m2 = slow_m2 + observation.white_m2
         once = msgspec.structs.replace(observation, slow_m=0.0, white_m2=own_m2)
@@ -95,9 +95,9 @@ class GnssUpdater:
             receiver.common_m2(fix),
             1.0 - receiver.white_part,
         )
-        doubt_m2 = lasts * receiver.extra_m2(fix, walls_std_m(kind, outside_m))
-        doubt_m2 += self._unguided_m2(fix.t_mono_ns)
-        doubt_m2 += since.error_m2(kind, self._horizontal.drift_std_radps)
+        extra_m2 = lasts * receiver.extra_m2(fix, walls_std_m(kind, outside_m))
+        extra_m2 += self._unguided_m2(fix.t_mono_ns)
+        extra_m2 += since.error_m2(kind, self._horizontal.drift_std_radps)
         return GnssObservation(
             north_m=fix.north_m,
             east_m=fix.east_m,
@@ -105,14 +105,14 @@ class GnssUpdater:
             since_east_m=since.east_m,
             slow_m=math.sqrt(own_m2 * part),
             common_m=math.sqrt(common_m2),
-            white_m2=own_m2 * (1.0 - part) + doubt_m2,
+            white_m2=own_m2 * (1.0 - part) + extra_m2,
         )
 
     def _unguided_m2(self, t_mono_ns: int) -> float:
         """Variance of the movement since the last position of the own path."""
         last = self._memory.last
-        heard_ns = last.header.t_mono_ns if last else self._memory.fix_t_mono_ns
-        return unguided_m2(self._kind, t_mono_ns, heard_ns)
+        last_ns = last.header.t_mono_ns if last else self._memory.fix_t_mono_ns
+        return unguided_m2(self._kind, t_mono_ns, last_ns)
 
     def _predict_slow_errors(self, t_mono_ns: int) -> None:
         """Predict the fixes' slow errors up to the time of this one."""

@@ -70,7 +70,7 @@ PARAMS = np.dtype(  # of ``Parameters``
             "drift_radps",
             "drift_least_radps",
             "drift_most_radps",
-            "drift_doubt",
+            "drift_inflation",
             "fastest_mps",
         )
     ]
@@ -163,7 +163,7 @@ def integrate_increment(
     """
     last, values = own[0], params[0]
     std_m, heading_std_rad = max(stds[0], stds[1]), stds[2]
-    drift_var = doubt_m2 = turned_rad = 0.0
+    drift_var = excess_m2 = turned_rad = 0.0
     if math.isnan(last.moved_heading_std_rad):
         last.moved_heading_std_rad, duration_s = heading_std_rad, 0.0
     else:
@@ -173,7 +173,7 @@ def integrate_increment(
             drift_var = max(0.0, grown - 2.0 * heading_std_rad * usual_rad)
         if not sure:
             added_m2 = max(0.0, std_m**2 - last.std_m**2)
-            doubt_m2 = min(added_m2, (values.fastest_mps * duration_s) ** 2)
+            excess_m2 = min(added_m2, (values.fastest_mps * duration_s) ** 2)
     north_m, east_m, down_m = to_m[0] - last.north_m, to_m[1] - last.east_m, to_m[2] - last.down_m
     length_m = math.hypot(north_m, east_m)
     moving_s = duration_s if length_m > MOVING_MPS * duration_s else 0.0
@@ -194,9 +194,9 @@ def integrate_increment(
         last.moved_heading_std_rad = heading_std_rad
     last.drift_radps = values.drift_radps
     if last.moving_s >= DRIFT_LEARNING_S:
-        stated_radps = values.drift_doubt * last.heading_std_growth_radps
+        stated_radps = values.drift_inflation * last.heading_std_growth_radps
         last.drift_radps = min(max(stated_radps, values.drift_least_radps), values.drift_most_radps)
-    place_var_m2 = values.walk_m_per_sqrt_m**2 * length_m + doubt_m2
+    place_var_m2 = values.walk_m_per_sqrt_m**2 * length_m + excess_m2
     turn_var = (
         values.turn_rad_per_sqrt_m**2 * length_m + drift_var + (values.turn_part * turned_rad) ** 2
     )

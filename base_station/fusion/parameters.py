@@ -14,7 +14,7 @@ class Parameters:
     drift_radps: float = 6e-4  # of its heading while moving, where the unit states none: 2 deg/min
     drift_least_radps: float = 6e-5
     drift_most_radps: float = 2e-3
-    drift_doubt: float = 1.3  # units are too sure of their heading
+    drift_inflation: float = 1.3  # units are too sure of their heading
     drift_wander_radps: float = 6e-5  # of that rate in a minute
     climb_m_per_sqrt_climb_m: float = 0.12  # height error by height climbed
     climb_m_per_sqrt_m: float = 0.01  # and by distance
@@ -31,7 +31,7 @@ class Parameters:
     wall_std_m: float = 4.0  # what an outer wall adds to a fix beside it
     wall_reach_m: float = 5.0  # falling off by distance
     inside_std_m: float = 8.0  # and being inside
-    doubt_lasts: float = 16.0  # fixes in a row that have about the same error, where it is doubtful
+    correlated_fixes: float = 16.0  # in a row, of about the same error beyond the receiver's own
     gate: float = 13.8  # chi-square of 2 degrees of freedom, 99.9 %
     linear_rad: float = 0.2  # heading standard deviation from which one hypothesis will do
     aligned_rad: float = 0.35  # and from which the heading is called known

@@ -82,7 +82,7 @@ def _unit_view(
         unit.registered,
         person_view(unit.wearer.person, people) if unit.wearer.person else None,
         unit.link,
-        to_ms_or_none(unit.heard_ns),
+        to_ms_or_none(unit.last_message_ns),
         _status_view(unit, status) if status else None,
         to_ms_or_none(unit.status_ns) if unit.status else None,
         heat.temperature.ambient_degc if heat.temperature else None,
@@ -148,7 +148,7 @@ def _duty_view(state: StationState, unit: UnitState, duty: Duty, people: PersonL
         rest_due_ms=to_ms_or_none(duty.rest_due_ns),
         confirmed=duty.confirmed,
         on_duty_ms=to_ms(duty.since_ns),
-        located=unit.heard_ns is not None and unit.heard_ns >= opened_ns,
+        located=unit.last_message_ns is not None and unit.last_message_ns >= opened_ns,
         entry_id="" if last is None else last.entry_id,
     )
 

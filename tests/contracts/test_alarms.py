@@ -36,7 +36,7 @@ def calm(seen_ns: int = T_NS) -> UnitState:
     return UnitState(
         "FF-01",
         registered=True,
-        heard_ns=seen_ns,
+        last_message_ns=seen_ns,
         link="live",
         status=message_factory.status(HEADER),
         status_ns=seen_ns,
@@ -70,7 +70,7 @@ def in_trouble(seen_ns: int = T_NS, rule: AlarmRule | None = None) -> UnitState:
     assert unit.status is not None
     assert unit.position is not None
     unit.registered = False
-    unit.heard_ns = seen_ns - 60 * NS_PER_S
+    unit.last_message_ns = seen_ns - 60 * NS_PER_S
     unit.status = msgspec.structs.replace(unit.status, motionless_s=60.0, battery=0.05, mayday=True)
     unit.heat.temperature = Temperature(HEADER, 300.0)
     unit.heat.dose = 2.0
@@ -89,7 +89,7 @@ def in_trouble(seen_ns: int = T_NS, rule: AlarmRule | None = None) -> UnitState:
     unit.fault = Fault(seen_ns, "the accelerometer is stuck")
     unit.tracker = UnitState("FF-01@tracker", fault=Fault(seen_ns, "the disk is full"))
     unit.boots = [
-        BootState(boot_id, first_live_ns=seen_ns - 90 * NS_PER_S, last_live_ns=unit.heard_ns)
+        BootState(boot_id, first_live_ns=seen_ns - 90 * NS_PER_S, last_live_ns=unit.last_message_ns)
         for boot_id in (1, 2)
     ]
     unit.description = message_factory.description(

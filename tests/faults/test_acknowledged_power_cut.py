@@ -82,7 +82,7 @@ class Unit:
             said = self._make(header=Header(U, BOOT, seq, seq * NS_PER_S // 30))
             self.journal.append([JournalRow(seq, POSITION, seq, encode(said))])
             if seq % 3:
-                station.say(said)
+                station.publish(said)
 
     def close(self) -> None:
         self._stop.set()

@@ -153,7 +153,7 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
 
     with LiveStation(tmp_path, policy) as station:
         station.act(RegisterUnit(unit, "one"))
-        station.say(said(1))
+        station.publish(said(1))
         until(lambda: reported() == [Run(1, 1)])
         with files_of_at_most(0):
             for _ in range(6):  # what nobody can read is logged, too
@@ -161,7 +161,7 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
                 time.sleep(0.1)
             until(lambda: station.recorder.problem)
             for seq in range(2, 100):
-                station.say(said(seq))
+                station.publish(said(seq))
             until(lambda: station.recorder.lost >= 98)
             # nobody goes blind because a disk is full
             until(lambda: north_of_one_m(station) == pytest.approx(99.0))
@@ -197,7 +197,7 @@ def test_a_station_that_starts_on_a_full_disk_tells_no_unit_that_anything_is_saf
     with files_of_at_most(0):
         station = LiveStation(tmp_path)
         with station:
-            station.say(said(1))
+            station.publish(said(1))
             until(lambda: north_of_one_m(station) == pytest.approx(1.0))
             until(lambda: station.recorder.problem)
             assert unit not in station.reported
@@ -217,7 +217,7 @@ def test_what_people_do_is_kept_where_the_log_takes_nothing_else(
             until_it_refuses(station)
             lost = station.recorder.lost
             station.act(RegisterUnit("FF-03", "of now"))
-            station.say(UnitEvent(Header("FF-01", 0xB007, 1, 1), EventKind.MAYDAY))
+            station.publish(UnitEvent(Header("FF-01", 0xB007, 1, 1), EventKind.MAYDAY))
             until(lambda: station.snapshot().alarms)
             assert station.recorder.lost - lost < 10  # ticks and what is said of the log itself
         until(lambda: not station.recorder.is_behind)

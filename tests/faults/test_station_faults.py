@@ -35,7 +35,7 @@ U = "FF-01"
 
 def follows(station: LiveStation, make_position: MakePosition, north_m: float) -> None:
     """A position still reaches the console."""
-    station.say(make_position(north_m=north_m))
+    station.publish(make_position(north_m=north_m))
 
     def shown() -> bool:
         position = station.snapshot().units[0].position
@@ -89,7 +89,7 @@ def test_a_mistake_in_the_pipeline_costs_one_message(
             return step(event)
 
         monkeypatch.setattr(station.pipeline, "step", sometimes)
-        station.say(make_position(north_m=1.0))
+        station.publish(make_position(north_m=1.0))
         until(lambda: "pipeline" in station.pipeline.state.problems)
         follows(station, make_position, 4.0)
 
@@ -109,7 +109,7 @@ def test_no_journal_hears_of_what_may_not_be_on_the_disk(
     monkeypatch.setattr(Recorder, "refuses", property(lambda _: behind["now"] and refuses))
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
-        station.say(make_position())
+        station.publish(make_position())
         wait_for_ticks(station)
         assert not station.reported
         assert (U in station.reported_unsafe) != refuses

@@ -29,7 +29,7 @@ def folder(tmp_path: Path, make_position) -> Path:
         station.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.1))
         for step in range(40):
             header = Header("FF-01", 7, step + 1, step * NS_PER_S // 10)
-            station.say(
+            station.publish(
                 msgspec.structs.replace(position, header=header, north_m=0.1 * step, east_m=0.0)
             )
         until(lambda: station.pipeline.state.counts.messages >= 40)

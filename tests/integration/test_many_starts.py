@@ -49,7 +49,7 @@ def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
             )
             said += map(encode, messages)
             for one in messages:
-                station.say(one)
+                station.publish(one)
         live = set(said[: STARTS_KEPT * MESSAGES])
         until(lambda: live <= {one for _, _, one in station.log.records()}, "what came live")
         until(  # an earlier report would have what is there fetched again

@@ -101,7 +101,7 @@ def desk(tmp_path: Path, make_position) -> Iterator[Desk]:
         for step in range(40):
             header = Header("FF-01", 7, step + 1, step * NS_PER_S // 10)
             said = msgspec.structs.replace(position, header=header, north_m=0.1 * step, east_m=0.0)
-            station.say(said)
+            station.publish(said)
         until(lambda: station.pipeline.state.counts.messages >= 40)
         station.act(SetPin("p", "FF-01", 0, 0.5, 0.5, 0.5, None, None, 0.0, "door"))
         station.act(CloseIncident("i1"))

@@ -53,7 +53,7 @@ def test_a_message_becomes_a_log_record_a_row_and_a_card(
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         station.act(Assign(U, "p1", "Ada", "red", "leader"))
-        station.say(make_position(north_m=3.0))
+        station.publish(make_position(north_m=3.0))
         until(lambda: any(p.tracks for p in station.store.projections))
         until(lambda: any(u.position for d in station.screen.deltas for u in d.units))
         (unit,) = station.snapshot().units
@@ -88,10 +88,10 @@ def test_who_asked_for_a_picture_that_could_not_be_made_gets_the_next(
 def test_what_came_live_while_it_was_fetched_is_in_the_log_once(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
-        station.say(mayday(1))
+        station.publish(mayday(1))
         for seq in (1, 2, 2):
             station.feed.deliver(backfilled_key(U, EVENT.suffix), encode(mayday(seq)))
-        station.say(mayday(3))
+        station.publish(mayday(3))
         until(lambda: len(said_keys(station)) == 3)
         assert said_keys(station) == [
             EVENT.key(U),
@@ -110,11 +110,11 @@ def test_what_is_replayed_is_in_the_log_once_and_counted_even_after_a_restart(
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         for seq in (1, 2, 2, 1, 1):
-            station.say(mayday(seq))
+            station.publish(mayday(seq))
         until(lambda: repeated(station) == 3)
     with LiveStation(tmp_path) as station:
         for seq in (2, 1, 3):
-            station.say(mayday(seq))
+            station.publish(mayday(seq))
         until(lambda: len(said_keys(station)) == 3)
         until(lambda: repeated(station) == 2)
         assert said_keys(station) == [EVENT.key(U)] * 3
@@ -130,7 +130,7 @@ def test_deltas_are_numbered_and_a_snapshot_carries_the_last_number(
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         for _ in range(20):
-            station.say(make_position())
+            station.publish(make_position())
         until(lambda: len(station.screen.deltas) > 3)
         seq = station.snapshot().seq
         told = [delta.seq for delta in station.screen.deltas]
@@ -184,7 +184,7 @@ def test_a_store_that_fails_is_an_alarm_and_tracking_goes_on(
         station.act(RegisterUnit(U, "one"))
         station.store.trouble = "The database does not answer"
         until(lambda: "store" in station.pipeline.state.problems)
-        station.say(make_position())
+        station.publish(make_position())
         until(lambda: station.snapshot().units[0].position is not None)
         assert [a.text for a in station.snapshot().alarms] == ["The database does not answer"]
         station.store.trouble = ""
@@ -198,8 +198,8 @@ def test_after_a_crash_the_live_state_comes_back_from_the_log(
     first.drive.start()
     first.act(RegisterUnit(U, "one"))
     first.act(Assign(U, "p1", "Ada", "red", "leader"))
-    first.say(make_position(north_m=7.0))
-    first.say(mayday(1000))
+    first.publish(make_position(north_m=7.0))
+    first.publish(mayday(1000))
     until(lambda: bool(first.pipeline.state.alarms))
     before = first.snapshot()
     first.drive._save_checkpoint = lambda: None  # type: ignore[method-assign]  # it was killed
@@ -219,8 +219,8 @@ def test_decisions_that_a_crash_kept_from_the_log_are_written_after_it(
 ) -> None:
     with LiveStation(tmp_path / "whole") as station:
         station.act(RegisterUnit(U, "one"))
-        station.say(make_position())
-        station.say(mayday(1000))
+        station.publish(make_position())
+        station.publish(mayday(1000))
         until(lambda: bool(station.pipeline.state.alarms))
     records = list(station.log.records())
     *_, decided = (i for i, (_, key, _) in enumerate(records) if key.endswith("/alarm"))
@@ -238,12 +238,12 @@ def test_an_orderly_restart_needs_no_more_than_the_checkpoint(
 ) -> None:
     with LiveStation(tmp_path) as first:
         first.act(RegisterUnit(U, "one"))
-        first.say(make_position())
+        first.publish(make_position())
         until(lambda: first.pipeline.state.counts.messages == 1)
     with LiveStation(tmp_path) as second:
         assert second.rebuilt == 0
         assert second.snapshot().units[0].position is not None
-        second.say(make_position(north_m=2.0))
+        second.publish(make_position(north_m=2.0))
         until(lambda: second.pipeline.state.counts.messages == 2)
     assert list(compare(second.log.records(), make_pipeline())) == []
 

@@ -45,13 +45,13 @@ def test_a_link_that_is_gone_is_shown_and_logged_long_before_silence_tells_it(
 ) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
-        station.say(make_position())
+        station.publish(make_position())
         token = link_up(station)
         until(lambda: shown_link(station) == "live")
         token.close()
         until(lambda: shown_link(station) == "stale")
         assert unlinked(station) == (U,)
-        station.say(make_position(header=Header(U, 7, 9, 2 * NS_PER_S)))
+        station.publish(make_position(header=Header(U, 7, 9, 2 * NS_PER_S)))
         until(lambda: shown_link(station) == "live")
 
 
@@ -79,7 +79,7 @@ def test_links_that_come_and_go_all_the_time_make_few_ticks(
         while time.monotonic() < end_s:
             seq += 1
             link_up(station, f"FF-{seq}").close()
-            station.say(make_position(header=Header(U, 7, seq, seq)))  # the drive has a turn
+            station.publish(make_position(header=Header(U, 7, seq, seq)))  # the drive has a turn
             time.sleep(0.01)
         station.recorder.flush()
         assert len(ticks(station)) < seconds * 8
@@ -93,7 +93,7 @@ def test_a_unit_that_holds_its_link_and_says_nothing_is_asked_for_its_journal(
     with LiveStation(tmp_path) as station:
         for unit_id in (U, "FF-02", "FF-03"):
             station.act(RegisterUnit(unit_id, unit_id))
-        station.say(make_position())
+        station.publish(make_position())
         token, unheard = link_up(station), link_up(station, "FF-02")
         until(lambda: station.reported.keys() == {U, "FF-02"})
         assert shown_link(station) == "stale"

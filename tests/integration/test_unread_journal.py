@@ -89,13 +89,13 @@ def test_what_cannot_be_read_is_fetched_once_whatever_is_started_again(
 ) -> None:
     with running(tmp_path / "station", unit) as (station, backfill):
         station.act(RegisterUnit(U, "one"))
-        station.say(unit.position(1))
+        station.publish(unit.position(1))
         heard(station, backfill, 4)
         until(lambda: kept(station, unit) == [1] * len(unit.kept), "all is in the log")
         assert backfill.fetched == len(unit.kept)
         assert station.pipeline.state.counts.undecodable == 5
     with running(tmp_path / "station", unit) as (station, backfill):
-        station.say(unit.position(9))
+        station.publish(unit.position(9))
         heard(station, backfill, 4)
         assert backfill.fetched == 0
         assert kept(station, unit) == [1] * len(unit.kept)
@@ -111,6 +111,6 @@ def test_what_came_live_and_cannot_be_read_is_not_fetched(tmp_path: Path, unit: 
         state = station.pipeline.state
         until(lambda: (sender := state.sender(U)) and sender.has(BOOT, 3), "it is not missing")
         station.feed.deliver("muster/v1/FF-01/journal/up/position", newer)
-        station.say(unit.position(4))
+        station.publish(unit.position(4))
         until(lambda: (sender := state.sender(U)) and sender.has(BOOT, 4), "the next one came")
         assert sum(payload == newer for _, _, payload in station.log.records()) == 1

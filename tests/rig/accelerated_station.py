@@ -86,7 +86,7 @@ class CompressedStation:
                 report=lambda *_: None,
                 linked=frozenset,
                 unlinked=frozenset,
-                say=lambda _: None,
+                send_orders=lambda _: None,
                 clock=clock,
                 boot_id=clock.utc_ns(),
             ),

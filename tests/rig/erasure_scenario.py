@@ -71,7 +71,7 @@ class Walker:
 
     def press_mayday(self) -> None:
         header = self._makes.header(self._unit_id)
-        self._station.say(UnitEvent(header, EventKind.MAYDAY))
+        self._station.publish(UnitEvent(header, EventKind.MAYDAY))
         until(lambda: any(a.unit_id == self._unit_id for a in self._alarms()))
 
     def _alarms(self) -> list[Alarm]:

@@ -80,7 +80,7 @@ def ports_of(feed: Feed, log: Log, screen: Screen, folder: Path, clock: Clock) -
         report=lambda *_: None,
         linked=frozenset,
         unlinked=frozenset,
-        say=lambda _: None,
+        send_orders=lambda _: None,
         clock=clock,
         boot_id=1,
     )
@@ -123,7 +123,7 @@ class LiveStation:
                 report=self._note_report,
                 linked=lambda: self._links.linked,
                 unlinked=lambda: self._links.unlinked,
-                say=self.downlink.report,
+                send_orders=self.downlink.report,
                 clock=clock,
                 boot_id=clock.utc_ns(),
             ),
@@ -155,7 +155,7 @@ class LiveStation:
     def act(self, action: Action, by: str = "chief", action_id: str = "") -> ActionResult:
         return self.drive.submit(by, action, action_id).result(PATIENCE_S)
 
-    def say(self, message: Message) -> None:
+    def publish(self, message: Message) -> None:
         channel = channel_of(message)
         self.bus.publish(channel.key(message.header.unit_id), encode(message), channel.qos)
 

@@ -29,23 +29,23 @@ class CalibrationPoor:
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
         description = unit.description
-        if description is None or unit.heard_ns is None:
+        if description is None or unit.last_message_ns is None:
             return None
         made_s = description.calibrated_s
         if made_s is None:
-            return Clear(unit.heard_ns, "the unit uses no calibration")
+            return Clear(unit.last_message_ns, "the unit uses no calibration")
         if description.calibration_faults:
-            said = f"is poor ({description.calibration_faults})"
-            return self._finding("poor", said, unit.name, unit.heard_ns)
-        if unit.heard_ns / NS_PER_S - made_s > self.old_after_days * _DAY_S:
-            said = f"is of {datetime.fromtimestamp(made_s, UTC):%-d %B %Y}"
-            return self._finding("old", said, unit.name, unit.heard_ns)
-        return Clear(unit.heard_ns, "the unit uses a good calibration")
+            defect = f"is poor ({description.calibration_faults})"
+            return self._finding("poor", defect, unit.name, unit.last_message_ns)
+        if unit.last_message_ns / NS_PER_S - made_s > self.old_after_days * _DAY_S:
+            defect = f"is of {datetime.fromtimestamp(made_s, UTC):%-d %B %Y}"
+            return self._finding("old", defect, unit.name, unit.last_message_ns)
+        return Clear(unit.last_message_ns, "the unit uses a good calibration")
 
-    def _finding(self, level: str, said: str, name: str, seen_ns: int) -> Finding:
+    def _finding(self, level: str, defect: str, name: str, seen_ns: int) -> Finding:
         return Finding(
             level,
             ADVISORY,
-            f"The calibration of {name}'s unit {said}; calibrate it anew when it is back",
+            f"The calibration of {name}'s unit {defect}; calibrate it anew when it is back",
             seen_ns=seen_ns,
         )

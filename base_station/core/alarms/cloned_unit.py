@@ -27,10 +27,10 @@ class ClonedUnit:
         speakers = (unit, unit.tracker) if unit.tracker is not None else (unit,)
         for sender in speakers:
             other = sender.duplicate_device
-            if other is None or sender.heard_ns is None:
+            if other is None or sender.last_message_ns is None:
                 continue
             seen_ns = min(other.last_live_ns, sender.boots[-1].last_live_ns)
-            if (sender.heard_ns - seen_ns) / NS_PER_S < self.gone_after_s:
+            if (sender.last_message_ns - seen_ns) / NS_PER_S < self.gone_after_s:
                 what = "unit" if sender is unit else "tracking agent"
                 return Finding(
                     "cloned",
@@ -40,4 +40,6 @@ class ClonedUnit:
                     seen_ns=seen_ns,
                     onset_ns=max(other.first_live_ns, sender.boots[-1].first_live_ns),
                 )
-        return None if unit.heard_ns is None else Clear(unit.heard_ns, "only one speaks")
+        return (
+            None if unit.last_message_ns is None else Clear(unit.last_message_ns, "only one speaks")
+        )

@@ -31,10 +31,10 @@ class HeatDose:
         if heat.dose < self.used_up:
             return Clear(heat.temperature_ns, "another incident")
         is_late = heat.dose - heat.late_dose < self.used_up
-        told = ", as only its journal told, so some time ago" if is_late else ""
+        remark = ", as only its journal told, so some time ago" if is_late else ""
         return Finding(
             "used up",
             WARNING,
-            f"The equipment of {unit.name} has used up its heat budget{told}: it may fail",
+            f"The equipment of {unit.name} has used up its heat budget{remark}: it may fail",
             seen_ns=heat.temperature_ns,
         )

@@ -23,11 +23,11 @@ class LinkLost:
     triggered_by: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.heard_ns is None:
+        if unit.last_message_ns is None:
             return None
-        silent_s = (t_ns - unit.heard_ns) / NS_PER_S
+        silent_s = (t_ns - unit.last_message_ns) / NS_PER_S
         if silent_s < self.live_within_s:
-            return Clear(unit.heard_ns, "messages return")
+            return Clear(unit.last_message_ns, "messages return")
         if silent_s < self.lost_after_s:
             return None
         stopped = unit.stopped_ns is not None
@@ -37,6 +37,6 @@ class LinkLost:
             f"{unit.name}'s unit was switched off"
             if stopped
             else f"Nothing heard of {unit.name}'s unit for {silent_s:.0f} s",
-            seen_ns=unit.heard_ns,
-            onset_ns=unit.heard_ns,
+            seen_ns=unit.last_message_ns,
+            onset_ns=unit.last_message_ns,
         )

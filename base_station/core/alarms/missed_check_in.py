@@ -37,17 +37,17 @@ class MissedCheckIn:
         return Finding(
             "overdue",
             EMERGENCY,
-            f"{unit.name}: PAR overdue, {_words(duty, onset_ns)}",
+            f"{unit.name}: PAR overdue, {_reason(duty, onset_ns)}",
             seen_ns=duty.counts_from_ns,
             onset_ns=onset_ns,
             about=unit.wearer.from_ns(t_ns),
         )
 
 
-def _words(duty: Duty, onset_ns: int) -> str:
+def _reason(duty: Duty, onset_ns: int) -> str:
     silent_min = (onset_ns - duty.counts_from_ns) / NS_PER_S / 60.0
     if duty.confirmation is None:
-        asked = "asked, " if duty.open_request_ns is not None else ""
-        return f"{asked}not yet confirmed, on duty for {silent_min:.0f} min"
-    asked = "asked and " if duty.open_request_ns is not None else ""
-    return f"{asked}not heard from for {silent_min:.0f} min"
+        prefix = "asked, " if duty.open_request_ns is not None else ""
+        return f"{prefix}not yet confirmed, on duty for {silent_min:.0f} min"
+    prefix = "asked and " if duty.open_request_ns is not None else ""
+    return f"{prefix}not heard from for {silent_min:.0f} min"

@@ -41,15 +41,15 @@ class NoMotion:
             return Clear(seen_ns, "motion")
         full = motionless_s >= self.alarm_s
         onset_ns = seen_ns - round(motionless_s * NS_PER_S)
-        lies_from_ns = onset_ns + round(self.pre_alert_s * NS_PER_S)
-        now, then = unit.name, unit.name_at(lies_from_ns)
-        who = now if now == then else f"{now} or, before, {then}"
+        lying_from_ns = onset_ns + round(self.pre_alert_s * NS_PER_S)
+        now, then = unit.name, unit.name_at(lying_from_ns)
+        names = now if now == then else f"{now} or, before, {then}"
         return Finding(
             "alarm" if full else "pre-alert",
             EMERGENCY if full else WARNING,
-            f"{who} has not moved for {motionless_s:.0f} s",
+            f"{names} has not moved for {motionless_s:.0f} s",
             seen_ns=seen_ns,
             onset_ns=onset_ns,
             latched=full,
-            about=unit.wearer.from_ns(lies_from_ns),
+            about=unit.wearer.from_ns(lying_from_ns),
         )

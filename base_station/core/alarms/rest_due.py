@@ -25,11 +25,11 @@ class RestDue:
         duty = unit.duty
         if duty is None:
             return Clear(unit.off_duty_ns, "off duty")
-        whose = unit.wearer.from_ns(t_ns)
+        about = unit.wearer.from_ns(t_ns)
         if duty.rest_since_ns is not None:
-            return Clear(duty.rest_since_ns, "rests", about=whose)
+            return Clear(duty.rest_since_ns, "rests", about=about)
         if duty.work_since_ns is None or duty.rest_due_ns is None or t_ns < duty.rest_due_ns:
-            return Clear(duty.ready_ns, "not due", about=whose)
+            return Clear(duty.ready_ns, "not due", about=about)
         worked_min = (t_ns - duty.work_since_ns) / NS_PER_S / 60.0
         return Finding(
             "due",
@@ -37,5 +37,5 @@ class RestDue:
             f"{unit.name} has worked for {worked_min:.0f} min: send to rest",
             seen_ns=duty.work_since_ns,
             onset_ns=duty.rest_due_ns,
-            about=whose,
+            about=about,
         )

@@ -26,18 +26,20 @@ class TrackerGone:
     triggered_by: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.heard_ns is None:
+        if unit.last_message_ns is None:
             return None
         if not unit.is_tracked_remotely:
-            return Clear(unit.heard_ns, "the unit tracks itself")
+            return Clear(unit.last_message_ns, "the unit tracks itself")
         off = switched_off(unit)
         if off is not None:
             return off
-        heard_ns = None if unit.tracker is None else unit.tracker.heard_ns
-        if heard_ns is not None and (t_ns - heard_ns) / NS_PER_S < self.live_within_s:
-            return Clear(heard_ns, "its tracking agent speaks again")
-        what = "never spoke" if heard_ns is None else "is silent"
-        since_ns = max(heard_ns or 0, unit.boots[-1].first_live_ns)  # it may start with the unit
+        last_message_ns = None if unit.tracker is None else unit.tracker.last_message_ns
+        if last_message_ns is not None and (t_ns - last_message_ns) / NS_PER_S < self.live_within_s:
+            return Clear(last_message_ns, "its tracking agent speaks again")
+        what = "never spoke" if last_message_ns is None else "is silent"
+        since_ns = max(
+            last_message_ns or 0, unit.boots[-1].first_live_ns
+        )  # it may start with the unit
         if (t_ns - since_ns) / NS_PER_S < self.gone_after_s:
             return None
         return Finding(

@@ -19,13 +19,13 @@ class UnknownUnit:
     triggered_by: tuple[type[Message], ...] = ()
 
     def judge(self, unit: UnitState, t_ns: int, level: str) -> Verdict:  # noqa: ARG002
-        if unit.heard_ns is None:
+        if unit.last_message_ns is None:
             return None
         if unit.registered:
-            return Clear(unit.heard_ns, "registered")
+            return Clear(unit.last_message_ns, "registered")
         return Finding(
             "unknown",
             ADVISORY,
             f"A unit that is not registered is sending: {unit.unit_id}",
-            seen_ns=unit.heard_ns,
+            seen_ns=unit.last_message_ns,
         )

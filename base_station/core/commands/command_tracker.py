@@ -270,13 +270,15 @@ def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
     else:
         found = [unit for unit in ours if unit.wearer.person or _is_in_use(unit)]
     if not found:
-        whom = action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
-        raise UserError(f"no registered unit can be told: {whom}")
+        recipients = (
+            action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
+        )
+        raise UserError(f"no registered unit can be told: {recipients}")
     return found
 
 
 def _is_in_use(unit: UnitState) -> bool:
-    return unit.heard_ns is not None and unit.stopped_ns is None
+    return unit.last_message_ns is not None and unit.stopped_ns is None
 
 
 def _delivery(

@@ -19,12 +19,12 @@ def is_owed(command: SentCommand, delivery: Delivery, t_ns: int) -> bool:
     """True if the unit is still to be told that the order is over."""
     is_over = delivery.acknowledged_via == "radio" or delivery.reason == WITHDRAWN
     may_notify = delivery.sent_ns is not None and delivery.refused_ns is None
-    is_told = delivery.ended_ns is not None
+    is_answered = delivery.ended_ns is not None
     return (
         command.notifies_wearer
         and is_over
         and may_notify
-        and not is_told
+        and not is_answered
         and t_ns < command.expires_ns
     )
 

@@ -121,8 +121,8 @@ class Erasure(msgspec.Struct, frozen=True):
         if kind in TEXT_ACTIONS and (self.is_of(values) or any(map(self.covers_alarm, values))):
             return True
         times_ns = [t_ns, apart.t_ns, *(int(value) for value in values if value.isdecimal())]
-        told = self.unit_ids & {*values} if kind in PLACE_ACTIONS | TEXT_ACTIONS else ()
-        return any(self.covers(unit_id, one) for unit_id in told for one in times_ns)
+        concerned = self.unit_ids & {*values} if kind in PLACE_ACTIONS | TEXT_ACTIONS else ()
+        return any(self.covers(unit_id, one) for unit_id in concerned for one in times_ns)
 
 
 def inserted_action_id(action_id: str, unit_id: str) -> str:
@@ -171,8 +171,8 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
     people: dict[str, str] = {}  # names by person id, or none
     opened_ns = closed_ns = None
     opening_id = closing_id = ""
-    told = iter(actions_of(records))
-    for t_ns, action in told:
+    actions = iter(actions_of(records))
+    for t_ns, action in actions:
         done = action.action
         if isinstance(done, OpenIncident) and done.incident_id == incident_id:
             opened_ns, opening_id = t_ns, action.action_id
@@ -210,7 +210,7 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         opening_id=opening_id,
         closing_id=closing_id,
         about_until_ns=next(
-            (t_ns for t_ns, later in told if isinstance(later.action, OpenIncident)), FOREVER_NS
+            (t_ns for t_ns, later in actions if isinstance(later.action, OpenIncident)), FOREVER_NS
         ),
         person_ids=frozenset(people),
     )

@@ -32,7 +32,7 @@ class OlderNames:
 
     def __init__(self, names: Iterable[str]) -> None:
         known = tuple(names)
-        self._words = name_pattern(known)
+        self._pattern = name_pattern(known)
         letters = "|".join(map(re.escape, known)) or r"(?!)"
         self._letters = re.compile(letters, re.IGNORECASE)
 
@@ -41,20 +41,20 @@ class OlderNames:
         return self._letters.search(payload.decode("utf-8", "replace")) is not None
 
     def erased(self, text: str) -> str:
-        return self._words.sub(ERASED_TEXT, text)
+        return self._pattern.sub(ERASED_TEXT, text)
 
     def erased_in_json(self, detail: str) -> str:
         """Of an entry of the audit: in JSON a quotation mark within a name is written in another
         way, and a field may be called like somebody.
         """
         try:
-            told = msgspec.json.decode(detail)
+            entry = msgspec.json.decode(detail)
         except msgspec.DecodeError:
             return self.erased(detail)
-        if not isinstance(told, dict):
+        if not isinstance(entry, dict):
             return self.erased(detail)
-        left = self._erased_in(told)
-        return detail if left == told else msgspec.json.encode(left).decode()
+        left = self._erased_in(entry)
+        return detail if left == entry else msgspec.json.encode(left).decode()
 
     def _erased_in(self, value: Any) -> Any:
         match value:

@@ -161,15 +161,15 @@ class Redactor:
         instead = _in_incident(t_ns, message, erasure) if erasure.incident_id else [message]
         records = []
         for one in instead:
-            kept = self._without_places(t_ns, self._without_words(t_ns, one))
+            kept = self._without_places(t_ns, self._without_texts(t_ns, one))
             if kept is message:
                 records.append(record)
             elif kept is not None:
                 records.append((t_ns, key, encode(kept)))
         return records
 
-    def _without_words(self, t_ns: int, message: OperatorAction) -> OperatorAction:
-        kept = without_words(t_ns, message.action, self._erasure)
+    def _without_texts(self, t_ns: int, message: OperatorAction) -> OperatorAction:
+        kept = without_texts(t_ns, message.action, self._erasure)
         return message if kept is message.action else msgspec.structs.replace(message, action=kept)
 
     def _without_places(self, t_ns: int, message: OperatorAction) -> OperatorAction | None:
@@ -225,7 +225,7 @@ class Redactor:
         return without_people(self._older.erased(text), self._erasure.person_ids, ERASED_TEXT)
 
 
-def without_words(t_ns: int, action: Action, erasure: Erasure) -> Action:
+def without_texts(t_ns: int, action: Action, erasure: Erasure) -> Action:
     """The action without what was written to somebody or about them, and of an incident without
     whom it was for; the same one where nothing has to go.
     """
@@ -248,8 +248,8 @@ def without_words(t_ns: int, action: Action, erasure: Erasure) -> Action:
 
 def without_note(by: str) -> str:
     """Name of who resolved an alarm, without the note that stands behind it."""
-    who, noted, _ = by.partition(": ")
-    return f"{who}{noted}{ERASED_TEXT}" if noted else by
+    resolver, noted, _ = by.partition(": ")
+    return f"{resolver}{noted}{ERASED_TEXT}" if noted else by
 
 
 def remaining_text(apart: DoneApart, t_ns: int, erasure: Erasure, names: OlderNames) -> str:

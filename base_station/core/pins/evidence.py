@@ -61,7 +61,7 @@ def reported_floors(state: StationState, judged_anew: Collection[str] = ()) -> l
     """Floors that pins and beacons give, each with the height estimated there without any pin. A
     pin in conflict is left out, unless its unit is in ``judged_anew``.
     """
-    said = []
+    floors = []
     unpacked: dict[str, PathArrays] = {}
     for pin in state.pins.values():
         history = state.paths.get(pin.unit_id)
@@ -78,8 +78,8 @@ def reported_floors(state: StationState, judged_anew: Collection[str] = ()) -> l
             points = unpacked[pin.unit_id]
             row = int(np.searchsorted(points.t_ns, t_ns).clip(0, len(points) - 1))
             north_m, east_m = points.shown_m[row].tolist()
-            said.append(ReportedFloor(north_m, east_m, float(points.down_m[row]), floor))
-    return said
+            floors.append(ReportedFloor(north_m, east_m, float(points.down_m[row]), floor))
+    return floors
 
 
 def location_of(state: StationState, pin: Pin) -> Pin | Beacon:

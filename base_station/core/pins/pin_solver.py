@@ -83,12 +83,12 @@ class SolvedUnit:
 
 def with_partners(state: StationState, unit_ids: Iterable[str]) -> list[str]:
     """These units and those that met them, whose past hangs on theirs; in a fixed order."""
-    wanted = set(unit_ids)
+    required = set(unit_ids)
     met = [units_of(pin) for pin in state.pins.values() if pin.kind == "meeting"]
     for pair in met:
         if pair & set(unit_ids):
-            wanted |= pair
-    return sorted(wanted)
+            required |= pair
+    return sorted(required)
 
 
 def solve_pins(
@@ -130,9 +130,9 @@ def _store_verdict(state: StationState, pin_id: str, found: Mapping[str, PinVerd
     """
     of_units = {**dict(state.pin_verdicts.get(pin_id, WAITING).of_units), **found}
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
-    said = [one for one in of_units.values() if one.text]
-    worst_said = dict.fromkeys(one.text for one in said if one.state == worst.state)
-    text = ". ".join(worst_said) or next((one.text for one in said), "")
+    reasons = [one for one in of_units.values() if one.text]
+    worst_reasons = dict.fromkeys(one.text for one in reasons if one.state == worst.state)
+    text = ". ".join(worst_reasons) or next((one.text for one in reasons), "")
     verdict = msgspec.structs.replace(worst, text=text, of_units=tuple(of_units.items()))
     state.pin_verdicts[pin_id] = verdict
 
@@ -166,11 +166,11 @@ def floors_along(state: StationState, points: PathArrays, places_m: Floats) -> l
     estimated live.
     """
     floors: list[int | None] = []
-    said_then = points.floor.tolist()
-    for (north_m, east_m, down_m), said in zip(places_m.tolist(), said_then, strict=True):
+    live_floors = points.floor.tolist()
+    for (north_m, east_m, down_m), live_floor in zip(places_m.tolist(), live_floors, strict=True):
         storeys = state.storeys_at(north_m, east_m)
         held = floors[-1] if floors else None
-        known = None if said == NO_FLOOR else said
+        known = None if live_floor == NO_FLOOR else live_floor
         floors.append(floor_at(storeys, down_m, held) if storeys else known)
     return floors
 

@@ -32,7 +32,7 @@ class MessageStream(msgspec.Struct):
 
     unit_id: str
     boots: list[BootState] = msgspec.field(default_factory=list)  # the running one last
-    heard_ns: int | None = None
+    last_message_ns: int | None = None
     latest_mono_ns: dict[str, int] = msgspec.field(default_factory=dict)  # by channel, this boot
     stopped_ns: int | None = None  # said goodbye in an orderly way
     duplicates: int = 0
@@ -40,9 +40,9 @@ class MessageStream(msgspec.Struct):
     is_unlinked: bool = False  # its link is gone, and nothing was heard since
 
     def link_at(self, t_ns: int) -> Link:
-        if self.heard_ns is None:
+        if self.last_message_ns is None:
             return "never"
-        silent_s = (t_ns - self.heard_ns) / NS_PER_S
+        silent_s = (t_ns - self.last_message_ns) / NS_PER_S
         if silent_s >= LOST_AFTER_S:
             return "lost"
         return "stale" if self.is_unlinked or silent_s >= STALE_AFTER_S else "live"
@@ -53,7 +53,7 @@ class MessageStream(msgspec.Struct):
         if not boot.seen.add(header.seq):
             self.duplicates += 1
             return "repeat"
-        self.heard_ns, self.is_unlinked = t_ns, False
+        self.last_message_ns, self.is_unlinked = t_ns, False
         if channel is not GPS:  # a receiver may be wrong about when its fix was valid
             running, is_first = self.boots[-1], not boot.is_placed  # its journal came before it
             if boot.note(t_ns, header) and boot is not running:

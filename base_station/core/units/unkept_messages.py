@@ -9,10 +9,10 @@ def unkept_problem(state: StationState) -> str:
     """Problem as a sentence for a person; empty: every unit has kept all its messages."""
     beats = ((unit.name, unit.heartbeat) for unit in state.units.values())
     counts = {name: beat.never_saved + beat.given_up for name, beat in beats if beat is not None}
-    said = ", ".join(f"{name} {count}" for name, count in counts.items() if count)
-    if not said:
+    numbers = ", ".join(f"{name} {count}" for name, count in counts.items() if count)
+    if not numbers:
         return ""
     return (
-        f"Messages that a unit's journal had no room for, since the unit started: {said}. Where "
+        f"Messages that a unit's journal had no room for, since the unit started: {numbers}. Where "
         "the link lost them too they are gone: free or replace the unit's disk"
     )

@@ -123,17 +123,17 @@ class DominantDirectionFilter(msgspec.Struct):
         off_rad = wrap_quarter(segment.direction_rad - held.direction_rad)
         along = along_wall(off_rad, spread)
         learnt = along * spread - along * (1.0 - along) * off_rad**2  # less where it may be none
-        told = along * gain * off_rad, held.variance - gain**2 * learnt
-        return self._condition(held, told, turn_rad, variance)
+        posterior = along * gain * off_rad, held.variance - gain**2 * learnt
+        return self._condition(held, posterior, turn_rad, variance)
 
     def _condition(
-        self, held: Axis, told: tuple[float, float], turn_rad: float, variance: float
+        self, held: Axis, posterior: tuple[float, float], turn_rad: float, variance: float
     ) -> tuple[float, float]:
         """The axis in the own frame, ``held`` so far, has come to be known as so far off that,
         with a variance.
         """
         assert self.axis is not None
-        off_rad, learnt = told[0], held.variance - told[1]
+        off_rad, learnt = posterior[0], held.variance - posterior[1]
         turn_gain = (self.crossed - variance) / held.variance
         axis_gain = (self.axis.variance - self.crossed) / held.variance
         self.crossed -= turn_gain * axis_gain * learnt
@@ -190,7 +190,7 @@ class DominantDirectionFilter(msgspec.Struct):
         axis, was = self.axis, self.turn_variance
         if axis is not None and variance < was:
             left = variance / was
-            told = self.crossed**2 / was * (1.0 - left)
-            self.axis = Axis(axis.direction_rad, max(axis.variance - told, 1e-6))
+            reduction = self.crossed**2 / was * (1.0 - left)
+            self.axis = Axis(axis.direction_rad, max(axis.variance - reduction, 1e-6))
             self.crossed *= left
         self.turn_variance = variance

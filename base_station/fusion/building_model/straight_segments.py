@@ -133,8 +133,8 @@ class DirectionWeights(NamedTuple):
         """Evidence with every direction equally likely beforehand."""
         best = int(self.likely.argmax())
         rows = np.arange(-CELLS // 2, CELLS // 2)
-        believed = self.likely[(rows + best) % CELLS] / CELLS
-        return _shown(self.about_rad + best * STEP_RAD, rows, believed, 0.0)
+        weights = self.likely[(rows + best) % CELLS] / CELLS
+        return _shown(self.about_rad + best * STEP_RAD, rows, weights, 0.0)
 
     def with_prior(self, variance: float) -> DirectionEvidence:
         """Evidence with a prior of this variance (rad^2) about ``about_rad``."""
@@ -143,16 +143,16 @@ class DirectionWeights(NamedTuple):
         before = np.exp(-0.5 * rows**2 / (spread + 1.0 / 12.0))  # a cell stands for its width
         near = np.abs(rows) < CELLS / 2.0
         before = (1.0 - ASTRAY) * before / before.sum() + ASTRAY * near / near.sum()
-        believed = before * self.likely[rows % CELLS]
-        kept = float(believed[rows**2 < OFF**2 * spread + 1.0].sum() / believed.sum())
-        return _shown(self.about_rad, rows, believed, kept)
+        weights = before * self.likely[rows % CELLS]
+        kept = float(weights[rows**2 < OFF**2 * spread + 1.0].sum() / weights.sum())
+        return _shown(self.about_rad, rows, weights, kept)
 
 
-def _shown(about_rad: float, rows: Ints, believed: Floats, kept: float) -> DirectionEvidence:
-    whole = float(believed.sum())
-    believed = believed / whole
-    mean = float(believed @ rows)
-    variance = float(believed @ (rows - mean) ** 2) + 1.0 / 12.0
+def _shown(about_rad: float, rows: Ints, weights: Floats, kept: float) -> DirectionEvidence:
+    whole = float(weights.sum())
+    weights = weights / whole
+    mean = float(weights @ rows)
+    variance = float(weights @ (rows - mean) ** 2) + 1.0 / 12.0
     return DirectionEvidence(
         math.log(whole), about_rad + mean * STEP_RAD, variance * STEP_RAD**2, kept
     )

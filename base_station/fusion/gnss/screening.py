@@ -20,7 +20,7 @@ def screen_fix(fix: GpsFix) -> FixVerdict:
     if fix.fix_type not in {FixType.TWO_D, FixType.THREE_D}:
         return FixVerdict(False, "the receiver has no fix")
     std_m = fix.horizontal_std_m
-    doubts = {
+    defects = {
         "coordinates that are no numbers": not all(
             math.isfinite(value) for value in (fix.lat_deg, fix.lon_deg, fix.height_m)
         ),
@@ -31,7 +31,7 @@ def screen_fix(fix: GpsFix) -> FixVerdict:
         and not DEEPEST_M <= fix.height_m <= HIGHEST_M,
         "an accuracy that cannot be used": std_m is not None and not 0.0 < std_m <= STD_ABSURD_M,
     }
-    reason = next((reason for reason, holds in doubts.items() if holds), "")
+    reason = next((reason for reason, holds in defects.items() if holds), "")
     return FixVerdict(not reason, reason, faulty=bool(reason))
 
 

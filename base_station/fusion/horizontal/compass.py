@@ -40,8 +40,8 @@ class CompassTest(msgspec.Struct):
         """Add a fix by its squared distances (chi-square) to the estimates with and without the
         compass.
         """
-        told = 0.5 * (with_distance2 - without_distance2)
-        self.log_ratio += min(max(told, -_ONE_FIX), _ONE_FIX)
+        evidence = 0.5 * (with_distance2 - without_distance2)
+        self.log_ratio += min(max(evidence, -_ONE_FIX), _ONE_FIX)
         self.is_rejected |= self.log_ratio > _REFUTED
 
     def is_useless(self, without: tuple[float, float]) -> bool:

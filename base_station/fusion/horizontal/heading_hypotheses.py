@@ -90,17 +90,17 @@ class HeadingHypotheses:
         turns_rad = about_rad + offsets_rad
         along = np.array([math.cos(about_rad), math.sin(about_rad)])
         if float(along @ spread @ along) < SCALE_KNOWN**2:
-            told = np.array([[-s, c]]) / scale2
+            to_turn = np.array([[-s, c]]) / scale2
             off = offsets_rad[:, None]
         else:
-            told = np.eye(2)
+            to_turn = np.eye(2)
             off = np.column_stack((np.cos(turns_rad), np.sin(turns_rad))) - mean[turn]
-        inverse = np.linalg.inv(told @ spread @ told.T)
-        gain = crossed @ told.T @ inverse
+        inverse = np.linalg.inv(to_turn @ spread @ to_turn.T)
+        gain = crossed @ to_turn.T @ inverse
         means, left = mean[own] + off @ gain.T, covariance[np.ix_(own, own)]
         exponents = -0.5 * ((off @ inverse) * off).sum(axis=1)
         weights = np.exp(exponents - exponents.max())
-        left = left - gain @ told @ crossed.T
+        left = left - gain @ to_turn @ crossed.T
         return HeadingHypotheses(means, left, turns_rad, weights / weights.sum())
 
     @staticmethod

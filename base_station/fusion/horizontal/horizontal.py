@@ -223,8 +223,8 @@ class HorizontalFilter:
         self._open_heading(REOPEN * self._linear_rad)
         if self._hypotheses is None:
             place, observe, noise = _linear(observation)
-            told_now = update(self._mean, self._covariance, place, noise, observe)
-            self._mean[:], self._covariance[:] = told_now
+            posterior = update(self._mean, self._covariance, place, noise, observe)
+            self._mean[:], self._covariance[:] = posterior
             return
         self._hypotheses.update(observation)
         self._close_heading()

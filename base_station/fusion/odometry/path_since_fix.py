@@ -45,8 +45,8 @@ def walls_std_m(kind: Parameters, outside_m: float) -> float:
     return kind.wall_std_m * math.exp(-max(outside_m, 0.0) / kind.wall_reach_m)
 
 
-def unguided_m2(kind: Parameters, t_mono_ns: int, heard_ns: int | None) -> float:
+def unguided_m2(kind: Parameters, t_mono_ns: int, last_ns: int | None) -> float:
     """Variance of the movement since the last position of the own path."""
-    if heard_ns is None or t_mono_ns - heard_ns < NS_PER_S:
+    if last_ns is None or t_mono_ns - last_ns < NS_PER_S:
         return 0.0
-    return (kind.unguided_mps * (t_mono_ns - heard_ns) / NS_PER_S) ** 2
+    return (kind.unguided_mps * (t_mono_ns - last_ns) / NS_PER_S) ** 2

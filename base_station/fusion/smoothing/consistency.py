@@ -52,7 +52,7 @@ class ConditionalPrediction:
         self._expected = expected
         size = len(expected.mean_m)
         self._known = np.empty((size, size))  # by row what was taken, against all; whitened
-        self._told = np.empty(size)  # its innovations, whitened
+        self._whitened = np.empty(size)  # its innovations, whitened
         self._rows = 0
         for one in used:
             self.take(one)
@@ -63,7 +63,7 @@ class ConditionalPrediction:
         crossed = self._known[: self._rows, its]
         noise = expected.noise_m2[one] * np.eye(expected.axes)
         innovation = expected.seen_m[its] - expected.mean_m[its]
-        innovation = innovation - crossed.T @ self._told[: self._rows]
+        innovation = innovation - crossed.T @ self._whitened[: self._rows]
         return innovation, expected.covariance_m2[its, its] + noise - crossed.T @ crossed
 
     def distance2(self, one: int) -> float:
@@ -77,7 +77,7 @@ class ConditionalPrediction:
         left = self._expected.covariance_m2[its] - known[:, its].T @ known
         root = np.linalg.cholesky(covariance)
         self._known[rows] = np.linalg.solve(root, left)
-        self._told[rows] = np.linalg.solve(root, innovation)
+        self._whitened[rows] = np.linalg.solve(root, innovation)
         self._rows = end
 
 

@@ -87,16 +87,22 @@ class NormalEquations:
         self._chains: dict[str, _Chain] = {}
         of_shared = shared.matrix()[:, self._first :]
         whole = (of_shared.T @ of_shared).toarray()
-        told = of_shared.T @ shared.right
+        shared_right = of_shared.T @ shared.right
         rows, right = links.matrix(), links.right
         begins = [own.start for own in chains.values()]
-        whose = np.searchsorted(begins, _first_columns(rows), side="right") - 1
+        chain_numbers = np.searchsorted(begins, _first_columns(rows), side="right") - 1
         for number, (name, equations) in enumerate(of_chains):
-            mine = np.flatnonzero(whose == number)
-            matrix = vstack((equations.matrix(), rows[mine]), format="csr")
-            self._take(name, matrix, np.concatenate((equations.right, right[mine])), whole, told)
+            rows_of_chain = np.flatnonzero(chain_numbers == number)
+            matrix = vstack((equations.matrix(), rows[rows_of_chain]), format="csr")
+            self._take(
+                name,
+                matrix,
+                np.concatenate((equations.right, right[rows_of_chain])),
+                whole,
+                shared_right,
+            )
         self._whole = cho_factor(0.5 * (whole + whole.T))
-        self._shared = cho_solve(self._whole, told)
+        self._shared = cho_solve(self._whole, shared_right)
 
     def solve(self) -> tuple[dict[str, Floats], Floats]:
         """The unknowns of each chain, and those that are shared."""
@@ -140,14 +146,14 @@ class NormalEquations:
         return 0.5 * (spread + spread.T)
 
     def _take(
-        self, name: str, matrix: csr_matrix, right: Floats, whole: Floats, told: Floats
+        self, name: str, matrix: csr_matrix, right: Floats, whole: Floats, shared_right: Floats
     ) -> None:
         """Eliminate a chain (Schur complement) into ``whole`` and ``told`` of the
         shared unknowns.
         """
         own, shared = matrix[:, self._columns[name]], matrix[:, self._first :]
         whole += (shared.T @ shared).toarray()
-        told += shared.T @ right
+        shared_right += shared.T @ right
         beside = (own.T @ shared).tocsc()
         columns = np.flatnonzero(np.diff(beside.indptr))
         chain = self._chains[name] = _Chain(
@@ -158,7 +164,7 @@ class NormalEquations:
         )
         solved = chain.solve(np.column_stack((chain.right, chain.beside.toarray())))
         whole[np.ix_(columns, columns)] -= chain.beside.T @ solved[:, 1:]
-        told[columns] -= chain.beside.T @ solved[:, 0]
+        shared_right[columns] -= chain.beside.T @ solved[:, 0]
 
 
 @dataclass(frozen=True)

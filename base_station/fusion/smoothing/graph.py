@@ -181,8 +181,8 @@ class Graph:
                 turn = estimate.x[middle, 2:4]
                 across = np.array([-turn[1], turn[0]]) / max(float(turn @ turn), 1e-9)
                 pair = slice(2 * number, 2 * number + 2)
-                told = float(across @ spread[pair, pair] @ across) < ALIGNED_RAD**2
-                estimate.aligned[segment] = told and 0.5 < float(np.hypot(*turn)) < 2.0
+                is_observed = float(across @ spread[pair, pair] @ across) < ALIGNED_RAD**2
+                estimate.aligned[segment] = is_observed and 0.5 < float(np.hypot(*turn)) < 2.0
 
     # ---- what the solution says
 

@@ -25,8 +25,8 @@ Ints = NDArray[np.int64]
 WANDER_M_PER_SQRT_S = 0.01
 CLIMB_M_PER_SQRT_CLIMB_M = 0.12
 CLIMB_M_PER_SQRT_M = 0.01
-BELIEVED = 2  # so many, against the path
-DOUBT_M = 0.5  # less than that is stated anew at every storey: it is no doubt that comes to it
+MIN_AGREEING = 2  # sources, against the path
+MIN_GROWTH_STD_M = 0.5  # less is stated anew at every storey: no error that comes to it
 ANY_FLOOR_M = 100.0  # standard deviation of where somebody was switched on: up a tower, perhaps
 
 
@@ -60,7 +60,7 @@ class Heights:
         stated_m = _stated_m(path)
         begin_m2 = ANY_FLOOR_M**2 if evidence.height_assumed else float(stated_m[0]) ** 2
         walked_m = np.hypot(*np.diff(path.own_m, axis=0).T)
-        grown = np.maximum(np.diff(np.maximum(stated_m, DOUBT_M) ** 2), 0.0) + 1e-6
+        grown = np.maximum(np.diff(np.maximum(stated_m, MIN_GROWTH_STD_M) ** 2), 0.0) + 1e-6
         grown += CLIMB_M_PER_SQRT_CLIMB_M**2 * np.abs(np.diff(path.down_m))
         grown += CLIMB_M_PER_SQRT_M**2 * walked_m
         grown += WANDER_M_PER_SQRT_S**2 * np.diff(path.t_ns) * 1e-9
@@ -91,11 +91,11 @@ class Heights:
             together = consistent_set(self.expected([places[row] for row in as_stated]))
             as_stated = [as_stated[row] for row in together]
         others = [row for row in range(len(places)) if row not in as_stated]
-        if len(others) < BELIEVED:
+        if len(others) < MIN_AGREEING:
             return as_stated
         missed = replace(self, begin_m2=ANY_FLOOR_M**2).expected([places[row] for row in others])
         same = [others[row] for row in consistent_set(missed)]
-        if len({places[row].source_key for row in same}) < BELIEVED:
+        if len({places[row].source_key for row in same}) < MIN_AGREEING:
             return as_stated
         times = [places[row].t_ns for row in same]
         is_denied = any(min(times) <= places[row].t_ns <= max(times) for row in as_stated)
@@ -113,16 +113,16 @@ class Heights:
 
     def solve(self, places: Sequence[PositionConstraint]) -> Solved:
         """Solve with all constraints that give a height."""
-        path, told = self.path, with_height(places)
-        if not told:
-            doubt_m = ANY_FLOOR_M if self.assumed else 0.0
-            return Solved(path.t_ns, path.down_m, np.hypot(_stated_m(path), doubt_m), (0.0, None))
-        begin_m2, grown_m2 = self._inflated_variances(told)
+        path, constraints = self.path, with_height(places)
+        if not constraints:
+            unknown_m = ANY_FLOOR_M if self.assumed else 0.0
+            return Solved(path.t_ns, path.down_m, np.hypot(_stated_m(path), unknown_m), (0.0, None))
+        begin_m2, grown_m2 = self._inflated_variances(constraints)
         diagonal, right = np.zeros(len(path)), np.zeros(len(path))
         diagonal[0] += 1.0 / begin_m2
         diagonal[:-1] += 1.0 / grown_m2
         diagonal[1:] += 1.0 / grown_m2
-        for row, place in zip(self._rows(told), told, strict=True):
+        for row, place in zip(self._rows(constraints), constraints, strict=True):
             assert place.down_m is not None
             diagonal[row] += 1.0 / place.down_std_m**2
             right[row] += (place.down_m - path.down_m[row]) / place.down_std_m**2

@@ -114,8 +114,8 @@ def _add_priors(
             )  # fmt: skip
         else:
             _add_turn(equations, first, 0.0, np.sqrt(0.5))
-        is_said = start is not None and start.heading_std_rad < np.pi
-        if start is not None and is_said and segment.start == chain.start_knot:
+        has_heading = start is not None and start.heading_std_rad < np.pi
+        if start is not None and has_heading and segment.start == chain.start_knot:
             _add_turn(equations, first, start.heading_rad, start.heading_std_rad)
     equations.add(n.drift_radps, 0.0, (np.array([base + 4]), 1.0))
 

@@ -140,9 +140,13 @@ class Axes:
         for building in np.flatnonzero(np.isnan(self.rad)):
             turned = list[StraightSegment]()
             for unit_id, one in self._segments.items():
-                told = estimates[unit_id].aligned[one.knot] & (self.building[unit_id] == building)
-                turned_rad = one.turned_rad(estimates[unit_id])[told]
-                for direction_rad, length_m in zip(turned_rad, one.length_m[told], strict=True):
+                is_aligned = estimates[unit_id].aligned[one.knot] & (
+                    self.building[unit_id] == building
+                )
+                turned_rad = one.turned_rad(estimates[unit_id])[is_aligned]
+                for direction_rad, length_m in zip(
+                    turned_rad, one.length_m[is_aligned], strict=True
+                ):
                     append_segment(turned, StraightSegment(float(direction_rad), float(length_m)))
             axis = Axis(_most(turned), UNSURE_RAD**2)
             if evidence(turned, axis) > SHOWN + TRIALS:
@@ -206,10 +210,10 @@ def add_segments(
         return
     columns = base + STATES * segments.knot[used]
     turn = estimate.x[segments.knot[used], 2:4]
-    wanted = np.arctan2(turn[:, 1], turn[:, 0]) - off[used]
+    turns_rad = np.arctan2(turn[:, 1], turn[:, 0]) - off[used]
     equations.add(
         np.sqrt(segments.variance[used] / along[used]), 0.0,
-        (columns + 2, -np.sin(wanted)), (columns + 3, np.cos(wanted)),
+        (columns + 2, -np.sin(turns_rad)), (columns + 3, np.cos(turns_rad)),
         (axis_columns[used], -1.0),
     )  # fmt: skip
 

@@ -127,15 +127,15 @@ class WallMessages:
         self.segments = segments
         self.log_loss = 0.0  # log weight a piece: how much walls stood in the way
         self._information = np.zeros((len(segments), 2, 2))
-        self._told = np.zeros((len(segments), 2))  # information times place
+        self._information_places = np.zeros((len(segments), 2))  # information times place
 
     def update(self, estimate: PathEstimate, off_m: Floats, spreads: Floats) -> None:
         """``off_m`` (2,): how far the plan lies off; ``spreads`` (k, 5, 5): of the knots as they
         lie on the plan.
         """
-        rest, told = self._without(estimate, off_m, spreads)
+        rest, information_places = self._without(estimate, off_m, spreads)
         spread = np.linalg.inv(rest)
-        place = _times(spread, told)
+        place = _times(spread, information_places)
         looks, weights = _grid_points()
         apart = looks @ np.linalg.cholesky(spread).transpose(0, 2, 1)
         logs, room = self.segments.logs_at(estimate, place[:, None] + apart)
@@ -147,9 +147,9 @@ class WallMessages:
         off = apart - shift[:, None]
         left = (likely[:, :, None] * off).transpose(0, 2, 1) @ off + SHARPEST_M**2 * np.eye(2)
         information = _positive_part(np.linalg.inv(left) - rest)
-        now = _times(rest + information, place + shift) - told
+        now = _times(rest + information, place + shift) - information_places
         self._information += DAMPING * (information - self._information)
-        self._told += DAMPING * (now - self._told)
+        self._information_places += DAMPING * (now - self._information_places)
         self.log_loss = float(-np.log(passed).mean())
 
     def _without(
@@ -167,10 +167,10 @@ class WallMessages:
         place = place_of(estimate.x[segments.knot], segments.since_m) + off_m
         whole = np.linalg.inv(to_place @ spreads[segments.knot] @ to_place.transpose(0, 2, 1))
         rest = whole - self._information
-        # Numbers too near each other to be told apart: the word is as good as all there is.
+        # Numbers too near each other to be distinguished: the message is as good as all there is.
         lost = np.linalg.eigvalsh(rest)[:, 0] < LEAST_PART * np.linalg.eigvalsh(whole)[:, 0]
         rest[lost] = whole[lost]
-        return rest, _times(whole, place) - np.where(lost[:, None], 0.0, self._told)
+        return rest, _times(whole, place) - np.where(lost[:, None], 0.0, self._information_places)
 
     def add(self, equations: Equations, base: int, plan: int) -> None:
         """``plan``: the column by which the plan lies north of where it should."""
@@ -183,7 +183,9 @@ class WallMessages:
                 continue
             to_n, to_e = vectors[used, 0, one], vectors[used, 1, one]
             value = values[used, one]
-            right = (to_n * self._told[used, 0] + to_e * self._told[used, 1]) / value
+            right = (
+                to_n * self._information_places[used, 0] + to_e * self._information_places[used, 1]
+            ) / value
             n, e, column = north[used], east[used], columns[used]
             shared = np.full(len(column), plan)
             equations.add(

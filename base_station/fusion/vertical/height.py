@@ -184,14 +184,14 @@ class HeightFilter:
 
     def _update(self, down_m: float, noise_m2: float, observe: Floats) -> None:
         """Kalman update with a height; ``observe`` (3,): Jacobian of the measurement."""
-        told = update(
+        posterior = update(
             self._mean,
             self._covariance,
             np.array([down_m]),
             np.array([[noise_m2]]),
             observe[np.newaxis],
         )
-        self._mean[:], self._covariance[:] = told
+        self._mean[:], self._covariance[:] = posterior
 
 
 def _within(off_m: float, std_m: float, reach_m: float) -> float:

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from base_station.core.erasure.erasure import FOREVER_NS, PLACE_ACTIONS, Erasure, Wearing
 from base_station.core.erasure.names_in_older_logs import OlderNames
-from base_station.core.erasure.redaction import remaining_text, without_note, without_words
+from base_station.core.erasure.redaction import remaining_text, without_note, without_texts
 from base_station.core.person_references import name_pattern, without_people
 from base_station.core.state import ERASED_TEXT
 from base_station.storage.db.models import (
@@ -115,7 +115,7 @@ def _audit(session: Session, erasure: Erasure) -> None:
     units = name_pattern(erasure.unit_ids)
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
-        entry.detail = _without_names(_without_words(entry, erasure), erasure)
+        entry.detail = _without_names(_without_texts(entry, erasure), erasure)
         if entry.action == _ASSIGNED:
             entry.detail = _nobodys(entry.detail, erasure)
         about = units.search(entry.detail) if entry.action in PLACE_ACTIONS else None
@@ -136,7 +136,7 @@ def _without_names(text: str, erasure: Erasure) -> str:
     return without_people(older, erasure.person_ids, ERASED_TEXT)
 
 
-def _without_words(entry: AuditEntry, erasure: Erasure) -> str:
+def _without_texts(entry: AuditEntry, erasure: Erasure) -> str:
     kind = _WITH_WORDS.get(entry.action)
     if kind is None:
         return entry.detail
@@ -144,7 +144,7 @@ def _without_words(entry: AuditEntry, erasure: Erasure) -> str:
         done = msgspec.json.decode(entry.detail, type=kind)
     except msgspec.DecodeError:  # nothing is left of it
         return entry.detail
-    left = without_words(entry.t_ns, done, erasure)
+    left = without_texts(entry.t_ns, done, erasure)
     return entry.detail if left is done else msgspec.json.encode(left).decode()
 
 

@@ -51,14 +51,14 @@ def live_positions(folder: Path, units: int, rate_hz: float) -> Iterator[Positio
         wearers = [Wearer(name, clock) for name in unit_names(units)]
         for wearer in wearers:
             station.act(RegisterUnit(wearer.unit_id, ""))
-            station.say(wearer.introduction())
+            station.publish(wearer.introduction())
             station.act(SetStart(wearer.unit_id, 0.0, 0.0, 0.0, 0.0, 0.5, 0.1))
 
         def walk() -> None:
             began_ns, turns = clock.monotonic_ns(), 0
             while not over.is_set():
                 wearer = wearers[turns % units]
-                station.say(wearer.next_message())
+                station.publish(wearer.next_message())
                 turns += 1
                 due_ns = began_ns + round(turns * NS_PER_S / (rate_hz * units))
                 over.wait(max(due_ns - clock.monotonic_ns(), 0) / NS_PER_S)

@@ -76,9 +76,9 @@ def test_its_positions_and_trail_are_shown_as_if_it_tracked_itself(script: Remot
 
 def test_the_agent_is_no_sign_of_life_of_the_unit(script: Remote) -> None:
     walk(script)
-    heard_ns = script.unit.heard_ns
+    last_message_ns = script.unit.last_message_ns
     script.wait(40, lambda: script.position(AGENT, 10.0, 0.0))
-    assert script.unit.heard_ns == heard_ns
+    assert script.unit.last_message_ns == last_message_ns
     assert script.unit.link == "lost"
     assert any(alarm.unit_id == U for alarm in script.alarms)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.core.events import Output, Received, Refused, UnitChanged
-from base_station.engine.projector import HEARD_NS, Projector
+from base_station.engine.projector import LAST_MESSAGE_STEP_NS, Projector
 from shared.channels import tracker_id
 from shared.clock import NS_PER_S
 from shared.messages import STATION_ID, Header, OperatorAction, Temperature
@@ -40,7 +40,7 @@ def test_when_a_unit_was_heard_is_told_now_and_then() -> None:
         projector.note(Received(t_ns, "FF-01", message), [UnitChanged("FF-01")])
         if (projection := projector.take(t_ns)) is not None:
             told += [heard_ns for _, heard_ns in projection.heard]
-    assert told == [T_NS, T_NS + HEARD_NS, T_NS + 2 * HEARD_NS]
+    assert told == [T_NS, T_NS + LAST_MESSAGE_STEP_NS, T_NS + 2 * LAST_MESSAGE_STEP_NS]
 
 
 def test_the_agent_that_tracks_for_a_unit_is_no_unit() -> None:

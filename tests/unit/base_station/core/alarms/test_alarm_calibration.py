@@ -11,7 +11,7 @@ from shared.clock import NS_PER_S
 from shared.messages import Header
 from tests.rig import message_factory
 
-HEARD_S = 1_800_000_000
+LAST_S = 1_800_000_000
 DAY_S = 86_400
 
 
@@ -22,7 +22,7 @@ def unit(calibrated_s: int | None, faults: str = "") -> UnitState:
         calibrated_s=calibrated_s,
         calibration_faults=faults,
     )
-    return UnitState("FF-01", heard_ns=HEARD_S * NS_PER_S, description=description)
+    return UnitState("FF-01", last_message_ns=LAST_S * NS_PER_S, description=description)
 
 
 @pytest.mark.parametrize(
@@ -30,7 +30,7 @@ def unit(calibrated_s: int | None, faults: str = "") -> UnitState:
     [(179, "", None), (181, "", "old"), (1, "gyroscope off by 1 deg/s", "poor")],
 )
 def test_age_and_residuals_are_judged(age_days, faults, level):
-    verdict = CalibrationPoor().judge(unit(HEARD_S - age_days * DAY_S, faults), 0, "")
+    verdict = CalibrationPoor().judge(unit(LAST_S - age_days * DAY_S, faults), 0, "")
     if level is None:
         assert isinstance(verdict, Clear)
         return

@@ -121,10 +121,10 @@ def test_no_motion(motionless_s: float, found: str) -> None:
     ("silent_s", "found"), [(9.9, "over"), (10.0, None), (29.9, None), (30.0, "lost")]
 )
 def test_a_silent_unit_and_a_silent_agent(silent_s: float, found: str | None) -> None:
-    unit = UnitState("FF-01", heard_ns=NOW_NS - ns(silent_s))
+    unit = UnitState("FF-01", last_message_ns=NOW_NS - ns(silent_s))
     assert judged(LinkLost(), unit) == found
-    agent = UnitState("FF-01@tracker", heard_ns=NOW_NS - ns(silent_s))
-    tracked = UnitState("FF-01", heard_ns=NOW_NS, tracker=agent)
+    agent = UnitState("FF-01@tracker", last_message_ns=NOW_NS - ns(silent_s))
+    tracked = UnitState("FF-01", last_message_ns=NOW_NS, tracker=agent)
     tracked.boots = [BootState(1, first_live_ns=NOW_NS - ns(900), last_live_ns=NOW_NS)]
     tracked.description = message_factory.description(HEADER, tracker=NO_TRACKER)
     told = "gone" if found == "lost" else found
@@ -141,7 +141,7 @@ def test_two_machines_until_one_of_them_is_silent(
     silent_s: float, found: str, silent: int, who: str
 ) -> None:
     """Whichever of the two it is; an older run was there with neither."""
-    speaker = UnitState("FF-01", heard_ns=NOW_NS)
+    speaker = UnitState("FF-01", last_message_ns=NOW_NS)
     speaker.boots = [
         BootState(3, first_live_ns=NOW_NS - ns(900), last_live_ns=NOW_NS - ns(800))
     ] + [
@@ -152,7 +152,7 @@ def test_two_machines_until_one_of_them_is_silent(
         )
         for boot_id in (1, 2)
     ]
-    tracked = UnitState("FF-01", heard_ns=NOW_NS, tracker=speaker)
+    tracked = UnitState("FF-01", last_message_ns=NOW_NS, tracker=speaker)
     unit = speaker if who == "unit" else tracked
     assert judged(ClonedUnit(), unit) == found
     verdict = ClonedUnit().judge(unit, NOW_NS, "")

@@ -185,7 +185,7 @@ def test_what_is_said_of_a_command_that_is_not_known_any_more_changes_nothing(un
 def test_a_unit_is_not_heard_because_it_was_told_something():
     script = to_one()
     script.command("FF-01", "c1")
-    assert script.pipeline.state.units["FF-01"].heard_ns is None
+    assert script.pipeline.state.units["FF-01"].last_message_ns is None
 
 
 def test_nobody_answers_for_another():

@@ -87,11 +87,11 @@ def test_where_somebody_was_is_said_once_for_each_second(walked):
 
 def test_the_present_stays(walked):
     before = msgspec.msgpack.encode(
-        (walked.unit.place.fused, walked.unit.position, walked.unit.heard_ns)
+        (walked.unit.place.fused, walked.unit.position, walked.unit.last_message_ns)
     )
     walked.late(15, at_second=31)
     after = msgspec.msgpack.encode(
-        (walked.unit.place.fused, walked.unit.position, walked.unit.heard_ns)
+        (walked.unit.place.fused, walked.unit.position, walked.unit.last_message_ns)
     )
     assert after == before
 

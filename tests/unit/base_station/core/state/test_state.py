@@ -62,7 +62,7 @@ def test_a_repeat_changes_nothing_and_is_counted(script: Script) -> None:
     assert script.record(key, payload) == []
     assert unit(script).duplicates == 1
     assert len(script.fused) == fused
-    assert unit(script).heard_ns == t_ns, "a repeat is no sign of life"
+    assert unit(script).last_message_ns == t_ns, "a repeat is no sign of life"
 
 
 def test_an_older_message_does_not_set_the_state_back(script: Script) -> None:

@@ -64,7 +64,7 @@ def test_a_unit_s_own_words_tell_how_fast_its_heading_drifts() -> None:
         drift_radps = go(own, 0.3 * step, 0.0, heading_std_rad=std_rad).drift_radps
         if step < steps:
             assert drift_radps == KIND.drift_radps
-    assert drift_radps == pytest.approx(KIND.drift_doubt * said_radps)
+    assert drift_radps == pytest.approx(KIND.drift_inflation * said_radps)
 
 
 def test_a_heading_that_is_held_by_now_drifts_no_longer() -> None:
@@ -74,7 +74,7 @@ def test_a_heading_that_is_held_by_now_drifts_no_longer() -> None:
         std_rad = min(std_rad + 5e-4 * STEP_S, 0.05)  # rests and a compass hold it there
         drift_radps = go(own, 0.3 * step, 0.0, heading_std_rad=std_rad).drift_radps
         if std_rad < 0.05 and step > 60:
-            assert drift_radps == pytest.approx(KIND.drift_doubt * 5e-4)
+            assert drift_radps == pytest.approx(KIND.drift_inflation * 5e-4)
     assert drift_radps < 2.0 * KIND.drift_least_radps
 
 
