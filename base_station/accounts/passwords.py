@@ -46,5 +46,5 @@ class Passwords:
 
 
 def _give_way() -> None:
-    """Of Linux's threads each has a niceness of its own."""
+    """Lower the priority of this thread: on Linux each has a niceness of its own."""
     os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)

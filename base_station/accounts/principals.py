@@ -41,7 +41,7 @@ class Role(IntEnum):
 
 
 class Principal(msgspec.Struct, frozen=True):
-    """Who is asking."""
+    """User or token of a request."""
 
     username: str
     role: Role

@@ -156,7 +156,7 @@ def number_in(key: str, payload: bytes) -> MessageNumber | None:
 
 
 def _rejected(t_ns: int, key: str, payload: bytes, reason: str) -> Rejected:
-    """What is of a newer program or damaged has a number all the same: it is not missing."""
+    """Event of a message of a newer program, or a damaged one: by its number it is not missing."""
     return Rejected(t_ns, key, reason, number_in(key, payload))
 
 

@@ -37,7 +37,7 @@ def row_id(by: str, key: str, request: bytes) -> str:
 
 
 def audit_entry_prefixes(by: str, key: str) -> tuple[str, str]:
-    """How the audit's entries begin of what a person did with a key: an action, or an added row."""
+    """Beginnings of the audit's entries of what a person did with a key: an action, or a row."""
     digest = _digest(f"{by} {key}".encode())
     return f"{digest}.", f"added-{digest[:KEY_DIGITS]}"
 
@@ -94,8 +94,8 @@ def _key_of(action_id: str) -> str:
 
 
 def _keyed_digest(by: str, key: str, request: bytes) -> str:
-    """Of what was asked, which may be a name, and stands in the log: nobody who does not know the
-    key finds it by trying names.
+    """Digest of a request, which may be a name, for the log: without the key it is not found by
+    trying names.
     """
     return _digest(f"{by} {key} ".encode() + request)
 

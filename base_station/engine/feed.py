@@ -69,7 +69,7 @@ class LiveFeed:
 
     @property
     def follows(self) -> bool:
-        """What comes is from the bus."""
+        """False: what comes is from the bus."""
         return False
 
     def offer(self, key: str, payload: bytes) -> None:

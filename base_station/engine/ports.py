@@ -42,7 +42,7 @@ class Feed(Protocol):
         ...
 
     def take(self, timeout_s: float) -> Sequence[Record]:
-        """What came since, in order; waits for something to come or for ``wake``."""
+        """Records that came since, in order; waits for something to come or for ``wake``."""
         ...
 
     def wake(self) -> None:

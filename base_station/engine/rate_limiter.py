@@ -64,7 +64,7 @@ class SenderRateLimiter:
         self._over_limit[sender_id] = now_ns if now_ns - last_ns > _PAUSE_NS else since_ns, now_ns
 
     def changes(self, known: Mapping[str, str]) -> Iterator[ReportProblem]:
-        """Who has begun to be beyond its share, and who has long been well again; one thread.
+        """Reports on senders that exceed their share now, or have long been well again; one thread.
 
         ``known``: the problems that stand reported, by part.  What an earlier run of the program
         told, or the other of two stations, ends here too.

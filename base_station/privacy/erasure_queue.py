@@ -213,7 +213,7 @@ def _forget(
 
 
 def _tally_of(job: ErasureJob) -> ErasureProgress:
-    """Of the tries before."""
+    """Tally of the tries before."""
     return ErasureProgress(job.records, job.files, job.began, job.damaged)
 
 

@@ -35,7 +35,7 @@ def decisions_differ(records: Iterable[Record], pipeline: StationPipeline) -> bo
 
 
 class VersionCheck:
-    """Of what a playback is about to show, a record at a time."""
+    """Check of what a playback is about to show, a record at a time."""
 
     def __init__(self, playback: Playback, until_ns: int) -> None:
         self._playback = playback

@@ -39,7 +39,7 @@ class Zone(NamedTuple):
 
 
 def zone_of(crs: str) -> Zone | None:
-    """Of ``EPSG:326..`` (WGS-84, north), ``327..`` (south) and ``258..`` (ETRS89)."""
+    """Zone of ``EPSG:326..`` (WGS-84, north), ``327..`` (south) and ``258..`` (ETRS89)."""
     found = _NAMES.fullmatch(crs)
     if found is None or not 1 <= int(found["zone"]) <= 60:
         return None

@@ -135,7 +135,7 @@ class Election:
 
 
 def _claim(beat: PeerHeartbeat) -> tuple[int, bool, str]:
-    """Of two that lead, the later take-over stays."""
+    """Rank of a leader's claim: of two that lead, the later take-over stays."""
     return beat.term, beat.preferred, beat.station
 
 
@@ -144,7 +144,7 @@ def _claim_of(me: LocalStatus) -> tuple[int, bool, str]:
 
 
 def _rank(beat: PeerHeartbeat) -> tuple[int, LogPosition, bool, str]:
-    """Of two that do not lead, whoever has more of the log begins."""
+    """Rank of one that does not lead: of two, the one with more of the log begins."""
     return beat.term, LogPosition(*beat.place), beat.preferred, beat.station
 
 

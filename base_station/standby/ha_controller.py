@@ -137,7 +137,7 @@ class HaController:
         return other.station if other is not None and there else None
 
     def others_run(self) -> int:
-        """Which run of its program the other station is in, as last heard."""
+        """Run of its program that the other station is in, as last heard."""
         other = self._election.other
         return other.run if other is not None else 0
 

@@ -31,7 +31,7 @@ _BACKLOG = 1000  # so many events at once are no longer the last moment's
 
 
 class Leader(NamedTuple):
-    """Whom to follow: a station, in one run of its program."""
+    """Station to follow, in one run of its program."""
 
     station: str
     run: int

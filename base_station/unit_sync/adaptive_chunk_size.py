@@ -17,7 +17,7 @@ _FULL_SHARE = 0.25  # of what was asked for: messages may be smaller than was ex
 
 
 class AdaptiveChunkSize:
-    """Of one unit."""
+    """Chunk size of one unit."""
 
     def __init__(self) -> None:
         self.answer_bytes = LEAST_BYTES

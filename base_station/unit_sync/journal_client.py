@@ -51,7 +51,7 @@ class Question(NamedTuple):
 
     @property
     def most_bytes(self) -> int:
-        """Of messages that it asks for."""
+        """Limit of the bytes of messages that it asks for."""
         return dict(self.parameters).get("total", 0)
 
     @property

@@ -138,7 +138,7 @@ class AlarmManager:
         return _resolve(state, alarm, f"{by}: {action.note}" if action.note else by)
 
     def erase_names(self, state: StationState, unit: UnitState) -> None:
-        """What alarms say of who wore the unit, and what was said when they were dealt with; that
+        """Erase what alarms say of the unit's wearers, and the notes of their resolution; that
         there were alarms stays.
         """
         for alarm in (*state.alarms.values(), *state.history):

@@ -34,7 +34,7 @@ class Clear(msgspec.Struct, frozen=True):
 
 
 def switched_off(unit: UnitState) -> Clear | None:
-    """Of a unit that was switched off in order nobody expects what its alarm is about."""
+    """Verdict of a unit that was switched off in order: its alarm's condition is not expected."""
     if unit.stopped_ns is None:
         return None
     return Clear(unit.stopped_ns, "the unit was switched off", at_once=True)

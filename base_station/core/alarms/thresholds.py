@@ -55,7 +55,7 @@ def thresholds_of(
 
 
 def with_thresholds(rules: Sequence[AlarmRule], thresholds: Thresholds) -> tuple[AlarmRule, ...]:
-    """What a log says may be another version's: a rule that cannot have it keeps its defaults."""
+    """Rules with a log's thresholds; one that cannot have another version's keeps its defaults."""
     return tuple(_changed_or_as_it_was(rule, thresholds) for rule in rules)
 
 

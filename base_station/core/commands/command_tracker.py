@@ -54,7 +54,7 @@ def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
 
 
 def replace(state: StationState, later: SentCommand) -> Iterator[SentCommand]:
-    """Of two rates the one that was given last holds: where the other is still on its way, its
+    """End the order of an earlier rate: the last one holds, and where the other is on its way, its
     repeat would be applied behind it.
     """
     if later.kind is not CommandKind.SET_POSITION_RATE:
@@ -136,9 +136,7 @@ def note_sent(state: StationState, unit_id: str, sent: Command) -> SentCommand |
 def note_reply(
     state: StationState, unit: UnitState, reply: CommandReply, event_ns: int | None
 ) -> SentCommand | None:
-    """What a unit answered at ``event_ns``, None: nobody can tell when.  None where that changes
-    nothing.
-    """
+    """Note a unit's answer of ``event_ns`` (None: unknown).  Returns None where it changes nothing."""
     found = _delivery(state, unit.unit_id, reply.command_id)
     if found is None:
         order_ends.note_reply(state, unit.unit_id, reply)
@@ -183,7 +181,7 @@ def expire(state: StationState) -> Iterator[SentCommand]:
 
 
 def erase_names(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
-    """Who of this unit's wearers acknowledged what, and texts to them.  Of a message nothing is
+    """Erase acknowledgements of this unit's wearers, and texts to them.  Of a message nothing is
     left then: for whom it has not reached its time is over.  Texts to others may name them: the
     words go of what has reached all whom it goes to.
     """

@@ -233,7 +233,7 @@ def first_erased_ns(records: Iterable[Record], erasure: Erasure) -> dict[str, in
 
 
 class CaptureClocks:
-    """When a message was captured, by the station's clock.  The least delayed one tells; of a run
+    """Capture times of messages by the station's clock.  The least delayed one bounds it; of a run
     of which nothing came live the unit itself, if it knew the station's time.
     """
 

@@ -44,8 +44,8 @@ class OlderNames:
         return self._pattern.sub(ERASED_TEXT, text)
 
     def erased_in_json(self, detail: str) -> str:
-        """Of an entry of the audit: in JSON a quotation mark within a name is written in another
-        way, and a field may be called like somebody.
+        """Erase names in an entry of the audit: in JSON a quotation mark within one is written in
+        another way, and a field may be called like a person.
         """
         try:
             entry = msgspec.json.decode(detail)

@@ -149,7 +149,7 @@ class Redactor:
         return t_ns, key, encode(msgspec.structs.replace(change, text=ERASED_TEXT, by=by))
 
     def _derived(self, record: Record) -> list[Record]:
-        """What only repeats other records for Foxglove."""
+        """Records that only repeat others for Foxglove."""
         t_ns, key, _ = record
         if self._erasure.covers(key.split("/")[1], t_ns):
             return []

@@ -83,18 +83,18 @@ class BootState(msgspec.Struct):
 
     @property
     def live_ns(self) -> int:
-        """How long it was there; no overlap is longer."""
+        """Duration of its presence; no overlap is longer."""
         return self.last_live_ns - self.first_live_ns
 
     def overlap_ns(self, other: BootState) -> int:
-        """How long both were there at once; not positive: one after the other."""
+        """Duration of the presence of both at once; not positive: one after the other."""
         return min(self.last_live_ns, other.last_live_ns) - max(
             self.first_live_ns, other.first_live_ns
         )
 
 
 def captured_ns(boots: Iterable[BootState], header: Header, now_ns: int) -> int | None:
-    """When a message was captured, by the station's clock, at the latest now; None of a run of the
+    """Capture time of a message by the station's clock, at the latest now; None of a run of the
     unit whose clock is not known.
     """
     boot = next((one for one in boots if one.boot_id == header.boot_id), None)

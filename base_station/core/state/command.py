@@ -40,7 +40,7 @@ class Delivery(msgspec.Struct):
 
 
 class SentCommand(msgspec.Struct):
-    """What a person told units to do."""
+    """Command of a person to units."""
 
     command_id: str
     kind: CommandKind
@@ -82,7 +82,7 @@ class SentCommand(msgspec.Struct):
         return self.notifies_wearer and bool(delivery.can_be_notified)
 
     def state_of(self, delivery: Delivery) -> DeliveryState:
-        """What happened too late is still what happened."""
+        """State of a delivery; what happened too late is still what happened."""
         if delivery.acknowledged_ns is not None:
             return "acknowledged"
         received = delivery.received_ns is not None

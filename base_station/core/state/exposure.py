@@ -6,7 +6,7 @@ import msgspec
 
 
 class ExposureInterval(msgspec.Struct):
-    """Of one run of the unit's program, without a silence; the unit's monotonic time."""
+    """Part of one run of the unit's program, without a silence; the unit's monotonic time."""
 
     boot_id: int
     first_ns: int

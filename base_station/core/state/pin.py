@@ -34,7 +34,7 @@ class Pin(msgspec.Struct, frozen=True):
 
 
 class PinVerdict(msgspec.Struct, frozen=True):
-    """What the solution with everything else makes of a pin."""
+    """Verdict of the solution with everything else on a pin."""
 
     state: PinState
     residual_m: float | None = None  # between the pin and the trail

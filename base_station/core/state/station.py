@@ -115,7 +115,7 @@ class StationState(msgspec.Struct):
         return None if self.anchor_by_gps else self.plan
 
     def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
-        """Of the building there, lowest first: the plan's, or else those that were learnt."""
+        """Storeys of the building there, lowest first: the plan's, or else the learnt ones."""
         if self.plan is not None and self.plan.storeys:
             return self.plan.storeys
         return self.learnt_floors.storeys_at(north_m, east_m)

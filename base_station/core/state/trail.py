@@ -135,7 +135,7 @@ def _keep(
 def _distances_m(
     places_m: NDArray[np.float64], begin_m: NDArray[np.float64], end_m: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """How far places (n, 2) lie from a straight line between two."""
+    """Distances of places (n, 2) from a straight line between two."""
     way_m, from_begin_m = end_m - begin_m, places_m - begin_m
     length2_m2 = float(way_m @ way_m)
     along = (from_begin_m @ way_m) / length2_m2 if length2_m2 > 0.0 else np.zeros(len(places_m))

@@ -103,7 +103,7 @@ class UnitState(MessageStream):
 
     @property
     def began_ns(self) -> int:
-        """When the run of its program began that is shown; what was before tells nothing of now."""
+        """Begin of the run of its program that is shown; what was before says nothing of now."""
         return self.boots[-1].first_live_ns if self.boots else 0
 
     @property

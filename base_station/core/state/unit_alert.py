@@ -16,7 +16,7 @@ class UnitAlert(msgspec.Struct):
 
     @property
     def dated_ns(self) -> int | None:
-        """When the unit raised it; None: nobody can tell."""
+        """Time at which the unit raised it; None: unknown."""
         return self.event_ns if self.is_dated else None
 
     def note(self, t_ns: int, event_ns: int, *, is_dated: bool = True) -> None:

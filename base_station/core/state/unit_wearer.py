@@ -47,7 +47,7 @@ class UnitWearer(msgspec.Struct):
         return None if self.person is None else self.person.person_id
 
     def from_ns(self, t_ns: int | None) -> int | None:
-        """When the wearing of that time began, 0: nobody wore it; names one wearing of this unit.
+        """Begin of the wearing of that time, 0: nobody wore it; names one wearing of this unit.
         None: the time is unknown.
         """
         if t_ns is None:

@@ -109,7 +109,7 @@ def _append(intervals: list[ExposureInterval], new: ExposureInterval) -> None:
 
 
 def _bound(intervals: list[ExposureInterval]) -> None:
-    """Of runs without a silence between any two stretches the oldest is let go."""
+    """Bound the number of intervals; of runs without a silence between any two the oldest goes."""
     if len(intervals) <= MAX_INTERVALS:
         return
     silences = ((_silence_ns(*both), row) for row, both in enumerate(pairwise(intervals), start=1))

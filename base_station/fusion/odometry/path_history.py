@@ -26,7 +26,7 @@ FIX_NEAR_MS = 1000  # a fix so near to where a path begins or breaks was taken t
 
 
 class LatestEstimate(msgspec.Struct, array_like=True):
-    """What only the newest estimate without pins tells."""
+    """Parts of the newest estimate without pins that no point keeps."""
 
     since_gps_s: float | None = None
     floor: int | None = None

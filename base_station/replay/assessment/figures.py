@@ -44,7 +44,7 @@ def stated_figures(stds_m: Floats) -> Figures | None:
 
 
 def figures_of(errors_m: Floats) -> Figures | None:
-    """Of errors (n, 3) north, east, down."""
+    """Figures of errors (n, 3) north, east, down."""
     if not len(errors_m):
         return None
     circular = np.hypot(errors_m[:, 0], errors_m[:, 1])

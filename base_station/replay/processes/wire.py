@@ -62,7 +62,7 @@ class SetSpeed(msgspec.Struct, frozen=True, tag="speed"):
 
 
 class People(msgspec.Struct, frozen=True, tag="people"):
-    """Who the person ids of the log stand for."""
+    """People for whom the person ids of the log stand."""
 
     known: dict[str, KnownPerson]
 

@@ -78,7 +78,7 @@ def known_names(session: Session, person_id: str) -> set[str]:
 
 
 def ids_of(session: Session, name: str) -> set[str]:
-    """Who is called so, or was, whether or not they are on the roster still."""
+    """Ids of people of that name, now or before, whether or not they are on the roster still."""
     ids = set(session.scalars(select(PersonRow.person_id).where(PersonRow.name == name)))
     worn = Assignment.person_name == name
     ids |= set(session.scalars(select(Assignment.person_id).where(worn)))
@@ -149,7 +149,7 @@ def _without_texts(entry: AuditEntry, erasure: Erasure) -> str:
 
 
 def _nobodys(detail: str, erasure: Erasure) -> str:
-    """Of who was given a unit: in a small station crew and role are as good as a name."""
+    """Assignment without its wearer: in a small station crew and role are as good as a name."""
     try:
         worn = msgspec.json.decode(detail, type=Assign)
     except msgspec.DecodeError:  # nothing is left of it

@@ -33,7 +33,7 @@ FORGOTTEN = KnownPerson(ERASED_TEXT)
 
 
 def person_lookup(known: Mapping[str, KnownPerson]) -> PersonLookup:
-    """Who is not known has lost the name with a database: the id is shown in its place."""
+    """Lookup of people; one whose name was lost with a database is shown by the id."""
 
     def look_up(person_id: str) -> KnownPerson:
         return known.get(person_id) or KnownPerson(f"person {person_id[:_ID_SHOWN]}")
@@ -47,7 +47,7 @@ def shown_text(text: str, people: PersonLookup) -> str:
 
 
 def shown_wearer(assignment: Assignment, people: PersonLookup) -> KnownPerson:
-    """Who wore a unit; a log of an earlier version has the name of then."""
+    """Wearer of a unit; a log of an earlier version has the name of then."""
     known = people(assignment.person_id)
     if not assignment.person_name:
         return known

@@ -24,7 +24,7 @@ def migrate(engine: Engine) -> None:
 
 
 def newest_revision() -> str:
-    """Of this program: a file of a migration is named by its number, and they follow each other."""
+    """Newest revision of this program: files of migrations are named by number, in order."""
     return max(file.name for file in _VERSIONS.iterdir() if file.name[0].isdigit())[:4]
 
 

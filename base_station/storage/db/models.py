@@ -117,7 +117,7 @@ class LostTable(Base):
 
 
 class AuditEntry(Base):
-    """Who did what; an entry of an operator's action carries the action's own id."""
+    """Entry of the audit; one of an operator's action carries the action's own id."""
 
     __tablename__ = "audit"
     __table_args__ = {"sqlite_autoincrement": True}  # noqa: RUF012  # SQLAlchemy's way
@@ -165,7 +165,7 @@ class IncidentRow(Base):
 
 
 class Assignment(Base):
-    """Who wore which unit, from when until when; name, crew and role as they were then only where
+    """Wearer of a unit, from when until when; name, crew and role as they were then only where
     the log is of an earlier version, and otherwise empty.
     """
 

@@ -67,7 +67,7 @@ _TRACK_COLUMNS = tuple(getattr(TrackPoint, name) for name in TrackSample.__struc
 def _points_of(
     unit_id: str | InstrumentedAttribute[str], window: Window
 ) -> tuple[ColumnElement[bool], ...]:
-    """Of one unit in the window; the whole seconds are the table's key, and come first."""
+    """Points of one unit in the window; the whole seconds are the table's key, and come first."""
     return (
         TrackPoint.unit_id == unit_id,
         TrackPoint.t_s >= window.from_ns // NS_PER_S,
@@ -156,7 +156,7 @@ class Records:
         return self.alarm_lives([alarm_id])[alarm_id]
 
     def alarm_lives(self, alarm_ids: Collection[str]) -> dict[str, list[AlarmTransition]]:
-        """Of each, the changes in its life by time."""
+        """Changes in the life of each alarm, by time."""
         lives: dict[str, list[AlarmTransition]] = {alarm_id: [] for alarm_id in alarm_ids}
         wanted = (
             select(AlarmTransition)

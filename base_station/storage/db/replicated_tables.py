@@ -246,7 +246,7 @@ def _remove_people(session: Session, rows: tuple[Row, ...]) -> bool:
 
 
 def _put_people(session: Session, rows: tuple[Row, ...]) -> None:
-    """Who was removed here stays so."""
+    """Store people of the other station; those removed here stay so."""
     session.execute(
         delete(PersonRow).where(PersonRow.person_id.not_in([r["person_id"] for r in rows]))
     )

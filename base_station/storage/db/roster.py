@@ -62,7 +62,7 @@ class Roster:
         return shown_wearer(assignment, self.known)
 
     def ids_by_name(self) -> dict[str, str]:
-        """Of everybody who is or was on the roster and is not forgotten."""
+        """Ids of all who are or were on the roster and are not forgotten."""
         known = self.known_people().items()
         return {one.name: person_id for person_id, one in known if one is not FORGOTTEN}
 

@@ -205,7 +205,7 @@ class Transfer:
         )
 
     def _paths(self, file: RecordedFile) -> tuple[Path, Path]:
-        """Of all of it, and of what has come so far."""
+        """Paths of all of it, and of what has come so far."""
         whole = self.folder / PurePosixPath(file.path)
         return whole, whole.with_name(whole.name + _PART)
 
@@ -275,7 +275,7 @@ class Transfer:
 
 
 def _size(path: Path) -> int:
-    """Of a file; 0 where there is none."""
+    """Size of a file; 0 where there is none."""
     return path.stat().st_size if path.exists() else 0
 
 
