@@ -1,4 +1,4 @@
-"""Checks of command-line options that the parser does not make."""
+"""Checks of options that their parsers do not make."""
 
 from __future__ import annotations
 
@@ -15,3 +15,12 @@ def finite(value: float | None) -> float | None:
     if value is not None and not math.isfinite(value):
         raise typer.BadParameter(f"{value} is no number that can be used here.")
     return value
+
+
+def number_within(text: str, least: float, most: float) -> float | None:
+    """Number that a text gives; None where it gives none, or one beyond the limits."""
+    try:
+        number = float(text)
+    except ValueError:
+        return None
+    return number if least <= number <= most else None

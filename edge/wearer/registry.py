@@ -12,6 +12,7 @@ from edge.wearer.reader import ButtonReader
 from edge.wearer.socket_button import SocketButton
 from shared.clock import NS_PER_S, Clock
 from shared.errors import ConfigError
+from shared.options import number_within
 
 BUTTONS: tuple[ButtonKind, ...] = (
     ButtonKind("evdev", EvdevButton, "NAME or /dev/input/eventN, with ?key=KEY_POWER"),
@@ -44,11 +45,8 @@ def _hold_ns(text: str, given: str | None) -> int:
     if given is None:
         return HOLD_NS
     least_s, most_s = HOLD_LEAST_NS / NS_PER_S, HOLD_MOST_NS / NS_PER_S
-    try:
-        hold_s = float(given)
-    except ValueError:
-        hold_s = 0.0
-    if not least_s <= hold_s <= most_s:
+    hold_s = number_within(given, least_s, most_s)
+    if hold_s is None:
         raise ConfigError(
             f"{text}: hold is {given!r}; give the seconds after which a hold is a mayday, "
             f"{least_s:g} to {most_s:g}"

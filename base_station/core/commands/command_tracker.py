@@ -136,7 +136,7 @@ def note_sent(state: StationState, unit_id: str, sent: Command) -> SentCommand |
 def note_reply(
     state: StationState, unit: UnitState, reply: CommandReply, event_ns: int | None
 ) -> SentCommand | None:
-    """Note a unit's answer of ``event_ns`` (None: unknown).  Returns None where it changes nothing."""
+    """Note a unit's answer of ``event_ns``, None: unknown.  Gives None where it changes nothing."""
     found = _delivery(state, unit.unit_id, reply.command_id)
     if found is None:
         order_ends.note_reply(state, unit.unit_id, reply)

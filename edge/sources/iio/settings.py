@@ -7,6 +7,7 @@ from urllib.parse import parse_qsl
 
 from edge.sources.device_name import DeviceName, parse_device_name
 from shared.errors import ConfigError
+from shared.options import number_within
 
 _SCHEME = "iio"
 _OPTIONS = ("rate", "trigger", "mag", "pressure")
@@ -79,11 +80,8 @@ def _parse_rate(text: str, given: str | None) -> float | None:
     if given is None:
         return None
     least_hz, most_hz = _RATE_HZ
-    try:
-        rate_hz = float(given)
-    except ValueError:
-        rate_hz = 0.0
-    if not least_hz <= rate_hz <= most_hz:
+    rate_hz = number_within(given, least_hz, most_hz)
+    if rate_hz is None:
         raise ConfigError(
             f"{_SCHEME}:{text}: rate is {given!r}; give a number from {least_hz:g} to {most_hz:g}"
         )
