@@ -67,7 +67,7 @@ class PathGraph:
 
     def _solved(
         self, units: Mapping[str, UnitEvidence], encounters: Sequence[EncounterConstraint]
-    ) -> Problem:
+    ) -> PathProblem:
         chains, meetings = self._chains(units), Encounters(units, encounters)
         problem = build(units, chains, meetings, self.noise)
         while meetings.split_by_floor(problem.graph):
@@ -92,7 +92,7 @@ class PathGraph:
 
 
 @dataclass(frozen=True)
-class Problem:
+class PathProblem:
     """One problem on its way, and the verdicts on constraints so far."""
 
     units: Mapping[str, UnitEvidence]
@@ -110,7 +110,7 @@ def build(
     chains: dict[str, Chain],
     encounters: Encounters,
     noise: WalkNoise,
-) -> Problem:
+) -> PathProblem:
     """Solve by paths, fixes, encounters and the consistent set of constraints."""
     verdicts: dict[str, Verdict] = {}
     graph = Graph(units, chains)
@@ -124,13 +124,13 @@ def build(
         graph.relax(noise)
         for unit_id in graph.places:
             verdicts |= reject_outliers(graph, unit_id, noise)
-    return Problem(units, encounters, noise, graph, verdicts)
+    return PathProblem(units, encounters, noise, graph, verdicts)
 
 
 # ---- solve
 
 
-def add_live_estimates(problem: Problem) -> None:
+def add_live_estimates(problem: PathProblem) -> None:
     """Add live estimates where only they used the building model or walls."""
     graph, spreads = problem.graph, problem.graph.spreads()
     for unit_id, chain in graph.chains.items():
@@ -143,7 +143,7 @@ def add_live_estimates(problem: Problem) -> None:
         graph.relax(problem.noise)
 
 
-def add_wall_constraints(problem: Problem) -> None:
+def add_wall_constraints(problem: PathProblem) -> None:
     """Replace live estimates by the plan's walls. Where walls are crossed again and again the
     plan is of another building, and neither is used.
     """
@@ -164,7 +164,7 @@ def add_wall_constraints(problem: Problem) -> None:
         graph.step(problem.noise)
 
 
-def close_loops(problem: Problem) -> None:
+def close_loops(problem: PathProblem) -> None:
     """Close loops where paths lead over the same stairs or along the same line again; lines
     only where no plan's walls are used, which are better.
     """
@@ -181,7 +181,7 @@ def close_loops(problem: Problem) -> None:
 # ---- marginals
 
 
-def marginals(problem: Problem) -> Solution:
+def marginals(problem: PathProblem) -> Solution:
     """Paths with their deviations, and a verdict on each constraint."""
     graph, encounters = problem.graph, problem.encounters
     refused = encounters.reject(graph, problem.noise)
@@ -200,7 +200,7 @@ def marginals(problem: Problem) -> Solution:
 
 
 def _smoothed_path(
-    problem: Problem,
+    problem: PathProblem,
     unit_id: str,
     spreads: Floats,
     on_plan: Floats,
