@@ -53,7 +53,7 @@ def test_a_message_that_came_before_is_not_logged_again(state: StationState, key
         (f"muster/v1/{U}/what", Admission.ACCEPT),
     ],
 )
-def test_what_cannot_be_read_is_kept_and_nobody_speaks_as_the_station(
+def test_unreadable_message_is_kept_and_forged_one_rejected(
     state: StationState, key: str, heard: Admission
 ) -> None:
     assert classify(key, event_of(T_NS, key, b"rotten"), state) is heard

@@ -57,7 +57,7 @@ def test_what_a_crash_would_take_from_the_log_is_not_saved(tmp_path: Path) -> No
     ("error", "said"),
     [(OSError(28, "No space left on device"), "free the disk"), (KeyError("x"), "please report")],
 )
-def test_a_state_that_cannot_be_saved_is_told_when_that_is_over(
+def test_failed_checkpoint_is_reported_until_one_is_saved(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, said: str
 ) -> None:
     log, checkpoints, health = Log(), Checkpoints(tmp_path), HealthMonitor()

@@ -57,7 +57,7 @@ def units_of(deltas: list[Delta]) -> list[list[str]]:
     return [[unit.unit_id for unit in delta.units] for delta in deltas]
 
 
-def test_a_change_is_told_once_and_the_station_s_health_when_asked_for() -> None:
+def test_delta_has_a_change_once_and_health_on_request() -> None:
     screen = Screen()
     publisher = walked(screen)
     publisher.publish_delta()
@@ -72,7 +72,7 @@ def test_a_change_is_told_once_and_the_station_s_health_when_asked_for() -> None
     assert [unit.seq, health_only.seq] == [1, 2]
 
 
-def test_what_may_wait_is_told_with_the_health_or_when_the_unit_is_touched() -> None:
+def test_deferred_change_goes_with_health_or_the_next_change_of_its_unit() -> None:
     screen = Screen()
     publisher = walked(screen)
     publisher.mark_changed([UnitChanged("FF-01", soon=False), UnitChanged("FF-02", soon=False)])
@@ -88,7 +88,7 @@ def test_what_may_wait_is_told_with_the_health_or_when_the_unit_is_touched() -> 
     assert (units_of([shown]), shown.replay) == ([["FF-03"]], REPLAY)
 
 
-def test_alarms_commands_and_pins_are_urgent_until_they_are_told() -> None:
+def test_alarms_commands_and_pins_are_urgent_until_they_are_published() -> None:
     for output in (alarm_of("FF-04"), alarm_of(""), CommandChanged("c1"), PinsChanged(())):
         screen = Screen()
         publisher = walked(screen)
@@ -108,7 +108,7 @@ def test_alarms_commands_and_pins_are_urgent_until_they_are_told() -> None:
         assert (shown.pins, shown.beacons) == (pins, pins)
 
 
-def test_a_forgetting_is_told_to_all_anew_whatever_was_still_to_be_told() -> None:
+def test_erasure_resets_all_consoles_whatever_was_pending() -> None:
     """Alarms that a console was told before, or is about to be, may name somebody."""
     screen = Screen()
     publisher = walked(screen)
@@ -119,7 +119,7 @@ def test_a_forgetting_is_told_to_all_anew_whatever_was_still_to_be_told() -> Non
     assert (told(screen), len(screen.resets)) == ([], 1)
 
 
-def test_another_incident_is_told_to_all_anew_and_what_was_to_be_told_with_it() -> None:
+def test_another_incident_resets_all_consoles_with_what_was_pending() -> None:
     screen, pipeline = Screen(), make_pipeline()
     publisher = walked_in(pipeline, screen)
     pipeline.state.incident = Incident("i1", "Mill Lane", NS_PER_S)
@@ -136,7 +136,7 @@ def test_another_incident_is_told_to_all_anew_and_what_was_to_be_told_with_it() 
     assert (after.alarms, after.pins, after.seq) == ((), None, whole.seq + 1)
 
 
-def test_another_plan_or_another_place_on_the_earth_is_told_to_all_anew() -> None:
+def test_another_plan_or_anchor_resets_all_consoles() -> None:
     screen, pipeline = Screen(), make_pipeline()
     publisher = walked_in(pipeline, screen)
     geojson = b'{"type":"FeatureCollection","features":[],"muster":{"frame":"site-m"}}'
@@ -151,7 +151,7 @@ def test_another_plan_or_another_place_on_the_earth_is_told_to_all_anew() -> Non
     assert anchored.anchor.lat_deg == 48.0
 
 
-def test_who_joins_goes_on_with_what_is_told_next() -> None:
+def test_console_that_joins_continues_with_the_next_delta() -> None:
     screen = Screen()
     publisher = walked(screen)
     publisher.mark_changed([UnitChanged("FF-01"), PinsChanged(())])
@@ -172,7 +172,7 @@ def test_who_joins_gets_every_trail_beside_the_snapshot() -> None:
     }
 
 
-def test_trails_that_were_filled_in_are_told_some_at_a_time() -> None:
+def test_backfilled_trails_are_published_some_at_a_time() -> None:
     """A radio that is back fills everybody's at once; positions do not wait for all of them."""
     screen = Screen()
     publisher = walked(screen)
@@ -188,7 +188,7 @@ def test_trails_that_were_filled_in_are_told_some_at_a_time() -> None:
     assert sorted(one for trails in filled for one in trails) == UNITS
 
 
-def test_a_snapshot_to_all_takes_the_place_of_what_was_not_told_yet() -> None:
+def test_reset_replaces_what_was_not_published_yet() -> None:
     screen = Screen()
     publisher = walked(screen)
     publisher.mark_changed([TrailBackfilled(unit_id) for unit_id in UNITS])

@@ -68,7 +68,7 @@ def test_beyond_the_bound_live_data_is_dropped_and_counted_but_alerts_are_not() 
     assert len(feed.take(0.0)) == 1
 
 
-def test_that_it_is_too_much_is_said_while_it_is_and_for_a_minute() -> None:
+def test_overflow_is_reported_while_it_lasts_and_for_a_minute() -> None:
     clock = ManualClock()
     feed = LiveFeed(clock, records_max=1)
     told = []
@@ -194,7 +194,7 @@ def test_a_log_feeds_its_records_and_asks_for_the_flush_first(tmp_path: Path) ->
     assert [payload[0] for _, _, payload in window] == [3, 5, 7]
 
 
-def test_a_log_tells_when_what_was_there_is_written_anew_and_not_when_it_grows(
+def test_log_feed_notices_rewriting_and_not_growth(
     tmp_path: Path,
 ) -> None:
     first, second = (tmp_path / f"{number:06d}-20261122T070000Z.mcap" for number in (1, 2))

@@ -96,7 +96,7 @@ def test_an_alarm_is_a_log_line() -> None:
     assert (line.level, line.name, line.message) == (Log.FATAL, "heat", "anna: too hot (raised)")
 
 
-def test_who_acknowledged_the_stations_own_alarm_is_said() -> None:
+def test_acknowledgement_of_a_station_alarm_names_its_operator() -> None:
     acknowledged = msgspec.structs.replace(
         ALARM, unit_id="", state=AlarmState.ACKNOWLEDGED, by="chief"
     )
@@ -133,7 +133,7 @@ def test_the_building_lies_on_the_map_below_its_people() -> None:
     assert far == pytest.approx([fix.longitude, fix.latitude], abs=1e-6)
 
 
-def test_the_building_is_told_when_it_changes_and_now_and_then() -> None:
+def test_building_is_logged_on_change_and_now_and_then() -> None:
     topics, plan = FoxgloveTopics(), read_plan(wall((0.0, 0.0), (0.0, 1.0)))
     moved = replace(ANCHOR, lat_deg=61.0)
     assert topics.plan(None, ANCHOR, T0_NS) is None

@@ -25,7 +25,7 @@ def reports(checks: list[dict[str, str]], known: dict[str, str] | None = None) -
     return told
 
 
-def test_a_problem_is_told_once_and_its_end_once() -> None:
+def test_problem_is_reported_once_and_its_end_once() -> None:
     assert reports([FULL] * 20) == ["the disk is full"]
     assert reports([FULL] * 3 + [WELL] * 20) == ["the disk is full", ""]
 
@@ -57,13 +57,13 @@ def test_what_others_reported_is_left_to_them() -> None:
     assert reports([WELL] * 20, {"rule-heat": "the rule failed"}) == []
 
 
-def test_what_is_worse_than_what_was_told_is_told_and_every_number_is_not() -> None:
+def test_worse_problem_is_reported_and_every_number_is_not() -> None:
     waiting = [{"log": f"the log cannot be written, {count} records wait"} for count in range(5)]
     missing = [{"log": f"the disk did not keep up: {count} are missing"} for count in range(5)]
     assert reports(waiting + missing) == [waiting[0]["log"], missing[0]["log"]]
 
 
-def test_a_part_that_fails_in_ever_other_ways_is_told_once() -> None:
+def test_part_that_fails_in_ever_other_ways_is_reported_once() -> None:
     health, known = HealthMonitor(), dict[str, str]()
     for message in ("one message", "another", "one more"):
         health.report("pipeline", message)
@@ -71,7 +71,7 @@ def test_a_part_that_fails_in_ever_other_ways_is_told_once() -> None:
     assert known == {"pipeline": "one message"}
 
 
-def test_a_problem_that_a_person_dismissed_is_told_again_while_it_lasts() -> None:
+def test_dismissed_problem_is_reported_again_while_it_lasts() -> None:
     health = HealthMonitor()
     assert [r.text for r in health.check(FULL, {})] == ["the disk is full"]
     assert [r.text for r in health.check(FULL, FULL)] == []

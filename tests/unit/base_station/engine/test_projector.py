@@ -31,7 +31,7 @@ def test_what_was_refused_is_not_in_the_tables(is_refused: bool) -> None:
         assert projection.actions[0].header.t_utc_ns == T_NS
 
 
-def test_when_a_unit_was_heard_is_told_now_and_then() -> None:
+def test_time_of_the_last_message_is_projected_in_steps() -> None:
     projector = Projector()
     told = []
     for second in range(12):

@@ -49,7 +49,7 @@ def station() -> Station:
     return Station()
 
 
-def test_what_is_beyond_the_share_is_dropped_and_others_are_heard(station: Station) -> None:
+def test_messages_beyond_the_share_are_dropped_and_those_of_others_kept(station: Station) -> None:
     assert station.hear(KEY, 10_000) == MESSAGES_HZ
     assert station.hear(OTHER, 50) == 50
     station.clock.advance(0.5)
@@ -67,7 +67,7 @@ def test_bytes_count_too(station: Station) -> None:
     assert station.hear(KEY, 100, size=50_000) == BYTES_PER_S // 50_000
 
 
-def test_what_is_said_to_a_unit_is_not_said_by_it(station: Station) -> None:
+def test_messages_to_a_unit_do_not_count_as_its_own(station: Station) -> None:
     station.hear(KEY, 10_000)
     assert station.hear(COMMAND.key("evil"), 1000) == 1000
 
@@ -76,7 +76,7 @@ def test_a_key_that_no_unit_has_is_held_to_a_share(station: Station) -> None:
     assert station.hear("muster/v1", 10_000) == MESSAGES_HZ
 
 
-def test_a_unit_that_says_as_much_as_units_do_is_never_cut(station: Station) -> None:
+def test_unit_at_the_usual_rate_is_never_limited(station: Station) -> None:
     for _ in range(1000):
         station.clock.advance(0.1)
         assert station.hear(KEY, 5, size=1000) == 5
@@ -85,7 +85,7 @@ def test_a_unit_that_says_as_much_as_units_do_is_never_cut(station: Station) -> 
     assert station.changes() == []
 
 
-def test_a_flood_is_told_once_and_so_is_its_end(station: Station) -> None:
+def test_flood_is_reported_once_and_so_is_its_end(station: Station) -> None:
     station.hear(KEY, 10_000)
     assert station.changes() == [], "one burst"
     station.flood(5)
@@ -99,7 +99,7 @@ def test_a_flood_is_told_once_and_so_is_its_end(station: Station) -> None:
     assert station.changes() == []
 
 
-def test_a_flood_that_was_told_before_a_restart_ends_as_well(station: Station) -> None:
+def test_flood_reported_before_a_restart_ends_as_well(station: Station) -> None:
     station.known["log"] = "the disk is full"
     station.flood(5)
     assert station.changes() == [("flood evil", True)]
@@ -116,7 +116,7 @@ def test_a_flood_that_was_told_before_a_restart_ends_as_well(station: Station) -
     assert station.changes() == []
 
 
-def test_a_flood_that_a_person_dismissed_is_not_told_again_while_it_lasts(
+def test_dismissed_flood_is_not_reported_again_while_it_lasts(
     station: Station,
 ) -> None:
     station.flood(5)

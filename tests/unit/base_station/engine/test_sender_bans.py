@@ -52,7 +52,7 @@ def test_what_was_on_its_way_orders_nothing_more() -> None:
     assert watch.orders == [("evil", FIRST_S)] * 2
 
 
-def test_it_is_told_by_name_and_so_is_its_end() -> None:
+def test_ban_is_reported_by_name_and_so_is_its_end() -> None:
     watch = Watch()
     watch.bans.ban("evil", WHY)
     [(part, text)] = watch.changes()
@@ -64,7 +64,7 @@ def test_it_is_told_by_name_and_so_is_its_end() -> None:
     assert watch.changes() == []
 
 
-def test_what_an_earlier_run_has_told_ends() -> None:
+def test_ban_reported_by_an_earlier_run_ends() -> None:
     watch = Watch()
     watch.bans.ban("evil", WHY)
     [(part, _)] = watch.changes()

@@ -84,7 +84,7 @@ def over(disk: Disk, outputs: list[Output]) -> WriteAhead:
 @pytest.mark.parametrize(
     ("urgent", "outputs", "flushed"), [(False, [], 0), (False, [ALARM], 1), (True, [], 1)]
 )
-def test_what_is_urgent_and_every_alarm_are_on_the_disk_before_they_are_told(
+def test_urgent_records_and_alarms_are_on_disk_before_they_are_published(
     urgent: bool, outputs: list[Output], flushed: int
 ) -> None:
     """That somebody has been silent for too long follows from a tick, which itself can wait."""

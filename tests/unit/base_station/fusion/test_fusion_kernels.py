@@ -142,7 +142,7 @@ def test_a_climb_is_filterpy_s_prediction() -> None:
     same(height["covariance"][0], expected.P)
 
 
-def test_a_ride_that_the_unit_feels_is_doubt_until_its_wearer_walks() -> None:
+def test_growing_deviation_in_a_ride_adds_variance_until_the_wearer_walks() -> None:
     height = np.zeros(1, HEIGHT)
     path = height["path"][0]
     climb(height, (0.0, 1.0, 0.2))

@@ -92,7 +92,7 @@ def test_it_is_told_with_its_name_while_it_lasts() -> None:
     assert watch.changes() == [(part, False)]
 
 
-def test_what_an_earlier_run_has_told_ends() -> None:
+def test_ban_reported_by_an_earlier_run_ends() -> None:
     watch = Watch()
     watch.known = {"journal share evil": "as told before", "disk": "another's matter"}
     assert watch.changes() == [("journal share evil", False)]

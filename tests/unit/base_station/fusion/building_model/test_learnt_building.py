@@ -25,7 +25,7 @@ STAIRS = LearntStairs(10.0, 5.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True, shared_
 FOUND = KnownStairs((("FF-01", STAIRS),))
 
 
-def test_a_climb_is_told_when_it_is_over_and_where_its_middle_was() -> None:
+def test_climb_is_reported_at_its_end_with_its_middle() -> None:
     watch, climbs = ClimbDetector(), []
     for row in range(60):  # on the level, up 3 m of stairs northwards, on the level again
         climbing = 20 <= row < 40
@@ -107,7 +107,7 @@ def test_taken_over_again_and_again_nobody_becomes_surer_than_the_first_was() ->
     assert place[1] == pytest.approx(0.0)
 
 
-def test_what_is_told_carries_what_hangs_on_it() -> None:
+def test_conditioning_moves_what_is_correlated() -> None:
     mean, covariance = np.array([0.0, 0.0]), np.array([[4.0, 2.0], [2.0, 4.0]])
     first = np.array([[1.0, 0.0]])
     moved, left = jeffrey_update(mean, covariance, first, np.array([2.0]), np.array([[1.0]]))
@@ -116,7 +116,7 @@ def test_what_is_told_carries_what_hangs_on_it() -> None:
     assert left[1, 1] == pytest.approx(4.0 - 0.5**2 * 3.0)
 
 
-def test_what_is_known_without_doubt_stays_as_it_is() -> None:
+def test_certain_part_of_a_state_stays_as_it_is() -> None:
     mean, covariance = np.array([1.0, 2.0]), np.zeros((2, 2))
     moved, left = jeffrey_update(mean, covariance, np.eye(2), np.array([9.0, 9.0]), covariance)
     assert moved.tolist() == mean.tolist()
@@ -215,7 +215,7 @@ def test_without_right_angles_there_is_no_axis() -> None:
     assert axis.axis is None
 
 
-def test_who_came_in_with_a_worse_heading_hears_it_from_others() -> None:
+def test_worse_heading_is_improved_by_directions_of_others() -> None:
     axis = DominantDirectionFilter()
     turn_rad, variance = 0.2, 0.2**2
     for number in range(6):
@@ -227,7 +227,7 @@ def test_who_came_in_with_a_worse_heading_hears_it_from_others() -> None:
     assert 0.02 < math.sqrt(variance) < 0.06
 
 
-def test_who_hardly_knows_a_heading_does_not_hear_of_walls_a_quarter_turn_off() -> None:
+def test_uncertain_heading_takes_no_walls_a_quarter_turn_off() -> None:
     axis = DominantDirectionFilter()
     turn_rad, variance = 0.9, 0.6**2
     for number in range(8):
@@ -261,7 +261,7 @@ def test_an_axis_that_others_know_shows_earlier_and_another_does_not() -> None:
     assert told < by_itself == other
 
 
-def test_a_unit_that_is_forgotten_has_said_nothing() -> None:
+def test_forgotten_unit_leaves_nothing_in_the_building_model() -> None:
     learnt = (
         LearntBuilding((FOUND,)).with_stairs(0, "FF-02", STAIRS).with_axis("FF-01", Axis(0.1, 1.0))
     )

@@ -61,7 +61,7 @@ def test_what_is_everybody_s_is_part_of_a_good_receiver_s_error_and_little_of_a_
 
 
 @pytest.mark.slow
-def test_it_does_what_it_says() -> None:
+def test_common_mode_correction_has_its_stated_variance() -> None:
     """Against drawn errors: a fix is nearer, and as near as it says."""
     rng, left2, said2 = np.random.default_rng(2), [], []
     common2, common_said2 = [], []
@@ -88,7 +88,7 @@ def test_it_does_what_it_says() -> None:
 
 
 @pytest.mark.parametrize("t_s", [30, 59], ids=["out of a journal", "again"])
-def test_what_was_known_before_is_not_told_again(t_s: int) -> None:
+def test_earlier_evidence_is_not_counted_twice(t_s: int) -> None:
     common_mode_error = after(60.0)
     common_mode_error.update(t_s * NS_PER_S, (4.0, -1.0), STD_M, 0.3)
     assert (common_mode_error.mean_m, common_mode_error.covariance_m2) == (
@@ -97,7 +97,7 @@ def test_what_was_known_before_is_not_told_again(t_s: int) -> None:
     )
 
 
-def test_a_fix_that_claims_less_tells_less() -> None:
+def test_fix_with_a_larger_deviation_weighs_less() -> None:
     moved_m = []
     for std_m in (STD_M, 2.0 * STD_M):
         common_mode_error = after(60.0)
@@ -107,12 +107,12 @@ def test_a_fix_that_claims_less_tells_less() -> None:
     assert moved_m[0] > 1.5 * moved_m[1] > 0.0
 
 
-def test_a_receiver_not_heard_of_tells_nothing() -> None:
+def test_unknown_receiver_changes_nothing() -> None:
     assert CommonModeError().correct(fix_at(1.0, 2.0), 0) == fix_at(1.0, 2.0)
     assert after(100.0).correct(fix_at(1.0, 2.0), 200 * NS_PER_S) == fix_at(1.0, 2.0)
 
 
-def test_a_receiver_that_had_just_been_switched_on_tells_as_much_once_it_is_warm() -> None:
+def test_receiver_just_switched_on_weighs_the_same_once_it_is_warm() -> None:
     """It claims twenty metres at first; that is not what it errs by for good."""
     warm, cold = after(1200.0), CommonModeError()
     for second in range(1200):
@@ -135,7 +135,7 @@ def test_what_a_fix_claims_that_is_not_taken_makes_the_receiver_no_better() -> N
     assert common_mode_error.std_m == before == 5.0
 
 
-def test_who_knows_less_than_a_receiver_claims_makes_no_fix_worse() -> None:
+def test_correction_worse_than_the_receiver_makes_no_fix_worse() -> None:
     common_mode_error = CommonModeError()
     common_mode_error.update(0, (3.0, -2.0), 20.0, 0.3)
     assert common_mode_error.correct(fix_at(13.0, 8.0), 0) == fix_at(13.0, 8.0)
@@ -190,7 +190,7 @@ def test_at_the_station_the_reference_s_error_is_taken_off_other_units_fixes() -
     assert -2.2 < place_m(helped)[1] < -0.5
 
 
-def test_a_reference_that_somebody_carries_about_tells_nothing() -> None:
+def test_reference_that_is_carried_about_changes_nothing() -> None:
     alone = a_site(station_has_a_receiver=False, walked_m=50.0)
     helped = a_site(station_has_a_receiver=True, walked_m=50.0)
     assert north_m(helped) == pytest.approx(north_m(alone), abs=0.01)
@@ -203,7 +203,7 @@ def test_a_reference_that_somebody_carries_about_tells_nothing() -> None:
         SetStart("FF-09", 60.0, 0.0, 0.0, 0.0, 0.3, math.pi),
     ],
 )
-def test_where_the_reference_was_said_to_stand_wrongly_what_it_told_is_forgotten(
+def test_reference_with_a_corrected_start_drops_its_evidence(
     action: SetAnchor | SetStart,
 ) -> None:
     site = a_site(station_has_a_receiver=True)
@@ -212,7 +212,7 @@ def test_where_the_reference_was_said_to_stand_wrongly_what_it_told_is_forgotten
     assert site.pipeline.state.common_mode_error == CommonModeError()
 
 
-def test_the_reference_stands_where_it_was_said_to_whichever_run_that_was_said_of() -> None:
+def test_start_of_the_reference_holds_for_every_run() -> None:
     """It is switched off and on between incidents, and stays where it is."""
     site = a_site(station_has_a_receiver=True)
     site.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.3, math.pi))
@@ -231,7 +231,7 @@ def test_the_reference_stands_where_it_was_said_to_whichever_run_that_was_said_o
 
 
 @pytest.mark.slow
-def test_a_past_that_is_solved_again_hears_the_reference_too_and_each_fix_once() -> None:
+def test_solving_again_uses_the_reference_and_each_fix_once() -> None:
     alone, helped = (a_site(station_has_a_receiver=one) for one in (False, True))
     for script in (alone, helped):
         fixes = script.pipeline.state.paths["FF-01"].arrays().fix_m

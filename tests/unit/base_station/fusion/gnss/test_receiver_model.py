@@ -69,7 +69,7 @@ def test_who_goes_fast_has_no_receiver_that_jumps(north_mps: float, east_mps: fl
     )
 
 
-def test_a_few_fixes_hardly_tell_and_gaps_nothing() -> None:
+def test_few_fixes_hardly_change_the_receiver_model_and_gaps_nothing() -> None:
     known = ReceiverModel().white_part
     assert known == WHITE_PART
     assert after_walk(0.0, 0.0, seconds=4).white_part > 0.6 * known
@@ -220,7 +220,7 @@ def test_a_fix_that_comes_late_corrects_where_the_wearer_is_now() -> None:
     assert known_m[0.0] < known_m[20.0] < 1.0
 
 
-def test_a_path_that_jumps_tells_nothing_of_how_a_receiver_jumps() -> None:
+def test_jumping_path_leaves_the_receiver_model_as_it_is() -> None:
     fuser = GpsInertial().new()
     walk_with_fixes(fuser, range(60))
     before = trust_of(fuser).white_part
@@ -278,7 +278,7 @@ def test_a_walk_that_fixes_draw_elsewhere_takes_a_heading_along_that_it_bears_ou
 
 
 @pytest.mark.parametrize(("std_m", "is_assumed"), [(3.0, False), (8.0, True)])
-def test_a_fix_as_from_under_the_open_sky_says_that_nobody_began_upstairs(
+def test_fix_under_the_open_sky_shows_a_start_at_ground_level(
     std_m: float, is_assumed: bool
 ) -> None:
     fuser = GpsInertial().new()

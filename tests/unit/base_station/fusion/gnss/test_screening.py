@@ -51,7 +51,7 @@ def fix(**changes: object) -> GpsFix:
         ({"horizontal_std_m": math.nan}, "accuracy"),
     ],
 )
-def test_a_fix_that_tells_against_itself(changes: dict[str, object], reason: str) -> None:
+def test_fix_that_contradicts_itself_is_faulty(changes: dict[str, object], reason: str) -> None:
     verdict = screen_fix(fix(**changes))
     assert not verdict.accepted
     assert reason in verdict.reason
@@ -120,7 +120,7 @@ def test_a_receiver_is_never_believed_to_the_centimetre() -> None:
 
 
 @pytest.mark.parametrize(("vertical_std_m", "taken_m"), [(4.0, 4.0), (None, 5.0)])
-def test_a_fix_is_as_good_as_it_says(vertical_std_m: float | None, taken_m: float) -> None:
+def test_fix_counts_with_its_stated_accuracy(vertical_std_m: float | None, taken_m: float) -> None:
     place = in_incident_frame(fix(horizontal_std_m=2.5, vertical_std_m=vertical_std_m), ANCHOR)
     assert isinstance(place, PlaceFix)
     assert (place.horizontal_std_m, place.vertical_std_m) == (2.5, taken_m)
@@ -133,7 +133,7 @@ def test_an_accuracy_that_is_not_stated_is_a_poor_one() -> None:
     assert not may_anchor(fix(horizontal_std_m=None))
 
 
-def test_a_flat_fix_says_nothing_of_the_height() -> None:
+def test_fix_without_height_leaves_the_height_as_it_is() -> None:
     place = in_incident_frame(fix(fix_type=FixType.TWO_D), ANCHOR)
     assert isinstance(place, PlaceFix)
     assert place.vertical_std_m is None
@@ -166,7 +166,7 @@ def test_a_fix_from_the_future_is_refused(script: Script) -> None:
         ({"horizontal_std_m": 5000.0}, "an accuracy that cannot be used"),
     ],
 )
-def test_who_has_a_receiver_that_is_wrong_is_told_of_until_it_is_right(
+def test_wrong_receiver_is_reported_until_it_is_right(
     script: Script, wrong: dict[str, float], reason: str
 ) -> None:
     def say(fix: dict[str, float]) -> None:
@@ -253,7 +253,7 @@ def test_a_fix_of_an_earlier_run_is_of_no_path(script: Script) -> None:
 
 
 @pytest.mark.parametrize("said_by_hand", [SetPlan(PLAN), SetStart(U, 5.0, 7.0, 0.0, 0.0, 0.1, 0.0)])
-def test_where_somebody_gave_the_frame_a_meaning_no_fix_does(
+def test_fix_places_no_frame_that_a_person_has_placed(
     script: Script, said_by_hand: SetPlan | SetStart
 ) -> None:
     script.act(said_by_hand)
@@ -333,7 +333,7 @@ def test_fixes_too_poor_to_say_where_the_site_is_do_not_move_it(script: Script) 
     assert anchor.lat_deg == pytest.approx(52.0, abs=1e-3)
 
 
-def test_a_site_that_somebody_placed_stays_where_it_is(script: Script) -> None:
+def test_site_placed_by_a_person_stays_where_it_is(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     for _ in range(30):
         script.wait(1, lambda: script.position(U, 0.0, 0.0))

@@ -105,7 +105,7 @@ def test_a_heading_that_is_known_better_stays() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("off_rad", [0.7, 1.5, 3.0])
-def test_fixes_are_believed_against_it_and_it_is_not_heard_again(off_rad: float) -> None:
+def test_fixes_refute_the_compass_for_good(off_rad: float) -> None:
     for seed in SEEDS:
         walk = wandered(seed)
         fuser, receiver = started(walk), Receiver(np.random.default_rng(seed))
@@ -183,11 +183,11 @@ def test_magnetic_north_becomes_the_plan_s_by_declination_and_the_plan_s_turn() 
     assert math.degrees(bearing.turn_rad) == pytest.approx(12.82 - 30.0 - 50.0, abs=0.02)
 
 
-def test_without_a_magnetic_model_of_the_date_nothing_is_heard() -> None:
+def test_without_a_magnetic_model_of_the_date_the_compass_is_not_used() -> None:
     assert compass_heading(MagneticNorth(0.0, 0.1), SYDNEY, 0) is None
 
 
-def test_a_compass_that_contradicts_what_is_known_is_not_heard() -> None:
+def test_compass_that_contradicts_the_estimate_is_not_used() -> None:
     assert fused_turn((0.0, 0.15), CompassHeading(0.7, 0.1)) is None
     known = fused_turn((0.0, 0.15), CompassHeading(0.3, 0.1))
     assert known is not None

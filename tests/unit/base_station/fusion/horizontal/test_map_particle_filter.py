@@ -47,7 +47,7 @@ def test_to_be_close_to_a_wall_does_not_speak_against_the_plan() -> None:
     assert not walked_north(0.1, 0.05).is_contradicted
 
 
-def test_who_leaves_the_walls_knows_the_scale_no_better_than_before() -> None:
+def test_walls_leave_the_variance_of_the_scale_as_it_is() -> None:
     cloud = walked_north(1.0, 0.3)
     for one in (cloud, MapParticleFilter.restore(cloud.save())):
         mean, covariance = one.moments()

@@ -97,7 +97,7 @@ def std_m(cloud: MapParticleFilter) -> float:
 
 
 @pytest.mark.parametrize("off_east_m", [-4.0, 4.0])
-def test_whoever_is_held_beside_the_door_comes_to_the_right_room(off_east_m: float) -> None:
+def test_cloud_held_beside_the_door_comes_to_the_right_room(off_east_m: float) -> None:
     held, place_m = walked(building(*DOOR_M), off_east_m, looks=False)
     assert off_m(held, place_m) > 2.0 * std_m(held)
     found, place_m = walked(building(*DOOR_M), off_east_m)
@@ -117,7 +117,7 @@ def test_whom_a_plan_drawn_aside_had_led_aside_comes_back_with_the_right_one() -
     assert off_m(cloud, place_m) < 1.5
 
 
-def test_the_same_plan_again_changes_nothing_of_what_walls_have_told() -> None:
+def test_same_plan_again_keeps_the_likelihood_of_walls() -> None:
     grid = building(*DOOR_M)
     cloud, _ = walked(grid, 0.0)
     before, place_m = cloud.save(), cloud.moments()[0][:2].copy()
@@ -130,7 +130,7 @@ def test_the_same_plan_again_changes_nothing_of_what_walls_have_told() -> None:
     assert after.particles == before.particles
 
 
-def test_what_nothing_had_told_of_is_told_evenly() -> None:
+def test_likelihood_of_a_window_without_any_is_spread_evenly() -> None:
     last = MotionWindow([MotionStep(0.5, 0.0, 0.5, False, 0, 0.0)] * 4)
     last.set_log_likelihood(-8.0)
     assert [move.log_likelihood for move in last.save()] == [-2.0] * 4
@@ -154,7 +154,7 @@ def test_a_filter_holds_its_cloud_against_another_plan_than_it_was_saved_with() 
     assert sum(move.log_likelihood for move in again.window) < -10.0
 
 
-def test_while_two_places_are_open_it_says_so_and_where() -> None:
+def test_cloud_of_two_places_is_split_with_both() -> None:
     """Two rooms alike, and what is known without walls lies between them."""
     grid, place_m = building(3.5, 12.5), np.array((6.0, 8.0))
     cloud, taken_m, opened = MapParticleFilter(*known(place_m, 0.15), 1), place_m, False
@@ -179,7 +179,7 @@ def test_two_places_are_a_reason_not_to_trust_one() -> None:
 
 
 @pytest.mark.parametrize("drawn_m", [DOOR_M, DOOR_M[:1]], ids=["plan right", "a door not drawn"])
-def test_whoever_is_right_is_left_alone(drawn_m: tuple[float, ...]) -> None:
+def test_cloud_in_the_right_place_is_left_alone(drawn_m: tuple[float, ...]) -> None:
     grid = building(*drawn_m)
     plain, _ = walked(grid, 0.0, looks=False)
     looking, place_m = walked(grid, 0.0)
@@ -221,7 +221,7 @@ def test_a_door_that_is_not_drawn_is_one_wall_in_and_out() -> None:
     assert COSTS[WALL] > once > 2.0 * COSTS[WALL]
 
 
-def test_where_there_is_little_room_a_way_that_fits_says_more() -> None:
+def test_fitting_path_in_little_room_is_stronger_evidence() -> None:
     last = MotionWindow([MotionStep(0.0, STEP_M, 0.5, False, 0, 0.0)] * 20)
     narrow, wide = [6.0, 12.0, 0.0, 0.0], [9.5, 20.0, 0.0, 0.0]
     in_corridor, in_room = last.log_free_fraction(np.array([narrow, wide]), 1.0, building())

@@ -54,7 +54,7 @@ def test_a_heading_that_grows_unsure_at_once_has_not_drifted() -> None:
     assert go(own, 0.0, 0.0, heading_std_rad=0.3 + 0.9 * usual_rad).turn_var < 1e-9
 
 
-def test_a_unit_s_own_words_tell_how_fast_its_heading_drifts() -> None:
+def test_drift_rate_follows_the_stated_heading_deviation() -> None:
     own = OdometryIncrements(KIND)
     go(own, 0.0, 0.0, heading_std_rad=0.1)
     steps = round(DRIFT_LEARNING_S / STEP_S)

@@ -47,7 +47,7 @@ def test_late_ones_that_come_between_live_ones_are_no_more_than_they_would_have_
 
 
 @pytest.mark.parametrize("late_s", [100.5, 1001.0])
-def test_a_late_one_beside_one_that_is_known_tells_nothing_new(late_s: float) -> None:
+def test_late_fix_beside_a_known_one_is_left_out(late_s: float) -> None:
     """Packed or not."""
     history = walked(10)
     for second in range(0, 1004, 2):
@@ -65,7 +65,7 @@ def test_late_ones_fill_a_gap_whichever_comes_first() -> None:
     assert kept_s(history) == [0.0, 2.0, 4.0, 10.0, 18.0, 20.0, 22.0]
 
 
-def test_fixes_of_before_the_path_tell_nothing_of_where_it_begins() -> None:
+def test_fixes_of_before_the_path_are_not_of_its_begin() -> None:
     """A tracker was started late, or a journal brings what was before the incident."""
     history = PathHistory()
     for second in range(0, 200, 2):
@@ -99,7 +99,7 @@ def test_one_fix_that_lies_elsewhere_is_enough_to_place_its_unit_again() -> None
     assert history.arrays().fix_m.tolist() == [[10.0, 2.0]]
 
 
-def test_what_was_estimated_with_fixes_that_lie_elsewhere_tells_nothing() -> None:
+def test_live_estimates_with_moved_fixes_are_dropped() -> None:
     """Neither of late nor long ago."""
     history = PathHistory()
     taken(history, 1.0)

@@ -45,7 +45,7 @@ def test_a_gap_behind_what_is_packed_is_not_filled() -> None:
     assert np.array_equal(history.arrays().t_ns, before.t_ns)
 
 
-def test_what_comes_late_of_the_run_before_lies_behind_what_was_heard_of_it() -> None:
+def test_late_positions_of_the_run_before_follow_its_live_ones() -> None:
     """The radio was gone, and the unit's program was started again meanwhile."""
     history = PathHistory()
     for t_s in (0, 10, 20):
@@ -91,7 +91,7 @@ def test_what_comes_late_fills_a_gap() -> None:
     assert after.moving_s.sum() == pytest.approx(before.moving_s.sum())
 
 
-def test_a_run_of_which_the_end_was_heard_first_begins_where_it_began() -> None:
+def test_run_whose_end_came_first_begins_at_its_begin() -> None:
     """An hour of the journal, the newest first, while the wearer walks on."""
     history = PathHistory()
     history.set_start(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.2))
@@ -111,7 +111,7 @@ def test_a_run_of_which_the_end_was_heard_first_begins_where_it_began() -> None:
     assert len(history.own.points) <= 2 * CHUNK, "packed once nothing comes late any more"
 
 
-def test_a_run_that_was_heard_late_begins_after_the_one_before() -> None:
+def test_run_that_came_late_begins_after_the_one_before() -> None:
     history = PathHistory()
     history.append(at(0.0, 5.0), 0, jumped=False)
     history.append(at(60.0, 30.0, boot_id=2), 60 * NS_PER_S, jumped=False)

@@ -69,7 +69,7 @@ def test_thinned_it_begins_and_ends_where_it_did_and_moves_as_long(count: int) -
     assert len(left) <= count // 2 + 1
 
 
-def test_where_a_frame_begins_stays_and_what_was_said_of_the_way_is_said_of_the_next() -> None:
+def test_thinning_keeps_begins_of_frames_and_adds_up_times_and_flags() -> None:
     flags = [0, RESTART, 0, BREAK, 0, DOUBTFUL, BREAK, 0, 0]
     rows = rows_of([Point(second * NS_PER_S, flags=one) for second, one in enumerate(flags)])
     left = thinned(rows)

@@ -40,7 +40,7 @@ def test_only_what_is_against_its_steps_is_against_a_path(quality, reasons, path
     assert position.path_quality is path_quality
 
 
-def test_whoever_has_walked_far_is_placed_as_well_as_the_fuser_knows():
+def test_quality_after_a_long_walk_follows_the_deviation_of_the_fuser():
     def estimate(quality, reasons):
         fuser = FUSERS[0].new()
         fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.3, 0.05))
@@ -109,7 +109,7 @@ def test_a_lost_height_is_an_alarm_and_stands_with_the_position():
         (Quality.DEGRADED, Reason.NONE, "the unit's tracker is unsure"),
     ],
 )
-def test_it_is_said_why_and_what_helps(quality, reasons, words):
+def test_quality_reason_names_cause_and_remedy(quality, reasons, words):
     fuser = FUSERS[0].new()
     fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.3, 0.05))
     fuser.predict(message_factory.position(Header(U, 1, 1, 0), quality=quality, reasons=reasons))

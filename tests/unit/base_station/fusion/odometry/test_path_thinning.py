@@ -32,7 +32,7 @@ def test_a_point_a_metre_and_the_newest_place() -> None:
 @pytest.mark.parametrize(
     ("mps", "east_mps"), [(0.0, 1.0), (0.8, 0.8), (0.8, -0.8), (-1.0, 0.0)], ids=str
 )
-def test_whichever_way_somebody_goes_they_are_moving(mps: float, east_mps: float) -> None:
+def test_moving_time_counts_in_every_direction(mps: float, east_mps: float) -> None:
     assert walked(60, mps, east_mps).arrays().moving_s.sum() == pytest.approx(59.8)
 
 
@@ -44,7 +44,7 @@ def test_who_stands_far_from_the_beginning_is_not_moving() -> None:
     assert history.arrays().moving_s.sum() == 0.0
 
 
-def test_somebody_at_rest_leaves_a_point_now_and_then() -> None:
+def test_wearer_at_rest_leaves_a_point_now_and_then() -> None:
     arrays = walked(120, mps=0.0).arrays()
     assert 10 <= len(arrays) <= 15
     assert arrays.moving_s.sum() == 0.0

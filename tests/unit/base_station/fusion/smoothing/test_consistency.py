@@ -62,7 +62,7 @@ def test_of_hundreds_those_are_left_out_that_contradict() -> None:
     assert set(range(200)) - set(used) == set(off_m)
 
 
-def test_it_is_said_which_one_a_place_contradicts_most() -> None:
+def test_strongest_conflict_of_a_place_is_named() -> None:
     expected = expected_of(6, {2: 40.0})
     used = [0, 1, 3, 4, 5]
     distances2 = []

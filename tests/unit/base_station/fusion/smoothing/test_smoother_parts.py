@@ -80,7 +80,7 @@ def test_many_fixes_of_half_a_minute_are_little_more_than_one() -> None:
     assert 0.85 < longer < half_a_minute  # of the 0.87 m that all share
 
 
-def test_one_wild_fix_is_told_from_the_others() -> None:
+def test_one_wild_fix_is_an_outlier() -> None:
     plain, wild = standing(40), standing(40, wild=True)
     assert wild.north_m == pytest.approx(plain.north_m, abs=0.1)
     assert wild.std_north_m == pytest.approx(plain.std_north_m, rel=0.05)

@@ -109,7 +109,7 @@ def test_a_plan_of_another_building_is_not_heeded(smoother: Smoother) -> None:
     assert np.allclose(alone.east_m, beside.east_m, atol=0.2)
 
 
-def test_pins_tell_by_how_much_a_plan_lies_aside(smoother: Smoother) -> None:
+def test_pins_show_the_offset_of_a_plan(smoother: Smoother) -> None:
     history, truth = rounds(0.0)
     plan = corridor(off_m=(0.5, -0.4))
     pins = [

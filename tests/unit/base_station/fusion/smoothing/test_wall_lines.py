@@ -45,7 +45,7 @@ def test_legs_at_the_ends_of_the_earth_cost_nothing() -> None:
     assert likely[8:].max() < 1e-6
 
 
-def test_many_legs_of_one_person_tell_less_than_as_many_of_several() -> None:
+def test_segments_of_one_person_weigh_less_than_as_many_of_several() -> None:
     alone = counts_of(["FF-01"] * 12, np.ones(12)).sum()
     together = counts_of([f"FF-{number:02}" for number in range(12)], np.ones(12)).sum()
     assert together == pytest.approx(12.0)

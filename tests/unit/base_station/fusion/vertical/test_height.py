@@ -41,7 +41,7 @@ def test_heights_of_fixes_err_slowly_and_are_not_averaged_away() -> None:
     assert std_m(height) == pytest.approx(5.0 * math.sqrt(KIND.height_slow_part), rel=0.02)
 
 
-def test_after_some_time_fixes_tell_anew() -> None:
+def test_height_of_fixes_counts_anew_after_some_time() -> None:
     height = at(0.0, 50.0)
     height.update_gnss(-6.0, 5.0)
     at_once, later = HeightFilter(KIND), HeightFilter(KIND)
@@ -54,7 +54,7 @@ def test_after_some_time_fixes_tell_anew() -> None:
     assert std_m(later) < 0.8 * std_m(at_once)
 
 
-def test_what_fixes_err_by_fades_to_what_nobody_knows() -> None:
+def test_slow_error_of_fixes_fades_to_its_prior() -> None:
     """Half of it is as much as nothing after many halves."""
     height, long_after = at(0.0, 0.1), at(0.0, 0.1)
     for one in (height, long_after):
@@ -92,7 +92,7 @@ def test_a_storey_that_the_own_path_missed_is_seen_by_the_air_where_the_weather_
     assert least_m < height.down_m < most_m
 
 
-def test_said_anew_the_air_is_heard_anew() -> None:
+def test_start_set_anew_restarts_the_barometer() -> None:
     height = at(0.0, 0.3)
     update_barometer(height, 0, [7.0] * 60, referenced=True)
     height.reset(-20.0, 0.3)
@@ -113,7 +113,7 @@ def test_a_frame_that_is_moved_moves_heights_and_no_barometer_minds() -> None:
     assert moved.variance_m2 == pytest.approx(stays.variance_m2)
 
 
-def test_before_anybody_said_where_it_began_the_air_moves_nobody() -> None:
+def test_barometer_moves_no_height_before_the_start_is_set() -> None:
     height = HeightFilter(KIND)
     update_barometer(height, 0, [-500.0] * 5, referenced=True)
     assert height.down_m == pytest.approx(0.0, abs=0.1)

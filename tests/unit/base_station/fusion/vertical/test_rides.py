@@ -37,13 +37,13 @@ def ramp(lifted_m: float, lasts_s: float, rest_s: float = 4.0) -> list[float]:
 
 
 @pytest.mark.parametrize("lifted_m", [3.0, -3.0, 24.0])
-def test_a_ride_is_told_once_with_its_sign(lifted_m: float) -> None:
+def test_ride_is_reported_once_with_its_sign(lifted_m: float) -> None:
     assert update_barometer(LiftDetector(), ramp(lifted_m, abs(lifted_m))) == pytest.approx(
         [-lifted_m]
     )
 
 
-def test_a_second_ride_is_told_too() -> None:
+def test_second_ride_is_reported_too() -> None:
     lift_detector = LiftDetector()
     assert update_barometer(lift_detector, ramp(3.0, 5.0)) == pytest.approx([-3.0])
     assert update_barometer(lift_detector, ramp(3.0, 5.0), begin_s=60.0) == pytest.approx([-3.0])
@@ -66,7 +66,7 @@ def test_a_step_is_a_door_and_three_steps_are_a_ride() -> None:
     assert update_barometer(LiftDetector(), [5.0] * 30 + [4.0] * 3 + [3.0] * 3 + [2.0] * 30) != []
 
 
-def test_nothing_is_told_before_it_is_over() -> None:
+def test_ride_is_not_reported_before_its_end() -> None:
     """Two seconds without going on: it stops at storeys."""
     downs_m = ramp(6.0, 10.0)
     over = next(at for at, down_m in enumerate(downs_m) if down_m <= -1.0)

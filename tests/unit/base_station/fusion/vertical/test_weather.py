@@ -42,7 +42,7 @@ def test_runs_that_are_over_are_not_kept() -> None:
     assert len(barometers.weather.sources) == 1
 
 
-def test_whoever_is_heard_again_begins_at_what_is_held() -> None:
+def test_barometer_that_returns_begins_at_the_held_weather() -> None:
     weather = Weather()
     told(weather, range(100), 0.0, "one")
     told(weather, range(100, 200), 30.0, "two")
@@ -68,7 +68,7 @@ def test_who_climbs_makes_no_weather() -> None:
     assert weather.rise_m == pytest.approx(0.0, abs=1e-9)
 
 
-def test_weather_is_known_while_somebody_tells_it() -> None:
+def test_weather_is_known_while_a_barometer_shows_it() -> None:
     weather = Weather()
     assert not weather.is_known(0)
     told(weather, range(5, 6))
@@ -87,7 +87,7 @@ def heard(
     return air
 
 
-def test_without_a_reference_those_outside_tell_the_weather_and_those_inside_do_not() -> None:
+def test_weather_without_a_reference_is_of_barometers_outside() -> None:
     barometers = Barometers()
     first = heard(barometers, "FF-02", 0, SITE_M, is_outside=False)
     assert not first.referenced
@@ -100,7 +100,7 @@ def test_without_a_reference_those_outside_tell_the_weather_and_those_inside_do_
     assert [one.referenced for one in alone] == [True, False]
 
 
-def test_where_there_is_a_reference_nobody_else_tells_the_weather() -> None:
+def test_weather_with_a_reference_is_of_it_alone() -> None:
     barometers = Barometers()
     barometers.set_reference("REF", -2.0)
     for second in range(60):
@@ -161,7 +161,7 @@ def test_a_reference_that_is_switched_on_again_goes_on_telling() -> None:
     assert barometers.weather.rise_m == pytest.approx(5.0, abs=0.4)
 
 
-def test_who_is_heard_late_takes_no_word_back() -> None:
+def test_late_pressure_changes_no_earlier_weather() -> None:
     weather = Weather()
     told(weather, range(60))
     told(weather, range(50, 53), name="two")
@@ -172,7 +172,7 @@ def test_who_is_heard_late_takes_no_word_back() -> None:
     ("pressure_pa", "is_heard"),
     [(29_000.0, False), (33_000.0, True), (115_000.0, True), (121_000.0, False)],
 )
-def test_a_pressure_is_heard_where_people_live(pressure_pa: float, is_heard: bool) -> None:
+def test_pressure_is_used_where_people_live(pressure_pa: float, is_heard: bool) -> None:
     position = message_factory.position(Header("FF-01", 1, 1, 0), pressure_pa=pressure_pa)
     air = Barometers().update("FF-01", 0, position, is_outside=True)
     assert (air is not None) is is_heard
