@@ -172,7 +172,7 @@ def test_walls_that_held_somebody_are_heeded_and_a_pin_overrules_them(smoother: 
     assert errors["pinned"] == pytest.approx(errors["alone"], abs=0.1)
 
 
-def test_who_meets_somebody_well_known_is_well_known(smoother: Smoother) -> None:
+def test_encounter_with_a_well_known_place_improves_the_other(smoother: Smoother) -> None:
     lost, known = a_walk(5), a_walk(6)
     meets = int(np.searchsorted(lost.t_s, 200.0))
     known.truth_m += lost.truth_m[meets] - known.truth_m[meets]

@@ -62,7 +62,7 @@ def test_it_runs_only_while_an_incident_is_open() -> None:
     assert unit(script).duty is None
 
 
-def test_whoever_comes_later_is_due_later(script: Script) -> None:
+def test_member_who_comes_later_is_due_later(script: Script) -> None:
     script.register("FF-04")
     script.wait(30)
     script.act(Assign("FF-04", "p4", "Person 4", "blue", ""))
@@ -208,7 +208,7 @@ def test_a_new_name_for_the_same_person_is_no_check_in(script: Script) -> None:
     assert left_s(script) == 30.0
 
 
-def test_whom_nobody_hears_from_is_missed_under_whichever_unit(script: Script) -> None:
+def test_missed_member_stays_missed_with_another_unit(script: Script) -> None:
     """Somebody at the console puts right who wears what: that is no word of the wearer."""
     script.wait(61)
     script.register("FF-04")

@@ -20,7 +20,7 @@ from base_station.core.durations import format_duration
         (1_795_489_170.0, "20,781 days"),
     ],
 )
-def test_a_span_is_said_in_the_largest_unit_of_which_there_are_two(
+def test_duration_is_given_in_the_largest_unit_of_which_there_are_two(
     span_s: float, words: str
 ) -> None:
     assert format_duration(span_s) == words

@@ -95,7 +95,7 @@ def test_why_something_was_refused_is_forgotten_with_whom_it_names() -> None:
     assert [one.refused for one in state.idempotency_records.values()] == [ERASED_TEXT, ""]
 
 
-def test_a_station_that_was_started_again_knows_what_was_done(tmp_path: Path) -> None:
+def test_restarted_station_answers_repeated_requests(tmp_path: Path) -> None:
     opened, told, refused = (idempotent_action_id("ada", key, b"x") for key in ("i", "c", "r"))
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit("FF-01", "one"))
@@ -132,7 +132,7 @@ def standby(tmp_path: Path) -> Iterator[tuple[StationEngine, StandbyFeed]]:
     recorder.close()
 
 
-def test_a_standby_that_takes_over_knows_what_was_done_at_the_other_station(
+def test_standby_answers_requests_repeated_from_the_other_station(
     tmp_path: Path, standby: tuple[StationEngine, StandbyFeed]
 ) -> None:
     told, refused = idempotent_action_id("ada", "c", b"x"), idempotent_action_id("ada", "r", b"x")

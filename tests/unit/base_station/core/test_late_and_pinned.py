@@ -152,7 +152,7 @@ def test_a_plan_that_comes_after_pins_is_heeded_in_seconds(walker: Walker) -> No
     assert trail() == heeded
 
 
-def test_whoever_has_waited_longest_is_solved_first_and_one_at_a_time() -> None:
+def test_longest_waiting_unit_is_solved_first_and_one_at_a_time() -> None:
     late: dict[str, PendingResolve] = {}
     request_resolve(late, "FF-02", 0)
     request_resolve(late, "FF-01", NS_PER_S)

@@ -42,7 +42,7 @@ def test_a_mayday_whose_event_was_lost_is_seen_in_the_status(script: Script) -> 
 
 
 @pytest.mark.parametrize("dealt_with", [AcknowledgeAlarm, lambda one: ResolveAlarm(one, "seen")])
-def test_the_press_that_a_status_told_is_no_other_one_when_the_journal_brings_it(
+def test_press_known_by_a_status_is_not_raised_again_by_backfill(
     script: Script, dealt_with: Callable[[str], AcknowledgeAlarm | ResolveAlarm]
 ) -> None:
     script.wait(1, lambda: script.status(U))
@@ -109,7 +109,7 @@ def test_pressing_again_is_another_mayday(script: Script) -> None:
     assert script.alarms[0].alarm_id != script.alarms[-1].alarm_id
 
 
-def test_who_presses_again_after_taking_it_back_is_heard(script: Script) -> None:
+def test_press_after_a_cancellation_raises_again(script: Script) -> None:
     script.event(U, EventKind.MAYDAY)
     script.wait(1)
     script.event(U, EventKind.MAYDAY_CANCELLED)

@@ -79,7 +79,7 @@ def solved(turn_rad: float | None, turn_std_rad: float) -> HeadingHypotheses:
 
 
 @pytest.mark.parametrize("true_rad", np.linspace(-3.0, 3.0, 7).tolist())
-def test_any_heading_that_nothing_tells_leads_from_where_the_path_began(true_rad: float) -> None:
+def test_unknown_heading_leads_anywhere_from_the_begin_of_the_path(true_rad: float) -> None:
     hypotheses = solved(None, math.pi)
     there_m = GROUND_RANGE_M + rotate(float(OWN_M[0]), float(OWN_M[1]), true_rad)
     north_m, east_m = there_m.tolist()
@@ -93,7 +93,7 @@ def test_any_heading_that_nothing_tells_leads_from_where_the_path_began(true_rad
     assert mean[:2] == pytest.approx(there_m, abs=1.0)
 
 
-def test_a_heading_that_is_told_in_part_stays_so() -> None:
+def test_heading_known_in_part_stays_so() -> None:
     mean, covariance = solved(0.7, 0.3).moments()
     turn_rad, std_rad = turn_and_std(mean, covariance)
     assert turn_rad == pytest.approx(0.7, abs=0.01)
@@ -102,7 +102,7 @@ def test_a_heading_that_is_told_in_part_stays_so() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("turned_rad", [-2.0, -0.5, 1.0, 2.5])
-def test_a_start_that_is_said_on_the_way_leaves_the_heading_to_the_fixes(turned_rad: float) -> None:
+def test_start_set_on_the_way_leaves_the_heading_to_the_fixes(turned_rad: float) -> None:
     walk = Walk(turned_rad)
     walk.go(35)
     walk.say_start()
@@ -111,7 +111,7 @@ def test_a_start_that_is_said_on_the_way_leaves_the_heading_to_the_fixes(turned_
     assert walk.off_m() < 3.0
 
 
-def test_fixes_that_come_after_a_pin_and_refute_it_are_heard_within_ten_seconds() -> None:
+def test_fixes_that_refute_a_pin_count_within_ten_seconds() -> None:
     """Beforehand it could be true: nothing told in which direction the path led."""
     walk = Walk(1.0)
     walk.say_start()

@@ -46,7 +46,7 @@ def shown(script: Script, unit_id: str = "FF-01") -> DutyView:
     return view.duty
 
 
-def test_neither_a_unit_that_is_assigned_nor_an_incident_that_opens_confirms_anybody(
+def test_assignment_and_opening_confirm_nobody(
     script: Script,
 ) -> None:
     script.register("FF-04")
@@ -70,7 +70,7 @@ def test_a_member_is_located_once_the_unit_is_received_in_this_incident(script: 
     assert shown(script).located
 
 
-def test_the_record_tells_own_unit_from_radio(script: Script) -> None:
+def test_record_distinguishes_own_unit_and_radio(script: Script) -> None:
     order(script, CommandKind.PAR_REQUEST)
     script.wait(1)
     script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)
@@ -86,7 +86,7 @@ def test_the_record_tells_own_unit_from_radio(script: Script) -> None:
     assert [one.acknowledged_via for one in deliveries.values()] == ["self", "radio", ""]
 
 
-def test_the_end_of_the_alarm_tells_it_too(script: Script) -> None:
+def test_end_of_the_alarm_names_the_confirmation(script: Script) -> None:
     script.wait(61)
     order(script, CommandKind.PAR_REQUEST)
     script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)
@@ -95,7 +95,7 @@ def test_the_end_of_the_alarm_tells_it_too(script: Script) -> None:
     assert ended.by == "not overdue; PAR confirmed by own unit, Person 1"
 
 
-def test_more_time_for_who_was_never_confirmed_says_so(script: Script) -> None:
+def test_longer_interval_keeps_the_unconfirmed_as_such(script: Script) -> None:
     script.wait(61)
     script.act(SetAccountability(600.0, 900.0))
     (ended,) = [one for one in overdue(script)[3:] if one.unit_id == "FF-01"]
@@ -196,7 +196,7 @@ def test_the_answer_of_the_own_unit_stands_when_that_by_radio_is_undone(script: 
         CheckIn("FF-02", "", False, "c1"),
     ],
 )
-def test_what_cannot_be_undone_or_told_apart_is_refused(script: Script, action: Action) -> None:
+def test_undo_without_a_clear_confirmation_is_refused(script: Script, action: Action) -> None:
     order(script, CommandKind.PAR_REQUEST)
     script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)
     script.act(CheckIn("FF-01", "", False))  # of an old log, without an id

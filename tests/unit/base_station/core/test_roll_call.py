@@ -84,7 +84,7 @@ def test_who_does_not_answer_the_evacuation_is_overdue_anew(
     assert again[0].text == "Person 1: PAR overdue, asked, not yet confirmed, on duty for 5 min"
 
 
-def test_who_has_heard_of_the_evacuation_is_not_out_yet(script: Script) -> None:
+def test_receipt_of_an_evacuation_confirms_nobody(script: Script) -> None:
     script.act(SetAccountability(1200.0, 2400.0))
     order(script, CommandKind.EVACUATE)
     script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)
@@ -92,7 +92,7 @@ def test_who_has_heard_of_the_evacuation_is_not_out_yet(script: Script) -> None:
     assert left_s(script) == 180.0
 
 
-def test_who_answered_before_the_evacuation_is_still_to_be_heard_from(script: Script) -> None:
+def test_answer_before_the_evacuation_does_not_confirm_it(script: Script) -> None:
     """The press was made before the order, and its message came after."""
     script.status("FF-01")
     order(script, CommandKind.PAR_REQUEST)
@@ -141,7 +141,7 @@ def test_no_answer_was_given_before_it_was_asked_for(script: Script) -> None:
     assert left_s(script) == pytest.approx(INTERVAL_S)
 
 
-def test_an_answer_of_a_run_whose_clock_nobody_knows_counts_from_when_it_was_asked_for(
+def test_answer_of_a_run_without_known_clock_counts_from_its_request(
     script: Script,
 ) -> None:
     """The unit started anew before the station heard it; its journal brings the press, which may
@@ -156,7 +156,7 @@ def test_an_answer_of_a_run_whose_clock_nobody_knows_counts_from_when_it_was_ask
     assert left_s(script) == INTERVAL_S - 20.0
 
 
-def test_an_answer_of_whom_nobody_knows_vouches_for_nobody_who_had_the_unit_later(
+def test_answer_of_an_unknown_wearer_confirms_no_later_one(
     script: Script,
 ) -> None:
     order(script, CommandKind.PAR_REQUEST)

@@ -92,7 +92,7 @@ def test_nobody_gives_positions_for_a_unit_that_tracks_itself() -> None:
     assert len(script.fused) == 1
 
 
-def test_what_else_the_agent_says_of_itself_is_not_taken_for_the_units(script: Remote) -> None:
+def test_other_facts_of_the_agent_are_not_taken_for_the_units(script: Remote) -> None:
     walk(script)
     before = msgspec.structs.replace(script.unit, tracker=None)
     script.status(AGENT, battery=0.1, mayday=True)
@@ -103,7 +103,7 @@ def test_what_else_the_agent_says_of_itself_is_not_taken_for_the_units(script: R
     assert msgspec.structs.replace(script.unit, tracker=None) == before
 
 
-def test_what_strides_tell_is_the_agents_and_the_rest_the_units(script: Remote) -> None:
+def test_status_takes_strides_from_the_agent_and_the_rest_from_the_unit(script: Remote) -> None:
     script.status(U, activity=Activity.STILL, steps=0, battery=0.8)
     assert script.unit.shown_status == script.unit.status
     script.status(
@@ -125,7 +125,7 @@ def test_an_agent_that_is_gone_does_not_keep_its_wearer_walking(script: Remote) 
     assert shown.steps == 120
 
 
-def test_what_strides_told_long_ago_does_not_replace_what_they_tell_now(script: Remote) -> None:
+def test_stale_strides_of_the_agent_do_not_replace_the_activity(script: Remote) -> None:
     script.status(U)
     before = script.header(AGENT)
     script.wait(3, lambda: script.status(AGENT, activity=Activity.CRAWLING, steps=120))
@@ -135,7 +135,7 @@ def test_what_strides_told_long_ago_does_not_replace_what_they_tell_now(script: 
     assert (shown.activity, shown.steps) == (Activity.CRAWLING, 120)
 
 
-def test_a_unit_that_tracks_itself_is_shown_as_it_says() -> None:
+def test_unit_that_tracks_itself_shows_its_own_status() -> None:
     script = Remote(tracker="eskf")
     script.status(U, steps=10)
     script.status(AGENT, steps=120)
@@ -151,7 +151,7 @@ def test_a_unit_that_tracks_itself_again_is_not_shown_by_its_agent_s_last_words(
     assert script.unit.shown_status == script.unit.status
 
 
-def test_a_message_that_cannot_be_read_is_there_for_who_said_it(script: Remote) -> None:
+def test_unreadable_message_counts_as_received_from_its_sender(script: Remote) -> None:
     script.status(AGENT)
     state = script.pipeline.state
     assert state.sender(AGENT) is script.unit.tracker
@@ -163,7 +163,7 @@ def gone(script: Remote) -> list[AlarmState]:
     return [alarm.state for alarm in script.alarms if alarm.rule == "tracker-gone"]
 
 
-def test_that_nobody_tracks_any_more_is_told_and_resolved_by_tracking(script: Remote) -> None:
+def test_lost_tracking_raises_an_alarm_resolved_by_tracking(script: Remote) -> None:
     walk(script)
     script.wait(28, lambda: script.status(U))
     assert gone(script) == []
@@ -173,7 +173,7 @@ def test_that_nobody_tracks_any_more_is_told_and_resolved_by_tracking(script: Re
     assert gone(script) == [AlarmState.RAISED, AlarmState.RESOLVED]
 
 
-def test_that_nobody_ever_tracked_is_told(script: Remote) -> None:
+def test_tracking_that_never_began_raises_an_alarm(script: Remote) -> None:
     script.wait(40, lambda: script.status(U))
     assert gone(script) == [AlarmState.RAISED]
 
@@ -278,7 +278,7 @@ def test_the_log_replays_the_same_also_from_a_checkpoint(script: Remote) -> None
     assert resumed.checkpoint() == script.pipeline.checkpoint()
 
 
-def test_the_store_hears_of_the_unit_and_of_no_agent(script: Remote) -> None:
+def test_database_gets_the_unit_and_no_agent(script: Remote) -> None:
     walk(script, 1)
     projector = Projector()
     for record in script.records:
@@ -297,7 +297,7 @@ def faults(script: Remote, *, rule: str = "tracker-fault") -> list[str]:
 
 
 @pytest.mark.parametrize("is_late", [False, True])
-def test_a_fault_of_the_agent_is_told_as_the_agents(script: Remote, is_late: bool) -> None:
+def test_fault_of_the_agent_is_reported_as_the_agents(script: Remote, is_late: bool) -> None:
     walk(script)
     event = UnitEvent(script.header(AGENT), EventKind.STORAGE_FAULT, "its disk is full")
     if is_late:
@@ -311,7 +311,7 @@ def test_a_fault_of_the_agent_is_told_as_the_agents(script: Remote, is_late: boo
     assert script.unit.fault is None
 
 
-def test_what_an_agent_said_before_its_unit_was_heard_is_told_when_that_is() -> None:
+def test_agent_before_its_unit_is_shown_once_the_unit_comes() -> None:
     """An agent that starts says at once what it lacks, and a unit what it is only now and then."""
     script = Remote(tracker="eskf")
     script.event(AGENT, EventKind.STORAGE_FAULT, "its disk is full")

@@ -81,9 +81,7 @@ def test_what_was_raised_and_noted_after_an_incident_about_it_names_nobody(
 
 
 @pytest.mark.parametrize("of_incident", [False, True])
-def test_the_audit_says_nothing_of_where_somebody_was_by_what_was_done_apart(
-    tmp_path: Path, of_incident: bool
-) -> None:
+def test_audit_has_no_places_of_separate_actions(tmp_path: Path, of_incident: bool) -> None:
     """Somebody called Station was forgotten before."""
     details = {
         "pin of ana": DoneApart("b", 20, "eve", "SetPin p, FF-01, 3.0, 4.0"),

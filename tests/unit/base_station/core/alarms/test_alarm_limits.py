@@ -94,7 +94,7 @@ def test_heat_dose(dose: float, ambient_degc: float, found: str) -> None:
 @pytest.mark.parametrize(
     ("ambient_degc", "priority"), [(100.0, ADVISORY), (160.0, WARNING), (260.0, EMERGENCY)]
 )
-def test_how_soon_somebody_should_look_at_heat(ambient_degc: float, priority: int) -> None:
+def test_priority_of_heat_follows_its_level(ambient_degc: float, priority: int) -> None:
     unit = UnitState("FF-01", heat=UnitHeat(Temperature(HEADER, ambient_degc)))
     verdict = Heat().judge(unit, NOW_NS, "")
     assert isinstance(verdict, Finding)
@@ -203,7 +203,7 @@ def test_worn_wrong_is_raised_alone_and_names_the_remedy(
         (Quality.DEGRADED, Reason.NONE, "degraded", "is unsure (it gives no reason)"),
     ],
 )
-def test_a_tracker_that_doubts_itself_says_why(
+def test_degraded_tracker_names_its_reason(
     quality: Quality, reasons: Reason, level: str, text: str
 ) -> None:
     position = message_factory.position(HEADER, quality=quality, reasons=reasons)

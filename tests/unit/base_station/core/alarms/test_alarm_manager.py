@@ -100,7 +100,7 @@ def test_a_pre_alert_that_was_acknowledged_becomes_the_alarm_of_a_later_stillnes
     assert changes(script, "no-motion")[-1] == ("RAISED", "alarm"), "a person resolves it"
 
 
-def test_an_alarm_says_when_it_was_raised_last_whatever_has_become_of_it_since(
+def test_alarm_keeps_the_time_of_its_last_raising(
     script: Script,
 ) -> None:
     """An alarm that has eased asks for somebody since it was raised."""
@@ -228,7 +228,7 @@ def test_what_was_well_for_two_moments_has_not_been_well_in_between(script: Scri
     assert changes(script, "tracker-degraded")[1:] == [("RESOLVED", "lost")]
 
 
-def test_doubt_that_comes_again_for_another_reason_is_told_once(script: Script) -> None:
+def test_degradation_for_another_reason_is_raised_once(script: Script) -> None:
     for quality, reasons, seconds in (
         (Quality.LOST, Reason.NO_STANCE, 20),
         (Quality.GOOD, Reason.NONE, 5),
@@ -272,7 +272,7 @@ def test_what_is_resolved_is_not_opened_again_by_who_presses_too_late(script: Sc
     assert changes(script, "mayday") == [("RAISED", "mayday"), ("RESOLVED", "mayday")]
 
 
-def test_a_position_that_nobody_knows_is_an_alarm_until_it_is_known(script: Script) -> None:
+def test_lost_position_is_an_alarm_until_it_is_known(script: Script) -> None:
     script.act(SetStart(U, 0.0, 0.0, 0.0, 0.0, 200.0, 0.1))
     script.wait(10, lambda: script.position(U, 0.0, 0.0))
     assert changes(script, "position-lost") == []

@@ -74,7 +74,7 @@ def test_a_setting_that_no_rule_can_have_is_refused(tmp_path: Path, toml: str, s
     assert said in str(error.value)
 
 
-def test_only_what_is_not_the_default_is_said(tmp_path: Path) -> None:
+def test_only_changed_thresholds_are_listed(tmp_path: Path) -> None:
     toml = "[alarms.no-motion]\npre_alert_s = 20.0\nalarm_s = 25\n[alarms.battery]\nlow = 0.2\n"
     assert set_by(tmp_path, toml) == {"no-motion.alarm_s": 25.0, "battery.low": 0.2}
 

@@ -34,9 +34,7 @@ def script() -> Script:
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
 @pytest.mark.parametrize("way", ["journal", "live"])
-def test_what_comes_late_is_of_who_wore_the_unit_when_it_was_said(
-    script: Script, kind: EventKind, way: str
-) -> None:
+def test_late_alert_is_of_the_wearer_at_its_time(script: Script, kind: EventKind, way: str) -> None:
     events = {}
     for name in ("Ana", "Bo", ""):
         script.act(Assign(U, name, name, "", "") if name else Unassign(U))
@@ -60,7 +58,7 @@ def test_what_comes_late_is_of_who_wore_the_unit_when_it_was_said(
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
 @pytest.mark.parametrize("knew_time", [False, True])
-def test_what_a_run_said_of_which_nothing_came_live_is_of_who_wore_the_unit_as_far_as_is_known(
+def test_alert_of_a_run_without_live_messages_names_possible_wearers(
     script: Script, kind: EventKind, knew_time: bool
 ) -> None:
     """Its monotonic clock says nothing; where it knew the station's time, that does."""
@@ -183,7 +181,7 @@ def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_com
 
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
-def test_what_a_unit_said_that_nobody_wore_is_told_once_whoever_is_given_it(
+def test_alert_of_an_unworn_unit_is_raised_once_whoever_wears_it_next(
     script: Script, kind: EventKind
 ) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
@@ -217,7 +215,7 @@ def test_two_wearers_of_one_unit_who_lie_still_are_two_people_in_need(script: Sc
     assert open_texts(script) == {ana}
 
 
-def test_who_is_given_a_unit_that_nobody_wore_and_that_lay_is_heard(script: Script) -> None:
+def test_wearer_of_a_unit_that_lay_still_can_raise_alarms(script: Script) -> None:
     lie(script, 0, 40)
     script.act(Assign(U, "ana", "Ana", "", ""))
     lie(script, 0, 40)
@@ -320,7 +318,7 @@ def overdue_pair(script: Script) -> None:
 
 
 @pytest.mark.parametrize("dealt_with", [False, True])
-def test_who_is_overdue_is_so_with_another_unit_whoever_was_overdue_with_that(
+def test_overdue_member_stays_overdue_with_another_units_alarm(
     script: Script, dealt_with: bool
 ) -> None:
     overdue_pair(script)

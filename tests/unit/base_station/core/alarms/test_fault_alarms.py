@@ -29,7 +29,7 @@ def script() -> Script:
     return script
 
 
-def test_a_sensor_that_fails_is_told_in_the_unit_s_words_until_a_person_has_seen_it(
+def test_sensor_fault_is_an_alarm_in_the_units_words_until_acknowledged(
     script: Script,
 ) -> None:
     script.event(U, EventKind.SENSOR_FAULT, "the accelerometer is stuck")
@@ -50,7 +50,7 @@ def fault_texts(script: Script) -> set[str]:
     return {one.text.partition(": ")[2] for one in alarms if one.is_open}
 
 
-def test_faults_of_one_unit_stand_beside_each_other_and_each_is_told_once(script: Script) -> None:
+def test_faults_of_one_unit_are_separate_alarms_each_raised_once(script: Script) -> None:
     details = ("the accelerometer is stuck", "the gyroscope is stuck", "no sample for 1.3 s")
     for detail in (*details, *details, "no sample for 2.5 s"):
         script.event(U, EventKind.SENSOR_FAULT, detail)
@@ -61,7 +61,7 @@ def test_faults_of_one_unit_stand_beside_each_other_and_each_is_told_once(script
     assert fault_texts(script) == set(details)
 
 
-def test_a_fault_is_over_by_itself_and_is_told_anew_when_it_comes_again(script: Script) -> None:
+def test_fault_ends_by_itself_and_is_raised_anew_when_it_returns(script: Script) -> None:
     ids = {}
     for detail in ("A", "B", "C"):
         script.event(U, EventKind.SENSOR_FAULT, detail)
@@ -89,7 +89,7 @@ def test_faults_that_come_at_once_have_ids_of_their_own(script: Script) -> None:
     assert fault_texts(script) == {"A", "B", "C"}
 
 
-def test_of_faults_without_end_the_last_is_told_and_few_are_kept(script: Script) -> None:
+def test_endless_faults_raise_the_last_and_few_are_kept(script: Script) -> None:
     details = [letter * 3 for letter in "abcdefghijklmnopqrstuvwxyz"]
     for detail in details:
         script.event(U, EventKind.SENSOR_FAULT, detail)
@@ -145,7 +145,7 @@ def test_a_problem_that_a_person_resolved_is_none_until_it_is_reported_again(
     assert [one.state.name for one in script.alarms] == ["RAISED", "RESOLVED"] * 2
 
 
-def test_another_problem_of_the_same_part_is_told_while_the_first_one_stands(
+def test_second_problem_of_a_part_is_raised_while_the_first_stands(
     script: Script,
 ) -> None:
     script.act(ReportProblem("log", "The disk is nearly full"), by="station")
@@ -162,7 +162,7 @@ def test_another_problem_of_the_same_part_is_told_while_the_first_one_stands(
     assert changed_ns == script.alarms[-1].header.t_utc_ns
 
 
-def test_a_part_that_says_less_or_other_numbers_says_nothing_new(script: Script) -> None:
+def test_problem_with_less_or_other_numbers_is_not_raised_anew(script: Script) -> None:
     for text in (
         "3 records are missing",
         "3 records are missing; its disk does not answer",

@@ -62,7 +62,7 @@ def test_heat_that_flickers_about_a_limit_is_one_alarm(script: Script) -> None:
     assert changes(script, "heat") == [("RAISED", "caution")]
 
 
-def test_a_used_up_heat_budget_is_told_below_every_limit(script: Script) -> None:
+def test_used_up_heat_budget_is_an_alarm_below_every_limit(script: Script) -> None:
     script.wait(1600, lambda: script.temperature(U, 90.0))
     assert changes(script, "heat") == []
     assert changes(script, "heat-dose") == [("RAISED", "used up")]

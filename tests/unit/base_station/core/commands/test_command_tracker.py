@@ -171,7 +171,7 @@ def test_repeats_change_nothing():
 
 
 @pytest.mark.parametrize("unit_id", ["FF-01", "FF-02", "stranger"])
-def test_what_is_said_of_a_command_that_is_not_known_any_more_changes_nothing(unit_id):
+def test_reply_to_an_unknown_command_changes_nothing(unit_id):
     """It was closed long ago, or went to another unit."""
     script = to_one()
     before = repr(script.pipeline.state.commands)
@@ -182,7 +182,7 @@ def test_what_is_said_of_a_command_that_is_not_known_any_more_changes_nothing(un
     assert repr(script.pipeline.state.commands) == before
 
 
-def test_a_unit_is_not_heard_because_it_was_told_something():
+def test_command_to_a_unit_is_no_contact_with_it():
     script = to_one()
     script.command("FF-01", "c1")
     assert script.pipeline.state.units["FF-01"].last_message_ns is None
@@ -202,7 +202,7 @@ def test_moving_and_talking_completes_no_par():
     assert states(script) == {"FF-01": "sent"}
 
 
-def test_somebody_at_the_console_completes_a_par():
+def test_operator_completes_a_par():
     script = to_one()
     assert script.act(ConfirmCommand("c1", "FF-01"), by="ada") == [CommandChanged("c1")]
     assert script.pipeline.state.commands["c1"].deliveries["FF-01"].acknowledged_by == "ada"
@@ -248,7 +248,7 @@ def test_nobody_orders_what_the_station_sends_by_itself(kind):
     assert isinstance(output, Refused)
 
 
-def test_a_refusal_says_why_and_ends_it():
+def test_refusal_gives_its_reason_and_ends_the_delivery():
     script = to_one(CommandKind.SET_POSITION_RATE)
     script.reply("FF-01", "c1", REFUSED, "too fast")
     assert states(script) == {"FF-01": "refused"}
@@ -256,7 +256,7 @@ def test_a_refusal_says_why_and_ends_it():
     assert not open_orders(script.pipeline.state)
 
 
-def test_a_rate_that_a_later_one_replaces_is_not_said_any_more():
+def test_replaced_rate_is_not_sent_any_more():
     """Its repeat would be applied last, and the unit would go on at a rate that nobody wants."""
     script = crewed()
     rate = CommandKind.SET_POSITION_RATE
@@ -319,7 +319,7 @@ def test_a_reply_out_of_the_journal_counts():
 
 
 @pytest.mark.parametrize(("said", "by"), [("before", "Person 1"), ("after", "Person 4")])
-def test_a_late_acknowledgement_is_of_who_wore_the_unit_when_it_was_said(said, by):
+def test_late_acknowledgement_is_of_the_wearer_at_its_time(said, by):
     script = to_one()
     script.status("FF-01")
     replies = {}
@@ -335,7 +335,7 @@ def test_a_late_acknowledgement_is_of_who_wore_the_unit_when_it_was_said(said, b
     assert script.pipeline.state.commands["c1"].deliveries["FF-01"].acknowledged_by == by
 
 
-def test_who_wore_a_unit_that_was_told_something_is_forgotten_with_it():
+def test_wearer_of_a_commanded_unit_is_erased_from_the_command():
     script = to_one()
     reply = CommandReply(script.header("FF-01"), "c1", ACKNOWLEDGED)
     script.status("FF-01")
@@ -347,14 +347,14 @@ def test_who_wore_a_unit_that_was_told_something_is_forgotten_with_it():
     assert b"Person 1" not in script.pipeline.checkpoint()
 
 
-def test_who_speaks_as_the_station_must_be_the_station():
+def test_reply_under_the_key_of_another_unit_is_not_taken():
     script = to_one()
     forged = CommandReply(script.header("FF-02"), "c1", ACKNOWLEDGED)
     script.record("muster/v1/FF-01/alert/reply", encode(forged))
     assert states(script) == {"FF-01": "queued"}
 
 
-def test_it_is_open_until_the_last_who_was_told_has_answered():
+def test_command_is_open_until_the_last_unit_has_answered():
     script = crewed()
     script.act(order(crew="red"))
     script.reply("FF-01", "c1", ACKNOWLEDGED)
@@ -370,7 +370,7 @@ def test_what_a_unit_did_too_late_is_done_all_the_same():
     assert states(script) == {"FF-01": "received"}
 
 
-def test_what_was_said_to_a_wearer_and_who_answered_is_forgotten():
+def test_texts_to_a_wearer_and_their_answers_are_erased():
     script = crewed()
     for number in (1, 2):
         script.act(order(f"c{number}", CommandKind.EVACUATE, f"FF-0{number}"))
@@ -382,7 +382,7 @@ def test_what_was_said_to_a_wearer_and_who_answered_is_forgotten():
 
 
 @pytest.mark.parametrize("answer", [RECEIVED, ACKNOWLEDGED, REFUSED])
-def test_what_others_were_told_may_name_who_is_forgotten(answer):
+def test_texts_to_others_that_may_name_the_person_are_erased(answer):
     """Nothing is lost with the words: they are where they were to go."""
     script = crewed()
     for number, answers in ((1, True), (2, True), (3, False)):
@@ -397,7 +397,7 @@ def test_what_others_were_told_may_name_who_is_forgotten(answer):
     assert (left.unit_id, left.text) == ("FF-03", "to Person 1!")
 
 
-def test_a_message_of_which_nothing_is_left_is_told_to_nobody_any_more():
+def test_erased_text_is_not_sent_any_more():
     script = crewed()
     script.act(order(kind=CommandKind.TEXT, everyone=True, text="by the north door"))
     script.command("FF-01", "c1")

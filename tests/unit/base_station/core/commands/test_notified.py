@@ -171,7 +171,7 @@ def test_an_incident_that_is_closed_ends_the_wait_for_an_output() -> None:
     assert not script.pipeline.state.commands["c2"].is_open
 
 
-def test_what_a_unit_says_of_its_outputs_later_is_noted_while_more_is_to_come() -> None:
+def test_later_description_of_outputs_counts_while_a_delivery_is_open() -> None:
     script = sent()
     assert delivery(script).can_be_notified is None
     assert CommandChanged("c1") in describe(script, ())
@@ -184,7 +184,7 @@ def test_what_a_unit_says_of_its_outputs_later_is_noted_while_more_is_to_come() 
     assert delivery(script).can_be_notified is True, "as it was when it was carried out"
 
 
-def test_an_old_description_out_of_a_journal_says_nothing_of_now() -> None:
+def test_backfilled_description_changes_nothing() -> None:
     script = sent()
     old = message_factory.description(script.header(U))
     describe(script, ("led",))

@@ -120,7 +120,7 @@ def test_what_is_raised_after_an_incident_of_its_units_is_about_it_until_the_nex
     assert last.is_about("A", 10**18)
 
 
-def test_of_an_incident_that_was_forgotten_the_log_tells_the_units_all_the_same() -> None:
+def test_log_of_a_forgotten_incident_keeps_its_units() -> None:
     """Their journals may bring more of it."""
     records = done(
         (5, bo("C")), (6, Unassign("C")),  # before
@@ -196,7 +196,7 @@ def test_of_two_stations_the_one_that_forgets_later_places_every_message_as_the_
     assert clocks.captured_ns(Header(sender, 7, 1, 10)) == captured_ns
 
 
-def test_of_a_run_that_was_not_heard_before_what_came_since_tells() -> None:
+def test_run_without_earlier_messages_is_placed_by_later_ones() -> None:
     actions = done((10, ana("A")), (200, Unassign("A")), (300, ForgetWearers("A")))
     clocks = CaptureClocks(first_erased_ns(actions, erasure_of_person(actions, "p1", (), NOW_NS)))
     for t_ns, delay_ns in ((400, 9), (500, 3)):

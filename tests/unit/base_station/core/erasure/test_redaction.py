@@ -147,7 +147,7 @@ def test_of_what_nobody_can_read_a_sign_of_life_is_left(key: str, t_ns: int, sta
         (8, 250, 0.0, False),  # by a clock that nobody has set
     ],
 )
-def test_what_a_journal_brought_goes_where_it_was_said_by_who_is_forgotten(
+def test_backfilled_messages_of_the_forgotten_wearer_are_erased(
     boot_id: int, utc_ns: int, utc_std_s: float, stays: bool
 ) -> None:
     clocks = CaptureClocks()
@@ -160,7 +160,7 @@ def test_what_a_journal_brought_goes_where_it_was_said_by_who_is_forgotten(
     assert stays or isinstance(decode(HEARTBEAT, payload), Heartbeat)
 
 
-def test_of_another_unit_what_a_journal_brought_stays_whenever_it_was_said() -> None:
+def test_backfilled_messages_of_another_unit_stay() -> None:
     redact = Redactor(
         Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1"), CaptureClocks()
     )
@@ -207,7 +207,7 @@ def start(unit_id: str) -> SetStart:
         (250, together("anna", "bert", t_ns=220), together("anna", "bert", t_ns=220)),
     ],
 )
-def test_where_somebody_was_said_to_be_goes_and_where_others_were_stays(
+def test_reported_places_of_the_forgotten_person_go_and_of_others_stay(
     said_ns: int, action: Action, left: Action | None
 ) -> None:
     redact = Redactor(
@@ -281,7 +281,7 @@ def test_an_alarm_about_an_incident_and_what_is_noted_of_it_name_nobody_after_it
         (INCIDENT, 300, 250, "SendCommand text, Ada!", "SendCommand text, Ada!"),
     ],
 )
-def test_what_was_done_apart_says_nothing_of_who_is_forgotten(
+def test_separate_actions_keep_nothing_of_the_forgotten_person(
     erasure: Erasure, told_ns: int, said_ns: int, what: str, left: str
 ) -> None:
     action = OperatorAction(HEADER, "a-1", STATION_ID, apart(said_ns, what))

@@ -37,7 +37,7 @@ def test_a_pin_corrects_the_whole_past_and_the_present(walk: Walk) -> None:
     assert walk.worst_m("FF-01") < 0.5 * before_m
 
 
-def test_a_start_that_is_said_before_anybody_speaks_holds_once_they_do() -> None:
+def test_start_set_before_the_first_position_holds_from_then() -> None:
     script = Script()
     script.register("FF-01")
     script.act(StartTogether("s", ("FF-01",), 0, -30.0, 9.0, 1.0, None, None, 0.3, ""))
@@ -93,7 +93,7 @@ def test_removing_a_pin_leaves_exactly_what_would_be_without_it() -> None:
     assert pinned.script.pipeline.state.pins == {}
 
 
-def test_removing_a_pin_leaves_nobody_on_the_floor_that_it_said() -> None:
+def test_removed_pin_leaves_no_unit_on_its_floor() -> None:
     """Half way up the stairs somebody stays on the floor where they were, and not where a pin
     that was wrong had them.
     """
@@ -158,9 +158,7 @@ def test_a_pin_that_is_moved_is_the_same_as_one_set_there(walk: Walk) -> None:
     assert walk.trail("FF-01") == other.trail("FF-01")
 
 
-def test_a_pin_that_turns_out_to_be_about_somebody_else_leaves_the_first_as_if_it_were_not() -> (
-    None
-):
+def test_pin_moved_to_another_unit_leaves_the_first_as_before() -> None:
     walk = Walk("FF-01", "FF-02")
     walk.go(100)
     before_m = walk.now_off_m("FF-01")
@@ -200,7 +198,7 @@ def test_most_pins_outvote_the_first(walk: Walk) -> None:
     assert [walk.state(f"p{number}") for number in range(3)] == ["used"] * 3
 
 
-def test_pins_alone_tell_the_heading() -> None:
+def test_pins_alone_show_the_heading() -> None:
     """Nobody said where the unit began or which way it looked."""
     walk = Walk("FF-01", turn_rad=2.0)
     walk.go(120)
@@ -247,7 +245,7 @@ def test_who_was_switched_on_after_all_were_at_the_engine_begins_there() -> None
 
 
 @pytest.mark.slow
-def test_who_meets_somebody_well_known_is_well_known() -> None:
+def test_encounter_with_a_well_known_place_improves_the_other() -> None:
     walk = Walk("FF-01", "FF-02")
     for unit_id in walk.units:
         walk.start(unit_id)
@@ -262,7 +260,7 @@ def test_who_meets_somebody_well_known_is_well_known() -> None:
     assert walk.now_off_m("FF-01") == before_m
 
 
-def test_what_is_said_later_of_somebody_counts_for_whom_he_met() -> None:
+def test_later_pin_of_one_unit_counts_for_the_one_it_met() -> None:
     """Nobody has said where they began: whole paths go where the pins lie."""
     walk = Walk("FF-01", "FF-02")
     walk.go(100)
@@ -290,7 +288,7 @@ def test_a_pin_of_now_counts_though_the_unit_s_last_word_is_some_seconds_old(wal
     assert walk.state("p2") == "waiting"
 
 
-def test_a_floor_that_is_said_of_a_time_to_come_numbers_no_storeys_yet(walk: Walk) -> None:
+def test_floor_of_a_future_time_numbers_no_storeys_yet(walk: Walk) -> None:
     walk.go(60, silent=("FF-01",))
     north_m, east_m = truth(360.0)
     t_ns = walk.script.t_ns
@@ -342,7 +340,7 @@ def test_of_pins_that_wait_the_first_is_used_once_the_path_has_come_to_it(walk: 
     assert (walk.state("p1"), walk.state("p2")) == ("used", "waiting")
 
 
-def test_whom_nobody_knows_well_tells_nothing_of_whom_he_met() -> None:
+def test_encounter_with_an_uncertain_place_changes_little() -> None:
     """FF-02 went 200 m along a line; how far north is known, and not how far east."""
     script = Script()
     script.register("FF-01", "FF-02")
@@ -367,7 +365,7 @@ def test_whom_nobody_knows_well_tells_nothing_of_whom_he_met() -> None:
 
 
 @pytest.mark.slow
-def test_a_meeting_that_one_of_both_contradicts_is_shown_so_whoever_is_solved_later() -> None:
+def test_conflict_of_an_encounter_stays_whichever_unit_is_solved_later() -> None:
     """FF-02 was with FF-01 all the time, so not with FF-03; FF-03 has nothing against it."""
     walk = Walk("FF-01", "FF-02", "FF-03", "FF-04")
     for unit_id in ("FF-01", "FF-04"):
@@ -425,7 +423,7 @@ def test_a_pin_on_a_floor_brings_the_height() -> None:
     assert fused.floor == 1
 
 
-def test_a_checkpoint_knows_pins_and_goes_on_the_same(walk: Walk) -> None:
+def test_checkpoint_with_pins_continues_the_same(walk: Walk) -> None:
     walk.pin("p1", "FF-01", 200.0)
     saved = read_checkpoint(walk.script.pipeline.checkpoint())
     assert saved is not None

@@ -110,7 +110,7 @@ def test_a_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
         ),
     ],
 )
-def test_two_floors_of_somebody_who_did_not_climb_are_not_averaged(
+def test_two_floors_without_a_climb_are_not_averaged(
     said: Callable[[Wearer], object], words: str
 ) -> None:
     """Nothing but these two tells how high the unit began."""
@@ -162,7 +162,7 @@ def test_of_two_floors_the_other_holds_once_one_is_removed() -> None:
 
 
 @pytest.mark.parametrize("floor", [1, 3, 9])
-def test_who_was_switched_on_upstairs_is_on_the_floor_that_is_said(floor: int) -> None:
+def test_unit_switched_on_upstairs_is_on_its_reported_floor(floor: int) -> None:
     """As far up as it may be: that nobody had said a floor is no evidence of the ground floor."""
     wearer = Wearer(storeys=10)
     wearer.go(60)
@@ -183,7 +183,7 @@ def test_who_has_climbed_may_be_pinned_on_either_floor() -> None:
     assert (wearer.fused.floor, wearer.verdict("below").state) == (1, "used")
 
 
-def test_a_floor_that_is_said_twice_is_believed() -> None:
+def test_floor_reported_twice_is_accepted() -> None:
     """The path has missed a flight of stairs."""
     wearer = Wearer()
     wearer.start()
@@ -229,7 +229,7 @@ def meet(one: Wearer, other: Wearer) -> None:
     one.script.act(SetMeeting("m", one.unit_id, other.unit_id, t_ns, 1.0, ""))
 
 
-def test_who_met_somebody_is_on_the_same_floor() -> None:
+def test_encounter_puts_both_units_on_one_floor() -> None:
     """Nothing else tells how high he was switched on: no satellites, and no start."""
     one, other = two(30)
     one.pin("p", 7)
@@ -242,7 +242,7 @@ def test_who_met_somebody_is_on_the_same_floor() -> None:
         assert smoothed[unit_id].down_m[-1] == pytest.approx(-7 * STOREY_M, abs=0.5)
 
 
-def test_nobody_met_somebody_on_another_floor() -> None:
+def test_encounter_across_floors_is_rejected() -> None:
     one, other = two(30)
     other.start()
     one.pin("p", 7)
@@ -285,7 +285,7 @@ def test_a_meeting_of_two_who_were_not_together_draws_nobody_aside_afterwards(of
         assert met.paths[unit_id].places_m == pytest.approx(path.places_m, abs=0.05)
 
 
-def test_a_meeting_on_two_floors_says_whose_path_contradicts() -> None:
+def test_encounter_on_two_floors_names_the_contradicting_path() -> None:
     one, other = two(30)
     other.start()
     one.pin("p", 7)
@@ -295,14 +295,14 @@ def test_a_meeting_on_two_floors_says_whose_path_contradicts() -> None:
     assert "22 m above where the path of FF-02 and the satellite fixes lead" in text
 
 
-def test_a_meeting_that_waits_says_for_whose_path() -> None:
+def test_waiting_encounter_names_the_path_it_waits_for() -> None:
     one, other = two(30)
     one.go(60)
     meet(one, other)
     assert one.verdict("m").text == "FF-02: the unit's path has not come to that time yet"
 
 
-def test_who_does_not_know_his_floor_tells_nobody_of_it() -> None:
+def test_encounter_with_an_unknown_floor_gives_no_floor() -> None:
     """Both were switched on somewhere; that one of them was on the ground would be a guess."""
     one, other = two(30)
     meet(one, other)
@@ -313,7 +313,7 @@ def test_who_does_not_know_his_floor_tells_nobody_of_it() -> None:
 
 
 @pytest.mark.parametrize(("beacons", "floor"), [(("a", "a", "a"), 0), (("a", "b"), 1)])
-def test_a_beacon_on_a_wrong_floor_is_one_that_says_so_however_often_it_is_passed(
+def test_beacon_on_a_wrong_floor_is_one_source_however_often_passed(
     beacons: tuple[str, ...], floor: int
 ) -> None:
     wearer = Wearer()
@@ -331,7 +331,7 @@ def test_a_beacon_on_a_wrong_floor_is_one_that_says_so_however_often_it_is_passe
 
 
 @pytest.mark.parametrize("away_s", [60.0, 600.0])
-def test_who_was_not_heard_may_have_climbed_until_the_unit_began_anew(away_s: float) -> None:
+def test_unit_without_contact_may_have_climbed_before_its_next_run(away_s: float) -> None:
     """Nothing tells of the time between: the floor is in doubt, and what a person says holds."""
     wearer = Wearer()
     wearer.start()

@@ -73,7 +73,7 @@ def test_who_all_start_here_begin_there_whatever_their_units_ran_before(
 
 
 @pytest.mark.parametrize("is_on", [False, True], ids=["switched on later", "out of reach"])
-def test_a_start_that_is_said_before_a_unit_is_heard_in_the_incident_is_of_what_it_says_next(
+def test_start_set_before_contact_in_the_incident_is_of_the_next_run(
     is_on: bool,
 ) -> None:
     """It was checked in the morning, and left 60 m off; or its radio did not reach the station."""
@@ -95,7 +95,7 @@ def test_a_start_that_is_said_before_a_unit_is_heard_in_the_incident_is_of_what_
     assert fused.quality is Quality.GOOD
 
 
-def test_a_start_of_a_unit_that_was_heard_in_the_incident_is_of_that_run() -> None:
+def test_start_set_after_contact_in_the_incident_is_of_that_run() -> None:
     """Though it is silent now: its trail is put right."""
     script = Script()
     script.register("FF-01")
@@ -107,7 +107,7 @@ def test_a_start_of_a_unit_that_was_heard_in_the_incident_is_of_that_run() -> No
     assert fused_of(script).north_m == pytest.approx(159.0, abs=0.5)
 
 
-def test_all_start_here_may_be_said_before_the_run_that_it_is_about() -> None:
+def test_start_together_may_be_set_before_its_run() -> None:
     """The commander is quicker than those who switch on their units."""
     script = Script()
     script.register("FF-01")

@@ -203,7 +203,7 @@ def both_gone_upstairs() -> Watched:
     return script
 
 
-def test_a_floor_said_of_one_is_that_of_who_is_silent_there() -> None:
+def test_floor_set_for_one_unit_holds_for_a_silent_one_there() -> None:
     script = both_gone_upstairs()
     walked_ns = script.t_ns
     script.wait(40)
@@ -218,7 +218,7 @@ def shown_floor(script: Watched, unit_id: str) -> int | None:
     return None if position is None else position.floor
 
 
-def test_a_pin_that_waited_for_the_path_is_told_of_as_the_path_comes() -> None:
+def test_waiting_pin_is_published_as_the_path_comes() -> None:
     """Used, contradicted, or of a time at which the path had not begun."""
     script = Watched()
     walk = Walk(A, B, script=script)
@@ -238,7 +238,7 @@ def test_a_pin_that_waited_for_the_path_is_told_of_as_the_path_comes() -> None:
 
 
 @pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
-def test_a_start_that_is_said_late_has_led_the_whole_trail(unit_id: str) -> None:
+def test_start_set_late_corrects_the_whole_trail(unit_id: str) -> None:
     """Nobody knew which way the unit looked, nor that it began on the first floor."""
     script = Watched()
     walk = Walk(unit_id, turn_rad=0.7, script=script)
@@ -386,7 +386,7 @@ def test_a_plan_that_numbers_storeys_otherwise_numbers_trails_again() -> None:
     assert {step.floor for step in (*plain, *units[A].trails.shown)} == {2}
 
 
-def test_a_floor_that_is_said_of_one_numbers_the_trail_of_the_other_again() -> None:
+def test_floor_of_one_unit_renumbers_the_trail_of_another() -> None:
     script = both_gone_upstairs()
     upstairs_ns = script.t_ns - 15 * 10**9
     state = script.pipeline.state

@@ -70,7 +70,7 @@ def test_a_radio_beacon_that_is_placed_later_counts_for_who_passed_it(walk: Walk
     assert walk.state(pin) == "used"
 
 
-def test_whoever_saw_a_beacon_before_it_was_placed_was_somewhere_within_its_reach(
+def test_sighting_before_its_beacon_was_placed_counts_once_it_is(
     walk: Walk,
 ) -> None:
     sighting(walk, SightingKind.BEACON, "b1")
@@ -83,7 +83,7 @@ def test_whoever_saw_a_beacon_before_it_was_placed_was_somewhere_within_its_reac
         assert ranged.std_m == pytest.approx(math.hypot(4.0 / math.sqrt(2.0), 0.5))
 
 
-def test_a_beacon_that_was_passed_out_of_reach_counts_when_the_journal_tells_of_it(
+def test_beacon_passed_without_contact_counts_once_backfilled(
     walk: Walk,
 ) -> None:
     script, passed_s = walk.script, walk.walked_s - 100
@@ -137,7 +137,7 @@ def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None
     assert sum(walk.script.pipeline.state.units["FF-01"].rejected_counts.values()) == 5
 
 
-def test_what_a_stranger_says_it_sees_is_not_believed(walk: Walk) -> None:
+def test_sighting_of_an_unregistered_unit_is_not_used(walk: Walk) -> None:
     script = walk.script
     for kind, seen_id in ((SightingKind.UNIT, "FF-01"), (SightingKind.BEACON, "b1")):
         script.say(Sighting(script.header("stranger"), kind, seen_id, 1.0))
@@ -157,7 +157,7 @@ def test_two_who_see_each_other_have_met_once() -> None:
 
 
 @pytest.mark.parametrize("range_m", [1.0, 30.0], ids=["surer", "vaguer"])
-def test_what_a_person_said_of_a_meeting_is_not_replaced_by_what_units_see(range_m: float) -> None:
+def test_encounter_set_by_a_person_is_not_replaced_by_sightings(range_m: float) -> None:
     """Nor is what they see lost with it, when it is taken back."""
     both = Walk("FF-01", "FF-02")
     both.go(10)
@@ -183,7 +183,7 @@ def test_a_unit_that_is_met_is_no_beacon_of_the_same_name() -> None:
     assert [said.floor for said in reported_floors(state)] == [3]
 
 
-def test_a_path_is_unpacked_once_for_all_floors_that_are_said_along_it(
+def test_path_is_unpacked_once_for_all_reported_floors(
     walk: Walk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With hundreds of sightings everybody would wait for each."""
@@ -212,7 +212,7 @@ def test_a_path_is_unpacked_once_for_all_floors_that_are_said_along_it(
         (SightingKind.UNIT, False, 1.5),
     ],
 )
-def test_without_a_range_somebody_is_within_reach(
+def test_sighting_without_a_range_lies_within_the_reach(
     kind: SightingKind, placed: bool, std_m: float
 ) -> None:
     walk = Walk("FF-01", "FF-02")
@@ -224,7 +224,7 @@ def test_without_a_range_somebody_is_within_reach(
     assert pin.std_m == pytest.approx(std_m)
 
 
-def test_who_was_met_before_his_path_began_tells_nothing_of_where() -> None:
+def test_encounter_before_the_path_of_one_changes_nothing() -> None:
     """His first position comes a minute later, from somewhere else."""
     met, alone = Walk("FF-01", "FF-02"), Walk("FF-01", "FF-02")
     for walk in (met, alone):
@@ -295,7 +295,7 @@ def seen_ids(walk: Walk) -> list[str]:
 
 
 @pytest.mark.slow
-def test_whom_somebody_met_often_is_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unit_met_often_is_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
     both = Walk("FF-01", "FF-02")
     for unit_id in both.units:
         both.start(unit_id)

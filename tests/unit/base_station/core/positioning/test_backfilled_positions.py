@@ -68,7 +68,7 @@ def test_the_gap_in_the_trail_is_filled_at_its_own_time(walked):
     assert [step.t_ns for step in trail] == sorted(step.t_ns for step in trail)
 
 
-def test_where_somebody_was_is_said_once_for_each_second(walked):
+def test_late_position_is_shown_once_for_each_second(walked):
     """Of five positions a second, as trail and store keep it; a late fix finds all of them."""
     said = [
         output.north_m
@@ -132,7 +132,7 @@ def test_another_machine_under_the_same_name_is_not_drawn(walked):
         assert not any(isinstance(output, FusedPosition) for output in outputs)
 
 
-def test_a_run_of_the_program_that_nobody_heard_is_not_taken_for_the_present_one(walked):
+def test_unknown_run_is_not_taken_for_the_present_one(walked):
     earlier = walked.position(3)
     header = msgspec.structs.replace(earlier.header, boot_id=6)
     payload = encode(msgspec.structs.replace(earlier, header=header))

@@ -82,7 +82,7 @@ def script() -> Outside:
     return script
 
 
-def test_until_somebody_says_where_it_lies_nobody_is_believed_on_it(script: Outside) -> None:
+def test_plan_without_a_known_place_is_not_used(script: Outside) -> None:
     assert script.why(A) == script.why(B) == ADRIFT
     anchor = script.pipeline.state.anchor
     assert anchor is not None
@@ -128,9 +128,7 @@ def test_its_walls_hold_nobody(script: Outside) -> None:
     ],
     ids=lambda said: type(said).__name__,
 )
-def test_the_first_place_that_is_said_on_it_counts_as_if_it_had_been_there_before(
-    said: Action, script: Outside
-) -> None:
+def test_first_place_on_a_plan_counts_from_the_beginning(said: Action, script: Outside) -> None:
     earlier = Outside()
     earlier.act(SetPlan(PLAN))
     earlier.walk(30)
@@ -154,7 +152,7 @@ def test_the_first_place_that_is_said_on_it_counts_as_if_it_had_been_there_befor
     assert script.unit(A).rejected_counts.keys() == {"the site has no anchor"}
 
 
-def test_the_trail_begins_where_the_start_was_said(script: Outside) -> None:
+def test_trail_begins_at_the_start_position(script: Outside) -> None:
     script.act(START)
     trail = script.unit(A).trails.shown
     assert math.dist((trail[0].north_m, trail[0].east_m), ENGINE_M) < 1.5
@@ -164,7 +162,7 @@ def test_the_trail_begins_where_the_start_was_said(script: Outside) -> None:
     assert math.hypot(plain[0].north_m, plain[0].east_m) < 1.5, "about its own start, without"
 
 
-def test_fixes_count_again_once_it_is_said_where_the_plan_lies(script: Outside) -> None:
+def test_fixes_count_again_once_the_plan_has_an_anchor(script: Outside) -> None:
     script.act(START)
     script.act(SetAnchor(LIES.lat_deg, LIES.lon_deg, LIES.height_m, LIES.rotation_rad))
     script.walk(30)
@@ -174,9 +172,7 @@ def test_fixes_count_again_once_it_is_said_where_the_plan_lies(script: Outside) 
 
 
 @pytest.mark.parametrize("met", [True, False], ids=["a meeting", "a pin that is refused"])
-def test_what_says_no_place_leaves_people_where_satellites_have_them(
-    met: bool, script: Outside
-) -> None:
+def test_action_without_a_place_leaves_people_at_their_fixes(met: bool, script: Outside) -> None:
     script.act(
         SetMeeting("m", A, B, script.t_ns, 1.0, "")
         if met
@@ -186,7 +182,7 @@ def test_what_says_no_place_leaves_people_where_satellites_have_them(
     assert script.why(A) == ADRIFT
 
 
-def test_what_was_said_before_there_was_a_plan_stays_where_it_is_on_the_earth() -> None:
+def test_place_set_before_the_plan_stays_on_the_earth() -> None:
     script = Outside()
     script.walk(30)
     script.act(SetPin("p", A, script.t_ns, *script.place_m(A), 0.5, None, None, 0.0, ""))

@@ -123,7 +123,7 @@ def test_what_the_unit_brings_of_before_moves_nobody_back(script: Script) -> Non
     assert far_m(shown(script), STAIRS_M) == 0.0
 
 
-def test_heard_again_they_go_on_from_there(script: Script) -> None:
+def test_contact_regained_continues_from_there(script: Script) -> None:
     pin(script, (10.0, 30.0), floor=0)
     walk(script, WALKED_S, WALKED_S + 5)
     assert script.pipeline.state.pin_verdicts["p"].state == "used"

@@ -87,7 +87,7 @@ def test_weather_moves_nobody_who_stands_still(script: Script) -> None:
     [(-20.0, 12.0, True), (-2.0, 12.0, False), (7.0, 20.0, False)],
     ids=["outside", "at the wall", "inside"],
 )
-def test_the_weather_is_told_by_who_is_outside_and_not_by_doors_and_fans(
+def test_weather_is_of_units_outside_and_not_of_doors_and_fans(
     script: Script, north_m: float, east_m: float, feels_it: bool
 ) -> None:
     """Whoever is inside keeps the height that the air outside agrees with."""
@@ -138,7 +138,7 @@ def test_a_pin_that_turns_fixes_away_changes_nothing_of_the_weather() -> None:
     assert rises_m[True] == rises_m[False] != 0.0
 
 
-def test_who_is_not_heard_is_within_walls(script: Script) -> None:
+def test_unit_without_contact_stays_within_walls(script: Script) -> None:
     script.wait(3, lambda: script.position(U, 0.0, 0.0))
     assert script.pipeline.state.units[U].place.reach == ()
     script.wait(20)
@@ -153,7 +153,7 @@ def test_who_is_not_heard_is_within_walls(script: Script) -> None:
 
 
 @pytest.mark.parametrize(("away_s", "most_m"), [(5, 8.0), (20, 11.0), (60, 27.0), (3600, 110.0)])
-def test_who_starts_again_is_known_no_better_than_while_not_heard(
+def test_restarted_unit_is_known_no_better_than_without_contact(
     script: Script, away_s: int, most_m: float
 ) -> None:
     """A battery is changed: whoever goes on walking meanwhile is not where he was."""

@@ -71,7 +71,7 @@ def test_one_wrong_position_moves_nobody_and_stops_nothing(wrong: Wrong) -> None
     assert fused.quality is Quality.GOOD
 
 
-def test_doubt_grows_no_faster_than_people_run() -> None:
+def test_uncertainty_grows_no_faster_than_people_run() -> None:
     """A unit in trouble says now that it knows all of its place, and now nothing."""
     kind = Parameters()
     own = OdometryIncrements(kind)

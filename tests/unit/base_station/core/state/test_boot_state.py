@@ -64,7 +64,7 @@ def test_what_comes_sooner_than_any_before_was_captured_when_it_came_at_the_late
         (-3600.0, 0.0, True),  # it does not know the time, and says so
     ],
 )
-def test_who_knows_the_time_and_says_another_is_not_of_now(
+def test_message_with_another_known_time_is_not_live(
     utc_error_s: float, std_s: float, now: bool
 ) -> None:
     assert Unit().heard(0.0, utc_error_s=utc_error_s, std_s=std_s) is now
@@ -130,7 +130,7 @@ def test_a_link_that_is_slow_for_long_is_no_clock_that_was_set(
     ids=["it knew the time", "it is ahead", "it knew no time"],
 )
 @pytest.mark.parametrize("boots", [(), (BootState(6),), (BootState(7),)])
-def test_of_a_run_of_which_nothing_came_live_the_unit_itself_tells_when(
+def test_run_without_live_messages_is_dated_by_the_unit(
     boots: tuple[BootState, ...], utc_error_s: float, std_s: float, told_s: float | None
 ) -> None:
     """Thirty seconds ago by the station's clock; nothing is said later than it comes."""

@@ -39,13 +39,13 @@ def sender() -> MessageStream:
         (STATUS, 6, 99.0, "new"),  # its clock was wrong before
     ],
 )
-def test_what_is_said_before_what_came_already_is_old(
+def test_message_before_one_that_came_is_old(
     sender: MessageStream, channel: Channel, seq: int, mono_s: float, worth: str
 ) -> None:
     assert sender.accept(channel, said(seq, mono_s), NOW_NS) == worth
 
 
-def test_the_clock_of_the_machine_that_was_switched_off_says_nothing_of_a_new_run(
+def test_clock_of_an_earlier_run_does_not_date_a_new_one(
     sender: MessageStream,
 ) -> None:
     """Monotonic time begins anew with it; its first alert overtook the first status."""
@@ -54,7 +54,7 @@ def test_the_clock_of_the_machine_that_was_switched_off_says_nothing_of_a_new_ru
 
 
 @pytest.mark.parametrize("channel", [STATUS, GPS])
-def test_when_a_fix_was_valid_says_nothing_of_the_units_clock(
+def test_time_of_a_fix_does_not_change_the_units_clock(
     sender: MessageStream, channel: Channel
 ) -> None:
     """A receiver may be wrong about that, and would move everything that the unit says."""
@@ -84,7 +84,7 @@ def test_runs_out_of_the_journal_are_known_and_never_the_one_that_runs(
     assert sender.boots[-1].boot_id == 7
 
 
-def test_a_run_of_which_the_journal_told_first_is_shown_as_soon_as_it_is_heard(
+def test_backfilled_run_is_shown_once_it_comes_live(
     sender: MessageStream,
 ) -> None:
     """It began while its unit was still taken for there, and was asked for what it has at once."""
@@ -149,7 +149,7 @@ def test_a_word_that_was_held_up_does_not_bring_back_the_run_before(sender: Mess
     assert [boot.boot_id for boot in sender.boots] == [7, 8]
 
 
-def test_of_several_machines_that_was_there_last_is_told(sender: MessageStream) -> None:
+def test_newest_of_several_devices_under_one_name_is_shown(sender: MessageStream) -> None:
     for second in range(60):
         there = [7, *([8] if second < 30 else []), *([9] if second >= 20 else [])]
         for boot_id in there:
@@ -170,7 +170,7 @@ def test_two_runs_that_were_there_together_for_five_seconds_are_two_machines(
         assert (sender.duplicate_device is not None) == is_twin
 
 
-def test_who_has_lost_the_link_is_stale_at_once_until_heard_again(sender: MessageStream) -> None:
+def test_unit_without_link_is_stale_until_its_next_message(sender: MessageStream) -> None:
     assert sender.link_at(NOW_NS + NS_PER_S) == "live"
     sender.is_unlinked = True
     assert sender.link_at(NOW_NS + NS_PER_S) == "stale"

@@ -107,7 +107,7 @@ def test_an_old_place_stays_old_when_the_unit_begins_anew(script: Script) -> Non
     assert script.fused[-1].t_meas_ns == script.t_ns - 35 * NS_PER_S
 
 
-def test_fixes_of_a_run_that_has_said_no_position_yet_are_of_now(script: Script) -> None:
+def test_fixes_of_a_run_without_positions_are_of_now(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 50.0, 0.0))
     script.position(U, 0.0, 0.0)
     script.wait(30)
@@ -134,7 +134,7 @@ def test_the_link_is_as_old_as_the_last_message(script: Script, silent_s: int, l
     assert unit(script).link == link
 
 
-def test_whatever_a_unit_says_comes_to_the_consoles_and_at_once_where_it_cannot_wait(
+def test_every_message_reaches_consoles_and_urgent_ones_at_once(
     script: Script,
 ) -> None:
     at_once, may_wait = UnitChanged(U, soon=True), UnitChanged(U, soon=False)
@@ -168,7 +168,7 @@ def test_an_old_position_looks_old_and_its_region_grows(script: Script) -> None:
     assert touched, "the console hears of it although nothing came"
 
 
-def test_the_status_tells_of_a_press_and_of_its_end_where_their_messages_were_lost(
+def test_status_replaces_lost_messages_of_a_press_and_its_end(
     script: Script,
 ) -> None:
     def maydays() -> tuple[int | None, int | None]:
@@ -359,7 +359,7 @@ def test_endless_strangers_do_not_fill_the_memory(script: Script) -> None:
     assert state.units["X-299"].status is not None
 
 
-def test_a_card_says_that_the_unit_was_switched_off_until_it_speaks_again(script: Script) -> None:
+def test_unit_is_shown_switched_off_until_its_next_message(script: Script) -> None:
     def is_off() -> bool:
         (view,) = unit_views(script.pipeline.state, [unit(script)], person_lookup({}))
         return view.switched_off
@@ -374,7 +374,7 @@ def test_a_card_says_that_the_unit_was_switched_off_until_it_speaks_again(script
     assert [*shown, is_off()] == [False, True, True, False]
 
 
-def test_a_card_says_what_the_unit_knows_of_the_time(script: Script) -> None:
+def test_unit_is_shown_with_the_error_of_its_clock(script: Script) -> None:
     def clock() -> ClockView | None:
         return unit_views(script.pipeline.state, [unit(script)], person_lookup({}))[0].clock
 

@@ -105,7 +105,7 @@ def test_the_whole_way_stays_and_is_bounded(hours: int, most_m: float) -> None:
     assert [one.t_ns for one in changes] == [hours * 1800 * NS_PER_S]
 
 
-def test_where_nothing_was_heard_stays_a_gap_and_is_filled() -> None:
+def test_gap_of_a_trail_stays_until_it_is_backfilled() -> None:
     trail: list[TrailStep] = []
     for second in [*range(400), *range(460, 2000)]:
         extend_trail(trail, fused(second, north_m=float(second)))

@@ -22,7 +22,7 @@ def said(script: Script) -> None:
     script.position("FF-01", script.now_s, 0.0)
 
 
-def test_silence_turns_the_light_and_is_said_to_be_why(script: Script) -> None:
+def test_silence_turns_the_light_and_is_its_reason(script: Script) -> None:
     """Amber about the unit's own start, red once it is lost."""
     script.wait(20.0, lambda: said(script))
     script.wait(60.0)
@@ -34,12 +34,12 @@ def test_silence_turns_the_light_and_is_said_to_be_why(script: Script) -> None:
     assert sum(tally.causes.values()) == pytest.approx(tally.amber_s + tally.red_s)
 
 
-def test_a_unit_that_nobody_wears_or_hears_has_no_light(script: Script) -> None:
+def test_unit_without_wearer_and_contact_has_no_light(script: Script) -> None:
     script.wait(30.0)
     assert script.pipeline.state.units["FF-02"].trust.red_s == 0.0
 
 
-def test_who_wears_a_unit_that_was_never_heard_is_red(script: Script) -> None:
+def test_wearer_of_a_unit_without_any_contact_is_red(script: Script) -> None:
     script.act(Assign("FF-02", "p2", "Bo", "", ""))
     script.wait(30.0)
     tally = script.pipeline.state.units["FF-02"].trust

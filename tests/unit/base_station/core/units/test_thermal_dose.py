@@ -29,7 +29,7 @@ def test_each_class_lasts_as_long_as_equipment_of_it_does(
     assert dose_of(up_to_degc, whole_dose_s / 4) == 0.25
 
 
-def test_what_anybody_can_stand_in_is_no_dose() -> None:
+def test_bearable_temperature_adds_no_dose() -> None:
     assert dose_of(60.0, 3600.0) == 0.0
     assert dose_of(60.1, 1500.0) == 1.0
 
@@ -122,7 +122,7 @@ def heat_alarms(script: Script) -> list[tuple[str, str]]:
     return [(one.rule, one.text) for one in script.alarms if one.rule.startswith("heat")]
 
 
-def test_a_budget_that_was_used_up_out_of_reach_is_told_as_what_it_is() -> None:
+def test_budget_used_up_without_contact_is_reported_as_late() -> None:
     """No heat of now, and the equipment may fail all the same."""
     script = JournaledScript()
     script.register(U)

@@ -161,7 +161,7 @@ def test_a_reference_that_is_switched_on_again_goes_on_telling() -> None:
     assert barometers.weather.rise_m == pytest.approx(5.0, abs=0.4)
 
 
-def test_late_pressure_changes_no_earlier_weather() -> None:
+def test_late_pressure_leaves_the_weather_known() -> None:
     weather = Weather()
     told(weather, range(60))
     told(weather, range(50, 53), name="two")
