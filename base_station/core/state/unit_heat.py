@@ -4,8 +4,19 @@ from __future__ import annotations
 
 import msgspec
 
-from base_station.core.state.exposure import ExposureInterval
 from shared.messages import Temperature
+
+
+class ExposureInterval(msgspec.Struct):
+    """Part of one run of the unit's program in which the temperature is known, without a silence;
+    the unit's monotonic time.
+    """
+
+    boot_id: int
+    first_ns: int
+    first_degc: float
+    last_ns: int
+    last_degc: float
 
 
 class UnitHeat(msgspec.Struct):

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from base_station.core.state.exposure import ExposureInterval
+from base_station.core.state.unit_heat import ExposureInterval
 from shared.clock import NS_PER_S
 
 CAUTION_DEGC = 100.0

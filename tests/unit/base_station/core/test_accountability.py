@@ -166,7 +166,8 @@ def test_nobody_is_ticked_off_where_no_incident_is_open(script: Script) -> None:
     for meant in (CheckIn("FF-01", "", False), CheckIn("", "red", False), CheckIn("", "", True)):
         script.act(meant)
     assert refusals(script) == [
-        f"nobody of {whom} is on duty in an open incident" for whom in ("FF-01", "red", "everyone")
+        f"nobody of {action} is on duty in an open incident"
+        for action in ("FF-01", "red", "everyone")
     ]
 
 

@@ -46,7 +46,7 @@ class Walk:
                 self.script.gps(U, lat_deg, lon_deg, height_m=height_m, horizontal_std_m=2.0)
             self.script.tick()
 
-    def say_start(self) -> None:
+    def set_start(self) -> None:
         self.script.act(StartTogether("s", (U,), 0, 0.0, 0.0, 0.5, None, None, 0.3, ""))
 
     def state(self, pin_id: str) -> str:
@@ -105,7 +105,7 @@ def test_heading_known_in_part_stays_so() -> None:
 def test_start_set_on_the_way_leaves_the_heading_to_the_fixes(turned_rad: float) -> None:
     walk = Walk(turned_rad)
     walk.go(35)
-    walk.say_start()
+    walk.set_start()
     walk.go(25, with_fixes=True)
     assert walk.state(f"s:{U}") == "used"
     assert walk.off_m() < 3.0
@@ -114,7 +114,7 @@ def test_start_set_on_the_way_leaves_the_heading_to_the_fixes(turned_rad: float)
 def test_fixes_that_refute_a_pin_count_within_ten_seconds() -> None:
     """Beforehand it could be true: nothing told in which direction the path led."""
     walk = Walk(1.0)
-    walk.say_start()
+    walk.set_start()
     walk.go(40)
     pin_m = rotate(*walk.there_m, 1.2)
     walk.script.act(SetPin("wrong", U, walk.script.t_ns, *pin_m, 0.5, None, None, 0.0, ""))

@@ -13,7 +13,7 @@ U = "FF-01"
 KEY = TEMPERATURE.key(U)
 
 
-def said_at(t_mono_ns: int, t_utc_ns: int) -> Received | Rejected:
+def event_at(t_mono_ns: int, t_utc_ns: int) -> Received | Rejected:
     header = Header(U, 7, 1, t_mono_ns, t_utc_ns)
     return event_of(1, KEY, encode(Temperature(header, 20.0)))
 
@@ -24,11 +24,11 @@ def said_at(t_mono_ns: int, t_utc_ns: int) -> Received | Rejected:
 )
 def test_times_that_no_clock_shows_are_kept_and_not_stepped(t_mono_ns: int, t_utc_ns: int) -> None:
     """Their differences would not fit where live state is saved."""
-    event = said_at(t_mono_ns, t_utc_ns)
+    event = event_at(t_mono_ns, t_utc_ns)
     assert isinstance(event, Rejected)
     assert "make no sense" in event.reason
 
 
 def test_usual_times_are() -> None:
-    assert isinstance(said_at(10**15, 1_800_000_000 * 10**9), Received)
-    assert isinstance(said_at(0, 0), Received)  # 0: the unit does not know UTC
+    assert isinstance(event_at(10**15, 1_800_000_000 * 10**9), Received)
+    assert isinstance(event_at(0, 0), Received)  # 0: the unit does not know UTC

@@ -65,15 +65,15 @@ class Station:
     def act(self, action: Action) -> None:
         header = self.header(STATION_ID)
         done = OperatorAction(header, str(header.seq), "chief", action)
-        self.hear(OPERATOR.key(STATION_ID), done)
+        self.receive(OPERATOR.key(STATION_ID), done)
 
     def header(self, sender: str) -> Header:
         return Header(sender, 1, next(self.said[sender]), self.t_ns, self.t_ns)
 
-    def hear(self, key: str, message: Message) -> None:
+    def receive(self, key: str, message: Message) -> None:
         self.keeping.append_and_apply(self.t_ns, key, encode(message))
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         self.projector.take(self.t_ns)
         self.publisher.publish_delta(health=True)
         self.screen.deltas.clear()
@@ -102,10 +102,10 @@ def walk_on(station: Station, walk: Walk, rng: np.random.Generator, until_s: int
             heading_rad=rng.normal(math.atan2(ahead_m[1], ahead_m[0]), 0.05),
             std_north_m=0.1 + 0.005 * position.distance_m,
         )
-        station.hear(POSITION.key(UNIT), walked)
-        station.hear(STATUS.key(UNIT), message_factory.status(station.header(UNIT)))
-        station.hear(TICK.key(STATION_ID), Tick(station.header(STATION_ID), station.t_ns))
-        station.tell()
+        station.receive(POSITION.key(UNIT), walked)
+        station.receive(STATUS.key(UNIT), message_factory.status(station.header(UNIT)))
+        station.receive(TICK.key(STATION_ID), Tick(station.header(STATION_ID), station.t_ns))
+        station.publish()
 
 
 def size_bytes(of: Iterable[object], but: Iterable[object] = ()) -> int:

@@ -17,7 +17,7 @@ U = "FF-01"
 T_NS = 1_700_000_000 * NS_PER_S
 
 
-def said(seq: int, boot_id: int = 7) -> bytes:
+def temperature(seq: int, boot_id: int = 7) -> bytes:
     return encode(Temperature(Header(U, boot_id, seq, 100 * NS_PER_S), 20.0))
 
 
@@ -39,13 +39,13 @@ def state() -> StationState:
     ],
 )
 def test_a_message_that_came_before_is_not_logged_again(state: StationState, key: str) -> None:
-    assert classify(key, event_of(T_NS, key, said(1)), state) is Admission.DUPLICATE
+    assert classify(key, event_of(T_NS, key, temperature(1)), state) is Admission.DUPLICATE
     new = key.replace("7/1/", "7/2/")
-    assert classify(new, event_of(T_NS, new, said(2)), state) is Admission.ACCEPT
+    assert classify(new, event_of(T_NS, new, temperature(2)), state) is Admission.ACCEPT
 
 
 @pytest.mark.parametrize(
-    ("key", "heard"),
+    ("key", "admission"),
     [
         (ALARM.key(STATION_ID), Admission.FORGED),
         (EVENT.key(U), Admission.ACCEPT_URGENT),
@@ -54,9 +54,9 @@ def test_a_message_that_came_before_is_not_logged_again(state: StationState, key
     ],
 )
 def test_unreadable_message_is_kept_and_forged_one_rejected(
-    state: StationState, key: str, heard: Admission
+    state: StationState, key: str, admission: Admission
 ) -> None:
-    assert classify(key, event_of(T_NS, key, b"rotten"), state) is heard
+    assert classify(key, event_of(T_NS, key, b"rotten"), state) is admission
 
 
 def test_one_more_start_than_there_can_be_is_left_out_and_comes_from_the_journal(
@@ -65,5 +65,5 @@ def test_one_more_start_than_there_can_be_is_left_out_and_comes_from_the_journal
     for boot_id in range(8, 7 + STARTS_KEPT):
         state.units[U].accept(TEMPERATURE, Header(U, boot_id, 1, T_NS), T_NS)
     live, later = TEMPERATURE.key(U), backfilled_key(U, TEMPERATURE.suffix)
-    for key, heard in ((live, Admission.RESTART_STORM), (later, Admission.ACCEPT)):
-        assert classify(key, event_of(T_NS, key, said(1, boot_id=99)), state) is heard
+    for key, admission in ((live, Admission.RESTART_STORM), (later, Admission.ACCEPT)):
+        assert classify(key, event_of(T_NS, key, temperature(1, boot_id=99)), state) is admission

@@ -36,7 +36,7 @@ class Log:
         return self.takes
 
 
-def told(health: HealthMonitor) -> list[tuple[str, str]]:
+def reported(health: HealthMonitor) -> list[tuple[str, str]]:
     return [(report.part, report.text) for report in health.check({}, {})]
 
 
@@ -50,15 +50,15 @@ def test_what_a_crash_would_take_from_the_log_is_not_saved(tmp_path: Path) -> No
     saved = checkpoints.latest()
     assert saved is not None
     assert (saved.t_ns, saved.events_at_t) == (100, 3)
-    assert told(health) == []
+    assert reported(health) == []
 
 
 @pytest.mark.parametrize(
-    ("error", "said"),
+    ("error", "reason"),
     [(OSError(28, "No space left on device"), "free the disk"), (KeyError("x"), "please report")],
 )
 def test_failed_checkpoint_is_reported_until_one_is_saved(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, said: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception, reason: str
 ) -> None:
     log, checkpoints, health = Log(), Checkpoints(tmp_path), HealthMonitor()
 
@@ -70,15 +70,15 @@ def test_failed_checkpoint_is_reported_until_one_is_saved(
     log.may_flush.clear()
     writer.begin((100, 1), STATE)
     writer.check()
-    assert (writer.is_under_way, told(health)) == (True, [])
+    assert (writer.is_under_way, reported(health)) == (True, [])
     log.may_flush.set()
     until(lambda: not writer.is_under_way)
     writer.check()
-    ((part, text),) = told(health)
+    ((part, text),) = reported(health)
     assert part == PART
-    assert said in text
+    assert reason in text
     writer.check()
-    assert told(health) == []
+    assert reported(health) == []
 
 
 def test_one_is_saved_after_the_other(tmp_path: Path) -> None:

@@ -46,7 +46,7 @@ def alarm_of(unit_id: str) -> AlarmChange:
     )  # fmt: skip
 
 
-def told(screen: Screen) -> list[Delta]:
+def new_deltas(screen: Screen) -> list[Delta]:
     """What was told since this was asked last."""
     deltas = screen.deltas.copy()
     screen.deltas.clear()
@@ -61,11 +61,11 @@ def test_delta_has_a_change_once_and_health_on_request() -> None:
     screen = Screen()
     publisher = walked(screen)
     publisher.publish_delta()
-    assert told(screen) == []
+    assert new_deltas(screen) == []
     publisher.mark_changed([UnitChanged("FF-01"), UnitChanged("FF-01")])
     for health in (False, False, True):
         publisher.publish_delta(health)
-    unit, health_only = told(screen)
+    unit, health_only = new_deltas(screen)
     assert units_of([unit, health_only]) == [["FF-01"], []]
     assert (unit.health is None, health_only.health is None) == (True, False)
     assert (unit.pins, unit.beacons, unit.replay) == (None, None, None)
@@ -77,14 +77,14 @@ def test_deferred_change_goes_with_health_or_the_next_change_of_its_unit() -> No
     publisher = walked(screen)
     publisher.mark_changed([UnitChanged("FF-01", soon=False), UnitChanged("FF-02", soon=False)])
     publisher.publish_delta()
-    assert told(screen) == []
+    assert new_deltas(screen) == []
     publisher.mark_changed([UnitChanged("FF-02")])
     for health in (False, True, True):
         publisher.publish_delta(health)
-    assert units_of(told(screen)) == [["FF-02"], ["FF-01"], []]
+    assert units_of(new_deltas(screen)) == [["FF-02"], ["FF-01"], []]
     publisher.mark_changed([UnitChanged("FF-03", soon=False)])
     publisher.publish_delta(replay=REPLAY)
-    (shown,) = told(screen)
+    (shown,) = new_deltas(screen)
     assert (units_of([shown]), shown.replay) == ([["FF-03"]], REPLAY)
 
 
@@ -99,7 +99,7 @@ def test_alarms_commands_and_pins_are_urgent_until_they_are_published() -> None:
         publisher.publish_delta()
         urgent.append(publisher.is_urgent)
         assert urgent == [False, True, False]
-        (shown,) = told(screen)
+        (shown,) = new_deltas(screen)
         raised = isinstance(output, AlarmChange)
         assert [one.alarm_id for one in shown.alarms] == (["a1"] if raised else [])
         unit_id = output.unit_id if isinstance(output, AlarmChange) else ""
@@ -114,9 +114,9 @@ def test_erasure_resets_all_consoles_whatever_was_pending() -> None:
     publisher = walked(screen)
     publisher.mark_changed([alarm_of("FF-03"), NamesErased()])
     publisher.publish_delta()
-    assert (told(screen), len(screen.resets)) == ([], 1)
+    assert (new_deltas(screen), len(screen.resets)) == ([], 1)
     publisher.publish_delta()
-    assert (told(screen), len(screen.resets)) == ([], 1)
+    assert (new_deltas(screen), len(screen.resets)) == ([], 1)
 
 
 def test_another_incident_resets_all_consoles_with_what_was_pending() -> None:
@@ -131,7 +131,7 @@ def test_another_incident_resets_all_consoles_with_what_was_pending() -> None:
     publisher.publish_delta(health=True)
     (whole,) = screen.resets
     assert whole.incident is not None
-    (after,) = told(screen)
+    (after,) = new_deltas(screen)
     assert units_of([after]) == [[]]
     assert (after.alarms, after.pins, after.seq) == ((), None, whole.seq + 1)
 
@@ -158,7 +158,7 @@ def test_console_that_joins_continues_with_the_next_delta() -> None:
     shown, _ = publisher.snapshot()
     publisher.mark_changed([UnitChanged("FF-02")])
     publisher.publish_delta()
-    before, after = told(screen)
+    before, after = new_deltas(screen)
     assert (before.seq, after.seq) == (shown.seq, shown.seq + 1)
     assert units_of([before, after]) == [["FF-01"], ["FF-02"]]
     assert after.pins is None

@@ -33,14 +33,14 @@ def test_what_was_refused_is_not_in_the_tables(is_refused: bool) -> None:
 
 def test_time_of_the_last_message_is_projected_in_steps() -> None:
     projector = Projector()
-    told = []
+    projected_ns = []
     for second in range(12):
         t_ns = T_NS + second * NS_PER_S
         message = Temperature(Header("FF-01", 7, second + 1, t_ns), 20.0)
         projector.note(Received(t_ns, "FF-01", message), [UnitChanged("FF-01")])
         if (projection := projector.take(t_ns)) is not None:
-            told += [heard_ns for _, heard_ns in projection.heard]
-    assert told == [T_NS, T_NS + LAST_MESSAGE_STEP_NS, T_NS + 2 * LAST_MESSAGE_STEP_NS]
+            projected_ns += [t_ns for _, t_ns in projection.heard]
+    assert projected_ns == [T_NS, T_NS + LAST_MESSAGE_STEP_NS, T_NS + 2 * LAST_MESSAGE_STEP_NS]
 
 
 def test_the_agent_that_tracks_for_a_unit_is_no_unit() -> None:

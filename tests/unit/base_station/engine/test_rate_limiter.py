@@ -15,25 +15,25 @@ KEY, ALERT, OTHER = POSITION.key("evil"), EVENT.key("evil"), STATUS.key("anna")
 class Station:
     def __init__(self) -> None:
         self.clock = ManualClock()
-        self.heard: list[str] = []
+        self.passed: list[str] = []
         self.known: dict[str, str] = {}
         self.start()
 
     def start(self) -> None:
         """Again, with what the log knows."""
-        self.share = SenderRateLimiter(lambda key, _: self.heard.append(key), self.clock)
+        self.share = SenderRateLimiter(lambda key, _: self.passed.append(key), self.clock)
 
-    def hear(self, key: str, times: int, size: int = 100) -> int:
+    def offered(self, key: str, times: int, size: int = 100) -> int:
         """How many of them come through."""
-        before = self.heard.count(key)
+        before = self.passed.count(key)
         for _ in range(times):
             self.share.offer(key, bytes(size))
-        return self.heard.count(key) - before
+        return self.passed.count(key) - before
 
     def flood(self, seconds: int) -> None:
         for _ in range(10 * seconds):
             self.clock.advance(0.1)
-            self.hear(KEY, MESSAGES_HZ)
+            self.offered(KEY, MESSAGES_HZ)
 
     def changes(self) -> list[tuple[str, bool]]:
         reports = list(self.share.changes(self.known))
@@ -50,43 +50,43 @@ def station() -> Station:
 
 
 def test_messages_beyond_the_share_are_dropped_and_those_of_others_kept(station: Station) -> None:
-    assert station.hear(KEY, 10_000) == MESSAGES_HZ
-    assert station.hear(OTHER, 50) == 50
+    assert station.offered(KEY, 10_000) == MESSAGES_HZ
+    assert station.offered(OTHER, 50) == 50
     station.clock.advance(0.5)
-    assert station.hear(KEY, 10_000) == MESSAGES_HZ // 2
+    assert station.offered(KEY, 10_000) == MESSAGES_HZ // 2
     station.clock.advance(3600.0)
-    assert station.hear(KEY, 10_000) == MESSAGES_HZ
+    assert station.offered(KEY, 10_000) == MESSAGES_HZ
 
 
 def test_alerts_have_a_share_of_their_own(station: Station) -> None:
-    station.hear(KEY, 10_000)
-    assert station.hear(ALERT, 1000) == ALERTS_HZ
+    station.offered(KEY, 10_000)
+    assert station.offered(ALERT, 1000) == ALERTS_HZ
 
 
 def test_bytes_count_too(station: Station) -> None:
-    assert station.hear(KEY, 100, size=50_000) == BYTES_PER_S // 50_000
+    assert station.offered(KEY, 100, size=50_000) == BYTES_PER_S // 50_000
 
 
 def test_messages_to_a_unit_do_not_count_as_its_own(station: Station) -> None:
-    station.hear(KEY, 10_000)
-    assert station.hear(COMMAND.key("evil"), 1000) == 1000
+    station.offered(KEY, 10_000)
+    assert station.offered(COMMAND.key("evil"), 1000) == 1000
 
 
 def test_a_key_that_no_unit_has_is_held_to_a_share(station: Station) -> None:
-    assert station.hear("muster/v1", 10_000) == MESSAGES_HZ
+    assert station.offered("muster/v1", 10_000) == MESSAGES_HZ
 
 
 def test_unit_at_the_usual_rate_is_never_limited(station: Station) -> None:
     for _ in range(1000):
         station.clock.advance(0.1)
-        assert station.hear(KEY, 5, size=1000) == 5
+        assert station.offered(KEY, 5, size=1000) == 5
     station.clock.advance(5.0)
-    assert station.hear(KEY, 250, size=1000) == 250, "what a link has held up"
+    assert station.offered(KEY, 250, size=1000) == 250, "what a link has held up"
     assert station.changes() == []
 
 
 def test_flood_is_reported_once_and_so_is_its_end(station: Station) -> None:
-    station.hear(KEY, 10_000)
+    station.offered(KEY, 10_000)
     assert station.changes() == [], "one burst"
     station.flood(5)
     assert station.changes() == [("flood evil", True)]
@@ -128,7 +128,7 @@ def test_dismissed_flood_is_not_reported_again_while_it_lasts(
 
 def test_bursts_far_apart_are_no_flood(station: Station) -> None:
     for _ in range(10):
-        station.hear(KEY, 2 * MESSAGES_HZ)
+        station.offered(KEY, 2 * MESSAGES_HZ)
         station.clock.advance(5.0)
     assert station.changes() == []
 

@@ -57,9 +57,9 @@ def test_late_alert_is_of_the_wearer_at_its_time(script: Script, kind: EventKind
 
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
-@pytest.mark.parametrize("knew_time", [False, True])
+@pytest.mark.parametrize("has_time", [False, True])
 def test_alert_of_a_run_without_live_messages_names_possible_wearers(
-    script: Script, kind: EventKind, knew_time: bool
+    script: Script, kind: EventKind, has_time: bool
 ) -> None:
     """Its monotonic clock says nothing; where it knew the station's time, that does."""
     texts = []
@@ -69,7 +69,7 @@ def test_alert_of_a_run_without_live_messages_names_possible_wearers(
         script.boot_ids[U] = 6
         header = script.header(U)
         script.boot_ids[U] = 7
-        if knew_time:
+        if has_time:
             header = msgspec.structs.replace(header, t_utc_ns=script.t_ns, utc_std_s=0.1)
         if name == "Ana":
             of_ana = encode(UnitEvent(header, kind))
@@ -81,8 +81,8 @@ def test_alert_of_a_run_without_live_messages_names_possible_wearers(
     script.event(U, kind)
     texts.append(script.alarms[-1].text)
     text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
-    of_whom = "Ana" if knew_time else "Bo or, before, Ana"
-    assert texts == [text.format(of_whom), text.format("Bo")]
+    wearer = "Ana" if has_time else "Bo or, before, Ana"
+    assert texts == [text.format(wearer), text.format("Bo")]
 
 
 def test_who_alone_has_worn_a_unit_is_who_pressed_whenever_that_was(script: Script) -> None:
@@ -139,19 +139,19 @@ def test_two_wearers_of_one_unit_are_two_people_in_need(
 def test_alarms_of_other_kinds_and_units_of_the_same_time_are_others(script: Script) -> None:
     units = (U, "FF-02")
     script.register("FF-02")
-    said_by: dict[str, list[tuple[str, UnitEvent]]] = {}
+    events_of: dict[str, list[tuple[str, UnitEvent]]] = {}
     for name in ("Ana", "Bo"):
         for unit_id in units:
             script.act(Assign(unit_id, name + unit_id, name + unit_id, "", ""))
         script.wait(3, lambda: [script.status(unit_id) for unit_id in units])
-        said_by[name] = [
+        events_of[name] = [
             (unit_id, UnitEvent(script.header(unit_id), kind))
             for unit_id in units
             for kind in (EventKind.MAYDAY, EventKind.FALL)
         ]
         script.wait(3)
     for name in ("Bo", "Ana"):
-        for unit_id, event in said_by[name]:
+        for unit_id, event in events_of[name]:
             script.record(backfilled_key(unit_id, EVENT.suffix), encode(event))
     for unit_id, kind in ((U, EventKind.FALL), ("FF-02", EventKind.MAYDAY)):
         script.event(unit_id, kind)

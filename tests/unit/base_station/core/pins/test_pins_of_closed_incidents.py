@@ -102,7 +102,7 @@ CHANGES: dict[str, Change] = {
 }
 
 
-def speaks(story: Story) -> None:
+def sends_positions(story: Story) -> None:
     story.go(5)
 
 
@@ -120,7 +120,7 @@ def is_backfilled(story: Story) -> None:
     story.script.backfill(15)
 
 
-CIRCUMSTANCES = (speaks, is_silent, is_backfilled)
+CIRCUMSTANCES = (sends_positions, is_silent, is_backfilled)
 
 
 @pytest.fixture(scope="module", params=CIRCUMSTANCES, ids=lambda one: one.__name__)
@@ -130,7 +130,7 @@ def walked(request: pytest.FixtureRequest) -> Story:
     return story
 
 
-def told(change: str, walked: Story) -> Story:
+def changed_story(change: str, walked: Story) -> Story:
     story = copy(walked)
     story.script = walked.script.restarted()
     for action in CHANGES[change](story):
@@ -142,7 +142,7 @@ def told(change: str, walked: Story) -> Story:
 @pytest.mark.slow
 @pytest.mark.parametrize("change", CHANGES)
 def test_markers_trails_and_consoles_follow(change: str, walked: Story) -> None:
-    script = told(change, walked).script
+    script = changed_story(change, walked).script
     shown = markers(script)
     assert shown == markers(looked_at_again(script)), "at once, whoever is silent too"
 

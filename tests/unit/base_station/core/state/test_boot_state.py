@@ -23,7 +23,7 @@ class Unit:
     def __init__(self) -> None:
         self.boot = BootState(7)
 
-    def heard(
+    def note_message(
         self, at_s: float, slower_s: float = 0.0, utc_error_s: float | None = None, std_s: float = 0
     ) -> bool:
         """A message that took so much longer than the quickest; utc_error_s: the unit's."""
@@ -40,8 +40,8 @@ class Unit:
 @pytest.mark.parametrize(("slower_s", "now"), [(0.0, True), (4.9, True), (5.1, False)])
 def test_a_message_is_of_now_when_it_was_hardly_held_up(slower_s: float, now: bool) -> None:
     unit = Unit()
-    assert unit.heard(0.0)
-    assert unit.heard(10.0, slower_s) is now
+    assert unit.note_message(0.0)
+    assert unit.note_message(10.0, slower_s) is now
     assert unit.boot.first_live_ns == STATION_NS
     newest_s = 10.0 - slower_s if now else 0.0
     assert unit.boot.last_live_ns == pytest.approx(STATION_NS + ns(newest_s), abs=ns(0.01))
@@ -49,8 +49,8 @@ def test_a_message_is_of_now_when_it_was_hardly_held_up(slower_s: float, now: bo
 
 def test_what_comes_sooner_than_any_before_was_captured_when_it_came_at_the_latest() -> None:
     unit = Unit()
-    unit.heard(0.0)
-    assert unit.heard(10.0, slower_s=-2.0)
+    unit.note_message(0.0)
+    assert unit.note_message(10.0, slower_s=-2.0)
     assert unit.boot.last_live_ns == STATION_NS + ns(10.0)
     assert unit.placed_s(12.0) == pytest.approx(10.0)
 
@@ -67,7 +67,7 @@ def test_what_comes_sooner_than_any_before_was_captured_when_it_came_at_the_late
 def test_message_with_another_known_time_is_not_live(
     utc_error_s: float, std_s: float, now: bool
 ) -> None:
-    assert Unit().heard(0.0, utc_error_s=utc_error_s, std_s=std_s) is now
+    assert Unit().note_message(0.0, utc_error_s=utc_error_s, std_s=std_s) is now
 
 
 @pytest.mark.parametrize(
@@ -87,28 +87,28 @@ def test_the_unit_s_own_estimate_is_taken_where_it_can_be(
     utc_error_s: float, std_s: float, placed_s: float
 ) -> None:
     unit = Unit()
-    unit.heard(0.0, utc_error_s=utc_error_s, std_s=std_s)
+    unit.note_message(0.0, utc_error_s=utc_error_s, std_s=std_s)
     assert unit.placed_s(0.0) == pytest.approx(placed_s, abs=1e-6)
 
 
 def test_an_estimate_that_is_lost_again_is_not_kept() -> None:
     unit = Unit()
-    unit.heard(0.0, utc_error_s=-1.0, std_s=0.01)
-    unit.heard(1.0)
+    unit.note_message(0.0, utc_error_s=-1.0, std_s=0.01)
+    unit.note_message(1.0)
     assert unit.placed_s(1.0) == pytest.approx(1.0, abs=1e-3)
 
 
 def test_a_clock_that_was_set_is_believed_after_twenty_messages_in_a_row() -> None:
     unit = Unit()
-    unit.heard(0.0)
+    unit.note_message(0.0)
     for second in range(1, 20):
-        unit.heard(100.0 + second, slower_s=90.0)
+        unit.note_message(100.0 + second, slower_s=90.0)
     assert unit.placed_s(30.0) == pytest.approx(30.0, abs=0.1)
-    unit.heard(120.0)  # one that is not late: the link it was, and no clock
+    unit.note_message(120.0)  # one that is not late: the link it was, and no clock
     for second in range(1, 20):
-        unit.heard(220.0 + second, slower_s=90.0)
+        unit.note_message(220.0 + second, slower_s=90.0)
     assert unit.placed_s(150.0) == pytest.approx(150.0, abs=0.1)
-    assert unit.heard(240.0, slower_s=90.0)
+    assert unit.note_message(240.0, slower_s=90.0)
     assert unit.placed_s(150.0) == pytest.approx(240.0, abs=0.1)
 
 
@@ -117,23 +117,23 @@ def test_a_link_that_is_slow_for_long_is_no_clock_that_was_set(
     slower_s: float, is_taken: bool
 ) -> None:
     unit = Unit()
-    unit.heard(0.0)
+    unit.note_message(0.0)
     for second in range(25):
-        unit.heard(100.0 + second / 10, slower_s=slower_s)
+        unit.note_message(100.0 + second / 10, slower_s=slower_s)
     assert (unit.placed_s(0.0) > 50.0) is is_taken
     assert unit.placed_s(0.0) == pytest.approx(slower_s if is_taken else 0.0, abs=0.1)
 
 
 @pytest.mark.parametrize(
-    ("utc_error_s", "std_s", "told_s"),
+    ("utc_error_s", "std_s", "stated_s"),
     [(0.0, 0.1, -30.0), (40.0, 0.1, 0.0), (0.0, 0.0, None)],
     ids=["it knew the time", "it is ahead", "it knew no time"],
 )
 @pytest.mark.parametrize("boots", [(), (BootState(6),), (BootState(7),)])
 def test_run_without_live_messages_is_dated_by_the_unit(
-    boots: tuple[BootState, ...], utc_error_s: float, std_s: float, told_s: float | None
+    boots: tuple[BootState, ...], utc_error_s: float, std_s: float, stated_s: float | None
 ) -> None:
     """Thirty seconds ago by the station's clock; nothing is said later than it comes."""
     header = Header("FF-01", 7, 1, UPTIME_NS, STATION_NS + ns(utc_error_s - 30.0), std_s)
-    event_time_ns = None if told_s is None else STATION_NS + ns(told_s)
+    event_time_ns = None if stated_s is None else STATION_NS + ns(stated_s)
     assert expected_event_time_ns(boots, header, STATION_NS) == event_time_ns

@@ -17,7 +17,7 @@ from shared.messages import Header
 NOW_NS = 1_700_000_000 * NS_PER_S
 
 
-def said(seq: int, mono_s: float = 100.0, boot_id: int = 7) -> Header:
+def header_of(seq: int, mono_s: float = 100.0, boot_id: int = 7) -> Header:
     return Header("FF-01", boot_id, seq, round(mono_s * NS_PER_S))
 
 
@@ -25,7 +25,7 @@ def said(seq: int, mono_s: float = 100.0, boot_id: int = 7) -> Header:
 def sender() -> MessageStream:
     """The fifth message of its run came, of its hundredth second."""
     sender = MessageStream("FF-01")
-    assert sender.accept(STATUS, said(5), NOW_NS) == "new"
+    assert sender.accept(STATUS, header_of(5), NOW_NS) == "new"
     return sender
 
 
@@ -42,15 +42,15 @@ def sender() -> MessageStream:
 def test_message_before_one_that_came_is_old(
     sender: MessageStream, channel: Channel, seq: int, mono_s: float, worth: str
 ) -> None:
-    assert sender.accept(channel, said(seq, mono_s), NOW_NS) == worth
+    assert sender.accept(channel, header_of(seq, mono_s), NOW_NS) == worth
 
 
 def test_clock_of_an_earlier_run_does_not_date_a_new_one(
     sender: MessageStream,
 ) -> None:
     """Monotonic time begins anew with it; its first alert overtook the first status."""
-    assert sender.accept(EVENT, said(2, 2.0, boot_id=8), NOW_NS) == "new"
-    assert sender.accept(STATUS, said(1, 1.0, boot_id=8), NOW_NS) == "new"
+    assert sender.accept(EVENT, header_of(2, 2.0, boot_id=8), NOW_NS) == "new"
+    assert sender.accept(STATUS, header_of(1, 1.0, boot_id=8), NOW_NS) == "new"
 
 
 @pytest.mark.parametrize("channel", [STATUS, GPS])
@@ -60,7 +60,7 @@ def test_time_of_a_fix_does_not_change_the_units_clock(
     """A receiver may be wrong about that, and would move everything that the unit says."""
     [boot] = sender.boots
     before_ns = boot.offset_ns
-    sender.accept(channel, said(6, 107.0), NOW_NS)
+    sender.accept(channel, header_of(6, 107.0), NOW_NS)
     assert boot.offset_ns - before_ns == (0 if channel is GPS else -7 * NS_PER_S)
 
 
@@ -89,20 +89,20 @@ def test_backfilled_run_is_shown_once_it_comes_live(
 ) -> None:
     """It began while its unit was still taken for there, and was asked for what it has at once."""
     sender.accept_backfilled(8, 1)
-    assert sender.accept(STATUS, said(2, 3.0, boot_id=8), NOW_NS + NS_PER_S) == "new"
+    assert sender.accept(STATUS, header_of(2, 3.0, boot_id=8), NOW_NS + NS_PER_S) == "new"
     assert sender.boots[-1].boot_id == 8
-    assert sender.accept(STATUS, said(6, 101.0), NOW_NS + 2 * NS_PER_S) == "old"
+    assert sender.accept(STATUS, header_of(6, 101.0), NOW_NS + 2 * NS_PER_S) == "old"
 
 
 def test_what_a_goodbye_overtook_does_not_take_it_back(sender: MessageStream) -> None:
     """It is an alert, and goes ahead of what was said before it."""
     for seq, channel, goodbye in ((9, EVENT, True), (8, POSITION, False), (7, STATUS, False)):
-        assert sender.accept(channel, said(seq, 100.0 + seq), NOW_NS) == "new"
+        assert sender.accept(channel, header_of(seq, 100.0 + seq), NOW_NS) == "new"
         if goodbye:
             sender.stopped_ns = NOW_NS  # as ``units.apply_message`` does
     assert sender.stopped_ns == NOW_NS
     left = []
-    for later in (said(10, 110.0), said(1, 1.0, boot_id=8)):
+    for later in (header_of(10, 110.0), header_of(1, 1.0, boot_id=8)):
         sender.stopped_ns = NOW_NS
         sender.accept(STATUS, later, NOW_NS)
         left.append(sender.stopped_ns)
@@ -114,12 +114,12 @@ def test_more_starts_in_a_minute_than_there_can_be_are_nobodys_program(
 ) -> None:
     for number in range(1, STARTS_KEPT):
         assert not sender.is_restart_storm(100 + number, NOW_NS + number)
-        sender.accept(STATUS, said(1, boot_id=100 + number), NOW_NS + number)
+        sender.accept(STATUS, header_of(1, boot_id=100 + number), NOW_NS + number)
     soon_ns, later_ns = NOW_NS + RESTART_STORM_NS - 1, NOW_NS + RESTART_STORM_NS
     assert sender.is_restart_storm(200, soon_ns)
     assert not sender.is_restart_storm(101, soon_ns), "it has begun before"
     assert not sender.is_restart_storm(200, later_ns)
-    sender.accept(STATUS, said(1, boot_id=200), later_ns)
+    sender.accept(STATUS, header_of(1, boot_id=200), later_ns)
     assert sender.is_restart_storm(201, later_ns), "the newest ones count"
 
 
@@ -135,17 +135,17 @@ def test_who_is_silent_is_stale_and_then_lost(
 
 def test_a_second_machine_is_shown_when_the_first_has_been_silent(sender: MessageStream) -> None:
     """Until then its messages are kept, and change nothing that is shown."""
-    sender.accept(STATUS, said(1, 5.0, boot_id=8), NOW_NS)
+    sender.accept(STATUS, header_of(1, 5.0, boot_id=8), NOW_NS)
     for second, worth in ((9.9, "old"), (10.0, "new"), (10.1, "new")):
-        header = said(5 + round(10 * second), 100.0 + second)
+        header = header_of(5 + round(10 * second), 100.0 + second)
         assert sender.accept(STATUS, header, NOW_NS + round(second * NS_PER_S)) == worth
     assert sender.boots[-1].boot_id == 7
 
 
 def test_a_word_that_was_held_up_does_not_bring_back_the_run_before(sender: MessageStream) -> None:
-    assert sender.accept(STATUS, said(1, 1.0, boot_id=8), NOW_NS + NS_PER_S) == "new"
+    assert sender.accept(STATUS, header_of(1, 1.0, boot_id=8), NOW_NS + NS_PER_S) == "new"
     late_ns = NOW_NS + 60 * NS_PER_S
-    assert sender.accept(STATUS, said(6, 101.0), late_ns) == "old"
+    assert sender.accept(STATUS, header_of(6, 101.0), late_ns) == "old"
     assert [boot.boot_id for boot in sender.boots] == [7, 8]
 
 
@@ -153,7 +153,7 @@ def test_newest_of_several_devices_under_one_name_is_shown(sender: MessageStream
     for second in range(60):
         there = [7, *([8] if second < 30 else []), *([9] if second >= 20 else [])]
         for boot_id in there:
-            header = said(10 + second, 100.0 + second, boot_id)
+            header = header_of(10 + second, 100.0 + second, boot_id)
             sender.accept(STATUS, header, NOW_NS + second * NS_PER_S)
     assert sender.boots[-1].boot_id == 9
     assert sender.duplicate_device is not None
@@ -165,7 +165,7 @@ def test_two_runs_that_were_there_together_for_five_seconds_are_two_machines(
 ) -> None:
     for second, is_twin in ((0.0, False), (4.9, False), (5.0, True)):
         for boot_id in (7, 8):
-            header = said(6 + round(10 * second), 100.0 + second, boot_id=boot_id)
+            header = header_of(6 + round(10 * second), 100.0 + second, boot_id=boot_id)
             sender.accept(STATUS, header, NOW_NS + round(second * NS_PER_S))
         assert (sender.duplicate_device is not None) == is_twin
 
@@ -175,5 +175,5 @@ def test_unit_without_link_is_stale_until_its_next_message(sender: MessageStream
     sender.is_unlinked = True
     assert sender.link_at(NOW_NS + NS_PER_S) == "stale"
     assert sender.link_at(NOW_NS + 30 * NS_PER_S) == "lost"
-    sender.accept(STATUS, said(6, 101.0), NOW_NS + 2 * NS_PER_S)
+    sender.accept(STATUS, header_of(6, 101.0), NOW_NS + 2 * NS_PER_S)
     assert sender.link_at(NOW_NS + 3 * NS_PER_S) == "live"

@@ -17,14 +17,14 @@ def script() -> Script:
     return script
 
 
-def said(script: Script) -> None:
+def send_messages(script: Script) -> None:
     script.status("FF-01")
     script.position("FF-01", script.now_s, 0.0)
 
 
 def test_silence_turns_the_light_and_is_its_reason(script: Script) -> None:
     """Amber about the unit's own start, red once it is lost."""
-    script.wait(20.0, lambda: said(script))
+    script.wait(20.0, lambda: send_messages(script))
     script.wait(60.0)
     tally = script.pipeline.state.units["FF-01"].trust
     assert tally.green_s == 0.0
@@ -50,23 +50,23 @@ def test_wearer_of_a_unit_without_any_contact_is_red(script: Script) -> None:
 def test_one_that_was_switched_off_in_order_has_no_light_until_it_is_on_again(
     script: Script,
 ) -> None:
-    script.wait(20.0, lambda: said(script))
+    script.wait(20.0, lambda: send_messages(script))
     script.event("FF-01", EventKind.STOPPED)
     tally = script.pipeline.state.units["FF-01"].trust
     before_s = tally.green_s + tally.amber_s + tally.red_s
     script.wait(60.0)
     assert tally.green_s + tally.amber_s + tally.red_s == before_s
     assert "not heard" not in tally.causes
-    script.wait(10.0, lambda: said(script))
+    script.wait(10.0, lambda: send_messages(script))
     script.wait(60.0)
     assert tally.causes["not heard"] > 31.0
 
 
 def test_only_while_an_incident_is_open_and_from_its_beginning(script: Script) -> None:
-    script.wait(20.0, lambda: said(script))
+    script.wait(20.0, lambda: send_messages(script))
     script.act(CloseIncident("i1"))
     before_s = script.pipeline.state.units["FF-01"].trust.amber_s
-    script.wait(20.0, lambda: said(script))
+    script.wait(20.0, lambda: send_messages(script))
     assert script.pipeline.state.units["FF-01"].trust.amber_s == before_s
     script.act(OpenIncident("i2", "Elm Street"))
     assert script.pipeline.state.units["FF-01"].trust.amber_s == 0.0
@@ -74,7 +74,7 @@ def test_only_while_an_incident_is_open_and_from_its_beginning(script: Script) -
 
 @pytest.mark.parametrize(("away_s", "seen_s"), [(5.0, 5.0), (6.0, 0.0), (3600.0, 0.0)])
 def test_a_station_that_was_away_saw_no_light(script: Script, away_s: float, seen_s: float) -> None:
-    script.wait(10.0, lambda: said(script))
+    script.wait(10.0, lambda: send_messages(script))
     before = script.pipeline.state.units["FF-01"].trust.amber_s
     script.now_s += away_s
     script.tick()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.core.state import UnitState
-from base_station.core.state.exposure import ExposureInterval
+from base_station.core.state.unit_heat import ExposureInterval
 from base_station.core.units.thermal_dose import MAX_INTERVALS, add_late, add_live, dose_of
 from shared.channels import TEMPERATURE, backfilled_key
 from shared.clock import NS_PER_S
@@ -86,7 +86,7 @@ def degc_at(second: int) -> float:
     return {0: 20.0, 1: 120.0, 2: 280.0, 3: 90.0}[second // 15 % 4]
 
 
-def told(lost: range, boots: dict[int, int], pieces: int = 2) -> JournaledScript:
+def backfilled_script(lost: range, boots: dict[int, int], pieces: int = 2) -> JournaledScript:
     """Two minutes of temperatures, of which some come late."""
     script = JournaledScript()
     script.register(U)
@@ -110,7 +110,7 @@ def told(lost: range, boots: dict[int, int], pieces: int = 2) -> JournaledScript
 def test_what_a_journal_brings_counts_as_what_came_live(
     lost: range, boots: dict[int, int], pieces: int
 ) -> None:
-    all_live, some_late = told(range(0), boots), told(lost, boots, pieces)
+    all_live, some_late = backfilled_script(range(0), boots), backfilled_script(lost, boots, pieces)
     assert unit(all_live).heat.dose > 0.4
     assert unit(some_late).heat.dose == pytest.approx(unit(all_live).heat.dose)
     shown = unit(some_late).heat.temperature
@@ -145,7 +145,7 @@ def test_budget_used_up_without_contact_is_reported_as_late() -> None:
 
 
 def test_what_was_before_this_incident_does_not_count_in_it() -> None:
-    script = told(range(20, 70), {})
+    script = backfilled_script(range(20, 70), {})
     before = unit(script).heat.dose
     late = script.header(U, captured_s=script.now_s + 5.0)
     script.act(CloseIncident("i1"))
@@ -202,7 +202,7 @@ def test_a_reading_of_a_silence_that_is_counted_as_known_changes_nothing(late_s:
 
 
 def test_stretches_that_are_known_take_no_more_room_the_longer_it_lasts() -> None:
-    script = told(range(20, 70), {})
+    script = backfilled_script(range(20, 70), {})
     assert len(unit(script).heat.exposures) == 1
     for _ in range(MAX_INTERVALS + 300):
         script.now_s += 11.0

@@ -89,8 +89,10 @@ def test_what_everybody_errs_by_does_not_average_away() -> None:
 def test_the_axis_is_what_most_say() -> None:
     learnt = LearntBuilding()
     assert learnt.axis is None
-    for number, said_rad in enumerate((0.1, 0.12, 0.08, 0.6)):
-        learnt = learnt.with_axis(f"FF-0{number}", Axis(said_rad + number * math.pi / 2.0, 0.03**2))
+    for number, stated_rad in enumerate((0.1, 0.12, 0.08, 0.6)):
+        learnt = learnt.with_axis(
+            f"FF-0{number}", Axis(stated_rad + number * math.pi / 2.0, 0.03**2)
+        )
     assert learnt.axis is not None
     assert wrap_quarter(learnt.axis.direction_rad) == pytest.approx(0.1, abs=0.01)
     assert learnt.axis.variance == pytest.approx(0.03**2 / 3.0)
@@ -179,7 +181,7 @@ def test_who_crosses_rooms_is_not_led_astray_for_long() -> None:
     """
     axis, variance, drift_radps = DominantDirectionFilter(), 0.08**2, -0.0006
     turn_rad = true_rad = 0.0
-    doubts = []
+    sigmas = []
     for number, off_deg in enumerate(CROSSING_DEG):
         true_rad += drift_radps * 10.0
         variance += 0.015**2
@@ -187,8 +189,8 @@ def test_who_crosses_rooms_is_not_led_astray_for_long() -> None:
         segment = StraightSegment(along_rad - true_rad, 5.0, moved_s=10.0 * number)
         drift = Drift(0.0, 0.0006**2)
         turn_rad, variance = axis.update(segment, turn_rad, variance, Axis(0.0, 0.04**2), drift)
-        doubts.append((turn_rad - true_rad) / math.sqrt(variance))
-    assert max(abs(doubt) for doubt in doubts) < 3.0
+        sigmas.append((turn_rad - true_rad) / math.sqrt(variance))
+    assert max(abs(one) for one in sigmas) < 3.0
     assert abs(turn_rad - true_rad) < math.radians(8.0)
 
 

@@ -63,8 +63,8 @@ def test_what_is_everybody_s_is_part_of_a_good_receiver_s_error_and_little_of_a_
 @pytest.mark.slow
 def test_common_mode_correction_has_its_stated_variance() -> None:
     """Against drawn errors: a fix is nearer, and as near as it says."""
-    rng, left2, said2 = np.random.default_rng(2), [], []
-    common2, common_said2 = [], []
+    rng, left2, stated2 = np.random.default_rng(2), [], []
+    common2, common_stated2 = [], []
     for _ in range(200):
         common = rng.normal(0.0, COMMON_M, 2)
         own = rng.normal(0.0, math.sqrt(OWN_PART) * OWN_M, 2)
@@ -77,14 +77,14 @@ def test_common_mode_correction_has_its_stated_variance() -> None:
         error = common + rng.normal(0.0, OWN_M, 2)
         fix = common_mode_error.correct(fix_at(float(error[0]), float(error[1])), 60 * NS_PER_S)
         left2 += [fix.north_m**2, fix.east_m**2]
-        said2.append(fix.horizontal_std_m**2)
+        stated2.append(fix.horizontal_std_m**2)
         taken_m = error - [fix.north_m, fix.east_m]
         common2 += ((common - taken_m) ** 2).tolist()
         assert fix.common_m2 is not None
-        common_said2.append(fix.common_m2)
-    assert np.mean(left2) == pytest.approx(np.mean(said2), rel=0.15)
-    assert np.mean(common2) == pytest.approx(np.mean(common_said2), rel=0.15)
-    assert np.mean(said2) < 0.85 * STD_M**2
+        common_stated2.append(fix.common_m2)
+    assert np.mean(left2) == pytest.approx(np.mean(stated2), rel=0.15)
+    assert np.mean(common2) == pytest.approx(np.mean(common_stated2), rel=0.15)
+    assert np.mean(stated2) < 0.85 * STD_M**2
 
 
 @pytest.mark.parametrize("t_s", [30, 59], ids=["out of a journal", "again"])

@@ -123,10 +123,10 @@ def test_a_receiver_that_was_wrong_fits_twice_as_often_before_it_is_believed() -
     assert trust.on_within_gate()
     for _ in range(100):
         trust.on_rejected(kind, fix_at(0, 0.0), (0.0, 0.0))
-    unheard = 0
+    unused = 0
     while not trust.on_within_gate():
-        unheard += 1
-    assert unheard == kind.max_rejected_count // 2
+        unused += 1
+    assert unused == kind.max_rejected_count // 2
     assert trust.outliers.kept == []
 
 

@@ -169,25 +169,25 @@ def test_a_fix_from_the_future_is_refused(script: Script) -> None:
 def test_wrong_receiver_is_reported_until_it_is_right(
     script: Script, wrong: dict[str, float], reason: str
 ) -> None:
-    def say(fix: dict[str, float]) -> None:
+    def send_fix(fix: dict[str, float]) -> None:
         script.position(U, 0.0, 0.0)
         script.gps(U, **{"lat_deg": 52.0, "lon_deg": 4.0} | fix)
 
-    def told() -> list[tuple[str, str]]:
+    def gps_alarms() -> list[tuple[str, str]]:
         return [(one.state.name, one.text) for one in script.alarms if one.rule == "gps-unused"]
 
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
-    script.wait(5, lambda: say({}))
+    script.wait(5, lambda: send_fix({}))
     for _ in range(3):  # now and then one receiver or another errs so
-        script.wait(20, lambda: say(wrong))
-        script.wait(5, lambda: say({}))
-    assert told() == []
-    script.wait(31, lambda: say(wrong))
+        script.wait(20, lambda: send_fix(wrong))
+        script.wait(5, lambda: send_fix({}))
+    assert gps_alarms() == []
+    script.wait(31, lambda: send_fix(wrong))
     script.wait(60, lambda: script.position(U, 0.0, 0.0))
     said = f"The GPS of unit {U} is not used: {reason}"
-    assert told() == [("RAISED", said)]
-    script.wait(5, lambda: say({}))
-    assert told()[1:] == [("RESOLVED", said)]
+    assert gps_alarms() == [("RAISED", said)]
+    script.wait(5, lambda: send_fix({}))
+    assert gps_alarms()[1:] == [("RESOLVED", said)]
 
 
 def test_what_was_not_used_is_counted_anew_in_another_incident(script: Script) -> None:

@@ -18,10 +18,10 @@ STEP_S = 0.2
 
 
 def go(
-    own: OdometryIncrements, north_m: float, east_m: float, **said_as: float | Quality
+    own: OdometryIncrements, north_m: float, east_m: float, **stated: float | Quality
 ) -> OdometryIncrement:
     """To there in a fifth of a second."""
-    place = {"north_m": north_m, "east_m": east_m, "down_m": 0.0} | said_as
+    place = {"north_m": north_m, "east_m": east_m, "down_m": 0.0} | stated
     return own.increment(message_factory.position(Header("u1", 1, 1, 0), **place), STEP_S)
 
 
@@ -58,13 +58,13 @@ def test_drift_rate_follows_the_stated_heading_deviation() -> None:
     own = OdometryIncrements(KIND)
     go(own, 0.0, 0.0, heading_std_rad=0.1)
     steps = round(DRIFT_LEARNING_S / STEP_S)
-    said_radps = 5e-4
+    stated_radps = 5e-4
     for step in range(1, steps + 2):
-        std_rad = 0.1 + said_radps * step * STEP_S
+        std_rad = 0.1 + stated_radps * step * STEP_S
         drift_radps = go(own, 0.3 * step, 0.0, heading_std_rad=std_rad).drift_radps
         if step < steps:
             assert drift_radps == KIND.drift_radps
-    assert drift_radps == pytest.approx(KIND.drift_inflation * said_radps)
+    assert drift_radps == pytest.approx(KIND.drift_inflation * stated_radps)
 
 
 def test_a_heading_that_is_held_by_now_drifts_no_longer() -> None:

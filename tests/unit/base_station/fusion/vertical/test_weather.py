@@ -15,7 +15,9 @@ from tests.rig import message_factory
 SITE_M = 120.0
 
 
-def told(weather: Weather, seconds: range, rise_m: float = 0.0, name: str = "one") -> None:
+def note_pressures(
+    weather: Weather, seconds: range, rise_m: float = 0.0, name: str = "one"
+) -> None:
     for second in seconds:
         weather.note(name, second * NS_PER_S, SITE_M + rise_m, 0.0)
 
@@ -23,10 +25,10 @@ def told(weather: Weather, seconds: range, rise_m: float = 0.0, name: str = "one
 @pytest.mark.parametrize("ago_s", [10, 3600, 86_400])
 def test_a_position_whose_clock_is_wrong_makes_no_weather(ago_s: int) -> None:
     weather = Weather()
-    told(weather, range(60))
+    note_pressures(weather, range(60))
     weather.note("one", (60 - ago_s) * NS_PER_S, SITE_M + 0.5, 0.0)
     assert weather.rise_m == 0.0
-    told(weather, range(61, 90))
+    note_pressures(weather, range(61, 90))
     assert weather.rise_m == 0.0
 
 
@@ -44,10 +46,10 @@ def test_runs_that_are_over_are_not_kept() -> None:
 
 def test_barometer_that_returns_begins_at_the_held_weather() -> None:
     weather = Weather()
-    told(weather, range(100), 0.0, "one")
-    told(weather, range(100, 200), 30.0, "two")
+    note_pressures(weather, range(100), 0.0, "one")
+    note_pressures(weather, range(100, 200), 30.0, "two")
     assert weather.rise_m == 0.0
-    told(weather, range(200, 300), 60.0, "one")
+    note_pressures(weather, range(200, 300), 60.0, "one")
     assert weather.rise_m == 0.0
 
 
@@ -71,12 +73,12 @@ def test_who_climbs_makes_no_weather() -> None:
 def test_weather_is_known_while_a_barometer_shows_it() -> None:
     weather = Weather()
     assert not weather.is_known(0)
-    told(weather, range(5, 6))
+    note_pressures(weather, range(5, 6))
     assert weather.is_known(5 * NS_PER_S + FRESH_NS)
     assert not weather.is_known(5 * NS_PER_S + FRESH_NS + 1)
 
 
-def heard(
+def barometric_height(
     barometers: Barometers, unit_id: str, second: int, height_m: float, *, is_outside: bool = True
 ) -> BarometricHeight:
     header = Header(unit_id, 1, second, message_factory.mono_ns(second))
@@ -89,14 +91,19 @@ def heard(
 
 def test_weather_without_a_reference_is_of_barometers_outside() -> None:
     barometers = Barometers()
-    first = heard(barometers, "FF-02", 0, SITE_M, is_outside=False)
+    first = barometric_height(barometers, "FF-02", 0, SITE_M, is_outside=False)
     assert not first.referenced
     for second in range(100):
-        heard(barometers, "FF-01", second, SITE_M + 0.05 * second)
-        inside = heard(barometers, "FF-02", second, SITE_M + 0.05 * second, is_outside=False)
+        barometric_height(barometers, "FF-01", second, SITE_M + 0.05 * second)
+        inside = barometric_height(
+            barometers, "FF-02", second, SITE_M + 0.05 * second, is_outside=False
+        )
     assert inside.referenced
     assert inside.down_m == pytest.approx(first.down_m, abs=0.6)
-    alone = [heard(barometers, "FF-02", second, SITE_M, is_outside=False) for second in (109, 120)]
+    alone = [
+        barometric_height(barometers, "FF-02", second, SITE_M, is_outside=False)
+        for second in (109, 120)
+    ]
     assert [one.referenced for one in alone] == [True, False]
 
 
@@ -104,8 +111,8 @@ def test_weather_with_a_reference_is_of_it_alone() -> None:
     barometers = Barometers()
     barometers.set_reference("REF", -2.0)
     for second in range(60):
-        heard(barometers, "REF", second, SITE_M)
-        heard(barometers, "FF-01", second, SITE_M + 0.5 * second)
+        barometric_height(barometers, "REF", second, SITE_M)
+        barometric_height(barometers, "FF-01", second, SITE_M + 0.5 * second)
     assert barometers.weather.rise_m == 0.0
 
 
@@ -115,7 +122,7 @@ def test_another_reference_somewhere_else_moves_nobody() -> None:
     for at, (unit_id, height_m) in enumerate(places):
         barometers.set_reference(unit_id, 0.0)
         for second in range(8 * at, 8 * at + 8):
-            heard(barometers, unit_id, second, height_m)
+            barometric_height(barometers, unit_id, second, height_m)
     assert barometers.weather.rise_m == 0.0
 
 
@@ -123,7 +130,7 @@ def test_a_reference_that_is_carried_upstairs_moves_nobody() -> None:
     """Its height is no weather; where it is put down, it tells of the weather again."""
     barometers, seq, way_m = Barometers(), 0, 0.0
 
-    def hear(height_m: float) -> BarometricHeight | None:
+    def height_of_air(height_m: float) -> BarometricHeight | None:
         nonlocal seq
         seq += 1
         header = Header("REF", 1, seq, message_factory.mono_ns(0.2 * seq))
@@ -134,15 +141,15 @@ def test_a_reference_that_is_carried_upstairs_moves_nobody() -> None:
 
     barometers.set_reference("REF", 0.0)
     for _ in range(100):
-        hear(SITE_M)
+        height_of_air(SITE_M)
     for step in range(100):
         way_m += 0.6 if step % 5 == 0 else 0.0  # a stride
-        air = hear(SITE_M + 0.08 * step)
+        air = height_of_air(SITE_M + 0.08 * step)
     assert barometers.weather.rise_m == pytest.approx(0.0, abs=0.05)
     assert air is not None
     assert not air.referenced
     for step in range(450):
-        air = hear(SITE_M + 8.0 + 0.01 * max(step - 50, 0))
+        air = height_of_air(SITE_M + 8.0 + 0.01 * max(step - 50, 0))
     assert barometers.weather.rise_m == pytest.approx(4.0, abs=0.6)
     assert air is not None
     assert air.referenced
@@ -163,16 +170,16 @@ def test_a_reference_that_is_switched_on_again_goes_on_telling() -> None:
 
 def test_late_pressure_leaves_the_weather_known() -> None:
     weather = Weather()
-    told(weather, range(60))
-    told(weather, range(50, 53), name="two")
+    note_pressures(weather, range(60))
+    note_pressures(weather, range(50, 53), name="two")
     assert weather.is_known(59 * NS_PER_S + FRESH_NS)
 
 
 @pytest.mark.parametrize(
-    ("pressure_pa", "is_heard"),
+    ("pressure_pa", "is_used"),
     [(29_000.0, False), (33_000.0, True), (115_000.0, True), (121_000.0, False)],
 )
-def test_pressure_is_used_where_people_live(pressure_pa: float, is_heard: bool) -> None:
+def test_pressure_is_used_where_people_live(pressure_pa: float, is_used: bool) -> None:
     position = message_factory.position(Header("FF-01", 1, 1, 0), pressure_pa=pressure_pa)
     air = Barometers().update("FF-01", 0, position, is_outside=True)
-    assert (air is not None) is is_heard
+    assert (air is not None) is is_used
