@@ -91,8 +91,8 @@ class _Listed(TyperCommand):
         return made
 
     def describe(self) -> None:
-        """A function's help is read in its source; anything else is loaded to be asked."""
-        self.help = _docstring(self._point) or self.loaded().help
+        """Read the help of a function or a group in its source, or load what names it."""
+        self.help = _help_in_source(self._point) or self.loaded().help
 
 
 class _Commands(TyperGroup):
@@ -109,14 +109,26 @@ class _Commands(TyperGroup):
         return name, found.loaded() if isinstance(found, _Listed) else found, rest
 
 
-def _docstring(point: EntryPoint) -> str | None:
-    """Of the function that a point names, where it is one; nothing but its packages is imported."""
+def _help_in_source(point: EntryPoint) -> str | None:
+    """Of the function or ``typer.Typer(help=...)`` that a point names, where it is one; nothing
+    but its packages is imported.
+    """
     spec = find_spec(point.module)
     if spec is None or spec.origin is None:
         return None
     for node in ast.parse(Path(spec.origin).read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.FunctionDef) and node.name == point.attr:
-            return ast.get_docstring(node)
+        match node:
+            case ast.FunctionDef(name=point.attr):
+                return ast.get_docstring(node)
+            case ast.Assign(targets=[ast.Name(id=point.attr)], value=ast.Call(keywords=keywords)):
+                return _constant(keywords, "help")
+    return None
+
+
+def _constant(keywords: list[ast.keyword], name: str) -> str | None:
+    for keyword in keywords:
+        if keyword.arg == name and isinstance(keyword.value, ast.Constant):
+            return str(keyword.value.value)
     return None
 
 
