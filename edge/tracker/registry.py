@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import empty_rows
+from edge.tracker.hip.state import HipConfig
+from edge.tracker.hip.tracker import HipTracker
 from edge.tracker.huang.tracker import HuangTracker
 from edge.tracker.interface import TrackBatch, Tracker, TrackerEntry
 from edge.tracker.waist.tracker import WaistTracker
@@ -38,7 +42,16 @@ TRACKERS: tuple[TrackerEntry, ...] = (
         "waist",
         "steps of a sensor on the waist, lengths by their frequency",
         WaistTracker,
-        ("hip",),
+        ("waist", "hip"),
+    ),
+    TrackerEntry(
+        "hip", "velocity of a hip, by a model within each step", HipTracker, ("hip", "waist")
+    ),
+    TrackerEntry(
+        "hip-corridors",
+        "the same; assumes straight corridors that meet at right angles",
+        partial(HipTracker, config=HipConfig(straight_walks=True, right_angles=True)),
+        ("hip", "waist"),
     ),
 )
 

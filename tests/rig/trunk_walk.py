@@ -30,3 +30,16 @@ def bobbing(
     gyro_radps[:, 2] = turn_radps * walking
     gyro_radps += np.random.default_rng(1).normal(0.0, 1e-3, gyro_radps.shape)  # or it seems stuck
     return ImuBatch(np.rint(t_s * 1e9).astype(np.int64), accel_mps2, gyro_radps)
+
+
+def joined(*parts: ImuBatch) -> ImuBatch:
+    """Return walks one after the other."""
+    times_ns, begin_ns = [], 0
+    for part in parts:
+        times_ns.append(part.t_ns + begin_ns)
+        begin_ns = int(times_ns[-1][-1] + part.t_ns[1] - part.t_ns[0])
+    return ImuBatch(
+        np.concatenate(times_ns),
+        np.concatenate([part.accel_mps2 for part in parts]),
+        np.concatenate([part.gyro_radps for part in parts]),
+    )

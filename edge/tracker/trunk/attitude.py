@@ -129,3 +129,14 @@ def add_forward(ring: Ring, trunk: TrunkState, k: int, sum_n: Floats) -> None:
     if level > 0.0:
         sum_n[0] += north / level
         sum_n[1] += east / level
+
+
+@njit()
+def level_force(row: Row, force_n: Floats) -> None:
+    """Write the horizontal specific force (2,) of a sample whose attitude is kept."""
+    q, f = row.quaternion_nb, row.accel_mps2
+    w, x, y, z = q[0], q[1], q[2], q[3]
+    force_n[0] = (1.0 - 2.0 * (y * y + z * z)) * f[0]
+    force_n[0] += 2.0 * (x * y - w * z) * f[1] + 2.0 * (x * z + w * y) * f[2]
+    force_n[1] = 2.0 * (x * y + w * z) * f[0]
+    force_n[1] += (1.0 - 2.0 * (x * x + z * z)) * f[1] + 2.0 * (y * z - w * x) * f[2]

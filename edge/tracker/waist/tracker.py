@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from edge.samples import Floats, SensorDescription
 from edge.tracker.foot.sample_ring import Ring
-from edge.tracker.trunk.attitude import begin_attitude, follow_attitude
 from edge.tracker.trunk.dead_reckoning import (
     begin_walk,
     mean_forward,
@@ -23,10 +22,9 @@ from edge.tracker.trunk.dead_reckoning import (
     release_standing,
     take_step,
     write_rows,
-    write_standing,
 )
+from edge.tracker.trunk.follow import follow_sample
 from edge.tracker.trunk.kernel_tracker import KernelTracker, is_past, new_states, take_times
-from edge.tracker.trunk.pressure_height import follow_height
 from edge.tracker.waist.state import WAIST, WaistConfig, WaistState
 from edge.tracker.waist.steps import NO_STEP, find_step, length_std, step_length_m
 
@@ -49,7 +47,7 @@ def walk(ring: Ring, states: NDArray[Any], config: WaistConfig, final: bool) -> 
         k = trunk.walked
         if not final and not is_past(ring, trunk, k, config.trunk.lookahead_s):
             break
-        _take(ring, state, k, angle_b_rad, config)
+        follow_sample(ring, trunk, k, angle_b_rad, config.trunk)
         trunk.walked = k + 1
         peak_at = find_step(ring, state, k, config)
         if peak_at != NO_STEP:
@@ -58,20 +56,6 @@ def walk(ring: Ring, states: NDArray[Any], config: WaistConfig, final: bool) -> 
     if final:
         trunk.released = trunk.walked
     return int(trunk.released)
-
-
-@njit()
-def _take(ring: Ring, state: WaistState, k: int, angle_b_rad: Floats, config: WaistConfig) -> None:
-    mask = len(ring) - 1
-    trunk = state.trunk
-    if k == 0:
-        begin_attitude(ring, trunk, k, config.trunk)
-    else:
-        dt_s = ring[k & mask].t_s - ring[(k - 1) & mask].t_s
-        if 0.0 < dt_s <= config.trunk.gap_s:
-            follow_attitude(ring, trunk, k, dt_s, angle_b_rad, config.trunk)
-    follow_height(ring[k & mask], trunk, config.trunk)
-    write_standing(ring, trunk, k, config.trunk)
 
 
 @njit()
@@ -97,19 +81,19 @@ def _step(
         length_m = step_length_m(period_s, config)
         length_m += max(length_m - state.first_m, 0.0) if state.first_m > 0.0 else 0.0
         state.first_m = 0.0
-        first = state.step_at + 1
+        begin = state.step_at + 1
     else:
         period_s = 1.0 / config.least_hz
         length_m = state.first_m = step_length_m(period_s, config)
         begin_walk(trunk, config.trunk)
-        first = trunk.released
-        while t_s - ring[first & mask].t_s > period_s:
-            first += 1
-    first = max(first, trunk.released)
+        begin = min(trunk.released, peak_at)
+        while t_s - ring[begin & mask].t_s > period_s:
+            begin += 1
+    first = max(begin, trunk.released)
     for i in range(3):
         from_n_m[i] = trunk.position_n_m[i]
     from_distance_m = trunk.distance_m
-    mean_forward(ring, trunk, first, peak_at, forward_n)
+    mean_forward(ring, trunk, begin, peak_at, forward_n)
     std = length_std(period_s, trunk.height_m - state.step_height_m, config)
     take_step(trunk, length_m, std, forward_n, t_s, config.trunk)
     write_rows(ring, trunk, first, peak_at, from_n_m, from_distance_m, config.trunk)
