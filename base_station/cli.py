@@ -65,11 +65,15 @@ def serve(
         "insecure": insecure or None,
     }
     settings = _load_settings(config, flags)
-    # Imported where needed: it takes its time, and a wrong setting is said before.
+    # Imported where needed: it takes its time, and a wrong setting is said before.  The router's
+    # process takes as long, beside it.
+    from base_station.security.router.process import start_loading  # noqa: PLC0415
+
+    loading_router = start_loading()
     with gc_tuning.paused():
         from base_station.app.live import run_station  # noqa: PLC0415
 
-    run_station(settings, _announce)
+    run_station(settings, _announce, loading_router)
 
 
 @app.command()

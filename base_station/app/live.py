@@ -7,6 +7,7 @@ import os
 import secrets
 from concurrent.futures import Future
 from contextlib import AbstractContextManager, ExitStack
+from subprocess import Popen
 
 from base_station.api.server import serve_until_stopped
 from base_station.app.factories import Announce, announce_first_login
@@ -54,8 +55,11 @@ from shared.messages.station import Action
 from shared.service_manager import ServiceManager
 
 
-def run_station(config: StationConfig, announce: Announce) -> None:
-    """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know.
+def run_station(
+    config: StationConfig, announce: Announce, loading_router: Popen[str] | None = None
+) -> None:
+    """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know;
+    ``loading_router`` becomes the bus's first router.
 
     Raises ConfigError where no alarm rule can have the thresholds of the settings.
     """
@@ -68,7 +72,8 @@ def run_station(config: StationConfig, announce: Announce) -> None:
         announce(line)
         manager.working()
 
-    while (restart := _run_once(config, thresholds, tell, manager)) is not None:
+    while (restart := _run_once(config, thresholds, tell, manager, loading_router)) is not None:
+        loading_router = None
         gc_tuning.unfreeze()
         if restart.cut_from is not None:
             tell("what the other station does not have is set aside, and handed to it")
@@ -79,10 +84,14 @@ def run_station(config: StationConfig, announce: Announce) -> None:
 
 
 def _run_once(
-    config: StationConfig, thresholds: Thresholds, announce: Announce, manager: ServiceManager
+    config: StationConfig,
+    thresholds: Thresholds,
+    announce: Announce,
+    manager: ServiceManager,
+    loading_router: Popen[str] | None,
 ) -> Restart | None:
     with ShutdownWatchdog() as end, ExitStack() as closing:
-        resources = open_station(config, announce, closing)
+        resources = open_station(config, announce, closing, loading_router)
         return _Station(resources, thresholds, announce, manager, end, closing).run()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from dataclasses import dataclass
 from socket import socket
+from subprocess import Popen
 
 from base_station.api.hub import Hub
 from base_station.api.server import bind
@@ -51,7 +52,12 @@ class Resources:
     presence: StationPresence
 
 
-def open_station(config: StationConfig, announce: Announce, closing: ExitStack) -> Resources:
+def open_station(
+    config: StationConfig,
+    announce: Announce,
+    closing: ExitStack,
+    loading_router: Popen[str] | None = None,
+) -> Resources:
     """Raises MusterError, before anything is made where the settings cannot work."""
     joining, pki = station_endpoint(config.data, config.bus.listen), PkiFolder(config.data)
     if joining.tls is not None:
@@ -67,8 +73,8 @@ def open_station(config: StationConfig, announce: Announce, closing: ExitStack) 
     for sentence in exposed.problems():
         announce(sentence)
     alone = not config.standby.name
-    # It takes as long to load as the disk is looked at: both at once.
-    router = RouterProcess(folder.path, config.bus.listen, config.standby.peer)
+    # It opens while the disk is looked at.
+    router = RouterProcess(folder.path, config.bus.listen, config.standby.peer, loading_router)
     try:
         disk = open_storage(folder, recorder, clock, announce, closing, alone=alone)
     finally:

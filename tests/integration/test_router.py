@@ -11,11 +11,12 @@ from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
+import msgspec
 import psutil
 import pytest
 
 from base_station.security.pki.folder import PkiFolder
-from base_station.security.router.process import RouterProcess
+from base_station.security.router.process import RouterProcess, RouterSettings, start_loading
 from base_station.security.router.router import Router, station_endpoint
 from shared.bus_zenoh import ClientEndpoint, UnitEndpoint, ZenohBus
 from shared.channels import POSITION, Qos, alive_key
@@ -139,19 +140,47 @@ def test_it_ends_without_a_word_where_its_parent_was_killed_before_it_was_open(
 ) -> None:
     said = tmp_path / "said.txt"
     reading, writing = os.pipe()
-    command = [sys.executable, "-m", "base_station.security.router", str(tmp_path)]
+    settings = RouterSettings(str(tmp_path), (endpoint.format(port=free_port()),), (), ())
     with said.open("wb") as errors:
         router = subprocess.Popen(
-            [*command, endpoint.format(port=free_port())],
-            stdin=subprocess.DEVNULL,
+            [sys.executable, "-m", "base_station.security.router"],
+            stdin=subprocess.PIPE,
             stdout=writing,
             stderr=errors,
         )
+    assert router.stdin is not None
+    router.stdin.write(msgspec.json.encode(settings) + b"\n")
+    router.stdin.close()
     os.close(reading)
     os.close(writing)
     router.wait(PATIENCE_S)
     assert "Traceback" not in said.read_text()
     assert "Broken" not in said.read_text()
+
+
+def test_one_that_gets_no_settings_ends_in_order() -> None:
+    with start_loading() as loading:
+        assert loading.stdin is not None
+        loading.stdin.close()
+        assert loading.wait(PATIENCE_S) == 0
+
+
+def test_one_that_has_loaded_before_is_the_first(
+    tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
+) -> None:
+    loading = start_loading()
+    with closing(RouterProcess(tmp_path, listen, loading=loading).wait_open()) as running:
+        assert running.pid == loading.pid
+
+
+def test_one_that_ended_while_it_loaded_is_said(
+    tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
+) -> None:
+    loading = start_loading()
+    loading.kill()
+    loading.wait(PATIENCE_S)
+    with pytest.raises(BusError, match="ended before it was open"):
+        RouterProcess(tmp_path, listen, loading=loading).wait_open()
 
 
 def test_what_keeps_it_from_opening_is_said(tmp_path: Path, listen: tuple[str, ...]) -> None:

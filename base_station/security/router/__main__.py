@@ -1,11 +1,14 @@
-"""The router's own process: ``process`` starts it, reads what it prints, and writes to it."""
+"""The router's own process: ``process`` starts it, reads what it prints, and writes to it.
+
+It has loaded its libraries before it reads its settings: the station loads its own meanwhile.
+"""
 
 from __future__ import annotations
 
 import logging
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing, suppress
 from pathlib import Path
 from shutil import rmtree
@@ -14,7 +17,7 @@ from threading import Event, Thread
 import msgspec
 
 from base_station.process.open_files import allow_many_files
-from base_station.security.router.process import FAILED, LINKS, READY, STATION, BanOrder
+from base_station.security.router.process import FAILED, READY, BanOrder, RouterSettings
 from base_station.security.router.refusals import RefusalSummary
 from base_station.security.router.router import Router
 from shared.end_signals import end_requested
@@ -27,10 +30,8 @@ logger = logging.getLogger(__package__)
 _CHECK_EVERY_S = 1.0
 
 
-def run_router(
-    data: Path, listen: tuple[str, ...], links: tuple[str, ...], station: tuple[str, ...]
-) -> int:
-    """Until a signal comes or standard input ends, which it does when the parent dies.
+def run_router(settings: RouterSettings, orders: Iterator[bytes]) -> int:
+    """Until a signal comes or ``orders`` end, which they do when the parent dies.
 
     Tells the parent on standard output whether it is open.  Gives the exit code.
     """
@@ -38,9 +39,9 @@ def run_router(
     allow_many_files()
     stop = end_requested()
     ban: list[Callable[[str, float], None]] = []  # once the router is open
-    Thread(target=_read_input, args=(stop, ban, station), daemon=True).start()
+    Thread(target=_carry_out, args=(orders, stop, ban, settings.station), daemon=True).start()
     try:
-        router = Router(data, listen, links, station)
+        router = Router(Path(settings.data), settings.listen, settings.links, settings.station)
     except MusterError as error:
         _write_to_parent(f"{FAILED}{error}")
         return 2
@@ -67,27 +68,38 @@ def _write_to_parent(line: str) -> None:
         os.write(sys.stdout.fileno(), f"{line}\n".encode())
 
 
-def _read_input(
-    stop: Event, ban: Sequence[Callable[[str, float], None]], station: tuple[str, ...]
+def _carry_out(
+    orders: Iterator[bytes],
+    stop: Event,
+    ban: Sequence[Callable[[str, float], None]],
+    station: tuple[str, ...],
 ) -> None:
-    """Orders, a line each, until the end of input: the parent is gone, and so is what only it
-    would have removed.
-    """
-    rest = b""
-    # Not sys.stdin: its lock, held while it reads, would abort a program that ends meanwhile.
-    while read := os.read(sys.stdin.fileno(), 4096):
-        *lines, rest = (rest + read).split(b"\n")
-        for line in lines:
-            order = msgspec.json.decode(line, type=BanOrder)
-            for one in ban:
-                one(order.sender_id, order.seconds)
+    """Until the end of input: the parent is gone, and so is what only it would have removed."""
+    for line in orders:
+        order = msgspec.json.decode(line, type=BanOrder)
+        for one in ban:
+            one(order.sender_id, order.seconds)
     for endpoint in station:
         rmtree(Path(endpoint.removeprefix(f"{LOCAL_LINK}/")).parent, ignore_errors=True)
     stop.set()
 
 
+def _input_lines() -> Iterator[bytes]:
+    """Whole lines of standard input, until its end."""
+    rest = b""
+    # Not sys.stdin: its lock, held while it reads, would abort a program that ends meanwhile.
+    while read := os.read(sys.stdin.fileno(), 4096):
+        *lines, rest = (rest + read).split(b"\n")
+        yield from lines
+
+
+def main() -> int:
+    lines = _input_lines()
+    settings = next(lines, None)
+    if settings is None:  # there is no parent any more
+        return 0
+    return run_router(msgspec.json.decode(settings, type=RouterSettings), lines)
+
+
 if __name__ == "__main__":
-    ends, _, own = " ".join(sys.argv[2:]).partition(STATION)
-    listening, _, linking = ends.partition(LINKS)
-    joined = (own.strip(),) if own else ()
-    sys.exit(run_router(Path(sys.argv[1]), (*listening.split(),), (*linking.split(),), joined))
+    sys.exit(main())

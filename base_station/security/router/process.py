@@ -23,12 +23,19 @@ logger = logging.getLogger(__name__)
 
 READY = "router ready"
 FAILED = "router failed: "
-LINKS = "--links"  # between where it listens and whom it joins
-STATION = "--station"  # and last, where the station itself joins
 _RESTART_AFTER_S = 1.0
 _ROUTER_DOWN = "The bus's router is away and is started again; no unit is linked"
 _STOP_TIMEOUT_S = 5.0
 _MEMORY_FOLDER = "/dev/shm"  # noqa: S108  # a folder of its owner's alone is made in it
+
+
+class RouterSettings(msgspec.Struct, frozen=True):
+    """First line on the router's standard input, as JSON; each line behind it is an order."""
+
+    data: str
+    listen: tuple[str, ...]
+    links: tuple[str, ...]  # other stations' routers, which it joins
+    station: tuple[str, ...]  # where the station itself joins
 
 
 class BanOrder(msgspec.Struct, frozen=True):
@@ -38,30 +45,43 @@ class BanOrder(msgspec.Struct, frozen=True):
     seconds: float
 
 
+def start_loading() -> subprocess.Popen[str]:
+    """Start a router's process, which loads its libraries and then waits for its settings.  It ends
+    by itself where none come.
+    """
+    return subprocess.Popen(
+        [sys.executable, "-m", "base_station.security.router"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        # A Ctrl-C in the terminal reaches the station alone, which ends the router last.
+        start_new_session=True,
+    )
+
+
 class RouterProcess:
     """Starts it, and again when it dies; ``wait_open`` waits until it routes, ``close`` ends it.
 
     It ends by itself when this process is killed: its standard input does.
     """
 
-    def __init__(self, data: Path, listen: tuple[str, ...], links: tuple[str, ...] = ()) -> None:
-        endpoints = (*listen, LINKS, *links) if links else listen
+    def __init__(
+        self,
+        data: Path,
+        listen: tuple[str, ...],
+        links: tuple[str, ...] = (),
+        loading: subprocess.Popen[str] | None = None,
+    ) -> None:
+        """``loading``: the first process, by ``start_loading``."""
         # Its owner's alone, and short: the path of a data folder may be too long for a socket.
         self._folder = _folder_in_memory()
         own = f"{LOCAL_LINK}/{self._folder.name}/station"
         self.endpoint = ClientEndpoint((own,))  # the station's; no stranger holds it up there
-        self._command = [
-            sys.executable,
-            "-m",
-            "base_station.security.router",
-            str(data),
-            *endpoints,
-        ]
-        self._command += [STATION, own]
+        self._settings = RouterSettings(str(data), listen, links, (own,))
         self._starting = Lock()
         self._refused = RefusalSummary()
         try:
-            self._process = self._start_process()
+            self._process = self._start_process(loading)
         except BaseException:
             self._folder.cleanup()
             raise
@@ -136,15 +156,13 @@ class RouterProcess:
                 return False
             return True
 
-    def _start_process(self) -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            self._command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-            # A Ctrl-C in the terminal reaches the station alone, which ends the router last.
-            start_new_session=True,
-        )
+    def _start_process(self, loading: subprocess.Popen[str] | None = None) -> subprocess.Popen[str]:
+        process = loading or start_loading()
+        assert process.stdin is not None
+        with suppress(OSError):  # it has ended, as is found when it is waited for
+            # Not print: what could not be written would be tried again as the pipe is closed.
+            os.write(process.stdin.fileno(), msgspec.json.encode(self._settings) + b"\n")
+        return process
 
     def _require_open(self, process: subprocess.Popen[str]) -> None:
         """Waits for it.  Raises BusError with its own sentence where it ends before that."""
