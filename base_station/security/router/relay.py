@@ -97,6 +97,8 @@ class _Direction:
                 if not self._write(data):
                     self._relay.loop.remove_reader(self._source.fileno())
                     return
+                if len(data) < _CHUNK_BYTES:  # a whole record, and mostly there is no other
+                    return
         except _WAIT_ERRORS:
             return
         except OSError:  # ssl.SSLError is one
