@@ -20,6 +20,7 @@ from shared.messages import (
     AlarmChange,
     Command,
     CommandReply,
+    ExternalMarkers,
     FusedPosition,
     GpsFix,
     Heartbeat,
@@ -95,6 +96,7 @@ FUSED = Channel("fused", "fused", FusedPosition, STATION, Qos.LOCAL, 5.0, True, 
 ALARM = Channel("alarm", "alarm", AlarmChange, STATION, Qos.LOCAL, None, True, None)
 OPERATOR = Channel("operator", "operator", OperatorAction, STATION, Qos.LOCAL, None, True, None)
 TICK = Channel("tick", "tick", Tick, STATION, Qos.LOCAL, 1.0, True, None)
+EXTERNAL = Channel("external", "external", ExternalMarkers, STATION, Qos.LOCAL, None, True, None)
 
 CHANNELS: tuple[Channel, ...] = (
     POSITION,
@@ -112,6 +114,7 @@ CHANNELS: tuple[Channel, ...] = (
     ALARM,
     OPERATOR,
     TICK,
+    EXTERNAL,
 )
 
 _BY_SUFFIX = {channel.suffix: channel for channel in CHANNELS}

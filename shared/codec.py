@@ -14,6 +14,7 @@ from shared.messages import (
     AlarmChange,
     Command,
     CommandReply,
+    ExternalMarkers,
     FusedPosition,
     GpsFix,
     Header,
@@ -33,6 +34,7 @@ from shared.messages.muster.v1 import (
     alarm_pb2,
     command_pb2,
     event_pb2,
+    external_pb2,
     fused_pb2,
     gps_pb2,
     header_pb2,
@@ -61,6 +63,7 @@ WIRE_TYPES: dict[type[Message], type[WireMessage]] = {
     AlarmChange: alarm_pb2.AlarmChange,
     OperatorAction: station_pb2.OperatorAction,
     Tick: station_pb2.Tick,
+    ExternalMarkers: external_pb2.ExternalMarkers,
 }
 
 

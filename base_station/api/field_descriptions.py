@@ -296,6 +296,8 @@ FIELDS: Mapping[str, str] = {
     "ForwarderView.state": "connected, connecting, or standby: the other of two stations forwards.",
     "ForwarderView.since_ms": "Since when it is in that state; null: since the station started.",
     "ForwarderView.sent": "Events sent since the station started.",
+    "ForwarderView.received": "Events of other teams taken since the station started.",
+    "ForwarderView.refused": "Events of other teams that could not be read or were too many.",
     "ForwarderView.text": "Why it is not connected, or why less is sent; empty: all is well.",
     "repeated": "How many messages came again since the start, and were kept once.",
     "left_out": "How many messages since the start came faster than the station takes them; they "

@@ -163,10 +163,20 @@ def _of_forwarders(health: HealthView) -> Iterator[Metric]:
     sent = CounterMetricFamily(
         "muster_forwarder_sent", "Events sent to another system.", labels=labels
     )
+    received = CounterMetricFamily(
+        "muster_forwarder_received", "Events taken from another system.", labels=labels
+    )
+    refused = CounterMetricFamily(
+        "muster_forwarder_refused",
+        "Events of another system that could not be read or were too many.",
+        labels=labels,
+    )
     for one in health.forwarders:
         connected.add_metric([one.kind, one.name], one.state == "connected")
         sent.add_metric([one.kind, one.name], one.sent)
-    yield from (connected, sent)
+        received.add_metric([one.kind, one.name], one.received)
+        refused.add_metric([one.kind, one.name], one.refused)
+    yield from (connected, sent, received, refused)
 
 
 def _position_ages(ages: PositionAges) -> Metric:

@@ -50,7 +50,7 @@ from base_station.unit_sync.command_sender import CommandSender, without_text_of
 from base_station.views.station import StationFacts
 from shared.channels import ROOT, clock_key
 from shared.envelope import Stamper
-from shared.messages import STATION_ID
+from shared.messages import STATION_ID, ExternalMarker
 from shared.messages.station import Action
 from shared.service_manager import ServiceManager
 
@@ -134,7 +134,8 @@ class _Station:
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
         self._reports = UnitReports(resources, self._side)
         self._forwarders = make_forwarders(
-            {"tak": resources.config.tak}, Surroundings(clock, self._is_leader)
+            {"tak": resources.config.tak},
+            Surroundings(clock, self._is_leader, self._note_external),
         )
         self._shown = LiveFanOut(resources.hub, self._forwarders)
         stamper = Stamper(STATION_ID, secrets.randbits(63), clock)
@@ -309,6 +310,9 @@ class _Station:
     def _submit_if_leader(self, by: str, action: Action) -> Future[ActionResult] | None:
         """A standby does what stands in the other's log."""
         return self._engine.submit(by, action) if self._side.leads else None
+
+    def _note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
+        self._engine.note_external(markers, removed)
 
     def _request_checkpoint(self) -> None:
         self._engine.save_soon()

@@ -130,6 +130,7 @@ class StoredSnapshotSource:
             commands=(),
             pins=(),
             beacons=(),
+            external=(),
             plan=None if plan is None else msgspec.Raw(salvage_plan(plan).geojson),
             anchor=None if anchor is None else anchor_view(anchor),
             health=HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False),

@@ -73,6 +73,10 @@ class ClosedIncidentChanged(msgspec.Struct, frozen=True):
     incident_id: str
 
 
+class ExternalMarkersChanged(msgspec.Struct, frozen=True):
+    """People or markers of other teams changed."""
+
+
 class CommandChanged(msgspec.Struct, frozen=True):
     """New command, or progress of one at a unit."""
 
@@ -106,6 +110,7 @@ Output = (
     | PinsChanged
     | ClosedIncidentChanged
     | CommandChanged
+    | ExternalMarkersChanged
     | NamesErased
     | Refused
 )

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import assert_never
 
-from base_station.core import accountability, idempotency
+from base_station.core import accountability, external_markers, idempotency
 from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.alarms.interface import AlarmRule
 from base_station.core.checkpoint import Checkpoint
@@ -17,6 +17,7 @@ from base_station.core.commands import command_tracker, mayday_acknowledgements
 from base_station.core.events import (
     ClosedIncidentChanged,
     CommandChanged,
+    ExternalMarkersChanged,
     NamesErased,
     Output,
     PinsChanged,
@@ -42,6 +43,8 @@ from shared.channels import UP, channel_of
 from shared.errors import UserError
 from shared.messages import (
     Command,
+    ExternalMarkers,
+    Message,
     OperatorAction,
     Tick,
 )
@@ -99,9 +102,7 @@ class StationPipeline:
                 return self._tick(message)
             if isinstance(message, OperatorAction):
                 return self._apply_action(message)
-            if isinstance(message, Command):
-                return _command_changed(command_tracker.note_sent(state, event.unit_id, message))
-            return []  # what the station itself had decided, in a log that is stepped again
+            return self._note_from_log(event.unit_id, message)
         if isinstance(event, Rejected):
             state.counts.undecodable += 1
             state.counts.last_undecodable = f"{event.key}: {event.reason}"
@@ -112,6 +113,14 @@ class StationPipeline:
                     sender.accept_backfilled(*which)
             return []
         assert_never(event)
+
+    def _note_from_log(self, unit_id: str, message: Message) -> list[Output]:
+        """What the station itself sends or takes in; what it had decided changes nothing."""
+        if isinstance(message, Command):
+            return _command_changed(command_tracker.note_sent(self.state, unit_id, message))
+        if isinstance(message, ExternalMarkers):
+            return _external_changed(external_markers.apply(self.state, message))
+        return []
 
     def advance_time(self, t_ns: int) -> list[Output]:
         """Let time go by of which nothing is recorded: links and places get older, and nothing is
@@ -132,6 +141,7 @@ class StationPipeline:
             outputs.extend(alarm.change(state.next_header()) for alarm in alarms)
         over = [*command_tracker.expire(state), *mayday_acknowledgements.withdraw(state)]
         outputs.extend(CommandChanged(one.command_id) for one in over)
+        outputs.extend(_external_changed(external_markers.expire(state)))
         update_trust_tallies(state)
         late = pop_due(state.late, state.t_ns)
         if late is not None:
@@ -174,3 +184,7 @@ class StationPipeline:
 
 def _command_changed(command: SentCommand | None) -> list[Output]:
     return [] if command is None else [CommandChanged(command.command_id)]
+
+
+def _external_changed(changed: bool) -> list[Output]:
+    return [ExternalMarkersChanged()] if changed else []

@@ -11,6 +11,7 @@ import msgspec
 
 from base_station.core.events import (
     CommandChanged,
+    ExternalMarkersChanged,
     NamesErased,
     Output,
     PinsChanged,
@@ -26,6 +27,7 @@ from base_station.views.station import (
     alarm_view,
     beacon_views,
     command_view,
+    external_views,
     health_view,
     pin_views,
     snapshot,
@@ -61,6 +63,7 @@ class ConsolePublisher:
         self._backfilled: dict[str, None] = {}  # since trails were last told
         self._trails_due: dict[str, None] = {}  # filled trails that are to be told now
         self._pins_changed = False
+        self._external_changed = False
         self._names_erased = False  # somebody, since consoles were told everything
         self._frame = self._frame_now()
 
@@ -76,6 +79,8 @@ class ConsolePublisher:
                 self._backfilled[output.unit_id] = None
             elif isinstance(output, PinsChanged):
                 self._pins_changed = True
+            elif isinstance(output, ExternalMarkersChanged):
+                self._external_changed = True
             elif isinstance(output, NamesErased):
                 self._names_erased = True
             elif isinstance(output, AlarmChange):
@@ -114,13 +119,14 @@ class ConsolePublisher:
             trails=self._backfilled_trails(),
             pins=pin_views(state, self._people) if self._pins_changed else None,
             beacons=beacon_views(state, self._people) if self._pins_changed else None,
+            external=external_views(state) if self._external_changed else None,
             health=health_view(state, self.facts) if health else None,
             replay=replay,
         )
         self._units.clear()
         self._alarms.clear()
         self._commands.clear()
-        self._pins_changed = False
+        self._pins_changed = self._external_changed = False
         self._sink.delta(delta)
 
     @property
@@ -130,7 +136,8 @@ class ConsolePublisher:
 
     @property
     def _has_changes(self) -> bool:
-        return bool(self._units or self._trails_due) or self.is_urgent
+        changed = self._units or self._trails_due or self._external_changed
+        return bool(changed) or self.is_urgent
 
     def reset(self, replay: ReplayView | None = None) -> None:
         """Send a new snapshot to all consoles."""
@@ -141,7 +148,7 @@ class ConsolePublisher:
         self._commands.clear()
         self._backfilled.clear()
         self._trails_due.clear()
-        self._pins_changed = self._names_erased = False
+        self._pins_changed = self._external_changed = self._names_erased = False
         self._sink.reset(*self._new_snapshot(replay))
 
     def snapshot(self, replay: ReplayView | None = None) -> tuple[Snapshot, Trails]:

@@ -29,11 +29,11 @@ from base_station.engine.projector import Projector
 from base_station.engine.write_ahead import WriteAhead
 from base_station.unit_sync.log_gap_detector import Lost
 from base_station.views.wire import Snapshot
-from shared.channels import TICK
+from shared.channels import EXTERNAL, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.envelope import Stamper
-from shared.messages import STATION_ID, Tick
+from shared.messages import STATION_ID, ExternalMarker, ExternalMarkers, Tick
 from shared.messages.station import (
     AcknowledgeAlarm,
     Action,
@@ -58,6 +58,8 @@ MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
 FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
 STOP_TIMEOUT_S = 10.0
 
+_EXTERNAL_KEY = EXTERNAL.key(STATION_ID)
+_EXTERNAL_WAITING = 20  # batches of other systems, of a second each
 # What is to be sent to units changes with these at once; with all else at the next tick.
 _CHANGES_ORDERS = (
     SendCommand,
@@ -96,6 +98,9 @@ class StationEngine:
         self._checkpoint_writer = CheckpointWriter(ports.log, ports.checkpoints, self._health)
         self._actions = ActionQueue(pipeline, self._write_ahead, self._stamper)
         self._lost: deque[Lost] = deque()
+        self._external: deque[tuple[tuple[ExternalMarker, ...], tuple[str, ...]]] = deque(
+            maxlen=_EXTERNAL_WAITING
+        )
         self._snapshot_requests: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._unlinked: frozenset[str] = frozenset()  # as was told last
         self._receives_first = False
@@ -139,6 +144,11 @@ class StationEngine:
     def mark_missing(self, lost: Lost) -> None:
         """Mark messages as missing that the log has lost."""
         self._lost.append(lost)
+        self._ports.feed.wake()
+
+    def note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
+        """Take people and markers of other teams; of a flood the newest stay."""
+        self._external.append((markers, removed))
         self._ports.feed.wake()
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
@@ -197,6 +207,7 @@ class StationEngine:
                 self._health.report_bug("drive", error)
         if not follows:  # of half a log nobody can tell what an action does
             self._take_actions()
+            self._take_external()
         self._mark_missing()
         now_ns = clock.monotonic_ns()
         self._advance_time(now_ns, follows=follows)
@@ -263,6 +274,12 @@ class StationEngine:
                 self._ports.send_orders(command_tracker.open_orders(self._pipeline.state))
             done.answer()
             self._due.delta_ns = 0  # its operator sees it at once
+
+    def _take_external(self) -> None:
+        for _ in range(len(self._external)):
+            message = ExternalMarkers(self._stamper.header(), *self._external.popleft())
+            t_ns = max(message.header.t_utc_ns, self._actions.not_before_ns)
+            self._write_ahead.append_and_apply(t_ns, _EXTERNAL_KEY, encode(message))
 
     def _mark_missing(self) -> None:
         for _ in range(len(self._lost)):

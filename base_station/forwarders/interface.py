@@ -12,6 +12,7 @@ from typing import Any, Protocol
 
 from base_station.views.wire import Delta, ForwarderView, Snapshot
 from shared.clock import Clock
+from shared.messages import ExternalMarker
 
 
 class Forwarder(Protocol):
@@ -44,6 +45,8 @@ class Surroundings:
 
     clock: Clock
     leads: Callable[[], bool]  # False: the other one of two stations forwards
+    # Takes people and markers of other teams that changed, and ids of those that are gone.
+    note_external: Callable[[tuple[ExternalMarker, ...], tuple[str, ...]], None]
 
 
 @dataclass(frozen=True, slots=True)

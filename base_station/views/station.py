@@ -20,6 +20,7 @@ from base_station.views.wire import (
     BeaconView,
     CommandView,
     DeliveryView,
+    ExternalMarkerView,
     ForwarderView,
     HealthView,
     IncidentView,
@@ -30,9 +31,10 @@ from base_station.views.wire import (
     StandbyView,
 )
 from shared.geo import Anchor
-from shared.messages import AlarmChange
+from shared.messages import AlarmChange, ExternalKind, ExternalMarker
 
 RESOLVED_SHOWN = 20
+_EXTERNAL_KINDS = {ExternalKind.PERSON: "person", ExternalKind.EMERGENCY: "emergency"}
 
 
 class StationFacts(msgspec.Struct, frozen=True):
@@ -157,6 +159,30 @@ def beacon_views(state: StationState, people: PersonLookup) -> tuple[BeaconView,
     )
 
 
+def external_views(state: StationState) -> tuple[ExternalMarkerView, ...]:
+    """On the plan; without an anchor nobody knows where that is."""
+    anchor = state.anchor
+    if anchor is None:
+        return ()
+    return tuple(_external_view(anchor, marker) for marker in state.external.values())
+
+
+def _external_view(anchor: Anchor, marker: ExternalMarker) -> ExternalMarkerView:
+    north_m, east_m, _ = anchor.to_incident_m(marker.lat_deg, marker.lon_deg, anchor.height_m)
+    return ExternalMarkerView(
+        marker_id=marker.marker_id,
+        source=marker.source,
+        name=marker.name,
+        kind=_EXTERNAL_KINDS.get(marker.kind, "marker"),
+        remarks=marker.remarks,
+        north_m=north_m,
+        east_m=east_m,
+        radius_m=marker.radius_m or None,
+        t_ms=to_ms(marker.t_ns),
+        stale_ms=to_ms(marker.stale_ns),
+    )
+
+
 def health_view(state: StationState, facts: StationFacts) -> HealthView:
     counts = state.counts
     problems = [*state.problems.values(), *facts.problems]
@@ -209,6 +235,7 @@ def snapshot(
         commands=tuple(command_view(command, people) for command in state.commands.values()),
         pins=pin_views(state, people),
         beacons=beacon_views(state, people),
+        external=external_views(state),
         plan=msgspec.Raw(state.plan.geojson) if state.plan else None,
         anchor=anchor_view(state.anchor) if state.anchor else None,
         health=health_view(state, facts),

@@ -169,6 +169,21 @@ class BeaconView(Answer, frozen=True):
     seen_ms: int | None  # when a unit last saw it
 
 
+class ExternalMarkerView(Answer, frozen=True):
+    """A person or marker of another team, from another system."""
+
+    marker_id: str
+    source: str  # name of the forwarder
+    name: str
+    kind: Annotated[str, one_of("person", "marker", "emergency")]
+    remarks: str
+    north_m: float
+    east_m: float
+    radius_m: float | None  # of the region in which it is; None: unknown
+    t_ms: int  # the time to which the place belongs
+    stale_ms: int  # from then on it is old
+
+
 class UnitView(Answer, frozen=True):
     """Everything a card and the plan show of one unit; a delta carries it whole."""
 
@@ -276,6 +291,8 @@ class ForwarderView(Answer, frozen=True):
     # two stations forwards
     since_ms: int | None  # of that state; None: since the station started
     sent: int  # events since the station started
+    received: int  # of other teams, since then
+    refused: int  # of other teams, that could not be read or were too many
     text: str  # for a person: why it is not connected, or why less is sent; empty: all is well
 
 
@@ -359,6 +376,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     commands: tuple[CommandView, ...]  # all that are open, and the last closed ones; oldest first
     pins: tuple[PinView, ...]  # in the order of setting
     beacons: tuple[BeaconView, ...]
+    external: tuple[ExternalMarkerView, ...]  # of other teams, where the site has an anchor
     plan: Annotated[msgspec.Raw, shown_as("Plan")] | None  # GeoJSON as stored: see docs/messages
     anchor: AnchorView | None
     health: HealthView
@@ -381,6 +399,7 @@ class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
     trails: Mapping[str, Annotated[msgspec.Raw, _POINTS]] = {}  # whole, of units whose past changed
     pins: tuple[PinView, ...] | None = None  # all of them, where any changed
     beacons: tuple[BeaconView, ...] | None = None
+    external: tuple[ExternalMarkerView, ...] | None = None  # all of them, where any changed
     health: HealthView | None = None
     incident: IncidentView | None = None
     replay: ReplayView | None = None

@@ -12,6 +12,7 @@ from shared.messages.command import (
     CommandState,
 )
 from shared.messages.event import EventKind, Heartbeat, UnitEvent
+from shared.messages.external import ExternalKind, ExternalMarker, ExternalMarkers
 from shared.messages.fused import FusedPosition
 from shared.messages.gps import FixType, GpsFix
 from shared.messages.header import SCHEMA_REVISION, STATION_ID, Header
@@ -44,6 +45,7 @@ Message = (
     | AlarmChange
     | OperatorAction
     | Tick
+    | ExternalMarkers
 )
 
 __all__ = [
@@ -60,6 +62,9 @@ __all__ = [
     "CommandReply",
     "CommandState",
     "EventKind",
+    "ExternalKind",
+    "ExternalMarker",
+    "ExternalMarkers",
     "FixType",
     "FusedPosition",
     "GpsFix",

@@ -21,6 +21,7 @@ BENCHES = {
     "sensor": "tests.bench.sensor:bench_sensor",
     "standby": "tests.bench.standby.command:bench_standby",
     "station": "tests.bench.station.command:bench_station",
+    "tak": "tests.bench.tak:bench_tak",
     "track": "tests.bench.tracker.track:bench_track",
     "wearer": "tests.bench.wearer:bench_wearer",
 }

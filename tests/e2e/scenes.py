@@ -137,6 +137,7 @@ def picture(units: list[wire.UnitView], *alarms: wire.AlarmView) -> wire.Snapsho
         commands=(),
         pins=(),
         beacons=(),
+        external=(),
         plan=msgspec.Raw(PLAN.read_bytes()),
         anchor=None,
         health=HEALTH,

@@ -5,14 +5,16 @@ from __future__ import annotations
 import socket
 import struct
 from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from shared.messages import EventKind, UnitEvent
+from tests.rig.cot_events import cot_event
 from tests.rig.cot_schema import check_event
-from tests.rig.served_station import MakePosition, greet, prepare
+from tests.rig.served_station import MakePosition, greet, prepare, snapshot
 from tests.rig.station_command import Browser, Command, Unit
 from tests.rig.tak_server import TakCertificates, TakClient, TakServer
 from tests.rig.waiting import PATIENCE_S, until
@@ -172,3 +174,32 @@ def test_an_open_server_elsewhere_is_refused_at_the_start(
     station = serve("--config", settings(tmp_path, "tcp://192.0.2.1:8087"))
     assert station.wait() != 0
     assert "plain = true" in station.said()
+
+
+def test_other_teams_are_on_the_plan_live_and_in_the_replay(
+    serve: Callable[..., Command], data: Path, tak: TakServer, tmp_path: Path
+) -> None:
+    station = serve("--config", settings(tmp_path, tak.url))
+    with TakClient(tak.port) as police, Browser(station.wait_ready(), data) as browser:
+        incident_id = prepare(browser)
+        browser.call("PUT", "/site/anchor", json=ANCHOR)
+        until(lambda: health(browser)["state"] == "connected", "it is connected")
+
+        def shown() -> list[dict[str, Any]]:
+            now = datetime.now(UTC)
+            stale = now + timedelta(seconds=60)
+            times = {"time": now.isoformat(), "stale": stale.isoformat()}
+            police.send(cot_event("p1", lat="52.5005", callsign="Police 1", **times))
+            police.send(cot_event("p2", lat="91.0", **times))
+            return list(snapshot(browser)["external"])
+
+        until(shown, "the police are on the plan")
+        (marker,) = shown()
+        assert (marker["name"], marker["kind"]) == ("Police 1", "person")
+        assert marker["north_m"] == pytest.approx(55.6, abs=1.0)
+        until(lambda: health(browser)["refused"] > 0, "what makes no sense is counted")
+        replay = browser.call("POST", "/replays", json={"incident_id": incident_id})
+        path = f"/replays/{replay['replay_id']}"
+        browser.call("POST", path, json={"at_ms": marker["t_ms"] + 2000, "playing": True})
+        until(lambda: snapshot(browser, f"{path}/live")["external"], "and they are in the replay")
+    assert station.stop() == 0

@@ -60,6 +60,10 @@ class Api:
     def get(self, path: str) -> Any:
         return json.load(self._open("GET", path, None, self.cookie))
 
+    def put(self, path: str, body: dict[str, Any]) -> Any:
+        with self._open("PUT", path, body, self.cookie) as answer:
+            return json.loads(answer.read() or b"null")
+
     def post(self, path: str, body: dict[str, Any]) -> Any:
         """What is answered; None where that is empty."""
         with self._open("POST", path, body, self.cookie) as answer:

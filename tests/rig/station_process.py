@@ -136,10 +136,13 @@ def station_process(
     network: Namespace | None = None,
     patience_s: float = _START_TIMEOUT_S,
     launch: Launch = launch_installed,
+    settings: Path | None = None,
 ) -> Iterator[StationProcess]:
     """Runs ``muster base serve``; ended hard where ``stop`` was not called."""
     arguments = ["serve", "--data", str(data), "--listen", bus_address]
     arguments += ["--http", f"127.0.0.1:{free_port()}"]
+    if settings is not None:
+        arguments += ["--config", str(settings)]
     output = data / _OUTPUT
     output.touch()
     before = output.stat().st_size

@@ -185,6 +185,8 @@ export interface ForwarderView {
   state: string;
   since_ms: number | null;
   sent: number;
+  received: number;
+  refused: number;
   text: string;
 }
 

@@ -307,5 +307,7 @@ export function forwarderLine(one: ForwarderView): string {
   const state = FORWARDER_STATES[one.state];
   const line = `${one.kind.toUpperCase()} ${one.name} (${one.address}): ${state}`;
   const sent = `${one.sent.toLocaleString("en")} events sent`;
-  return [line, sent, one.text].filter(Boolean).join("; ");
+  const received = `${one.received.toLocaleString("en")} received`;
+  const refused = one.refused > 0 ? `${one.refused.toLocaleString("en")} left out` : "";
+  return [line, sent, received, refused, one.text].filter(Boolean).join("; ");
 }

@@ -128,6 +128,19 @@ export interface BeaconView {
   seen_ms: number | null;
 }
 
+export interface ExternalMarkerView {
+  marker_id: string;
+  source: string;
+  name: string;
+  kind: "person" | "marker" | "emergency";
+  remarks: string;
+  north_m: number;
+  east_m: number;
+  radius_m: number | null;
+  t_ms: number;
+  stale_ms: number;
+}
+
 export interface UnitView {
   unit_id: string;
   label: string;
@@ -218,6 +231,8 @@ export interface ForwarderView {
   state: "connected" | "connecting" | "standby";
   since_ms: number | null;
   sent: number;
+  received: number;
+  refused: number;
   text: string;
 }
 
@@ -281,6 +296,7 @@ export interface Snapshot {
   commands: CommandView[];
   pins: PinView[];
   beacons: BeaconView[];
+  external: ExternalMarkerView[];
   plan: Plan | null;
   anchor: AnchorView | null;
   health: HealthView;
@@ -303,6 +319,7 @@ export interface Delta {
   trails?: Record<string, TrailPoint[]>;
   pins?: PinView[];
   beacons?: BeaconView[];
+  external?: ExternalMarkerView[];
   health?: HealthView;
   incident?: IncidentView;
   replay?: ReplayView;

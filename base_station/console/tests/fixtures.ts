@@ -4,6 +4,7 @@ import type {
   CommandView,
   Delta,
   DeliveryState,
+  ExternalMarkerView,
   HealthView,
   PositionView,
   Snapshot,
@@ -156,6 +157,7 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
     commands: [],
     pins: [],
     beacons: [],
+    external: [],
     plan: null,
     anchor: null,
     health: HEALTH,
@@ -166,4 +168,20 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
 
 export function delta(seq: number, change: Partial<Delta> = {}): Delta {
   return { type: "delta", seq, now_ms: 2_000, ...change };
+}
+
+export function externalMarker(change: Partial<ExternalMarkerView> = {}): ExternalMarkerView {
+  return {
+    marker_id: "county/police-1",
+    source: "county",
+    name: "Police 1",
+    kind: "person",
+    remarks: "",
+    north_m: 1,
+    east_m: 2,
+    radius_m: null,
+    t_ms: 1_000,
+    stale_ms: 60_000,
+    ...change,
+  };
 }

@@ -234,19 +234,21 @@ describe("a connection with another system", () => {
     state: "connecting" as const,
     since_ms: null,
     sent: 1200,
+    received: 30,
+    refused: 2,
     text: "does not answer",
   };
 
   it("says where it goes, how it stands and why", () => {
     expect(format.forwarderLine(county)).toBe(
-      "TAK county (tls://tak.test:8089): not connected; 1,200 events sent; does not answer",
+      "TAK county (tls://tak.test:8089): not connected; 1,200 events sent; 30 received; 2 left out; does not answer",
     );
   });
 
   it("says no reason where all is well", () => {
-    const well = { ...county, state: "connected" as const, text: "" };
+    const well = { ...county, state: "connected" as const, refused: 0, text: "" };
     expect(format.forwarderLine(well)).toBe(
-      "TAK county (tls://tak.test:8089): connected; 1,200 events sent",
+      "TAK county (tls://tak.test:8089): connected; 1,200 events sent; 30 received",
     );
   });
 });

@@ -20,7 +20,7 @@ from base_station.site.storeys import Storey
 from shared.channels import tracked_unit
 from shared.errors import UserError
 from shared.geo import Anchor
-from shared.messages import STATION_ID, Header
+from shared.messages import STATION_ID, ExternalMarker, Header
 from shared.messages.station import TakeOver
 
 
@@ -78,6 +78,7 @@ class StationState(msgspec.Struct):
         default_factory=dict
     )  # by key, oldest first
     take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
+    external: dict[str, ExternalMarker] = msgspec.field(default_factory=dict)  # of other teams
     counts: Counts = msgspec.field(default_factory=Counts)
 
     def sender(self, unit_id: str) -> UnitState | None:

@@ -33,6 +33,8 @@ class TakConfig:
     server_name: str = ""  # that its certificate stands for, where that is not the host
     interface: str = "0.0.0.0"  # noqa: S104  # address of the network for multicast; this: any
     plain: bool = False  # accept that names and places leave this machine without encryption
+    receive: bool = True  # show other teams on the plan
+    within_m: Annotated[float, Within(10.0, 1e6)] = 3000.0  # of the anchor, others not
     names: bool = True  # people by their names, else by the labels of their units
     breadcrumbs: bool = True  # the last minutes of each person's way, as a line
     uid_prefix: str = "muster"  # of everything that is sent; each station has another

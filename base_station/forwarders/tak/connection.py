@@ -6,7 +6,7 @@ import asyncio
 import socket
 import ssl
 import warnings
-from collections.abc import Awaitable
+from collections.abc import Awaitable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -19,6 +19,9 @@ _READ_BYTES = 65_536
 _SEND_BUFFER_BYTES = 131_072  # what waits in it is not the newest any more
 _GONE_AFTER_MS = 20_000  # what was sent and is not confirmed by the other machine
 _DATAGRAM_BYTES = 65_000
+# Every call of the system waits its turn among the station's threads, up to 5 ms on a busy one.
+_BATCH_BYTES = 16_384
+_STALLED = "takes nothing that is sent"
 
 
 class ConnectionLostError(Exception):
@@ -31,13 +34,15 @@ class TakConnection:
     def __init__(self, reader: Any, writer: Any) -> None:
         self._reader, self._writer = reader, writer
 
-    async def send(self, event: bytes) -> None:
-        """Raises ConnectionLostError where the other end does not take it."""
+    async def send(self, events: Sequence[bytes]) -> None:
+        """Raises ConnectionLostError where the other end does not take them."""
         if hasattr(self._writer, "drain"):
-            self._writer.write(event)
-            await _within(self._writer.drain(), _DRAIN_S, "takes nothing that is sent")
-        elif len(event) <= _DATAGRAM_BYTES:
-            await _within(self._writer.send(event), _DRAIN_S, "takes nothing that is sent")
+            self._writer.write(b"".join(events))
+            await _within(self._writer.drain(), _DRAIN_S, _STALLED)
+            return
+        for event in events:  # one a datagram
+            if len(event) <= _DATAGRAM_BYTES:
+                await _within(self._writer.send(event), _DRAIN_S, _STALLED)
 
     async def receive(self) -> bytes:
         """What came, at most a datagram or ``_READ_BYTES``; raises ConnectionLostError."""
@@ -62,6 +67,20 @@ class TakConnection:
                 transport.abort()
             elif hasattr(end, "close"):
                 end.close()
+
+
+def in_batches(events: Iterable[bytes]) -> Iterator[list[bytes]]:
+    """Events that are sent by one call; each is asked for when it is its turn."""
+    batch: list[bytes] = []
+    size = 0
+    for event in events:
+        batch.append(event)
+        size += len(event)
+        if size >= _BATCH_BYTES:
+            yield batch
+            batch, size = [], 0
+    if batch:
+        yield batch
 
 
 async def open_connection(config: TakConfig) -> TakConnection:

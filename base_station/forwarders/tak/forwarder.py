@@ -11,9 +11,11 @@ from base_station.forwarders.tak.config import TakConfig
 from base_station.forwarders.tak.connection import (
     ConnectionLostError,
     TakConnection,
+    in_batches,
     open_connection,
 )
 from base_station.forwarders.tak.cot import CotEvents
+from base_station.forwarders.tak.inbox import ExternalInbox
 from base_station.forwarders.tak.mailbox import Mailbox
 from base_station.forwarders.tak.outbox import TakOutbox
 from base_station.views.answer import to_ms, to_ms_or_none
@@ -40,7 +42,6 @@ class _Status:
     away_since_ns: int | None = None  # monotonic; None: connected, or not to be
     reason: str = ""
     sent: int = 0
-    received_bytes: int = 0
 
 
 class TakForwarder:
@@ -52,6 +53,9 @@ class TakForwarder:
         events = CotEvents(config.uid_prefix, config.team, names=config.names)
         self._events = events
         self._outbox = TakOutbox(events, config.every_s, breadcrumbs=config.breadcrumbs)
+        self._inbox = ExternalInbox(
+            name, config.uid_prefix, config.within_m, surroundings.note_external
+        )
         self._mailbox = Mailbox()
         self._status = _Status(away_since_ns=self._clock.monotonic_ns())
         self._retry_s = _FIRST_RETRY_S
@@ -90,6 +94,8 @@ class TakForwarder:
             state=status.state,
             since_ms=to_ms_or_none(status.since_ns),
             sent=status.sent,
+            received=self._inbox.taken,
+            refused=self._inbox.refused,
             text=text,
         )
 
@@ -149,6 +155,7 @@ class TakForwarder:
         self._loop, self._awake = asyncio.get_running_loop(), asyncio.Event()
         self._heard_ns = None
         self._outbox.begin_connection()
+        self._inbox.begin_connection()
         self._set_state("connected")
         receiving = asyncio.create_task(self._receive(connection))
         sending = asyncio.create_task(self._send(connection))
@@ -172,12 +179,13 @@ class TakForwarder:
             self._awake.clear()
             now_ns, now_ms = clock.monotonic_ns(), to_ms(clock.utc_ns())
             self._outbox.apply(self._mailbox.take(), now_ms)
+            self._inbox.deliver_due(now_ns)
             if now_ns >= ping_ns:
                 ping_ns = now_ns + _PING_NS
                 await self._ping(connection, now_ms)
-            for event in self._outbox.due(now_ns, now_ms):
-                await connection.send(event)
-                self._status.sent += 1
+            for events in in_batches(self._outbox.due(now_ns, now_ms)):
+                await connection.send(events)
+                self._status.sent += len(events)
                 if self._awake.is_set():  # an emergency may have come: it goes first
                     break
             else:
@@ -198,10 +206,11 @@ class TakForwarder:
         heard_ns = self._heard_ns
         if heard_ns is not None and self._clock.monotonic_ns() - heard_ns > _SILENT_NS:
             raise ConnectionLostError("does not answer any more")
-        await connection.send(self._events.ping(self._outbox.anchor, now_ms))
+        await connection.send([self._events.ping(self._outbox.anchor, now_ms)])
 
     async def _receive(self, connection: TakConnection) -> None:
         while True:
             data = await connection.receive()
             self._heard_ns = self._clock.monotonic_ns()
-            self._status.received_bytes += len(data)
+            if self._config.receive and self._leads():
+                self._inbox.push(data, self._outbox.anchor, self._clock.utc_ns())

@@ -27,6 +27,7 @@ _NOT_LIVE_EVERY_NS = 10 * NS_PER_S  # of who is not heard only the uncertainty g
 _UNPLACED_NS = NS_PER_S // 5  # then it is looked again whether an emergency has a place
 _WAY_EVERY_NS = 15 * NS_PER_S
 _WAY_PLACES = 60
+_WAYS_AT_ONCE = 3
 _WAY_STEP_M = 2.0
 _METRES_PER_DEG = 111_195.0
 _NO_PLACE = "nothing is sent, as the site has no place on the Earth: set the anchor"
@@ -41,11 +42,12 @@ class _Person:
     unit: UnitView
     is_waiting: bool = True
     sent_ns: int | None = None  # monotonic
+    free_ns: int = 0  # monotonic, when what was sent is paid for: one may be sent ahead of that
     sent_link: str = ""
     sent_place: tuple[int, GeodeticPlace] | None = None  # with the time of the position
     way: deque[GeodeticPlace] = field(default_factory=lambda: deque(maxlen=_WAY_PLACES))
     way_is_new: bool = False
-    way_sent_ns: int | None = None
+    way_sent_ns: int = -_WAY_EVERY_NS
 
 
 class TakOutbox:
@@ -87,7 +89,8 @@ class TakOutbox:
         """Make everything due: whoever is at the other end has seen nothing of it."""
         for person in self._people.values():
             person.is_waiting, person.sent_ns, person.sent_link = True, None, ""
-            person.way_sent_ns, person.way_is_new = None, len(person.way) > 1
+            person.free_ns = 0
+            person.way_sent_ns, person.way_is_new = -_WAY_EVERY_NS, len(person.way) > 1
         self._emergencies.repeat_all()
 
     def due(self, now_ns: int, now_ms: int) -> Iterator[bytes]:
@@ -124,9 +127,9 @@ class TakOutbox:
     def _due_ns(self, person: _Person) -> int:
         if person.sent_ns is None or person.unit.link != person.sent_link:
             return 0
-        return person.sent_ns + (
-            self._every_ns if person.unit.link == _LIVE else _NOT_LIVE_EVERY_NS
-        )
+        if person.unit.link != _LIVE:
+            return person.sent_ns + _NOT_LIVE_EVERY_NS
+        return person.free_ns - self._every_ns
 
     def _alert(self, alert: EmergencyAlert, now_ms: int) -> bytes | None:
         placed = self._placed(alert.unit_id)
@@ -151,6 +154,7 @@ class TakOutbox:
             return None
         _, position, place = placed
         person.sent_ns, person.sent_link = now_ns, unit.link
+        person.free_ns = max(person.free_ns, now_ns) + self._every_ns
         motion = GroundMotion(0.0, 0.0)
         if self.anchor is not None and unit.link == _LIVE:
             rotation_rad = self.anchor.plan_rotation_rad
@@ -166,11 +170,15 @@ class TakOutbox:
             person.way_is_new = len(person.way) > 1
 
     def _ways(self, now_ns: int) -> Iterator[bytes]:
-        for person in self._people.values():
+        """A few at a time: a way is as long as ten positions, which would wait behind it."""
+        due = [
+            person
+            for person in self._people.values()
+            if person.way_is_new and now_ns >= person.way_sent_ns + _WAY_EVERY_NS
+        ]
+        for person in sorted(due, key=lambda one: one.way_sent_ns)[:_WAYS_AT_ONCE]:
             position = person.unit.position
-            if not person.way_is_new or position is None:
-                continue
-            if person.way_sent_ns is None or now_ns - person.way_sent_ns >= _WAY_EVERY_NS:
+            if position is not None:
                 person.way_sent_ns, person.way_is_new = now_ns, False
                 yield self._events.way(person.unit, position, tuple(person.way))
 

@@ -5,6 +5,7 @@ import type {
   AnchorView,
   BeaconView,
   CommandView,
+  ExternalMarkerView,
   HealthView,
   IncidentView,
   PinView,
@@ -42,6 +43,7 @@ export class Picture {
   readonly anchor = signal<AnchorView | null>(null);
   readonly pins = signal<readonly PinView[]>([]);
   readonly beacons = signal<readonly BeaconView[]>([]);
+  readonly external = signal<readonly ExternalMarkerView[]>([]);
   readonly health = signal<HealthView | null>(null);
   readonly replay = signal<ReplayView | null>(null);
   readonly unitIds = signal<readonly string[]>([]);
@@ -75,6 +77,7 @@ export class Picture {
       this.anchor.value = state.anchor;
       this.pins.value = state.pins;
       this.beacons.value = state.beacons;
+      this.external.value = state.external;
       this.health.value = state.health;
       this.replay.value = state.replay;
       this.trails.value = state.trails;

@@ -5,6 +5,7 @@ import type {
   BeaconView,
   CommandView,
   Delta,
+  ExternalMarkerView,
   HealthView,
   IncidentView,
   Message,
@@ -28,6 +29,7 @@ export interface State {
   trails: ReadonlyMap<string, readonly TrailPoint[]>;
   pins: readonly PinView[];
   beacons: readonly BeaconView[];
+  external: readonly ExternalMarkerView[]; // of other teams
   plan: Plan | null;
   anchor: AnchorView | null;
   health: HealthView;
@@ -67,6 +69,7 @@ function fromSnapshot(message: Snapshot, before: State | null): State {
     trails: new Map(),
     pins: message.pins,
     beacons: message.beacons,
+    external: message.external,
     plan: planOf(message, before),
     anchor: message.anchor,
     health: message.health,
@@ -92,6 +95,7 @@ function withDelta(state: State, delta: Delta): State {
     trails: withTrails(state.trails, delta),
     pins: delta.pins ?? state.pins,
     beacons: delta.beacons ?? state.beacons,
+    external: delta.external ?? state.external,
     alarms: delta.alarms ? withAlarms(state.alarms, delta.alarms) : state.alarms,
     commands: delta.commands ? withCommands(state.commands, delta.commands) : state.commands,
   };

@@ -66,6 +66,9 @@ export function follow(map: PlanMap, picture: Picture): () => void {
         chosen: selectedUnit.value,
       }),
     ),
+    following("Other teams on the plan", () =>
+      map.showExternal({ external: picture.external.value, nowMs: picture.nowMs.value }),
+    ),
     followTrails(picture),
     beginOnAFloor(picture),
   ];

@@ -11,6 +11,7 @@ import type { Plan } from "../wire";
 import { BaseMapLayer } from "./baseMap";
 import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
+import { ExternalLayer, type ExternalScene } from "./externalLayer";
 import { PeopleLayer, type Scene } from "./peopleLayer";
 import { Grid } from "./grid";
 import { fitMargins, leastMargins } from "./margins";
@@ -45,6 +46,7 @@ export class PlanMap {
   private readonly peopleLayer = new PeopleLayer();
   private readonly pins = new PinLayer();
   private readonly past = new PastLayer();
+  private readonly external = new ExternalLayer();
   private readonly view = new View({
     projection: SITE,
     center: [0, 0],
@@ -72,6 +74,7 @@ export class PlanMap {
         this.ground,
         this.building.layer,
         this.past.layer,
+        this.external.layer,
         this.pins.labelLayer,
         ...this.peopleLayer.layers,
         this.pins.layer,
@@ -104,6 +107,10 @@ export class PlanMap {
 
   showPast(scene: PastScene): void {
     this.past.show(scene, this.colours);
+  }
+
+  showExternal(scene: ExternalScene): void {
+    this.external.show(scene, this.colours);
   }
 
   private selectNear(coordinate: number[], clicked: number[]): void {

@@ -37,7 +37,7 @@ class Source:
 
     def snapshot(self) -> Snapshot:
         seq = self.seq
-        return Snapshot(seq, seq, None, (), (), (), (), (), None, None, HEALTH, None)
+        return Snapshot(seq, seq, None, (), (), (), (), (), (), None, None, HEALTH, None)
 
     def answer(self) -> None:
         for deliver in self.asked:

@@ -94,7 +94,7 @@ def test_prometheus_own_check_finds_nothing_to_say() -> None:
 
 
 def test_forwarders_are_counted_by_kind_and_name() -> None:
-    away = ForwarderView("county", "tak", "tcp://127.0.0.1:8087", "connecting", None, 7, "away")
+    away = ForwarderView("county", "tak", "tcp://127.0.0.1:8087", "connecting", None, 7, 0, 0, "")
     there = msgspec.structs.replace(away, name="army", state="connected")
     picture = scenes.quiet()
     health = msgspec.structs.replace(picture.health, forwarders=(away, there))

@@ -1,0 +1,45 @@
+"""External markers: people and markers of other teams, from other systems.
+
+They are shown beside our own and change nothing of them.  How many are kept is bounded, whatever
+another system sends.
+"""
+
+from __future__ import annotations
+
+from base_station.core.state import StationState
+from shared.clock import NS_PER_S
+from shared.messages import ExternalMarkers
+
+MARKERS_KEPT = 300
+OLD_FOR_NS = 600 * NS_PER_S  # so long one is shown as old; then it is not shown any more
+
+
+def apply(state: StationState, message: ExternalMarkers) -> bool:
+    """Take what another system sent; True where a marker changed."""
+    changed = False
+    for marker_id in message.removed:
+        changed = state.external.pop(marker_id, None) is not None or changed
+    for marker in message.markers:
+        if state.external.get(marker.marker_id) != marker:
+            state.external[marker.marker_id] = marker
+            changed = True
+    _drop_oldest(state)
+    return changed
+
+
+def _drop_oldest(state: StationState) -> None:
+    excess = len(state.external) - MARKERS_KEPT
+    if excess > 0:
+        by_age = sorted(state.external.values(), key=lambda one: (one.stale_ns, one.marker_id))
+        for marker in by_age[:excess]:
+            del state.external[marker.marker_id]
+
+
+def expire(state: StationState) -> bool:
+    """Drop those that have been old for long; True where one was dropped."""
+    over = [
+        one.marker_id for one in state.external.values() if state.t_ns - one.stale_ns > OLD_FOR_NS
+    ]
+    for marker_id in over:
+        del state.external[marker_id]
+    return bool(over)

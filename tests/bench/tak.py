@@ -1,0 +1,127 @@
+"""``muster bench tak``: how soon people are in TAK, over a real station and TAK server."""
+
+from __future__ import annotations
+
+import time
+from contextlib import ExitStack
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated
+
+import typer
+from rich.console import Console as Terminal
+from rich.table import Table
+
+from base_station.forwarders.tak.cot import PERSON
+from shared.bench_figures import FiguresFile, write_figures
+from shared.bus_zenoh import ZenohBus
+from shared.channels import channel_of
+from shared.clock import NS_PER_MS, NS_PER_S, SystemClock
+from shared.codec import encode
+from tests.rig.latency import Latency, latency_of
+from tests.rig.pacing import paced, wait_until
+from tests.rig.simulated_units import Wearer, unit_names
+from tests.rig.station_process import Membership, StationProcess, station_process
+from tests.rig.tak_server import ReceivedEvent, TakClient, TakServer
+
+_POSITIONS_SHARE = 5 / 7  # of what a simulated wearer's unit sends
+_SETTLE_S = 3.0
+_ANCHOR = {"lat_deg": 52.5, "lon_deg": 13.4, "height_m": 40.0}
+
+
+@dataclass(frozen=True, slots=True)
+class TakReport:
+    """Figures of one run."""
+
+    people: int
+    positions_hz: float  # of each person
+    events_hz: float  # of people, that arrived
+    latency: Latency  # from the time to which a position belongs to the TAK client
+    people_arrived: int
+    cpu_share: float  # of one core, all of the station
+
+
+def bench_tak(
+    people: Annotated[int, typer.Option(min=1, help="People with units.")] = 500,
+    rate: Annotated[float, typer.Option(min=0.1, help="Positions a second of each.")] = 1.0,
+    seconds: Annotated[float, typer.Option(min=2.0, help="How long they walk.")] = 30.0,
+    json_file: FiguresFile = None,
+) -> None:
+    """Latency from a position to a TAK client, over a station and a TAK server (taky)."""
+    report = measure(people, rate, seconds)
+    Terminal().print(_table_of(report))
+    write_figures(json_file, report)
+
+
+def measure(people: int, rate_hz: float, seconds: float) -> TakReport:
+    with TemporaryDirectory(prefix="muster-bench-") as folder, ExitStack() as closing:
+        data = Path(folder)
+        server = closing.enter_context(TakServer(data / "tak"))
+        client = closing.enter_context(TakClient(server.port))
+        settings = data / "station.toml"
+        # Twice as often as positions come: each is forwarded, and none waits for its turn.
+        every = f"every_s = {max(0.5 / rate_hz, 0.2)}"
+        settings.write_text(f'[tak.bench]\nurl = "{server.url}"\n{every}\n')
+        members = Membership(data, (), plain=True)
+        station = closing.enter_context(station_process(data, members.address, settings=settings))
+        bus = ZenohBus(members.endpoint_of("bench"))
+        closing.callback(bus.close)
+        return _run(station, bus, client, people, rate_hz, seconds)
+
+
+def _run(
+    station: StationProcess,
+    bus: ZenohBus,
+    client: TakClient,
+    people: int,
+    rate_hz: float,
+    seconds: float,
+) -> TakReport:
+    wearers = [Wearer(name, SystemClock()) for name in unit_names(people)]
+    for wearer in wearers:
+        station.api.post("/units", {"unit_id": wearer.unit_id})
+    station.api.put("/site/anchor", _ANCHOR)
+    station.api.post("/incidents", {"name": "Bench"})
+    wait_until("the station listens", lambda: bus.is_heard("muster/v1/x/up/position"))
+    station.begin_measuring()
+    began_ns = time.time_ns()
+    for number in paced(people * rate_hz / _POSITIONS_SHARE, seconds):
+        message = wearers[number % people].next_message()
+        channel = channel_of(message)
+        bus.publish(channel.key(message.header.unit_id), encode(message), channel.qos)
+    cpu_share = station.cpu_share()
+    time.sleep(_SETTLE_S)
+    # The first seconds are those in which the station learns the clocks of all units at once.
+    since_ns = began_ns + round(_SETTLE_S * NS_PER_S)
+    arrived = [one for one in client.events if one.kind == PERSON and one.t_ns >= since_ns]
+    return TakReport(
+        people=people,
+        positions_hz=rate_hz,
+        events_hz=len(arrived) / (seconds - _SETTLE_S),
+        latency=latency_of([_latency_ms(one) for one in arrived]),
+        people_arrived=len({one.uid for one in arrived}),
+        cpu_share=cpu_share,
+    )
+
+
+def _latency_ms(one: ReceivedEvent) -> float:
+    at = datetime.fromisoformat(one.event.get("time", ""))
+    return one.t_ns / NS_PER_MS - at.timestamp() * 1000.0
+
+
+def _table_of(report: TakReport) -> Table:
+    table = Table(title=f"{report.people} people, {report.positions_hz:g} positions/s each")
+    for name in ("events/s", "people", "p50 ms", "p99 ms", "max ms", "CPU of the station"):
+        table.add_column(name, justify="right")
+    latency = report.latency
+    table.add_row(
+        f"{report.events_hz:.0f}",
+        str(report.people_arrived),
+        f"{latency.p50_ms:.0f}",
+        f"{latency.p99_ms:.0f}",
+        f"{latency.max_ms:.0f}",
+        f"{100.0 * report.cpu_share:.0f} %",
+    )
+    return table
