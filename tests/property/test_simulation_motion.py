@@ -13,10 +13,10 @@ from msgspec.structs import replace
 
 from edge.samples import Floats
 from edge.simulation.curve import Curve
+from edge.simulation.factory import find_scenario
 from edge.simulation.jet import Jet, cosine, oscillation, sine
 from edge.simulation.legs import Segment
 from edge.simulation.scenario import Scenario
-from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import Simulation
 
 STEP_S = 1e-4
@@ -25,8 +25,7 @@ SEEDS = st.integers(0, 2**32)
 
 
 def scenario_named(name: str) -> Scenario:
-    found = next(scenario for scenario in SCENARIOS if scenario.name == name)
-    return replace(found, duration_s=130.0)
+    return replace(find_scenario(name), duration_s=130.0)
 
 
 @cache

@@ -17,8 +17,8 @@ from edge.simulation.simulation import Simulation
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.filter.strapdown import rotation_matrix
 from edge.tracker.foot.output.track_rows import join_rows
-from tests.bench.tracker.honesty import inertial
 from tests.rig.exact_strides import part, walk
+from tests.rig.inertial_walk import inertial_samples
 
 WALK = walk(strides=6, gyro_bias_radps=(0.002, -0.004, 0.003), accel_bias_mps2=(0.05, 0.0, -0.1))
 
@@ -111,7 +111,7 @@ def test_the_other_foot_is_tracked_as_the_mirror_image():
     """Nothing prefers a side: reflected samples give the reflected way, as sure of it."""
     legs = (Stand(2.0), Walk(((6.0, 0.0), (6.0, 5.0))), Stand(1.0))
     simulation = Simulation(Scenario("turn", "turns right", legs), 3)
-    imu = inertial(simulation)
+    imu = inertial_samples(simulation)
     mirror = np.array([1.0, -1.0, 1.0])  # a rate is a pseudovector
     other = ImuBatch(imu.t_ns, mirror * imu.accel_mps2, -mirror * imu.gyro_radps)
     right, left = run(imu, simulation.description), run(other, simulation.description)

@@ -5,39 +5,26 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-import msgspec
 import numpy as np
 
-from edge.samples import ImuBatch
-from edge.simulation.scenarios import SCENARIOS
-from edge.simulation.simulation import Simulation
+from edge.samples import Floats, ImuBatch, SensorDescription
+from edge.simulation.kinematics import Motion
+from tests.rig.inertial_walk import inertial_walk
 
 SEEDS = (0, 1, 3)
 DURATION_S = 240.0
 
 
 @cache
-def simulated(seed, building=False):
-    """Samples and true attitudes of a search."""
-    scenario = next(entry for entry in SCENARIOS if entry.name == "search-ground-floor")
-    scenario = msgspec.structs.replace(scenario, duration_s=DURATION_S, building=building)
-    simulation = Simulation(scenario, seed)
-    batches = [batch.imu for batch in simulation.batches(1.0)]
-    imu = ImuBatch(
-        *(
-            np.concatenate([getattr(batch, name) for batch in batches])
-            for name in ("t_ns", "accel_mps2", "gyro_radps", "mag_ut")
-        )
-    )
-    truth = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64))
-    return simulation.description, imu, truth
+def searched(seed: int, building: bool = False) -> tuple[SensorDescription, ImuBatch, Motion]:
+    """Return samples and true motion of a search, without a barometer."""
+    found = inertial_walk("search-ground-floor", seed, duration_s=DURATION_S, building=building)
+    return found.description, found.sensed("mag_ut"), found.truth
 
 
-def rms(values):
-    return float(np.sqrt(np.mean(np.square(values))))
-
-
-def bent(imu, truth, seed, wave_m, bend_ut):
+def bent(
+    imu: ImuBatch, truth: Motion, seed: int, wave_m: tuple[float, float], bend_ut: float
+) -> ImuBatch:
     """The field bent by that much (root mean square, each axis) in waves of such lengths."""
     noise = np.random.default_rng(seed)
     waves = (
@@ -50,9 +37,11 @@ def bent(imu, truth, seed, wave_m, bend_ut):
     amplitudes_ut = noise.normal(0.0, bend_ut / np.sqrt(6.0), (12, 3))
     bend_n_ut = np.sin(truth.position_n_m @ waves.T + phases) @ amplitudes_ut
     bend_b_ut = np.einsum("nji,nj->ni", truth.rotation_nb, bend_n_ut)
+    assert imu.mag_ut is not None
     return replace(imu, mag_ut=imu.mag_ut + bend_b_ut)
 
 
-def random_directions(noise, count):
+def random_directions(noise: np.random.Generator, count: int) -> Floats:
     directions = noise.standard_normal((count, 3))
-    return directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    units: Floats = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    return units

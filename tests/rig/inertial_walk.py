@@ -1,7 +1,8 @@
 """Inertial walks of the simulator: all samples of a sensor, wherever it is worn, and the truth.
 
 What a tracker under test needs of one walk.  ``of_one_person`` has several sensors on one person
-who walks once: a lower back and a foot, a chest and a shank.
+who walks once: a lower back and a foot, a chest and a shank.  Paths that units publish, without
+any sensor, are made by ``tests.rig.published_path``.
 """
 
 from __future__ import annotations
@@ -37,6 +38,10 @@ class InertialWalk:
     def t_s(self) -> Floats:
         return self.truth.t_s
 
+    def sensed(self, *aids: str) -> ImuBatch:
+        """Return the samples of accelerometer and gyroscope, and of the aids named like columns."""
+        return only(self.imu, *aids)
+
 
 def inertial_walk(
     scenario: Scenario | str,
@@ -71,9 +76,23 @@ def of_one_person(
     ]
 
 
-def samples(simulation: Simulation) -> ImuBatch:
-    """Return all that the simulated unit samples with its inertial sensors."""
-    parts = [batch.imu for batch in simulation.batches(_BLOCK_S)]
+def inertial_samples(simulation: Simulation) -> ImuBatch:
+    """Return what accelerometer and gyroscope measure on the whole walk."""
+    return only(samples(simulation))
+
+
+def only(imu: ImuBatch, *aids: str) -> ImuBatch:
+    """Return the samples of accelerometer and gyroscope, and of the aids named like columns."""
+    kept = {name: getattr(imu, name) for name in aids}
+    return ImuBatch(imu.t_ns, imu.accel_mps2, imu.gyro_radps, **kept)
+
+
+def samples(simulation: Simulation, block_s: float = _BLOCK_S) -> ImuBatch:
+    """Return all that the simulated unit samples with its inertial sensors.
+
+    The noise is drawn block by block.
+    """
+    parts = [batch.imu for batch in simulation.batches(block_s)]
     return ImuBatch(
         *(
             np.concatenate([getattr(part, field.name) for part in parts])

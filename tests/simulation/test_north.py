@@ -12,7 +12,7 @@ import pytest
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import ApproximatePosition, SensorBatch
 from edge.simulation.building import load_building
-from edge.simulation.scenarios import SCENARIOS
+from edge.simulation.factory import find_scenario
 from edge.simulation.simulation import UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
@@ -44,7 +44,7 @@ def positions_of(simulation: Simulation) -> list[Position]:
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("plan_turned_deg", [0.0, 75.0])
 def test_the_path_lies_right_on_the_plan(seed: int, plan_turned_deg: float) -> None:
-    scenario = next(one for one in SCENARIOS if one.name == "square-60m")
+    scenario = find_scenario("square-60m")
     simulation = Simulation(scenario, seed, UNCALIBRATED_SENSORS)
     anchor, turned_rad = load_building().anchor, math.radians(plan_turned_deg)
     start_m = simulation.truth(np.array([0.0])).position_n_m[0]

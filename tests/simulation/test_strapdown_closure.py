@@ -12,9 +12,9 @@ from msgspec.structs import replace
 from numba import njit
 
 from edge.samples import Floats
+from edge.simulation.factory import find_scenario
 from edge.simulation.imu import GRAVITY_MPS2
 from edge.simulation.legs import Segment
-from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import IDEAL_SENSORS, Simulation
 
 RATE_HZ = 4000.0  # fine enough that the integrator's own error stays below a millimetre
@@ -76,9 +76,8 @@ def _quaternion(rotation_nb: Floats) -> Floats:
 def test_ideal_sensors_integrate_to_the_truth(
     name: str, worn_on: Segment, duration_s: float
 ) -> None:
-    scenario = next(scenario for scenario in SCENARIOS if scenario.name == name)
     scenario = replace(
-        scenario, rate_hz=RATE_HZ, duration_s=duration_s, worn_on=worn_on, conversions=1
+        find_scenario(name), rate_hz=RATE_HZ, duration_s=duration_s, worn_on=worn_on, conversions=1
     )
     simulation = Simulation(scenario, seed=3, sensors=IDEAL_SENSORS)
     start = simulation.truth(np.zeros(1))

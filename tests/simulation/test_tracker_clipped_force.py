@@ -12,9 +12,9 @@ from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import Simulation
 from edge.tracker.interface import Reason
-from tests.bench.tracker.honesty import inertial
 from tests.bench.tracker.scoring import CHI2_95_2DOF, horizontal_nees
 from tests.bench.tracker.walk_errors import track, true_way_m
+from tests.rig.inertial_walk import inertial_samples
 
 LEGS = (Stand(4.0), Walk(((60.0, 0.0), (0.0, 0.0)), pace="sprint"), Stand(2.0))
 
@@ -24,7 +24,7 @@ LEGS = (Stand(4.0), Walk(((60.0, 0.0), (0.0, 0.0)), pace="sprint"), Stand(2.0))
 def test_what_was_cut_off_is_found_by_the_next_stance(full_scale_g, short, is_told):
     simulation = Simulation(Scenario("sprint", "sprints", LEGS), seed=1)
     full_scale_mps2 = full_scale_g * GRAVITY_MPS2
-    imu = inertial(simulation)
+    imu = inertial_samples(simulation)
     clipped = np.clip(imu.accel_mps2, -full_scale_mps2, full_scale_mps2)
     described_mps2 = full_scale_mps2 if is_told else None
     described = replace(simulation.description, accel_full_scale_mps2=described_mps2)

@@ -17,8 +17,8 @@ from edge.tracker.foot.sample_ring import RING
 from edge.tracker.foot.state import new_filter_state
 from edge.tracker.foot.zupt.zupt import is_gliding
 from edge.tracker.interface import Quality
-from tests.bench.tracker.honesty import inertial
 from tests.bench.tracker.walk_errors import track, true_way_m
+from tests.rig.inertial_walk import inertial_samples
 
 CUT_S = 9.3  # into the crawl
 WAY = Crawl(((8.0, 0.0), (8.0, 5.0), (0.0, 5.0), (-4.0, 5.0), (-4.0, 0.0), (4.0, 0.0)))
@@ -30,7 +30,7 @@ def test_a_recording_that_begins_in_mid_crawl_takes_no_glide_for_a_stance(seed):
     scenario = Scenario("crawl", "crawls", (Stand(4.0), WAY))
     simulation = Simulation(scenario, seed, UNCALIBRATED_SENSORS)
     first = round(CUT_S * simulation.description.rate_hz)
-    imu = inertial(simulation).part(slice(first, None))
+    imu = inertial_samples(simulation).part(slice(first, None))
     description = replace(simulation.description, mag_present=False, barometer_present=False)
     rows = track(description, imu, "eskf")
     truth = simulation.truth(np.asarray(rows.t_ns * 1e-9, np.float64))

@@ -16,9 +16,9 @@ from edge.tracker.foot.error_state import GYRO_BIAS, SIZE
 from edge.tracker.foot.filter.initial_gyro_bias import update_from_rest
 from edge.tracker.foot.state import new_filter_state
 from edge.tracker.interface import Quality, Reason
-from tests.bench.tracker.honesty import inertial
 from tests.bench.tracker.scoring import CHI2_95_2DOF, horizontal_nees
 from tests.bench.tracker.walk_errors import track, true_way_m
+from tests.rig.inertial_walk import inertial_samples
 
 RATE_HZ = 200
 WALKED_S = 4.0  # when the recording begins, a second into the walk
@@ -36,7 +36,7 @@ def walked(seed, bias_radps, legs=LEGS):
     gyro = replace(UNCALIBRATED_SENSORS.imu.gyro, bias_std=0.0)
     sensors = replace(UNCALIBRATED_SENSORS, imu=replace(UNCALIBRATED_SENSORS.imu, gyro=gyro))
     simulation = Simulation(Scenario("late", "starts late", legs), seed, sensors)
-    imu = inertial(simulation).part(slice(round(WALKED_S * RATE_HZ), None))
+    imu = inertial_samples(simulation).part(slice(round(WALKED_S * RATE_HZ), None))
     down_b = simulation.truth(np.zeros(1)).rotation_nb[0, 2]
     imu = ImuBatch(imu.t_ns, imu.accel_mps2, imu.gyro_radps + bias_radps * down_b)
     description = replace(simulation.description, mag_present=False, barometer_present=False)
@@ -72,7 +72,7 @@ def test_the_first_rest_shows_the_bias_and_turns_the_heading_back():
 
 def test_a_rest_before_the_walk_leaves_nothing_to_doubt():
     simulation = Simulation(Scenario("rested", "stands first", LEGS), 1, UNCALIBRATED_SENSORS)
-    rows = track(simulation.description, inertial(simulation), "eskf")
+    rows = track(simulation.description, inertial_samples(simulation), "eskf")
     assert np.degrees(rows.heading_std_rad[round(3.0 * RATE_HZ)]) < 1.0
     assert not unsettled(rows).any()
 

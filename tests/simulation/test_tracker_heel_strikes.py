@@ -13,7 +13,7 @@ from edge.simulation.simulation import Simulation
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import join_rows
-from tests.bench.tracker.honesty import inertial
+from tests.rig.inertial_walk import inertial_samples
 
 LEGS = (Stand(4.0), Walk(((50.0, 0.0), (0.0, 0.0))), Stand(2.0))
 STRIKE_MPS = 0.2  # of velocity, up or down, that a strike leaves in the samples
@@ -53,7 +53,7 @@ def clipped(description, imu):
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_strike_is_put_right_and_not_the_swing_before_it(seed, clips):
     simulation = Simulation(Scenario("strikes", "heel strikes", LEGS), seed)
-    imu = inertial(simulation)
+    imu = inertial_samples(simulation)
     no_floor = EskfConfig(floor_gate_m=0.0, floor_gate_slope=0.0)
     description = simulation.description
     hard = struck(imu, track(description, imu, no_floor), np.random.default_rng(seed))

@@ -17,11 +17,11 @@ from tests.bench.tracker.honesty import (
     ending,
     ending_of,
     honesty_table,
-    inertial,
     nees_bounds,
 )
 from tests.bench.tracker.walk_errors import rms, track
 from tests.rig.exact_strides import walk
+from tests.rig.inertial_walk import inertial_samples
 
 SEEDS = range(12)
 NEES_BOUNDS = nees_bounds(len(SEEDS))
@@ -99,6 +99,6 @@ def test_a_clipped_force_is_bridged():
     sensors = replace(CONSUMER_SENSORS, imu=replace(CONSUMER_SENSORS.imu, accel=accel))
     legs = (Stand(4.0), Walk(((60.0, 0.0),), pace="sprint"), Stand(3.0))
     simulation = Simulation(Scenario("sprint", "sprints", legs), 1, sensors)
-    rows = track(simulation.description, inertial(simulation), "eskf")
+    rows = track(simulation.description, inertial_samples(simulation), "eskf")
     assert np.linalg.norm(rows.position_n_m[-1, :2]) == pytest.approx(60.0, rel=0.1)
     assert np.mean(rows.reasons & Reason.ACCEL_SATURATED != 0) > 0.2

@@ -12,8 +12,8 @@ from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import Simulation
 from edge.tracker.foot.error_state import GYRO_BIAS
 from edge.tracker.foot.eskf import EskfTracker
-from tests.bench.tracker.honesty import inertial
 from tests.bench.tracker.wearers import KINDS, Wearer, Wore, stray, wearers_table
+from tests.rig.inertial_walk import inertial_samples
 
 
 @pytest.mark.parametrize("seed", [103, 104])
@@ -40,7 +40,7 @@ def test_a_rest_tells_of_the_bias_whatever_the_rate():
     for rate_hz in (100.0, 200.0, 800.0):
         simulation = Simulation(Scenario("rests", "rests", (Stand(30.0),), rate_hz=rate_hz), 1)
         tracker = EskfTracker(replace(simulation.description, mag_present=False))
-        tracker.push(inertial(simulation))
+        tracker.push(inertial_samples(simulation))
         known.append(np.sqrt(np.diag(tracker._state["covariance"][0])[GYRO_BIAS : GYRO_BIAS + 3]))
     assert known[0] == pytest.approx(known[1], rel=0.2)
     assert known[2] == pytest.approx(known[1], rel=0.2)

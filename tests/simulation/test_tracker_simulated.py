@@ -7,11 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from edge.samples import ImuBatch
-from edge.simulation.factory import open_simulation
-from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.filter.strapdown import rotation_matrix
-from edge.tracker.foot.output.track_rows import join_rows
+from tests.bench.tracker.walk_errors import track, true_way_m
+from tests.rig.inertial_walk import inertial_walk
 
 SEEDS = range(6)
 # 95 % of the mean of six chi-square values with two degrees of freedom: chi2(12) / 6.
@@ -21,23 +18,9 @@ NEES_BOUNDS = (4.404 / 6, 23.337 / 6)
 @cache
 def tracked(scenario, seed):
     """Rows and true positions in the tracker's frame: its start and its first heading."""
-    simulation = open_simulation(f"{scenario}?seed={seed}")
-    batches = [batch.imu for batch in simulation.batches(1.0)]
-    imu = ImuBatch(
-        np.concatenate([batch.t_ns for batch in batches]),
-        np.concatenate([batch.accel_mps2 for batch in batches]),
-        np.concatenate([batch.gyro_radps for batch in batches]),
-    )
-    tracker = EskfTracker(simulation.description)
-    rows = join_rows([tracker.push(imu), tracker.finish()])
-    truth = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64))
-    start = np.zeros((3, 3))
-    rotation_matrix(rows.quaternion_nb[0], start)
-    turn = start @ truth.rotation_nb[0].T
-    yaw_rad = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
-    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
-    frame = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return rows, (truth.position_n_m - truth.position_n_m[0]) @ frame.T
+    found = inertial_walk(scenario, seed)
+    rows = track(found.description, found.sensed(), "eskf")
+    return rows, true_way_m(rows.quaternion_nb, found.truth)[0]
 
 
 @pytest.mark.parametrize("scenario", ["square-60m", "rectangle", "j-shape"])

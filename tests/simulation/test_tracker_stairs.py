@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.samples import ImuBatch
 from edge.simulation.legs import Spiral, StairsLeg, Stand, Turn, Walk
 from edge.simulation.scenario import Scenario
-from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
-from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS
+from tests.bench.tracker.walk_errors import track
+from tests.rig.inertial_walk import inertial_walk
 
 RISERS = 9  # a flight; two flights and a landing a floor
 
@@ -40,23 +39,9 @@ def winding(rise_m, floors, turns):
 
 def tracked(legs, seed, sensors=CONSUMER_SENSORS):
     """Height above the start, tracked (n,), its deviation and the true one."""
-    simulation = Simulation(Scenario("stairwell", "stairs", legs), seed, sensors)
-    imu = [batch.imu for batch in simulation.batches(1.0)]
-    t_ns = np.concatenate([part.t_ns for part in imu])
-    tracker = EskfTracker(simulation.description)
-    rows = join_rows(
-        [
-            tracker.push(
-                ImuBatch(
-                    t_ns,
-                    np.concatenate([part.accel_mps2 for part in imu]),
-                    np.concatenate([part.gyro_radps for part in imu]),
-                )
-            ),
-            tracker.finish(),
-        ]
-    )
-    true_m = simulation.truth(t_ns * 1e-9).position_n_m[:, 2]
+    found = inertial_walk(Scenario("stairwell", "stairs", legs), seed, sensors=sensors)
+    rows = track(found.description, found.sensed(), "eskf")
+    true_m = found.truth.position_n_m[:, 2]
     std_m = np.sqrt(rows.position_cov_m2[:, 2, 2])
     return -rows.position_n_m[:, 2], std_m, true_m[0] - true_m
 

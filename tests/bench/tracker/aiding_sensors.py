@@ -20,7 +20,7 @@ from rich.progress import track as progress_bar
 from rich.table import Table
 
 from edge.samples import ImuBatch
-from edge.simulation.scenarios import SCENARIOS
+from edge.simulation.factory import find_scenario
 from edge.simulation.simulation import (
     CONSUMER_SENSORS,
     UNCALIBRATED_SENSORS,
@@ -33,6 +33,7 @@ from shared.bench_figures import FiguresFile, write_figures
 from tests.bench.tracker.magnetic_north import NorthFound, find_north, north_table
 from tests.bench.tracker.simulated_calibration import calibration_of
 from tests.bench.tracker.walk_errors import WalkErrors, rms, track, walk_errors
+from tests.rig.inertial_walk import samples
 
 SEEDS = range(8)
 _SEARCH_S = 600.0
@@ -119,7 +120,7 @@ def _norths(tracker: str) -> Iterator[Callable[[], NorthFound]]:
             _simulation("search-ground-floor", CONSUMER_SENSORS, settings, seed) for seed in SEEDS
         ]
         return partial(
-            find_north, walks, simulations, lambda one: change(whole_walk(one), one), tracker
+            find_north, walks, simulations, lambda one: change(_walked(one), one), tracker
         )
 
     yield find("10 min on open ground", _as_is, building=False)
@@ -162,8 +163,8 @@ def _calibrated(imu: ImuBatch, simulation: Simulation) -> ImuBatch:
 def _simulation(
     name: str, sensors: SensorErrors, changes: tuple[tuple[str, object], ...], seed: int
 ) -> Simulation:
-    scenario = next(entry for entry in SCENARIOS if entry.name == name)
-    return Simulation(msgspec.structs.replace(scenario, **dict(changes)), seed, sensors)
+    scenario = msgspec.structs.replace(find_scenario(name), **dict(changes))
+    return Simulation(scenario, seed, sensors)
 
 
 def _compare(
@@ -177,7 +178,7 @@ def _compare(
     errors: tuple[list[WalkErrors], list[WalkErrors]] = ([], [])
     for seed in SEEDS:
         simulation = make(seed)
-        imu = whole_walk(simulation)
+        imu = _walked(simulation)
         truth = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64))
         for change, found in zip((without, with_), errors, strict=True):
             rows = track(simulation.description, change(imu, simulation), tracker)
@@ -187,15 +188,8 @@ def _compare(
     return Comparison(aid, walks, _mean(errors[0]), _mean(errors[1]), worse)
 
 
-def whole_walk(simulation: Simulation) -> ImuBatch:
-    """Return all inertial samples of a walk in one batch."""
-    parts = [batch.imu for batch in simulation.batches(simulation.duration_s)]
-    return parts[0] if len(parts) == 1 else _joined(parts)
-
-
-def _joined(parts: list[ImuBatch]) -> ImuBatch:
-    names = ImuBatch.__dataclass_fields__
-    return ImuBatch(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+def _walked(simulation: Simulation) -> ImuBatch:
+    return samples(simulation, simulation.duration_s)
 
 
 def _mean(errors: list[WalkErrors]) -> WalkErrors:

@@ -68,8 +68,7 @@ def walk_end(scenario: Scenario, seed: int, tracker: str) -> WalkEnd:
     """Walk once, track by accelerometer and gyroscope, and compare."""
     walk = inertial_walk(scenario, seed)
     description = replace(walk.description, mag_present=False, barometer_present=False)
-    imu = replace(walk.imu, mag_ut=None, pressure_pa=None)
-    rows = track(description, imu, tracker)
+    rows = track(description, walk.sensed(), tracker)
     every = slice(0, None, round(_EVERY_S * scenario.rate_hz))
     way_m, _ = true_way_m(rows.quaternion_nb[every], motion_at(walk.truth, every))
     truth = RecordedTruth(walk.t_s[every], way_m)

@@ -18,11 +18,12 @@ from rich.console import Console
 from rich.progress import track as progress_bar
 from rich.table import Table
 
-from edge.samples import Floats, ImuBatch
-from edge.simulation.scenarios import SCENARIOS
+from edge.samples import Floats
+from edge.simulation.factory import find_scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
 from tests.bench.tracker.scoring import CHI2_95_2DOF, horizontal_nees
 from tests.bench.tracker.walk_errors import rms, track, true_way_m
+from tests.rig.inertial_walk import inertial_samples
 
 SEARCH = "search-ground-floor"
 WALKS: tuple[tuple[str, str, float], ...] = (  # as it is called, the scenario, how long if looped
@@ -37,7 +38,6 @@ WALKS: tuple[tuple[str, str, float], ...] = (  # as it is called, the scenario, 
     ("20 min of search", SEARCH, 1200.0),
 )
 SEEDS = 24
-_BLOCK_S = 2.0
 _EVERY_S = 0.5
 
 
@@ -112,7 +112,7 @@ def _all(endings: list[Ending], name: str) -> Floats:
 def ending(walk: str, seed: int, *, calibrated: bool) -> Ending:
     """Walk one of ``WALKS``, track and compare."""
     _, name, duration_s = next(entry for entry in WALKS if entry[0] == walk)
-    scenario = next(entry for entry in SCENARIOS if entry.name == name)
+    scenario = find_scenario(name)
     if duration_s:
         scenario = msgspec.structs.replace(scenario, building=False, duration_s=duration_s)
     sensors = CONSUMER_SENSORS if calibrated else UNCALIBRATED_SENSORS
@@ -121,7 +121,7 @@ def ending(walk: str, seed: int, *, calibrated: bool) -> Ending:
 
 def ending_of(simulation: Simulation) -> Ending:
     """Track a walk by its inertial sensors and compare."""
-    imu = inertial(simulation)
+    imu = inertial_samples(simulation)
     rows = track(simulation.description, imu, "eskf")
     at = np.arange(0, len(rows), round(_EVERY_S * simulation.description.rate_hz))
     truth = simulation.truth(np.asarray(rows.t_ns[at] * 1e-9, np.float64))
@@ -134,16 +134,6 @@ def ending_of(simulation: Simulation) -> Ending:
         error_m=float(np.hypot(*error_m)),
         nees=float(nees[-1]),
         inside=float(np.mean(nees[1:] <= CHI2_95_2DOF)),
-    )
-
-
-def inertial(simulation: Simulation) -> ImuBatch:
-    """Return what accelerometer and gyroscope say on the whole walk."""
-    parts = [batch.imu for batch in simulation.batches(_BLOCK_S)]
-    return ImuBatch(
-        np.concatenate([part.t_ns for part in parts]),
-        np.concatenate([part.accel_mps2 for part in parts]),
-        np.concatenate([part.gyro_radps for part in parts]),
     )
 
 

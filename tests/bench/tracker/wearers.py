@@ -32,9 +32,9 @@ from edge.simulation.legs import (
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.interface import Quality
-from tests.bench.tracker.honesty import inertial
 from tests.bench.tracker.scoring import CHI2_95_2DOF, horizontal_nees
 from tests.bench.tracker.walk_errors import rms, track, true_way_m
+from tests.rig.inertial_walk import inertial_samples
 
 WEARERS = 6
 FIRST_SEED = 100  # with those below the tracker was made, on these its faults were found
@@ -188,7 +188,7 @@ def stray(kind: Wearer, seed: int, calibrated: bool) -> Strayed:
     sensors = CONSUMER_SENSORS if calibrated else UNCALIBRATED_SENSORS
     scenario = Scenario(kind.does, kind.does, kind.legs, rate_hz=kind.rate_hz)
     simulation = Simulation(scenario, seed, sensors)
-    imu = inertial(simulation).part(slice(round(kind.cut_s * kind.rate_hz), None))
+    imu = inertial_samples(simulation).part(slice(round(kind.cut_s * kind.rate_hz), None))
     description = replace(simulation.description, mag_present=False, barometer_present=False)
     rows = track(description, imu, "eskf")
     at = np.arange(0, len(rows), round(_EVERY_S * kind.rate_hz))

@@ -8,23 +8,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from edge.simulation.factory import find_scenario
 from edge.simulation.imu import TriadErrors
-from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
 from tests.bench.tracker import aiding_sensors
-from tests.bench.tracker.aiding_sensors import bench_aids, whole_walk
+from tests.bench.tracker.aiding_sensors import bench_aids
 from tests.bench.tracker.simulated_calibration import calibration_of
 from tests.bench.tracker.walk_errors import rotations_of, track, walk_errors
+from tests.rig.inertial_walk import inertial_walk, samples
 
-SQUARE = next(entry for entry in SCENARIOS if entry.name == "square-60m")
+SQUARE = find_scenario("square-60m")
 
 
 @pytest.fixture(scope="module")
 def walked():
-    simulation = Simulation(SQUARE, 0)
-    imu = whole_walk(simulation)
-    truth = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64))
-    return simulation, imu, truth
+    found = inertial_walk("square-60m")
+    return found.simulation, found.imu, found.truth
 
 
 def test_a_track_that_is_the_truth_has_no_error_whatever_its_north(walked):
@@ -59,7 +58,7 @@ def test_the_calibration_is_of_the_very_unit_that_walks():
     for seed in (0, 1):
         simulation = Simulation(SQUARE, seed, UNCALIBRATED_SENSORS)
         calibration = calibration_of(simulation)
-        still = whole_walk(simulation).part(slice(0, 600))
+        still = samples(simulation).part(slice(0, 600))
         rate_radps = calibration.apply(still, simulation.description).gyro_radps.mean(axis=0)
         assert np.abs(still.gyro_radps.mean(axis=0)).max() > np.radians(0.3)
         assert np.abs(rate_radps).max() < np.radians(0.1)

@@ -8,9 +8,9 @@ import pytest
 
 from edge.agent.position_publisher import PositionPublisher
 from edge.clocks.timeline import Timeline
+from edge.simulation.factory import find_scenario
 from edge.simulation.legs import Leg, Stand, Walk
 from edge.simulation.scenario import Scenario
-from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import (
     CONSUMER_SENSORS,
     UNCALIBRATED_SENSORS,
@@ -22,7 +22,7 @@ from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import TrackBatch
 from shared.clock import NS_PER_S, SystemClock
 from shared.envelope import Stamper
-from tests.bench.tracker.honesty import inertial
+from tests.rig.inertial_walk import inertial_samples
 
 RATE_HZ = 2.0
 WINDOW_S = 5.0
@@ -36,7 +36,7 @@ AROUND: tuple[Leg, ...] = (
 def walked(simulation: Simulation) -> tuple[TrackBatch, np.ndarray, np.ndarray, np.ndarray]:
     """Rows; times (n,) of what is published of them, its places (n, 2), and the true ones."""
     tracker = EskfTracker(simulation.description)
-    rows = join_rows([tracker.push(inertial(simulation)), tracker.finish()])
+    rows = join_rows([tracker.push(inertial_samples(simulation)), tracker.finish()])
     stream = PositionPublisher(Stamper("u1", 1, SystemClock()), RATE_HZ)
     published = stream.push(rows, Timeline())
     places_m = np.array([(position.north_m, position.east_m) for position in published])
@@ -70,7 +70,7 @@ def test_what_a_rest_puts_right_of_a_start_on_the_move_is_no_step(sensors: Senso
 
 @pytest.mark.slow
 def test_in_twenty_minutes_no_step_is_put_right_by_the_way_behind() -> None:
-    search = next(one for one in SCENARIOS if one.name == "search-ground-floor")
+    search = find_scenario("search-ground-floor")
     search = msgspec.structs.replace(search, duration_s=1200.0)
     for seed in range(2):
         _, _, places_m, truth_m = walked(Simulation(search, seed, CONSUMER_SENSORS))

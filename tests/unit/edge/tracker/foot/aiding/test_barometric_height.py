@@ -6,19 +6,16 @@ from dataclasses import fields, replace
 from functools import cache
 from itertools import pairwise
 
-import msgspec
 import numpy as np
 import pytest
 
-from edge.samples import ImuBatch
 from edge.simulation.legs import Ride, Stand, Turn, Walk
 from edge.simulation.scenario import Scenario
-from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import Simulation
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import join_rows
-from tests.bench.tracker.aiding_sensors import whole_walk
 from tests.rig.exact_strides import walk
+from tests.rig.inertial_walk import inertial_walk, samples
 
 SCALE_HEIGHT_M = 8434.0
 SEEDS = (0, 1, 2)
@@ -33,17 +30,9 @@ def run(description, imu, cuts=()):
 @cache
 def simulated(name, seed, duration_s):
     """Samples of a scenario and the true depth below its start."""
-    scenario = next(entry for entry in SCENARIOS if entry.name == name)
-    simulation = Simulation(msgspec.structs.replace(scenario, duration_s=duration_s), seed)
-    batches = [batch.imu for batch in simulation.batches(1.0)]
-    imu = ImuBatch(
-        *(
-            np.concatenate([getattr(batch, name) for batch in batches])
-            for name in ("t_ns", "accel_mps2", "gyro_radps", "mag_ut", "pressure_pa")
-        )
-    )
-    down_m = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64)).position_n_m[:, 2]
-    return simulation.description, imu, down_m - down_m[0]
+    found = inertial_walk(name, seed, duration_s=duration_s)
+    down_m = found.truth.position_n_m[:, 2]
+    return found.description, found.sensed("mag_ut", "pressure_pa"), down_m - down_m[0]
 
 
 def rms(values):
@@ -67,7 +56,7 @@ def test_a_lift_is_ridden_along(seed):
 def error_of(legs, seed):
     scenario = Scenario(name="rides", summary="", legs=legs, building=True, start=(5.0, 5.0))
     simulation = Simulation(scenario, seed)
-    imu = whole_walk(simulation)
+    imu = samples(simulation, simulation.duration_s)
     down_m = simulation.truth(np.asarray(imu.t_ns * 1e-9, dtype=np.float64)).position_n_m[:, 2]
     rows = run(simulation.description, imu)
     return rows.position_n_m[:, 2] - (down_m - down_m[0]), np.sqrt(rows.position_cov_m2[:, 2, 2])

@@ -26,7 +26,8 @@ from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.filter.strapdown import rotate_navigation, rotation_matrix
 from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.foot.state import COMPASS, COMPASS_SIZE, FIELD_HYPOTHESIS
-from tests.rig.compass_walk import SEEDS, bent, rms, simulated
+from tests.bench.tracker.walk_errors import rms
+from tests.rig.compass_walk import SEEDS, bent, searched
 
 
 def run(description, imu, cuts=()):
@@ -49,7 +50,7 @@ def heading_errors_rad(rows, truth, every=200):
 
 @cache
 def blind_errors_rad(seed):
-    description, imu, truth = simulated(seed)
+    description, imu, truth = searched(seed)
     return heading_errors_rad(run(description, replace(imu, mag_ut=None)), truth)
 
 
@@ -58,7 +59,7 @@ def test_on_open_ground_it_holds_the_heading_that_the_gyroscope_loses():
     """With hard and soft iron as no calibration left it."""
     blind, seeing = [], []
     for seed in SEEDS:
-        description, imu, truth = simulated(seed)
+        description, imu, truth = searched(seed)
         rows = run(description, imu)
         blind.append(blind_errors_rad(seed))
         seeing.append(heading_errors_rad(rows, truth))
@@ -72,7 +73,7 @@ def test_on_open_ground_it_holds_the_heading_that_the_gyroscope_loses():
 def test_in_a_building_of_some_steel_it_is_still_of_use():
     blind, seeing = [], []
     for seed in SEEDS:
-        description, imu, truth = simulated(seed, building=True)
+        description, imu, truth = searched(seed, building=True)
         blind.append(heading_errors_rad(run(description, replace(imu, mag_ut=None)), truth))
         seeing.append(heading_errors_rad(run(description, imu), truth))
     assert rms(np.concatenate(seeing)) < 0.9 * rms(np.concatenate(blind))
@@ -82,7 +83,7 @@ def test_in_a_building_of_some_steel_it_is_still_of_use():
 def test_among_heavy_steel_it_is_left_alone():
     """Fields bent by 50 degrees from step to step, as over the reinforced floor of ``loops``."""
     for seed in SEEDS:
-        description, imu, truth = simulated(seed)
+        description, imu, truth = searched(seed)
         rows = run(description, bent(imu, truth, seed, wave_m=(0.5, 3.0), bend_ut=12.0))
         error_rad = rms(heading_errors_rad(rows, truth))
         assert error_rad < rms(blind_errors_rad(seed)) + np.radians(1.0)
@@ -94,7 +95,7 @@ def test_a_field_that_bends_slowly_does_no_harm(bend_ut):
     """Over 25 to 80 m, so that no footfall differs much from the next."""
     blind, seeing = [], []
     for seed in SEEDS:
-        description, imu, truth = simulated(seed)
+        description, imu, truth = searched(seed)
         rows = run(description, bent(imu, truth, seed, wave_m=(25.0, 80.0), bend_ut=bend_ut))
         blind.append(blind_errors_rad(seed))
         seeing.append(heading_errors_rad(rows, truth))
@@ -107,7 +108,7 @@ def test_a_field_that_bends_slowly_does_no_harm(bend_ut):
 @pytest.mark.slow
 @pytest.mark.parametrize("fault", ["stuck", "missing", "infinite", "absurd"])
 def test_a_broken_magnetometer_is_as_good_as_none(fault):
-    description, imu, _ = simulated(0)
+    description, imu, _ = searched(0)
     values = {"stuck": (20.0, -5.0, 40.0), "missing": np.nan, "infinite": np.inf, "absurd": 5e3}
     mag_ut = np.broadcast_to(np.asarray(values[fault], dtype=np.float64), (len(imu), 3)).copy()
     first = imu.part(slice(0, 20_000))
@@ -117,7 +118,7 @@ def test_a_broken_magnetometer_is_as_good_as_none(fault):
 
 
 def test_batching_does_not_change_a_bit():
-    description, imu, _ = simulated(0)
+    description, imu, _ = searched(0)
     first = imu.part(slice(0, 20_000))
     whole = run(description, first)
     cut = run(description, first, cuts=range(7, 20_000, 137))
@@ -162,7 +163,8 @@ def test_the_row_is_the_derivative_of_the_model(axis):
 def test_iron_that_is_put_on_on_the_way_does_no_harm():
     """A magnetic tool in the boot: what was learned of the iron is wrong from then on."""
     for seed in SEEDS:
-        description, imu, truth = simulated(seed)
+        description, imu, truth = searched(seed)
+        assert imu.mag_ut is not None
         mag_ut = imu.mag_ut.copy()
         mag_ut[len(imu) // 2 :] += [40.0, -25.0, 30.0]
         rows = run(description, replace(imu, mag_ut=mag_ut))
@@ -172,8 +174,9 @@ def test_iron_that_is_put_on_on_the_way_does_no_harm():
 
 def test_the_mount_of_the_sensor_makes_no_difference():
     """To the shape of the path; its north is the first attitude's."""
-    description, imu, _ = simulated(0)
+    description, imu, _ = searched(0)
     first = imu.part(slice(0, 20_000))
+    assert first.mag_ut is not None
     turn = np.zeros((3, 3))
     rotation_matrix(np.array([0.5, -0.5, 0.1, 0.7]), turn)
     rotated = ImuBatch(

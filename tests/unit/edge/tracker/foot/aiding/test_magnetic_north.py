@@ -12,7 +12,8 @@ from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.filter.strapdown import rotation_matrix
 from edge.tracker.foot.output.track_rows import join_rows
 from shared.earth_field import EarthField
-from tests.rig.compass_walk import DURATION_S, SEEDS, bent, rms, simulated
+from tests.bench.tracker.walk_errors import rms
+from tests.rig.compass_walk import DURATION_S, SEEDS, bent, searched
 
 DECLINATION_RAD = np.arctan2(1.48, 16.07)  # of the simulated field
 EARTH = EarthField(DECLINATION_RAD, 0.007, float(np.hypot(1.48, 16.07)), 48.56, 0.133, 0.141)
@@ -20,7 +21,7 @@ EARTH = EarthField(DECLINATION_RAD, 0.007, float(np.hypot(1.48, 16.07)), 48.56, 
 
 def north_errors_rad(seed, bend=None, earth=EARTH, left_ut=0.5):
     """How far magnetic north is off where it is said, and by how much that is said to be."""
-    description, imu, truth = simulated(seed)
+    description, imu, truth = searched(seed)
     imu = replace(imu, mag_ut=calibrated_ut(seed))
     if bend is not None:
         imu = bend(imu, truth)
@@ -41,7 +42,7 @@ def north_errors_rad(seed, bend=None, earth=EARTH, left_ut=0.5):
 @cache
 def calibrated_ut(seed):
     """What a magnetometer without iron or scale says, noise apart."""
-    _, imu, truth = simulated(seed)
+    _, imu, truth = searched(seed)
     field_n_ut = np.array([16.07, 1.48, 48.56])
     noise = np.random.default_rng(seed).normal(0.0, 0.4, (len(imu), 3))
     return np.einsum("nji,j->ni", truth.rotation_nb, field_n_ut) + noise
@@ -91,7 +92,7 @@ def test_without_a_calibration_north_is_never_said():
 
 
 def test_the_earths_field_holds_from_the_sample_that_was_named():
-    description, imu, _ = simulated(0)
+    description, imu, _ = searched(0)
     described = replace(description, mag_iron_std_ut=0.5)
     first = replace(imu.part(slice(0, 16_000)), mag_ut=calibrated_ut(0)[:16_000])
 
