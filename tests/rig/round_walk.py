@@ -7,6 +7,7 @@ import math
 from base_station.core.state.trail import TrailStep
 from shared.messages.pins import SetPin
 from shared.messages.station import OpenIncident, SetStart
+from tests.rig.published_path import DeadReckoning
 from tests.rig.station_script import Script
 
 DRIFT_RADPS = 1e-3
@@ -34,7 +35,7 @@ class Walk:
         self.script.act(OpenIncident("i1", "Mill Lane"))
         self.units = unit_ids
         self.turn_rad = turn_rad
-        self.own = dict.fromkeys(unit_ids, (0.0, 0.0))
+        self.own = {unit_id: DeadReckoning() for unit_id in unit_ids}
         self.walked_s = 0
 
     def go(self, seconds: int, silent: tuple[str, ...] = ()) -> None:
@@ -44,17 +45,11 @@ class Walk:
             before, after = truth(self.walked_s - 1), truth(self.walked_s)
             north_m, east_m = after[0] - before[0], after[1] - before[1]
             for number, unit_id in enumerate(self.units):
-                angle = self.turn_rad + (-1) ** number * DRIFT_RADPS * self.walked_s
-                cosine, sine = math.cos(angle), math.sin(angle)
-                own_north_m, own_east_m = self.own[unit_id]
-                self.own[unit_id] = (
-                    own_north_m + cosine * north_m - sine * east_m,
-                    own_east_m + sine * north_m + cosine * east_m,
-                )
+                off_rad = self.turn_rad + (-1) ** number * DRIFT_RADPS * self.walked_s
+                own = self.own[unit_id]
+                own.step(north_m, east_m, off_rad)
                 if unit_id not in silent:
-                    self.script.position(
-                        unit_id, *self.own[unit_id], distance_m=float(self.walked_s)
-                    )
+                    self.script.position(unit_id, *own.place_m, distance_m=float(self.walked_s))
 
     def start(self, unit_id: str, heading_std_rad: float = 0.05) -> None:
         self.script.act(SetStart(unit_id, 0.0, 0.0, 0.0, -self.turn_rad, 0.5, heading_std_rad))

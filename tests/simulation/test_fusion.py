@@ -10,8 +10,16 @@ import pytest
 from base_station.fusion.interface import FuserKind, Start
 from shared.geo import wrap_pi
 from shared.quality import Quality
-from tests.bench.fusion.simulated_walks import Errors, Floats, Receiver, Scores, Walk, run
-from tests.rig.fusion_walks import SEEDS, walks
+from tests.bench.fusion.simulated_walks import (
+    SEEDS,
+    Errors,
+    Floats,
+    Receiver,
+    Scores,
+    Walk,
+    run,
+    walks,
+)
 from tests.rig.message_factory import mono_ns
 
 ALWAYS, NEVER = (0.0, math.inf), (math.inf, math.inf)

@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from base_station.fusion.interface import FuserKind
-from tests.bench.fusion.simulated_walks import Receiver, Scores, Walk, run
-from tests.rig.fusion_walks import SEEDS, walks
+from tests.bench.fusion.simulated_walks import SEEDS, Receiver, Scores, Walk, run, walks
 
 
 def test_a_late_fix_corrects_as_if_it_had_come_in_time(kind: FuserKind) -> None:

@@ -19,9 +19,11 @@ from shared.messages import Header, Position
 from tests.rig import message_factory
 from tests.rig.incident.scores import CHI2_95_2DOF, normalised2
 from tests.rig.incident.sensors import COMMON_S
+from tests.rig.published_path import reckoned
 
 Floats = NDArray[np.float64]
 RATE_HZ = 5
+SEEDS = range(16)
 
 
 @dataclass(frozen=True)
@@ -72,16 +74,8 @@ class Walk:
         turn_rad = rng.uniform(-math.pi, math.pi)
         wander = rng.normal(size=count) * errors.heading_rad_per_sqrt_m * np.sqrt(lengths)
         wander += rng.normal(size=count) * errors.turn_part * np.abs(turns)
-        angles = np.cumsum(wander) - turn_rad
         scale = 1.0 + rng.normal(0.0, errors.scale_std)
-        cosine, sine = np.cos(angles), np.sin(angles)
-        own = scale * np.stack(
-            [
-                cosine * steps[:, 0] - sine * steps[:, 1],
-                sine * steps[:, 0] + cosine * steps[:, 1],
-            ],
-            axis=1,
-        )
+        own = scale * reckoned(steps, np.cumsum(wander) - turn_rad)
         own += rng.normal(size=(count, 2)) * errors.step_m_per_sqrt_m * np.sqrt(lengths)[:, None]
         begin = rng.uniform(-50.0, 50.0, size=2)
         return Walk(
@@ -139,6 +133,13 @@ class Receiver:
         """An error of unit variance after so many of its correlation times."""
         keep = math.exp(-since)
         return keep * error + math.sqrt(1.0 - keep**2) * self.rng.normal(size=2)
+
+
+def walks(duration_s: float, fix_std_m: float = 3.0) -> list[tuple[Walk, Receiver]]:
+    """Return a walk and a receiver for each of ``SEEDS``."""
+    generators = [np.random.default_rng(seed) for seed in SEEDS]
+    errors = Errors(fix_std_m=fix_std_m)
+    return [(Walk.wander(rng, duration_s), Receiver(rng, errors)) for rng in generators]
 
 
 @dataclass

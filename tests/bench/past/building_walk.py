@@ -15,6 +15,7 @@ import msgspec
 
 from shared.clock import NS_PER_S, Clock
 from shared.messages import Header, Position
+from tests.rig.published_path import DeadReckoning, Place, along
 from tests.rig.simulated_units import Wearer
 
 CORRIDOR_APART_M = 10.0
@@ -27,6 +28,7 @@ OTHER_STOREY = 0.15  # of the ways lead to the other storey
 HEADING_RAD_PER_SQRT_M = 0.003
 SCALE_STD = 0.01
 _STEP_S = 0.2
+_STEP_M = SPEED_MPS * _STEP_S
 
 Crossing = tuple[int, int]
 
@@ -38,72 +40,57 @@ class BuildingWearer(Wearer):
         super().__init__(unit_id, clock)
         self._rng = random.Random(unit_id)  # a walk, not a secret
         self._truth = self._walk()
-        self._scale = 1.0 + self._rng.gauss(0.0, SCALE_STD)
+        self._own = DeadReckoning(1.0 + self._rng.gauss(0.0, SCALE_STD))
         self._wander_rad = 0.0
-        self._before = 0.0, 0.0
-        self._north_m = self._east_m = self._down_m = self._distance_m = 0.0
+        self._at_m: Place = 0.0, 0.0, 0.0
         self._walked_ns = self._first_ns
 
     def _position(self, header: Header) -> Position:
         while header.t_mono_ns - self._walked_ns >= _STEP_S * NS_PER_S:
             self._walked_ns += round(_STEP_S * NS_PER_S)
-            self._step(*next(self._truth))
+            self._step(next(self._truth))
+        down_m = self._at_m[2]
         return msgspec.structs.replace(
             super()._position(header),
-            north_m=self._north_m,
-            east_m=self._east_m,
-            down_m=self._down_m,
-            distance_m=self._distance_m,
-            pressure_pa=101_325.0 + 12.0 * self._down_m,
+            north_m=self._own.north_m,
+            east_m=self._own.east_m,
+            down_m=down_m,
+            distance_m=self._own.distance_m,
+            pressure_pa=101_325.0 + 12.0 * down_m,
         )
 
-    def _step(self, north_m: float, east_m: float, down_m: float) -> None:
-        step_n, step_e = north_m - self._before[0], east_m - self._before[1]
-        self._before, self._down_m = (north_m, east_m), down_m
-        length_m = math.hypot(step_n, step_e)
-        spread_rad = HEADING_RAD_PER_SQRT_M * math.sqrt(length_m)
+    def _step(self, to_m: Place) -> None:
+        north_m, east_m = to_m[0] - self._at_m[0], to_m[1] - self._at_m[1]
+        self._at_m = to_m
+        spread_rad = HEADING_RAD_PER_SQRT_M * math.sqrt(math.hypot(north_m, east_m))
         self._wander_rad += self._rng.gauss(0.0, spread_rad)
-        cosine = self._scale * math.cos(self._wander_rad)
-        sine = self._scale * math.sin(self._wander_rad)
-        self._north_m += cosine * step_n - sine * step_e
-        self._east_m += sine * step_n + cosine * step_e
-        self._distance_m += length_m
+        self._own.step(north_m, east_m, self._wander_rad)
 
-    def _walk(self) -> Iterator[tuple[float, float, float]]:
-        """Truth: north, east and down, a step of time apart."""
+    def _walk(self) -> Iterator[Place]:
+        """Yield the true places, a step of time apart."""
         here: Crossing = (0, 0)
         down_m = 0.0
         while True:
             if self._rng.random() < OTHER_STOREY:
-                yield from self._along(here, STAIRS_AT, down_m)
+                yield from along(_corridors(here, STAIRS_AT, down_m), _STEP_M)
                 here, other_m = STAIRS_AT, -STOREY_M - down_m
-                yield from self._climb(down_m, other_m)
+                yield from along(_stairs(down_m, other_m), _STEP_M)
                 down_m = other_m
             crossing = self._rng.randrange(CORRIDORS), self._rng.randrange(CORRIDORS)
-            yield from self._along(here, crossing, down_m)
+            yield from along(_corridors(here, crossing, down_m), _STEP_M)
             here = crossing
 
-    def _along(
-        self, here: Crossing, there: Crossing, down_m: float
-    ) -> Iterator[tuple[float, float, float]]:
-        north_m, east_m = (CORRIDOR_APART_M * one for one in here)
-        to_north_m, to_east_m = (CORRIDOR_APART_M * one for one in there)
-        for n, e in ((to_north_m, east_m), (to_north_m, to_east_m)):
-            for part in _parts(math.hypot(n - north_m, e - east_m)):
-                yield north_m + part * (n - north_m), east_m + part * (e - east_m), down_m
-            north_m, east_m = n, e
 
-    def _climb(self, down_m: float, other_m: float) -> Iterator[tuple[float, float, float]]:
-        """Up or down, and back to the crossing on that storey."""
-        north_m, east_m = (CORRIDOR_APART_M * one for one in STAIRS_AT)
-        for part in _parts(STAIRS_M):
-            yield north_m + part * STAIRS_M, east_m, down_m + part * (other_m - down_m)
-        for part in _parts(STAIRS_M):
-            yield north_m + (1.0 - part) * STAIRS_M, east_m, other_m
+def _corridors(here: Crossing, there: Crossing, down_m: float) -> tuple[Place, ...]:
+    """Return the corners of a way between two crossings."""
+    north_m, east_m = (CORRIDOR_APART_M * one for one in here)
+    to_north_m, to_east_m = (CORRIDOR_APART_M * one for one in there)
+    corners = (north_m, east_m), (to_north_m, east_m), (to_north_m, to_east_m)
+    return tuple((*corner, down_m) for corner in corners)
 
 
-def _parts(way_m: float) -> Iterator[float]:
-    """Position on a way after each step of time."""
-    count = max(round(way_m / (SPEED_MPS * _STEP_S)), 0)
-    for step in range(count):
-        yield (step + 1) / count
+def _stairs(down_m: float, other_m: float) -> tuple[Place, ...]:
+    """Return the corners of a way up or down, and back to the crossing on that storey."""
+    north_m, east_m = (CORRIDOR_APART_M * one for one in STAIRS_AT)
+    landing = north_m + STAIRS_M, east_m, other_m
+    return (north_m, east_m, down_m), landing, (north_m, east_m, other_m)

@@ -36,6 +36,7 @@ from shared.messages import Header, Position
 from tests.rig import message_factory
 from tests.rig.incident.building import SteelBuilding
 from tests.rig.incident.people import RATE_HZ, Truth
+from tests.rig.published_path import reckoned
 
 Floats = NDArray[np.float64]
 
@@ -88,16 +89,15 @@ def walk_it(rng: np.random.Generator, truth: Truth) -> OdometryIncrements:
     wander_rad += rng.normal(0.0, TURN_PART) * turned_rad
     drift_rad = np.cumsum(rates_radps * moving_s + wander_rad)
     turn_rad = float(rng.uniform(-math.pi, math.pi))
-    own = (steps_m[:, 0] + 1j * steps_m[:, 1]) * np.exp(1j * (drift_rad - turn_rad))
-    own *= 1.0 + rng.normal(0.0, SCALE_STD)
-    noise = STEP_M_PER_SQRT_M * np.sqrt(lengths_m)
-    own += noise * (rng.normal(size=len(own)) + 1j * rng.normal(size=len(own)))
+    own_m = reckoned(steps_m, drift_rad - turn_rad) * (1.0 + rng.normal(0.0, SCALE_STD))
+    noise_m = STEP_M_PER_SQRT_M * np.sqrt(lengths_m)
+    own_m += (noise_m * rng.normal(size=(2, len(own_m)))).T
     stated = np.hypot(
         DRIFT_STD_RADPS * np.cumsum(moving_s),
         HEADING_RAD_PER_SQRT_M * np.sqrt(np.cumsum(lengths_m)),
     )
     stated /= TOO_SURE if rng.random() < 0.5 else 1.0
-    place_m = np.column_stack([np.cumsum(own.real), np.cumsum(own.imag), _heights(rng, steps_m)])
+    place_m = np.column_stack([np.cumsum(own_m, axis=0), _heights(rng, steps_m)])
     return OdometryIncrements(place_m, turn_rad, drift_rad, stated, np.cumsum(lengths_m))
 
 

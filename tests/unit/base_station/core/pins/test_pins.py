@@ -328,7 +328,7 @@ def test_a_trail_of_more_points_than_are_drawn_begins_and_ends_where_it_did() ->
 
 def test_of_pins_that_wait_the_first_is_used_once_the_path_has_come_to_it(walk: Walk) -> None:
     walk.go(20, silent=("FF-01",))
-    north_m, east_m = walk.own["FF-01"]
+    north_m, east_m = walk.own["FF-01"].place_m
     walk.go(40, silent=("FF-01",))
     walk.pin("p1", "FF-01", 320.0)
     walk.pin("p2", "FF-01", 360.0)

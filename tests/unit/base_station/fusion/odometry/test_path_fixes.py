@@ -11,7 +11,7 @@ from base_station.fusion.odometry.points import FIX_ROW
 from base_station.fusion.odometry.rigid_transform import RigidTransform2D
 from shared.clock import NS_PER_S
 from shared.quality import Quality
-from tests.rig.walked_path import at, insert_late, walked
+from tests.rig.published_path import at, insert_late, walked
 
 
 def taken(history: PathHistory, t_s: float) -> None:

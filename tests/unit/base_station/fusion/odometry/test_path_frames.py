@@ -14,7 +14,7 @@ from base_station.fusion.odometry.rigid_transform import RigidTransform2D
 from base_station.fusion.odometry.start_correction import StartCorrection
 from shared.clock import NS_PER_S
 from shared.quality import Quality
-from tests.rig.walked_path import at, walked
+from tests.rig.published_path import at, walked
 
 
 def test_a_moved_frame_moves_what_is_of_the_frame_only() -> None:

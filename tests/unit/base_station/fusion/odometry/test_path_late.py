@@ -11,7 +11,7 @@ from base_station.fusion.odometry.path_history import PathHistory
 from base_station.fusion.odometry.points import DOUBTFUL, RESTART
 from shared.clock import NS_PER_S
 from shared.quality import Quality
-from tests.rig.walked_path import at, insert_late, walked
+from tests.rig.published_path import at, insert_late, walked
 
 
 def test_a_gap_over_which_the_path_broke_is_not_filled() -> None:

@@ -10,7 +10,7 @@ from base_station.fusion.odometry.path_history import PathHistory
 from base_station.fusion.odometry.points import RESTART
 from base_station.fusion.odometry.start_correction import StartCorrection
 from shared.clock import NS_PER_S
-from tests.rig.walked_path import at, walked
+from tests.rig.published_path import at, walked
 
 ODD_NS = 400_001  # of a millisecond: packed times have none
 

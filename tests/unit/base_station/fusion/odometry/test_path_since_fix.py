@@ -15,7 +15,7 @@ from base_station.fusion.odometry.path_since_fix import (
 from base_station.fusion.odometry.recent_path import PathPoint
 from base_station.fusion.parameters import Parameters
 from shared.clock import NS_PER_S
-from tests.rig.walked_path import at
+from tests.rig.published_path import at
 
 KIND = Parameters()
 

@@ -15,7 +15,7 @@ from base_station.fusion.odometry.points import BREAK, DOUBTFUL, RESTART
 from base_station.fusion.odometry.straight_segment import OFF_M
 from shared.clock import NS_PER_S
 from shared.quality import Quality
-from tests.rig.walked_path import at, walked
+from tests.rig.published_path import at, walked
 
 SECONDS = (MOST_CHUNKS + 16) * CHUNK
 
