@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from edge.samples import ImuBatch, SensorDescription
+from edge.tracker.body.tracker import BodyTracker
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.hip.state import HipConfig
@@ -52,6 +53,12 @@ TRACKERS: tuple[TrackerEntry, ...] = (
         "the same; assumes straight corridors that meet at right angles",
         partial(HipTracker, config=HipConfig(straight_walks=True, right_angles=True)),
         ("hip", "waist"),
+    ),
+    TrackerEntry(
+        "body",
+        "steps of a sensor anywhere but on a foot, with stated errors",
+        BodyTracker,
+        ("hip", "chest", "waist", "pocket"),
     ),
 )
 

@@ -22,6 +22,7 @@ from edge.tracker.registry import TRACKERS, find_tracker
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import UserError
 from tests.bench.tracker.cross_validation import cross_validate, left_out_table
+from tests.bench.tracker.elsewhere import elsewhere_table, measure_elsewhere
 from tests.bench.tracker.hard_motions import hard_motions_table, measure_hard_motions
 from tests.bench.tracker.honesty import honesty_table, measure_honesty
 from tests.bench.tracker.perturbed_walks import perturbed_table, score_perturbed
@@ -89,6 +90,13 @@ WearersOption = Annotated[
     bool,
     typer.Option("--wearers", help="Also track simulated wearers that nobody recorded (minutes)."),
 ]
+ElsewhereOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--elsewhere",
+        help="Folder with body/ipol and phones: also compare the trackers that are not for a foot.",
+    ),
+]
 LeftOutOption = Annotated[
     bool, typer.Option("--cross-validate", help="Also leave each dataset out once (a minute).")
 ]
@@ -112,6 +120,7 @@ def bench_track(
     honesty: HonestyOption = False,
     wearers: WearersOption = False,
     cross_validation: LeftOutOption = False,
+    elsewhere: ElsewhereOption = None,
 ) -> None:
     """Score every trial below DATA: closure, ATE, ARMSE, heights, honesty of the uncertainty."""
     console = Console(width=max(Console().width, WIDTH))
@@ -145,6 +154,10 @@ def bench_track(
         left_out = cross_validate(first)
         console.print(left_out_table(left_out))
         report["cross_validation"] = [asdict(entry) for entry in left_out]
+    if elsewhere is not None:
+        compared = measure_elsewhere(elsewhere)
+        console.print(elsewhere_table(compared))
+        report["elsewhere"] = [asdict(one) for one in compared]
     write_figures(json_file, report)
 
 

@@ -1,0 +1,28 @@
+"""Height by the barometer, where there is one; without one the floor is taken for level."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from edge.tracker.body.state import BodyState
+
+LOW_PASS_S = 1.0
+SCALE_HEIGHT_M = 8434.0  # of the standard atmosphere at 288 K
+
+
+@njit()
+def low_pass_pressure(state: BodyState, pressure_pa: float, dt_s: float) -> None:
+    """Take the pressure of a sample; the first second is a mean."""
+    if not pressure_pa > 0.0:
+        return
+    if state.pressure_pa == 0.0:
+        state.pressure_pa = state.first_pressure_pa = pressure_pa
+    state.pressure_pa += min(dt_s / LOW_PASS_S, 1.0) * (pressure_pa - state.pressure_pa)
+
+
+@njit()
+def take_height(state: BodyState) -> None:
+    if state.pressure_pa > 0.0:
+        state.down_m = SCALE_HEIGHT_M * math.log(state.pressure_pa / state.first_pressure_pa)

@@ -1,0 +1,143 @@
+"""What the tracker of the body makes of even steps, of standing, and of what is no walk."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from math import degrees, radians
+
+import numpy as np
+import pytest
+
+from edge.samples import ImuBatch, SensorDescription
+from edge.tracker.body.tracker import BodyTracker
+from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.interface import Quality, Reason
+from tests.rig.exact_steps import RATE_HZ, imu, steps, still
+
+
+def tracked(batch: ImuBatch):
+    tracker = BodyTracker(SensorDescription("trunk", RATE_HZ))
+    return join_rows([tracker.push(batch), tracker.finish()])
+
+
+def heading_deg(rows):
+    """Direction of the last two metres."""
+    before = np.searchsorted(rows.distance_m, rows.distance_m[-1] - 2.0)
+    north_m, east_m = (rows.position_n_m[-1] - rows.position_n_m[before])[:2]
+    return degrees(np.arctan2(east_m, north_m))
+
+
+def test_who_stands_goes_nowhere_and_is_sure_of_it():
+    rows = tracked(imu(still(20.0)))
+    assert rows.distance_m[-1] == 0.0
+    assert rows.stationary.all()
+    assert rows.position_cov_m2[-1, 0, 0] < 0.01
+    assert rows.quality[-1] == Quality.GOOD
+
+
+def test_steps_are_counted_two_to_a_stride():
+    rows = tracked(imu(still(3.0), steps(20), still(3.0)))
+    assert rows.steps[-1] == pytest.approx(10, abs=1)
+    assert rows.distance_m[-1] > 8.0
+
+
+@pytest.mark.parametrize("step_s", [0.34, 0.55, 0.8, 1.2])
+def test_every_gait_is_seen_from_running_to_a_slow_walk(step_s):
+    rows = tracked(imu(still(3.0), steps(20, step_s=step_s), still(3.0)))
+    assert rows.steps[-1] == pytest.approx(10, abs=1)
+
+
+def test_a_longer_and_a_stronger_step_go_further():
+    usual, slow, strong = (
+        tracked(imu(still(3.0), steps(20, **gait), still(3.0))).distance_m[-1]
+        for gait in ({}, {"step_s": 0.65}, {"up_mps2": 3.0})
+    )
+    assert slow > usual
+    assert strong > usual
+
+
+def test_one_bump_is_no_walk():
+    rows = tracked(imu(still(3.0), steps(1), still(3.0)))
+    assert rows.distance_m[-1] < 1.0
+
+
+def test_who_turns_on_the_spot_gets_no_further():
+    turning = tracked(imu(still(3.0), steps(10, rate_z_radps=3.0), still(3.0)))
+    straight = tracked(imu(still(3.0), steps(10), still(3.0)))
+    assert turning.distance_m[-1] < 0.35 * straight.distance_m[-1]
+
+
+def test_a_rest_shows_the_bias_of_the_gyroscope():
+    bias = radians(1.0)
+    rested = tracked(imu(still(10.0, bias), steps(60, rate_z_radps=bias)))
+    assert abs(heading_deg(rested)) < 8.0  # unaided: 33 degrees from the walk, 43 in all
+
+
+def test_a_compass_holds_the_heading_that_a_bias_turns():
+    bias = radians(1.0)
+    walk = (still(0.1, bias), steps(120, rate_z_radps=bias))
+    # The sensor does not turn, so the field stays where it is.
+    without, aided = tracked(imu(*walk)), tracked(imu(*walk, mag_n_ut=(20.0, 0.0, 40.0)))
+    assert abs(heading_deg(aided)) < 0.5 * abs(heading_deg(without))
+    assert aided.heading_std_rad[-1] < without.heading_std_rad[-1]
+
+
+@pytest.mark.parametrize("forward_deg", [-100.0, 0.0, 60.0])
+def test_magnetic_north_is_stated_from_the_walk_and_not_from_the_sensor(forward_deg):
+    walk = steps(40, forward_rad=radians(forward_deg))
+    rows = tracked(imu(still(5.0), walk, mag_n_ut=(20.0, 0.0, 40.0)))
+    # The sensor's own axis points to magnetic north; the walk goes along the frame's north.
+    assert degrees(rows.magnetic_north_rad[-1]) == pytest.approx(-forward_deg, abs=6.0)
+    assert rows.magnetic_north_std_rad[-1] < 0.6
+    assert np.isinf(rows.magnetic_north_std_rad[300])
+
+
+def test_a_step_in_a_hand_is_shorter_than_its_swing_looks():
+    hand = tracked(imu(still(3.0), steps(40, falling=0.2, rising=0.25), still(3.0)))
+    trunk = tracked(imu(still(3.0), steps(40, falling=0.6, rising=0.1), still(3.0)))
+    assert hand.distance_m[-1] < 0.9 * trunk.distance_m[-1]
+
+
+def test_motion_without_steps_widens_what_is_stated():
+    shaken = still(20.0)
+    shaken[:, 3] = 2.0 * np.sin(np.arange(len(shaken)) * 0.9)
+    quiet, moved = tracked(imu(still(23.0))), tracked(imu(still(3.0), shaken))
+    assert moved.position_cov_m2[-1, 0, 0] > quiet.position_cov_m2[-1, 0, 0] + 1.0
+
+
+def test_way_back_is_known_better_than_way_out():
+    """What the length is off by cancels where it began."""
+    half_turn = still(1.0, np.pi)
+    out = tracked(imu(still(5.0), steps(40)))
+    back = tracked(imu(still(5.0), steps(40), half_turn, steps(40, rate_z_radps=0.0)))
+    assert back.position_cov_m2[-1, 0, 0] < out.position_cov_m2[-1, 0, 0] + 5.0 * 0.35**2
+    assert np.hypot(*back.position_n_m[-1, :2]) < 0.2 * back.distance_m[-1]
+
+
+def test_a_hole_is_stated_and_the_walk_goes_on():
+    whole = imu(still(5.0), steps(40))
+    kept = np.r_[0:1200, 1350:2700]
+    rows = tracked(ImuBatch(whole.t_ns[kept], whole.accel_mps2[kept], whole.gyro_radps[kept]))
+    after = np.searchsorted(rows.t_ns, whole.t_ns[1350])
+    assert rows.reasons[after + 1] & Reason.SAMPLE_GAP
+    assert rows.heading_std_rad[after + 60] > rows.heading_std_rad[after - 200] + 0.1
+    assert rows.distance_m[-1] > rows.distance_m[after] + 3.0
+
+
+def test_height_is_that_of_the_barometer():
+    batch = imu(still(5.0), steps(60))
+    risen_share = np.clip(np.arange(len(batch)) / 1000.0 - 1.0, 0.0, 1.0)
+    pressure_pa = np.asarray(101_325.0 - 36.0 * risen_share, np.float64)  # 3 m up
+    risen = ImuBatch(batch.t_ns, batch.accel_mps2, batch.gyro_radps, None, pressure_pa)
+    assert tracked(risen).position_n_m[-1, 2] == pytest.approx(-3.0, abs=0.2)
+    assert tracked(batch).position_n_m[-1, 2] == 0.0
+
+
+def test_rows_do_not_depend_on_batches_where_samples_are_bad():
+    batch = imu(still(3.0), steps(30), mag_n_ut=(20.0, 5.0, 40.0))
+    batch.accel_mps2[700:760] = np.nan
+    tracker = BodyTracker(SensorDescription("trunk", RATE_HZ))
+    parts = [tracker.push(batch.part(slice(k, k + 7))) for k in range(0, len(batch), 7)]
+    rows, whole = join_rows([*parts, tracker.finish()]), tracked(batch)
+    for field in fields(whole):
+        assert np.array_equal(getattr(whole, field.name), getattr(rows, field.name)), field.name
