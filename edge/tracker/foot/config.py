@@ -159,7 +159,9 @@ class EskfConfig(NamedTuple):
     mean_strike_residual: float = 0.01  # the same of the vertical velocity, before any landing
     strike_prior_count: float = 2.0
     zupt_residual_bias_std_radps: float = 1e-3  # of the gyroscope; more is no ordinary stride
-    zupt_residual_usual: float = 0.02  # above it the scale errors are worse than described
+    zupt_residual_usual: float = 0.03  # of a sensor with the gains of a data sheet
+    zupt_residual_quiet: float = 0.012  # of one whose gains are right
+    least_gain_std: float = 0.002  # that is reported where nobody describes them
     zupt_residual_speed_mps: float = 5.0  # of the swing; what gains do grows with it beyond
     zupt_residual_slow_mps: float = 2.0  # a slower swing does not show them
     zupt_residual_poor: float = 0.025  # then the noise is what the filter works with
@@ -168,6 +170,7 @@ class EskfConfig(NamedTuple):
     hidden_rate_limit_radps: float = 6.0
     hidden_rate_floor_radps: float = 0.5
     hidden_rate_std_ratio: float = 1.0  # of the bridged peak
+    hidden_turn_share: float = 0.3  # of what a swing may hide of its turn: the same in all
     hidden_force_limit_mps2: float = 300.0
     hidden_force_floor_mps2: float = 5.0
     hidden_force_std_ratio: float = 1.0  # of the bridged peak
@@ -212,6 +215,9 @@ class EskfConfig(NamedTuple):
     # A longer gap (reinitialisation.py).
     gap_speed_std_mps: float = 1.5
     gap_turn_std_radps: float = 1.0
+
+    # Reported covariance.
+    report_floor_m: float = 0.02  # give of a shoe and of a floor
 
     # Quality.
     saturation_ratio: float = 0.985  # of full scale

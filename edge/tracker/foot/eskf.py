@@ -57,6 +57,7 @@ class EskfTracker:
         self._trail = np.zeros(span(self._ring), STEP)
         self._parameters = config_record(self.config)
         self._state["scale_errors"]["std"] = gain_std(description, self.config)
+        self._state["scale_errors"]["least_share"] = least_gain_share(description, self.config)
         self._state["unobserved_bias_std_radps"] = unobserved_bias_std_radps(
             description, self.config
         )
@@ -102,6 +103,12 @@ def gain_std(description: SensorDescription, config: EskfConfig) -> float:
     """Standard deviation of scale and axis errors: as described, else that of a data sheet."""
     left = description.gain_std
     return config.data_sheet_gain_std if left is None else left
+
+
+def least_gain_share(description: SensorDescription, config: EskfConfig) -> float:
+    """Share of the gains' variance that is reported of the best sensor: all where described."""
+    described = description.gain_std is not None
+    return 1.0 if described else (config.least_gain_std / config.data_sheet_gain_std) ** 2
 
 
 def unobserved_bias_std_radps(description: SensorDescription, config: EskfConfig) -> float:

@@ -34,6 +34,7 @@ from edge.tracker.foot.filter.scale_misalignment import propagate_scale_errors
 from edge.tracker.foot.filter.strapdown import dot, rotation_matrix
 from edge.tracker.foot.filter.temperature_bias import update_temperature_bias
 from edge.tracker.foot.filter.unstamped_loss_propagation import hold_readings, inflate_for_loss
+from edge.tracker.foot.output.hidden_turn import add_hidden_turn, propagate_hidden_turn
 from edge.tracker.foot.output.quality import assign_quality, note_faults
 from edge.tracker.foot.output.reported_covariance import accumulate_heading_bias, report_covariance
 from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
@@ -87,6 +88,7 @@ def filter_sample(
         note_stillness(progress, motion)
         apply_zupt(ring, step, state, slot, config)
         inflate_for_misfit(progress, state, ring[slot].t_s, config)
+        add_hidden_turn(state, config)
         state.swing_rad = 0.0
         state.faultless_var_m2ps2 = 0.0
         state.swing_speed_mps = 0.0
@@ -170,7 +172,8 @@ def _predict(
     propagate(state, dt_s)
     propagate_clone(state, dt_s)
     rotate_state(state, propagate_scale_errors(state, dt_s, config))
-    accumulate_heading_bias(state, dt_s)
+    accumulate_heading_bias(state, dt_s, config)
+    propagate_hidden_turn(state, dt_s)
     state.swing_rad += dt_s * math.sqrt(dot(state.gyro_radps, state.gyro_radps))
     speed_mps = math.sqrt(dot(state.velocity_n_mps, state.velocity_n_mps))
     level_mps = math.hypot(state.velocity_n_mps[0], state.velocity_n_mps[1])
@@ -210,7 +213,9 @@ def _add_noise(
     gyro_noise += dt_s * state.gyro_curvature_var
     if ring[slot].flags & GYRO_SATURATED:
         for axis in range(3):
-            _inflate_axis(state, ATTITUDE, axis, dt_s * ring[slot].hidden_noise[axis])
+            variance = dt_s * ring[slot].hidden_noise[axis]
+            _inflate_axis(state, ATTITUDE, axis, variance)
+            state.swing_hidden_rad2 += state.rotation_nb[2, axis] ** 2 * variance
     temperature_known = math.isfinite(progress.temperature_degc)
     bias_walk = (
         config.gyro_bias_walk_known_temperature_radps2_rthz

@@ -123,6 +123,7 @@ BAROMETER = np.dtype(
 SCALE_ERROR_STATE = np.dtype(
     [
         ("std", np.float64),  # of scale and axes
+        ("least_share", np.float64),  # of the variance by that, which is reported in any case
         ("heading_sensitivity", np.float64, SCALE_ERRORS),  # heading by each error so far
         ("heading_column", np.float64, SCALE_ERRORS),  # the covariance times that
         ("position_sensitivity", np.float64, (2, SCALE_ERRORS)),  # position north and east
@@ -161,6 +162,10 @@ FILTER = np.dtype(
         ("gyro_bias_per_k", np.float64, 3),
         ("scale_errors", SCALE_ERROR_STATE),  # see scale_misalignment
         ("nonlinear_n_m", np.float64, 2),  # see reported_covariance
+        # What clipped rates hide in every swing alike; see hidden_turn.
+        ("swing_hidden_rad2", np.float64),  # variance of the heading by this swing
+        ("hidden_turn_rad", np.float64),  # by all so far
+        ("hidden_way_n_m", np.float64, 2),  # by which that moves the position
         # The gyroscope's bias before a rest; see initial_gyro_bias.
         ("bias_observed", np.bool_),
         ("unobserved_bias_std_radps", np.float64),

@@ -87,5 +87,6 @@ def assign_quality(
     yaw = ATTITUDE + 2
     heading_var = heading_variance(p) + (noise_inflation(state, config) - 1.0) * p[yaw, yaw]
     heading_var += (scale_error_inflation(state, config) - 1.0) * p[TURN, TURN]
+    heading_var += state.hidden_turn_rad**2
     heading_var += unobserved_heading_variance(state) + (config.gap_turn_std_radps * open_s) ** 2
     ring[slot].heading_std_rad = math.sqrt(heading_var)

@@ -24,12 +24,15 @@ from edge.tracker.foot.zupt.zupt_residuals import noise_inflation, scale_error_i
 
 
 @njit()
-def accumulate_heading_bias(state: FilterState, dt_s: float) -> None:
+def accumulate_heading_bias(state: FilterState, dt_s: float, config: EskfConfig) -> None:
     """Add the distance of an interval times the variance of its heading.
 
     For large errors twice the mean of one minus the cosine takes the place of the variance.
     """
-    heading_var = heading_variance(state.covariance) + unobserved_heading_variance(state)
+    p = state.covariance
+    heading_var = heading_variance(p) + unobserved_heading_variance(state)
+    heading_var += (scale_error_inflation(state, config) - 1.0) * p[TURN, TURN]
+    heading_var = max(heading_var, 0.0)
     variance = 2.0 * (1.0 - math.exp(-0.5 * heading_var))
     for i in range(2):
         state.nonlinear_n_m[i] += variance * dt_s * state.velocity_n_mps[i]
@@ -51,6 +54,7 @@ def report_covariance(
         for j in range(3):
             reported_m2[i, j] = state.covariance[i, j]
         reported_m2[i, i] += (config.gap_speed_std_mps * open_s) ** 2 + state.misfit_n_m[i] ** 2
+        reported_m2[i, i] += config.report_floor_m**2
     scale_errors = state.scale_errors
     for i in range(2):
         step.covariance[i, TURN] = along(
@@ -59,6 +63,7 @@ def report_covariance(
     reported_m2[2, 2] += (scale_errors.std * state.position_n_m[2]) ** 2 + state.ramp_var_m2
     noise_excess = noise_inflation(state, config) - 1.0
     scale_excess = scale_error_inflation(state, config)
+    length_excess = max(scale_excess, 1.0)  # a scale of the accelerometer leaves landings alone
     for j in range(2):
         project(scale_errors, scale_errors.position_sensitivity[j], scale_errors.column)
         for i in range(j, 2):
@@ -67,9 +72,10 @@ def report_covariance(
                 scale_errors.position_sensitivity[i], scale_errors.column
             )
             more_m2 += (
-                scale_excess * scale_errors.std**2 * state.position_n_m[i] * state.position_n_m[j]
+                length_excess * scale_errors.std**2 * state.position_n_m[i] * state.position_n_m[j]
             )
             more_m2 += state.unobserved_effect[i] * state.unobserved_effect[j]
+            more_m2 += state.hidden_way_n_m[i] * state.hidden_way_n_m[j]
             # A normal error's fourth moment is three times its variance squared.
             more_m2 += 0.75 * state.nonlinear_n_m[i] * state.nonlinear_n_m[j]
             reported_m2[i, j] += more_m2

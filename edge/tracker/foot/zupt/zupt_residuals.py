@@ -109,13 +109,16 @@ def _bias_is_known(state: FilterState, config: EskfConfig) -> bool:
 
 @njit()
 def scale_error_inflation(state: FilterState, config: EskfConfig) -> float:
-    """Return the factor on the variance of the scale errors: a poor sensor has large residuals.
+    """Return the factor on the variance of the scale errors, as this sensor's landings show them.
 
-    By 1 once a compass has been used, for it has observed them.
+    A residual has a part by the gains and one that the best sensors have as well.  By 1 once a
+    compass has been used, for it has observed the gains.
     """
     if state.scale_errors.compass_used:
         return 1.0
-    return float(max(1.0, (state.mean_scale_residual / config.zupt_residual_usual) ** 2))
+    quiet = config.zupt_residual_quiet**2
+    shown = (state.mean_scale_residual**2 - quiet) / (config.zupt_residual_usual**2 - quiet)
+    return float(max(shown, state.scale_errors.least_share))
 
 
 @njit()

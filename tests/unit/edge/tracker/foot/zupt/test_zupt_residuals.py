@@ -7,7 +7,7 @@ import pytest
 from edge.tracker.foot.config import EskfConfig, config_record
 from edge.tracker.foot.error_state import ATTITUDE, POSITION
 from edge.tracker.foot.state import new_filter_state
-from edge.tracker.foot.zupt.zupt_residuals import on_lift_off
+from edge.tracker.foot.zupt.zupt_residuals import on_lift_off, scale_error_inflation
 
 HEADING = ATTITUDE + 2
 CONFIG = config_record(EskfConfig())[0]
@@ -45,3 +45,31 @@ def test_the_heading_that_a_fault_left_in_doubt_goes_on_to_count():
     for _ in range(10):
         stride(state, adds_m2=0.05, adds_rad2=1e-5)
     assert state["ordinary_m2"] - before_m2 < 0.01 * 0.5
+
+
+def gains(residual, least_share=0.0, *, compass=False):
+    """Share of the gains' assumed variance that is reported at a mean residual of landings."""
+    state = new_filter_state()[0]
+    state["mean_scale_residual"] = residual
+    state["scale_errors"]["least_share"] = least_share
+    state["scale_errors"]["compass_used"] = compass
+    return scale_error_inflation(state, CONFIG)
+
+
+@pytest.mark.slow
+def test_gains_are_reported_as_landings_show_them():
+    config = EskfConfig()
+    assert gains(config.zupt_residual_usual) == pytest.approx(1.0)
+    assert gains(0.014) < 0.1 < gains(0.02) < 0.5
+    assert gains(0.05) > 2.0
+
+
+@pytest.mark.slow
+def test_quiet_landings_do_not_make_gains_better_than_the_best_or_than_described():
+    assert gains(0.008, least_share=0.03) == pytest.approx(0.03)
+    assert gains(0.014, least_share=1.0) == pytest.approx(1.0)
+
+
+@pytest.mark.slow
+def test_gains_that_a_compass_has_observed_are_left_to_it():
+    assert gains(0.05, compass=True) == pytest.approx(1.0)
