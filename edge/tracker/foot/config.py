@@ -159,7 +159,7 @@ class EskfConfig(NamedTuple):
     mean_strike_residual: float = 0.01  # the same of the vertical velocity, before any landing
     strike_prior_count: float = 2.0
     zupt_residual_bias_std_radps: float = 1e-3  # of the gyroscope; more is no ordinary stride
-    zupt_residual_usual: float = 0.03  # of a sensor with the gains of a data sheet
+    zupt_residual_usual: float = 0.025  # of a sensor with the gains of a data sheet
     zupt_residual_quiet: float = 0.012  # of one whose gains are right
     least_gain_std: float = 0.002  # that is reported where nobody describes them
     zupt_residual_speed_mps: float = 5.0  # of the swing; what gains do grows with it beyond
