@@ -19,7 +19,7 @@ from shared.channels import DESCRIPTION, POSITION, Channel
 from shared.codec import decode
 from shared.messages import Message, Position, UnitDescription
 
-UNKNOWN_STD = EskfConfig().data_sheet_gain_std
+UNKNOWN_STD = EskfConfig().start.data_sheet_gain_std
 SCENARIO = """\
 summary = "two sides of a square"
 start = [0, 0]

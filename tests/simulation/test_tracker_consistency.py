@@ -14,7 +14,7 @@ from edge.samples import SensorDescription
 from edge.simulation.legs import Crawl, Kneel, Ride, StairsLeg, Stand, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
-from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.config import EskfConfig, StanceAcceptanceConfig
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import Quality, Reason
@@ -23,7 +23,7 @@ from tests.rig.exact_strides import walk
 from tests.rig.raised_foot import DESCRIPTION, raised_slowly
 
 RAISED = 12
-BELIEVING = EskfConfig()._replace(doubt_longest_s=0.0)
+BELIEVING = EskfConfig(acceptance=StanceAcceptanceConfig(doubt_longest_s=0.0))
 SEED = 101  # with which kneeling on toes and getting up is taken for a contradiction most easily
 LEGS = {
     "walks": (Walk(((15.0, 0.0), (15.0, 8.0), (0.0, 8.0))),),

@@ -68,12 +68,12 @@ def test_a_glide_is_told_by_a_velocity_that_is_known(motion_m2ps4, speed_mps, is
 def test_a_gyroscope_that_is_worse_than_its_kind_is_doubted_about_the_vertical_too():
     config = EskfConfig()
     state = new_filter_state()[0]
-    state["unobserved_bias_std_radps"] = config.data_sheet_bias_std_radps
+    state["unobserved_bias_std_radps"] = config.start.data_sheet_bias_std_radps
     state["least_known_axis_b"] = [0.0, 0.0, 1.0]
     for i in range(3):
-        state["covariance"][GYRO_BIAS + i, GYRO_BIAS + i] = config.start_gyro_bias_std_radps**2
+        state["covariance"][GYRO_BIAS + i, GYRO_BIAS + i] = config.start.gyro_bias_std_radps**2
     state["covariance"][POSITION, GYRO_BIAS + 2] = state["covariance"][GYRO_BIAS + 2, POSITION] = (
-        0.2 * config.start_gyro_bias_std_radps**2
+        0.2 * config.start.gyro_bias_std_radps**2
     )
     inflate_bias(state, config)
     usual_m = float(state["unobserved_effect"][0])
@@ -83,5 +83,5 @@ def test_a_gyroscope_that_is_worse_than_its_kind_is_doubted_about_the_vertical_t
     state["gyro_bias_radps"] = [0.04, 0.03, 0.0]
     inflate_bias(state, config)
     assert state["unobserved_effect"][0] == pytest.approx(
-        usual_m * 0.05 / np.sqrt(2.0) / config.data_sheet_bias_std_radps
+        usual_m * 0.05 / np.sqrt(2.0) / config.start.data_sheet_bias_std_radps
     )

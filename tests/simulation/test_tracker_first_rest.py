@@ -96,7 +96,7 @@ def test_a_foot_that_sways_does_not_rest():
     config = EskfConfig()
     state = new_filter_state()[0]
     for i in range(SIZE):
-        state["covariance"][i, i] = config.start_gyro_bias_std_radps**2
+        state["covariance"][i, i] = config.start.gyro_bias_std_radps**2
     before = state["covariance"].copy()
     state["rest_rate_radps"][2] = 0.03
     state["rest_rate_var_rad2ps2"] = (0.5 * 0.03) ** 2

@@ -10,7 +10,7 @@ import pytest
 from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import Simulation
-from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.config import EskfConfig, FloorConfig, ProcessNoiseConfig
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import join_rows
 from tests.rig.inertial_walk import inertial_samples
@@ -54,14 +54,14 @@ def clipped(description, imu):
 def test_a_strike_is_put_right_and_not_the_swing_before_it(seed, clips):
     simulation = Simulation(Scenario("strikes", "heel strikes", LEGS), seed)
     imu = inertial_samples(simulation)
-    no_floor = EskfConfig(floor_gate_m=0.0, floor_gate_slope=0.0)
+    no_floor = EskfConfig(floor=FloorConfig(gate_m=0.0, gate_slope=0.0))
     description = simulation.description
     hard = struck(imu, track(description, imu, no_floor), np.random.default_rng(seed))
     if clips:
         description, hard = clipped(description, hard)
     by_swing_m, by_strike_m = (
-        rms_rise_m(track(description, hard, no_floor._replace(curvature_noise_per_strike=doubt)))
-        for doubt in (0.0, no_floor.curvature_noise_per_strike)
+        rms_rise_m(track(description, hard, no_floor._replace(process=process)))
+        for process in (ProcessNoiseConfig(curvature_noise_per_strike=0.0), no_floor.process)
     )
     assert by_swing_m > 0.05
     assert by_strike_m < 0.7 * by_swing_m

@@ -1,4 +1,5 @@
-"""Every parameter of the default tracker, in one place, with its unit.
+"""Every parameter of the default tracker, in one place, by the stage that it belongs to, with its
+unit.
 
 ``rthz`` marks a noise density: a value per square root of hertz, so that nothing depends on the
 sample rate.
@@ -12,19 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-class EskfConfig(NamedTuple):
-    """The one default configuration; nothing here is set per recording."""
+class TimingConfig(NamedTuple):
+    """Times of samples and rows; a row is final after lookahead and lag, which are below 1 s."""
 
-    gravity_mps2: float = 9.80665
-
-    # Time: what may pass before a row is final is lookahead + lag, below 1 s.
     lookahead_s: float = 0.47  # the stance detector sees this far ahead of the filter
     lag_s: float = 0.43  # the smoother corrects this far behind the filter
     stance_release_s: float = 0.1  # in stance, rows are released this often
     late_delivery_s: float = 0.04  # a stamp may be late by this and is put right
     gap_s: float = 0.1  # a longer silence counts as a gap
 
-    # Stance detection (stance_detection.py).
+
+class StanceDetectionConfig(NamedTuple):
+    """Stance detection (``zupt/stance_detection.py``)."""
+
     half_window_s: float = 0.03
     rate_weight_m2ps2: float = 40.0  # weight of (rad/s)^2 against (m/s^2)^2
     rest_motion_m2ps4: float = 0.05  # below it the norm of the specific force is learned
@@ -38,7 +39,10 @@ class EskfConfig(NamedTuple):
     # What a foot on the ground may roll, 7 rad/s, by the weight of the rate; see decision 64.
     threshold_max_m2ps4: float = 2000.0
 
-    # A stance or a foot in the air (stance_belief.py).
+
+class StanceAcceptanceConfig(NamedTuple):
+    """A stance or a foot in the air (``zupt/stance_belief.py``)."""
+
     stance_pause_s: float = 0.1  # a shorter one did not leave the ground
     stance_pause_mps: float = 0.25  # ... nor did one so slow
     doubt_longest_s: float = 5.0  # without a stance
@@ -56,7 +60,10 @@ class EskfConfig(NamedTuple):
     sinking_drift_mps2: float = 0.02  # ... by its duration: tilt and bias of the accelerometer
     sinking_strike_ratio: float = 1.5  # ... by the residual of this wearer's heel strikes
 
-    # Pseudo-measurements in stance.
+
+class ZuptConfig(NamedTuple):
+    """Pseudo-measurements in stance (``zupt/zupt.py``)."""
+
     # Variance of the velocity: (base + per_motion * motion) * (motion / stride minimum)^power.
     stance_velocity_mps_rthz: float = 5e-4
     stance_velocity_per_motion: float = 0.001  # m/s/sqrt(Hz) for each m/s^2 of motion
@@ -69,65 +76,78 @@ class EskfConfig(NamedTuple):
     unrest_half_window_s: float = 0.3  # over which the foot must rest to tell the gyroscope bias
     stance_rate_gain_min_hz: float = 0.02  # less of the bias's variance in a second is left out
 
-    # Stances that contradict the motion between them (stance_consistency.py).
-    misfit_nis: float = 30.7  # chi-square with three degrees of freedom: one stance in a million
-    misfit_single_nis: float = 11.3  # ... one in a hundred: less adds nothing to a series
-    misfit_memory: float = 0.7  # of the stance before
-    misfit_height_m: float = 0.75  # a deviation with which 95 % lie within half a storey of 3 m
 
-    # The floor (level_walking.py).
-    floor_gate_m: float = 0.06  # a larger rise of one stride is a stair, a kerb or a ramp
-    floor_gate_slope: float = 0.075  # the same by the stride's length, where that is more
-    floor_std_m: float = 0.01
-    floor_ramp_m: float = 0.035  # a mean rise of the last strides that is a ramp
-    floor_ramp_stds: float = 1.0  # the same by how well the filter knows a rise
-    floor_ramp_strides: float = 6.0
-    floor_ramp_std_ratio: float = (
-        0.5  # deviation of the height by what the floor has taken out of it
-    )
-    floor_ramp_max_m: float = 1.0  # ... up to this much: no ramp so gentle is longer
-    floor_rise_bias_strides: float = 30.0  # over which the habit on the flat is learned
-    floor_rise_bias_std_m: float = 0.004  # by which stairs may differ from it
-    floor_rise_bias_per_gain_m: float = 1.0  # ... for each unit of what the gains may be off
-    floor_pause_s: float = 0.4  # between two looks at the floor
+class StanceConsistencyConfig(NamedTuple):
+    """Stances that contradict the motion between them (``zupt/stance_consistency.py``)."""
 
-    # Aids that are looked at once a stance (aiding_filter.py).
-    aid_stance_s: float = 0.1  # a shorter stance is not looked at
-    aid_update_s: float = 1.0  # a longer one is looked at again
-    aid_gate: float = 4.0  # standard deviations
+    nis: float = 30.7  # chi-square with three degrees of freedom: one stance in a million
+    single_nis: float = 11.3  # ... one in a hundred: less adds nothing to a series
+    memory: float = 0.7  # of the stance before
+    height_m: float = 0.75  # a deviation with which 95 % lie within half a storey of 3 m
 
-    # The magnetic field (magnetic_field.py).
-    field_std_ut: float = 60.0  # the earth's, before it is seen
-    field_iron_std_ut: float = 40.0  # of iron on the foot
-    field_iron_least_ut: float = 1.0  # ... of a calibrated unit
-    field_noise_ut: float = 0.5  # of the mean of a stance
-    field_near_m: float = 1.5  # steel nearby is forgotten over this way
-    field_wide_m: float = 50.0  # and that of a whole part of a building over this
-    field_wide_ut: float = 0.4  # deviation of that by the first belief
-    field_wide_ratio: float = 2.2  # ... of each that follows by the one before
-    field_least_log_weight: float = -12.0  # of a belief beside the likeliest
-    field_weight_min: float = 0.01  # weight from which a belief is asked where north is
-    field_distortion_start_ut: float = 5.0  # how far steel bends the field, before it is seen
-    field_distortion_floor_ut: float = 0.7
-    field_distortion_rise: float = 0.3  # of one stance that is worse
-    field_distortion_fall: float = 0.04  # ... that is better
-    field_distortion_ratio: float = (
+
+class FloorConfig(NamedTuple):
+    """The floor (``zupt/level_walking.py``)."""
+
+    gate_m: float = 0.06  # a larger rise of one stride is a stair, a kerb or a ramp
+    gate_slope: float = 0.075  # the same by the stride's length, where that is more
+    std_m: float = 0.01
+    ramp_m: float = 0.035  # a mean rise of the last strides that is a ramp
+    ramp_stds: float = 1.0  # the same by how well the filter knows a rise
+    ramp_strides: float = 6.0
+    ramp_std_ratio: float = 0.5  # deviation of the height by what the floor has taken out of it
+    ramp_max_m: float = 1.0  # ... up to this much: no ramp so gentle is longer
+    rise_bias_strides: float = 30.0  # over which the habit on the flat is learned
+    rise_bias_std_m: float = 0.004  # by which stairs may differ from it
+    rise_bias_per_gain_m: float = 1.0  # ... for each unit of what the gains may be off
+    pause_s: float = 0.4  # between two looks at the floor
+
+
+class AidingConfig(NamedTuple):
+    """Aids that are looked at once a stance (``aiding/aiding_filter.py``)."""
+
+    stance_s: float = 0.1  # a shorter stance is not looked at
+    update_s: float = 1.0  # a longer one is looked at again
+    gate: float = 4.0  # standard deviations
+
+
+class MagneticFieldConfig(NamedTuple):
+    """The magnetic field (``aiding/magnetic_field.py``)."""
+
+    std_ut: float = 60.0  # the earth's, before it is seen
+    iron_std_ut: float = 40.0  # of iron on the foot
+    iron_least_ut: float = 1.0  # ... of a calibrated unit
+    noise_ut: float = 0.5  # of the mean of a stance
+    near_m: float = 1.5  # steel nearby is forgotten over this way
+    wide_m: float = 50.0  # and that of a whole part of a building over this
+    wide_ut: float = 0.4  # deviation of that by the first belief
+    wide_ratio: float = 2.2  # ... of each that follows by the one before
+    least_log_weight: float = -12.0  # of a belief beside the likeliest
+    weight_min: float = 0.01  # weight from which a belief is asked where north is
+    distortion_start_ut: float = 5.0  # how far steel bends the field, before it is seen
+    distortion_floor_ut: float = 0.7
+    distortion_rise: float = 0.3  # of one stance that is worse
+    distortion_fall: float = 0.04  # ... that is better
+    distortion_ratio: float = (
         0.2  # distortion by horizontal field, above which variance grows faster
     )
-    field_distortion_limit: float = 0.5  # ... above which the field gives no heading
-    field_uniform_ut: float = 4.0  # by which it may be bent alike all over
-    field_matching_ut: float = 1.0  # ... though strength and dip are the earth's
-    field_known_ratio: float = 3.0  # horizontal field by its deviation; below it gives no heading
+    distortion_limit: float = 0.5  # ... above which the field gives no heading
+    uniform_ut: float = 4.0  # by which it may be bent alike all over
+    matching_ut: float = 1.0  # ... though strength and dip are the earth's
+    known_ratio: float = 3.0  # horizontal field by its deviation; below it gives no heading
 
-    # The air's pressure (barometric_height.py).
-    air_drift_m_rts: float = 0.025  # random walk a root of second: weather and warming
-    air_noise_m: float = 0.06  # of the mean of a stance, at least
-    air_noise_rise: float = 0.2  # of one look that is worse
-    air_noise_fall: float = 0.05  # ... that is better
-    air_outliers: int = 4  # so many in a row are none: the pressure has changed
-    air_floor_strides: float = 8.0
-    air_floor_off_m: float = 0.07  # mean over so many strides that speaks against a flat floor
-    air_floor_sink_m: float = 0.008  # mean sink of a stride that is none
+
+class BarometerConfig(NamedTuple):
+    """The air's pressure, and rides in lifts (``aiding/barometric_height.py``)."""
+
+    drift_m_rts: float = 0.025  # random walk a root of second: weather and warming
+    noise_m: float = 0.06  # of the mean of a stance, at least
+    noise_rise: float = 0.2  # of one look that is worse
+    noise_fall: float = 0.05  # ... that is better
+    outliers: int = 4  # so many in a row are none: the pressure has changed
+    floor_strides: float = 8.0
+    floor_off_m: float = 0.07  # mean over so many strides that speaks against a flat floor
+    floor_sink_m: float = 0.008  # mean sink of a stride that is none
     ride_push_mps2: float = 0.15  # mean over an update while a person stands
     ride_rest_weight: float = 0.1  # of one look without a push
     ride_motion_m2ps4: float = 1.0  # of a person who stands in a lift, at most
@@ -135,10 +155,13 @@ class EskfConfig(NamedTuple):
     ride_going_m: float = 0.15  # in one look
     ride_calm_s: float = 2.0  # without a push or a rise, before a stride ends it
     ride_update_s: float = 0.25
-    air_stuck_s: float = 2.0  # the same to the last bit for so long is a sensor that hangs
+    stuck_s: float = 2.0  # the same to the last bit for so long is a sensor that hangs
     ride_longest_s: float = 40.0  # after the last push or rise
 
-    # Process noise.
+
+class ProcessNoiseConfig(NamedTuple):
+    """Process noise."""
+
     accel_noise_mps2_rthz: float = 0.105
     gyro_noise_radps_rthz: float = 1.75e-3
     curvature_noise_per_strike: float = (
@@ -151,7 +174,12 @@ class EskfConfig(NamedTuple):
     gyro_bias_walk_known_temperature_radps2_rthz: float = 2e-5  # where the temperature is known
     accel_bias_walk_mps3_rthz: float = 7e-5
 
-    # How good sensor and foot are (zupt_residuals.py): velocity for each radian of the swing, m/s.
+
+class LandingResidualConfig(NamedTuple):
+    """Quality of sensor and foot (``zupt/zupt_residuals.py``): velocity for each radian of the
+    swing, m/s.
+    """
+
     mean_zupt_residual: float = 0.014  # before any landing
     zupt_residual_prior_count: float = 8.0  # that is worth so many landings
     zupt_residual_memory: float = 40.0  # landings
@@ -166,7 +194,10 @@ class EskfConfig(NamedTuple):
     zupt_residual_slow_mps: float = 2.0  # a slower swing does not show them
     zupt_residual_poor: float = 0.025  # then the noise is what the filter works with
 
-    # What clipping hides (saturation_recovery.py).
+
+class ClippingConfig(NamedTuple):
+    """Motion that clipping hides (``preprocessing/saturation_recovery.py``)."""
+
     hidden_rate_limit_radps: float = 6.0
     hidden_rate_floor_radps: float = 0.5
     hidden_rate_std_ratio: float = 1.0  # of the bridged peak
@@ -175,51 +206,66 @@ class EskfConfig(NamedTuple):
     hidden_force_floor_mps2: float = 5.0
     hidden_force_std_ratio: float = 1.0  # of the bridged peak
 
-    # What is known at the start.
-    start_gyro_bias_std_radps: float = 0.005
-    start_gyro_bias_gate: float = 3.0  # deviations
+
+class StartConfig(NamedTuple):
+    """Knowledge at the start."""
+
+    gyro_bias_std_radps: float = 0.005
+    gyro_bias_gate: float = 3.0  # deviations
     rest_rate_scatter: float = 0.25  # of the mean rate; a foot that sways scatters more
     data_sheet_bias_std_radps: float = 0.0175  # stated until a rest shows it: 1 deg/s
-    start_accel_bias_std_mps2: float = 0.3
-    start_lever_std_m: float = 0.1
+    accel_bias_std_mps2: float = 0.3
+    lever_std_m: float = 0.1
     data_sheet_gain_std: float = 0.012  # of scale and axes of uncalibrated sensors
     gain_per_force: float = 0.04  # rad/s that a m/s^2 adds, by the gain's error
-    start_tilt_std_rad: float = 0.014
-    start_tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows
-    start_speed_std_mps: float = 3.0  # when the recording starts on the move
-    start_still_std_mps: float = 0.02  # when it starts at rest
-    start_window_s: float = 0.1
+    tilt_std_rad: float = 0.014
+    tilt_per_motion: float = 0.05  # rad for each m/s^2 that the stillest window shows
+    speed_std_mps: float = 3.0  # when the recording starts on the move
+    still_std_mps: float = 0.02  # when it starts at rest
+    window_s: float = 0.1
 
-    # A hole shorter than a stride (similar_strides.py, gap_filling.py).
+
+class GapConfig(NamedTuple):
+    """A hole shorter than a stride (``preprocessing/similar_strides.py``,
+    ``filter/gap_filling.py``).
+    """
+
     similar_side_s: float = 0.05  # on either side of a hole, by which like strides are found
     similar_apart_s: float = 0.2  # what is nearer is of the same stride
     similar_longest_s: float = 0.35  # hole
     similar_rate_s: float = 17.0  # ... over which all of a rate would be missed, as by noise
     similar_force_s: float = 5.0  # the same of a force
     similar_spread_weight: float = 1.5  # what the variance among like strides counts beside
-    gap_bridged_s: float = 0.28  # most of a swing: longer ones only as in like strides
-    gap_around_s: float = 0.45  # where rate and force are looked at; no further than lookahead_s
-    gap_rate_s: float = 0.07  # for which a rate goes its way
-    gap_force_s: float = 0.05  # the same of a force
+    bridged_s: float = 0.28  # most of a swing: longer ones only as in like strides
+    around_s: float = 0.45  # where rate and force are looked at; no further than lookahead_s
+    rate_s: float = 0.07  # for which a rate goes its way
+    force_s: float = 0.05  # the same of a force
 
-    # Lost samples that the stamps do not show (unstamped_loss.py).
-    loss_field_ut: float = 2.0  # change of the field beyond the expected one, between two samples
-    loss_even_ut: float = 0.5  # change before and after, or the foot does not turn
-    loss_ratio: float = 1.5  # change by those before and after
-    loss_bend_ratio: float = 2.0  # unexpected change by how much those around differ
-    loss_longest_s: float = 0.25
-    loss_std_share: float = 0.5  # deviation of the duration by itself
-    loss_std_s: float = 0.005  # ... and at least
-    loss_unseen_ratio: float = 2.0  # way that others hide, by that of losses that are seen
 
-    # A longer gap (reinitialisation.py).
-    gap_speed_std_mps: float = 1.5
-    gap_turn_std_radps: float = 1.0
+class UnstampedLossConfig(NamedTuple):
+    """Lost samples that the stamps do not show (``preprocessing/unstamped_loss.py``)."""
 
-    # Reported covariance.
+    field_ut: float = 2.0  # change of the field beyond the expected one, between two samples
+    even_ut: float = 0.5  # change before and after, or the foot does not turn
+    ratio: float = 1.5  # change by those before and after
+    bend_ratio: float = 2.0  # unexpected change by how much those around differ
+    longest_s: float = 0.25
+    std_share: float = 0.5  # deviation of the duration by itself
+    std_s: float = 0.005  # ... and at least
+    unseen_ratio: float = 2.0  # way that others hide, by that of losses that are seen
+
+
+class ReinitialisationConfig(NamedTuple):
+    """A longer gap (``filter/reinitialisation.py``)."""
+
+    speed_std_mps: float = 1.5
+    turn_std_radps: float = 1.0
+
+
+class OutputConfig(NamedTuple):
+    """Reported covariance and quality (``output/``)."""
+
     report_floor_m: float = 0.02  # give of a shoe and of a floor
-
-    # Quality.
     saturation_ratio: float = 0.985  # of full scale
     no_stance_degraded_s: float = 3.0
     no_stance_lost_s: float = 10.0
@@ -230,7 +276,40 @@ class EskfConfig(NamedTuple):
     settled_heading_std_rad: float = 0.1
 
 
-_PARAMETERS = np.dtype(list(get_type_hints(EskfConfig).items()))
+class EskfConfig(NamedTuple):
+    """The one default configuration; nothing here is set per recording."""
+
+    gravity_mps2: float = 9.80665
+    timing: TimingConfig = TimingConfig()
+    detection: StanceDetectionConfig = StanceDetectionConfig()
+    acceptance: StanceAcceptanceConfig = StanceAcceptanceConfig()
+    zupt: ZuptConfig = ZuptConfig()
+    consistency: StanceConsistencyConfig = StanceConsistencyConfig()
+    floor: FloorConfig = FloorConfig()
+    aiding: AidingConfig = AidingConfig()
+    field: MagneticFieldConfig = MagneticFieldConfig()
+    air: BarometerConfig = BarometerConfig()
+    process: ProcessNoiseConfig = ProcessNoiseConfig()
+    residuals: LandingResidualConfig = LandingResidualConfig()
+    clipping: ClippingConfig = ClippingConfig()
+    start: StartConfig = StartConfig()
+    gap: GapConfig = GapConfig()
+    loss: UnstampedLossConfig = UnstampedLossConfig()
+    restart: ReinitialisationConfig = ReinitialisationConfig()
+    output: OutputConfig = OutputConfig()
+
+
+def _dtype(config: type[Any]) -> np.dtype[Any]:
+    """Return the structure of a record with the fields of a NamedTuple, parts within it too."""
+    return np.dtype(
+        [
+            (name, float if kind is float else int if kind is int else _dtype(kind))
+            for name, kind in get_type_hints(config).items()
+        ]
+    )
+
+
+_PARAMETERS = _dtype(EskfConfig)
 
 
 def config_record(config: EskfConfig) -> NDArray[Any]:

@@ -48,7 +48,7 @@ class EskfTracker:
     def __init__(self, description: SensorDescription, config: EskfConfig | None = None) -> None:
         self.description = description
         self.config = config or EskfConfig()
-        self._gate = new_input_state(description, self.config.saturation_ratio)
+        self._gate = new_input_state(description, self.config.output.saturation_ratio)
         self._ring = new_ring(description.rate_hz)
         self._progress = new_progress()
         self._limits = limits_of(description)
@@ -68,7 +68,7 @@ class EskfTracker:
         """Take samples; return the rows that have become final."""
         released = []
         for lacks_good_samples in preprocess_batch(
-            self._ring, self._progress, self._gate, self._limits, self.config.gap_s, batch
+            self._ring, self._progress, self._gate, self._limits, self.config.timing.gap_s, batch
         ):
             rows = self._work(final=lacks_good_samples)
             if len(rows):
@@ -102,18 +102,22 @@ class EskfTracker:
 def gain_std(description: SensorDescription, config: EskfConfig) -> float:
     """Standard deviation of scale and axis errors: as described, else that of a data sheet."""
     left = description.gain_std
-    return config.data_sheet_gain_std if left is None else left
+    return config.start.data_sheet_gain_std if left is None else left
 
 
 def least_gain_share(description: SensorDescription, config: EskfConfig) -> float:
     """Share of the gains' variance that is reported of the best sensor: all where described."""
     described = description.gain_std is not None
-    return 1.0 if described else (config.least_gain_std / config.data_sheet_gain_std) ** 2
+    return (
+        1.0
+        if described
+        else (config.residuals.least_gain_std / config.start.data_sheet_gain_std) ** 2
+    )
 
 
 def unobserved_bias_std_radps(description: SensorDescription, config: EskfConfig) -> float:
     """Standard deviation of the gyroscope's bias before a rest, beyond what the filter expects."""
-    return config.data_sheet_bias_std_radps if description.gain_std is None else 0.0
+    return config.start.data_sheet_bias_std_radps if description.gain_std is None else 0.0
 
 
 def iron_std_ut(description: SensorDescription, config: EskfConfig) -> float:
@@ -121,7 +125,7 @@ def iron_std_ut(description: SensorDescription, config: EskfConfig) -> float:
     shoe.
     """
     left_ut = description.mag_iron_std_ut
-    return config.field_iron_std_ut if left_ut is None else max(left_ut, config.field_iron_least_ut)
+    return config.field.iron_std_ut if left_ut is None else max(left_ut, config.field.iron_least_ut)
 
 
 @njit(cache=True)
@@ -146,11 +150,11 @@ def work(
             break
         slot = k & (len(ring) - 1)
         stop = min(memory.cleaned, reach(ring, k))
-        ring[slot].t_s = regular_time(ring, k, stop, config.late_delivery_s)
+        ring[slot].t_s = regular_time(ring, k, stop, config.timing.late_delivery_s)
         memory.timed = k + 1
     while memory.measured < memory.timed:
         k = memory.measured
-        if not final and not _is_past(ring, memory.timed, k, config.half_window_s):
+        if not final and not _is_past(ring, memory.timed, k, config.detection.half_window_s):
             break
         measure_motion(ring, memory, k, config)
         memory.measured = k + 1
@@ -158,11 +162,11 @@ def work(
         k = memory.filtered
         if is_long_gap(ring, k, config):
             _release_all(ring, trail, memory, state[0])
-        if not final and not _is_past(ring, memory.measured, k, config.lookahead_s):
+        if not final and not _is_past(ring, memory.measured, k, config.timing.lookahead_s):
             break
         find_similar_strides(ring, memory, k, config)
         begins = needs_reinitialisation(ring, memory, k, config)
-        ahead_s = config.lookahead_s + config.lag_s
+        ahead_s = config.timing.lookahead_s + config.timing.lag_s
         if begins and not final and not _is_past(ring, memory.measured, k, ahead_s):
             break
         slot = k & (len(ring) - 1)
@@ -183,7 +187,7 @@ def _has_arrived(ring: Ring, count: int, k: int, config: EskfConfig) -> bool:
     """True when all samples are there that can correct the time of ``k``."""
     mask = len(ring) - 1
     since_s = ring[(count - 1) & mask].arrival_s - ring[k & mask].arrival_s
-    return since_s > config.late_delivery_s or count >= reach(ring, k)
+    return since_s > config.timing.late_delivery_s or count >= reach(ring, k)
 
 
 @njit()
@@ -213,11 +217,11 @@ def _release(
     now_s = ring[k & mask].t_s
     first = memory.released
     stop = first
-    if memory.in_stance and now_s - memory.stance_since_s >= config.stance_release_s:
+    if memory.in_stance and now_s - memory.stance_since_s >= config.timing.stance_release_s:
         memory.stance_since_s = now_s
         stop = k + 1
-    elif now_s - ring[first & mask].t_s >= config.lag_s or k - first >= len(trail) - 1:
-        while stop <= k and now_s - ring[stop & mask].t_s >= KEPT_LAG_SHARE * config.lag_s:
+    elif now_s - ring[first & mask].t_s >= config.timing.lag_s or k - first >= len(trail) - 1:
+        while stop <= k and now_s - ring[stop & mask].t_s >= KEPT_LAG_SHARE * config.timing.lag_s:
             stop += 1
         stop = max(stop, first + 1)
     if stop > first:

@@ -113,22 +113,22 @@ def filter_sample(
 @njit()
 def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfig) -> None:
     stop = min(progress.measured, reach(ring, 0))
-    ahead_s = config.lookahead_s + config.lag_s
+    ahead_s = config.timing.lookahead_s + config.timing.lag_s
     tilt_std_rad = level(ring, 0, stop, ahead_s, config, state.quaternion_nb)
     rotation_matrix(state.quaternion_nb, state.rotation_nb)
-    moving = ring[0].motion_m2ps4 > config.threshold_min_m2ps4
-    speed_std_mps = config.start_speed_std_mps if moving else config.start_still_std_mps
+    moving = ring[0].motion_m2ps4 > config.detection.threshold_min_m2ps4
+    speed_std_mps = config.start.speed_std_mps if moving else config.start.still_std_mps
     rest_rate_radps = steady_rate(ring, 0, stop, ahead_s, config)
     for i in range(3):
         state.covariance[VELOCITY + i, VELOCITY + i] = speed_std_mps**2
-        bias_std_radps = config.start_gyro_bias_std_radps
-        if abs(rest_rate_radps[i]) > config.start_gyro_bias_gate * bias_std_radps:
+        bias_std_radps = config.start.gyro_bias_std_radps
+        if abs(rest_rate_radps[i]) > config.start.gyro_bias_gate * bias_std_radps:
             bias_std_radps = abs(rest_rate_radps[i])  # a rest shows more than was to be expected
         state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] = bias_std_radps**2
-        state.covariance[ACCEL_BIAS + i, ACCEL_BIAS + i] = config.start_accel_bias_std_mps2**2
-        state.covariance[LEVER + i, LEVER + i] = config.start_lever_std_m**2
+        state.covariance[ACCEL_BIAS + i, ACCEL_BIAS + i] = config.start.accel_bias_std_mps2**2
+        state.covariance[LEVER + i, LEVER + i] = config.start.lever_std_m**2
         state.covariance[GYRO_BIAS_PER_K + i, GYRO_BIAS_PER_K + i] = (
-            config.gyro_bias_per_k_std_radps**2
+            config.process.gyro_bias_per_k_std_radps**2
         )
     # The heading at the start is the frame's own and therefore known.
     state.covariance[ATTITUDE, ATTITUDE] = tilt_std_rad**2
@@ -137,9 +137,9 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
         state.rest_force_mps2[i] = ring[0].accel_mps2[i]
         state.scale_errors.down_b[i] = state.rotation_nb[2, i]
         state.least_known_axis_b[i] = state.rotation_nb[2, i]
-    state.mean_zupt_residual = config.mean_zupt_residual
-    state.mean_scale_residual = config.mean_zupt_residual
-    state.mean_strike_residual = config.mean_strike_residual
+    state.mean_zupt_residual = config.residuals.mean_zupt_residual
+    state.mean_scale_residual = config.residuals.mean_zupt_residual
+    state.mean_strike_residual = config.residuals.mean_strike_residual
     progress.last_stance_s = ring[0].t_s
 
 
@@ -200,13 +200,13 @@ def _add_noise(
     walks of the biases.
     """
     slot, before = k & (len(ring) - 1), (k - 1) & (len(ring) - 1)
-    gyro_noise = config.gyro_noise_radps_rthz**2
-    accel_noise = config.accel_noise_mps2_rthz**2
+    gyro_noise = config.process.gyro_noise_radps_rthz**2
+    accel_noise = config.process.accel_noise_mps2_rthz**2
     if (ring[slot].flags | ring[before].flags) & ACCEL_SATURATED:
         for axis in range(3):
             hidden = ring[slot].hidden_force_noise[axis] + ring[before].hidden_force_noise[axis]
             _inflate_axis(state, VELOCITY, axis, 0.5 * dt_s * hidden)
-    unseen = config.curvature_noise_per_strike * state.mean_strike_residual
+    unseen = config.process.curvature_noise_per_strike * state.mean_strike_residual
     strike_noise = dt_s * unseen**2 * state.force_curvature_var
     state.faultless_var_m2ps2 += dt_s * (accel_noise + strike_noise)
     accel_noise += strike_noise * strike_share(state)
@@ -218,16 +218,16 @@ def _add_noise(
             state.swing_hidden_rad2 += state.rotation_nb[2, axis] ** 2 * variance
     temperature_known = math.isfinite(progress.temperature_degc)
     bias_walk = (
-        config.gyro_bias_walk_known_temperature_radps2_rthz
+        config.process.gyro_bias_walk_known_temperature_radps2_rthz
         if temperature_known
-        else config.gyro_bias_walk_radps2_rthz
+        else config.process.gyro_bias_walk_radps2_rthz
     )
     for i in range(3):
         state.covariance[VELOCITY + i, VELOCITY + i] += dt_s * accel_noise
         state.covariance[ATTITUDE + i, ATTITUDE + i] += dt_s * gyro_noise
         state.covariance[GYRO_BIAS + i, GYRO_BIAS + i] += dt_s * bias_walk**2
         state.covariance[ACCEL_BIAS + i, ACCEL_BIAS + i] += (
-            dt_s * config.accel_bias_walk_mps3_rthz**2
+            dt_s * config.process.accel_bias_walk_mps3_rthz**2
         )
 
 

@@ -25,21 +25,21 @@ from edge.tracker.foot.output.track_rows import join_rows
 from tests.bench.tracker.scoring import score_track
 
 VARIED = (
-    "half_window_s",
-    "rate_weight_m2ps2",
-    "threshold_ratio",
-    "threshold_min_m2ps4",
-    "stance_velocity_mps_rthz",
-    "stance_velocity_per_motion",
-    "stance_excess_power",
-    "stance_rate_radps_rthz",
-    "stance_rate_per_unrest",
-    "accel_noise_mps2_rthz",
-    "gyro_noise_radps_rthz",
-    "gyro_bias_walk_radps2_rthz",
-    "start_gyro_bias_std_radps",
-    "start_accel_bias_std_mps2",
-    "start_lever_std_m",
+    "detection.half_window_s",
+    "detection.rate_weight_m2ps2",
+    "detection.threshold_ratio",
+    "detection.threshold_min_m2ps4",
+    "zupt.stance_velocity_mps_rthz",
+    "zupt.stance_velocity_per_motion",
+    "zupt.stance_excess_power",
+    "zupt.stance_rate_radps_rthz",
+    "zupt.stance_rate_per_unrest",
+    "process.accel_noise_mps2_rthz",
+    "process.gyro_noise_radps_rthz",
+    "process.gyro_bias_walk_radps2_rthz",
+    "start.gyro_bias_std_radps",
+    "start.accel_bias_std_mps2",
+    "start.lever_std_m",
 )
 FACTORS = (0.5, 2.0)
 LEAST_ERROR_M = 0.01  # smaller is luck and must not decide
@@ -61,8 +61,10 @@ def candidates() -> dict[str, EskfConfig]:
     named = {"default": default}
     for name in VARIED:
         for factor in FACTORS:
-            changed = default._replace(**{name: factor * getattr(default, name)})
-            named[f"{name} x {factor:g}"] = changed
+            part, parameter = name.split(".")
+            whole = getattr(default, part)
+            varied = whole._replace(**{parameter: factor * getattr(whole, parameter)})
+            named[f"{name} x {factor:g}"] = default._replace(**{part: varied})
     return named
 
 

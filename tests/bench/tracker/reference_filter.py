@@ -38,10 +38,10 @@ class PlainFilter:
         self.covariance = covariance.copy()
         self._gravity_n_mps2 = np.array([0.0, 0.0, config.gravity_mps2])
         density = np.zeros(SIZE)
-        density[VELOCITY : VELOCITY + 3] = config.accel_noise_mps2_rthz**2
-        density[ATTITUDE : ATTITUDE + 3] = config.gyro_noise_radps_rthz**2
-        density[GYRO_BIAS : GYRO_BIAS + 3] = config.gyro_bias_walk_radps2_rthz**2
-        density[ACCEL_BIAS : ACCEL_BIAS + 3] = config.accel_bias_walk_mps3_rthz**2
+        density[VELOCITY : VELOCITY + 3] = config.process.accel_noise_mps2_rthz**2
+        density[ATTITUDE : ATTITUDE + 3] = config.process.gyro_noise_radps_rthz**2
+        density[GYRO_BIAS : GYRO_BIAS + 3] = config.process.gyro_bias_walk_radps2_rthz**2
+        density[ACCEL_BIAS : ACCEL_BIAS + 3] = config.process.accel_bias_walk_mps3_rthz**2
         self._noise_density = np.diag(density)
 
     def predict(

@@ -51,10 +51,10 @@ def update_barometer(
     if barometer.samples == 0:
         return
     lasted_s = ring[slot].t_s - barometer.since_s
-    update_s = config.ride_update_s if barometer.riding else config.aid_update_s
+    update_s = config.air.ride_update_s if barometer.riding else config.aiding.update_s
     if still and lasted_s < update_s:
         return
-    if lasted_s >= config.aid_stance_s:
+    if lasted_s >= config.aiding.stance_s:
         _update(ring, step, progress, state, slot, lasted_s, config)
     barometer.samples = 0
 
@@ -70,7 +70,7 @@ def _accumulate(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -
     if pressure_pa != barometer.last_pa:
         barometer.last_pa = pressure_pa
         barometer.changed_s = ring[slot].t_s
-    elif ring[slot].t_s - barometer.changed_s > config.air_stuck_s:
+    elif ring[slot].t_s - barometer.changed_s > config.air.stuck_s:
         return
     if barometer.samples == 0:
         barometer.since_s = ring[slot].t_s
@@ -110,16 +110,16 @@ def _update(
     since_s = ring[slot].t_s - barometer.updated_s
     barometer.updated_s = ring[slot].t_s
     if _detect_ride(barometer, progress, lasted_s, ring[slot].t_s, config):
-        state.covariance[DOWN, DOWN] += (config.ride_speed_mps * since_s) ** 2
+        state.covariance[DOWN, DOWN] += (config.air.ride_speed_mps * since_s) ** 2
     prior = state.covariance[DOWN, DOWN]
     held = progress.on_floor and not barometer.riding
     # On a floor the error is the floor's: it does not come and go with every swing.
     sync_variance(barometer.covariance, min(prior, progress.level_variance_m2) if held else prior)
-    barometer.covariance[OFFSET, OFFSET] += config.air_drift_m_rts**2 * since_s
+    barometer.covariance[OFFSET, OFFSET] += config.air.drift_m_rts**2 * since_s
     residual_m = barometer.off_m - barometer.estimate[0] - barometer.estimate[OFFSET]
-    noise = max(barometer.noise_var_m2, config.air_noise_m**2)
+    noise = max(barometer.noise_var_m2, config.air.noise_m**2)
     expected = project(barometer.covariance, barometer.row, barometer.column) + noise
-    if residual_m * residual_m > config.aid_gate**2 * expected:
+    if residual_m * residual_m > config.aiding.gate**2 * expected:
         _reject(barometer, residual_m, config)
     else:
         barometer.rejected = 0
@@ -137,7 +137,7 @@ def _update(
         _update_height(step, progress, state, ring[slot].t_s, prior, config)
     if barometer.riding:
         # Until the next look.
-        state.covariance[DOWN, DOWN] += (config.ride_speed_mps * config.ride_update_s) ** 2
+        state.covariance[DOWN, DOWN] += (config.air.ride_speed_mps * config.air.ride_update_s) ** 2
         progress.level_variance_m2 = state.covariance[DOWN, DOWN]
 
 
@@ -155,7 +155,7 @@ def _update_height(
     measure(step, state, DOWN, residual_m, variance)
     end_updates(state)
     moved_m = state.position_n_m[2] - before_m
-    if barometer.riding and abs(moved_m) > config.ride_going_m:
+    if barometer.riding and abs(moved_m) > config.air.ride_going_m:
         barometer.last_motion_s = t_s
     progress.level_m += moved_m
     progress.footfall_n_m[2] += moved_m
@@ -172,20 +172,20 @@ def _detect_ride(
     enough to pass for a bias.  Returns whether a ride starts.
     """
     before = barometer.riding
-    if lasted_s >= (config.ride_update_s if before else config.aid_update_s):
+    if lasted_s >= (config.air.ride_update_s if before else config.aiding.update_s):
         if barometer.rest_mps2 == 0.0:
             barometer.rest_mps2 = barometer.force_mps2
         push_mps2 = barometer.force_mps2 - barometer.rest_mps2
-        if abs(push_mps2) > config.ride_push_mps2:
+        if abs(push_mps2) > config.air.ride_push_mps2:
             barometer.riding = True
             barometer.last_motion_s = t_s
         elif not before:
-            barometer.rest_mps2 += config.ride_rest_weight * push_mps2
-    calm = t_s - barometer.last_motion_s > config.ride_calm_s
+            barometer.rest_mps2 += config.air.ride_rest_weight * push_mps2
+    calm = t_s - barometer.last_motion_s > config.air.ride_calm_s
     if progress.steps != barometer.steps and calm:
         barometer.riding = False
     barometer.steps = progress.steps
-    if t_s - barometer.last_motion_s > config.ride_longest_s:
+    if t_s - barometer.last_motion_s > config.air.ride_longest_s:
         barometer.riding = False
     return bool(barometer.riding and not before)
 
@@ -193,9 +193,9 @@ def _detect_ride(
 @njit()
 def _adapt_noise(barometer: Aid, residual_m: float, expected_m2: float, config: EskfConfig) -> None:
     """Follow wind and ventilation: up at once, down slowly."""
-    known = max(barometer.noise_var_m2, config.air_noise_m**2)
+    known = max(barometer.noise_var_m2, config.air.noise_m**2)
     seen = max(residual_m * residual_m - expected_m2, 0.0)
-    weight = config.air_noise_rise if seen > known else config.air_noise_fall
+    weight = config.air.noise_rise if seen > known else config.air.noise_fall
     barometer.noise_var_m2 = known + weight * (seen - known)
 
 
@@ -203,7 +203,7 @@ def _adapt_noise(barometer: Aid, residual_m: float, expected_m2: float, config: 
 def _reject(barometer: Aid, residual_m: float, config: EskfConfig) -> None:
     """Leave out a door that slams; take what stays for a step of the pressure."""
     barometer.rejected += 1
-    if barometer.rejected > config.air_outliers:
+    if barometer.rejected > config.air.outliers:
         barometer.rejected = 0
         barometer.estimate[OFFSET] += residual_m
         barometer.covariance[OFFSET, OFFSET] += residual_m * residual_m
@@ -219,13 +219,13 @@ def _check_level_constraint(
     if progress.steps == barometer.checked_at_steps:
         return
     barometer.checked_at_steps = progress.steps
-    barometer.mean_off_m += (residual_m - barometer.mean_off_m) / config.air_floor_strides
-    if abs(barometer.mean_off_m) > config.air_floor_off_m:
+    barometer.mean_off_m += (residual_m - barometer.mean_off_m) / config.air.floor_strides
+    if abs(barometer.mean_off_m) > config.air.floor_off_m:
         if (
             not progress.level_constraint_suspended
             and barometer.mean_off_m * progress.withheld_m > 0.0
         ):
             progress.withheld_m = 0.0  # the air denies it
         progress.level_constraint_suspended = True
-    elif abs(progress.mean_sink_m) < config.air_floor_sink_m:
+    elif abs(progress.mean_sink_m) < config.air.floor_sink_m:
         progress.level_constraint_suspended = False

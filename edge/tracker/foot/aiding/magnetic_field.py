@@ -33,9 +33,9 @@ def start_hypothesis(
 ) -> None:
     """Begin a hypothesis: the wide distortion has this standard deviation."""
     hypothesis.wide_var_ut2 = wide_std_ut**2
-    hypothesis.distortion_var_ut2 = config.field_distortion_start_ut**2
+    hypothesis.distortion_var_ut2 = config.field.distortion_start_ut**2
     for i in range(3):
-        hypothesis.covariance[FIELD + i, FIELD + i] = config.field_std_ut**2
+        hypothesis.covariance[FIELD + i, FIELD + i] = config.field.std_ut**2
         hypothesis.covariance[IRON + i, IRON + i] = iron_std_ut**2
         hypothesis.covariance[WIDE + i, WIDE + i] = hypothesis.wide_var_ut2
 
@@ -43,8 +43,8 @@ def start_hypothesis(
 @njit()
 def forget_steel(hypothesis: Aid, moved_m: float, config: EskfConfig) -> None:
     """Forget the distortion where the foot stood before, as far as it has moved since."""
-    near = math.exp(-moved_m / config.field_near_m)
-    wide = math.exp(-moved_m / config.field_wide_m)
+    near = math.exp(-moved_m / config.field.near_m)
+    wide = math.exp(-moved_m / config.field.wide_m)
     _fade(hypothesis, NEAR, near)
     _fade(hypothesis, WIDE, wide)
     hypothesis.near_renewal = 1.0 - near * near
@@ -74,7 +74,7 @@ def update_hypothesis(compass: Aid, hypothesis: Aid, config: EskfConfig) -> None
         residual = _residual(compass, hypothesis)
         expected = project(hypothesis.covariance, compass.row, compass.column) + variance
         nis = residual * residual / expected
-        most = config.aid_gate**2
+        most = config.aiding.gate**2
         log_penalty = min(nis, most) + math.log(expected)
         hypothesis.log_weight -= 0.5 * hypothesis.wide_renewal * log_penalty
         if nis <= most:
@@ -101,11 +101,11 @@ def _update_distortion(compass: Aid, hypothesis: Aid, config: EskfConfig) -> Non
         residual = _residual(compass, hypothesis)
         seen = max(residual * residual - expected, 0.0)
         weight = (
-            config.field_distortion_rise if seen > distortion_var else config.field_distortion_fall
+            config.field.distortion_rise if seen > distortion_var else config.field.distortion_fall
         )
         weight *= hypothesis.near_renewal * distortion_var / (distortion_var + expected)
         distortion_var += weight * (seen - distortion_var)
-    distortion_var = max(distortion_var, config.field_distortion_floor_ut**2)
+    distortion_var = max(distortion_var, config.field.distortion_floor_ut**2)
     hypothesis.distortion_var_ut2 = distortion_var
     for i in range(3):
         hypothesis.covariance[NEAR + i, NEAR + i] += hypothesis.near_renewal * distortion_var
@@ -128,7 +128,7 @@ def set_field_direction(hypothesis: Aid) -> None:
 def is_field_known(hypothesis: Aid, config: EskfConfig) -> bool:
     """True when the horizontal field is large against its standard deviation."""
     spread = hypothesis.covariance[FIELD, FIELD] + hypothesis.covariance[FIELD + 1, FIELD + 1]
-    return bool(hypothesis.strength_ut**2 > config.field_known_ratio**2 * spread)
+    return bool(hypothesis.strength_ut**2 > config.field.known_ratio**2 * spread)
 
 
 @njit()
@@ -141,7 +141,7 @@ def component_row(compass: Aid, hypothesis: Aid, axis: int, config: EskfConfig) 
     ahead, right = hypothesis.field_direction_n[0], hypothesis.field_direction_n[1]
     heading_var = hypothesis.covariance[0, 0]
     strength = hypothesis.strength_ut
-    variance = config.field_noise_ut**2
+    variance = config.field.noise_ut**2
     sensitivity = 0.0
     if axis == ALONG:
         x, y, z = ahead, right, 0.0
@@ -154,11 +154,11 @@ def component_row(compass: Aid, hypothesis: Aid, axis: int, config: EskfConfig) 
         variance += heading_var * spread
         distortion_ratio = hypothesis.distortion_var_ut2 / max(strength * strength, 1.0)
         variance += (
-            hypothesis.distortion_var_ut2 * distortion_ratio / config.field_distortion_ratio**2
+            hypothesis.distortion_var_ut2 * distortion_ratio / config.field.distortion_ratio**2
         )
         if (
             is_field_known(hypothesis, config)
-            and distortion_ratio < config.field_distortion_limit**2
+            and distortion_ratio < config.field.distortion_limit**2
         ):
             sensitivity = -strength
             variance += heading_var**3 * strength**2 * 5.0 / 12.0
@@ -202,7 +202,7 @@ def north_variance(compass: Aid, hypothesis: Aid, earth_known: bool, config: Esk
     shows, where the earth's is known, by strength and dip.  These are two components, too few
     to take their mean for all there is of the third, so its variance is their sum.
     """
-    limit_ut = config.field_distortion_limit * hypothesis.strength_ut
+    limit_ut = config.field.distortion_limit * hypothesis.strength_ut
     if hypothesis.distortion_var_ut2 > limit_ut * limit_ut:
         return math.inf
     p = hypothesis.covariance
@@ -214,10 +214,10 @@ def north_variance(compass: Aid, hypothesis: Aid, earth_known: bool, config: Esk
     across_var = right * right * p[FIELD, FIELD] + ahead * ahead * p[FIELD + 1, FIELD + 1]
     across_var -= 2.0 * right * ahead * p[FIELD, FIELD + 1]
     with_heading = ahead * p[FIELD + 1, 0] - right * p[FIELD, 0]
-    uniform_var = config.field_uniform_ut**2
+    uniform_var = config.field.uniform_ut**2
     if earth_known:
         along_ut, down_ut = _difference_from_earth_ut(compass, hypothesis)
-        uniform_var = config.field_matching_ut**2 + along_ut * along_ut + down_ut * down_ut
+        uniform_var = config.field.matching_ut**2 + along_ut * along_ut + down_ut * down_ut
     variance = (across_var + uniform_var) / max(strength * strength, 1.0)
     variance += p[0, 0] - 2.0 * with_heading / max(strength, 1.0)
     return float(min(variance, UNKNOWN_HEADING_VAR_RAD2))
@@ -233,8 +233,8 @@ def earth_log_likelihood(compass: Aid, hypothesis: Aid, config: EskfConfig) -> f
     ahead, right = hypothesis.field_direction_n[0], hypothesis.field_direction_n[1]
     along_ut, down_ut = _difference_from_earth_ut(compass, hypothesis)
     along_var = ahead * ahead * p[FIELD, FIELD] + right * right * p[FIELD + 1, FIELD + 1]
-    along_var += 2.0 * ahead * right * p[FIELD, FIELD + 1] + config.field_matching_ut**2
-    down_var = p[FIELD + 2, FIELD + 2] + config.field_matching_ut**2
+    along_var += 2.0 * ahead * right * p[FIELD, FIELD + 1] + config.field.matching_ut**2
+    down_var = p[FIELD + 2, FIELD + 2] + config.field.matching_ut**2
     nis = along_ut * along_ut / along_var + down_ut * down_ut / down_var
     return float(-0.5 * (nis + math.log(along_var * down_var)))
 

@@ -50,9 +50,9 @@ def update_magnetometer(
     if compass.samples == 0:
         return
     lasted_s = ring[slot].t_s - compass.since_s
-    if still and lasted_s < config.aid_update_s:
+    if still and lasted_s < config.aiding.update_s:
         return
-    if lasted_s >= config.aid_stance_s:
+    if lasted_s >= config.aiding.stance_s:
         _update(ring, step, state, slot, config)
     compass.samples = 0
 
@@ -88,7 +88,7 @@ def _update(ring: Ring, step: Step, state: FilterState, slot: int, config: EskfC
     if not compass.started:
         compass.started = True
         for j in range(len(hypotheses)):
-            wide_std_ut = config.field_wide_ut * config.field_wide_ratio**j
+            wide_std_ut = config.field.wide_ut * config.field.wide_ratio**j
             start_hypothesis(hypotheses[j], wide_std_ut, compass.iron_std_ut, config)
     prior = heading_variance(state.covariance)
     moved_m = _moved_m(compass, state)
@@ -139,7 +139,7 @@ def _normalise_weights(compass: Aid, config: EskfConfig) -> None:
     total = 0.0
     for j in range(len(hypotheses)):
         hypotheses[j].log_weight = max(
-            hypotheses[j].log_weight - most, config.field_least_log_weight
+            hypotheses[j].log_weight - most, config.field.least_log_weight
         )
         hypotheses[j].weight = math.exp(hypotheses[j].log_weight)
         total += hypotheses[j].weight
@@ -183,7 +183,7 @@ def _update_north(compass: Aid, earth_known: bool, config: EskfConfig) -> None:
     variance = 0.0
     for j in range(len(hypotheses)):
         weight = hypotheses[j].north_weight / total
-        if weight > config.field_weight_min:
+        if weight > config.field.weight_min:
             off = north_of(hypotheses[j]) - compass.north_rad
             off = math.atan2(math.sin(off), math.cos(off))
             own = north_variance(compass, hypotheses[j], earth_known, config)

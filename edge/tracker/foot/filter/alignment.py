@@ -59,7 +59,7 @@ def level(
     mask = len(ring) - 1
     while stop > first + 1 and ring[(stop - 1) & mask].t_s - ring[first & mask].t_s > ahead_s:
         stop -= 1
-    begin, end = stillest_window(ring, first, stop, config.start_window_s)
+    begin, end = stillest_window(ring, first, stop, config.start.window_s)
     middle = (begin + end) // 2
     mean_b = np.zeros(3)
     motion = 0.0
@@ -70,7 +70,7 @@ def level(
     turn_by_gyro(ring, first, middle, quaternion_nb)
     turn_upright(quaternion_nb, mean_b)
     turn_by_gyro(ring, middle, first, quaternion_nb)
-    return config.start_tilt_std_rad + config.start_tilt_per_motion * min(math.sqrt(motion), 5.0)
+    return config.start.tilt_std_rad + config.start.tilt_per_motion * min(math.sqrt(motion), 5.0)
 
 
 @njit()

@@ -87,15 +87,15 @@ def inflate_for_gap(
     """Add to the covariance what may have been missed in the gap before sample ``k``."""
     rates, forces = np.zeros((3, 3)), np.zeros((3, 3))
     _write_reading_covariances(ring, progress, k, dt_s, rates, forces, config)
-    noise_s2 = dt_s**3 / config.similar_rate_s, dt_s**3 / config.similar_force_s
+    noise_s2 = dt_s**3 / config.gap.similar_rate_s, dt_s**3 / config.gap.similar_force_s
     if progress.similar_count:
         turns, pushes = _similar_stride_variances(ring, progress, k, dt_s)
-        turn_var = np.trace(rates) * noise_s2[0] + config.similar_spread_weight * turns
-        push_var = np.trace(forces) * noise_s2[1] + config.similar_spread_weight * pushes
+        turn_var = np.trace(rates) * noise_s2[0] + config.gap.similar_spread_weight * turns
+        push_var = np.trace(forces) * noise_s2[1] + config.gap.similar_spread_weight * pushes
         rates, forces = np.eye(3) * turn_var / 3.0, np.eye(3) * push_var / 3.0
     else:  # a line is no better than a like stride
-        rates *= max(noise_s2[0], _line_error_s(dt_s, config.gap_rate_s) ** 2)
-        forces *= max(noise_s2[1], _line_error_s(dt_s, config.gap_force_s) ** 2)
+        rates *= max(noise_s2[0], _line_error_s(dt_s, config.gap.rate_s) ** 2)
+        forces *= max(noise_s2[1], _line_error_s(dt_s, config.gap.force_s) ** 2)
     rotation = state.rotation_nb
     rotated, pushed = rotation @ rates @ rotation.T, rotation @ forces @ rotation.T
     p = state.covariance
@@ -129,7 +129,7 @@ def _write_reading_covariances(
 ) -> None:
     """Write the covariances of rate and force, sensor axes, in the strides around, (3, 3) each."""
     first, stop = _samples_around(
-        ring, progress, k, dt_s + config.gap_around_s, config.gap_around_s
+        ring, progress, k, dt_s + config.gap.around_s, config.gap.around_s
     )
     mean_mps2 = np.zeros(3)
     mask = len(ring) - 1

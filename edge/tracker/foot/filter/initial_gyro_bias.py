@@ -34,7 +34,7 @@ def inflate_bias(state: FilterState, config: EskfConfig) -> None:
     if state.bias_observed:
         return
     variance = _update_least_known_axis(state)
-    share = variance / config.start_gyro_bias_std_radps**2
+    share = variance / config.start.gyro_bias_std_radps**2
     if share < OBSERVED_SHARE:
         state.bias_observed = True
         for i in range(3):
@@ -94,15 +94,15 @@ def update_from_rest(state: FilterState, config: EskfConfig) -> None:
     for i in range(3):
         off[i] = state.rest_rate_radps[i] - state.gyro_bias_radps[i]
         square += off[i] * off[i]
-    expected = config.start_gyro_bias_gate * config.start_gyro_bias_std_radps
+    expected = config.start.gyro_bias_gate * config.start.gyro_bias_std_radps
     # A foot that sways scatters by half of its mean rate at least.
-    scattered = state.rest_rate_var_rad2ps2 > config.rest_rate_scatter**2 * square
+    scattered = state.rest_rate_var_rad2ps2 > config.start.rest_rate_scatter**2 * square
     if scattered or square <= expected**2:
         return
     variance = _bias_variance(state, off) / square
     if variance >= square:
         return
-    reported = max(state.unobserved_bias_std_radps, config.start_gyro_bias_std_radps)
+    reported = max(state.unobserved_bias_std_radps, config.start.gyro_bias_std_radps)
     if square > reported**2:
         for i in range(2):  # what is not linear was stated for one deviation
             state.nonlinear_n_m[i] *= min(square / reported**2, NONLINEAR_RATIO_MAX)
@@ -118,7 +118,7 @@ def update_from_rest(state: FilterState, config: EskfConfig) -> None:
 @njit()
 def is_bias_unobserved(state: FilterState, config: EskfConfig) -> bool:
     """True while the bias, and with it the heading, is less certain than the covariance says."""
-    beyond = state.unobserved_bias_std_radps > config.start_gyro_bias_std_radps
+    beyond = state.unobserved_bias_std_radps > config.start.gyro_bias_std_radps
     return bool(beyond and not state.bias_observed)
 
 

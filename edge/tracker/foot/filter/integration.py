@@ -67,10 +67,10 @@ def mean_readings(
 def accel_scale(rest_norm_mps2: float, config: EskfConfig) -> float:
     """Return the factor that puts the accelerometer's scale right as far as rest shows it."""
     off_mps2 = rest_norm_mps2 - config.gravity_mps2
-    if abs(off_mps2) <= config.rest_bias_mps2:
+    if abs(off_mps2) <= config.detection.rest_bias_mps2:
         return 1.0
     side = 1.0 if off_mps2 > 0.0 else -1.0
-    return config.gravity_mps2 / (rest_norm_mps2 - side * config.rest_bias_mps2)
+    return config.gravity_mps2 / (rest_norm_mps2 - side * config.detection.rest_bias_mps2)
 
 
 @njit()

@@ -24,7 +24,7 @@ from edge.tracker.foot.state import FilterState, Progress
 @njit()
 def is_long_gap(ring: Ring, k: int, config: EskfConfig) -> bool:
     """True when nothing can show the motion before ``k``: the first sample, or a long gap."""
-    return k == 0 or _gap_s(ring, k) > config.similar_longest_s
+    return k == 0 or _gap_s(ring, k) > config.gap.similar_longest_s
 
 
 @njit()
@@ -35,7 +35,7 @@ def needs_reinitialisation(ring: Ring, progress: Progress, k: int, config: EskfC
     """
     if is_long_gap(ring, k, config):
         return True
-    return bool(progress.similar_count == 0 and _gap_s(ring, k) > config.gap_bridged_s)
+    return bool(progress.similar_count == 0 and _gap_s(ring, k) > config.gap.bridged_s)
 
 
 @njit()
@@ -54,21 +54,21 @@ def reinitialise(
     the heading alone; what is known of the turn meanwhile, at either end, comes before that.
     """
     stop = min(progress.measured, reach(ring, k))
-    ahead_s = config.lookahead_s + config.lag_s
+    ahead_s = config.timing.lookahead_s + config.timing.lag_s
     mask = len(ring) - 1
     for slot in ((k - 1) & mask, k & mask):
         for i in range(3):
             rate_radps = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
-            state.angle_rad[i] = config.gap_rate_s * rate_radps
+            state.angle_rad[i] = config.gap.rate_s * rate_radps
         rotate_attitude(state.quaternion_nb, state.angle_rad)
     tilt_std_rad = level(ring, k, stop, ahead_s, config, state.quaternion_nb)
     rotation_matrix(state.quaternion_nb, state.rotation_nb)
-    turn_std_rad = min(config.gap_turn_std_radps * dt_s, math.pi)
+    turn_std_rad = min(config.restart.turn_std_radps * dt_s, math.pi)
     for i in range(3):
         state.velocity_n_mps[i] = 0.0
-        _reset_error(state, VELOCITY + i, config.gap_speed_std_mps**2)
+        _reset_error(state, VELOCITY + i, config.restart.speed_std_mps**2)
         position = POSITION + i
-        state.covariance[position, position] += (config.gap_speed_std_mps * dt_s) ** 2
+        state.covariance[position, position] += (config.restart.speed_std_mps * dt_s) ** 2
     for i in range(2):
         _reset_error(state, ATTITUDE + i, tilt_std_rad**2)
     heading = ATTITUDE + 2
@@ -85,7 +85,7 @@ def open_gap_s(ring: Ring, progress: Progress, slot: int, good: bool, config: Es
     if good or progress.filtered == 0:  # before the first sample there is no motion
         progress.good_ns = ring[slot].t_ns
     open_s = 1e-9 * (ring[slot].t_ns - progress.good_ns)
-    return float(open_s) if open_s > config.gap_bridged_s else 0.0
+    return float(open_s) if open_s > config.gap.bridged_s else 0.0
 
 
 @njit()

@@ -31,7 +31,7 @@ def propagate_scale_errors(state: FilterState, dt_s: float, config: EskfConfig) 
     """Add an interval's mean readings; return by how much the known errors turn the walk."""
     scale_errors = state.scale_errors
     by_rate = scale_errors.std * dt_s
-    by_force = config.gain_per_force * by_rate
+    by_force = config.start.gain_per_force * by_rate
     known_rad = 0.0
     for i in range(3):
         down = 0.5 * (scale_errors.down_b[i] + state.rotation_nb[2, i])

@@ -33,11 +33,11 @@ def update_temperature_bias(
         progress.temperature_degc = reading_degc
         progress.bias_degc = reading_degc
         progress.temperature_s = ring[slot].t_s
-    share = (ring[slot].t_s - progress.temperature_s) / config.temperature_smoothing_s
+    share = (ring[slot].t_s - progress.temperature_s) / config.process.temperature_smoothing_s
     progress.temperature_s = ring[slot].t_s
     progress.temperature_degc += min(share, 1.0) * (reading_degc - progress.temperature_degc)
     step_k = progress.temperature_degc - progress.bias_degc
-    if abs(step_k) < config.temperature_step_k:
+    if abs(step_k) < config.process.temperature_step_k:
         return
     progress.bias_degc = progress.temperature_degc
     step.bias_step_k = step_k

@@ -35,7 +35,7 @@ def hold_readings(ring: Ring, state: FilterState, slot: int, config: EskfConfig)
 @njit()
 def inflate_for_loss(state: FilterState, lost_s: float, config: EskfConfig) -> None:
     """Add to the covariance what an unknown duration of the loss does, as one error."""
-    std_s = config.loss_std_share * lost_s + config.loss_std_s
+    std_s = config.loss.std_share * lost_s + config.loss.std_s
     off = state.column  # as scratch
     for i in range(SIZE):
         off[i] = 0.0
@@ -44,7 +44,7 @@ def inflate_for_loss(state: FilterState, lost_s: float, config: EskfConfig) -> N
         off[VELOCITY + i] = std_s * state.force_n_mps2[i]
         for j in range(3):
             off[ATTITUDE + i] += std_s * state.rotation_nb[i, j] * state.gyro_radps[j]
-        state.misfit_n_m[i] += config.loss_unseen_ratio * lost_s * abs(state.velocity_n_mps[i])
+        state.misfit_n_m[i] += config.loss.unseen_ratio * lost_s * abs(state.velocity_n_mps[i])
     off[VELOCITY + 2] += std_s * config.gravity_mps2
     for i in range(POSITION, ATTITUDE + 3):
         for j in range(POSITION, ATTITUDE + 3):

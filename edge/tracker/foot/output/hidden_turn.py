@@ -18,7 +18,7 @@ from edge.tracker.foot.state import FilterState
 @njit()
 def add_hidden_turn(state: FilterState, config: EskfConfig) -> None:
     """Add, at a footfall, what the swing before it may have hidden of the turn of every swing."""
-    state.hidden_turn_rad += config.hidden_turn_share * math.sqrt(state.swing_hidden_rad2)
+    state.hidden_turn_rad += config.clipping.hidden_turn_share * math.sqrt(state.swing_hidden_rad2)
     state.swing_hidden_rad2 = 0.0
 
 

@@ -58,29 +58,29 @@ def assign_quality(
     t_s = ring[slot].t_s
     p = state.covariance
     reasons = ring[slot].flags & BAD_SAMPLES
-    if t_s - progress.gyro_saturated_s <= config.fault_memory_s:
+    if t_s - progress.gyro_saturated_s <= config.output.fault_memory_s:
         reasons |= GYRO_SATURATED
-    if t_s - progress.accel_saturated_s <= config.fault_memory_s:
+    if t_s - progress.accel_saturated_s <= config.output.fault_memory_s:
         reasons |= ACCEL_SATURATED
-    if t_s - progress.gap_s <= config.fault_memory_s:
+    if t_s - progress.gap_s <= config.output.fault_memory_s:
         reasons |= SAMPLE_GAP
     height_lost = height_is_lost(state, config)
-    if height_lost or t_s - progress.misfit_s <= config.fault_memory_s:
+    if height_lost or t_s - progress.misfit_s <= config.output.fault_memory_s:
         reasons |= INCONSISTENT
     tilt_variance = max(p[ATTITUDE, ATTITUDE], p[ATTITUDE + 1, ATTITUDE + 1])
-    if tilt_variance > config.aligned_tilt_std_rad**2:
+    if tilt_variance > config.output.aligned_tilt_std_rad**2:
         reasons |= ALIGNING
     unseen_s = t_s + open_s - progress.last_stance_s
-    if unseen_s > config.no_stance_degraded_s:
+    if unseen_s > config.output.no_stance_degraded_s:
         reasons |= NO_STANCE
     reported_m2 = ring[slot].position_cov_m2
     std_m = math.sqrt(max(reported_m2[0, 0], reported_m2[1, 1]))
-    if std_m > config.degraded_std_m:
+    if std_m > config.output.degraded_std_m:
         reasons |= UNCERTAIN
     quality = GOOD if reasons == 0 else DEGRADED
-    if unobserved_heading_variance(state) > config.settled_heading_std_rad**2:
+    if unobserved_heading_variance(state) > config.output.settled_heading_std_rad**2:
         reasons |= UNSETTLED  # how far off that may be is in what is stated
-    if unseen_s > config.no_stance_lost_s or std_m > config.lost_std_m or height_lost:
+    if unseen_s > config.output.no_stance_lost_s or std_m > config.output.lost_std_m or height_lost:
         quality = LOST
     ring[slot].reasons = reasons
     ring[slot].quality = quality
@@ -88,5 +88,7 @@ def assign_quality(
     heading_var = heading_variance(p) + (noise_inflation(state, config) - 1.0) * p[yaw, yaw]
     heading_var += (scale_error_inflation(state, config) - 1.0) * p[TURN, TURN]
     heading_var += state.hidden_turn_rad**2
-    heading_var += unobserved_heading_variance(state) + (config.gap_turn_std_radps * open_s) ** 2
+    heading_var += (
+        unobserved_heading_variance(state) + (config.restart.turn_std_radps * open_s) ** 2
+    )
     ring[slot].heading_std_rad = math.sqrt(heading_var)

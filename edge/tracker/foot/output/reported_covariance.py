@@ -53,8 +53,8 @@ def report_covariance(
     for i in range(3):
         for j in range(3):
             reported_m2[i, j] = state.covariance[i, j]
-        reported_m2[i, i] += (config.gap_speed_std_mps * open_s) ** 2 + state.misfit_n_m[i] ** 2
-        reported_m2[i, i] += config.report_floor_m**2
+        reported_m2[i, i] += (config.restart.speed_std_mps * open_s) ** 2 + state.misfit_n_m[i] ** 2
+        reported_m2[i, i] += config.output.report_floor_m**2
     scale_errors = state.scale_errors
     for i in range(2):
         step.covariance[i, TURN] = along(

@@ -42,7 +42,7 @@ def recover_rates(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
         while (
             end < stop
             and ring[end & mask].rate_saturated[axis]
-            and ring[end & mask].t_s - ring[slot].t_s <= RUN_MAX_SHARE * config.lookahead_s
+            and ring[end & mask].t_s - ring[slot].t_s <= RUN_MAX_SHARE * config.timing.lookahead_s
         ):
             end += 1
         _recover_rate_run(ring, k, end, stop, axis, config)
@@ -63,8 +63,10 @@ def _recover_rate_run(
     if end + SLOPE_SAMPLES <= stop:
         fall = -side * _slope(ring, end - 1, end - 1 + SLOPE_SAMPLES, axis)
     slope_radps2 = 0.5 * (max(rise, 0.0) + max(fall, 0.0))
-    peak_radps = min(0.25 * slope_radps2 * duration_s, config.hidden_rate_limit_radps)
-    std_radps = config.hidden_rate_floor_radps + config.hidden_rate_std_ratio * peak_radps
+    peak_radps = min(0.25 * slope_radps2 * duration_s, config.clipping.hidden_rate_limit_radps)
+    std_radps = (
+        config.clipping.hidden_rate_floor_radps + config.clipping.hidden_rate_std_ratio * peak_radps
+    )
     for k in range(first, end):
         u = (ring[k & mask].t_s - begin_s + 0.5 * ring[first & mask].period_s) / duration_s
         ring[k & mask].gyro_radps[axis] += side * 4.0 * u * (1.0 - u) * peak_radps
@@ -86,7 +88,8 @@ def recover_forces(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
             end < stop
             and ring[end & mask].force_saturated[axis]
             and (ring[end & mask].accel_mps2[axis] > 0.0) == positive
-            and ring[end & mask].t_s - ring[k & mask].t_s <= RUN_MAX_SHARE * config.lookahead_s
+            and ring[end & mask].t_s - ring[k & mask].t_s
+            <= RUN_MAX_SHARE * config.timing.lookahead_s
         ):
             ring[end & mask].force_saturated[axis] = 0
             end += 1
@@ -108,8 +111,10 @@ def _recover_force_run(
     slope_mps3 = 0.5 * (rise + fall)
     rise, fall = _flanks(ring, first, end, stop, axis, side, 1)
     slope_mps3 = max(slope_mps3, min(rise, fall))
-    peak_mps2 = min(0.25 * slope_mps3 * duration_s, config.hidden_force_limit_mps2)
-    std_mps2 = config.hidden_force_floor_mps2 + config.hidden_force_std_ratio * peak_mps2
+    peak_mps2 = min(0.25 * slope_mps3 * duration_s, config.clipping.hidden_force_limit_mps2)
+    std_mps2 = (
+        config.clipping.hidden_force_floor_mps2 + config.clipping.hidden_force_std_ratio * peak_mps2
+    )
     for k in range(first, end):
         u = (ring[k & mask].t_s - begin_s + 0.5 * period_s) / duration_s
         ring[k & mask].accel_mps2[axis] += side * 4.0 * u * (1.0 - u) * peak_mps2

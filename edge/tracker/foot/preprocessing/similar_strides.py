@@ -30,9 +30,9 @@ def find_similar_strides(ring: Ring, progress: Progress, k: int, config: EskfCon
     progress.similar_count = 0
     mask = len(ring) - 1
     dt_s = ring[k & mask].t_s - ring[(k - 1) & mask].t_s
-    if k == 0 or not lacks_samples(ring, k & mask, dt_s) or dt_s > config.similar_longest_s:
+    if k == 0 or not lacks_samples(ring, k & mask, dt_s) or dt_s > config.gap.similar_longest_s:
         return
-    side_samples = max(SIDE_SAMPLES_MIN, int(config.similar_side_s / ring[k & mask].period_s))
+    side_samples = max(SIDE_SAMPLES_MIN, int(config.gap.similar_side_s / ring[k & mask].period_s))
     before, periods = last_good(ring, k), lost_periods(ring, k)
     if k + side_samples >= min(progress.measured, reach(ring, k)) or before < side_samples:
         return
@@ -93,7 +93,7 @@ def _keep_if_similar(
     ring: Ring, progress: Progress, k: int, at: int, side_samples: int, config: EskfConfig
 ) -> None:
     """Keep ``at``, the last sample before what is like the hole, if it is among the likest."""
-    apart = config.similar_apart_s / ring[k & (len(ring) - 1)].period_s
+    apart = config.gap.similar_apart_s / ring[k & (len(ring) - 1)].period_s
     place = progress.similar_count
     for i in range(progress.similar_count):
         if abs(progress.similar_at[i] - at) < apart:
@@ -131,5 +131,5 @@ def _distance_m2ps4(ring: Ring, a: int, b: int, config: EskfConfig) -> float:
     for i in range(3):
         force = ring[a & mask].accel_mps2[i] - ring[b & mask].accel_mps2[i]
         rate = ring[a & mask].gyro_radps[i] - ring[b & mask].gyro_radps[i]
-        total += force * force + config.rate_weight_m2ps2 * rate * rate
+        total += force * force + config.detection.rate_weight_m2ps2 * rate * rate
     return total

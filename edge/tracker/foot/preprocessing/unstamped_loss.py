@@ -26,19 +26,19 @@ def unstamped_loss_s(ring: Ring, progress: Progress, k: int, config: EskfConfig)
     if k < 3 or k + 2 >= progress.measured:
         return 0.0
     jump_ut = _change_ut(ring, k)
-    if not jump_ut > config.loss_field_ut:  # nor where there is no field
+    if not jump_ut > config.loss.field_ut:  # nor where there is no field
         return 0.0
     before_ut, after_ut = _change_ut(ring, k - 1), _change_ut(ring, k + 1)
-    if not min(before_ut, after_ut) > config.loss_even_ut:
+    if not min(before_ut, after_ut) > config.loss.even_ut:
         return 0.0
     bend_ut = max(_bend_ut(ring, k - 1), _bend_ut(ring, k + 2))
-    least_ut = max(config.loss_field_ut, config.loss_bend_ratio * bend_ut)
-    is_sudden = jump_ut > config.loss_ratio * max(before_ut, after_ut)
+    least_ut = max(config.loss.field_ut, config.loss.bend_ratio * bend_ut)
+    is_sudden = jump_ut > config.loss.ratio * max(before_ut, after_ut)
     if not (is_sudden and _unexpected_ut(ring, k) > least_ut and _is_evenly_stamped(ring, k)):
         return 0.0
     lost_periods = jump_ut / (0.5 * (before_ut + after_ut)) - 1.0
     period_s: float = ring[k & (len(ring) - 1)].period_s
-    return min(lost_periods * period_s, config.loss_longest_s)
+    return min(lost_periods * period_s, config.loss.longest_s)
 
 
 @njit()

@@ -37,7 +37,7 @@ def apply_level_constraint(
     if not progress.on_floor:
         progress.on_floor = True
         _enter_level(progress, state)
-    elif ring[slot].t_s - progress.footfall_s < config.floor_pause_s:
+    elif ring[slot].t_s - progress.footfall_s < config.floor.pause_s:
         return
     elif _is_flat(progress, state, config):
         _hold_height(step, progress, state, config)
@@ -57,19 +57,19 @@ def _is_flat(progress: Progress, state: FilterState, config: EskfConfig) -> bool
     east_m = state.position_n_m[1] - progress.footfall_n_m[1]
     stride_m = math.sqrt(north_m * north_m + east_m * east_m)
     sink_m = state.position_n_m[2] - progress.footfall_n_m[2]
-    if abs(sink_m) >= max(config.floor_gate_m, config.floor_gate_slope * stride_m):
+    if abs(sink_m) >= max(config.floor.gate_m, config.floor.gate_slope * stride_m):
         ramp = progress.mean_sink_m * sink_m > 0.0
-        if not ramp or abs(progress.mean_sink_m) < 0.5 * config.floor_ramp_m:
+        if not ramp or abs(progress.mean_sink_m) < 0.5 * config.floor.ramp_m:
             progress.withheld_m = 0.0
         progress.mean_sink_m = 0.0
         return False
-    progress.mean_sink_m += (sink_m - progress.mean_sink_m) / config.floor_ramp_strides
+    progress.mean_sink_m += (sink_m - progress.mean_sink_m) / config.floor.ramp_strides
     std_m = math.sqrt(max(state.covariance[DOWN, DOWN] - progress.footfall_variance_m2, 0.0))
-    ramp_m = max(config.floor_ramp_m, config.floor_ramp_stds * std_m)
+    ramp_m = max(config.floor.ramp_m, config.floor.ramp_stds * std_m)
     if abs(progress.mean_sink_m) >= ramp_m or progress.level_constraint_suspended:
         return False
-    if stride_m > config.floor_gate_m:
-        progress.flat_strides = min(progress.flat_strides + 1.0, config.floor_rise_bias_strides)
+    if stride_m > config.floor.gate_m:
+        progress.flat_strides = min(progress.flat_strides + 1.0, config.floor.rise_bias_strides)
         progress.rise_bias_m += (sink_m - progress.rise_bias_m) / progress.flat_strides
     return True
 
@@ -77,7 +77,7 @@ def _is_flat(progress: Progress, state: FilterState, config: EskfConfig) -> bool
 @njit()
 def _hold_height(step: Step, progress: Progress, state: FilterState, config: EskfConfig) -> None:
     off_m = progress.level_m - state.position_n_m[2]
-    variance_m2 = config.floor_std_m**2 + progress.level_variance_m2
+    variance_m2 = config.floor.std_m**2 + progress.level_variance_m2
     taken_m = _measure_height_only(step, state, off_m, variance_m2)
     if off_m * progress.withheld_m < 0.0:
         progress.past_ramps_m2 += _ramp_variance(progress, config)
@@ -90,8 +90,8 @@ def _hold_height(step: Step, progress: Progress, state: FilterState, config: Esk
 @njit()
 def _ramp_variance(progress: Progress, config: EskfConfig) -> float:
     """Return the variance of what the constraint takes out: a bias of the strides, or a ramp."""
-    ramp_std_m = config.floor_ramp_std_ratio * min(
-        abs(progress.withheld_m), config.floor_ramp_max_m
+    ramp_std_m = config.floor.ramp_std_ratio * min(
+        abs(progress.withheld_m), config.floor.ramp_max_m
     )
     return float(ramp_std_m * ramp_std_m)
 
@@ -102,8 +102,8 @@ def _climb(progress: Progress, state: FilterState, config: EskfConfig) -> None:
     state.position_n_m[2] -= progress.withheld_m
     progress.climbed += 1.0
     more = 2.0 * progress.climbed - 1.0  # that one stride more adds to their square
-    rise_bias_m2 = progress.rise_bias_m**2 + config.floor_rise_bias_std_m**2
-    rise_bias_m2 += (config.floor_rise_bias_per_gain_m * state.scale_errors.std) ** 2
+    rise_bias_m2 = progress.rise_bias_m**2 + config.floor.rise_bias_std_m**2
+    rise_bias_m2 += (config.floor.rise_bias_per_gain_m * state.scale_errors.std) ** 2
     state.covariance[DOWN, DOWN] += progress.withheld_m**2 + more * rise_bias_m2
     progress.withheld_m = 0.0
     _enter_level(progress, state)

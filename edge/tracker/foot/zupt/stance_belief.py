@@ -39,16 +39,16 @@ def is_accepted(
     """False where sample ``k``, which would begin a stance, is rather of a foot in the air."""
     slot = k & (len(ring) - 1)
     since_s = ring[slot].t_s - progress.last_stance_s
-    if since_s < config.stance_pause_s or since_s > config.doubt_longest_s:
+    if since_s < config.acceptance.stance_pause_s or since_s > config.acceptance.doubt_longest_s:
         return True
-    if state.swing_speed_mps < config.stance_pause_mps:
+    if state.swing_speed_mps < config.acceptance.stance_pause_mps:
         return True
-    if state.swing_level_speed_mps > config.slow_swing_mps:
+    if state.swing_level_speed_mps > config.acceptance.slow_swing_mps:
         return True
     if _rises_or_sinks(state, since_s, config):
         return False
     usual = progress.usual_stance_m2ps4
-    if usual == 0.0 or ring[slot].stride_minimum_m2ps4 <= config.unlike_ratio * usual:
+    if usual == 0.0 or ring[slot].stride_minimum_m2ps4 <= config.acceptance.unlike_ratio * usual:
         return True
     return _stays_level(ring, progress, state, k, config)
 
@@ -61,11 +61,11 @@ def _rises_or_sinks(state: FilterState, since_s: float, config: EskfConfig) -> b
     end is known better (see zupt_residuals), but for those with a fault.
     """
     north, east, down = state.velocity_n_mps[0], state.velocity_n_mps[1], state.velocity_n_mps[2]
-    if state.faulty_stride or north * north + east * east > config.sinking_level_mps**2:
+    if state.faulty_stride or north * north + east * east > config.acceptance.sinking_level_mps**2:
         return False
-    std_mps = config.sinking_mps + config.sinking_drift_mps2 * since_s
-    std_mps += config.sinking_strike_ratio * state.mean_strike_residual * state.swing_rad
-    return bool(abs(down) > config.sinking_gate * std_mps)
+    std_mps = config.acceptance.sinking_mps + config.acceptance.sinking_drift_mps2 * since_s
+    std_mps += config.acceptance.sinking_strike_ratio * state.mean_strike_residual * state.swing_rad
+    return bool(abs(down) > config.acceptance.sinking_gate * std_mps)
 
 
 @njit()
@@ -82,11 +82,14 @@ def _stays_level(
     mask = len(ring) - 1
     stop = min(progress.measured, reach(ring, k))
     now_s = ring[k & mask].t_s
-    moving = math.hypot(state.velocity_n_mps[0], state.velocity_n_mps[1]) > config.rest_level_mps
-    ahead_s = config.rest_moving_ahead_s if moving else config.rest_ahead_s
+    moving = (
+        math.hypot(state.velocity_n_mps[0], state.velocity_n_mps[1])
+        > config.acceptance.rest_level_mps
+    )
+    ahead_s = config.acceptance.rest_moving_ahead_s if moving else config.acceptance.rest_ahead_s
     down_mps = state.velocity_n_mps[2]
     i = k
-    while abs(down_mps) <= config.rest_down_mps:
+    while abs(down_mps) <= config.acceptance.rest_down_mps:
         i += 1
         if i >= stop or ring[i & mask].t_s - now_s > ahead_s:
             return True
@@ -109,9 +112,11 @@ def note_stillness(progress: Progress, motion_m2ps4: float) -> None:
 @njit()
 def remember_stance(progress: Progress, config: EskfConfig) -> None:
     """Learn from a stance that has ended; ``stance_least_m2ps4`` is of its stillest sample."""
-    least = max(progress.stance_least_m2ps4, config.usual_stance_min_m2ps4)
+    least = max(progress.stance_least_m2ps4, config.acceptance.usual_stance_min_m2ps4)
     usual = progress.usual_stance_m2ps4
     if usual == 0.0 or least < usual:
         progress.usual_stance_m2ps4 = least
     else:
-        progress.usual_stance_m2ps4 = usual * (least / usual) ** config.usual_stance_share
+        progress.usual_stance_m2ps4 = (
+            usual * (least / usual) ** config.acceptance.usual_stance_share
+        )

@@ -36,7 +36,7 @@ def begin_stance(
     ring: Ring, step: Step, progress: Progress, state: FilterState, slot: int, config: EskfConfig
 ) -> None:
     """Record what the first still sample after a swing takes away, before it does."""
-    state.recent_nis = config.misfit_memory * (state.recent_nis + _unexplained_nis(state))
+    state.recent_nis = config.consistency.memory * (state.recent_nis + _unexplained_nis(state))
     state.stance_nis = 0.0
     state.stance_misfits = False
     state.stance_after_s = ring[slot].t_s - progress.last_stance_s
@@ -70,7 +70,9 @@ def inflate_for_misfit(
 def _contradicts(state: FilterState, config: EskfConfig) -> bool:
     """True where this stance, or the last few, take away more velocity than noise explains."""
     nis = _unexplained_nis(state)
-    return bool(nis > config.misfit_single_nis and nis + state.recent_nis > config.misfit_nis)
+    return bool(
+        nis > config.consistency.single_nis and nis + state.recent_nis > config.consistency.nis
+    )
 
 
 @njit()
@@ -87,4 +89,4 @@ def _unexplained_nis(state: FilterState) -> float:
 @njit()
 def height_is_lost(state: FilterState, config: EskfConfig) -> bool:
     """True where the floor can no longer be known; nothing later brings it back."""
-    return bool(state.misfit_n_m[2] > config.misfit_height_m)
+    return bool(state.misfit_n_m[2] > config.consistency.height_m)

@@ -45,7 +45,7 @@ def motion_statistic(
     mask = len(ring) - 1
     now_s = ring[k & mask].t_s
     first = k
-    while first > 0 and now_s - ring[(first - 1) & mask].t_s <= config.half_window_s:
+    while first > 0 and now_s - ring[(first - 1) & mask].t_s <= config.detection.half_window_s:
         first -= 1
         if k - first > span(ring):
             break
@@ -60,7 +60,7 @@ def motion_statistic(
     count = 0
     for i in range(first, stop):
         slot = i & mask
-        if ring[slot].t_s - now_s > config.half_window_s:
+        if ring[slot].t_s - now_s > config.detection.half_window_s:
             break
         x, y, z = ring[slot].accel_mps2[0], ring[slot].accel_mps2[1], ring[slot].accel_mps2[2]
         mean_x += x
@@ -75,12 +75,15 @@ def motion_statistic(
         count += 1
     mean_norm = math.sqrt(mean_x * mean_x + mean_y * mean_y + mean_z * mean_z) / count
     agitation = max(squares / count - mean_norm * mean_norm, 0.0)
-    agitation += config.rate_weight_m2ps2 * rates / count
+    agitation += config.detection.rate_weight_m2ps2 * rates / count
     steady = (turn_x * turn_x + turn_y * turn_y + turn_z * turn_z) / (count * count)
     off_mps2 = mean_norm - progress.rest_norm_mps2
-    unsteady = agitation - config.rate_weight_m2ps2 * steady
-    if unsteady < config.rest_motion_m2ps4 and abs(off_mps2) < config.rest_off_mps2:
-        progress.rest_norm_mps2 += config.rest_weight * off_mps2
+    unsteady = agitation - config.detection.rate_weight_m2ps2 * steady
+    if (
+        unsteady < config.detection.rest_motion_m2ps4
+        and abs(off_mps2) < config.detection.rest_off_mps2
+    ):
+        progress.rest_norm_mps2 += config.detection.rest_weight * off_mps2
     return float(agitation + off_mps2 * off_mps2)
 
 
@@ -97,17 +100,19 @@ def stride_minimum(ring: Ring, progress: Progress, k: int, config: EskfConfig) -
     at = progress.minimum_at
     to = progress.minimum_to
     stop = min(progress.measured, reach(ring, k))
-    ahead_s = config.lookahead_s
+    ahead_s = config.timing.lookahead_s
     since_s = now_s - progress.began_s
-    if since_s < config.lag_s:  # nothing came before; the first sample has waited for the lag too
-        ahead_s += config.lag_s - since_s
+    if (
+        since_s < config.timing.lag_s
+    ):  # nothing came before; the first sample has waited for the lag too
+        ahead_s += config.timing.lag_s - since_s
         stop = min(stop, reach(ring, progress.began_at))
     while to < stop and ring[to & mask].t_s - now_s <= ahead_s:
         if to == 0 or ring[to & mask].motion_m2ps4 <= ring[at & mask].motion_m2ps4:
             at = to
         to += 1
     begin = max(progress.minimum_from, to - mask)
-    while now_s - ring[begin & mask].t_s > config.stride_past_s:
+    while now_s - ring[begin & mask].t_s > config.detection.stride_past_s:
         begin += 1
     if at < begin:
         at = begin
@@ -135,11 +140,13 @@ def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: E
     stop = min(progress.measured, reach(ring, k))
     first = k
     while first > 0 and k - first < span(ring):
-        if now_s - ring[(first - 1) & mask].t_s > config.unrest_half_window_s:
+        if now_s - ring[(first - 1) & mask].t_s > config.zupt.unrest_half_window_s:
             break
         first -= 1
     last = k
-    while last + 1 < stop and ring[(last + 1) & mask].t_s - now_s <= config.unrest_half_window_s:
+    while (
+        last + 1 < stop and ring[(last + 1) & mask].t_s - now_s <= config.zupt.unrest_half_window_s
+    ):
         last += 1
     before = (first - 1) & mask
     count = last + 1 - first
@@ -153,7 +160,7 @@ def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: E
         by_bias += mean * mean - off * off
         state.rest_rate_radps[i] = mean
         state.rest_rate_var_rad2ps2 -= mean * mean
-    return float(max(total / count - config.rate_weight_m2ps2 * by_bias, 0.0))
+    return float(max(total / count - config.detection.rate_weight_m2ps2 * by_bias, 0.0))
 
 
 @njit()
@@ -175,9 +182,9 @@ def steady_rate(ring: Ring, first: int, stop: int, ahead_s: float, config: EskfC
             rate, force = ring[k & mask].gyro_radps[i], ring[k & mask].accel_mps2[i]
             rate_radps[i] += rate / count
             force_mps2[i] += force / count
-            squares += (force * force + config.rate_weight_m2ps2 * rate * rate) / count
-    squares -= (force_mps2**2).sum() + config.rate_weight_m2ps2 * (rate_radps**2).sum()
-    if squares > config.steady_motion_m2ps4:
+            squares += (force * force + config.detection.rate_weight_m2ps2 * rate * rate) / count
+    squares -= (force_mps2**2).sum() + config.detection.rate_weight_m2ps2 * (rate_radps**2).sum()
+    if squares > config.detection.steady_motion_m2ps4:
         rate_radps[:] = 0.0
     return rate_radps
 
@@ -188,9 +195,9 @@ def stance_threshold(ring: Ring, state: FilterState, slot: int, config: EskfConf
 
     A lift pushes like a small step.  Where a barometer shows the ride, the person stands.
     """
-    threshold = config.threshold_ratio * ring[slot].stride_minimum_m2ps4
-    least = config.threshold_min_m2ps4
+    threshold = config.detection.threshold_ratio * ring[slot].stride_minimum_m2ps4
+    least = config.detection.threshold_min_m2ps4
     since_change_s = ring[slot].t_s - state.barometer.changed_s
-    if state.barometer.started and since_change_s < config.ride_longest_s:
-        least = config.ride_motion_m2ps4
-    return float(min(max(threshold, least), config.threshold_max_m2ps4))
+    if state.barometer.started and since_change_s < config.air.ride_longest_s:
+        least = config.air.ride_motion_m2ps4
+    return float(min(max(threshold, least), config.detection.threshold_max_m2ps4))

@@ -41,10 +41,10 @@ def apply_zupt(ring: Ring, step: Step, state: FilterState, slot: int, config: Es
     velocity_variance = stance_velocity_noise(ring, slot, motion, config) / interval_s
     for i in range(3):
         state.stance_nis += _measure_velocity(step, state, i, velocity_variance)
-    rate_noise = config.stance_rate_radps_rthz**2
-    rate_noise += config.stance_rate_per_unrest**2 * ring[slot].unrest_m2ps4 ** 3
+    rate_noise = config.zupt.stance_rate_radps_rthz**2
+    rate_noise += config.zupt.stance_rate_per_unrest**2 * ring[slot].unrest_m2ps4 ** 3
     rate_variance = rate_noise / interval_s
-    if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.stance_rate_gain_min_hz * rate_noise:
+    if state.covariance[GYRO_BIAS, GYRO_BIAS] > config.zupt.stance_rate_gain_min_hz * rate_noise:
         for i in range(3):
             measure(step, state, GYRO_BIAS + i, state.gyro_radps[i], rate_variance)
             gain = step.update_gain[step.updates - 1, GYRO_BIAS + i]
@@ -60,11 +60,14 @@ def is_gliding(ring: Ring, state: FilterState, slot: int, config: EskfConfig) ->
     That shows by a velocity that the filter is sure of.  The stillest samples of a stride are
     used in any case, or a filter that is wrong would never be corrected.
     """
-    if ring[slot].motion_m2ps4 <= config.threshold_ratio * ring[slot].stride_minimum_m2ps4:
+    if (
+        ring[slot].motion_m2ps4
+        <= config.detection.threshold_ratio * ring[slot].stride_minimum_m2ps4
+    ):
         return False
     for i in range(VELOCITY, VELOCITY + 3):
         speed_mps = state.velocity_n_mps[i - VELOCITY]
-        if speed_mps * speed_mps > config.glide_gate**2 * state.covariance[i, i]:
+        if speed_mps * speed_mps > config.zupt.glide_gate**2 * state.covariance[i, i]:
             return True
     return False
 
@@ -72,10 +75,10 @@ def is_gliding(ring: Ring, state: FilterState, slot: int, config: EskfConfig) ->
 @njit()
 def stance_velocity_noise(ring: Ring, slot: int, motion: float, config: EskfConfig) -> float:
     """Return the density (m^2/s) of how far a stance sample is from the rolling foot's model."""
-    noise = config.stance_velocity_mps_rthz**2
-    noise += config.stance_velocity_per_motion**2 * motion
-    stillest = max(ring[slot].stride_minimum_m2ps4, config.stance_excess_floor_m2ps4)
-    return float(noise * max(motion / stillest, 1.0) ** config.stance_excess_power)
+    noise = config.zupt.stance_velocity_mps_rthz**2
+    noise += config.zupt.stance_velocity_per_motion**2 * motion
+    stillest = max(ring[slot].stride_minimum_m2ps4, config.zupt.stance_excess_floor_m2ps4)
+    return float(noise * max(motion / stillest, 1.0) ** config.zupt.stance_excess_power)
 
 
 @njit()

@@ -43,22 +43,24 @@ def on_footfall(ring: Ring, step: Step, state: FilterState, slot: int, config: E
         lever_velocity_row(state.rotation_nb, state.gyro_radps, i, row)
         residual_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[i]
         squares += residual_mps * residual_mps
-    residual = min(math.sqrt(squares) / state.swing_rad, config.zupt_residual_max)
+    residual = min(math.sqrt(squares) / state.swing_rad, config.residuals.zupt_residual_max)
     lever_velocity_row(state.rotation_nb, state.gyro_radps, 2, row)
     down_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[2]
-    vertical_residual = min(abs(down_mps) / state.swing_rad, config.zupt_residual_max)
-    state.zupt_residual_count = min(state.zupt_residual_count + 1.0, config.zupt_residual_memory)
-    weight = 1.0 / (config.zupt_residual_prior_count + state.zupt_residual_count)
+    vertical_residual = min(abs(down_mps) / state.swing_rad, config.residuals.zupt_residual_max)
+    state.zupt_residual_count = min(
+        state.zupt_residual_count + 1.0, config.residuals.zupt_residual_memory
+    )
+    weight = 1.0 / (config.residuals.zupt_residual_prior_count + state.zupt_residual_count)
     state.mean_zupt_residual += weight * (residual - state.mean_zupt_residual)
     share = strike_share(state)
-    state.strike_count = min(state.strike_count + share, config.zupt_residual_memory)
+    state.strike_count = min(state.strike_count + share, config.residuals.zupt_residual_memory)
     state.mean_strike_residual += (
         share
         * (vertical_residual - state.mean_strike_residual)
-        / (config.strike_prior_count + state.strike_count)
+        / (config.residuals.strike_prior_count + state.strike_count)
     )
-    if state.swing_speed_mps > config.zupt_residual_slow_mps:
-        residual *= min(config.zupt_residual_speed_mps / state.swing_speed_mps, 1.0)
+    if state.swing_speed_mps > config.residuals.zupt_residual_slow_mps:
+        residual *= min(config.residuals.zupt_residual_speed_mps / state.swing_speed_mps, 1.0)
         state.mean_scale_residual += weight * (residual - state.mean_scale_residual)
 
 
@@ -104,7 +106,7 @@ def _bias_is_known(state: FilterState, config: EskfConfig) -> bool:
     p = state.covariance
     worst = max(p[GYRO_BIAS, GYRO_BIAS], p[GYRO_BIAS + 1, GYRO_BIAS + 1])
     worst = max(worst, p[GYRO_BIAS + 2, GYRO_BIAS + 2])
-    return bool(worst <= config.zupt_residual_bias_std_radps**2)
+    return bool(worst <= config.residuals.zupt_residual_bias_std_radps**2)
 
 
 @njit()
@@ -116,8 +118,10 @@ def scale_error_inflation(state: FilterState, config: EskfConfig) -> float:
     """
     if state.scale_errors.compass_used:
         return 1.0
-    quiet = config.zupt_residual_quiet**2
-    shown = (state.mean_scale_residual**2 - quiet) / (config.zupt_residual_usual**2 - quiet)
+    quiet = config.residuals.zupt_residual_quiet**2
+    shown = (state.mean_scale_residual**2 - quiet) / (
+        config.residuals.zupt_residual_usual**2 - quiet
+    )
     return float(max(shown, state.scale_errors.least_share))
 
 
@@ -131,5 +135,6 @@ def noise_inflation(state: FilterState, config: EskfConfig) -> float:
         return 1.0
     ordinary = min(state.ordinary_m2 / state.noise_m2, 1.0)
     return float(
-        1.0 + ((state.mean_zupt_residual / config.zupt_residual_poor) ** 2 - 1.0) * ordinary
+        1.0
+        + ((state.mean_zupt_residual / config.residuals.zupt_residual_poor) ** 2 - 1.0) * ordinary
     )

@@ -9,7 +9,7 @@ import pytest
 
 from edge.samples import SensorDescription
 from edge.tracker.foot import eskf
-from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.config import EskfConfig, FloorConfig, ProcessNoiseConfig, ZuptConfig
 from edge.tracker.foot.error_state import (
     ACCEL_BIAS,
     ATTITUDE,
@@ -32,12 +32,10 @@ from tests.rig.exact_strides import walk
 
 # Without the floor's correction, and with every rate update used.
 CONFIG = EskfConfig(
-    floor_gate_m=0.0,
-    floor_gate_slope=0.0,
-    floor_rise_bias_std_m=0.0,
-    floor_rise_bias_per_gain_m=0.0,
-    stance_rate_gain_min_hz=0.0,
-    curvature_noise_per_strike=0.0,  # follows the landings, which the plain filter does not
+    floor=FloorConfig(gate_m=0.0, gate_slope=0.0, rise_bias_std_m=0.0, rise_bias_per_gain_m=0.0),
+    zupt=ZuptConfig(stance_rate_gain_min_hz=0.0),
+    # Follows the landings, which the plain filter does not.
+    process=ProcessNoiseConfig(curvature_noise_per_strike=0.0),
 )
 WALK = walk(strides=4, gyro_bias_radps=(0.002, -0.003, 0.001), accel_bias_mps2=(0.05, 0.1, -0.1))
 
@@ -45,23 +43,23 @@ WALK = walk(strides=4, gyro_bias_radps=(0.002, -0.003, 0.001), accel_bias_mps2=(
 def start(ring):
     """The plain filter as the tracker starts its own."""
     quaternion, rotation = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros((3, 3))
-    ahead_s = CONFIG.lookahead_s + CONFIG.lag_s
+    ahead_s = CONFIG.timing.lookahead_s + CONFIG.timing.lag_s
     tilt_std_rad = level(ring, 0, len(WALK.imu), ahead_s, CONFIG, quaternion)
     rotation_matrix(quaternion, rotation)
     std = np.zeros(SIZE)
-    std[VELOCITY : VELOCITY + 3] = CONFIG.start_still_std_mps
+    std[VELOCITY : VELOCITY + 3] = CONFIG.start.still_std_mps
     std[ATTITUDE : ATTITUDE + 2] = tilt_std_rad
-    std[GYRO_BIAS : GYRO_BIAS + 3] = CONFIG.start_gyro_bias_std_radps
-    std[ACCEL_BIAS : ACCEL_BIAS + 3] = CONFIG.start_accel_bias_std_mps2
-    std[LEVER : LEVER + 3] = CONFIG.start_lever_std_m
-    std[GYRO_BIAS_PER_K : GYRO_BIAS_PER_K + 3] = CONFIG.gyro_bias_per_k_std_radps
+    std[GYRO_BIAS : GYRO_BIAS + 3] = CONFIG.start.gyro_bias_std_radps
+    std[ACCEL_BIAS : ACCEL_BIAS + 3] = CONFIG.start.accel_bias_std_mps2
+    std[LEVER : LEVER + 3] = CONFIG.start.lever_std_m
+    std[GYRO_BIAS_PER_K : GYRO_BIAS_PER_K + 3] = CONFIG.process.gyro_bias_per_k_std_radps
     return PlainFilter(rotation, np.diag(std**2), CONFIG)
 
 
 def stance_variances(ring, k):
     interval_s = max(ring[k]["interval_s"], MIN_INTERVAL_S)
-    rate_noise = CONFIG.stance_rate_radps_rthz**2
-    rate_noise += CONFIG.stance_rate_per_unrest**2 * ring[k]["unrest_m2ps4"] ** 3
+    rate_noise = CONFIG.zupt.stance_rate_radps_rthz**2
+    rate_noise += CONFIG.zupt.stance_rate_per_unrest**2 * ring[k]["unrest_m2ps4"] ** 3
     velocity_noise = stance_velocity_noise(ring, k, ring[k]["motion_m2ps4"], CONFIG)
     return velocity_noise / interval_s, rate_noise / interval_s
 

@@ -59,7 +59,7 @@ def test_each_error_turns_the_walk_by_what_is_said_of_it():
     gain, per_force = noise.normal(0.0, 1e-3, (2, 3, 3))
     turned_rad, position_m, _ = ramble(gain=gain, per_force=per_force)
     errors = np.concatenate(
-        (gain.ravel() / GAIN_STD, per_force.ravel() / (GAIN_STD * CONFIG.gain_per_force))
+        (gain.ravel() / GAIN_STD, per_force.ravel() / (GAIN_STD * CONFIG.start.gain_per_force))
     )
     assert abs(turned_rad) > 1e-3
     # Row i of the matrices is counted by how far axis i points down.

@@ -26,14 +26,14 @@ def walked(swings, duration_s=1.0):
 @pytest.mark.slow
 @pytest.mark.parametrize("swings", [1, 4, 10])
 def test_turns_of_swings_add_up(swings):
-    each_rad = CONFIG.hidden_turn_share * SWING_RAD2**0.5
+    each_rad = CONFIG.clipping.hidden_turn_share * SWING_RAD2**0.5
     assert walked(swings)["hidden_turn_rad"] == pytest.approx(swings * each_rad)
 
 
 @pytest.mark.slow
 def test_a_turn_moves_what_is_walked_after_it_to_the_side():
     state = walked(1)
-    each_rad = CONFIG.hidden_turn_share * SWING_RAD2**0.5
+    each_rad = CONFIG.clipping.hidden_turn_share * SWING_RAD2**0.5
     assert state["hidden_way_n_m"] == pytest.approx([0.0, 10.0 * each_rad])
 
 

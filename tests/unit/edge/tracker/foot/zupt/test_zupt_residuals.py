@@ -59,7 +59,7 @@ def gains(residual, least_share=0.0, *, compass=False):
 @pytest.mark.slow
 def test_gains_are_reported_as_landings_show_them():
     config = EskfConfig()
-    assert gains(config.zupt_residual_usual) == pytest.approx(1.0)
+    assert gains(config.residuals.zupt_residual_usual) == pytest.approx(1.0)
     assert gains(0.014) < 0.2 < gains(0.02) < 0.6
     assert gains(0.05) > 2.0
 
