@@ -23,7 +23,7 @@ from tests.rig.exact_strides import walk
 from tests.rig.raised_foot import DESCRIPTION, raised_slowly
 
 RAISED = 12
-BELIEVING = EskfConfig(acceptance=StanceAcceptanceConfig(doubt_longest_s=0.0))
+BELIEVING = EskfConfig(acceptance=StanceAcceptanceConfig(reject_longest_s=0.0))
 SEED = 101  # with which kneeling on toes and getting up is taken for a contradiction most easily
 LEGS = {
     "walks": (Walk(((15.0, 0.0), (15.0, 8.0), (0.0, 8.0))),),

@@ -41,11 +41,11 @@ class StanceDetectionConfig(NamedTuple):
 
 
 class StanceAcceptanceConfig(NamedTuple):
-    """A stance or a foot in the air (``zupt/stance_belief.py``)."""
+    """A stance or a foot in the air (``zupt/stance_acceptance.py``)."""
 
     stance_pause_s: float = 0.1  # a shorter one did not leave the ground
     stance_pause_mps: float = 0.25  # ... nor did one so slow
-    doubt_longest_s: float = 5.0  # without a stance
+    reject_longest_s: float = 5.0  # without a stance
     slow_swing_mps: float = 2.0  # horizontal peak; that of a stride is 2.5 to 5
     unlike_ratio: float = 6.0  # stillness statistic by that of the wearer's stances
     usual_stance_min_m2ps4: float = 0.05  # stiller is sensor noise

@@ -45,7 +45,7 @@ from edge.tracker.foot.preprocessing.unstamped_loss import unstamped_loss_s
 from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress, Step, Trail
 from edge.tracker.foot.zupt.level_walking import apply_level_constraint
-from edge.tracker.foot.zupt.stance_belief import is_accepted, note_stillness, remember_stance
+from edge.tracker.foot.zupt.stance_acceptance import is_accepted, note_stillness, remember_stance
 from edge.tracker.foot.zupt.stance_consistency import begin_stance, inflate_for_misfit
 from edge.tracker.foot.zupt.stance_detection import stance_threshold, steady_rate, unrest
 from edge.tracker.foot.zupt.zupt import apply_zupt, is_gliding

@@ -264,7 +264,7 @@ PROGRESS = np.dtype(
         ("stance_since_s", np.float64),
         ("last_stance_s", np.float64),
         ("stance_least_m2ps4", np.float64),  # stillness statistic of this stance
-        ("usual_stance_m2ps4", np.float64),  # ... of those before; see stance_belief
+        ("usual_stance_m2ps4", np.float64),  # ... of those before; see stance_acceptance
         ("gyro_saturated_s", np.float64),  # when last seen
         ("accel_saturated_s", np.float64),
         ("gap_s", np.float64),

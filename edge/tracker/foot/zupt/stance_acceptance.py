@@ -13,9 +13,9 @@ then the stillest moment is in mid-air.  Evidence against a stance, after a slow
   for an instant only).  For the same reason as above the velocity along the floor does not refuse.
 
 After a fast swing there is no doubt: it is a stride, its strike may leave more vertical velocity
-than those before, and a walk may become a run.  A candidate that is not believed is decided by what
-follows: the swing goes on, at most for ``doubt_longest_s``, and each later sample is a candidate of
-its own.
+than those before, and a walk may become a run.  A candidate that is not accepted is decided by what
+follows: the swing goes on, at most for ``reject_longest_s``, and each later sample is a candidate
+of its own.
 
 The memory takes a stiller stance at once and a less still one by a share, because a person who has
 stood still can do so again.
@@ -39,7 +39,7 @@ def is_accepted(
     """False where sample ``k``, which would begin a stance, is rather of a foot in the air."""
     slot = k & (len(ring) - 1)
     since_s = ring[slot].t_s - progress.last_stance_s
-    if since_s < config.acceptance.stance_pause_s or since_s > config.acceptance.doubt_longest_s:
+    if since_s < config.acceptance.stance_pause_s or since_s > config.acceptance.reject_longest_s:
         return True
     if state.swing_speed_mps < config.acceptance.stance_pause_mps:
         return True
