@@ -81,8 +81,9 @@ def test_what_is_stated_holds_how_far_the_path_walked_is_from_the_best_by_now() 
     rows, t_s, places_m, _ = walked(on_the_move(1, UNCALIBRATED_SENSORS))
     stream = PositionPublisher(Stamper("u1", 1, SystemClock()), RATE_HZ)
     last = stream.push(rows, Timeline())[-1]
-    off_m = np.abs(places_m[-1] - rows.position_n_m[-1, :2])
+    at = np.searchsorted(rows.t_ns - rows.t_ns[0], round(t_s[-1] * NS_PER_S))
+    off_m = np.abs(places_m[-1] - rows.position_n_m[at, :2])
     assert off_m.max() > 0.3
-    assert last.std_north_m >= off_m[0] - 0.1
-    assert last.std_east_m >= off_m[1] - 0.1
+    assert last.std_north_m >= off_m[0]
+    assert last.std_east_m >= off_m[1]
     assert t_s[-1] > 60.0
