@@ -23,7 +23,7 @@ from base_station.standby.mode import HaMode
 
 @dataclass(frozen=True)
 class LiveParts:
-    """What console and housekeeping work with."""
+    """Parts of a running station that console and housekeeping use."""
 
     resources: Resources
     announce: Announce

@@ -115,7 +115,7 @@ class StationPipeline:
         assert_never(event)
 
     def _note_from_log(self, unit_id: str, message: Message) -> list[Output]:
-        """What the station itself sends or takes in; what it had decided changes nothing."""
+        """Take a message that the station itself sent or took in; its decisions change nothing."""
         if isinstance(message, Command):
             return _command_changed(command_tracker.note_sent(self.state, unit_id, message))
         if isinstance(message, ExternalMarkers):

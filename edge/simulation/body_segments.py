@@ -94,7 +94,7 @@ def _shank(plan: BodyPlan, tremor: Tremor, t_s: Floats) -> tuple[Place, Attitude
 
 
 def _leg_pitch(plan: BodyPlan, t_s: Floats) -> Jet:
-    """How the leg leans from the pelvis to its foot, forward positive.
+    """Lean of the leg from the pelvis to its foot, forward positive.
 
     While the foot stands it turns by the body's speed over its length.
     """

@@ -45,7 +45,7 @@ class TakConnection:
                 await _within(self._writer.send(event), _DRAIN_S, _STALLED)
 
     async def receive(self) -> bytes:
-        """What came, at most a datagram or ``_READ_BYTES``; raises ConnectionLostError."""
+        """Received bytes, at most a datagram or ``_READ_BYTES``; raises ConnectionLostError."""
         try:
             if hasattr(self._reader, "recv"):
                 data, _ = await self._reader.recv()

@@ -187,7 +187,7 @@ class CotEvents:
 
 
 def how_of(position: PositionView) -> str:
-    """How the position came about, in CoT's word."""
+    """Origin of the position, in CoT's word."""
     since_s = position.since_gps_s
     return FUSED if since_s is not None and since_s <= _GNSS_HOLDS_S else DEAD_RECKONED
 

@@ -91,7 +91,7 @@ class ExternalInbox:
 
 
 def _not_ahead(marker: ExternalMarker, now_utc_ns: int) -> ExternalMarker:
-    """What comes from a clock that is ahead is of now, and old when it would be."""
+    """An event of a clock that is ahead counts as of now, and becomes old as it would have."""
     ahead_ns = marker.t_ns - now_utc_ns
     if ahead_ns <= _AHEAD_NS:
         return marker

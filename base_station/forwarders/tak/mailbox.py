@@ -14,7 +14,7 @@ from base_station.views.wire import AlarmView, Delta, Snapshot, UnitView
 
 @dataclass(slots=True)
 class Changes:
-    """What came since the last time, the picture first."""
+    """Everything since the last call, the picture first."""
 
     picture: Snapshot | None = None  # everything before it is void
     units: dict[str, UnitView] = field(default_factory=dict)

@@ -37,7 +37,7 @@ _SOONEST_NS = NS_PER_S // 50
 
 @dataclass(slots=True)
 class _Person:
-    """What was sent of a unit's wearer, and what is not sent yet."""
+    """Events of a unit's wearer: those sent, and those still to be sent."""
 
     unit: UnitView
     is_waiting: bool = True

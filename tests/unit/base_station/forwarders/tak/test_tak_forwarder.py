@@ -60,7 +60,7 @@ class FakeServer:
                 return
             self.received[number] += data
 
-    def say(self, data: bytes) -> None:
+    def send(self, data: bytes) -> None:
         self._connected[-1].sendall(data)
 
     def hang_up(self) -> None:
@@ -143,7 +143,7 @@ def test_rubbish_from_a_server_changes_nothing(closing: ExitStack) -> None:
     forwarder.reset(scene.picture())
     forwarder.start()
     until(lambda: server.received and uids(server.received[0]), "it is connected")
-    server.say(b"\x00\xff<!DOCTYPE a [<!ENTITY b 'c'>]>" * 5000 + b"<event" * 10_000)
+    server.send(b"\x00\xff<!DOCTYPE a [<!ENTITY b 'c'>]>" * 5000 + b"<event" * 10_000)
     forwarder.delta(delta(scene.moved(5.0, 60.0)))
     until(lambda: len(uids(server.received[0])) >= 2, "it goes on")
     assert len(server.received) == 1
