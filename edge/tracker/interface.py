@@ -6,7 +6,7 @@ known, an arbitrary but constant heading of "north".
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Protocol
 
@@ -17,9 +17,24 @@ from edge.samples import Floats, ImuBatch, Nanoseconds, SensorDescription
 from shared.earth_field import EarthField
 from shared.quality import Quality, Reason
 
-__all__ = ["FOOT", "Quality", "Reason", "TrackBatch", "Tracker", "TrackerEntry"]
+__all__ = [
+    "FOOT",
+    "LEFT_FOOT",
+    "MOST_LAG_S",
+    "RIGHT_FOOT",
+    "BodyDimensions",
+    "MultiSensorTracker",
+    "MultiSensorTrackerEntry",
+    "Quality",
+    "Reason",
+    "TrackBatch",
+    "Tracker",
+    "TrackerEntry",
+    "WornSensor",
+]
 
-FOOT = "foot"
+FOOT, LEFT_FOOT, RIGHT_FOOT = "foot", "left_foot", "right_foot"
+MOST_LAG_S = 0.4  # by which samples of one sensor of a person may come behind those of another
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,3 +96,53 @@ class TrackerEntry:
     summary: str
     make: Callable[[SensorDescription], Tracker]
     worn_on: tuple[str, ...] = (FOOT,)  # parts of the body, the one it is meant for first
+
+
+@dataclass(frozen=True, slots=True)
+class WornSensor:
+    """One of the sensors of a person."""
+
+    description: SensorDescription
+    place: str  # part of the body
+
+
+@dataclass(frozen=True, slots=True)
+class BodyDimensions:
+    """What is known of a person in advance; ``None``: nobody says."""
+
+    height_m: float | None = None
+    leg_length_m: float | None = None  # hip joint to sole, in shoes
+
+
+class MultiSensorTracker(Protocol):
+    """Tracker of one person by several sensors, which are told apart by name.
+
+    The times of all sensors are those of one clock.  The rows are those of the person, one for each
+    sample of the leading sensor, or of another while the leading one is silent.  Any batching and
+    interleaving gives the same rows to the last bit, as long as no sensor's samples are pushed more
+    than ``MOST_LAG_S`` behind another's.  A sensor that is silent for longer is gone until it comes
+    back, and the rows go on with what the others show.
+    """
+
+    def push(self, sensor: str, batch: ImuBatch) -> TrackBatch:
+        """Take samples of one sensor; return the rows that have become final."""
+        ...
+
+    def set_earth_field(self, field: EarthField, t_ns: int) -> None:
+        """Set the earth's field around here; see ``Tracker``."""
+        ...
+
+    def finish(self) -> TrackBatch:
+        """Return the rows still held back; the tracker is used up."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class MultiSensorTrackerEntry:
+    """Line of ``MULTI_SENSOR_TRACKERS``."""
+
+    name: str
+    summary: str
+    make: Callable[[Mapping[str, WornSensor], BodyDimensions], MultiSensorTracker]
+    # The sensors that it needs, the leading one first: for each the places that will do.
+    places: tuple[tuple[str, ...], ...]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from functools import partial
+from itertools import permutations
 
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.body.tracker import BodyTracker
@@ -11,7 +13,15 @@ from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.hip.state import HipConfig
 from edge.tracker.hip.tracker import HipTracker
 from edge.tracker.huang.tracker import HuangTracker
-from edge.tracker.interface import TrackBatch, Tracker, TrackerEntry
+from edge.tracker.interface import (
+    BodyDimensions,
+    MultiSensorTracker,
+    MultiSensorTrackerEntry,
+    TrackBatch,
+    Tracker,
+    TrackerEntry,
+    WornSensor,
+)
 from edge.tracker.waist.tracker import WaistTracker
 from shared.earth_field import EarthField
 from shared.errors import ConfigError
@@ -62,6 +72,8 @@ TRACKERS: tuple[TrackerEntry, ...] = (
     ),
 )
 
+MULTI_SENSOR_TRACKERS: tuple[MultiSensorTrackerEntry, ...] = ()
+
 
 def make_tracker(
     name: str, description: SensorDescription, other_names: tuple[str, ...] = ()
@@ -80,3 +92,40 @@ def find_tracker(name: str, other_names: tuple[str, ...] = ()) -> TrackerEntry:
             return entry
     known = ", ".join((*(entry.name for entry in TRACKERS), *other_names))
     raise ConfigError(f"There is no tracker '{name}'. Known trackers: {known}.")
+
+
+def make_multi_sensor_tracker(
+    name: str, sensors: Mapping[str, WornSensor], dimensions: BodyDimensions | None = None
+) -> MultiSensorTracker:
+    """Return a new tracker of a person by its name in ``MULTI_SENSOR_TRACKERS``.
+
+    ``sensors``: by their names; more than the tracker needs are refused too, as nothing would
+    become of their samples.  ``ConfigError`` if there is no such tracker, or the places do not fit.
+    """
+    entry = find_multi_sensor_tracker(name)
+    places = [sensor.place for sensor in sensors.values()]
+    if not fits_places(entry, places):
+        needed = " and ".join(" or ".join(choices) for choices in entry.places)
+        raise ConfigError(
+            f"Tracker '{name}' needs one sensor each at {needed}; "
+            f"this person has: {', '.join(places) or 'none'}."
+        )
+    return entry.make(sensors, dimensions or BodyDimensions())
+
+
+def find_multi_sensor_tracker(name: str) -> MultiSensorTrackerEntry:
+    """Return the line of ``MULTI_SENSOR_TRACKERS`` with this name, or raise ``ConfigError``."""
+    for entry in MULTI_SENSOR_TRACKERS:
+        if entry.name == name:
+            return entry
+    known = ", ".join(entry.name for entry in MULTI_SENSOR_TRACKERS)
+    raise ConfigError(f"There is no tracker '{name}' of several sensors. Known trackers: {known}.")
+
+
+def fits_places(entry: MultiSensorTrackerEntry, places: Iterable[str]) -> bool:
+    """Return True if sensors at these places, one at each, are those that a tracker needs."""
+    return any(
+        all(place in choices for place, choices in zip(order, entry.places, strict=True))
+        for order in permutations(places)
+        if len(order) == len(entry.places)
+    )
