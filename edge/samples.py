@@ -23,7 +23,7 @@ Nanoseconds = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ImuBatch:
-    """Consecutive inertial samples of one unit; ``n`` may be 1.
+    """Consecutive inertial samples of one sensor; ``n`` may be 1.
 
     Optional columns are ``None`` when the unit has no such sensor and hold NaN
     where a sample was missed.
@@ -142,15 +142,18 @@ OtherSample = (
 
 @dataclass(frozen=True, slots=True)
 class SensorBatch:
-    """Batch that a source hands over at once: inertial samples and others that came with them."""
+    """Batch that a source hands over at once: inertial samples of one sensor, and others that came
+    with them.
+    """
 
     imu: ImuBatch
     others: tuple[OtherSample, ...] = ()
+    sensor: str = ""  # name of the inertial sensor; empty: the unit's only one
 
 
 @dataclass(frozen=True, slots=True)
 class SensorDescription:
-    """Data sheet of a unit; all a tracker may know about a recording in advance."""
+    """Data sheet of a sensor; all a tracker may know about a recording in advance."""
 
     name: str
     rate_hz: float
@@ -161,3 +164,5 @@ class SensorDescription:
     gain_std: float | None = None  # how far scale and axes may be off; None: nobody says
     mag_iron_std_ut: float | None = None  # what its calibration left of iron; None: it has none
     mag_earth_ut: float | None = None  # as what it showed the earth's field in that calibration
+    place: str = ""  # part of the body that wears it, see ``edge.body_places``; empty: unknown
+    mount: str = ""  # how it is fastened, in words

@@ -9,19 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import msgspec
+
 from edge.activity.monitor import ActivityMonitor
 from edge.activity.mounting import MountingCheck
 from edge.agent.batteries import Batteries
 from edge.agent.decimation import Decimator, OncePerPeriod
 from edge.agent.expected_field import ExpectedField
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.position_publisher import PositionPublisher
 from edge.agent.sensor_health import SensorHealth
 from edge.agent.temperatures import AmbientTemperature, CurrentReadings
-from edge.calibration.correction import Correction
-from edge.calibration.file import identity
-from edge.calibration.model import Calibration
 from edge.clocks.timeline import Timeline
-from edge.sample_codec.codec import gps_fix, is_sendable, sighting, whole_seconds
+from edge.sample_codec.codec import described_unit, gps_fix, is_sendable, sighting, whole_seconds
 from edge.sample_codec.uplink import RawUplink
 from edge.samples import (
     CANCEL,
@@ -34,7 +34,6 @@ from edge.samples import (
     GpsSample,
     OtherSample,
     SensorBatch,
-    SensorDescription,
     SightingSample,
 )
 from edge.tracker.interface import Tracker
@@ -66,8 +65,7 @@ class UnitIdentity:
     software_version: str
     source: str
     tracker: str
-    sensor: SensorDescription
-    calibration: Calibration | None = None
+    sensors: tuple[FittedSensor, ...]  # the first one first; at least one
     place: ApproximatePosition | None = None
     outputs: tuple[str, ...] = ()  # kinds of those that notify the wearer
 
@@ -91,11 +89,7 @@ class TrackerPipeline:
         for a tracker that is made for another part of the body.
         """
         self._identity = identity
-        self._correction = (
-            None
-            if identity.calibration is None
-            else Correction(identity.calibration, identity.sensor)
-        )
+        self._corrections = {one.name: one.correction() for one in identity.sensors}
         self._tracker = tracker
         self._stamper = stamper
         self._positions = PositionPublisher(stamper, position_rate_hz)
@@ -169,7 +163,8 @@ class TrackerPipeline:
         Its presses are for ``take_presses``, before it.
         """
         self._update_earth_field(batch, timeline)
-        imu = batch.imu if self._correction is None else self._correction.push(batch.imu)
+        correction = self._corrections.get(batch.sensor)
+        imu = batch.imu if correction is None else correction.push(batch.imu)
         track = self._tracker.push(imu)
         messages: list[Message] = [
             self._event(EventKind.SENSOR_FAULT, _last_ns(batch, timeline), fault)
@@ -178,7 +173,7 @@ class TrackerPipeline:
         for sample in batch.others:
             messages += self._take_other(sample, timeline)
         if self._raw_uplink is not None:
-            messages += self._raw_uplink.push(batch.imu, timeline)
+            messages += self._raw_uplink.push(batch.imu, timeline, batch.sensor)
         if self._mounting is not None:
             self._mounting.push(imu)
             self._positions.set_mounting(is_on_foot=self._mounting.is_on_foot)
@@ -301,26 +296,16 @@ class TrackerPipeline:
         )
 
     def _describe(self, mono_ns: int | None) -> UnitDescription:
-        sensor = self._identity.sensor
-        calibration = self._identity.calibration
-        return UnitDescription(
-            header=self._stamper.header(mono_ns),
+        described = described_unit(
+            self._stamper.header(mono_ns),
+            [one.as_sent() for one in self._identity.sensors],
             software_version=self._identity.software_version,
             source=self._identity.source,
-            sensor_name=sensor.name,
-            rate_hz=sensor.rate_hz,
-            accel_full_scale_mps2=sensor.accel_full_scale_mps2,
-            gyro_full_scale_radps=sensor.gyro_full_scale_radps,
             tracker=self._identity.tracker,
-            calibration="" if calibration is None else identity(calibration),
-            has_magnetometer=sensor.mag_present,
-            has_barometer=sensor.barometer_present,
             has_gps=self._has_gps,
-            calibrated_s=None if calibration is None else round(calibration.made.timestamp()),
-            calibration_faults="" if calibration is None else "; ".join(calibration.faults()),
-            gain_std=sensor.gain_std,
-            outputs=self._identity.outputs,
-            preflight=self._preflight,
+        )
+        return msgspec.structs.replace(
+            described, outputs=self._identity.outputs, preflight=self._preflight
         )
 
     def _event(self, kind: EventKind, mono_ns: int | None, detail: str) -> UnitEvent:

@@ -13,6 +13,7 @@ from pathlib import Path
 from queue import SimpleQueue
 
 from edge.agent.command_handler import CommandHandler
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.link import Link, StationConnector
 from edge.agent.mayday_latch import MaydayLatch
 from edge.agent.mayday_progress import MaydayProgress
@@ -24,7 +25,6 @@ from edge.agent.runtime import Agent, AgentParts
 from edge.agent.source_reader import SourceReader
 from edge.agent.wearer_notifier import WearerNotifier
 from edge.app.calibration_in_use import calibration_in_use
-from edge.calibration.file import identity
 from edge.calibration.model import Calibration
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Follower, Timekeeper
@@ -37,9 +37,8 @@ from edge.preflight.installation import (
     storage_findings,
 )
 from edge.preflight.start_check import StartCheck
-from edge.sample_codec.codec import SampleEncoder, sensor_of
+from edge.sample_codec.codec import SampleEncoder, sensor_of, unit_sensor
 from edge.sample_codec.uplink import RawUplink
-from edge.samples import SensorDescription
 from edge.sources.bus import BusSource
 from edge.sources.interface import AuxiliarySource, Source
 from edge.sources.registry import source_kind
@@ -54,7 +53,7 @@ from edge.tracker.registry import NoTracker, find_tracker
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import SystemClock
 from shared.envelope import Stamper
-from shared.messages import EventKind, UnitDescription, UnitEvent
+from shared.messages import EventKind, UnitEvent
 from shared.service_manager import ServiceManager
 from shared.tls import TlsIdentity
 
@@ -81,13 +80,16 @@ def compose_agent(
         raw = SampleEncoder(unit_id, journal.boot_id)
         stamper = Stamper(unit_id, journal.boot_id, clock, clock.utc_std_s)
         worn = tracked_unit(unit_id) or unit_id
-        calibration = calibration_in_use(config, worn, source.description, folder.calibrations)
-        description = _description(config, raw, source, calibration, clock)
+        sensor = _fitted_sensor(config, source, worn, folder.calibrations)
+        description = raw.description(
+            clock.monotonic_ns(),
+            [sensor.as_sent()],
+            source=config.source,
+            tracker=config.tracker,
+        )
         latch = MaydayLatch(folder.mayday, clock)
         on_error.callback(latch.close)
-        pipeline = _pipeline(
-            config, sensor_of(description), calibration, stamper, journal, latch, outputs, clock
-        )
+        pipeline = _pipeline(config, sensor, stamper, journal, latch, outputs, clock)
         latch.set(is_active=pipeline.is_mayday_active)
         black_box = BlackBox(
             folder.black_box,
@@ -134,7 +136,9 @@ def compose_agent(
                 link=link,
                 commands=commands,
                 manager=ServiceManager(os.environ),
-                start_check=_start_check(config, folder, source, speed, calibration, certificate),
+                start_check=_start_check(
+                    config, folder, source, speed, sensor.calibration, certificate
+                ),
             )
         )
         on_error.pop_all()  # the agent closes it at its end
@@ -178,20 +182,13 @@ def _quarantine_reports(folder: UnitDataFolder, damaged: Path | None) -> Iterato
         )
 
 
-def _description(
-    config: EdgeConfig,
-    raw: SampleEncoder,
-    source: Source,
-    calibration: Calibration | None,
-    clock: StationClock,
-) -> UnitDescription:
-    return raw.description(
-        clock.monotonic_ns(),
-        _with_settings(source.description, config),
-        source=config.source,
-        tracker=config.tracker,
-        calibration="" if calibration is None else identity(calibration),
-    )
+def _fitted_sensor(config: EdgeConfig, source: Source, unit_id: str, used: Path) -> FittedSensor:
+    """Return the sensor as the wire gives it back, with its settings and calibration."""
+    description = source.description
+    if config.gain_std is not None:
+        description = replace(description, gain_std=config.gain_std)
+    calibration = calibration_in_use(config, unit_id, description, used)
+    return FittedSensor(sensor_of(unit_sensor("", description)), calibration)
 
 
 def _link(
@@ -213,16 +210,13 @@ def _link(
 
 def _pipeline(
     config: EdgeConfig,
-    sensor: SensorDescription,
-    calibration: Calibration | None,
+    sensor: FittedSensor,
     stamper: Stamper,
     journal: Journal,
     latch: MaydayLatch,
     outputs: Outputs,
     clock: StationClock,
 ) -> TrackerPipeline:
-    if calibration is not None:
-        sensor = calibration.described(sensor)
     tracks = config.tracker != NO_TRACKER
     entry = find_tracker(config.tracker, (NO_TRACKER,)) if tracks else None
     return TrackerPipeline(
@@ -230,23 +224,17 @@ def _pipeline(
             _version(),
             config.source,
             config.tracker,
-            sensor,
-            calibration,
+            (sensor,),
             outputs=outputs.kinds,
             place=config.place,
         ),
-        NoTracker() if entry is None else entry.make(sensor),
+        NoTracker() if entry is None else entry.make(sensor.corrected),
         stamper,
         position_rate_before(journal, clock.monotonic_ns()) or config.position_rate_hz,
         mayday=latch.was_active or mayday_before(journal),
         raw_uplink=None if tracks else RawUplink(stamper),
         worn_on_foot=entry is None or FOOT in entry.worn_on,
     )
-
-
-def _with_settings(sensor: SensorDescription, config: EdgeConfig) -> SensorDescription:
-    """Return the description with settings in place of what the source says."""
-    return sensor if config.gain_std is None else replace(sensor, gain_std=config.gain_std)
 
 
 def _new_boot_id() -> int:

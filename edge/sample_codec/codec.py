@@ -12,6 +12,7 @@ sample's own time and sequence number 0: they are not part of the unit's journal
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import msgspec
 import numpy as np
@@ -49,6 +50,7 @@ from shared.messages import (
     Temperature,
     UnitDescription,
     UnitEvent,
+    UnitSensor,
 )
 
 _EVENT_OF_BUTTON = {
@@ -78,7 +80,7 @@ class SampleEncoder:
         raw: list[Message] = []
         if len(imu):
             header = self._header(int(imu.t_ns[0]))
-            raw.append(_through_wire(raw_imu(header, imu)))
+            raw.append(_through_wire(raw_imu(header, imu, batch.sensor)))
         for sample in batch.others:
             message = _message_of(self._header(sample.t_ns), sample)
             if message is not None:
@@ -86,31 +88,13 @@ class SampleEncoder:
         return tuple(raw)
 
     def description(
-        self,
-        t_ns: int,
-        sensor: SensorDescription,
-        *,
-        source: str,
-        tracker: str,
-        calibration: str = "",
+        self, t_ns: int, sensors: Sequence[UnitSensor], *, source: str, tracker: str
     ) -> UnitDescription:
         """Return the description of the source of the samples that follow; they are not
         calibrated.
         """
-        return UnitDescription(
-            header=self._header(t_ns),
-            software_version="",
-            source=source,
-            sensor_name=sensor.name,
-            rate_hz=sensor.rate_hz,
-            accel_full_scale_mps2=sensor.accel_full_scale_mps2,
-            gyro_full_scale_radps=sensor.gyro_full_scale_radps,
-            tracker=tracker,
-            calibration=calibration,
-            has_magnetometer=sensor.mag_present,
-            has_barometer=sensor.barometer_present,
-            has_gps=False,
-            gain_std=sensor.gain_std,
+        return described_unit(
+            self._header(t_ns), sensors, software_version="", source=source, tracker=tracker
         )
 
     def _header(self, t_ns: int) -> Header:
@@ -119,29 +103,103 @@ class SampleEncoder:
 
 def batch_of(raw: tuple[Message, ...]) -> SensorBatch:
     """Return the batch that ``SampleEncoder.messages`` made ``raw`` from, quantised."""
-    imu = _EMPTY_IMU
+    imu, sensor = _EMPTY_IMU, ""
     others: list[OtherSample] = []
     for message in raw:
         if isinstance(message, RawImu):
-            imu = _imu_batch(message)
+            imu, sensor = _imu_batch(message), message.sensor
         else:
             sample = _sample_of(message)
             if sample is not None:
                 others.append(sample)
-    return SensorBatch(imu, tuple(others))
+    return SensorBatch(imu, tuple(others), sensor)
 
 
-def sensor_of(description: UnitDescription) -> SensorDescription:
-    """Return the data sheet in ``description``, as the wire gives it back."""
+def unit_sensor(name: str, sensor: SensorDescription) -> UnitSensor:
+    """Return the data sheet of the unit's sensor of this name as it is sent, not calibrated."""
+    return UnitSensor(
+        name=name,
+        place=sensor.place,
+        mount=sensor.mount,
+        model=sensor.name,
+        rate_hz=sensor.rate_hz,
+        accel_full_scale_mps2=sensor.accel_full_scale_mps2,
+        gyro_full_scale_radps=sensor.gyro_full_scale_radps,
+        has_magnetometer=sensor.mag_present,
+        has_barometer=sensor.barometer_present,
+        gain_std=sensor.gain_std,
+    )
+
+
+def described_unit(
+    header: Header,
+    sensors: Sequence[UnitSensor],
+    *,
+    software_version: str,
+    source: str,
+    tracker: str,
+    has_gps: bool = False,
+) -> UnitDescription:
+    """Return the description of a unit of these sensors, at least one."""
+    first = sensors[0]
+    return UnitDescription(
+        header=header,
+        software_version=software_version,
+        source=source,
+        sensor_name=first.model,
+        rate_hz=first.rate_hz,
+        accel_full_scale_mps2=first.accel_full_scale_mps2,
+        gyro_full_scale_radps=first.gyro_full_scale_radps,
+        tracker=tracker,
+        calibration=first.calibration,
+        has_magnetometer=first.has_magnetometer,
+        has_barometer=first.has_barometer,
+        has_gps=has_gps,
+        calibrated_s=first.calibrated_s,
+        calibration_faults=first.calibration_faults,
+        gain_std=first.gain_std,
+        sensors=tuple(sensors),
+    )
+
+
+def sensors_of(description: UnitDescription) -> dict[str, SensorDescription]:
+    """Return the data sheets in ``description`` by the sensors' names, as the wire gives them back.
+
+    A description of an earlier version has one sensor without a name.
+    """
     through = UnitDescription.from_wire(description.to_wire())
+    if not through.sensors:
+        return {"": _only_sensor(through)}
+    return {one.name: sensor_of(one) for one in through.sensors}
+
+
+def sensor_of(sent: UnitSensor) -> SensorDescription:
+    """Return the data sheet in ``sent``, as the wire gives it back; a place that was recognised by
+    motion is for the reader to recognise.
+    """
+    through = UnitSensor.from_wire(sent.to_wire())
     return SensorDescription(
-        name=through.sensor_name,
+        name=through.model,
         rate_hz=through.rate_hz,
         accel_full_scale_mps2=through.accel_full_scale_mps2,
         gyro_full_scale_radps=through.gyro_full_scale_radps,
         mag_present=through.has_magnetometer,
         barometer_present=through.has_barometer,
         gain_std=through.gain_std,
+        place="" if through.place_recognised else through.place,
+        mount=through.mount,
+    )
+
+
+def _only_sensor(description: UnitDescription) -> SensorDescription:
+    return SensorDescription(
+        name=description.sensor_name,
+        rate_hz=description.rate_hz,
+        accel_full_scale_mps2=description.accel_full_scale_mps2,
+        gyro_full_scale_radps=description.gyro_full_scale_radps,
+        mag_present=description.has_magnetometer,
+        barometer_present=description.has_barometer,
+        gain_std=description.gain_std,
     )
 
 
@@ -183,7 +241,7 @@ def sighting(header: Header, sample: SightingSample) -> Sighting:
     )
 
 
-def raw_imu(header: Header, imu: ImuBatch) -> RawImu:
+def raw_imu(header: Header, imu: ImuBatch, sensor: str = "") -> RawImu:
     """Return the message, not rounded yet; the wire does that."""
     return RawImu(
         header=header,
@@ -193,6 +251,7 @@ def raw_imu(header: Header, imu: ImuBatch) -> RawImu:
         mag_ut=imu.mag_ut,
         pressure_pa=imu.pressure_pa,
         imu_temperature_degc=imu.imu_temperature_degc,
+        sensor=sensor,
     )
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from threading import Condition, Event
 
-from edge.sample_codec.codec import sensor_of
+from edge.sample_codec.codec import sensors_of
 from edge.samples import SensorDescription
 from shared.bus import Bus
 from shared.channels import DESCRIPTION, IMU, NO_TRACKER, raw_journal_key
@@ -77,15 +77,15 @@ class RawStreamListener:
     def close(self) -> None:
         self._declared.close()
 
-    def next_boot(self, stop: Event) -> tuple[int, SensorDescription] | None:
-        """Wait for samples of a boot of the unit whose sensor is known; None when stopped."""
+    def next_boot(self, stop: Event) -> tuple[int, dict[str, SensorDescription]] | None:
+        """Wait for samples of a boot of the unit whose sensors are known; None when stopped."""
         logger.info("waiting for the raw stream of %s", self.unit_id)
         while not stop.is_set():
             with self._changed:
                 self._changed.wait_for(self._is_described, timeout=_POLL_S)
                 if self._is_described():
                     boot_id = self._waiting[0].header.boot_id
-                    return boot_id, sensor_of(self._descriptions[boot_id])
+                    return boot_id, sensors_of(self._descriptions[boot_id])
         return None
 
     def take(self, boot_id: int, timeout_s: float) -> RawImu | None:

@@ -24,34 +24,35 @@ class RawUplink:
         assert IMU.rate_hz is not None
         self._period_ns = round(NS_PER_S / IMU.rate_hz)
         self._stamper = stamper
-        self._pending: list[ImuBatch] = []
+        self._pending: dict[str, list[ImuBatch]] = {}  # by sensor; none is empty
 
-    def push(self, imu: ImuBatch, timeline: Timeline) -> list[RawImu]:
+    def push(self, imu: ImuBatch, timeline: Timeline, sensor: str = "") -> list[RawImu]:
         if not len(imu):
             return []
         messages = []
-        if self._pending and not self._continues(imu):
-            messages = self.finish(timeline)
-        self._pending.append(imu)
-        first_ns, last_ns = int(self._pending[0].t_ns[0]), int(imu.t_ns[-1])
-        rows = sum(map(len, self._pending))
+        if sensor in self._pending and not self._continues(self._pending[sensor], imu):
+            messages.append(self._send(sensor, timeline))
+        pending = self._pending.setdefault(sensor, [])
+        pending.append(imu)
+        first_ns, last_ns = int(pending[0].t_ns[0]), int(imu.t_ns[-1])
+        rows = sum(map(len, pending))
         # One more sample would reach the period's end.
         if rows > 1 and (last_ns - first_ns) * rows >= self._period_ns * (rows - 1):
-            messages += self.finish(timeline)
+            messages.append(self._send(sensor, timeline))
         return messages
 
     def finish(self, timeline: Timeline) -> list[RawImu]:
-        if not self._pending:
-            return []
-        imu = _joined(self._pending)
-        self._pending = []
-        return [raw_imu(self._stamper.header(timeline.to_mono_ns(int(imu.t_ns[0]))), imu)]
+        return [self._send(sensor, timeline) for sensor in list(self._pending)]
 
-    def _continues(self, imu: ImuBatch) -> bool:
+    def _send(self, sensor: str, timeline: Timeline) -> RawImu:
+        imu = _joined(self._pending.pop(sensor))
+        header = self._stamper.header(timeline.to_mono_ns(int(imu.t_ns[0])))
+        return raw_imu(header, imu, sensor)
+
+    def _continues(self, pending: list[ImuBatch], imu: ImuBatch) -> bool:
         """Return True without a gap in time, and with the same columns."""
-        before = self._pending[-1]
-        apart_ns = int(imu.t_ns[0]) - int(self._pending[0].t_ns[0])
-        return 0 <= apart_ns <= self._period_ns and _columns(before) == _columns(imu)
+        apart_ns = int(imu.t_ns[0]) - int(pending[0].t_ns[0])
+        return 0 <= apart_ns <= self._period_ns and _columns(pending[-1]) == _columns(imu)
 
 
 def _columns(imu: ImuBatch) -> tuple[bool, ...]:

@@ -8,7 +8,7 @@ import logging
 from collections.abc import Iterator
 from pathlib import Path
 
-from edge.sample_codec.codec import batch_of, sensor_of
+from edge.sample_codec.codec import batch_of, sensors_of
 from edge.samples import SensorBatch, SensorDescription
 from edge.sources.interface import OfflineSource
 from shared.channels import DESCRIPTION, Channel, parse_key
@@ -29,11 +29,15 @@ class BlackBoxSource(OfflineSource):
     def __init__(self, path: Path | str) -> None:
         self._path = Path(path)
         _check(self._path)
-        self._unit_id, self._description = self._read_description()
+        self._unit_id, self._sensors = self._read_sensors()
 
     @property
     def description(self) -> SensorDescription:
-        return self._description
+        return next(iter(self._sensors.values()))
+
+    @property
+    def sensors(self) -> dict[str, SensorDescription]:
+        return self._sensors
 
     def batches(self) -> Iterator[SensorBatch]:
         """Yield batches as they were written: at one instant, inertial samples first; there may
@@ -50,12 +54,12 @@ class BlackBoxSource(OfflineSource):
         if group:
             yield batch_of(tuple(group))
 
-    def _read_description(self) -> tuple[str, SensorDescription]:
+    def _read_sensors(self) -> tuple[str, dict[str, SensorDescription]]:
         for _, unit_id, channel, payload in self._records():
             if channel is DESCRIPTION:
                 description = decode(channel, payload)
                 assert isinstance(description, UnitDescription)
-                return unit_id, sensor_of(description)
+                return unit_id, sensors_of(description)
         raise RecordingError(
             f"{self._path} does not say which sensor it is from; it is no black box of a unit"
         )

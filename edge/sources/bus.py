@@ -31,10 +31,9 @@ class BusSource(OfflineSource):
     def __init__(self, unit_id: str) -> None:
         self.unit_id = validate_unit_id(unit_id)
         self._listener: RawStreamListener | None = None
-        self._boot: tuple[int, SensorDescription] | None = None
+        self._boot: tuple[int, dict[str, SensorDescription]] | None = None
         self._closed = Event()
-        self._last_seq = 0
-        self._last_ns: int | None = None  # of the last sample
+        self._last: dict[str, RawImu] = {}  # by sensor
         self.fetched = 0  # messages that the radio lost, out of the unit's journal
         self.late = 0  # messages that came after later ones, left out
 
@@ -46,6 +45,10 @@ class BusSource(OfflineSource):
 
     @property
     def description(self) -> SensorDescription:
+        return next(iter(self.sensors.values()))
+
+    @property
+    def sensors(self) -> dict[str, SensorDescription]:
         return self._followed()[2]
 
     def batches(self) -> Iterator[SensorBatch]:
@@ -56,7 +59,7 @@ class BusSource(OfflineSource):
                 if listener.has_restarted(boot_id):
                     logger.info("%s has started again", self.unit_id)
                     return
-            elif raw.header.seq <= self._last_seq:
+            elif self._is_late(raw):
                 self.late += 1
             else:
                 yield from self._backfill(listener, raw)
@@ -64,27 +67,33 @@ class BusSource(OfflineSource):
 
     def _backfill(self, listener: RawStreamListener, raw: RawImu) -> Iterator[SensorBatch]:
         """Yield from the unit's journal what the radio lost before this message."""
-        if self._last_ns is None or raw.header.seq == self._last_seq + 1:
+        last = self._last.get(raw.sensor)
+        if last is None or raw.header.seq == last.header.seq + 1:
             return
-        if int(raw.t_ns[0]) - self._last_ns <= _HOLE_NS:
+        if int(raw.t_ns[0]) - int(last.t_ns[-1]) <= _HOLE_NS:
             return
         fetched = 0
         try:
-            for raw_imu in listener.fetch(raw.header.boot_id, self._last_seq, raw.header.seq):
-                fetched += 1
-                yield self._accept(raw_imu)
+            for one in listener.fetch(raw.header.boot_id, last.header.seq, raw.header.seq):
+                if not self._is_late(one):  # of another sensor, which was not lost
+                    fetched += 1
+                    yield self._accept(one)
         except (BusError, WireError) as error:
             logger.warning("what was missed of %s cannot be fetched: %s", self.unit_id, error)
         self.fetched += fetched
 
+    def _is_late(self, raw: RawImu) -> bool:
+        last = self._last.get(raw.sensor)
+        return last is not None and raw.header.seq <= last.header.seq
+
     def _accept(self, raw: RawImu) -> SensorBatch:
-        self._last_seq, self._last_ns = raw.header.seq, int(raw.t_ns[-1])
+        self._last[raw.sensor] = raw
         return batch_of((raw,))
 
     def close(self) -> None:
         self._closed.set()
 
-    def _followed(self) -> tuple[RawStreamListener, int, SensorDescription]:
+    def _followed(self) -> tuple[RawStreamListener, int, dict[str, SensorDescription]]:
         if self._listener is None or self._boot is None:
             raise RecordingError(
                 f"bus:{self.unit_id} is heard by `muster edge run` only, when the unit is there"

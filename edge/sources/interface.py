@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol, runtime_checkable
@@ -42,6 +42,23 @@ class Source(Protocol):
     def batches(self) -> Iterator[SensorBatch]: ...
 
     def close(self) -> None: ...
+
+
+@runtime_checkable
+class HasSensors(Protocol):
+    """Source of several sensors of one person, whose batches name theirs."""
+
+    @property
+    def sensors(self) -> Mapping[str, SensorDescription]:
+        """Data sheets by the sensors' names, the first one first."""
+        ...
+
+
+def sensors_in(source: Source) -> Mapping[str, SensorDescription]:
+    """Return the data sheets of a source's sensors by their names; an only one has the name ``""``
+    where it was given none.
+    """
+    return source.sensors if isinstance(source, HasSensors) else {"": source.description}
 
 
 class OfflineSource:

@@ -27,6 +27,7 @@ from shared.messages.unit_description import (
     PreflightFinding,
     PreflightLevel,
     UnitDescription,
+    UnitSensor,
 )
 
 Message = (
@@ -89,4 +90,5 @@ __all__ = [
     "Tick",
     "UnitDescription",
     "UnitEvent",
+    "UnitSensor",
 ]

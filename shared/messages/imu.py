@@ -33,6 +33,7 @@ class RawImu(msgspec.Struct, frozen=True, eq=False):
     mag_ut: Floats | None = None  # (n, 3)
     pressure_pa: Floats | None = None  # (n,)
     imu_temperature_degc: Floats | None = None  # (n,)
+    sensor: str = ""  # name in the unit's description; empty: its first or only one
 
     def to_wire(self) -> imu_pb2.ImuBatch:
         t0_ns = int(self.t_ns[0])
@@ -45,6 +46,7 @@ class RawImu(msgspec.Struct, frozen=True, eq=False):
             mag_nt=_quantised(self.mag_ut, _MAG_PER_UT),
             pressure_cpa=_quantised(self.pressure_pa, _PRESSURE_PER_PA),
             imu_temperature_cdegc=_quantised(self.imu_temperature_degc, _TEMPERATURE_PER_DEGC),
+            sensor=self.sensor,
         )
 
     @staticmethod
@@ -60,6 +62,7 @@ class RawImu(msgspec.Struct, frozen=True, eq=False):
             mag_ut=_vectors(wire.mag_nt, _MAG_PER_UT) if wire.mag_nt else None,
             pressure_pa=_scalars(wire.pressure_cpa, _PRESSURE_PER_PA),
             imu_temperature_degc=_scalars(wire.imu_temperature_cdegc, _TEMPERATURE_PER_DEGC),
+            sensor=wire.sensor,
         )
         if len(t_ns) == 0:
             raise ValueError("no sample")

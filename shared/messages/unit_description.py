@@ -40,6 +40,62 @@ class PreflightFinding(msgspec.Struct, frozen=True):
         return PreflightFinding(level, wire.subject, wire.text, wire.remedy)
 
 
+class UnitSensor(msgspec.Struct, frozen=True):
+    """Inertial sensor of a unit, and where its wearer has it."""
+
+    name: str  # in the unit; empty: its only one
+    place: str  # part of the body, such as left_foot; empty: unknown
+    model: str
+    rate_hz: float
+    accel_full_scale_mps2: float | None
+    gyro_full_scale_radps: float | None
+    has_magnetometer: bool
+    has_barometer: bool
+    place_recognised: bool = False  # by its motion; else the place is that of the settings
+    mount: str = ""  # how it is fastened, in words
+    calibration: str = ""  # identity of the calibration in use; empty: none
+    calibrated_s: int | None = None  # UTC seconds at which it was made; None: no calibration
+    calibration_faults: str = ""
+    gain_std: float | None = None  # how far scale and axes may be off; None: unknown
+
+    def to_wire(self) -> unit_description_pb2.UnitSensor:
+        return unit_description_pb2.UnitSensor(
+            name=self.name,
+            place=self.place,
+            place_recognised=self.place_recognised,
+            mount=self.mount,
+            model=self.model,
+            rate_mhz=unsigned32(self.rate_hz, 1e3),
+            accel_full_scale_mmps2=unsigned32(self.accel_full_scale_mps2 or 0.0, 1e3),
+            gyro_full_scale_mradps=unsigned32(self.gyro_full_scale_radps or 0.0, 1e3),
+            has_magnetometer=self.has_magnetometer,
+            has_barometer=self.has_barometer,
+            calibration=self.calibration,
+            calibrated_s=self.calibrated_s or 0,
+            calibration_faults=self.calibration_faults,
+            gain_std_ppm=_gain_std_ppm(self.gain_std),
+        )
+
+    @staticmethod
+    def from_wire(wire: unit_description_pb2.UnitSensor) -> UnitSensor:
+        return UnitSensor(
+            name=wire.name,
+            place=wire.place,
+            place_recognised=wire.place_recognised,
+            mount=wire.mount,
+            model=wire.model,
+            rate_hz=wire.rate_mhz * 1e-3,
+            accel_full_scale_mps2=wire.accel_full_scale_mmps2 * 1e-3 or None,
+            gyro_full_scale_radps=wire.gyro_full_scale_mradps * 1e-3 or None,
+            has_magnetometer=wire.has_magnetometer,
+            has_barometer=wire.has_barometer,
+            calibration=wire.calibration,
+            calibrated_s=wire.calibrated_s or None,
+            calibration_faults=wire.calibration_faults,
+            gain_std=wire.gain_std_ppm / 1e6 if wire.gain_std_ppm else None,
+        )
+
+
 class UnitDescription(msgspec.Struct, frozen=True):
     header: Header
     software_version: str
@@ -59,6 +115,8 @@ class UnitDescription(msgspec.Struct, frozen=True):
     outputs: tuple[str, ...] = ()  # kinds of outputs that notify the wearer; empty: it has none
     # The gravest first; None: the check is not over, or this version makes none.
     preflight: tuple[PreflightFinding, ...] | None = None
+    # The first is also described above; empty: of an earlier version, whose unit had one.
+    sensors: tuple[UnitSensor, ...] = ()
 
     def to_wire(self) -> unit_description_pb2.UnitDescription:
         return unit_description_pb2.UnitDescription(
@@ -80,6 +138,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
             outputs=self.outputs,
             preflight_done=self.preflight is not None,
             preflight=[one.to_wire() for one in self.preflight or ()],
+            sensors=[one.to_wire() for one in self.sensors],
         )
 
     @staticmethod
@@ -104,6 +163,7 @@ class UnitDescription(msgspec.Struct, frozen=True):
             preflight=tuple(map(PreflightFinding.from_wire, wire.preflight))
             if wire.preflight_done
             else None,
+            sensors=tuple(map(UnitSensor.from_wire, wire.sensors)),
         )
 
 

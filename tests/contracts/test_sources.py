@@ -10,7 +10,7 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
-from edge.sample_codec.codec import SampleEncoder, raw_imu
+from edge.sample_codec.codec import SampleEncoder, raw_imu, unit_sensor
 from edge.sample_codec.listener import RawStreamListener
 from edge.sources.bus import BusSource
 from edge.sources.iio.source import IioSource
@@ -48,7 +48,7 @@ def _mcap(folder: Path) -> str:
     source = open_source("simulated:straight?seed=5")
     clock = ManualClock()
     raw = SampleEncoder("u1", 7)
-    description = raw.description(0, source.description, source="", tracker="")
+    description = raw.description(0, (unit_sensor("", source.description),), source="", tracker="")
     black_box = BlackBox(folder / "box", description, 10**9, clock)
     for batch in source.batches():
         black_box.write(raw.messages(batch))
@@ -149,7 +149,8 @@ def _say_everything(source: BusSource) -> None:
     walk = open_source("simulated:straight?seed=5")
     for boot_id in (7, 8):
         raw = SampleEncoder(source.unit_id, boot_id)
-        description = raw.description(0, walk.description, source="", tracker=NO_TRACKER)
+        sent = (unit_sensor("", walk.description),)
+        description = raw.description(0, sent, source="", tracker=NO_TRACKER)
         unit.publish(DESCRIPTION.key(source.unit_id), encode(description), Qos.LIVE)
         for seq, batch in enumerate(walk.batches(), start=1):
             header = Header(source.unit_id, boot_id, seq, int(batch.imu.t_ns[0]))

@@ -18,12 +18,12 @@ WRITER = """
 import sys, time
 from pathlib import Path
 from edge.storage.black_box.black_box import BlackBox
-from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.codec import SampleEncoder, unit_sensor
 from edge.sources.registry import open_source
 from shared.clock import SystemClock
 source = open_source("simulated:straight")
 raw = SampleEncoder("u1", 7)
-description = raw.description(0, source.description, source="", tracker="")
+description = raw.description(0, (unit_sensor("", source.description),), source="", tracker="")
 box = BlackBox(Path(sys.argv[1]), description, 10**9, SystemClock())
 started = time.monotonic()
 for batch in source.batches():

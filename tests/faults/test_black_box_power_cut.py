@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.codec import SampleEncoder, unit_sensor
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.registry import open_source
 from edge.storage.black_box.black_box import BlackBox
@@ -53,7 +53,7 @@ def test_at_most_a_second_of_samples_is_lost_with_the_power(
     monkeypatch.setattr(os, "fsync", disk.fsync)
     source = open_source("simulated:straight")
     raw = SampleEncoder("u1", 7)
-    description = raw.description(0, source.description, source="", tracker="")
+    description = raw.description(0, (unit_sensor("", source.description),), source="", tracker="")
     box = BlackBox(folder, description, 10**9, SystemClock())
     handed_over_ns: list[int] = []  # at each cut
     began_s = time.monotonic()

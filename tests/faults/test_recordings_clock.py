@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from edge.clocks.station import StationClock
-from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.codec import SampleEncoder, unit_sensor
 from edge.sources.registry import open_source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.server import RecordingServer
@@ -48,7 +48,7 @@ def record(
     clock = StationClock(machine)
     source = open_source("simulated:climbs-stairs?seed=3")
     raw = SampleEncoder(U, 7)
-    description = raw.description(0, source.description, source="", tracker="")
+    description = raw.description(0, (unit_sensor("", source.description),), source="", tracker="")
     box = BlackBox(folder.black_box, description, 10**9, clock, clock.utc_std_s)
     for number, batch in zip(range(BATCHES), source.batches(), strict=False):
         at_s = number * SECONDS / BATCHES
@@ -128,7 +128,8 @@ def test_the_oldest_goes_first_whatever_its_date(tmp_path: Path) -> None:
     first, second = sorted(folder.black_box.iterdir(), reverse=True)
     kept_bytes = sum(one.stat().st_size for one in segment_paths(second))
     source = open_source("simulated:climbs-stairs?seed=3")
-    description = SampleEncoder(U, 9).description(0, source.description, source="", tracker="")
+    sent = (unit_sensor("", source.description),)
+    description = SampleEncoder(U, 9).description(0, sent, source="", tracker="")
     BlackBox(folder.black_box, description, kept_bytes, Machine()).close()
     assert not first.exists()
     assert segment_paths(second)

@@ -12,6 +12,7 @@ from threading import Event
 import msgspec
 import pytest
 
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.sample_codec.codec import SampleEncoder, batch_of
 from edge.sample_codec.listener import RawStreamListener
@@ -62,7 +63,7 @@ def pipeline(
     stamper = Stamper(unit_id, boot_id, ManualClock())
     weak = tracker == NO_TRACKER
     return TrackerPipeline(
-        UnitIdentity("1", WALK, tracker, sensor),
+        UnitIdentity("1", WALK, tracker, (FittedSensor(sensor),)),
         NoTracker() if weak else make_tracker(tracker, sensor),
         stamper,
         5.0,

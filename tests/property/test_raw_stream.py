@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from edge.sample_codec.codec import SampleEncoder, batch_of, sensor_of
+from edge.sample_codec.codec import SampleEncoder, batch_of, sensors_of, unit_sensor
 from edge.samples import (
     AmbientSample,
     BatterySample,
@@ -104,7 +104,9 @@ def test_inertial_samples_keep_their_times_and_nearly_their_values(batch):
 )
 def test_a_description_that_has_passed_once_passes_unchanged(rate_hz, full_scale, mag, gain_std):
     def passed(sensor: SensorDescription) -> SensorDescription:
-        return sensor_of(SampleEncoder("u1", 1).description(0, sensor, source="", tracker=""))
+        sent = (unit_sensor("left", sensor),)
+        description = SampleEncoder("u1", 1).description(0, sent, source="", tracker="")
+        return sensors_of(description)["left"]
 
     sensor = SensorDescription("s", rate_hz, full_scale, full_scale, mag, gain_std=gain_std)
     once = passed(sensor)

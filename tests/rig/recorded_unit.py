@@ -8,7 +8,7 @@ from pathlib import Path
 
 from base_station.unit_sync.recordings.transfer import Transfer, TransferRequest
 from edge.clocks.station import StationClock
-from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.codec import SampleEncoder, unit_sensor
 from edge.sources.registry import open_source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.server import RecordingServer
@@ -29,7 +29,9 @@ class RecordedUnit:
         self.began_ns = self.machine.utc_ns()
         source = open_source("simulated:climbs-stairs?seed=3")
         raw = SampleEncoder(U, 7)
-        description = raw.description(0, source.description, source="", tracker="")
+        description = raw.description(
+            0, (unit_sensor("", source.description),), source="", tracker=""
+        )
         box = BlackBox(self.folder.black_box, description, 10**9, self.machine)
         for _, batch in zip(range(BATCHES), source.batches(), strict=False):
             box.write(raw.messages(batch))

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import (
     ImuBatch,
@@ -69,7 +70,7 @@ def walk(n: int, start_s: float = 0.0, shake_mps2: float = 3.0) -> ImuBatch:
 
 
 def pipeline(tracker=None, rate_hz: float = 5.0) -> TrackerPipeline:
-    identity = UnitIdentity("1.0", "test", "straight", SENSOR)
+    identity = UnitIdentity("1.0", "test", "straight", (FittedSensor(SENSOR),))
     stamper = Stamper("u1", 7, ManualClock())
     return TrackerPipeline(identity, tracker or StraightAhead(), stamper, rate_hz)
 

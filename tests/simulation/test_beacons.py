@@ -7,6 +7,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.simulation.factory import open_simulation
 from edge.simulation.simulation import Simulation
@@ -33,7 +34,7 @@ def simulation() -> Simulation:
 
 @pytest.fixture(scope="module")
 def said(simulation: Simulation) -> Said:
-    identity = UnitIdentity("1", "passes-beacons", "eskf", simulation.description)
+    identity = UnitIdentity("1", "passes-beacons", "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
     unit = TrackerPipeline(identity, tracker, Stamper("FF-01", 7, ManualClock()), 2.0)
     batches = islice(simulation.batches(1.0), LASTS_S)

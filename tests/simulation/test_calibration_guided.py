@@ -12,6 +12,7 @@ from threading import Event, Thread
 import numpy as np
 import pytest
 
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.app.calibration_session import calibrate_guided
 from edge.calibration.file import read_calibration
@@ -94,7 +95,7 @@ def test_a_unit_is_calibrated_over_the_bus_from_the_raw_samples_that_it_sends(tm
     handled = open_source("bench:3")
     stamper = Stamper("FF-01", 7, ManualClock())
     pipeline = TrackerPipeline(
-        UnitIdentity("1", "bench:3", NO_TRACKER, handled.description),
+        UnitIdentity("1", "bench:3", NO_TRACKER, (FittedSensor(handled.description),)),
         NoTracker(),
         stamper,
         5.0,

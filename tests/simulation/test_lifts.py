@@ -13,6 +13,7 @@ from base_station.fusion.interface import BarometricHeight
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.vertical.height import HeightFilter
 from base_station.site.storeys import Storey
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import Floats
 from edge.simulation.factory import open_simulation
@@ -36,7 +37,7 @@ PLAN = (
 def ridden(scenario: str, *, with_plan: bool) -> tuple[list[FusedPosition], Floats]:
     """What is shown at each position of the wearer, and how high that truly is (n,)."""
     simulation = open_simulation(scenario)
-    identity = UnitIdentity("1", scenario, "eskf", simulation.description)
+    identity = UnitIdentity("1", scenario, "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
     stamper = Stamper("FF-01", 7, ManualClock())
     unit = TrackerPipeline(identity, tracker, stamper, 2.0)

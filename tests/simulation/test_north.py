@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import ApproximatePosition, SensorBatch
 from edge.simulation.building import load_building
@@ -31,7 +32,7 @@ def positions_of(simulation: Simulation) -> list[Position]:
     sensor = calibration.described(simulation.description)
     anchor = load_building().anchor
     place = ApproximatePosition(round(anchor.lat_deg, 1), round(anchor.lon_deg, 1))
-    identity = UnitIdentity("1", "simulated", "eskf", sensor, calibration, place)
+    identity = UnitIdentity("1", "simulated", "eskf", (FittedSensor(sensor, calibration),), place)
     stamper = Stamper("u1", 7, ManualClock(NOW_NS))
     pipeline = TrackerPipeline(identity, make_tracker("eskf", sensor), stamper, 5.0)
     messages = [*pipeline.start()]

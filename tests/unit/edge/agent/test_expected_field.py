@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from edge.agent.expected_field import ExpectedField
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.config import EdgeConfig
 from edge.samples import ApproximatePosition, GpsSample, ImuBatch, SensorBatch, SensorDescription
@@ -101,7 +102,9 @@ def test_the_pipeline_tells_the_tracker_before_it_gives_it_the_samples():
         def set_earth_field(self, field: EarthField, t_ns: int) -> None:
             told.append(f"{degrees(field.declination_rad):.0f} from {t_ns / NS_PER_S}")
 
-    identity = UnitIdentity("1", "test", "t", SensorDescription("s", 100.0), place=REYKJAVIK)
+    identity = UnitIdentity(
+        "1", "test", "t", (FittedSensor(SensorDescription("s", 100.0)),), place=REYKJAVIK
+    )
     stamper = Stamper("u1", 7, ManualClock(NOW_NS))
     pipeline = TrackerPipeline(identity, Listening(), stamper, 5.0)
     pipeline.step(samples(3.0))

@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 
 import pytest
 
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.calibration.file import identity
 from edge.calibration.model import Calibration, Gyroscope
@@ -161,7 +162,7 @@ def test_the_tracker_gets_calibrated_samples_and_the_description_says_by_which()
         bias_radps=(0.1, 0.2, 0.3), bias_std_radps=(0.0, 0.0, 0.0), residual_radps=0.01
     )
     calibration = Calibration("u1", "fake", made, gyroscope=gyroscope)
-    identified = UnitIdentity("1.0", "test", "straight", SENSOR, calibration)
+    identified = UnitIdentity("1.0", "test", "straight", (FittedSensor(SENSOR, calibration),))
     pipe = TrackerPipeline(identified, Listening(), Stamper("u1", 7, ManualClock()), 5.0)
     (description,) = of(pipe.start(), UnitDescription)
     assert description.calibration == identity(calibration)

@@ -12,6 +12,7 @@ import pytest
 
 from edge.agent import restore_state
 from edge.agent.command_handler import REMEMBERED, CommandHandler
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.agent.restore_state import answers_before, mayday_before, position_rate_before
 from edge.samples import SensorDescription
@@ -111,7 +112,7 @@ def test_damage_inside_the_journal_keeps_no_unit_from_starting(tmp_path, at_last
 def test_a_mayday_from_before_is_said_again_first_thing():
     sensor = SensorDescription("s", 100.0)
     pipeline = TrackerPipeline(
-        UnitIdentity("", "", "eskf", sensor),
+        UnitIdentity("", "", "eskf", (FittedSensor(sensor),)),
         make_tracker("eskf", sensor),
         Stamper("u1", 1, ManualClock()),
         5.0,

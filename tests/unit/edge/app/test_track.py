@@ -11,7 +11,7 @@ import typer
 from typer.testing import CliRunner
 
 from edge.app.track import COLUMNS, track
-from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.codec import SampleEncoder, unit_sensor
 from edge.samples import AmbientSample, SensorBatch, SensorDescription
 from edge.storage.black_box.black_box import BlackBox
 from shared.clock import ManualClock
@@ -56,7 +56,9 @@ def invoke(command, *arguments):
 def test_a_box_without_an_inertial_sample_is_said_to_have_none(tmp_path):
     """The sensor was never there, and the thermometer was."""
     raw = SampleEncoder("u1", 7)
-    description = raw.description(0, SensorDescription("s", 100.0), source="", tracker="")
+    description = raw.description(
+        0, (unit_sensor("", SensorDescription("s", 100.0)),), source="", tracker=""
+    )
     box = BlackBox(tmp_path / "box", description, 10**9, ManualClock())
     box.write(raw.messages(SensorBatch(walk(strides=1).imu.part(slice(0)), (AMBIENT,))))
     box.close()

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.calibration.correction import Correction
 from edge.calibration.model import Accelerometer, Calibration, Gyroscope, Warmth
@@ -144,7 +145,9 @@ def test_a_unit_s_tracker_is_given_samples_of_which_the_temperature_has_been_hel
             return super().push(batch)
 
     pushed: list[Floats] = []
-    identity = UnitIdentity("1.0", "test", "straight", SENSOR, warm_calibration(20.0))
+    identity = UnitIdentity(
+        "1.0", "test", "straight", (FittedSensor(SENSOR, warm_calibration(20.0)),)
+    )
     pipe = TrackerPipeline(identity, Noting(), Stamper("u1", 7, ManualClock()), 5.0)
     for degc in (25.0, np.nan):
         pipe.step(SensorBatch(replace(walk(1), imu_temperature_degc=np.array([degc]))))

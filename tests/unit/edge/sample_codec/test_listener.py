@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from threading import Event
 
+import msgspec
 import numpy as np
 import pytest
 
-from edge.sample_codec.codec import SampleEncoder
+from edge.sample_codec.codec import SampleEncoder, unit_sensor
 from edge.sample_codec.listener import RawStreamListener
 from edge.samples import SensorDescription
 from edge.sources.bus import BusSource
@@ -60,7 +61,8 @@ class Unit:
         self._bus.publish(IMU.key(U), payload, Qos.LIVE)
 
     def describes(self, boot_id: int = 7, tracker: str = NO_TRACKER) -> None:
-        said = SampleEncoder(U, boot_id).description(0, SENSOR, source="", tracker=tracker)
+        sent = (unit_sensor("", SENSOR),)
+        said = SampleEncoder(U, boot_id).description(0, sent, source="", tracker=tracker)
         self._bus.publish(DESCRIPTION.key(U), encode(said), Qos.LIVE)
 
     def publishes_description(self, payload: bytes) -> None:
@@ -127,7 +129,7 @@ def test_a_run_begins_when_its_sensor_is_known(unit: Unit) -> None:
     unit.describes(boot_id=8)
     assert unit.listener.next_boot(OneLook()) is None, "the sensor of another run"
     unit.describes()
-    assert unit.listener.next_boot(Event()) == (7, SENSOR)
+    assert unit.listener.next_boot(Event()) == (7, {"": SENSOR})
     assert unit.taken() == [1], "waiting took nothing"
 
 
@@ -148,7 +150,7 @@ def test_what_nobody_understands_costs_nothing_else(unit: Unit) -> None:
     unit.publishes_description(b"\xff\xff")
     unit.describes()
     unit.says(raw(1))
-    assert unit.listener.next_boot(Event()) == (7, SENSOR)
+    assert unit.listener.next_boot(Event()) == (7, {"": SENSOR})
     assert unit.listener.not_understood == 2
 
 
@@ -319,3 +321,26 @@ def test_a_source_that_is_closed_gives_nothing_more(unit: Unit) -> None:
 def test_before_the_unit_is_heard_there_is_no_sensor() -> None:
     with pytest.raises(RecordingError, match="`muster edge run` only"):
         _ = BusSource(U).description
+
+
+def test_of_two_sensors_what_was_lost_of_either_is_fetched_once(unit: Unit) -> None:
+    """Two of the left and one of the right were lost; another message of the right came."""
+    names = ["left", "right", "left", "right", "left", "right", "left", "right"]
+    messages = [
+        msgspec.structs.replace(raw(seq, ms=SPAN_MS * (seq // 2)), sensor=name)
+        for seq, name in enumerate(names, start=1)
+    ]
+    lost = [messages[2], messages[3], messages[4]]
+    unit.journal = lambda first, last: [
+        piece(first, last, *(one for one in messages if first <= one.header.seq <= last))
+    ]
+    unit.describes()
+    unit.says(*(one for one in messages if one not in lost))
+    source = unit.followed()
+    batches = source.batches()
+    taken = [next(batches) for _ in messages]
+    assert source.fetched == len(lost)
+    for name in ("left", "right"):
+        times = np.concatenate([one.imu.t_ns for one in taken if one.sensor == name])
+        assert len(times) == 40
+        assert len(set(times.tolist())) == 40

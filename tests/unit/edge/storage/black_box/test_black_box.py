@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
-from edge.sample_codec.codec import SampleEncoder, batch_of, sensor_of
+from edge.sample_codec.codec import SampleEncoder, batch_of, sensors_of, unit_sensor
 from edge.samples import ButtonPress, ImuBatch, SensorBatch
 from edge.sources.black_box import BlackBoxSource
 from edge.sources.interface import Source
@@ -59,10 +60,12 @@ def spoiled(source: Source) -> list[SensorBatch]:
 
 def messages_of(source: Source, raw: SampleEncoder, batches: list[SensorBatch]) -> list[Message]:
     """What a unit says of these batches."""
-    description = raw.description(0, source.description, source="", tracker="eskf")
-    sensor = sensor_of(description)
+    description = raw.description(
+        0, (unit_sensor("", source.description),), source="", tracker="eskf"
+    )
+    sensor = sensors_of(description)[""]
     pipeline = TrackerPipeline(
-        UnitIdentity("", "", "eskf", sensor),
+        UnitIdentity("", "", "eskf", (FittedSensor(sensor),)),
         make_tracker("eskf", sensor),
         Stamper("u1", 1, ManualClock()),
         5.0,
@@ -78,7 +81,7 @@ def record(folder: Path, clock: ManualClock | None = None) -> tuple[list[Message
     """Record a walk; what the unit said of it, and the folder of its boot."""
     source = open_source(SCENARIO)
     raw = SampleEncoder("u1", 7)
-    description = raw.description(0, source.description, source="", tracker="")
+    description = raw.description(0, (unit_sensor("", source.description),), source="", tracker="")
     box = BlackBox(folder, description, 10**9, clock or ManualClock())
     quantised = []
     for batch in spoiled(source):
@@ -122,7 +125,7 @@ def test_what_came_while_the_sensor_was_gone_is_played_when_it_came(tmp_path):
     """Fixes of a receiver beside it, each by itself: not all at once with the last sample."""
     raw = SampleEncoder("u1", 7)
     source = open_source(SCENARIO)
-    description = raw.description(0, source.description, source="", tracker="")
+    description = raw.description(0, (unit_sensor("", source.description),), source="", tracker="")
     box = BlackBox(tmp_path, description, 10**9, Ticking())
     first, *_, last = itertools.islice(source.batches(), 100)
     first_ns = int(first.imu.t_ns[-1])
@@ -151,7 +154,9 @@ def test_a_torn_black_box_plays_up_to_the_tear(tmp_path):
 
 def boxed(folder: Path, clock: ManualClock, **more: Any) -> tuple[BlackBox, SampleEncoder]:
     raw = SampleEncoder("u1", 7)
-    description = raw.description(0, open_source(SCENARIO).description, source="", tracker="")
+    description = raw.description(
+        0, (unit_sensor("", open_source(SCENARIO).description),), source="", tracker=""
+    )
     return BlackBox(folder, description, 10**9, clock, **more), raw
 
 
@@ -245,7 +250,7 @@ def fill(folder: Path, boot_id: int, clock: ManualClock) -> Path:
     """Record a walk where there is room for one or two; the folder of its boot."""
     source = open_source(SCENARIO)
     raw = SampleEncoder("u1", boot_id)
-    description = raw.description(0, source.description, source="", tracker="")
+    description = raw.description(0, (unit_sensor("", source.description),), source="", tracker="")
     box = BlackBox(folder, description, 60_000, clock)
     for batch in spoiled(source):
         box.write(raw.messages(batch))
