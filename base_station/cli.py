@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from base_station.app.foxglove_cli import foxglove
 from base_station.app.recordings_command import fetch_recording
 from base_station.app.users_cli import users
 from base_station.process import gc_tuning
@@ -28,6 +29,7 @@ log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
 app.add_typer(users, name="users")
 app.add_typer(log, name="log")
+app.add_typer(foxglove, name="foxglove")
 
 ConfigOption = Annotated[
     Path | None, typer.Option(help="TOML file with settings; flags overrule it.")

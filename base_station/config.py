@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +12,7 @@ from base_station.forwarders.tak.config import TakConfig
 from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError
-from shared.host_names import can_be_looked_up
+from shared.host_names import can_be_looked_up, is_loopback
 from shared.log import LogFormat, LogLevel
 
 _ENDPOINT = re.compile(r"(?:tls|tcp)/(\[[^\]\s]+\]|[^\s/:]+):(\d{1,5})(?:[?#]\S*)?")
@@ -111,7 +110,7 @@ class StationConfig:
         }
         if self.http.certificate is None:
             plain[self.http.listen] = host_and_port(self.http.listen)
-        return tuple(one for one, (host, _) in plain.items() if not _is_loopback(host))
+        return tuple(one for one, (host, _) in plain.items() if not is_loopback(host))
 
     def configuration_problems(self) -> tuple[str, ...]:
         """Problems that last as long as these settings, as sentences for the console."""
@@ -152,10 +151,3 @@ def endpoint_address(endpoint: str) -> tuple[str, int]:
 def _check_endpoints(endpoints: tuple[str, ...]) -> None:
     for endpoint in endpoints:
         endpoint_address(endpoint)
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from contextlib import ExitStack
-from functools import partial
 
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
@@ -22,7 +21,6 @@ from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.read_only import ReadOnlyGate
-from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.records import Records
@@ -58,8 +56,7 @@ def run_replay_station(
         announce(f"login for this replay: {username}  password: {password}")
 
         archive = offline_log.archive()
-        recorded_until_ns = partial(_recorded_until_ns, folder)
-        replays = Replays(replay_starter(archive, roster, clock, recorded_until_ns))
+        replays = Replays(replay_starter(archive, roster, clock, folder.recorded_until_ns))
         services = Services(
             accounts=accounts,
             roster=roster,
@@ -86,11 +83,6 @@ def run_replay_station(
             is_known=app.state.known_networks.__contains__,
         )
         asyncio.run(serve_until_stopped(server, announce))
-
-
-def _recorded_until_ns(folder: DataFolder) -> int:
-    """In station time: the station's clock may be another than this machine's, or have stopped."""
-    return max((segment.end_ns for segment in folder.segments()), default=0)
 
 
 def _ignore(_: object) -> None:

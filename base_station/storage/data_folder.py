@@ -54,6 +54,12 @@ class DataFolder:
                 info = dataclasses.replace(info, state=SegmentState.OPEN)
             yield info
 
+    def recorded_until_ns(self) -> int:
+        """Last log time, in station time: the station's clock may be another than this machine's,
+        or have stopped; 0: nothing is recorded.
+        """
+        return max((segment.end_ns for segment in self.segments()), default=0)
+
     def lock(self) -> FolderLock:
         """To change what is in it; DataFolderInUseError while a station works on it."""
         return FolderLock(self.path, "station", "stop it first")

@@ -21,11 +21,13 @@ from shared.mcap_log.recovery import Recovery, recover_log
 from shared.mcap_log.rewriting import remove_torn, rewrite_segment, write_segment_like
 from shared.mcap_log.schemas import (
     PLAN_TOPIC,
+    descriptor_set,
     is_derived,
     location_topic,
     log_topic,
     wire_type_of,
 )
+from shared.mcap_log.tail import LogTail
 from shared.mcap_log.writing import (
     Segment,
     SegmentInfo,
@@ -38,6 +40,7 @@ __all__ = [
     "LEFT_OUT",
     "PLAN_TOPIC",
     "LogRecord",
+    "LogTail",
     "RebuiltSegment",
     "Recovery",
     "Segment",
@@ -46,6 +49,7 @@ __all__ = [
     "SegmentReader",
     "SegmentState",
     "SegmentWriter",
+    "descriptor_set",
     "foreign_in_words",
     "identity_in_log",
     "identity_of",

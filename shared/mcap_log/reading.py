@@ -220,12 +220,15 @@ def read_log(
     end_ns: int | None = None,
     keys: Container[str] | None = None,
     on_damage: Callable[[str], object] = lambda _: None,
+    *,
+    derived: bool = False,
 ) -> Iterator[LogRecord]:
     """The records of a folder of segments in the order of writing: ``(t_ns, key, payload)``.
 
     From ``start_ns`` until before ``end_ns``; log times must not go back from one segment to the
     next.  Files that are no segments of this log are left out.  ``on_damage`` hears in words of
-    each part that could not be read.  Raises LogError when a segment is taken away meanwhile.
+    each part that could not be read; ``derived``: topics made for Foxglove are given, too.  Raises
+    LogError when a segment is taken away meanwhile.
     """
     foreign: dict[Path, str] = {}
     following = dict(candidates(folder, foreign))
@@ -234,7 +237,7 @@ def read_log(
             foreign[path] = reason
             continue
         with SegmentReader(path) as segment:
-            yield from segment.records(start_ns, end_ns, keys)
+            yield from segment.records(start_ns, end_ns, keys, derived=derived)
             for note in segment.damage:
                 on_damage(note)
     for path, reason in foreign.items():

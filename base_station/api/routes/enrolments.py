@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import datetime, timedelta
@@ -22,6 +21,7 @@ from shared.channels import validate_unit_id
 from shared.clock import NS_PER_S
 from shared.enrolment import Holder
 from shared.errors import ConfigError, UserError
+from shared.host_names import is_loopback
 from shared.tls import parse_certificate
 
 router = APIRouter(tags=["enrolments"])
@@ -69,7 +69,7 @@ def list_enrolments(station: Station, _: Administrator) -> list[EnrolledUnit]:
 
 def _require_private(request: Request, station: Station, _: Administrator) -> None:
     """Dependency: the answer goes over TLS, or does not leave this machine."""
-    if not station.secure and (request.client is None or not _is_loopback(request.client.host)):
+    if not station.secure and (request.client is None or not is_loopback(request.client.host)):
         raise Problem(403, _NOT_PRIVATE)
 
 
@@ -110,14 +110,6 @@ def _as_refusal() -> Iterator[None]:
         yield
     except ConfigError as error:
         raise UserError(f"{error}.") from error
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        address = ipaddress.ip_address(host)
-    except ValueError:
-        return False
-    return (getattr(address, "ipv4_mapped", None) or address).is_loopback
 
 
 def _ms(at: datetime) -> int:

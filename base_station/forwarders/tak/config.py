@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from urllib.parse import SplitResult, urlsplit
 
 from shared.config import Within
 from shared.errors import ConfigError
-from shared.host_names import can_be_looked_up
+from shared.host_names import can_be_looked_up, is_loopback
 
 Team = Literal[
     "White", "Yellow", "Orange", "Magenta", "Red", "Maroon", "Purple",
@@ -58,7 +57,7 @@ class TakConfig:
             )
         if self.is_encrypted:
             self._require_certificates()
-        elif not (self.plain or _is_loopback(host)):
+        elif not (self.plain or is_loopback(host)):
             raise ConfigError(
                 f"{self.url} would carry names and places without encryption; use tls://, or "
                 "accept it with plain = true"
@@ -88,10 +87,3 @@ def _port(parts: SplitResult) -> int | None:
         return parts.port
     except ValueError:  # no number, or none that a port can have
         return None
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
