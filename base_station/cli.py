@@ -14,6 +14,7 @@ import typer
 
 from base_station.app.foxglove_cli import foxglove
 from base_station.app.recordings_command import fetch_recording
+from base_station.app.unit_tokens_cli import unit_tokens
 from base_station.app.users_cli import users
 from base_station.process import gc_tuning
 from shared.end_signals import sigterm_as_ctrl_c
@@ -28,6 +29,7 @@ app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
 app.add_typer(users, name="users")
+app.add_typer(unit_tokens, name="unit-tokens")
 app.add_typer(log, name="log")
 app.add_typer(foxglove, name="foxglove")
 

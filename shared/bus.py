@@ -27,7 +27,9 @@ class Subscription(Protocol):
 
 
 class Bus(Protocol):
-    def publish(self, key: str, payload: bytes, qos: Qos) -> None: ...
+    def publish(self, key: str, payload: bytes, qos: Qos, *, remote_only: bool = False) -> None:
+        """``remote_only``: this end's own subscriptions are not given it."""
+        ...
 
     def subscribe(self, key_expression: str, handler: SampleHandler) -> Subscription:
         """Key expressions as in Zenoh: ``*`` one chunk, ``**`` any number."""

@@ -84,9 +84,13 @@ class MemoryRouter:
             self._delivering = False
             count += 1
 
-    def route(self, sender: MemoryBus, key: str, payload: bytes) -> None:
+    def route(
+        self, sender: MemoryBus, key: str, payload: bytes, *, remote_only: bool = False
+    ) -> None:
         with self._lock:
             for entry in self._reached_from(sender, EndpointRole.SUBSCRIBER):
+                if remote_only and entry.owner is sender:
+                    continue
                 if intersects(entry.expression, key):
                     self._defer(entry.gate, key, payload)
         self._settle()
@@ -186,11 +190,11 @@ class MemoryBus:
         self._linked = True
         self._router.links_changed()
 
-    def publish(self, key: str, payload: bytes, qos: Qos) -> None:
+    def publish(self, key: str, payload: bytes, qos: Qos, *, remote_only: bool = False) -> None:
         self._require_open()
         if qos is Qos.LOCAL:
             raise BusError(f"{key!r} is the station's own and never travels on the bus")
-        self._router.route(self, require_key(key), bytes(payload))
+        self._router.route(self, require_key(key), bytes(payload), remote_only=remote_only)
 
     def subscribe(self, key_expression: str, handler: SampleHandler) -> Subscription:
         return self._declare(

@@ -63,17 +63,18 @@ class ZenohBus:
             self._session = zenoh.open(config)
         except zenoh.ZError as error:
             raise _in_words(endpoint, error) from error
-        self._publishers: dict[tuple[str, Qos], zenoh.Publisher] = {}
+        self._publishers: dict[tuple[str, Qos, bool], zenoh.Publisher] = {}
         self._watched: dict[str, zenoh.Publisher] = {}
         self._threads: WeakSet[Thread] = WeakSet()
 
-    def publish(self, key: str, payload: bytes, qos: Qos) -> None:
+    def publish(self, key: str, payload: bytes, qos: Qos, *, remote_only: bool = False) -> None:
         self._require_open()
         if qos is Qos.LOCAL:
             raise BusError(f"{key!r} is the station's own and never travels on the bus")
-        publisher = self._publishers.get((key, qos))
+        publisher = self._publishers.get((key, qos, remote_only))
         if publisher is None:
-            publisher = self._publishers[key, qos] = self._publisher(require_key(key), qos)
+            publisher = self._publisher(require_key(key), qos, remote_only=remote_only)
+            self._publishers[key, qos, remote_only] = publisher
         publisher.put(payload)
 
     def subscribe(self, key_expression: str, handler: SampleHandler) -> Subscription:
@@ -167,7 +168,7 @@ class ZenohBus:
             if thread is not current_thread():
                 thread.join(_ENDING_S)
 
-    def _publisher(self, key: str, qos: Qos) -> zenoh.Publisher:
+    def _publisher(self, key: str, qos: Qos, *, remote_only: bool) -> zenoh.Publisher:
         """Kept for as long as the session: what is declared travels as a number instead of its
         key, and the router, which looks for way and rights once, spends less than half on it.
         """
@@ -177,6 +178,7 @@ class ZenohBus:
             congestion_control=zenoh.CongestionControl.DROP,
             priority=zenoh.Priority.REAL_TIME if urgent else zenoh.Priority.DATA,
             express=urgent,
+            allowed_destination=zenoh.Locality.REMOTE if remote_only else zenoh.Locality.ANY,
         )
 
     def _start_thread(self, name: str, target: Callable[[], None]) -> None:

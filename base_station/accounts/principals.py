@@ -47,4 +47,5 @@ class Principal(msgspec.Struct, frozen=True):
     role: Role
     scopes: frozenset[str] = frozenset()  # parts of the API; empty: all that the role may
     token_ends_ns: int | None = None  # None: it does not, or who asks has logged in
+    unit_id: str = ""  # whose samples alone it may post; empty: it is no unit's token
     must_change_password: bool = False  # it was generated; until then nothing else may be done

@@ -126,18 +126,19 @@ Viewer = Annotated[Principal, Depends(_authenticated)]
 
 
 def _commander(principal: Viewer) -> Principal:
-    return _require_role(principal, Role.COMMANDER)
+    return require_role(principal, Role.COMMANDER)
 
 
 def _administrator(principal: Viewer) -> Principal:
-    return _require_role(principal, Role.ADMINISTRATOR)
+    return require_role(principal, Role.ADMINISTRATOR)
 
 
 Commander = Annotated[Principal, Depends(_commander)]
 Administrator = Annotated[Principal, Depends(_administrator)]
 
 
-def _require_role(principal: Principal, role: Role) -> Principal:
+def require_role(principal: Principal, role: Role) -> Principal:
+    """Gives the principal, who has this role or a higher one.  Problem 403."""
     if principal.role < role:
         raise Problem(
             403, f"This needs the role {role.word}; {principal.username} is {principal.role.word}."
@@ -163,6 +164,7 @@ class Scope(StrEnum):
     PINS = "pins"
     RECORDINGS = "recordings"
     REPLAYS = "replays"
+    SAMPLES = "samples"
     SITE = "site"
     STANDBY = "standby"
     TOKENS = "tokens"

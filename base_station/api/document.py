@@ -10,6 +10,7 @@ from fastapi import FastAPI
 from fastapi.routing import APIRoute
 
 from base_station.api.field_descriptions import describe_field, describe_parameter
+from base_station.api.posted_samples import PostedSamples
 from base_station.api.problems import PROBLEM_MEDIA_TYPE, ProblemDocument
 
 _PROBLEMS = (400, 401, 403, 404, 409, 413, 422, 429, 500, 503)
@@ -45,6 +46,11 @@ def _complete(document: dict[str, Any]) -> None:
     for unused in ("HTTPValidationError", "ValidationError"):  # the framework's own problems
         schemas.pop(unused, None)
     schemas[ProblemDocument.__name__] = ProblemDocument.model_json_schema()
+    posted = PostedSamples.model_json_schema(ref_template="#/components/schemas/{model}")
+    schemas |= {
+        **posted.pop("$defs"),
+        PostedSamples.__name__: posted,
+    }  # which its route reads itself
     for name, schema in schemas.items():
         for field, json_schema in schema.get("properties", {}).items():
             _add_description(json_schema, describe_field(name, field))

@@ -70,6 +70,26 @@ FIELDS: Mapping[str, str] = {
     "scopes": "Parts of the API that the token is for; empty: all that its role may.",
     "days": "For how many days the token is good; null: until it is removed.",
     "Token.expires_ms": "When the token ends; null: it does not.",
+    # ---- posted samples
+    "UnitToken.expires_ms": "When the token ends; null: it does not.",
+    "UnitToken.username": "Who made it; it ends when this user is removed.",
+    "accepted": "Batches of this post that were new, and are recorded.",
+    "SamplesReceipt.repeated": "Batches of this post that had been recorded before.",
+    "samples": "Samples in the batches that were new.",
+    "boot_id": "A random number that the node draws at each start of its program; its batches are "
+    "numbered and its samples timed anew with it.",
+    "batches": "One batch or more of this run, in the order of seq.",
+    "SampleBatch.seq": "Number of the batch in this run, from 1; the same number is the same "
+    "batch, however often it is sent.",
+    "t_ns": "Time of each sample in nanoseconds, of a clock of the node that never goes back.",
+    "accel_mps2": "Specific force of each sample in m/s^2, sensor axes x, y, z, gravity included; "
+    "null: missed.",
+    "gyro_radps": "Angular rate of each sample in rad/s, sensor axes x, y, z; null: missed.",
+    "mag_ut": "Magnetic flux density of each sample in microtesla, sensor axes x, y, z; null: the "
+    "node has no magnetometer.",
+    "pressure_pa": "Air pressure of each sample in Pa; null: the node has no barometer.",
+    "imu_temperature_degc": "Temperature inside the sensor at each sample in degrees Celsius; "
+    "null: it is not measured.",
     # ---- enrolments
     "NewEnrolment.days": "For how many days the certificate is valid.",
     "renew": "Whether the unit is enrolled already and gets a new certificate; the old one works "

@@ -17,6 +17,7 @@ from shared.clock import NS_PER_MS
 
 MAX_BYTES = 65_536  # of a form
 MAX_UPLOAD_BYTES = 12_000_000  # a picture or a plan
+MAX_SAMPLES_BYTES = 1_000_000  # of a post of samples
 MAX_TIME_MS = FOREVER_NS // NS_PER_MS
 
 _PRINTABLE = rf"^[^{BARRED}]*$"

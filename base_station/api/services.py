@@ -20,6 +20,7 @@ from base_station.config import AccountabilityConfig
 from base_station.core.idempotency import is_same_request
 from base_station.core.person_references import with_references
 from base_station.engine.ports import ActionResult, OperatorGate
+from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.replay.post_processing import PostProcessor
 from base_station.security.pki.folder import PkiFolder
@@ -56,6 +57,7 @@ class Services:
     recordings: TransferQueue | None = None  # None: a station that only replays
     post_processor: PostProcessor | None = None  # None: a station without a log
     pki: PkiFolder | None = None  # None: a station that enrols nobody
+    intake: SampleIntake | None = None  # None: a station that only replays
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     plans: PlanReader = field(default_factory=PlanReader)  # of the drive that acts
     image_lock: Lock = field(default_factory=Lock)  # decoding takes up to 200 MB: one at a time

@@ -11,6 +11,7 @@ from base_station.api.services import Services
 from base_station.app.factories import replay_process_starter
 from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
+from base_station.engine.sample_intake import SampleIntake
 from base_station.replay.processes.replay_process import ReplayContext
 from base_station.storage.db.base_maps import BaseMaps
 
@@ -35,6 +36,7 @@ def new_services(parts: LiveParts) -> Services:
         post_processor=parts.post_processor,
         plans=parts.plans,
         pki=resources.pki,
+        intake=SampleIntake(parts.gate.deliver, resources.bus, disk.clock),
         accountability=resources.config.accountability,
     )
 

@@ -10,7 +10,7 @@ from base_station.app.resources import Resources
 from base_station.app.restart_control import RestartControl
 from base_station.app.unit_reports import UnitReports
 from base_station.engine.engine import StationEngine
-from base_station.engine.ports import OperatorGate
+from base_station.engine.ports import EngineGate
 from base_station.engine.rate_limiter import SenderRateLimiter
 from base_station.engine.sender_bans import SenderBans
 from base_station.forwarders.running import Forwarders
@@ -35,7 +35,7 @@ class LiveParts:
     forwarders: Forwarders
     reports: UnitReports
     engine: StationEngine
-    gate: OperatorGate  # before the engine
+    gate: EngineGate  # before the engine
     erasures: ErasureQueue
     plans: PlanReader
     replays: ReplayProcesses

@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 
@@ -22,9 +22,10 @@ from base_station.engine.action_queue import ActionQueue
 from base_station.engine.admission import Admission, classify, mark_missing
 from base_station.engine.checkpoint_writer import CheckpointWriter
 from base_station.engine.console_publisher import ConsolePublisher
+from base_station.engine.delivery_queue import DeliveryQueue
 from base_station.engine.health_monitor import HealthMonitor
 from base_station.engine.message_report import message_report
-from base_station.engine.ports import ActionResult, EnginePorts, Record, Trails
+from base_station.engine.ports import ActionResult, DeliveryResult, EnginePorts, Record, Trails
 from base_station.engine.projector import Projector
 from base_station.engine.write_ahead import WriteAhead
 from base_station.unit_sync.log_gap_detector import Lost
@@ -83,7 +84,7 @@ class _Due:
 
 
 class StationEngine:
-    """``OperatorGate`` and ``LiveSource`` of the live station."""
+    """``EngineGate`` and ``LiveSource`` of the live station."""
 
     def __init__(self, pipeline: StationPipeline, ports: EnginePorts) -> None:
         self._pipeline = pipeline
@@ -97,6 +98,7 @@ class StationEngine:
         )
         self._checkpoint_writer = CheckpointWriter(ports.log, ports.checkpoints, self._health)
         self._actions = ActionQueue(pipeline, self._write_ahead, self._stamper)
+        self._deliveries = DeliveryQueue(pipeline, ports.log, ports.clock)
         self._lost: deque[Lost] = deque()
         self._external: deque[tuple[tuple[ExternalMarker, ...], tuple[str, ...]]] = deque(
             maxlen=_EXTERNAL_WAITING
@@ -132,9 +134,20 @@ class StationEngine:
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
         future = self._actions.put(by, action, action_id)
         self._ports.feed.wake()
-        if self._worker.stopping.is_set() and not self._worker.is_alive:
+        if self._has_ended:
             self._actions.refuse_waiting()
         return future
+
+    def deliver(self, messages: Sequence[tuple[str, bytes]]) -> Future[DeliveryResult]:
+        future = self._deliveries.put(messages)
+        self._ports.feed.wake()
+        if self._has_ended:
+            self._deliveries.refuse_waiting()
+        return future
+
+    @property
+    def _has_ended(self) -> bool:
+        return self._worker.stopping.is_set() and not self._worker.is_alive
 
     def save_soon(self) -> None:
         """Write a checkpoint at once: those on the disk are gone."""
@@ -208,6 +221,7 @@ class StationEngine:
         if not follows:  # of half a log nobody can tell what an action does
             self._take_actions()
             self._take_external()
+            self._deliveries.admit_waiting(self._admit)
         self._mark_missing()
         now_ns = clock.monotonic_ns()
         self._advance_time(now_ns, follows=follows)
@@ -250,8 +264,8 @@ class StationEngine:
         if is_due:
             self._update_health()
 
-    def _admit(self, t_ns: int, key: str, payload: bytes) -> None:
-        """Classify a record from the bus, and log and apply it."""
+    def _admit(self, t_ns: int, key: str, payload: bytes) -> Admission:
+        """Classify a unit's message, and log and apply it where it is accepted."""
         event = self._write_ahead.event_of(max(t_ns, self._actions.not_before_ns), key, payload)
         admission = classify(key, event, self._pipeline.state)
         if admission is Admission.ACCEPT:  # nearly always
@@ -266,6 +280,7 @@ class StationEngine:
         elif admission is Admission.RESTART_STORM:
             text = f"More starts of a unit's program are said than can be ({key}): left out"
             self._health.report("bus", text)
+        return admission
 
     def _take_actions(self) -> None:
         for done in self._actions.perform_waiting(lambda: self._checkpoint_writer.is_under_way):
@@ -352,3 +367,4 @@ class StationEngine:
         self._save_checkpoint()
         self._checkpoint_writer.finish()
         self._actions.refuse_waiting()
+        self._deliveries.refuse_waiting()

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import msgspec
 
@@ -18,6 +18,7 @@ from base_station.core import idempotency
 from base_station.core.events import Refused
 from base_station.core.state import StationState
 from base_station.core.state.command import Order
+from base_station.engine.admission import Admission
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.db.known_people import PersonLookup
 from base_station.storage.projection import ProjectionSink
@@ -132,6 +133,26 @@ class OperatorGate(Protocol):
         state; it carries ``StoreError`` where the station is stopping.  With an ``action_id`` of a
         client's (``core.idempotency``) it tells what was done with that client's key, now or
         before.
+        """
+        ...
+
+
+class DeliveryResult(NamedTuple):
+    """What became of messages that were handed to the engine at once, one entry each."""
+
+    admissions: tuple[Admission, ...]
+
+    def count(self, admission: Admission) -> int:
+        return self.admissions.count(admission)
+
+
+class EngineGate(OperatorGate, Protocol):
+    """Entry of operator actions, and of units' messages that wait for an answer."""
+
+    def deliver(self, messages: Sequence[tuple[str, bytes]]) -> Future[DeliveryResult]:
+        """From any thread: keys and payloads of units' messages.  The future is done once those
+        that are new are in the log, on the disk; it carries ``StoreError`` where one of them is
+        not kept, and then all of them may be delivered again.
         """
         ...
 

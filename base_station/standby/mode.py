@@ -13,7 +13,7 @@ from base_station.config import StandbyConfig
 from base_station.core.log_position import LogPosition
 from base_station.core.state import StationState
 from base_station.engine.feed import LiveFeed, LogFeed
-from base_station.engine.ports import Feed, Log, OperatorGate
+from base_station.engine.ports import EngineGate, Feed, Log
 from base_station.engine.station_clock import SteadyClock
 from base_station.security.pki.folder import PkiFolder
 from base_station.standby.branch_merge import BranchMerge, PartServer
@@ -81,7 +81,7 @@ class HaMode(Protocol):
         """What the API knows of it."""
         ...
 
-    def gate_to(self, drive: OperatorGate) -> OperatorGate:
+    def gate_to(self, drive: EngineGate) -> EngineGate:
         """What stands before the drive."""
         ...
 
@@ -101,7 +101,7 @@ class HaMode(Protocol):
         """What the log says, before anything is added to it."""
         ...
 
-    def start(self, gate: OperatorGate, closing: ExitStack) -> None:
+    def start(self, gate: EngineGate, closing: ExitStack) -> None:
         """When the drive runs.  ``closing`` ends it."""
         ...
 
@@ -117,7 +117,7 @@ class Standalone:
         self.feed = parts.live
         self._on_lead = parts.on_lead
 
-    def gate_to(self, drive: OperatorGate) -> OperatorGate:
+    def gate_to(self, drive: EngineGate) -> EngineGate:
         return drive
 
     def may_forget(self) -> bool:
@@ -132,7 +132,7 @@ class Standalone:
     def begin(self, place: tuple[int, int], state: StationState) -> None:
         pass
 
-    def start(self, gate: OperatorGate, closing: ExitStack) -> None:  # noqa: ARG002  # the port's
+    def start(self, gate: EngineGate, closing: ExitStack) -> None:  # noqa: ARG002  # the port's
         self._on_lead()
 
 
@@ -165,7 +165,7 @@ class Paired:
     def ha_status(self) -> HaStatus:
         return self._pair
 
-    def gate_to(self, drive: OperatorGate) -> OperatorGate:
+    def gate_to(self, drive: EngineGate) -> EngineGate:
         return LeaderOnlyGate(drive, self._pair.copy, self._pair.refusal)
 
     def may_forget(self) -> bool:
@@ -180,7 +180,7 @@ class Paired:
     def begin(self, place: tuple[int, int], state: StationState) -> None:
         self.log.begin(LogPosition(*place), state.boot_id, state.take_overs)
 
-    def start(self, gate: OperatorGate, closing: ExitStack) -> None:
+    def start(self, gate: EngineGate, closing: ExitStack) -> None:
         parts, pair, name = self._parts, self._pair, self._config.name
         for server in (
             TableServer(name, parts.bus, parts.tables, parts.pki),

@@ -6,13 +6,14 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
+from functools import partial
 from threading import Lock
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from base_station.core.log_position import START, LogPosition
-from base_station.engine.ports import ActionResult, OperatorGate
+from base_station.engine.ports import ActionResult, DeliveryResult, EngineGate
 from shared.clock import NS_PER_S, Clock
 from shared.errors import StoreError
 from shared.messages.station import Action
@@ -23,12 +24,13 @@ _LOOK_S = 0.02
 _MOST_MARKS = 1000
 _STANDBY_TIMEOUT_NS = 3 * NS_PER_S  # nothing was heard from it
 
+Result = TypeVar("Result")
+
 
 class _Waiting(NamedTuple):
     place: LogPosition
     until_ns: int
-    done: ActionResult
-    confirmed: Future[ActionResult]
+    answer: Callable[[], None]
 
 
 class ReplicaProgress:
@@ -92,13 +94,13 @@ class ReplicaProgress:
         with self._lock:
             return START < self._reported[0] <= self._has
 
-    def confirm(self, done: ActionResult, confirmed: Future[ActionResult]) -> None:
+    def confirm(self, done: Result, confirmed: Future[Result]) -> None:
         """Hand on what was done when the standby has it too, or it takes too long."""
         with self._lock:
             place = self._place()
             until_ns = self._clock.monotonic_ns() + self._confirm_ns
             if self._has < place and self.is_there:
-                self._waiting.append(_Waiting(place, until_ns, done, confirmed))
+                self._waiting.append(_Waiting(place, until_ns, partial(confirmed.set_result, done)))
                 return
         confirmed.set_result(done)
 
@@ -123,10 +125,12 @@ class ReplicaProgress:
 
 
 class LeaderOnlyGate:
-    """An ``OperatorGate``: people act at the station that leads, and at no other."""
+    """An ``EngineGate``: people act at the station that leads, and at no other; what units post is
+    taken there alone.
+    """
 
     def __init__(
-        self, gate: OperatorGate, copy: ReplicaProgress, refusal: Callable[[], str | None]
+        self, gate: EngineGate, copy: ReplicaProgress, refusal: Callable[[], str | None]
     ) -> None:
         """``refusal``: why nothing can be done here, as a sentence; None: it can."""
         self._gate = gate
@@ -134,23 +138,30 @@ class LeaderOnlyGate:
         self._refusal = refusal
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
-        confirmed: Future[ActionResult] = Future()
+        return self._confirmed(lambda: self._gate.submit(by, action, action_id))
+
+    def deliver(self, messages: Sequence[tuple[str, bytes]]) -> Future[DeliveryResult]:
+        return self._confirmed(lambda: self._gate.deliver(messages))
+
+    def _confirmed(self, begin: Callable[[], Future[Result]]) -> Future[Result]:
+        """Result of ``begin`` once the standby has it; it is not called where this one follows."""
+        confirmed: Future[Result] = Future()
         refusal = self._refusal()
         if refusal is not None:
             confirmed.set_exception(StoreError(refusal))
             return confirmed
 
-        def hand_on(done: Future[ActionResult]) -> None:
+        def hand_on(done: Future[Result]) -> None:
             error = done.exception()
             if error is not None:
                 confirmed.set_exception(error)
             else:
                 self._copy.confirm(done.result(), confirmed)
 
-        self._gate.submit(by, action, action_id).add_done_callback(hand_on)
+        begin().add_done_callback(hand_on)
         return confirmed
 
 
 def _confirm(ready: list[_Waiting]) -> None:
     for one in ready:
-        one.confirmed.set_result(one.done)
+        one.answer()

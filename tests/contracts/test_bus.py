@@ -40,6 +40,19 @@ def test_the_station_reaches_a_unit(ends: Ends) -> None:
     assert heard.samples == [("muster/v1/anna/command/send", b"evacuate")]
 
 
+def test_an_end_is_not_given_what_it_publishes_for_others_alone(ends: Ends) -> None:
+    own, at_station = Heard(), Heard()
+    ends.unit.subscribe(KEY, own)
+    ends.station.subscribe(KEY, at_station)
+    publish_until_heard(ends.unit, KEY, at_station)
+    ends.unit.publish(KEY, b"for others", Qos.LIVE, remote_only=True)
+    ends.unit.publish(KEY, b"for all", Qos.LIVE)
+    until(lambda: (KEY, b"for all") in own.samples, "its own")
+    until(partial(at_station.has, 2), "both")
+    assert (KEY, b"for others") not in own.samples
+    assert [payload for _, payload in at_station.samples] == [b"for others", b"for all"]
+
+
 def test_units_do_not_hear_each_other(ends: Ends) -> None:
     ben = ends.fabric.unit()
     at_station, at_ben = Heard(), Heard()

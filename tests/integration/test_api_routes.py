@@ -42,6 +42,9 @@ LEAST: dict[str, dict[str, Role | None]] = {
     "units": {"GET /units": V, "POST /units": C, "PUT /units/{unit_id}": C,
               "PUT /units/{unit_id}/start": C, "PUT /reference-barometer": C},
     "enrolments": {"GET /enrolments": A, "POST /enrolments": A},
+    "samples": {"POST /units/{unit_id}/samples": A, "GET /units/{unit_id}/sample-tokens": A,
+                "POST /units/{unit_id}/sample-tokens": A,
+                "DELETE /units/{unit_id}/sample-tokens/{token_id}": A},
     "assignments": {"GET /assignments": V, "POST /assignments": C,
                     "DELETE /assignments/{unit_id}": C},
     "incidents": {"GET /incidents": V, "POST /incidents": C, "GET /incidents/{incident_id}": V,
@@ -83,8 +86,9 @@ CHANGING = [r for routes in LEAST.values() for r in routes if not r.startswith("
 WITHOUT_CHANGES = {"POST /login", "POST /login/hand-over", "POST /logout", "POST /replays",
                 "POST /replays/{replay_id}", "DELETE /replays/{replay_id}",
                 "POST /standby/take-over"}  # fmt: skip
-# What leaves no entry: it changes nothing but what one looks at oneself.
-LOOKING_ON = {"POST /hand-over", "POST /replays/{replay_id}", "DELETE /replays/{replay_id}"}
+# What leaves no entry: it changes nothing but what one looks at oneself, or is a unit's message.
+LOOKING_ON = {"POST /hand-over", "POST /replays/{replay_id}", "DELETE /replays/{replay_id}",
+              "POST /units/{unit_id}/samples"}  # fmt: skip
 PLAN = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": []}
 Do = Callable[..., Awaitable[Any]]
 
@@ -283,6 +287,7 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     await do("POST /units", unit)
     await do("POST /units", other)
     await do("PUT /units/{unit_id}", {"label": "one"}, **unit)
+    await act_on_samples(do)
     person = (await do("POST /people", {"name": "Ada"}))["person_id"]
     await do("PUT /people/{person_id}", {"name": "Bea"}, person_id=person)
     await do("PUT /people/{person_id}/photo", picture(64), person_id=person)
@@ -313,6 +318,16 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     await do("POST /people/{person_id}/forget", {"name": "Bea"}, person_id=person)
     gone = (await do("POST /people", {"name": "Cy"}))["person_id"]
     await do("DELETE /people/{person_id}", person_id=gone)
+
+
+async def act_on_samples(do: Do) -> None:
+    unit = {"unit_id": "FF-02"}
+    token = await do("POST /units/{unit_id}/sample-tokens", {}, **unit)
+    columns = {"accel_mps2": [[0.0, 0.0, 9.8]] * 2, "gyro_radps": [[0.0, 0.0, 0.0]] * 2}
+    batch = {"seq": 1, "t_ns": [0, 10_000_000], **columns}
+    await do("POST /units/{unit_id}/samples", {"boot_id": 1, "batches": [batch]}, **unit)
+    removing = "DELETE /units/{unit_id}/sample-tokens/{token_id}"
+    await do(removing, token_id=token["token_id"], **unit)
 
 
 async def act_on_the_site(do: Do) -> None:

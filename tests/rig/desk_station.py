@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from functools import cache
 from pathlib import Path
@@ -24,9 +24,11 @@ from base_station.api.replays import ReplayPlayer, Replays
 from base_station.api.services import Services
 from base_station.core import idempotency
 from base_station.core.alarms import ALARMS
-from base_station.core.events import ClosedIncidentChanged, Output, Received, Refused
+from base_station.core.events import ClosedIncidentChanged, Output, Received, Refused, event_of
 from base_station.core.pipeline import StationPipeline
-from base_station.engine.ports import ActionResult, Trails
+from base_station.engine.admission import Admission, classify
+from base_station.engine.ports import ActionResult, DeliveryResult, Trails
+from base_station.engine.sample_intake import SampleIntake
 from base_station.fusion import FUSERS
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.privacy.erasure_service import ClosedLog, ErasureService
@@ -42,6 +44,7 @@ from base_station.storage.projection import Projection
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.station import StationFacts, snapshot
 from base_station.views.wire import Delta, Snapshot
+from shared.bus_memory import MemoryRouter
 from shared.clock import Clock
 from shared.envelope import Stamper
 from shared.errors import UserError
@@ -106,6 +109,18 @@ class DeskDrive:
         done.set_result(before or self._do(by, action, action_id))
         return done
 
+    def deliver(self, messages: Sequence[tuple[str, bytes]]) -> Future[DeliveryResult]:
+        admissions: list[Admission] = []
+        for key, payload in messages:
+            event = event_of(self._clock.utc_ns(), key, payload)
+            admissions.append(classify(key, event, self._pipeline.state))
+            if admissions[-1] is Admission.ACCEPT:
+                assert isinstance(event, Received)
+                self.hear(event.message)
+        done: Future[DeliveryResult] = Future()
+        done.set_result(DeliveryResult(tuple(admissions)))
+        return done
+
     def _do(self, by: str, action: Action, action_id: str) -> ActionResult:
         header = self._stamper.header()
         action_id = action_id or f"action-{header.seq}"
@@ -152,6 +167,7 @@ class DeskStation:
         self.store = Store(database)
         self.projection = SqlProjection(self.store)
         self.hub = Hub()
+        self.router = MemoryRouter()
         roster = Roster(self.store, clock)
         self.drive = DeskDrive(clock, self.projection, roster, self.hub)
         forgetter = ErasureService(
@@ -179,6 +195,7 @@ class DeskStation:
             forgettings=self.forgettings,
             clock=clock,
             secure=False,
+            intake=SampleIntake(self.drive.deliver, self.router.attach_station(), clock),
         )
         self.app = create_app(
             self.services, started=lambda loop: self.hub.connect(loop, self.drive)

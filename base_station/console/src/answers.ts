@@ -326,6 +326,10 @@ export interface NewUnit {
   label?: string;
 }
 
+export interface NewUnitToken {
+  days?: number | null;
+}
+
 export interface NewUser {
   username: string;
   password: string;
@@ -432,6 +436,11 @@ export interface PinView {
   text: string;
 }
 
+export interface PostedSamples {
+  boot_id: number;
+  batches: SampleBatch[];
+}
+
 export interface ProblemDocument {
   type: string;
   title: string;
@@ -511,7 +520,23 @@ export interface Rest {
   resting: boolean;
 }
 
-export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "enrolments" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
+export interface SampleBatch {
+  seq: number;
+  t_ns: number[];
+  accel_mps2: ((number | null)[])[];
+  gyro_radps: ((number | null)[])[];
+  mag_ut?: ((number | null)[])[] | null;
+  pressure_pa?: (number | null)[] | null;
+  imu_temperature_degc?: (number | null)[] | null;
+}
+
+export interface SamplesReceipt {
+  accepted: number;
+  repeated: number;
+  samples: number;
+}
+
+export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "enrolments" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "samples" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
 
 export interface ShownEnrolment {
   unit_id: string;
@@ -656,6 +681,18 @@ export interface UnitStartForm {
 
 export interface UnitTarget {
   unit_id: string;
+}
+
+export interface UnitToken {
+  token_id: string;
+  username: string;
+  created_ms: number;
+  expires_ms: number | null;
+}
+
+export interface UnitTokenSecret {
+  token_id: string;
+  token: string;
 }
 
 export interface UserAnswer {

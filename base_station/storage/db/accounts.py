@@ -12,7 +12,6 @@ station did while the other was off holds at both when they meet, whichever lead
 
 from __future__ import annotations
 
-import hashlib
 import secrets
 from collections.abc import Collection, Sequence
 
@@ -32,6 +31,7 @@ from base_station.storage.db.models import (
 )
 from base_station.storage.db.store import Store
 from base_station.storage.db.tombstones import end
+from base_station.storage.db.unit_tokens import TOKEN_PREFIX, UnitTokens, sha256
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
 
@@ -39,7 +39,6 @@ SESSION_S = 12 * 3600
 HAND_OVER_S = 600  # from being made until the other station leads and the browser has gone there
 GENERATED_NS = -1  # as the time of a password that the program made: any other one is later
 MOST_TOKENS = 100  # of one user: the other station copies all of them
-TOKEN_PREFIX = "muster_"  # noqa: S105  # so that a leaked token can be found
 
 
 class Accounts:
@@ -50,6 +49,7 @@ class Accounts:
         self._clock = clock
         self._passwords = Passwords(hasher)
         self._let_in = PrincipalCache()
+        self.unit_tokens = UnitTokens(store, clock, self._let_in.forget_all)
 
     # ---- users
 
@@ -90,7 +90,8 @@ class Accounts:
             if password is not None:
                 user.password_hash = password_hash
                 user.password_ns = max(now_ns, user.password_ns + 1)
-                for token in session.scalars(select(ApiToken).filter_by(username=username)).all():
+                of_user = select(ApiToken).filter_by(username=username, unit_id="")
+                for token in session.scalars(of_user).all():
                     end(session, token)
 
     def remove_user(self, username: str) -> None:
@@ -156,7 +157,7 @@ class Accounts:
         secret = secrets.token_urlsafe(32)
         session.add(
             LoginSession(
-                token_hash=_sha256(secret),
+                token_hash=sha256(secret),
                 username=username,
                 created_ns=self._clock.utc_ns(),
                 expires_ns=expires_ns,
@@ -168,7 +169,7 @@ class Accounts:
     def log_out(self, secret: str) -> None:
         self._let_in.forget_all()
         with self._store.write() as session:
-            found = session.get(LoginSession, _sha256(secret))
+            found = session.get(LoginSession, sha256(secret))
             if found is not None:
                 end(session, found)
 
@@ -180,7 +181,7 @@ class Accounts:
             found = session.execute(
                 select(User.username, User.role, User.password_ns)
                 .join(LoginSession, self._is_open())
-                .where(LoginSession.token_hash == _sha256(secret))
+                .where(LoginSession.token_hash == sha256(secret))
             ).one_or_none()
         if found is None:
             return None
@@ -210,8 +211,8 @@ class Accounts:
             )
             session.add(
                 LoginTransferTicket(
-                    ticket_hash=_sha256(ticket),
-                    session_hash=_sha256(secret),
+                    ticket_hash=sha256(ticket),
+                    session_hash=sha256(secret),
                     expires_ns=now_ns + HAND_OVER_S * NS_PER_S,
                 )
             )
@@ -227,7 +228,7 @@ class Accounts:
                 .join(LoginSession, LoginSession.token_hash == LoginTransferTicket.session_hash)
                 .join(User, self._is_open())
                 .where(
-                    LoginTransferTicket.ticket_hash == _sha256(ticket),
+                    LoginTransferTicket.ticket_hash == sha256(ticket),
                     LoginTransferTicket.expires_ns > self._clock.utc_ns(),
                 )
             ).one_or_none()
@@ -252,7 +253,7 @@ class Accounts:
         """``(token_id, secret)``; the secret is never to be had again.  What has ended goes."""
         secret, token_id = TOKEN_PREFIX + secrets.token_urlsafe(32), secrets.token_hex(8)
         with self._store.write() as session:
-            mine = ApiToken.username == username
+            mine = _is_own(username)
             session.execute(
                 delete(ApiToken).where(mine, ApiToken.expires_ns <= self._clock.utc_ns())
             )
@@ -263,7 +264,7 @@ class Accounts:
             session.add(
                 ApiToken(
                     token_id=token_id,
-                    token_hash=_sha256(secret),
+                    token_hash=sha256(secret),
                     username=username,
                     name=name,
                     role=role.word,
@@ -278,14 +279,14 @@ class Accounts:
         self._let_in.forget_all()
         with self._store.write() as session:
             token = session.get(ApiToken, token_id)
-            if token is None or token.username != username:
+            if token is None or token.username != username or token.unit_id:
                 return False
             end(session, token)
             return True
 
     def tokens(self, username: str) -> Sequence[ApiToken]:
         with self._store.read() as session:
-            mine = select(ApiToken).where(ApiToken.username == username)
+            mine = select(ApiToken).where(_is_own(username))
             return session.scalars(mine.order_by(ApiToken.created_ns)).all()
 
     def of_token(self, secret: str) -> Principal | None:
@@ -296,7 +297,7 @@ class Accounts:
             found = session.execute(
                 select(ApiToken, User.role)
                 .join(User, User.username == ApiToken.username)
-                .where(ApiToken.token_hash == _sha256(secret))
+                .where(ApiToken.token_hash == sha256(secret))
             ).one_or_none()
         if found is None:
             return None
@@ -305,7 +306,13 @@ class Accounts:
             return None
         # An owner who was demoted takes the tokens along.
         role = min(Role.of(token.role), Role.of(owner_role))
-        return Principal(token.username, role, frozenset(token.scopes.split()), token.expires_ns)
+        scopes = frozenset(token.scopes.split())
+        return Principal(token.username, role, scopes, token.expires_ns, token.unit_id)
+
+
+def _is_own(username: str) -> ColumnElement[bool]:
+    """True for a token of the user's own, not for a unit's that the user made."""
+    return and_(ApiToken.username == username, ApiToken.unit_id == "")
 
 
 def _user(session: Session, username: str) -> User:
@@ -327,7 +334,3 @@ def _keep_an_administrator(session: Session, user: User) -> None:
     )
     if user.role == Role.ADMINISTRATOR.word and administrators == 1:
         raise UserError(f"{user.username!r} is the only administrator; make another one first")
-
-
-def _sha256(secret: str) -> str:
-    return hashlib.sha256(secret.encode()).hexdigest()

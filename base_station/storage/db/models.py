@@ -93,6 +93,7 @@ class ApiToken(Base):
     scopes: Mapped[str] = mapped_column(server_default="")  # words with spaces; empty: all
     created_ns: Mapped[int]
     expires_ns: Mapped[int | None]
+    unit_id: Mapped[str] = mapped_column(server_default="")  # whose samples it posts; empty: none's
 
 
 class Tombstone(Base):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import tracemalloc
+from collections.abc import Sequence
 from concurrent.futures import Future
 
 import pytest
 
 from base_station.core.log_position import LogPosition
-from base_station.engine.ports import ActionResult
+from base_station.engine.admission import Admission
+from base_station.engine.ports import ActionResult, DeliveryResult
 from base_station.standby.sync_ack import LeaderOnlyGate, ReplicaProgress
 from shared.clock import ManualClock
 from shared.errors import StoreError
@@ -16,11 +18,16 @@ from shared.messages.station import Action, CloseIncident
 
 
 class Drive:
-    """An ``OperatorGate`` that does everything at once."""
+    """An ``EngineGate`` that does everything at once."""
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
         done: Future[ActionResult] = Future()
         done.set_result(ActionResult("x", 1, None))
+        return done
+
+    def deliver(self, messages: Sequence[tuple[str, bytes]]) -> Future[DeliveryResult]:
+        done: Future[DeliveryResult] = Future()
+        done.set_result(DeliveryResult((Admission.ACCEPT,) * len(messages)))
         return done
 
 
@@ -144,7 +151,7 @@ class TestConfirming:
         assert copy.is_behind
 
     def test_what_a_station_that_stops_does_not_do_is_said(self, copy: ReplicaProgress) -> None:
-        class Stopping:
+        class Stopping(Drive):
             def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
                 done: Future[ActionResult] = Future()
                 done.set_exception(StoreError("the station is stopping"))
@@ -157,6 +164,15 @@ class TestConfirming:
     def test_nobody_acts_at_a_standby(self, copy: ReplicaProgress) -> None:
         with pytest.raises(StoreError, match="this is the standby"):
             self.act(copy, "this is the standby").result(0.0)
+
+    def test_messages_of_units_wait_for_the_standby_as_actions_do(
+        self, copy: ReplicaProgress
+    ) -> None:
+        copy.note(LogPosition(4, 1))
+        told = LeaderOnlyGate(Drive(), copy, lambda: None).deliver([("key", b"samples")])
+        assert not told.done()
+        copy.note(LogPosition(5, 1))
+        assert told.result(0.0).count(Admission.ACCEPT) == 1
 
     def test_units_may_forget_only_what_both_have(self, copy: ReplicaProgress) -> None:
         copy.note_report_received()  # of what stands up to 5
