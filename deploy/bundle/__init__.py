@@ -1,0 +1,1 @@
+"""Bundle: Muster with all that it needs, as one file for machines without a network."""
