@@ -15,6 +15,7 @@ from shared.errors import ConfigError
 from shared.host_names import can_be_looked_up, is_loopback
 from shared.log import LogFormat, LogLevel
 
+_LOCAL_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9-]{0,61}[A-Za-z0-9])?")
 _ENDPOINT = re.compile(r"(?:tls|tcp)/(\[[^\]\s]+\]|[^\s/:]+):(\d{1,5})(?:[?#]\S*)?")
 
 
@@ -45,9 +46,20 @@ class HttpConfig:
     listen: str = "127.0.0.1:8080"
     certificate: Path | None = None  # PEM; with it and the key the console is served over TLS
     private_key: Path | None = None
+    local_name: str = ""  # browsers find the console at NAME.local, by multicast DNS; empty: not
 
     def __post_init__(self) -> None:
-        host_and_port(self.listen)
+        host, _ = host_and_port(self.listen)
+        if self.local_name and _LOCAL_NAME.fullmatch(self.local_name) is None:
+            raise ConfigError(
+                f"local_name {self.local_name!r} cannot be used: take letters, digits and '-', "
+                'such as "muster" for muster.local'
+            )
+        if self.local_name and is_loopback(host):
+            raise ConfigError(
+                f"with listen = {self.listen!r} no other machine reaches {self.local_name}.local; "
+                "listen on 0.0.0.0, or leave local_name out"
+            )
         if (self.certificate is None) != (self.private_key is None):
             raise ConfigError("certificate and private_key belong together: give both or neither")
 

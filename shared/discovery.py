@@ -1,4 +1,5 @@
-"""Finding a station by multicast DNS service discovery (RFC 6762 and 6763), as ``_muster._tcp``.
+"""Finding a station by multicast DNS service discovery (RFC 6762 and 6763), as ``_muster._tcp``,
+and its console by a name such as ``muster.local``.
 
 An announcement proves nothing: whoever is on the network can make any.  It only says where it may
 be worth to connect, and the station's certificate proves all the rest, as at any address.
@@ -20,7 +21,10 @@ from shared.errors import BusError
 
 SERVICE = "_muster._tcp.local."
 VERSION = "1"
+_CONSOLE_SERVICE = "_https._tcp.local."
+_PLAIN_CONSOLE_SERVICE = "_http._tcp.local."
 _RESOLVE_MS = 1000
+_NAME_ASKED_MS = 3000  # an answer that was sent to somebody else is not repeated for a second
 _LINGER_S = 0.5  # for further stations, once there is one
 _MOST_LABEL = 50  # a label of DNS has 63 bytes
 _MOST_NAMES = 32  # a machine that makes up more is not listened to
@@ -43,18 +47,36 @@ class Announcement:
         return tuple(f"tls/{host}:{self.port}" for host in hosts)
 
 
-class Announcer:
-    """Announces a station until it is closed."""
+@dataclass(frozen=True, slots=True)
+class ConsoleAnnouncement:
+    """Name on the network under which browsers find the console of a station."""
 
-    def __init__(self, announcement: Announcement, interfaces: Sequence[str] = ()) -> None:
+    host: str  # without .local
+    port: int
+    is_secure: bool  # served over TLS
+    addresses: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        return f"{self.host}.local"
+
+
+class Announcer:
+    """Announces a station, or its console, until it is closed."""
+
+    def __init__(
+        self,
+        announcement: Announcement | ConsoleAnnouncement,
+        interfaces: Sequence[str] = (),
+    ) -> None:
         """``interfaces``: by their addresses; none: all.  Takes two seconds, in which others may
-        object to the name.  Raises BusError.
+        object to the name.  Raises BusError, also where another machine has the console's name.
         """
         with ExitStack() as cleanup:
             try:
                 link = _open(interfaces)
                 cleanup.callback(link.close)
-                link.register_service(_service_of(announcement))
+                link.register_service(_service_of(announcement, link))
             except (OSError, zeroconf.Error) as error:
                 raise BusError(f"the station cannot be announced: {_reason(error)}") from error
             self._cleanup = cleanup.pop_all()
@@ -104,7 +126,38 @@ def _open(interfaces: Sequence[str]) -> zeroconf.Zeroconf:
     return zeroconf.Zeroconf(interfaces=list(interfaces) or zeroconf.InterfaceChoice.All)
 
 
-def _service_of(announcement: Announcement) -> zeroconf.ServiceInfo:
+def _service_of(
+    announcement: Announcement | ConsoleAnnouncement, link: zeroconf.Zeroconf
+) -> zeroconf.ServiceInfo:
+    if isinstance(announcement, ConsoleAnnouncement):
+        return _console_of(announcement, link)
+    return _station_of(announcement)
+
+
+def _console_of(announcement: ConsoleAnnouncement, link: zeroconf.Zeroconf) -> zeroconf.ServiceInfo:
+    """Raises BusError where another machine has the name: nobody objects to a host's name, as to a
+    service's, and browsers would reach now the one and now the other.
+    """
+    server = f"{announcement.name}."
+    holder = zeroconf.AddressResolver(server)  # type: ignore[attr-defined]  # left out of __all__
+    if holder.request(link, _NAME_ASKED_MS):
+        others = set(holder.parsed_addresses()) - set(announcement.addresses)
+        if others:
+            raise BusError(
+                f"another machine on the network is {announcement.name} already "
+                f"({', '.join(sorted(others))}); set another local_name"
+            )
+    service = _CONSOLE_SERVICE if announcement.is_secure else _PLAIN_CONSOLE_SERVICE
+    return zeroconf.ServiceInfo(
+        service,
+        f"Muster {announcement.host}.{service}",
+        port=announcement.port,
+        server=server,
+        parsed_addresses=list(announcement.addresses),
+    )
+
+
+def _station_of(announcement: Announcement) -> zeroconf.ServiceInfo:
     # Two that begin at once do not notice that they have one name, and are then found as one.
     token = secrets.token_hex(4)
     label = f"{announcement.name.replace('.', '-')[:_MOST_LABEL]}-{token}"

@@ -29,8 +29,9 @@ def health_facts(
 ) -> StationFacts:
     """``missing``: numbers of messages that no journal has any more."""
     certificates = resources.expiry, resources.console_expiry, resources.renewal
-    machine = resources.exposed, resources.router, resources.presence
-    parts: tuple[ReportsProblems, ...] = (clock, *certificates, *machine, side, *others)
+    machine = resources.exposed, resources.router
+    network = resources.presence, resources.console_presence
+    parts: tuple[ReportsProblems, ...] = (clock, *certificates, *machine, *network, side, *others)
     problems = [
         *resources.config.configuration_problems(),
         *(problem for part in parts for problem in part.problems()),

@@ -44,6 +44,7 @@ class Housekeeping:
         parts.restarts.restart_if_stale()
         self._requests.look()
         resources.presence.update()
+        resources.console_presence.update()
         parts.replays.end_idle()
         if resources.renewal.is_due(in_incident=parts.live.is_in_incident()):
             parts.announce("the renewed certificate is taken up")

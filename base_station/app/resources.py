@@ -9,6 +9,7 @@ from subprocess import Popen
 
 from base_station.api.hub import Hub
 from base_station.api.server import bind
+from base_station.app.console_presence import ConsolePresence
 from base_station.app.exposed_secrets import ExposedSecrets
 from base_station.app.factories import Announce
 from base_station.app.station_presence import StationPresence
@@ -50,6 +51,7 @@ class Resources:
     recordings: TransferQueue
     exposed: ExposedSecrets
     presence: StationPresence
+    console_presence: ConsolePresence
 
 
 def open_station(
@@ -101,4 +103,5 @@ def open_station(
         recordings=recordings,
         exposed=exposed,
         presence=closing.enter_context(StationPresence(pki, config)),
+        console_presence=closing.enter_context(ConsolePresence(config.http)),
     )

@@ -6,12 +6,12 @@ that the certificate stands for are announced; where it stands for none, the hea
 
 from __future__ import annotations
 
-import ipaddress
 import logging
 import socket
 from collections.abc import Callable, Iterable
 from types import TracebackType
 
+from base_station.app.listening_addresses import interfaces_of, reachable_addresses
 from base_station.config import StationConfig, endpoint_address
 from base_station.security.pki.certificates import is_valid_for_host
 from base_station.security.pki.folder import PkiFolder
@@ -98,29 +98,13 @@ class StationPresence:
     def _listening_hosts(self) -> tuple[str, ...]:
         """Addresses at which the bus takes connections on the port that is announced."""
         given = [endpoint_address(one) for one in self._endpoints]
-        hosts = [host for host, port in given if port == self._port]
-        if any(_is_wildcard(host) for host in hosts):
-            return tuple(one for one in self._own() if _is_address(one))
-        return tuple(one for one in hosts if _is_address(one))
+        return reachable_addresses([host for host, port in given if port == self._port], self._own)
 
     def _interfaces(self) -> tuple[str, ...]:
         """Those that the bus listens on; none: all."""
-        hosts = [endpoint_address(one)[0] for one in self._endpoints]
-        return () if any(not _is_address(h) or _is_wildcard(h) for h in hosts) else tuple(hosts)
+        return interfaces_of([endpoint_address(one)[0] for one in self._endpoints])
 
     def _withdraw(self) -> None:
         announcer, self._announcer, self._announced = self._announcer, None, None
         if announcer is not None:
             announcer.close()
-
-
-def _is_address(host: str) -> bool:
-    try:
-        ipaddress.ip_address(host)
-    except ValueError:
-        return False
-    return True
-
-
-def _is_wildcard(host: str) -> bool:
-    return _is_address(host) and ipaddress.ip_address(host).is_unspecified

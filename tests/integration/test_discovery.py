@@ -8,11 +8,13 @@ from __future__ import annotations
 import dataclasses
 import errno
 import logging
+import secrets
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
 from pathlib import Path
 
 import pytest
+import zeroconf
 
 from base_station.app.station_presence import StationPresence
 from base_station.config import BusConfig, StationConfig
@@ -22,7 +24,7 @@ from edge.app.zenoh_station import ZenohStation
 from edge.identity import UnitConnection
 from shared.bus import Bus
 from shared.channels import POSITION
-from shared.discovery import Announcement, Announcer, find_announcements
+from shared.discovery import Announcement, Announcer, ConsoleAnnouncement, find_announcements
 from shared.enrolment import Enrolment
 from shared.errors import BusError
 from shared.tls import fingerprint
@@ -209,3 +211,19 @@ def test_a_station_and_a_unit_as_they_are_run(tmp_path: Path, port: int) -> None
         until(lambda: browser.call("GET", "/health")["messages"] > 0, "it is heard")
         assert agent.stop() == 0
         assert station.stop() == 0
+
+
+def test_a_browser_finds_the_console_by_its_name_and_another_machine_does_not_take_it(
+    stack: ExitStack,
+) -> None:
+    name = f"muster-{secrets.token_hex(4)}"  # other tests announce here too
+    console = ConsoleAnnouncement(name, 8443, True, LOOPBACK)
+    stack.enter_context(closing(Announcer(console, LOOPBACK)))
+    link = stack.enter_context(closing(zeroconf.Zeroconf(interfaces=list(LOOPBACK))))
+    service = f"Muster {name}._https._tcp.local."
+    found = link.get_service_info("_https._tcp.local.", service, timeout=10_000)
+    assert found is not None
+    assert (found.server, found.port) == (f"{name}.local.", 8443)
+    assert found.parsed_addresses() == list(LOOPBACK)
+    with pytest.raises(BusError, match="another machine"):
+        Announcer(dataclasses.replace(console, addresses=("192.0.2.9",)), LOOPBACK)

@@ -1,0 +1,33 @@
+"""Addresses at which others reach what listens on this machine."""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Callable, Iterable, Sequence
+
+
+def reachable_addresses(hosts: Sequence[str], own: Callable[[], Iterable[str]]) -> tuple[str, ...]:
+    """Addresses that ``hosts``, which are listened on, stand for; names among them are left out.
+
+    ``own``: gives the names and addresses of this machine, which a wildcard stands for.
+    """
+    given = own() if any(_is_wildcard(host) for host in hosts) else hosts
+    return tuple(one for one in given if _is_address(one))
+
+
+def interfaces_of(hosts: Sequence[str]) -> tuple[str, ...]:
+    """Addresses of the interfaces that are listened on; none: all, or not known."""
+    is_any = any(not _is_address(host) or _is_wildcard(host) for host in hosts)
+    return () if is_any else tuple(hosts)
+
+
+def _is_address(host: str) -> bool:
+    try:
+        ipaddress.ip_address(host)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_wildcard(host: str) -> bool:
+    return _is_address(host) and ipaddress.ip_address(host).is_unspecified

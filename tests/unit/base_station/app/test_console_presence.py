@@ -1,0 +1,119 @@
+"""The console's name on its network: announced where others reach it, and what prevents that."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from base_station.app import console_presence
+from base_station.app.console_presence import ConsolePresence
+from base_station.config import HttpConfig
+from base_station.security.pki.folder import PkiFolder
+from shared.discovery import ConsoleAnnouncement
+from shared.errors import BusError, ConfigError
+
+Presence = Callable[..., ConsolePresence]
+
+
+class Announced:
+    """Announcers in the place of those that send."""
+
+    def __init__(self) -> None:
+        self.now: list[tuple[ConsoleAnnouncement, tuple[str, ...]]] = []
+        self.fault: BusError | None = None
+
+    def begin(self, announcement: ConsoleAnnouncement, interfaces: tuple[str, ...]) -> Announced:
+        if self.fault is not None:
+            raise self.fault
+        self.now.append((announcement, interfaces))
+        return self
+
+    def close(self) -> None:
+        self.now.pop()
+
+
+@pytest.fixture
+def announced(monkeypatch: pytest.MonkeyPatch) -> Announced:
+    announced = Announced()
+    monkeypatch.setattr(console_presence, "Announcer", announced.begin)
+    return announced
+
+
+@pytest.fixture
+def own() -> list[str]:
+    """Names and addresses of this machine."""
+    return ["192.0.2.7", "box"]
+
+
+@pytest.fixture
+def presence(own: list[str], announced: Announced) -> Iterator[Presence]:
+    with ExitStack() as stack:
+
+        def begin(config: HttpConfig) -> ConsolePresence:
+            return stack.enter_context(ConsolePresence(config, lambda: own))
+
+        yield begin
+
+
+def test_nothing_is_announced_unless_it_is_asked_for(
+    presence: Presence, announced: Announced
+) -> None:
+    console = presence(HttpConfig("0.0.0.0:8443"))
+    console.update()
+    assert announced.now == []
+    assert console.problems() == ()
+
+
+def test_the_addresses_of_the_machine_are_announced_as_they_change(
+    presence: Presence, announced: Announced, own: list[str]
+) -> None:
+    console = presence(HttpConfig("0.0.0.0:8443", local_name="muster"))
+    console.update()
+    console.update()
+    ((announcement, interfaces),) = announced.now
+    assert announcement == ConsoleAnnouncement("muster", 8443, False, ("192.0.2.7",))
+    assert (announcement.name, interfaces) == ("muster.local", ())
+    own[0] = "198.51.100.1"
+    console.update()
+    ((announcement, _),) = announced.now
+    assert announcement.addresses == ("198.51.100.1",)
+
+
+def test_a_name_that_another_machine_has_is_a_problem_until_it_is_free(
+    presence: Presence, announced: Announced
+) -> None:
+    console = presence(HttpConfig("192.0.2.7:8443", local_name="muster"))
+    announced.fault = BusError("another machine on the network is muster.local already")
+    console.update()
+    (problem,) = console.problems()
+    assert "another machine" in problem
+    announced.fault = None
+    console.update()
+    assert announced.now[0][1] == ("192.0.2.7",)
+    assert console.problems() == ()
+
+
+@pytest.mark.parametrize("hosts", [["192.0.2.7"], ["192.0.2.7", "muster.local"]])
+def test_a_certificate_that_does_not_stand_for_the_name_is_a_problem(
+    presence: Presence, tmp_path: Path, hosts: list[str]
+) -> None:
+    PkiFolder(tmp_path).create("Test", hosts, ["tls/192.0.2.7:7447"])
+    (certificate,) = tmp_path.rglob("station.pem")
+    config = HttpConfig("0.0.0.0:8443", certificate, certificate, local_name="muster")
+    problems = presence(config).problems()
+    assert len(problems) == ("muster.local" not in hosts)
+    assert all("renew-station --host muster.local" in problem for problem in problems)
+
+
+@pytest.mark.parametrize("name", ["muster.local", "-a", "a b", "a" * 64, "ä"])
+def test_what_is_no_name_of_a_host_is_refused(name: str) -> None:
+    with pytest.raises(ConfigError, match="cannot be used"):
+        HttpConfig("0.0.0.0:8443", local_name=name)
+
+
+def test_a_console_of_this_machine_alone_has_no_name_on_the_network() -> None:
+    with pytest.raises(ConfigError, match="no other machine reaches"):
+        HttpConfig("127.0.0.1:8080", local_name="muster")
