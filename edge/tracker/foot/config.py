@@ -29,6 +29,7 @@ class StanceDetectionConfig(NamedTuple):
     half_window_s: float = 0.03
     rate_weight_m2ps2: float = 40.0  # weight of (rad/s)^2 against (m/s^2)^2
     rest_motion_m2ps4: float = 0.05  # below it the norm of the specific force is learned
+    rest_rate_radps: float = 0.1  # a mean rate above any gyroscope's bias is no rest
     rest_off_mps2: float = 1.2  # further off is no rest
     rest_weight: float = 0.03  # of one sample
     steady_motion_m2ps4: float = 0.05  # beyond the mean rate; below it that is the gyroscope's bias
@@ -54,6 +55,7 @@ class StanceAcceptanceConfig(NamedTuple):
     rest_ahead_s: float = 0.15  # ... for so long
     rest_level_mps: float = 0.2  # along the floor; faster
     rest_moving_ahead_s: float = 0.3  # ... for so long
+    lasting_rest_s: float = 0.7  # as still as a stance; no foot in the air is for so long
     sinking_gate: float = 3.0  # deviations of the vertical velocity
     sinking_level_mps: float = 0.3  # a filter that is wrong is wrong along the floor as well
     sinking_mps: float = 0.02  # deviation after a swing: the give of a shoe
@@ -84,6 +86,16 @@ class StanceConsistencyConfig(NamedTuple):
     single_nis: float = 11.3  # ... one in a hundred: less adds nothing to a series
     memory: float = 0.7  # of the stance before
     height_m: float = 0.75  # a deviation with which 95 % lie within half a storey of 3 m
+
+
+class StanceRevisionConfig(NamedTuple):
+    """A brief stance that the next one contradicts (``zupt/stance_revision.py``)."""
+
+    evidence: float = 7.8  # chi-square with three degrees of freedom: one in twenty
+    memory: float = 0.5  # of the evidence before
+    together_nis: float = 11.3  # chi-square with three degrees of freedom: one in a hundred
+    longest_stance_s: float = 0.3  # no instant of a swing is as still for longer
+    least_doubt: float = 0.1  # of the way that is taken back
 
 
 class FloorConfig(NamedTuple):
@@ -285,6 +297,7 @@ class EskfConfig(NamedTuple):
     acceptance: StanceAcceptanceConfig = StanceAcceptanceConfig()
     zupt: ZuptConfig = ZuptConfig()
     consistency: StanceConsistencyConfig = StanceConsistencyConfig()
+    revision: StanceRevisionConfig = StanceRevisionConfig()
     floor: FloorConfig = FloorConfig()
     aiding: AidingConfig = AidingConfig()
     field: MagneticFieldConfig = MagneticFieldConfig()

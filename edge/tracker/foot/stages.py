@@ -45,9 +45,19 @@ from edge.tracker.foot.preprocessing.unstamped_loss import unstamped_loss_s
 from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress, Step, Trail
 from edge.tracker.foot.zupt.level_walking import apply_level_constraint
-from edge.tracker.foot.zupt.stance_acceptance import is_accepted, note_stillness, remember_stance
+from edge.tracker.foot.zupt.stance_acceptance import (
+    is_accepted,
+    note_restlessness,
+    note_stillness,
+    remember_stance,
+)
 from edge.tracker.foot.zupt.stance_consistency import begin_stance, inflate_for_misfit
 from edge.tracker.foot.zupt.stance_detection import stance_threshold, steady_rate, unrest
+from edge.tracker.foot.zupt.stance_revision import (
+    note_correction,
+    propagate_correction,
+    weigh_stance,
+)
 from edge.tracker.foot.zupt.zupt import apply_zupt, is_gliding
 from edge.tracker.foot.zupt.zupt_residuals import on_footfall, on_lift_off, strike_share
 
@@ -77,22 +87,22 @@ def filter_sample(
     motion = ring[slot].motion_m2ps4
     still = good and motion <= stance_threshold(ring, state, slot, config)
     still = still and not is_gliding(ring, state, slot, config)
+    note_restlessness(ring, progress, slot, config)
     if still and not progress.in_stance:
         still = is_accepted(ring, progress, state, k, config)
     if still:
         ring[slot].unrest_m2ps4 = unrest(ring, progress, state, k, config)
         update_from_rest(state, config)
         if not progress.in_stance:
-            on_footfall(ring, step, state, slot, config)
             begin_stance(ring, step, progress, state, slot, config)
+            weigh_stance(progress, state, ring[slot].t_s, config)
+            on_footfall(ring, step, state, slot, config)
         note_stillness(progress, motion)
         apply_zupt(ring, step, state, slot, config)
+        note_correction(state, ring[slot].t_s, config)
         inflate_for_misfit(progress, state, ring[slot].t_s, config)
         add_hidden_turn(state, config)
-        state.swing_rad = 0.0
-        state.faultless_var_m2ps2 = 0.0
-        state.swing_speed_mps = 0.0
-        state.swing_level_speed_mps = 0.0
+        _end_swing(state)
         if motion <= ring[slot].stride_minimum_m2ps4 and not state.barometer.riding:
             apply_level_constraint(ring, step, progress, state, slot, config)
     elif progress.in_stance:
@@ -171,6 +181,7 @@ def _predict(
         integrate(state, dt_s, config)
     propagate(state, dt_s)
     propagate_clone(state, dt_s)
+    propagate_correction(state, dt_s)
     rotate_state(state, propagate_scale_errors(state, dt_s, config))
     accumulate_heading_bias(state, dt_s, config)
     propagate_hidden_turn(state, dt_s)
@@ -240,6 +251,14 @@ def _inflate_axis(state: FilterState, errors: int, axis: int, variance: float) -
             state.covariance[errors + i, errors + j] += (
                 rotation[i, axis] * rotation[j, axis] * variance
             )
+
+
+@njit()
+def _end_swing(state: FilterState) -> None:
+    state.swing_rad = 0.0
+    state.faultless_var_m2ps2 = 0.0
+    state.swing_speed_mps = 0.0
+    state.swing_level_speed_mps = 0.0
 
 
 @njit()

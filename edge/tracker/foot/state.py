@@ -149,6 +149,25 @@ CLONE = np.dtype(
     align=True,
 )
 
+# The hypothesis that the last stance was none; see stance_revision.
+RIVAL = np.dtype(
+    [
+        ("alive", np.bool_),
+        ("began_s", np.float64),  # that stance
+        ("off_n_mps", np.float64, 3),  # velocity that its first sample has taken away
+        ("variance_m2ps2", np.float64, 3),  # ... of that, had it been one
+        ("error", np.float64, SIZE),  # by which it has corrected the state, carried on
+        ("recent_evidence", np.float64),  # of the last decision against one, the older the less
+        # What to restore if it was none: that of the filter before it, and what it has widened.
+        ("recent_nis", np.float64),
+        ("mean_zupt_residual", np.float64),
+        ("mean_strike_residual", np.float64),
+        ("mean_scale_residual", np.float64),
+        ("misfit_n_m", np.float64, 3),
+    ],
+    align=True,
+)
+
 FILTER = np.dtype(
     [
         ("position_n_m", np.float64, 3),
@@ -207,6 +226,7 @@ FILTER = np.dtype(
         ("stance_after_s", np.float64),  # since the stance before
         ("stance_scale_error_mps", np.float64),  # by which the gains may have put that off
         ("misfit_n_m", np.float64, 3),  # distance that inconsistent stances have left uncertain
+        ("rival", RIVAL),  # see stance_revision
         ("noise_m2", np.float64),  # of both horizontal axes at the last lift-off
         ("ordinary_m2", np.float64),  # ... by strides without a fault
         ("noise_rad2", np.float64),  # of the heading at the last lift-off
@@ -265,6 +285,7 @@ PROGRESS = np.dtype(
         ("last_stance_s", np.float64),
         ("stance_least_m2ps4", np.float64),  # stillness statistic of this stance
         ("usual_stance_m2ps4", np.float64),  # ... of those before; see stance_acceptance
+        ("restless_s", np.float64),  # when last less still than those
         ("gyro_saturated_s", np.float64),  # when last seen
         ("accel_saturated_s", np.float64),
         ("gap_s", np.float64),

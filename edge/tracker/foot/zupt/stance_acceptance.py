@@ -6,16 +6,18 @@ then the stillest moment is in mid-air.  Evidence against a stance, after a slow
 
 - a *vertical* velocity that the filter knows well and that is not zero, while the horizontal one is
   small.  An error of the tilt, of a bias or of samples that are missing shows along the floor
-  first, so this is no filter that is wrong;
+  first, so this is no filter that is wrong.  What the gains may have done is no evidence;
 - a stillness unlike that of the wearer's stances before it: in the air a foot is less still by ten
   to a thousand times where the wearer rests in between.  It is outweighed where the filter says
   that the foot neither rises nor sinks, now and a moment later (at the top of its way it does so
   for an instant only).  For the same reason as above the velocity along the floor does not refuse.
 
 After a fast swing there is no doubt: it is a stride, its strike may leave more vertical velocity
-than those before, and a walk may become a run.  A candidate that is not accepted is decided by what
+than those before, and a walk may become a run.  Nor is there where the foot lies as still as in a
+stance for longer than any foot in the air.  A candidate that is not accepted is decided by what
 follows: the swing goes on, at most for ``reject_longest_s``, and each later sample is a candidate
-of its own.
+of its own.  While it is undecided whether the stance before was one (see stance_revision), the
+velocity of either case may fit.
 
 The memory takes a stiller stance at once and a less still one by a share, because a person who has
 stood still can do so again.
@@ -28,8 +30,11 @@ import math
 from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.error_state import VELOCITY
 from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress
+from edge.tracker.foot.zupt.stance_consistency import swing_scale_error_mps
+from edge.tracker.foot.zupt.zupt_residuals import scale_error_inflation
 
 
 @njit()
@@ -45,32 +50,99 @@ def is_accepted(
         return True
     if state.swing_level_speed_mps > config.acceptance.slow_swing_mps:
         return True
-    if _rises_or_sinks(state, since_s, config):
+    if _rests_on(ring, progress, k, config):
+        return True
+    velocity, error = state.velocity_n_mps, state.rival.error
+    if _fits(ring, progress, state, k, velocity[0], velocity[1], velocity[2], config):
+        return True
+    return bool(
+        state.rival.alive
+        and _fits(
+            ring,
+            progress,
+            state,
+            k,
+            velocity[0] - error[VELOCITY],
+            velocity[1] - error[VELOCITY + 1],
+            velocity[2] - error[VELOCITY + 2],
+            config,
+        )
+    )
+
+
+@njit()
+def _rests_on(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> bool:
+    """True where the foot lies as still as in a stance for longer than any foot in the air."""
+    mask = len(ring) - 1
+    stop = min(progress.measured, reach(ring, k))
+    bound = config.acceptance.unlike_ratio * progress.usual_stance_m2ps4
+    i = k
+    while i < stop and ring[i & mask].motion_m2ps4 <= bound:
+        if ring[i & mask].t_s - progress.restless_s > config.acceptance.lasting_rest_s:
+            return True
+        i += 1
+    return False
+
+
+@njit()
+def note_restlessness(ring: Ring, progress: Progress, slot: int, config: EskfConfig) -> None:
+    """Keep the time of the last sample that is less still than the wearer's stances."""
+    bound = config.acceptance.unlike_ratio * progress.usual_stance_m2ps4
+    if progress.in_stance or ring[slot].motion_m2ps4 > bound:
+        progress.restless_s = ring[slot].t_s
+
+
+@njit()
+def _fits(
+    ring: Ring,
+    progress: Progress,
+    state: FilterState,
+    k: int,
+    north_mps: float,
+    east_mps: float,
+    down_mps: float,
+    config: EskfConfig,
+) -> bool:
+    """True where sample ``k`` may be of a stance if the foot has this velocity by the filter."""
+    slot = k & (len(ring) - 1)
+    level_mps = math.hypot(north_mps, east_mps)
+    since_s = ring[slot].t_s - progress.last_stance_s
+    if _rises_or_sinks(state, since_s, level_mps, down_mps, config):
         return False
     usual = progress.usual_stance_m2ps4
     if usual == 0.0 or ring[slot].stride_minimum_m2ps4 <= config.acceptance.unlike_ratio * usual:
         return True
-    return _stays_level(ring, progress, state, k, config)
+    return _stays_level(ring, progress, state, k, level_mps, down_mps, config)
 
 
 @njit()
-def _rises_or_sinks(state: FilterState, since_s: float, config: EskfConfig) -> bool:
+def _rises_or_sinks(
+    state: FilterState, since_s: float, level_mps: float, down_mps: float, config: EskfConfig
+) -> bool:
     """True where the foot goes up or down by more than the errors of its swing explain.
 
     The filter's own variance is that of hard strides on poor sensors; how this wearer's strides
     end is known better (see zupt_residuals), but for those with a fault.
     """
-    north, east, down = state.velocity_n_mps[0], state.velocity_n_mps[1], state.velocity_n_mps[2]
-    if state.faulty_stride or north * north + east * east > config.acceptance.sinking_level_mps**2:
+    if state.faulty_stride or level_mps > config.acceptance.sinking_level_mps:
         return False
     std_mps = config.acceptance.sinking_mps + config.acceptance.sinking_drift_mps2 * since_s
     std_mps += config.acceptance.sinking_strike_ratio * state.mean_strike_residual * state.swing_rad
-    return bool(abs(down) > config.acceptance.sinking_gate * std_mps)
+    gains = math.sqrt(scale_error_inflation(state, config)) * swing_scale_error_mps(
+        state, since_s, config
+    )
+    return bool(abs(down_mps) > config.acceptance.sinking_gate * math.hypot(std_mps, gains))
 
 
 @njit()
 def _stays_level(
-    ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
+    ring: Ring,
+    progress: Progress,
+    state: FilterState,
+    k: int,
+    level_mps: float,
+    down_mps: float,
+    config: EskfConfig,
 ) -> bool:
     """True where the filter says that the foot neither rises nor sinks, now and a moment later.
 
@@ -82,12 +154,8 @@ def _stays_level(
     mask = len(ring) - 1
     stop = min(progress.measured, reach(ring, k))
     now_s = ring[k & mask].t_s
-    moving = (
-        math.hypot(state.velocity_n_mps[0], state.velocity_n_mps[1])
-        > config.acceptance.rest_level_mps
-    )
+    moving = level_mps > config.acceptance.rest_level_mps
     ahead_s = config.acceptance.rest_moving_ahead_s if moving else config.acceptance.rest_ahead_s
-    down_mps = state.velocity_n_mps[2]
     i = k
     while abs(down_mps) <= config.acceptance.rest_down_mps:
         i += 1

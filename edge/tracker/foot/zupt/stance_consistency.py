@@ -40,17 +40,21 @@ def begin_stance(
     state.stance_nis = 0.0
     state.stance_misfits = False
     state.stance_after_s = ring[slot].t_s - progress.last_stance_s
-    rotated_rad = min(state.swing_rad, 1.0)
-    gravity_leak_mps = config.gravity_mps2 * rotated_rad * state.stance_after_s
-    state.stance_scale_error_mps = state.scale_errors.std * (
-        state.swing_speed_mps + gravity_leak_mps
-    )
+    state.stance_scale_error_mps = swing_scale_error_mps(state, state.stance_after_s, config)
     for i in range(3):
         state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
     row = step.lever_row[0]
     for i in range(3):
         lever_velocity_row(state.rotation_nb, state.gyro_radps, i, row)
         state.stance_off_n_mps[i] = dot(row, state.lever_b_m) - state.velocity_n_mps[i]
+
+
+@njit()
+def swing_scale_error_mps(state: FilterState, since_s: float, config: EskfConfig) -> float:
+    """Return by how much the gains may have put the velocity off since the last stance."""
+    rotated_rad = min(state.swing_rad, 1.0)
+    gravity_leak_mps = config.gravity_mps2 * rotated_rad * since_s
+    return float(state.scale_errors.std * (state.swing_speed_mps + gravity_leak_mps))
 
 
 @njit()
@@ -63,7 +67,9 @@ def inflate_for_misfit(
     state.stance_misfits = True
     progress.misfit_s = t_s
     for i in range(3):
-        state.misfit_n_m[i] += abs(state.stance_off_n_mps[i]) * state.stance_after_s
+        misfit_m = abs(state.stance_off_n_mps[i]) * state.stance_after_s
+        state.misfit_n_m[i] += misfit_m
+        state.rival.misfit_n_m[i] += misfit_m
 
 
 @njit()

@@ -81,6 +81,7 @@ def motion_statistic(
     unsteady = agitation - config.detection.rate_weight_m2ps2 * steady
     if (
         unsteady < config.detection.rest_motion_m2ps4
+        and steady < config.detection.rest_rate_radps**2
         and abs(off_mps2) < config.detection.rest_off_mps2
     ):
         progress.rest_norm_mps2 += config.detection.rest_weight * off_mps2
