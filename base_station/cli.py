@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from base_station.app.export_command import export
 from base_station.app.foxglove_cli import foxglove
 from base_station.app.recordings_command import fetch_recording
 from base_station.app.unit_tokens_cli import unit_tokens
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
+app.command()(export)
 app.add_typer(users, name="users")
 app.add_typer(unit_tokens, name="unit-tokens")
 app.add_typer(log, name="log")

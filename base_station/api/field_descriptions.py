@@ -353,6 +353,7 @@ PARAMETERS: Mapping[str, str] = {
     "until_ms": "End of the window of time, milliseconds since 1970.",
     "limit": "How many to give, the newest; those of the same millisecond as the last come along. "
     "The page before has until_ms at that millisecond.",
+    "only": "Ids of units, or names of people or crews; left out: everybody.",
     "every_s": "One point for so many seconds.",
     "kind": FIELDS["Trails.kind"],
     "format_name": "A name of /export-formats.",

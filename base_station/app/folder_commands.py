@@ -18,7 +18,8 @@ from base_station.privacy.erasure_queue import erase_now
 from base_station.privacy.erasure_service import ClosedLog, ErasureResult, ErasureService
 from base_station.privacy.requests import hand_over
 from base_station.replay.assessment.wearers import wearers
-from base_station.replay.post_processing import PostProcessor
+from base_station.replay.post_processing import PostProcessor, Tracks
+from base_station.replay.trail_kind import TrailKind
 from base_station.standby.log_truncation import set_aside
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
@@ -48,9 +49,17 @@ class IncidentCommandContext:
 
     post_processor: PostProcessor
     records: Records
+    roster: Roster
     incident: IncidentRow
     people: Mapping[str, Sequence[str]]  # who wore each unit
     keeps_result: bool  # what is worked out; else it is gone with the command
+
+    def tracks(self, kind: TrailKind) -> Tracks:
+        if kind is TrailKind.SMOOTHED:
+            return self.post_processor.smoothed(self.incident).tracks
+        if kind is TrailKind.RAW:
+            return self.post_processor.raw(self.incident)
+        return self.records.tracks_of(self.incident)
 
 
 def rebuild(
@@ -208,9 +217,10 @@ def open_post_processing(
     post_processor = PostProcessor(
         offline_log.archive(), SMOOTHERS[0], SmoothedTracks(offline_log.store), clock
     )
-    people = wearers(Roster(offline_log.store, clock), incident)
+    roster = Roster(offline_log.store, clock)
+    people = wearers(roster, incident)
     return IncidentCommandContext(
-        post_processor, records, incident, people, offline_log.keeps_result
+        post_processor, records, roster, incident, people, offline_log.keeps_result
     )
 
 

@@ -8,5 +8,18 @@ from base_station.exporters.gpx import GPX
 from base_station.exporters.interface import Exporter
 from base_station.exporters.kml import KML
 from base_station.exporters.parquet import PARQUET
+from shared.errors import UserError
 
 EXPORTERS: tuple[Exporter, ...] = (GPX, KML, GEOJSON, CSV, PARQUET)
+
+
+def exporter_of(name: str) -> Exporter:
+    """Return the exporter of a format, by its name or its files' suffix; UserError if there is
+    none.
+    """
+    wanted = name.lower()
+    for exporter in EXPORTERS:
+        if wanted in (exporter.name, exporter.suffix):
+            return exporter
+    known = ", ".join(exporter.name for exporter in EXPORTERS)
+    raise UserError(f"there is no format {name!r}; formats are {known}")

@@ -51,6 +51,10 @@ class IncidentTracks(msgspec.Struct, frozen=True):
     anchor: Anchor | None
     tracks: tuple[WornTrack, ...]
 
+    def named_as(self, description: str) -> IncidentTracks:
+        """With what its trails are in its name."""
+        return msgspec.structs.replace(self, name=f"{self.name}, {description}")
+
     def anchor_or_refuse(self) -> Anchor:
         """For formats that know only places on the Earth; UserError without an anchor."""
         if self.anchor is None:

@@ -34,6 +34,7 @@ from shared.log_command.inspection import (
 )
 from shared.log_command.log_files import LogFileSet, log_files
 from shared.mcap_log import SegmentReader, foreign_in_words, wire_type_of
+from shared.options import End, Start
 
 app = typer.Typer(
     help="Look into, check, mend and cut the logs of stations and units.",
@@ -47,23 +48,6 @@ LogPath = Annotated[
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Target = Annotated[Path, typer.Argument(help="The new file; it must not be there yet.")]
-
-
-def _time(text: str) -> datetime:
-    try:
-        time = datetime.fromisoformat(text)
-    except ValueError:
-        raise typer.BadParameter(f"{text} is no time like 2026-03-01T10:00:00Z") from None
-    return time if time.tzinfo else time.replace(tzinfo=UTC)
-
-
-Start = Annotated[
-    datetime | None,
-    typer.Option("--start", parser=_time, metavar="TIME", help="UTC, 2026-03-01T10:00:00Z."),
-]
-End = Annotated[
-    datetime | None, typer.Option("--end", parser=_time, metavar="TIME", help="Until before it.")
-]
 Topics = Annotated[
     list[str] | None,
     typer.Option("--topic", help="Only such topics, with * for any text; repeatable."),

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import msgspec
-from fastapi import APIRouter, Response
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Response
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 
@@ -11,22 +12,21 @@ from base_station.accounts.principals import Principal
 from base_station.api.authentication import Viewer
 from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
-from base_station.api.forms import Id
+from base_station.api.forms import Id, Name, window
 from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
-from base_station.api.routes.trails import TrailKind, trails_of
+from base_station.api.routes.trails import trails_of
 from base_station.api.services import Services
-from base_station.exporters import EXPORTERS
+from base_station.exporters import EXPORTERS, exporter_of
 from base_station.exporters.incident import incident_tracks
-from shared.errors import StoreError
+from base_station.exporters.selection import TrackSelection
+from base_station.replay.trail_kind import TrailKind
+from base_station.storage.db.records import Window
+from shared.errors import StoreError, UserError
 
 router = APIRouter(tags=["exports"])
 
-_IN_WORDS = {
-    TrailKind.RAW: "by the units' own paths alone",
-    TrailKind.FUSED: "as it was shown",
-    TrailKind.SMOOTHED: "as it is known afterwards",
-}  # in a file that has a name
+Names = Annotated[tuple[Name, ...], Query(max_length=200)]
 
 
 class Format(BaseModel):
@@ -52,33 +52,42 @@ async def export_incident(
     format_name: Id,
     station: CurrentStation,
     who: Viewer,
+    when: Annotated[Window, Depends(window)],
     kind: TrailKind = TrailKind.FUSED,
+    only: Names = (),
 ) -> Response:
-    """``kind``: what was shown at the time, or the trails as they are known afterwards."""
+    """``kind``: what was shown at the time, or the trails as they are known afterwards; ``only``:
+    units, people or crews, else everybody.
+    """
+    selection = TrackSelection(only, when.from_ns, when.until_ns)
     async with station.export_lock:
-        return await run_in_threadpool(_export, incident_id, format_name, station, who, kind)
+        return await run_in_threadpool(
+            _export, incident_id, format_name, station, who, kind, selection
+        )
 
 
 def _export(
-    incident_id: str, format_name: str, station: Services, who: Principal, kind: TrailKind
+    incident_id: str,
+    format_name: str,
+    station: Services,
+    who: Principal,
+    kind: TrailKind,
+    selection: TrackSelection,
 ) -> Response:
-    exporter = next((one for one in EXPORTERS if one.name == format_name), None)
-    if exporter is None:
-        known = ", ".join(one.name for one in EXPORTERS)
-        raise Problem(404, f"There is no format {format_name}; formats are {known}.")
+    try:
+        exporter = exporter_of(format_name)
+    except UserError as error:
+        raise Problem(404, f"{error}.") from error
     incident = incident_or_404(station, incident_id)
     _, trails = trails_of(station, incident, kind)
     tracks = incident_tracks(station.records, station.roster, incident, trails)
-    body = exporter.export(
-        msgspec.structs.replace(tracks, name=f"{tracks.name}, {_IN_WORDS[kind]}")
-    )
+    body = exporter.export(selection.of(tracks).named_as(kind.in_words))
     try:
         station.records.audit(
             who.username, "Exported", f"{incident_id} ({kind.value}) as {format_name}"
         )
     except StoreError as error:
         raise Problem(503, f"Nothing is given out that the audit cannot say: {error}.") from error
-    which = "" if kind is TrailKind.FUSED else f"-{kind.value}"
-    file_name = f"{incident_id}{which}.{exporter.suffix}"
+    file_name = kind.file_name(incident_id, exporter.suffix)
     headers = {"Content-Disposition": f'attachment; filename="{file_name}"'}
     return Response(body, media_type=exporter.media_type, headers=headers)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from enum import StrEnum
 from typing import Annotated, cast
 
 import msgspec
@@ -16,6 +15,7 @@ from base_station.api.problems import Problem
 from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services
 from base_station.replay.post_processing import PostProcessor, Tracks
+from base_station.replay.trail_kind import TrailKind
 from base_station.storage.db import models
 from base_station.storage.db.records import TrackSample
 from base_station.views.answer import Answer, to_ms
@@ -24,12 +24,6 @@ from shared.clock import NS_PER_S
 router = APIRouter(tags=["tracks"])
 
 EverySeconds = Annotated[int, Query(ge=1, le=3600)]
-
-
-class TrailKind(StrEnum):
-    RAW = "raw"  # the unit's own path, placed by its start
-    FUSED = "fused"  # what was shown at the time
-    SMOOTHED = "smoothed"  # the best that is known afterwards
 
 
 Point = tuple[int, float, float, int | None]  # t_ms, north_m, east_m, floor
