@@ -22,6 +22,7 @@ from edge.tracker.interface import (
     TrackerEntry,
     WornSensor,
 )
+from edge.tracker.torso_shank.tracker import TorsoShankTracker
 from edge.tracker.waist.tracker import WaistTracker
 from shared.earth_field import EarthField
 from shared.errors import ConfigError
@@ -72,7 +73,14 @@ TRACKERS: tuple[TrackerEntry, ...] = (
     ),
 )
 
-MULTI_SENSOR_TRACKERS: tuple[MultiSensorTrackerEntry, ...] = ()
+MULTI_SENSOR_TRACKERS: tuple[MultiSensorTrackerEntry, ...] = (
+    MultiSensorTrackerEntry(
+        "torso_shank",
+        "velocity of a torso, put right by a shank once a stride",
+        TorsoShankTracker,
+        (("chest", "waist"), ("shank",)),
+    ),
+)
 
 
 def make_tracker(

@@ -1,0 +1,52 @@
+"""Several sensors on one simulated person, and their samples as a unit would push them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from edge.samples import ImuBatch
+from edge.simulation.scenario import Scenario
+from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.interface import MultiSensorTracker, TrackBatch, WornSensor
+from tests.rig.inertial_walk import InertialWalk, inertial_walk
+
+BLOCK_S = 0.1
+
+
+def walk_with_sensors(
+    scenario: Scenario | str, places: Sequence[str], seed: int = 0, **changes: object
+) -> dict[str, InertialWalk]:
+    """Return the walk of one person as sensors at several places have it, by place."""
+    return {
+        place: inertial_walk(scenario, seed, place, number=number, **changes)  # type: ignore[arg-type]
+        for number, place in enumerate(places)
+    }
+
+
+def worn(walks: Mapping[str, InertialWalk]) -> dict[str, WornSensor]:
+    """Return the sensors of a walk, each named after its place."""
+    return {place: WornSensor(walk.description, place) for place, walk in walks.items()}
+
+
+def in_turn(
+    samples: Mapping[str, ImuBatch], block_s: float = BLOCK_S
+) -> Iterator[tuple[str, ImuBatch]]:
+    """Give the samples of all sensors block by block, as they would come."""
+    begin_ns = min(int(imu.t_ns[0]) for imu in samples.values())
+    stop_ns = max(int(imu.t_ns[-1]) for imu in samples.values()) + 1
+    block_ns = round(block_s * 1e9)
+    for from_ns in range(begin_ns, stop_ns, block_ns):
+        for name, imu in samples.items():
+            first, last = np.searchsorted(imu.t_ns, [from_ns, from_ns + block_ns])
+            if first < last:
+                yield name, imu.part(slice(int(first), int(last)))
+
+
+def track_person(
+    tracker: MultiSensorTracker, samples: Mapping[str, ImuBatch], block_s: float = BLOCK_S
+) -> TrackBatch:
+    """Return all rows of a tracker that is given all samples."""
+    batches = [tracker.push(name, batch) for name, batch in in_turn(samples, block_s)]
+    return join_rows([*batches, tracker.finish()])
