@@ -28,8 +28,10 @@ from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import (
     Activity,
     BatteryState,
+    BodyPosture,
     FusedPosition,
     Heartbeat,
+    Mobility,
     PreflightFinding,
     PreflightLevel,
     SensorTemperature,
@@ -39,6 +41,8 @@ from shared.quality import Quality
 
 _ACTIVITY_WORDS = tuple(activity.name.lower() for activity in Activity)  # by number
 _BATTERY_WORDS = tuple(state.name.lower() for state in BatteryState)
+_POSTURE_WORDS = tuple(posture.name.lower() for posture in BodyPosture)
+_MOBILITY_WORDS = tuple(mobility.name.lower() for mobility in Mobility)
 _QUALITY_WORDS = tuple(quality.name.lower() for quality in Quality)
 _GREEN = TrustView("green", "")
 _READY = PreflightView("ok", "")
@@ -164,6 +168,9 @@ def _status_view(unit: UnitState, status: Status) -> StatusView:
         battery_left_s=status.battery_left_s,
         battery_state=_BATTERY_WORDS[status.battery_state],
         electronics=_sensors_view(status.electronics),
+        posture=_POSTURE_WORDS[status.posture],
+        posture_confidence=status.posture_confidence,
+        mobility=_MOBILITY_WORDS[status.mobility],
     )
 
 

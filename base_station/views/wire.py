@@ -58,6 +58,9 @@ class StatusView(Answer, frozen=True):
     battery_left_s: int | None  # until it is empty; None: unknown
     battery_state: str  # lower-case name of shared.messages.BatteryState
     electronics: tuple[SensorTemperatureView, ...]  # inside the unit; not the air around it
+    posture: str = "unknown"  # lower-case name of shared.messages.BodyPosture
+    posture_confidence: float = 0.0  # its probability, 0..1
+    mobility: str = "unknown"  # lower-case name of shared.messages.Mobility
 
 
 class PositionView(Answer, frozen=True):

@@ -13,11 +13,12 @@ from edge.activity.body_motion import WINDOW_NS, BodyMotion, BodyMotionWindow, b
 from edge.activity.falls import FallDetector
 from edge.activity.posture import Posture
 from edge.activity.pressure_height import PressureHeight
+from edge.activity.step_direction import StepDirection
 from edge.activity.strides import Stride, StrideCutter
 from edge.samples import ImuBatch
 from edge.tracker.interface import TrackBatch
 from shared.clock import NS_PER_S
-from shared.messages import Activity
+from shared.messages import Activity, Mobility
 
 _CADENCE_OVER_NS = 4 * NS_PER_S
 _WALKING_TIMEOUT_NS = 5 * NS_PER_S // 2  # after the last footfall that is known
@@ -45,6 +46,7 @@ class ActivityMonitor:
         self._falls = FallDetector()
         self._posture = Posture()
         self._cutter = StrideCutter()
+        self._directions = StepDirection()
         self._pressure_height = PressureHeight()
         self._strides: deque[Stride] = deque()
         self._stairs: list[Stride] = []  # the strides in a row that were stairs
@@ -102,6 +104,14 @@ class ActivityMonitor:
             return Activity.FALLING
         return self._upright_or_crawling(t_ns)
 
+    def mobility(self, t_ns: int) -> Mobility:
+        """Return the way in which the foot steps; UNKNOWN without samples."""
+        if self._window_ns is None or t_ns - self._window_ns > _SILENT_NS:
+            return Mobility.UNKNOWN
+        if self._motion.motionless_s >= _AT_REST_S:
+            return Mobility.STILL
+        return self._directions.mobility(t_ns) or Mobility.MOVING
+
     def _upright_or_crawling(self, t_ns: int) -> Activity:
         resting = self._motion.motionless_s >= _AT_REST_S
         # On hands and knees one goes on crawling after a rest.
@@ -115,6 +125,7 @@ class ActivityMonitor:
         if self._is_without_motion(stride):
             return
         self._posture.take_stride(stride)
+        self._directions.push(stride)
         if self._posture.is_walking_step(stride) and stride.speed_mps <= _FASTEST_MPS:
             self._falls.walk(stride)
         self._activity = self._kind(stride)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import hypot, isfinite
+from dataclasses import dataclass, field
+from math import atan2, hypot, isfinite, pi, remainder
 
 import numpy as np
 
@@ -26,6 +26,8 @@ class Stride:
     length_m: float  # horizontal
     rise_m: float
     up_b: Floats  # (3,) unit vector away from the ground at the footfall, sensor axes
+    step_b: Floats = field(default_factory=lambda: np.zeros(3))  # (3,) m, sensor axes there
+    turn_rad: float = 0.0  # of the foot about the vertical, clockwise from above
 
     @property
     def speed_mps(self) -> float:
@@ -36,6 +38,7 @@ class Stride:
 class _Footing:
     t_ns: int
     position_n_m: Floats  # (3,)
+    quaternion_nb: Floats  # (4,)
 
 
 class StrideCutter:
@@ -84,7 +87,18 @@ class StrideCutter:
         self._footfall_ns = down.t_ns
         if not swing_ns <= period_ns <= _LONGEST_PERIOD_NS:
             period_ns = round(swing_ns / _SWING_SHARE)
-        return [Stride(down.t_ns, period_ns / NS_PER_S, hypot(north_m, east_m), -sink_m, up_b)]
+        step_n_m = down.position_n_m - lifted.position_n_m
+        return [
+            Stride(
+                down.t_ns,
+                period_ns / NS_PER_S,
+                hypot(north_m, east_m),
+                -sink_m,
+                up_b,
+                _in_body(down.quaternion_nb, step_n_m),
+                _turn_rad(lifted.quaternion_nb, down.quaternion_nb),
+            )
+        ]
 
 
 def up_in_body(quaternion_nb: Floats) -> Floats:
@@ -93,5 +107,22 @@ def up_in_body(quaternion_nb: Floats) -> Floats:
     return -np.array([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)])
 
 
+def _in_body(quaternion_nb: Floats, vector_n: Floats) -> Floats:
+    """Return a vector (3,) of the navigation frame in sensor axes at an attitude (4,)."""
+    scalar, vector = quaternion_nb[0], -quaternion_nb[1:]
+    twice = 2.0 * np.cross(vector, vector_n)
+    return np.asarray(vector_n + scalar * twice + np.cross(vector, twice))
+
+
+def _turn_rad(before_nb: Floats, after_nb: Floats) -> float:
+    """Return the turn about the vertical from one attitude (4,) to another, clockwise."""
+    w, x, y, z = after_nb
+    a, b, c, d = before_nb[0], *(-before_nb[1:])
+    scalar = w * a - x * b - y * c - z * d
+    down = w * d + x * c - y * b + z * a
+    return remainder(2.0 * atan2(down, scalar), 2.0 * pi)
+
+
 def _footing(track: TrackBatch, row: int) -> _Footing:
-    return _Footing(int(track.t_ns[row]), track.position_n_m[row].copy())
+    quaternion_nb = track.quaternion_nb[row].copy()
+    return _Footing(int(track.t_ns[row]), track.position_n_m[row].copy(), quaternion_nb)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import msgspec
 
+from edge.activity.body_posture import BodyPostureEstimator
 from edge.activity.monitor import ActivityMonitor
 from edge.activity.mounting import MountingCheck
 from edge.agent.batteries import Batteries
@@ -83,10 +84,12 @@ class TrackerPipeline:
         mayday: bool = False,
         raw_uplink: RawUplink | None = None,
         worn_on_foot: bool = True,
+        worn_on: str = "",
     ) -> None:
         """``mayday``: one was latched when the unit last came to a sudden end.  ``raw_uplink``:
         of a unit that sends its samples for somebody else to track with.  ``worn_on_foot``: false
-        for a tracker that is made for another part of the body.
+        for a tracker that is made for another part of the body.  ``worn_on``: where the tracker
+        expects a sensor whose place nobody has set; its inclination shows the posture.
         """
         self._identity = identity
         self._corrections = {one.name: one.correction() for one in identity.sensors}
@@ -95,6 +98,8 @@ class TrackerPipeline:
         self._positions = PositionPublisher(stamper, position_rate_hz)
         self._monitor = ActivityMonitor()
         self._mounting = MountingCheck() if worn_on_foot else None
+        self._places = {one.name: one.description.place or worn_on for one in identity.sensors}
+        self._body = BodyPostureEstimator()
         self._health = SensorHealth()
         self._expected_field = ExpectedField(identity.place)
         self._status_times = Decimator(_rate_hz(STATUS))
@@ -179,6 +184,7 @@ class TrackerPipeline:
             self._positions.set_mounting(is_on_foot=self._mounting.is_on_foot)
         self._positions.take_pressure(batch.imu)
         messages += self._positions.push(track, timeline)
+        self._body.push(self._places.get(batch.sensor, ""), imu)
         if self._monitor.push(imu, track):
             detail = "fell and has not moved since"
             messages.append(self._event(EventKind.FALL, _last_ns(batch, timeline), detail))
@@ -278,6 +284,8 @@ class TrackerPipeline:
     def _status(self, t_ns: int, timeline: Timeline) -> Status:
         battery = self._batteries.emptiest(t_ns)
         self._battery = None if battery is None else battery.level
+        posture, confidence = self._body.posture(t_ns)
+        on_foot = self._mounting is not None
         return Status(
             header=self._stamper.header(timeline.to_mono_ns(t_ns)),
             activity=self._monitor.activity(t_ns),
@@ -293,6 +301,9 @@ class TrackerPipeline:
             battery_left_s=None if battery is None else whole_seconds(battery.left_s),
             battery_state=BatteryState.UNKNOWN if battery is None else battery.state,
             battery_name="" if battery is None else battery.battery,
+            posture=posture,
+            posture_confidence=confidence,
+            mobility=(self._monitor if on_foot else self._body).mobility(t_ns),
         )
 
     def _describe(self, mono_ns: int | None) -> UnitDescription:

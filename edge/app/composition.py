@@ -234,6 +234,7 @@ def _pipeline(
         mayday=latch.was_active or mayday_before(journal),
         raw_uplink=None if tracks else RawUplink(stamper),
         worn_on_foot=entry is None or FOOT in entry.worn_on,
+        worn_on="" if entry is None else entry.worn_on[0],
     )
 
 

@@ -21,7 +21,7 @@ from shared.messages.journal import JournalBoot, JournalChunk, JournalEntry, Jou
 from shared.messages.position import MagneticNorth, Position
 from shared.messages.sighting import Sighting, SightingKind
 from shared.messages.station import OperatorAction, Tick
-from shared.messages.status import Activity, BatteryState, Status
+from shared.messages.status import Activity, BatteryState, BodyPosture, Mobility, Status
 from shared.messages.temperature import SensorTemperature, Temperature
 from shared.messages.unit_description import (
     PreflightFinding,
@@ -58,6 +58,7 @@ __all__ = [
     "AlarmChange",
     "AlarmState",
     "BatteryState",
+    "BodyPosture",
     "Command",
     "CommandKind",
     "CommandReply",
@@ -77,6 +78,7 @@ __all__ = [
     "JournalIndex",
     "MagneticNorth",
     "Message",
+    "Mobility",
     "OperatorAction",
     "Position",
     "PreflightFinding",

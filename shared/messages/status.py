@@ -25,6 +25,34 @@ class Activity(IntEnum):
     FALLING = 8
 
 
+class BodyPosture(IntEnum):
+    UNKNOWN = 0
+    UPRIGHT = 1  # standing, sitting or kneeling
+    STANDING = 2
+    SITTING = 3
+    KNEELING = 4
+    CRAWLING = 5  # on hands and knees
+    BENT = 6  # on the feet, the trunk bent forward
+    LYING = 7  # on whichever side
+    PRONE = 8  # lying, the face down
+    SUPINE = 9  # lying on the back
+    LEFT_SIDE = 10  # lying on it
+    RIGHT_SIDE = 11
+
+
+class Mobility(IntEnum):
+    """Way of moving about, against the way the body faces."""
+
+    UNKNOWN = 0
+    STILL = 1
+    MOVING = 2  # which way is not known
+    FORWARD = 3
+    BACKWARD = 4
+    LEFTWARD = 5  # side steps
+    RIGHTWARD = 6
+    TURNING = 7  # on the spot
+
+
 class BatteryState(IntEnum):
     UNKNOWN = 0
     DISCHARGING = 1
@@ -47,6 +75,9 @@ class Status(msgspec.Struct, frozen=True, gc=False):
     battery_left_s: int | None = None  # until the battery is empty; None: unknown
     battery_state: BatteryState = BatteryState.UNKNOWN
     battery_name: str = ""  # of several the emptiest; empty: that of the sensor
+    posture: BodyPosture = BodyPosture.UNKNOWN
+    posture_confidence: float = 0.0  # its probability, 0 ... 1
+    mobility: Mobility = Mobility.UNKNOWN
 
     def to_wire(self) -> status_pb2.Status:
         return status_pb2.Status(
@@ -65,6 +96,9 @@ class Status(msgspec.Struct, frozen=True, gc=False):
             battery_left_s=self.battery_left_s or 0,
             battery_state=int(self.battery_state),  # type: ignore[arg-type]  # as above
             battery_name=self.battery_name,
+            posture=int(self.posture),  # type: ignore[arg-type]  # as above
+            posture_permille=unsigned32(self.posture_confidence, 1e3),
+            mobility=int(self.mobility),  # type: ignore[arg-type]  # as above
         )
 
     @staticmethod
@@ -84,4 +118,7 @@ class Status(msgspec.Struct, frozen=True, gc=False):
             battery_left_s=wire.battery_left_s or None,
             battery_state=known(BatteryState, wire.battery_state),
             battery_name=wire.battery_name,
+            posture=known(BodyPosture, wire.posture),
+            posture_confidence=wire.posture_permille * 1e-3,
+            mobility=known(Mobility, wire.mobility),
         )

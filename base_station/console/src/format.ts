@@ -182,6 +182,34 @@ export function activityOf(unit: UnitView): string {
   return `${word}, motionless ${age(status.motionless_s * 1000)}`;
 }
 
+const POSTURES: Record<string, string> = {
+  upright: "Upright",
+  standing: "Standing",
+  sitting: "Sitting",
+  kneeling: "Kneeling",
+  crawling: "On hands and knees",
+  bent: "Bent forward",
+  lying: "Lying",
+  prone: "Lying face down",
+  supine: "Lying on the back",
+  left_side: "Lying on the left side",
+  right_side: "Lying on the right side",
+};
+
+const MOBILITIES: Record<string, string> = {
+  backward: "going backward",
+  leftward: "stepping to the left",
+  rightward: "stepping to the right",
+  turning: "turning on the spot",
+};
+
+/** How the body is held and goes; empty where the unit does not tell it. */
+export function postureText({ posture, posture_confidence, mobility }: StatusView): string {
+  const word = POSTURES[posture];
+  const held = word === undefined ? [] : [`${word} (${Math.round(posture_confidence * 100)} %)`];
+  return [...held, MOBILITIES[mobility] ?? ""].filter((part) => part !== "").join(", ");
+}
+
 const LINKS: Record<Link, string> = {
   live: "Link good",
   stale: "Link stale",

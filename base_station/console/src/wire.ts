@@ -30,6 +30,9 @@ export interface StatusView {
   battery_left_s: number | null;
   battery_state: string;
   electronics: SensorTemperatureView[];
+  posture: string;
+  posture_confidence: number;
+  mobility: string;
 }
 
 export interface PositionView {

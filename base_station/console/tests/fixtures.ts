@@ -40,6 +40,9 @@ export const STATUS: StatusView = {
   battery_left_s: null,
   battery_state: "unknown",
   electronics: [],
+  posture: "unknown",
+  posture_confidence: 0,
+  mobility: "unknown",
 };
 
 export function position(change: Partial<PositionView> = {}): PositionView {

@@ -90,6 +90,16 @@ describe("words", () => {
     ]);
   });
 
+  it("says how the body is held, and how sure that is", () => {
+    const held = { ...STATUS, posture: "supine", posture_confidence: 0.934 };
+    expect(format.postureText(held)).toBe("Lying on the back (93 %)");
+    expect(format.postureText({ ...held, mobility: "turning" })).toBe(
+      "Lying on the back (93 %), turning on the spot",
+    );
+    expect(format.postureText({ ...STATUS, mobility: "leftward" })).toBe("stepping to the left");
+    expect(format.postureText(STATUS)).toBe("");
+  });
+
   it("say how long somebody has been motionless, and mayday before all else", () => {
     const lying = { ...STATUS, activity: "lying", motionless_s: 33 };
     expect(format.activityOf(unit("a", { status: lying }))).toBe("Lying, motionless 33 s");

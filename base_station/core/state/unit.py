@@ -16,7 +16,9 @@ from base_station.core.state.unit_wearer import FormerWearer, UnitWearer
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
+    BodyPosture,
     Heartbeat,
+    Mobility,
     Position,
     Status,
     UnitDescription,
@@ -152,6 +154,9 @@ class UnitState(MessageStream):
             steps=agent.status.steps,
             cadence_hz=0.0 if gone else agent.status.cadence_hz,
             floors_climbed=agent.status.floors_climbed,
+            mobility=Mobility.UNKNOWN if gone else agent.status.mobility,
+            posture=BodyPosture.UNKNOWN if gone else agent.status.posture,
+            posture_confidence=0.0 if gone else agent.status.posture_confidence,
         )
 
     def count_rejected(self, reason: str) -> None:

@@ -120,10 +120,12 @@ function crewAndRole(unit: UnitView): string {
 function Activity({ unit, picture }: { unit: UnitView; picture: Picture }) {
   const mayday = unit.status?.mayday ?? false;
   const oldMs = unit.status_ms === null ? 0 : picture.nowMs.value - unit.status_ms;
+  const posture = unit.status === null ? "" : format.postureText(unit.status);
   return (
     <span class={`activity ${mayday ? "mayday" : ""}`}>
       <Icon name={mayday ? "alarm" : activityOrNone(unit)} />
       {format.activityOf(unit)}
+      {posture !== "" && <small>{posture}</small>}
       {oldMs >= OLD_MS && <small class="old-mark">{format.age(oldMs)} old</small>}
     </span>
   );

@@ -7,20 +7,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from edge.agent.fitted_sensor import FittedSensor
+from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.clocks.timeline import Timeline
-from edge.samples import (
-    SensorBatch,
-)
+from edge.samples import SensorBatch, SensorDescription
 from edge.tracker.interface import Quality, Reason
-from shared.clock import NS_PER_S
+from shared.clock import NS_PER_S, ManualClock
+from shared.envelope import Stamper
 from shared.messages import (
     Activity,
+    BodyPosture,
     EventKind,
+    Mobility,
     Position,
     Status,
     UnitDescription,
     UnitEvent,
 )
+from tests.rig.body_postures import Act, posed_body
 from tests.rig.straight_tracker import RATE_HZ, StraightAhead, of, pipeline, steps, walk
 
 
@@ -134,3 +138,32 @@ def test_a_clock_that_jumps_a_day_in_either_direction_stops_nothing():
         messages = steps(pipe, walk(500, start_s), [5] * 99)
         assert len(of(messages, Position)) == 25
         assert len(of(messages, Status)) == 5
+
+
+def test_a_trunk_that_lies_down_is_in_the_status_with_its_confidence():
+    acts = [Act(BodyPosture.STANDING, 15.0, walks=True), Act(BodyPosture.PRONE, 10.0)]
+    chest = posed_body(acts, np.random.default_rng(1)).samples["chest"]
+    sensor = FittedSensor(SensorDescription("fake", 100.0))
+    pipe = TrackerPipeline(
+        UnitIdentity("1.0", "test", "straight", (sensor,)),
+        StraightAhead(),
+        Stamper("u1", 7, ManualClock()),
+        5.0,
+        worn_on_foot=False,
+        worn_on="waist",
+    )
+    said = [
+        message
+        for first in range(0, len(chest), 10)
+        for message in pipe.step(SensorBatch(chest.part(slice(first, first + 10))))
+    ]
+    statuses = of(said, Status)
+    assert statuses[0].posture is BodyPosture.UNKNOWN
+    assert statuses[14].posture is BodyPosture.UPRIGHT
+    assert statuses[14].mobility is Mobility.FORWARD
+    assert statuses[-1].posture is BodyPosture.PRONE
+    assert statuses[-1].posture_confidence > 0.8
+    assert statuses[-1].mobility is Mobility.STILL
+    read = Status.from_wire(statuses[-1].to_wire())
+    assert (read.posture, read.mobility) == (BodyPosture.PRONE, Mobility.STILL)
+    assert read.posture_confidence == pytest.approx(statuses[-1].posture_confidence, abs=1e-3)
