@@ -5,8 +5,8 @@ from __future__ import annotations
 import logging
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,7 +14,9 @@ import typer
 
 from base_station.app.export_command import export
 from base_station.app.foxglove_cli import foxglove
+from base_station.app.progress_bar import progress_bar
 from base_station.app.recordings_command import fetch_recording
+from base_station.app.report_command import report
 from base_station.app.unit_tokens_cli import unit_tokens
 from base_station.app.users_cli import users
 from base_station.process import gc_tuning
@@ -30,6 +32,7 @@ app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
 app.command()(export)
+app.command()(report)
 app.add_typer(users, name="users")
 app.add_typer(unit_tokens, name="unit-tokens")
 app.add_typer(log, name="log")
@@ -99,7 +102,7 @@ def replay(
     with gc_tuning.paused():
         from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
-    with sigterm_as_ctrl_c(), _progress_bar("reading the log") as on_progress:
+    with sigterm_as_ctrl_c(), progress_bar("reading the log") as on_progress:
         run_replay_station(settings, incident, speed, _announce, on_progress)
 
 
@@ -193,11 +196,11 @@ def smooth(
     from base_station.app import folder_commands as station  # noqa: PLC0415
 
     with sigterm_as_ctrl_c(), ExitStack() as closing:
-        with _progress_bar("reading the log") as on_progress:
+        with progress_bar("reading the log") as on_progress:
             post_processing = station.open_post_processing(
                 data, incident, closing, _warn, on_progress
             )
-        with _progress_bar("smoothing") as on_progress:
+        with progress_bar("smoothing") as on_progress:
             made = post_processing.post_processor.smooth(post_processing.incident, on_progress)
     for unit_id, track in made.tracks.items():
         typer.echo(f"{unit_id}\t{len(track)} points")
@@ -224,7 +227,7 @@ def assess(
     from base_station.replay.assessment.tables import print_report, write_report  # noqa: PLC0415
 
     with sigterm_as_ctrl_c(), ExitStack() as closing:
-        with _progress_bar("reading the log") as on_progress:
+        with progress_bar("reading the log") as on_progress:
             post_processing = station.open_post_processing(
                 data, incident, closing, _warn, on_progress
             )
@@ -286,25 +289,6 @@ def _load_settings(config: Path | None, flags: Mapping[str, object]) -> StationC
     logging.getLogger("alembic").setLevel(logging.WARNING)
     os.umask(0o077)  # people's photos and tracks are nobody else's business
     return settings
-
-
-@contextmanager
-def _progress_bar(what: str) -> Iterator[Callable[[float], None]]:
-    """Shown from when it is first told of until all is done."""
-    from rich.progress import Progress  # noqa: PLC0415
-
-    with ExitStack() as shown:
-        progress = Progress(transient=True)
-        task = progress.add_task(what, total=1.0)
-
-        def tell(done: float) -> None:
-            if not progress.live.is_started:
-                shown.enter_context(progress)
-            progress.update(task, completed=done)
-            if done >= 1.0:
-                shown.close()
-
-        yield tell
 
 
 def _reason_not_kept(post_processing: IncidentCommandContext) -> str:

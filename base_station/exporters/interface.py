@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import pairwise
@@ -36,13 +36,7 @@ class WornTrack(msgspec.Struct, frozen=True):
     @property
     def pieces(self) -> tuple[tuple[TrackSample, ...], ...]:
         """Each to be drawn as a line of its own: between two of them the way is not known."""
-        breaks = [
-            index
-            for index, (before, after) in enumerate(pairwise(self.points), 1)
-            if _is_unknown_between(before, after)
-        ]
-        ends = pairwise((0, *breaks, len(self.points)))
-        return tuple(self.points[begin:end] for begin, end in ends)
+        return tuple(map(tuple, pieces_of(self.points)))
 
 
 class IncidentTracks(msgspec.Struct, frozen=True):
@@ -63,6 +57,17 @@ class IncidentTracks(msgspec.Struct, frozen=True):
                 "anchor, or export as csv"
             )
         return self.anchor
+
+
+def pieces_of(points: Sequence[TrackSample]) -> Sequence[Sequence[TrackSample]]:
+    """Parts of a trail between which the way is not known."""
+    breaks = [
+        index
+        for index, (before, after) in enumerate(pairwise(points), 1)
+        if _is_unknown_between(before, after)
+    ]
+    ends = pairwise((0, *breaks, len(points)))
+    return [points[begin:end] for begin, end in ends]
 
 
 def _is_unknown_between(before: TrackSample, after: TrackSample) -> bool:

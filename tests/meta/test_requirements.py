@@ -42,6 +42,14 @@ def test_the_library_of_an_optional_part_is_that_which_is_tested(part: str) -> N
     assert installed == (required, pinned("requirements.lock")[required])
 
 
+def test_the_library_of_reports_is_that_which_is_tested_with_all_that_it_needs():
+    project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
+    (required,) = project["optional-dependencies"]["report"]
+    installed, tested = pinned("deploy/requirements-report.lock"), pinned("requirements.lock")
+    assert required in installed
+    assert installed.items() <= tested.items()
+
+
 def test_what_is_installed_for_real_is_all_that_the_package_needs():
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
     installed = pinned("deploy/requirements.lock")

@@ -239,6 +239,13 @@ class Records:
         with self._store.read() as session:
             return session.scalars(wanted).first()
 
+    def last_audited(self, action: str, before_ns: int) -> AuditEntry | None:
+        """The newest entry of this action that was made before."""
+        wanted = select(AuditEntry).where(AuditEntry.action == action, AuditEntry.t_ns < before_ns)
+        newest_first = wanted.order_by(AuditEntry.t_ns.desc(), AuditEntry.number.desc()).limit(1)
+        with self._store.read() as session:
+            return session.scalars(newest_first).first()
+
     def audit_entries(self, done: Window, limit: int | None = None) -> Sequence[AuditEntry]:
         """What was done in the window, newest first (``pages.newest``)."""
         wanted = select(AuditEntry).where(*_in(done, AuditEntry.t_ns))

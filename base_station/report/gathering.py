@@ -1,0 +1,340 @@
+"""Gathers the contents of a report from the database and the log."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from importlib.metadata import version
+from typing import Any, cast
+
+import msgspec
+
+from base_station.core.alarms import ALARMS
+from base_station.core.alarms.thresholds import limits_of, with_thresholds
+from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from base_station.engine.feed import LogFeed
+from base_station.replay.assessment.report import with_people
+from base_station.replay.assessment.wearers import wearers
+from base_station.replay.post_processing import read_report
+from base_station.report import texts
+from base_station.report.contents import (
+    AlarmTrace,
+    Interval,
+    OrderEntry,
+    PersonEntry,
+    ReportContents,
+    TimelineEntry,
+    UnitEntry,
+    WornTime,
+)
+from base_station.report.log_facts import LogFacts, read_facts, series_within, wanted_keys
+from base_station.report.orders import details_of, kind_name, orders_of
+from base_station.report.trail import measure
+from base_station.site.plan import Plan, salvage_plan
+from base_station.storage.db.models import AlarmRow, AlarmTransition, AuditEntry, IncidentRow
+from base_station.storage.db.records import Records, TrackSample, Window
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.log_defects import LogDefects
+from shared.clock import NS_PER_S
+from shared.messages.station import (
+    Action,
+    OpenIncident,
+    SetAccountability,
+    SetThresholds,
+)
+
+ABOUT_NS = 60 * NS_PER_S  # before and after an alarm
+MOST_TRACES = 200
+_EMERGENCY = 1  # priority
+_ACTIONS = frozenset(kind.__name__ for kind in cast("Any", Action).__args__)
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class ReportSources:
+    """What a report is made of; nothing is written."""
+
+    records: Records
+    roster: Roster
+    kept: SmoothedTracks
+    log: LogFeed
+    defects: LogDefects
+    recorded_until_ns: Callable[[], int]  # where an open incident ends
+
+
+def gather(
+    sources: ReportSources, incident: IncidentRow, on_progress: Progress = lambda _: None
+) -> ReportContents:
+    return _Gathering(sources, incident).contents(on_progress)
+
+
+class _Gathering:
+    def __init__(self, sources: ReportSources, incident: IncidentRow) -> None:
+        self._sources = sources
+        self._incident = incident
+        records = sources.records
+        until_ns = incident.closed_ns or max(sources.recorded_until_ns(), incident.opened_ns)
+        self._during = Interval(incident.opened_ns, until_ns)
+        self._window = Window(incident.opened_ns, until_ns + 1)  # the closing is of it
+        self._wearings = self._all_wearings()
+        self._alarms = sorted(
+            records.alarms(self._window), key=lambda one: (one.raised_ns, one.alarm_id)
+        )
+        entries = [one for one in records.audit_entries(self._window) if one.action in _ACTIONS]
+        self._entries = sorted(entries, key=lambda one: (one.t_ns, one.number))
+
+    def contents(self, on_progress: Progress) -> ReportContents:
+        sources, incident = self._sources, self._incident
+        geojson = sources.records.plan(self._window.until_ns)
+        plan = None if geojson is None else salvage_plan(geojson)
+        facts = self._facts(lambda done: on_progress(0.8 * done))
+        people = self._people(plan, facts, lambda done: on_progress(0.8 + 0.2 * done))
+        kept = sources.kept.report(incident.incident_id)
+        report = None if kept is None else read_report(kept)
+        traces = tuple(self._traces(facts))
+        times = self._times()
+        return ReportContents(
+            incident_id=incident.incident_id,
+            name=sources.roster.shown(incident.name),
+            during=self._during,
+            is_open=incident.closed_ns is None,
+            opened_by=incident.opened_by,
+            closed_by=incident.closed_by,
+            timeline=tuple(self._timeline()),
+            orders=self._named_orders(facts),
+            people=people,
+            alarms=len(self._alarms),
+            traces=traces,
+            traces_left_out=len(self._explained_alarms()) - len(traces),
+            plan=plan,
+            has_anchor=sources.records.anchor(self._window.until_ns) is not None,
+            assessment=report and with_people(report, wearers(sources.roster, incident)),
+            defects=tuple(sources.defects()),
+            thresholds=tuple(self._thresholds()),
+            par_interval_s=times[0],
+            work_limit_s=times[1],
+            units=tuple(self._units()),
+            version=version("muster"),
+        )
+
+    # ---- people
+
+    def _all_wearings(self) -> Mapping[str, Sequence[WornTime]]:
+        """By unit, oldest first; a unit that nobody wore has one without a name."""
+        roster = self._sources.roster
+        found: dict[str, list[WornTime]] = {}
+        last_person: dict[str, str] = {}
+        for one in roster.assignments(self._during.from_ns, self._during.until_ns):
+            until_ns = self._during.until_ns if one.until_ns is None else one.until_ns
+            during = Interval(one.from_ns, until_ns).within(self._during)
+            if during is None:
+                continue
+            known, of_unit = roster.wearer(one), found.setdefault(one.unit_id, [])
+            is_same = last_person.get(one.unit_id) == one.person_id
+            if of_unit and is_same and of_unit[-1].during.until_ns == during.from_ns:
+                during = Interval(of_unit.pop().during.from_ns, during.until_ns)
+            last_person[one.unit_id] = one.person_id
+            of_unit.append(WornTime(one.unit_id, known.name, known.crew, known.role, during))
+        for unit_id in self._sources.records.track_units(self._window):
+            found.setdefault(unit_id, [WornTime(unit_id, "", "", "", self._during)])
+        return dict(sorted(found.items()))
+
+    def _name_at(self, unit_id: str, t_ns: int) -> str:
+        for one in self._wearings.get(unit_id, ()):
+            if one.name and one.during.from_ns <= t_ns <= one.during.until_ns:
+                return f"{one.name} ({unit_id})"
+        return unit_id
+
+    def _people(
+        self, plan: Plan | None, facts: LogFacts, on_progress: Progress
+    ) -> tuple[PersonEntry, ...]:
+        found = []
+        for done, (unit_id, worn) in enumerate(self._wearings.items(), 1):
+            points = self._sources.records.track(unit_id, self._window)
+            for row, wearing in enumerate(worn):
+                found.append(self._person(row, wearing, _part(points, wearing.during), plan, facts))
+            on_progress(done / len(self._wearings))
+        found.sort(key=lambda one: (one.wearing.crew, one.wearing.name, one.wearing.unit_id))
+        return tuple(
+            msgspec.structs.replace(one, number=number) for number, one in enumerate(found, 1)
+        )
+
+    def _person(
+        self,
+        row: int,
+        wearing: WornTime,
+        points: Sequence[TrackSample],
+        plan: Plan | None,
+        facts: LogFacts,
+    ) -> PersonEntry:
+        unit = facts.units[wearing.unit_id]
+        gaps = [gap.within(wearing.during) for gap in unit.radio_gaps]
+        radio_gaps = tuple(gap for gap in gaps if gap is not None)
+        figures = measure(points, plan, radio_gaps)
+        return PersonEntry(
+            number=0,
+            wearing=wearing,
+            positions=len(points),
+            distance_m=figures.distance_m,
+            inside_s=figures.inside_s,
+            floors=figures.floors,
+            hottest=unit.hottest.get(row),
+            dose=unit.doses.get(row, 0.0),
+            radio_gaps=radio_gaps,
+            trails=figures.trails,
+            begin=_place(points[0]) if points else None,
+            end=_place(points[-1]) if points else None,
+        )
+
+    # ---- what the log has
+
+    def _facts(self, on_progress: Progress) -> LogFacts:
+        sources = self._sources
+        wearings = {
+            unit_id: [one.during for one in worn] for unit_id, worn in self._wearings.items()
+        }
+        about: dict[str, list[Interval]] = {}
+        for alarm in self._explained_alarms()[:MOST_TRACES]:
+            about.setdefault(alarm.unit_id, []).append(_about(alarm))
+        while sources.defects.look():
+            pass  # into all of it: what cannot be read is to be in the report
+        records = sources.log.records(
+            self._window.from_ns, self._window.until_ns, wanted_keys(self._wearings)
+        )
+        return read_facts(records, self._during, wearings, about, on_progress)
+
+    def _explained_alarms(self) -> Sequence[AlarmRow]:
+        """Alarms of units that are in the report, most urgent first."""
+        of_units = [one for one in self._alarms if one.unit_id in self._wearings]
+        return sorted(of_units, key=lambda one: (one.priority, one.raised_ns, one.alarm_id))
+
+    def _traces(self, facts: LogFacts) -> Iterable[AlarmTrace]:
+        rules = {rule.name: rule for rule in with_thresholds(ALARMS, self._set_thresholds())}
+        chosen = self._explained_alarms()[:MOST_TRACES]
+        lives = self._sources.records.alarm_lives([one.alarm_id for one in chosen])
+        for alarm in sorted(chosen, key=lambda one: (one.raised_ns, one.alarm_id)):
+            about, unit = _about(alarm), facts.units[alarm.unit_id]
+            window = Window(about.from_ns, about.until_ns)
+            points = self._sources.records.track(alarm.unit_id, window)
+            rule = rules.get(alarm.rule)
+            life = lives[alarm.alarm_id]
+            text = life[0].text if life else alarm.text
+            yield AlarmTrace(
+                alarm_id=alarm.alarm_id,
+                raised_ns=alarm.raised_ns,
+                rule=alarm.rule,
+                text=self._sources.roster.shown(text),
+                motionless_s=series_within(unit.motionless_s, about),
+                temperature_degc=series_within(unit.temperature_degc, about),
+                height_m=tuple((one.t_ns, -one.down_m) for one in points),
+                heard_ns=tuple(
+                    t_ns for t_ns in unit.heard_ns if about.from_ns <= t_ns <= about.until_ns
+                ),
+                thresholds=()
+                if rule is None
+                else tuple((name, float(getattr(rule, name))) for name in limits_of(rule)),
+            )
+
+    # ---- what people did
+
+    def _timeline(self) -> Iterable[TimelineEntry]:
+        entries = [*self._done(), *self._alarm_entries()]
+        return sorted(entries, key=lambda one: one.t_ns)
+
+    def _done(self) -> Iterable[TimelineEntry]:
+        for entry in self._entries:
+            said = self._said(entry)
+            name_of = partial(self._name_at, t_ns=entry.t_ns)
+            described = texts.action_text(entry.action, said, name_of) if said else texts.ERASED
+            if described is not None:
+                kind, text = described
+                is_urgent = said.get("order") == texts.ORDER_NAMES["EVACUATE"]
+                yield TimelineEntry(entry.t_ns, kind, self._shown(text), entry.by, is_urgent)
+
+    def _said(self, entry: AuditEntry) -> Mapping[str, Any]:
+        said = dict(details_of(entry))
+        if "kind" in said:
+            said["order"] = texts.order_name(kind_name(said["kind"]))
+        if said.get("person_ids"):
+            roster = self._sources.roster
+            said["people"] = [roster.known(person_id).name for person_id in said["person_ids"]]
+        return said
+
+    def _alarm_entries(self) -> Iterable[TimelineEntry]:
+        lives = self._sources.records.alarm_lives([one.alarm_id for one in self._alarms])
+        for alarm in self._alarms:
+            for change in lives[alarm.alarm_id]:
+                if change.t_ns < self._window.until_ns:
+                    yield self._alarm_entry(alarm, change)
+
+    def _alarm_entry(self, alarm: AlarmRow, change: AlarmTransition) -> TimelineEntry:
+        if change.state == "raised":
+            text = texts.alarm_raised(change.text, change.level)
+            is_urgent = alarm.priority == _EMERGENCY
+        else:
+            text, is_urgent = texts.alarm_ended(change.state, change.text), False
+        return TimelineEntry(
+            change.t_ns, texts.ALARM, self._shown(text), self._shown(change.by), is_urgent
+        )
+
+    def _named_orders(self, facts: LogFacts) -> tuple[OrderEntry, ...]:
+        return tuple(
+            msgspec.structs.replace(
+                order,
+                text=self._shown(order.text),
+                receipts=tuple(
+                    msgspec.structs.replace(one, unit_id=self._name_at(one.unit_id, order.t_ns))
+                    for one in order.receipts
+                ),
+            )
+            for order in orders_of(self._entries, facts)
+        )
+
+    def _shown(self, text: str) -> str:
+        return self._sources.roster.shown(text)
+
+    # ---- settings
+
+    def _times(self) -> tuple[float, float]:
+        """Of the roll call and of the rest, as they were at the end."""
+        par_s, work_s = PAR_INTERVAL_S, WORK_LIMIT_S
+        for entry in self._entries:
+            if entry.action in {OpenIncident.__name__, SetAccountability.__name__}:
+                said = details_of(entry)
+                par_s = said.get("par_interval_s") or par_s
+                work_s = said.get("work_limit_s") or work_s
+        return par_s, work_s
+
+    def _set_thresholds(self) -> dict[str, float]:
+        last = self._sources.records.last_audited(SetThresholds.__name__, self._window.until_ns)
+        return {} if last is None else dict(details_of(last).get("thresholds", {}))
+
+    def _thresholds(self) -> Iterable[tuple[str, float, float]]:
+        in_force = with_thresholds(ALARMS, self._set_thresholds())
+        for rule, default in zip(in_force, ALARMS, strict=True):
+            for name in limits_of(rule):
+                now, usual = float(getattr(rule, name)), float(getattr(default, name))
+                yield f"{rule.name}.{name}", now, usual
+
+    def _units(self) -> Iterable[UnitEntry]:
+        for unit_id in self._wearings:
+            unit = self._sources.roster.unit(unit_id)
+            if unit is not None:
+                yield UnitEntry(unit_id, unit.software_version, unit.tracker, unit.calibration)
+
+
+def _part(points: Sequence[TrackSample], during: Interval) -> Sequence[TrackSample]:
+    begin = bisect_right(points, during.from_ns - 1, key=lambda one: one.t_ns)
+    end = bisect_right(points, during.until_ns, key=lambda one: one.t_ns)
+    return points[begin:end]
+
+
+def _place(point: TrackSample) -> tuple[int | None, float, float]:
+    return point.floor, point.east_m, point.north_m
+
+
+def _about(alarm: AlarmRow) -> Interval:
+    return Interval(alarm.raised_ns - ABOUT_NS, alarm.raised_ns + ABOUT_NS)

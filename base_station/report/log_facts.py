@@ -1,0 +1,191 @@
+"""Facts that only the log has: radio gaps, temperatures, and what became of orders.
+
+One pass, message by message; what is kept is bounded: gaps, doses, and series about alarms only.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+
+import msgspec
+
+from base_station.core.events import Received, event_of
+from base_station.core.state.unit_heat import ExposureInterval
+from base_station.core.units import thermal_dose
+from base_station.report.contents import Interval, Series
+from shared.channels import (
+    COMMAND,
+    EVENT,
+    HEARTBEAT,
+    REPLY,
+    STATUS,
+    TEMPERATURE,
+    backfilled_key,
+    is_backfilled,
+)
+from shared.clock import NS_PER_S
+from shared.mcap_log import LogRecord
+from shared.messages import (
+    Command,
+    CommandReply,
+    CommandState,
+    Header,
+    Status,
+    Temperature,
+    UnitEvent,
+)
+
+assert STATUS.stale_after_s is not None
+GAP_NS = round(STATUS.stale_after_s * NS_PER_S)  # without a message: no radio contact
+_HEARD = (STATUS, TEMPERATURE, HEARTBEAT, EVENT, REPLY)
+_LATE = (TEMPERATURE, REPLY)  # of the journal
+
+
+class ReplyRecord(msgspec.Struct, frozen=True):
+    t_ns: int  # when the unit sent it
+    unit_id: str
+    command_id: str
+    state: CommandState
+    detail: str
+
+
+class UnitFacts(msgspec.Struct):
+    """Of one unit; ``doses`` and ``hottest`` by the wearing's place in what was given."""
+
+    radio_gaps: list[Interval] = msgspec.field(default_factory=list)
+    doses: dict[int, float] = msgspec.field(default_factory=dict)
+    hottest: dict[int, tuple[int, float]] = msgspec.field(default_factory=dict)
+    motionless_s: list[tuple[int, float]] = msgspec.field(default_factory=list)
+    temperature_degc: list[tuple[int, float]] = msgspec.field(default_factory=list)
+    heard_ns: list[int] = msgspec.field(default_factory=list)
+
+
+class LogFacts(msgspec.Struct):
+    units: dict[str, UnitFacts]
+    commands: dict[str, dict[str, int]]  # when each command went to each unit first
+    replies: list[ReplyRecord]
+
+
+def wanted_keys(unit_ids: Iterable[str]) -> Collection[str]:
+    """Keys of the records that ``read_facts`` looks at."""
+    keys = set[str]()
+    for unit_id in unit_ids:
+        keys |= {channel.key(unit_id) for channel in (*_HEARD, COMMAND)}
+        keys |= {backfilled_key(unit_id, channel.suffix) for channel in _LATE}
+    return keys
+
+
+def read_facts(
+    records: Iterable[LogRecord],
+    during: Interval,
+    wearings: Mapping[str, Sequence[Interval]],
+    about: Mapping[str, Sequence[Interval]],
+    on_progress: Callable[[float], None],
+) -> LogFacts:
+    """``wearings``: by unit, in the order of time; ``about``: times of which series are kept."""
+    readers = {
+        unit_id: _UnitReader(during, worn, about.get(unit_id, ()))
+        for unit_id, worn in wearings.items()
+    }
+    facts = LogFacts({unit_id: one.facts for unit_id, one in readers.items()}, {}, [])
+    span_ns = max(during.until_ns - during.from_ns, 1)
+    for number, (t_ns, key, payload) in enumerate(records):
+        if number % 10_000 == 0:
+            on_progress(min(max((t_ns - during.from_ns) / span_ns, 0.0), 1.0))
+        event = event_of(t_ns, key, payload)
+        if isinstance(event, Received) and event.unit_id in readers:
+            _take(facts, readers[event.unit_id], event, is_live=not is_backfilled(key))
+    for reader in readers.values():
+        reader.end()
+    return facts
+
+
+def series_within(series: Iterable[tuple[int, float]], part: Interval) -> Series:
+    return tuple(one for one in series if part.from_ns <= one[0] <= part.until_ns)
+
+
+def _take(facts: LogFacts, reader: _UnitReader, event: Received, *, is_live: bool) -> None:
+    message = event.message
+    if isinstance(message, Command):
+        facts.commands.setdefault(message.command_id, {}).setdefault(event.unit_id, event.t_ns)
+        return
+    t_ns = reader.hear(event.t_ns, message.header, is_live=is_live)
+    match message:
+        case Temperature():
+            reader.take_temperature(t_ns, message, is_live=is_live)
+        case Status():
+            reader.take_status(t_ns, message)
+        case UnitEvent(is_stop_in_order=True):
+            reader.stop()
+        case CommandReply():
+            facts.replies.append(
+                ReplyRecord(t_ns, event.unit_id, message.command_id, message.state, message.detail)
+            )
+
+
+class _UnitReader:
+    def __init__(
+        self, during: Interval, wearings: Sequence[Interval], about: Sequence[Interval]
+    ) -> None:
+        self.facts = UnitFacts()
+        self._during = during
+        self._wearings = wearings
+        self._begins_ns = [one.from_ns for one in wearings]
+        self._about = about
+        self._heard_ns: int | None = None
+        self._is_stopped = False
+        self._offsets_ns: dict[int, int] = {}  # station time less that of each boot
+        self._exposures: dict[int, list[ExposureInterval]] = {}
+
+    def hear(self, t_ns: int, header: Header, *, is_live: bool) -> int:
+        """Station time at which it was sent; one that came live is radio contact."""
+        if not is_live:
+            known_ns = self._offsets_ns.get(header.boot_id)
+            sent_ns = header.t_utc_ns if known_ns is None else header.t_mono_ns + known_ns
+            return min(t_ns, sent_ns or t_ns)
+        offset_ns = t_ns - header.t_mono_ns
+        least_ns = self._offsets_ns.get(header.boot_id, offset_ns)  # of the fastest message
+        self._offsets_ns[header.boot_id] = min(offset_ns, least_ns)
+        self._note_gap(t_ns)
+        self._heard_ns, self._is_stopped = t_ns, False
+        if self._is_about(t_ns):
+            self.facts.heard_ns.append(t_ns)
+        return t_ns
+
+    def stop(self) -> None:
+        """The unit was switched off: its silence is no radio gap."""
+        self._is_stopped = True
+
+    def end(self) -> None:
+        self._note_gap(self._during.until_ns)
+
+    def take_temperature(self, t_ns: int, message: Temperature, *, is_live: bool) -> None:
+        row = self._wearing_at(t_ns)
+        if row is None:
+            return
+        facts, header, degc = self.facts, message.header, message.ambient_degc
+        add = thermal_dose.add_live if is_live else thermal_dose.add_late
+        exposures = self._exposures.setdefault(row, [])
+        added = add(exposures, header.boot_id, header.t_mono_ns, degc)
+        facts.doses[row] = facts.doses.get(row, 0.0) + added
+        if row not in facts.hottest or degc > facts.hottest[row][1]:
+            facts.hottest[row] = t_ns, degc
+        if self._is_about(t_ns):
+            facts.temperature_degc.append((t_ns, degc))
+
+    def take_status(self, t_ns: int, message: Status) -> None:
+        if self._is_about(t_ns):
+            self.facts.motionless_s.append((t_ns, message.motionless_s))
+
+    def _note_gap(self, t_ns: int) -> None:
+        heard_ns = self._heard_ns
+        if heard_ns is not None and not self._is_stopped and t_ns - heard_ns > GAP_NS:
+            self.facts.radio_gaps.append(Interval(heard_ns, t_ns))
+
+    def _wearing_at(self, t_ns: int) -> int | None:
+        row = bisect_right(self._begins_ns, t_ns) - 1
+        return row if row >= 0 and t_ns < self._wearings[row].until_ns else None
+
+    def _is_about(self, t_ns: int) -> bool:
+        return any(one.from_ns <= t_ns <= one.until_ns for one in self._about)

@@ -1,0 +1,93 @@
+"""Orders of an incident, and what became of each at each unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import msgspec
+
+from base_station.report.contents import OrderEntry, OrderReceipt
+from base_station.report.log_facts import LogFacts, ReplyRecord
+from base_station.storage.db.models import AuditEntry
+from shared.messages import CommandKind, CommandState
+from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmation
+
+ASKED_PAR = CommandKind.PAR_REQUEST.name
+_UNKNOWN = CommandKind.UNKNOWN.name
+
+
+def orders_of(entries: Sequence[AuditEntry], facts: LogFacts) -> tuple[OrderEntry, ...]:
+    """``entries`` of the audit, oldest first."""
+    replies: dict[tuple[str, str], list[ReplyRecord]] = {}
+    for reply in facts.replies:
+        replies.setdefault((reply.command_id, reply.unit_id), []).append(reply)
+    by_radio = _confirmed_by_radio(entries)
+    found = []
+    for entry in entries:
+        sent = details_of(entry) if entry.action == SendCommand.__name__ else None
+        if not sent:
+            continue
+        command_id = str(sent["command_id"])
+        units = sorted(facts.commands.get(command_id, {}))
+        receipts = tuple(
+            _receipt(unit_id, replies.get(key, ()), by_radio.get(key))
+            for unit_id in units
+            for key in ((command_id, unit_id),)
+        )
+        found.append(
+            OrderEntry(entry.t_ns, entry.by, kind_name(sent["kind"]), sent["text"], receipts)
+        )
+    return tuple(found)
+
+
+def details_of(entry: AuditEntry) -> Mapping[str, Any]:
+    """Fields of the action that an entry of the audit is about; empty: they were erased."""
+    try:
+        details: Mapping[str, Any] = msgspec.json.decode(entry.detail, type=dict[str, Any])
+    except msgspec.DecodeError:
+        return {}
+    return details
+
+
+def kind_name(kind: int) -> str:
+    """Name of a kind of command; one of a newer program has none."""
+    return CommandKind(kind).name if kind in set(CommandKind) else _UNKNOWN
+
+
+def _receipt(
+    unit_id: str, replies: Iterable[ReplyRecord], by_radio: tuple[int, str] | None
+) -> OrderReceipt:
+    times: dict[CommandState, int] = {}
+    refused = None
+    for reply in replies:
+        times[reply.state] = min(times.get(reply.state, reply.t_ns), reply.t_ns)
+        if reply.state is CommandState.REFUSED:
+            refused = reply.detail
+    radio_ns, radio_by = by_radio or (None, "")
+    return OrderReceipt(
+        unit_id,
+        received_ns=min(times.values(), default=None),
+        acknowledged_ns=times.get(CommandState.ACKNOWLEDGED),
+        radio_ns=radio_ns,
+        radio_by=radio_by,
+        refused=refused,
+    )
+
+
+def _confirmed_by_radio(entries: Iterable[AuditEntry]) -> dict[tuple[str, str], tuple[int, str]]:
+    """When and by whom, by command and unit; what was undone is not there."""
+    confirmed: dict[tuple[str, str], tuple[int, str]] = {}
+    for entry in entries:
+        said = details_of(entry)
+        if said and entry.action == ConfirmCommand.__name__:
+            confirmed.setdefault((said["command_id"], said["unit_id"]), (entry.t_ns, entry.by))
+        elif said and entry.action == UndoConfirmation.__name__:
+            undone = [
+                one
+                for one in confirmed
+                if one[0] == said["entry_id"] and said["unit_id"] in ("", one[1])
+            ]
+            for one in undone:
+                del confirmed[one]
+    return confirmed

@@ -1,0 +1,50 @@
+"""A report as PDF, made of its HTML by the library ``weasyprint``, an optional part
+(``muster[report]``): the HTML is complete, and a browser prints it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
+from typing import Any, NoReturn
+
+from shared.errors import UserError
+
+# Its remarks are about printing styles that it does not know; there is nothing to do about them.
+logging.getLogger("weasyprint").setLevel(logging.ERROR)
+_MISSING = (
+    "the library weasyprint, which writes PDF, is not installed: pip install --require-hashes -r "
+    "deploy/requirements-report.lock; or print the HTML report in a browser"
+)
+_NO_PANGO = (
+    "the library weasyprint, which writes PDF, lacks a library of the system ({}): apt-get install "
+    "libpango-1.0-0 libpangoft2-1.0-0; or print the HTML report in a browser"
+)
+
+
+def require_library() -> None:
+    """Raises UserError where no PDF can be written."""
+    if find_spec("weasyprint") is None:
+        raise UserError(_MISSING)
+
+
+def pdf_document(html: bytes) -> bytes:
+    """The same HTML gives the same bytes.  Raises UserError where a library is missing."""
+    page: Any = _library().HTML(string=html.decode(), url_fetcher=_no_address, media_type="print")
+    written: bytes = page.write_pdf(pdf_identifier=hashlib.sha256(html).digest()[:16])
+    return written
+
+
+def _library() -> ModuleType:
+    require_library()
+    try:
+        return import_module("weasyprint")
+    except OSError as error:
+        raise UserError(_NO_PANGO.format(error)) from error
+
+
+def _no_address(address: str, *_: object, **__: object) -> NoReturn:
+    raise ValueError(f"a report has nothing outside of itself: {address}")

@@ -1,0 +1,259 @@
+"""Every English text of a report: to have it in another language is to change this file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from base_station.report.contents import OrderReceipt
+
+Said = Mapping[str, Any]
+NameOf = Callable[[str], str]  # of who wears a unit
+
+TITLE = "Incident report"
+PREPARED = (
+    "Made from the station's log. All times are UTC. Positions are as the console showed them at "
+    "the time."
+)
+OPEN_INCIDENT = "The incident is still open: this report ends with the last record of the log."
+UNKNOWN, NONE = "unknown", "none"
+NOBODY = "not assigned"
+EVERYONE = "everyone"
+
+OPENED, CLOSED, STILL_OPEN, LASTED = "Opened", "Closed", "still open", "Lasted"
+ALARMS, RADIO_GAPS = "Alarms", "Radio gaps"
+TIMELINE, PAR, ORDERS = "Timeline", "Roll calls (PAR)", "Orders"
+PLAN, PEOPLE, TRACES = "Plan by floor", "People", "Alarms explained"
+POSITIONS, RECORD, SETTINGS = "Quality of positions", "Gaps in the record", "Versions and settings"
+
+NO_ORDERS = "No order was given."
+NO_PAR = "No roll call was ordered."
+NO_PEOPLE = "Nobody wore a unit and no position was recorded."
+NO_POSITIONS = "No position was recorded."
+NO_PLAN = "No plan of the building was set: trails are drawn without walls."
+NO_ANCHOR = "The site has no place on the Earth: north in the pictures is north of the plan."
+NO_ALARMS = "No alarm was raised."
+NO_DEFECTS = "None found: every segment of the log is there and can be read."
+NO_ASSESSMENT = (
+    "Not worked out. With `muster base assess` or 'How good?' in the console it is, and the next "
+    "report has it."
+)
+NO_TIMELINE = "Nothing was recorded."
+TRAILS_KEY = (
+    "Solid line: trail with radio contact. Dashed line: radio gap, known afterwards from the "
+    "unit's memory. A line that ends without a square: the way from there on is not known. "
+    "Circle: first position. Square: last position. The number is that of the person below."
+)
+TRACES_KEY = (
+    "From 60 s before to 60 s after the alarm was raised (vertical line). Link: one mark for each "
+    "message that came by radio. Dotted: the threshold of the rule."
+)
+PEOPLE_KEY = (
+    "Distance: along the trail shown. Inside: within the outline of the plan. Heat budget: part of "
+    "what the equipment is made for (NIST TN 1474); it says nothing of the wearer's condition. "
+    "Radio gap: more than 10 s without a message."
+)
+POSITIONS_KEY = (
+    "Light: for which part of the time the station's own light was green, amber, red. "
+    "CE95: horizontal error that 95 % of the positions do not exceed (ISO/IEC 18305), as stated at "
+    "the time and against the trail as it is known afterwards."
+)
+CHANGED = "changed"
+
+HEAD_TIMELINE = ("Time", "Kind", "Event", "By")
+HEAD_ORDERS = ("Time", "Order", "By", "To", "Acknowledged", "Not acknowledged")
+HEAD_PAR = ("Time", "By", "Asked", "Answered", "No answer")
+HEAD_PEOPLE = (
+    "No.", "Person", "Unit", "From to", "Distance", "Inside", "Floors", "Hottest", "Heat budget",
+    "Radio gaps",
+)  # fmt: skip
+HEAD_POSITIONS = (
+    "Unit", "Light: green amber red", "Main reason", "CE95 stated", "CE95 known", "Floor right",
+)  # fmt: skip
+HEAD_UNITS = ("Unit", "Software", "Tracker", "Calibration")
+HEAD_THRESHOLDS = ("Threshold", "In force", "Default", "")
+
+ALARM, ORDER, PERSON, SITE, INCIDENT, STATION = (
+    "Alarm", "Order", "People", "Site", "Incident", "Station",
+)  # fmt: skip
+ERASED = (SITE, "Entry about a person who was forgotten")
+MOTIONLESS, TEMPERATURE, HEIGHT, LINK = "still, s", "air, °C", "height, m", "link"
+NORTH = "N"
+
+ORDER_NAMES = {
+    "EVACUATE": "Evacuate",
+    "PAR_REQUEST": "Roll call (PAR)",
+    "TEXT": "Message",
+    "LOCATE": "Locate",
+    "SET_POSITION_RATE": "Position rate",
+    "RESET_ALARM": "Reset alarm",
+}
+
+
+def clock_time(t_ns: int) -> str:
+    return f"{datetime.fromtimestamp(t_ns // 1_000_000_000, UTC):%H:%M:%S}"
+
+
+def date_and_time(t_ns: int) -> str:
+    return f"{datetime.fromtimestamp(t_ns // 1_000_000_000, UTC):%Y-%m-%d %H:%M:%S}"
+
+
+def duration(seconds: float) -> str:
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    hours, minutes = divmod(whole // 60, 60)
+    return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {whole % 60:02} s"
+
+
+def floor_name(floor: int | None) -> str:
+    return "floor unknown" if floor is None else f"floor {floor}"
+
+
+def counted(count: int, one: str, many: str) -> str:
+    return f"{count} {one if count == 1 else many}"
+
+
+def when_and_by(t_ns: int, by: str) -> str:
+    return f"{date_and_time(t_ns)} by {by}"
+
+
+def from_to(from_ns: int, until_ns: int) -> str:
+    return f"{clock_time(from_ns)} to {clock_time(until_ns)}"
+
+
+def alarms_of_which(alarms: int, urgent: int) -> str:
+    return f"{alarms}, raised as urgent {counted(urgent, 'time', 'times')}"
+
+
+def hottest(t_ns: int, degc: float) -> str:
+    return f"{degc:.0f} °C at {clock_time(t_ns)}"
+
+
+def radio_gaps(gaps: str) -> str:
+    return f"{RADIO_GAPS}: {gaps}"
+
+
+def order_name(kind: str) -> str:
+    return ORDER_NAMES.get(kind, kind.lower().replace("_", " "))
+
+
+def acknowledged(receipt: OrderReceipt, name: str, ordered_ns: int) -> str:
+    if receipt.acknowledged_ns is not None:
+        after = duration(max(receipt.acknowledged_ns - ordered_ns, 0) / 1e9)
+        return f"{name} (own unit, after {after})"
+    assert receipt.radio_ns is not None
+    after = duration(max(receipt.radio_ns - ordered_ns, 0) / 1e9)
+    return f"{name} (by radio, entered by {receipt.radio_by} after {after})"
+
+
+def not_acknowledged(receipt: OrderReceipt, name: str) -> str:
+    if receipt.refused is not None:
+        return f"{name} (refused: {receipt.refused})"
+    return f"{name} ({'received' if receipt.received_ns is not None else 'not received'})"
+
+
+def alarm_raised(text: str, level: str) -> str:
+    return f"{text} ({level})" if level else text
+
+
+def alarm_ended(state: str, text: str) -> str:
+    return f"{state}: {text}"
+
+
+def more_in_timeline(count: int) -> str:
+    return f"{count} more in the timeline"
+
+
+def traces_left_out(count: int) -> str:
+    return f"{counted(count, 'alarm more has', 'alarms more have')} no picture here."
+
+
+def action_text(action: str, said: Said, name_of: NameOf) -> tuple[str, str] | None:
+    """Kind and sentence of an operator's action; None: other parts of the report have it."""
+    describe = _ACTIONS.get(action)
+    return _PLAIN_ACTIONS.get(action) if describe is None else describe(said, name_of)
+
+
+def _order(said: Said, name_of: NameOf) -> tuple[str, str]:
+    text = f": {said['text']}" if said["text"] else ""
+    return ORDER, f"{said['order']} to {_to(said, name_of)}{text}"
+
+
+def _to(said: Said, name_of: NameOf) -> str:
+    if said.get("everyone"):
+        return EVERYONE
+    if said.get("unit_id"):
+        return name_of(said["unit_id"])
+    if said.get("crew"):
+        return f"crew {said['crew']}"
+    people: Sequence[str] = said.get("people", ())
+    return ", ".join(people) or EVERYONE
+
+
+def _despite(said: Said) -> str:
+    alarms, people = len(said["despite_alarm_ids"]), len(said["despite_unit_ids"])
+    if not alarms and not people:
+        return ""
+    return (
+        f", knowingly over {counted(alarms, 'open alarm', 'open alarms')} and "
+        f"{counted(people, 'person', 'people')} inside"
+    )
+
+
+_ACTIONS: Mapping[str, Callable[[Said, NameOf], tuple[str, str]]] = {
+    "SendCommand": _order,
+    "ConfirmCommand": lambda said, name_of: (
+        ORDER,
+        f"{name_of(said['unit_id'])} answered an order by radio",
+    ),
+    "CheckIn": lambda said, name_of: (ORDER, f"PAR by radio: {_to(said, name_of)}"),
+    "UndoConfirmation": lambda said, name_of: (
+        ORDER,
+        f"Answer by radio taken back: {name_of(said['unit_id']) if said['unit_id'] else EVERYONE}",
+    ),
+    "OpenIncident": lambda said, _: (INCIDENT, f"Incident opened: {said['name']}"),
+    "CloseIncident": lambda said, _: (INCIDENT, f"Incident closed{_despite(said)}"),
+    "Assign": lambda said, _: (PERSON, f"{said['person_name']} wears {said['unit_id']}"),
+    "Unassign": lambda said, _: (PERSON, f"{said['unit_id']} is worn by nobody"),
+    "SetRest": lambda said, name_of: (
+        PERSON,
+        f"{name_of(said['unit_id'])} {'goes to rest' if said['resting'] else 'is back at work'}",
+    ),
+    "SetAccountability": lambda said, _: (
+        INCIDENT,
+        f"Roll call every {duration(said['par_interval_s'])}, rest after "
+        f"{duration(said['work_limit_s'])}",
+    ),
+    "RegisterUnit": lambda said, _: (STATION, f"Unit {said['unit_id']} registered"),
+    "SetStart": lambda said, name_of: (SITE, f"Start of {name_of(said['unit_id'])} set"),
+    "SetReference": lambda said, _: (SITE, f"Barometer reference: {said['unit_id'] or NONE}"),
+    "SetPin": lambda said, name_of: (
+        SITE,
+        f"Pin for {name_of(said['unit_id'])}{': ' if said['note'] else ''}{said['note']}",
+    ),
+    "TakeOver": lambda said, _: (STATION, f"Station {said['station']} took over"),
+    "DoneApart": lambda said, _: (
+        STATION,
+        f"While the stations were apart, {said['who']} at {said['station']}: {said['what']}",
+    ),
+}
+_PLAIN_ACTIONS = {
+    "SetThresholds": (STATION, "Alarm thresholds set"),
+    "SetPlan": (SITE, "Plan of the building set"),
+    "SetAnchor": (SITE, "Place of the site on the Earth set"),
+    "StartTogether": (SITE, "Common start set"),
+    "SetMeeting": (SITE, "Meeting of two people set"),
+    "RemovePin": (SITE, "Pin removed"),
+    "PlaceBeacon": (SITE, "Beacon placed"),
+    "RemoveBeacon": (SITE, "Beacon removed"),
+}
+
+
+def made_by(version: str, par_interval_s: float, work_limit_s: float) -> str:
+    return (
+        f"Made by Muster {version}. At the end of the incident: roll call every "
+        f"{duration(par_interval_s)}, rest after {duration(work_limit_s)}, and these thresholds of "
+        "the alarms:"
+    )
