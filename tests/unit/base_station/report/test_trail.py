@@ -66,7 +66,8 @@ def test_time_inside_and_on_each_floor():
     inside = [point(30.0 + second, 10.0, 5.0, 1) for second in range(31)]
     figures = measure([*outside, *inside], read_plan(plan()), ())
     assert figures.inside_s == pytest.approx(30.0, abs=5.0)
-    assert figures.floors == ((0, pytest.approx(30.0)), (1, pytest.approx(30.0)))
+    assert [floor for floor, _ in figures.floors] == [0, 1]
+    assert [seconds for _, seconds in figures.floors] == pytest.approx([30.0, 30.0])
     assert measure(inside, None, ()).inside_s is None
 
 
