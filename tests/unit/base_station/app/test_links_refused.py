@@ -58,7 +58,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "fetch-recording": ("FF-01", "--from", "2026-03-01T10:00"),
 }
 WITHOUT_FOLDER = {
-    *("replay", "assess", "smooth", "report"),  # they look at what somebody gave, and write none of it
+    # They look at what somebody gave, and write none of it.
+    *("replay", "assess", "smooth", "report"),
     "compile",  # into the program's own
 }
 PKI_COMMANDS: dict[str, tuple[str, ...]] = {
