@@ -154,3 +154,17 @@ def test_it_fits_every_screen(stage: Stage, enrolment: Enrolment) -> None:
         if stands == "list":
             enrol(dialog)
     assert {where: what for where, what in found.items() if what} == {}
+
+
+def test_a_token_for_posting_samples_is_shown_once(stage: Stage) -> None:
+    picture = scenes.quiet()
+    made = {"token_id": "t1", "token": "muster_shown-once"}
+    of_units = {f"POST /units/{one.unit_id}/sample-tokens": made for one in picture.units}
+    answered = answers("administrator", {"/enrolments": ENROLLED, **of_units})
+    page, _ = stage.open(picture, "laptop", answered)
+    dialog = dialog_of(page)
+    dialog.get_by_text("A unit that posts samples").click()
+    dialog.get_by_role("button", name="Make token").click()
+    expect(dialog.get_by_text("muster_shown-once")).to_be_visible()
+    close(dialog)
+    assert "muster_shown-once" not in page.content()

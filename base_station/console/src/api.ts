@@ -56,6 +56,7 @@ export const SCOPES = [
   "pins",
   "recordings",
   "replays",
+  "samples",
   "site",
   "standby",
   "tokens",
@@ -101,6 +102,9 @@ export const enrolments = () => call<EnrolledUnit[]>("GET", "/enrolments");
 /** Its private key is in the answer alone: it cannot be asked for again. */
 export const enrol = (unitId: string, renew: boolean) =>
   call<ShownEnrolment>("POST", "/enrolments", { unit_id: unitId, renew });
+/** The secret is in the answer alone, too. */
+export const addUnitToken = (unitId: string) =>
+  call<answers.UnitTokenSecret>("POST", `/units/${id(unitId)}/sample-tokens`, {});
 export const assign = (unitId: string, personId: string) =>
   act<void>("POST", "/assignments", { unit_id: unitId, person_id: personId });
 export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/${id(unitId)}`);

@@ -6,6 +6,7 @@ import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { QrCode } from "./QrCode";
+import { UnitTokens } from "./UnitTokens";
 import { useSinglePress } from "./useGuardedPress";
 import { fields, useLoaded } from "./useLoaded";
 import { Waiting } from "./Waiting";
@@ -49,6 +50,7 @@ export function EnrolmentsDialog() {
           </table>
           {enrolled.value === null && <Waiting />}
           {enrolled.value?.length === 0 && <p class="quiet">No unit is enrolled yet.</p>}
+          <UnitTokens />
         </>
       ) : (
         <Shown enrolment={made.value} onDone={() => (made.value = null)} />
