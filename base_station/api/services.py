@@ -23,6 +23,7 @@ from base_station.engine.ports import ActionResult, OperatorGate
 from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.replay.post_processing import PostProcessor
+from base_station.report.process import ReportProcess
 from base_station.security.pki.folder import PkiFolder
 from base_station.site.plan_reader import PlanReader
 from base_station.storage.db.accounts import Accounts
@@ -56,6 +57,7 @@ class Services:
     is_replay_only: bool = False  # what is changed would be lost with its copy of the database
     recordings: TransferQueue | None = None  # None: a station that only replays
     post_processor: PostProcessor | None = None  # None: a station without a log
+    reports: ReportProcess | None = None  # None: a station that only replays
     pki: PkiFolder | None = None  # None: a station that enrols nobody
     intake: SampleIntake | None = None  # None: a station that only replays
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)

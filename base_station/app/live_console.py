@@ -13,6 +13,7 @@ from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.sample_intake import SampleIntake
 from base_station.replay.processes.replay_process import ReplayContext
+from base_station.report.process import ReportProcess
 from base_station.storage.db.base_maps import BaseMaps
 
 
@@ -34,6 +35,7 @@ def new_services(parts: LiveParts) -> Services:
         ha_status=parts.side.ha_status,
         recordings=resources.recordings,
         post_processor=parts.post_processor,
+        reports=_reports(parts),
         plans=parts.plans,
         pki=resources.pki,
         intake=SampleIntake(parts.gate.deliver, resources.bus, disk.clock),
@@ -52,6 +54,18 @@ def new_server(parts: LiveParts, services: Services, on_stop: Callable[[], None]
         http.private_key,
         on_stop=on_stop,
         is_known=app.state.known_networks.__contains__,
+    )
+
+
+def _reports(parts: LiveParts) -> ReportProcess:
+    disk = parts.resources.disk
+    return ReportProcess(
+        processes=parts.replays,
+        log=str(disk.folder.log),
+        database=str(disk.folder.database),
+        prepare=disk.recorder.flush,
+        note_damage=disk.check.recheck,
+        known_segments=disk.known_segments,
     )
 
 

@@ -19,18 +19,27 @@ from base_station.replay.processes.post_processing_work import (
 from base_station.replay.processes.replay_work import replay
 from base_station.replay.processes.wire import (
     Damage,
+    Failure,
     FrameChannel,
     Job,
     PostProcessingJob,
     ReplayJob,
+    ReportFrame,
+    ReportJob,
     read_job,
 )
+from base_station.report.document import html_document
+from base_station.report.gathering import ReportSources, gather
+from base_station.report.pdf import pdf_document
 from base_station.storage.checkpoints import Checkpoints
+from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.store import Store
 from base_station.storage.log_defects import LogDefects
 from shared.clock import SystemClock
+from shared.errors import MusterError
 
 
 def work(line: FrameChannel) -> None:
@@ -46,21 +55,25 @@ def work(line: FrameChannel) -> None:
             line.send(Damage(what))
 
     log = LogFeed(Path(job.log), on_damage=note_damage)
-    checkpoints = Checkpoints(Path(job.checkpoints))
-    archive = Archive(
+    match job:
+        case ReplayJob():
+            replay(job, _archive(job, log, flaws), SystemClock(), line)
+        case PostProcessingJob():
+            _look_back(job, _archive(job, log, flaws), line)
+        case ReportJob():
+            _report(job, log, flaws, line)
+
+
+def _archive(job: ReplayJob | PostProcessingJob, log: LogFeed, flaws: LogDefects) -> Archive:
+    return Archive(
         log.records,
-        checkpoints,
+        Checkpoints(Path(job.checkpoints)),
         past_pipeline,
         log.watch,
         flaws=flaws,
         look=flaws.look,
         note=flaws.note,
     )
-    match job:
-        case ReplayJob():
-            replay(job, archive, SystemClock(), line)
-        case PostProcessingJob():
-            _look_back(job, archive, line)
 
 
 def _flaws_of(job: Job) -> LogDefects:
@@ -68,7 +81,7 @@ def _flaws_of(job: Job) -> LogDefects:
     match job:
         case ReplayJob():
             return LogDefects(log, job.known_segments, is_written=True, until_ns=job.end_ns)
-        case PostProcessingJob():
+        case PostProcessingJob() | ReportJob():
             return LogDefects(
                 log,
                 job.known_segments,
@@ -84,3 +97,23 @@ def _look_back(job: PostProcessingJob, archive: Archive, line: FrameChannel) -> 
         clock = StationTime(job.now_ns, SystemClock())
         post_processor = PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
         post_process(job, post_processor, Records(store, clock).tracks_of(incident_of(job)), line)
+
+
+def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel) -> None:
+    stand_back(line)
+    try:
+        with Store(Path(job.database)) as store:
+            clock = SystemClock()
+            records = Records(store, clock)
+            sources = ReportSources(
+                records=records,
+                roster=Roster(store, clock),
+                kept=SmoothedTracks(store),
+                log=log,
+                defects=flaws,
+                recorded_until_ns=DataFolder(Path(job.log).parent).recorded_until_ns,
+            )
+            page = html_document(gather(sources, records.require_incident(job.incident_id)))
+        line.send(ReportFrame(pdf_document(page) if job.as_pdf else page))
+    except MusterError as error:
+        line.send(Failure(str(error), is_memory=False))

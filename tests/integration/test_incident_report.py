@@ -13,10 +13,17 @@ from typer.testing import CliRunner, Result
 
 from base_station.app import folder_commands as station_app
 from base_station.cli import app
+from base_station.replay.processes.server import ReplayProcesses
 from base_station.report.floor_pictures import COLOURS
+from base_station.report.process import ReportProcess
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.models import IncidentRow
+from base_station.storage.db.records import Records
+from base_station.storage.db.store import Store
 from shared.channels import OPERATOR, POSITION
+from shared.clock import SystemClock
 from shared.codec import decode
-from shared.errors import UserError
+from shared.errors import StoreError, UserError
 from shared.mcap_log import segment_paths
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import SetAnchor, SetPlan
@@ -240,3 +247,27 @@ def test_positions_are_judged_where_that_is_wanted(given: Path, tmp_path: Path) 
     assert "Not worked out" in section(_page(given, tmp_path / "a.html"), "Quality of positions")
     judged = section(_page(given, tmp_path / "b.html", "--assess"), "Quality of positions")
     assert re.search(r"Anna Vos \(FF-01\) \d+% \d+% \d+%", judged)
+
+
+def test_a_station_makes_the_same_report_in_a_process_of_its_own(
+    written: bytes, tmp_path: Path
+) -> None:
+    write_log(tmp_path, incident_records())
+    station_app.rebuild(tmp_path, lambda _: None)
+    folder, prepared, damage = DataFolder(tmp_path), list[bool](), list[str]()
+    with Store(folder.database) as store, ReplayProcesses() as processes:
+        incident = Records(store, SystemClock()).require_incident("i1")
+        reports = ReportProcess(
+            processes=processes,
+            log=str(folder.log),
+            database=str(folder.database),
+            prepare=lambda: prepared.append(True),
+            note_damage=damage.append,
+            known_segments=tuple,
+        )
+        assert reports.make(incident, as_pdf=False) == written
+        assert reports.make(incident, as_pdf=True).startswith(b"%PDF")
+        missing = IncidentRow(incident_id="i9", name="", opened_ns=1, closed_ns=2)
+        with pytest.raises(StoreError, match="no incident i9"):
+            reports.make(missing, as_pdf=False)
+    assert (len(prepared), damage) == (3, [])

@@ -126,6 +126,8 @@ export const incidentAlarms = (incidentId: string) =>
   fetchAllPages<PastAlarm>(`/incidents/${id(incidentId)}/alarms`, (alarm) => alarm.raised_ms);
 
 export const exportFormats = () => call<ExportFormat[]>("GET", "/export-formats");
+export const report = (incidentId: string, suffix: "html" | "pdf") =>
+  file(`/incidents/${id(incidentId)}/report.${suffix}`);
 export const exported = (incidentId: string, format: string, kind: string) =>
   file(`/incidents/${id(incidentId)}/export/${id(format)}?kind=${kind}`);
 

@@ -45,6 +45,18 @@ class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
     known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
 
 
+class ReportJob(msgspec.Struct, frozen=True, tag="report"):
+    """First to a new process: to write the report on an incident."""
+
+    log: str
+    database: str
+    incident_id: str
+    opened_ns: int
+    closed_ns: int | None
+    as_pdf: bool
+    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+
+
 class Play(msgspec.Struct, frozen=True, tag="play"):
     pass
 
@@ -115,6 +127,12 @@ class PostProcessingResultFrame(msgspec.Struct, frozen=True, tag="looked_back"):
     is_kept: bool
 
 
+class ReportFrame(msgspec.Struct, frozen=True, tag="reported"):
+    """The last message: the report as a file."""
+
+    content: bytes
+
+
 class Failure(msgspec.Struct, frozen=True, tag="failure"):
     """The last message: why there is no more, as a sentence for a person."""
 
@@ -122,12 +140,13 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
     is_memory: bool  # there is not enough of it, nor would there be the next time
 
 
-Job = ReplayJob | PostProcessingJob
+Job = ReplayJob | PostProcessingJob | ReportJob
 Command = Play | Pause | Seek | SetSpeed | People | SnapshotRequest
 ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
 PostProcessingReport = (
     ProgressFrame | UnitTrailsFrame | PostProcessingResultFrame | Damage | Failure
 )
+IncidentReportResult = ReportFrame | Damage | Failure
 
 
 class FrameChannel:
@@ -137,7 +156,9 @@ class FrameChannel:
         self._end = end
         self._sending = Lock()
 
-    def send(self, message: Job | Command | ReplayReport | PostProcessingReport) -> None:
+    def send(
+        self, message: Job | Command | ReplayReport | PostProcessingReport | ReportFrame
+    ) -> None:
         """Raises StoreError where the other end is gone."""
         encoded = msgspec.msgpack.encode(message)
         with self._sending:
@@ -198,3 +219,8 @@ def read_replay(encoded: bytes) -> ReplayReport:
 def read_look_back(encoded: bytes) -> PostProcessingReport:
     report: PostProcessingReport = msgspec.msgpack.decode(encoded, type=PostProcessingReport)
     return report
+
+
+def read_report_result(encoded: bytes) -> IncidentReportResult:
+    result: IncidentReportResult = msgspec.msgpack.decode(encoded, type=IncidentReportResult)
+    return result

@@ -18,7 +18,7 @@ import { fields, useLoaded } from "./useLoaded";
 import { usePages } from "./usePages";
 import { Waiting } from "./Waiting";
 
-const COLUMNS = ["Incident", "Opened", "Lasted", "Replay", "Tracks", "Positions"];
+const COLUMNS = ["Incident", "Opened", "Lasted", "Replay", "Tracks", "Report", "Positions"];
 
 export function IncidentsDialog() {
   const { entries, loaded, older, again } = usePages(api.incidents, (one) => one.opened_ms);
@@ -68,6 +68,9 @@ export function IncidentsDialog() {
               </td>
               <td>
                 <Downloads incident={incident} formats={formats.value ?? []} />
+              </td>
+              <td data-label="Report">
+                <Report incident={incident} />
               </td>
               <td>
                 <button
@@ -200,11 +203,10 @@ function MinutesField({ name, label, valueS }: { name: string; label: string; va
 const TAKEN_MS = 60_000; // by then the browser has the file
 
 /** The console stays: the browser would leave it for an answer that is a refusal. */
-async function save(incident: api.Incident, kind: TrailKind, format: api.ExportFormat): Promise<void> {
+async function save(content: Promise<Blob>, name: string): Promise<void> {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(await api.exported(incident.incident_id, format.name, kind));
-  const which = kind === "fused" ? "" : `-${kind}`; // as the station names it
-  link.download = `${incident.incident_id}${which}.${format.suffix}`;
+  link.href = URL.createObjectURL(await content);
+  link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), TAKEN_MS);
 }
@@ -222,7 +224,9 @@ function Downloads({ incident, formats }: DownloadsProps) {
     const file = files.find((one) => keyOf(one.kind, one.format) === key);
     if (file === undefined) return;
     writing.value = true;
-    await attempt(save(incident, file.kind, file.format));
+    const which = file.kind === "fused" ? "" : `-${file.kind}`; // as the station names it
+    const content = api.exported(incident.incident_id, file.format.name, file.kind);
+    await attempt(save(content, `${incident.incident_id}${which}.${file.format.suffix}`));
     writing.value = false;
   });
   return (
@@ -242,6 +246,32 @@ function Downloads({ incident, formats }: DownloadsProps) {
         </optgroup>
       ))}
     </select>
+  );
+}
+
+/** What happened, as a document to hand over. */
+function Report({ incident }: { incident: api.Incident }) {
+  const writing = useSignal(false);
+  const write = async (suffix: "html" | "pdf") => {
+    writing.value = true;
+    const content = api.report(incident.incident_id, suffix);
+    await attempt(save(content, `${incident.incident_id}-report.${suffix}`));
+    writing.value = false;
+  };
+  return (
+    <span class="row">
+      {(["html", "pdf"] as const).map((suffix) => (
+        <button
+          key={suffix}
+          type="button"
+          disabled={writing.value}
+          aria-label={`Report on ${incident.name} as ${suffix.toUpperCase()}`}
+          onClick={() => void write(suffix)}
+        >
+          {suffix.toUpperCase()}
+        </button>
+      ))}
+    </span>
   );
 }
 
