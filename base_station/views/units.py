@@ -88,7 +88,7 @@ def _unit_view(
         unit.link,
         to_ms_or_none(unit.last_message_ns),
         _status_view(unit, status) if status else None,
-        to_ms_or_none(unit.status_ns) if unit.status else None,
+        to_ms_or_none(unit.shown_status_ns) if status else None,
         heat.temperature.ambient_degc if heat.temperature else None,
         levels.get("heat", ""),
         round(heat.dose, 2),

@@ -141,12 +141,16 @@ class UnitState(MessageStream):
 
     @property
     def shown_status(self) -> Status | None:
-        """Its own status, with what only strides tell from the agent that tracks for it."""
+        """Its own status, with what only strides tell from the agent that tracks for it; of a unit
+        that posts samples, and nothing else, the agent's of its wearer.
+        """
         agent = self.tracker
-        if self.status is None or agent is None or agent.status is None:
+        if agent is None or agent.status is None or not self.is_tracked_remotely:
             return self.status
-        if not self.is_tracked_remotely:
-            return self.status
+        if self.status is None:
+            return msgspec.structs.replace(
+                agent.status, battery=None, battery_left_s=None, mayday=False, electronics=()
+            )
         gone = self.status_ns - agent.status_ns >= STALE_AFTER_S * NS_PER_S
         return msgspec.structs.replace(
             self.status,
@@ -158,6 +162,12 @@ class UnitState(MessageStream):
             posture=BodyPosture.UNKNOWN if gone else agent.status.posture,
             posture_confidence=0.0 if gone else agent.status.posture_confidence,
         )
+
+    @property
+    def shown_status_ns(self) -> int:
+        """When the status that is shown came."""
+        agent = self.tracker
+        return agent.status_ns if self.status is None and agent is not None else self.status_ns
 
     def count_rejected(self, reason: str) -> None:
         """Count a message whose content was not used."""

@@ -135,6 +135,15 @@ def test_stale_strides_of_the_agent_do_not_replace_the_activity(script: Remote) 
     assert (shown.activity, shown.steps) == (Activity.CRAWLING, 120)
 
 
+def test_of_a_unit_that_only_posts_samples_the_agent_tells_the_activity(script: Remote) -> None:
+    assert not script.unit.shown_status
+    script.status(AGENT, activity=Activity.WALKING, steps=12, battery=0.1, mayday=True)
+    shown = script.unit.shown_status
+    assert (shown.activity, shown.steps) == (Activity.WALKING, 12)
+    assert (shown.battery, shown.mayday) == (None, False)
+    assert script.unit.shown_status_ns == script.t_ns
+
+
 def test_unit_that_tracks_itself_shows_its_own_status() -> None:
     script = Remote(tracker="eskf")
     script.status(U, steps=10)
