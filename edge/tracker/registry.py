@@ -10,10 +10,14 @@ from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.body.tracker import BodyTracker
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.output.track_rows import empty_rows
+from edge.tracker.fused_paths.tracker import FOOT_AND_TRUNK, TWO_FEET, FusedPathsTracker
 from edge.tracker.hip.state import HipConfig
 from edge.tracker.hip.tracker import HipTracker
 from edge.tracker.huang.tracker import HuangTracker
 from edge.tracker.interface import (
+    FOOT,
+    LEFT_FOOT,
+    RIGHT_FOOT,
     BodyDimensions,
     MultiSensorTracker,
     MultiSensorTrackerEntry,
@@ -79,6 +83,18 @@ MULTI_SENSOR_TRACKERS: tuple[MultiSensorTrackerEntry, ...] = (
         "velocity of a torso, put right by a shank once a stride",
         TorsoShankTracker,
         (("chest", "waist"), ("shank",)),
+    ),
+    MultiSensorTrackerEntry(
+        "two_feet",
+        "paths of both feet, each by eskf, fused into one",
+        partial(FusedPathsTracker, config=TWO_FEET),
+        ((LEFT_FOOT, FOOT), (RIGHT_FOOT, FOOT)),
+    ),
+    MultiSensorTrackerEntry(
+        "foot_and_trunk",
+        "path of a foot, and of the trunk where the foot fails, with lengths learnt from it",
+        partial(FusedPathsTracker, config=FOOT_AND_TRUNK),
+        ((FOOT, LEFT_FOOT, RIGHT_FOOT), ("waist", "chest", "hip")),
     ),
 )
 

@@ -1,0 +1,1 @@
+"""Trackers that fuse the paths of two sensors of one person into one."""
