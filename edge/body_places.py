@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 FOOT = "foot"  # either
+LEFT_FOOT, RIGHT_FOOT = "left_foot", "right_foot"
+LEG, UPPER_BODY = "leg", "upper_body"  # as recognised by motion: shank or thigh; trunk or hand
 
 # What each is for a tracker that does not tell it from others.
 PLACES: dict[str, str] = {
     FOOT: FOOT,
-    "left_foot": FOOT,
-    "right_foot": FOOT,
+    LEFT_FOOT: FOOT,
+    RIGHT_FOOT: FOOT,
     "shank": "shank",
     "thigh": "pocket",
     "pocket": "pocket",
@@ -18,6 +20,8 @@ PLACES: dict[str, str] = {
     "torso": "chest",
     "chest": "chest",
     "hand": "hand",
+    LEG: "pocket",
+    UPPER_BODY: "waist",
 }
 
 

@@ -21,6 +21,18 @@ Unit = Annotated[str | None, typer.Option(help="Name of this unit.")]
 SamplesFrom = Annotated[
     str | None, typer.Option(help="Where samples come from; `muster edge sources` lists the kinds.")
 ]
+Sensors = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--sensor",
+        help="One of several sensors on one person, as NAME=SOURCE; a NAME such as left_foot or "
+        "lower_back says where it is worn; may be repeated.",
+    ),
+]
+WornOn = Annotated[
+    str | None,
+    typer.Option(help="Part of the body that wears the only sensor: foot, chest, lower_back ..."),
+]
 Sightings = Annotated[
     str | None, typer.Option(help="A reader of beacons and tags: tcp:HOST:PORT or a device's path.")
 ]
@@ -77,7 +89,10 @@ Data = Annotated[
 ]
 TrackedBy = Annotated[
     str | None,
-    typer.Option(help="`muster edge trackers` lists them; none: track on another machine."),
+    typer.Option(
+        help="`muster edge trackers` lists them; by-place: by where the sensors are worn; auto: "
+        "recognise that by their motion; none: track on another machine."
+    ),
 ]
 Calibrated = Annotated[
     Path | None, typer.Option(help="File from `muster edge calibrate` for these sensors.")
@@ -107,6 +122,8 @@ def run(
     config: Config = None,
     unit: Unit = None,
     source: SamplesFrom = None,
+    sensor: Sensors = None,
+    worn_on: WornOn = None,
     sightings: Sightings = None,
     gps: Gps = None,
     temperature: Temperature = None,
@@ -134,6 +151,8 @@ def run(
         "unit": unit,
         "enrolment": enrolment,
         "source": source,
+        "sensors": _sensor_tables(sensor),
+        "worn_on": worn_on,
         "sightings": sightings,
         "gps": gps,
         "temperatures": temperature,
@@ -157,6 +176,8 @@ def check(
     config: Config = None,
     unit: Unit = None,
     source: SamplesFrom = None,
+    sensor: Sensors = None,
+    worn_on: WornOn = None,
     sightings: Sightings = None,
     gps: Gps = None,
     temperature: Temperature = None,
@@ -181,6 +202,8 @@ def check(
         "unit": unit,
         "enrolment": enrolment,
         "source": source,
+        "sensors": _sensor_tables(sensor),
+        "worn_on": worn_on,
         "sightings": sightings,
         "gps": gps,
         "temperatures": temperature,
@@ -240,10 +263,12 @@ def sources() -> None:
 @app.command()
 def trackers() -> None:
     """List the trackers."""
-    from edge.tracker.registry import TRACKERS  # noqa: PLC0415
+    from edge.tracker.registry import MULTI_SENSOR_TRACKERS, TRACKERS  # noqa: PLC0415
 
-    for entry in TRACKERS:
-        typer.echo(f"{entry.name:10} {entry.summary}")
+    one = [(entry.name, entry.summary) for entry in TRACKERS]
+    several = [(entry.name, entry.summary) for entry in MULTI_SENSOR_TRACKERS]
+    for name, summary in (*one, *several):
+        typer.echo(f"{name:14} {summary}")
 
 
 @app.command()
@@ -260,3 +285,18 @@ def compile_() -> None:
     from edge.app.jit_warmup import compile_trackers  # noqa: PLC0415
 
     compile_trackers()
+
+
+def _sensor_tables(given: list[str] | None) -> list[dict[str, str]] | None:
+    """Return NAME=SOURCE of each sensor as in a settings file; None where none is given."""
+    if not given:
+        return None
+    tables = []
+    for text in given:
+        name, equals, source = text.partition("=")
+        if not (name and equals and source):
+            raise typer.BadParameter(
+                f"--sensor {text!r}: write NAME=SOURCE, as in left_foot=ximu3:tcp://192.168.1.1"
+            )
+        tables.append({"name": name, "source": source})
+    return tables

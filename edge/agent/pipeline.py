@@ -12,15 +12,14 @@ from dataclasses import dataclass
 import msgspec
 
 from edge.activity.body_posture import BodyPostureEstimator
-from edge.activity.monitor import ActivityMonitor
 from edge.activity.mounting import MountingCheck
 from edge.agent.batteries import Batteries
 from edge.agent.decimation import Decimator, OncePerPeriod
 from edge.agent.expected_field import ExpectedField
 from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.position_publisher import PositionPublisher
-from edge.agent.sensor_health import SensorHealth
 from edge.agent.temperatures import AmbientTemperature, CurrentReadings
+from edge.agent.unit_sensors import UnitSensors
 from edge.clocks.timeline import Timeline
 from edge.sample_codec.codec import described_unit, gps_fix, is_sendable, sighting, whole_seconds
 from edge.sample_codec.uplink import RawUplink
@@ -37,7 +36,9 @@ from edge.samples import (
     SensorBatch,
     SightingSample,
 )
-from edge.tracker.interface import Tracker
+from edge.tracker.choice.interface import Choice, ChoosesTracker
+from edge.tracker.foot.output.track_rows import empty_rows
+from edge.tracker.interface import MultiSensorTracker
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper
@@ -65,7 +66,7 @@ class UnitIdentity:
 
     software_version: str
     source: str
-    tracker: str
+    tracker: str  # as set
     sensors: tuple[FittedSensor, ...]  # the first one first; at least one
     place: ApproximatePosition | None = None
     outputs: tuple[str, ...] = ()  # kinds of those that notify the wearer
@@ -77,30 +78,34 @@ class TrackerPipeline:
     def __init__(
         self,
         identity: UnitIdentity,
-        tracker: Tracker,
+        tracker: MultiSensorTracker,
         stamper: Stamper,
         position_rate_hz: float,
         *,
         mayday: bool = False,
         raw_uplink: RawUplink | None = None,
-        worn_on_foot: bool = True,
+        foot_sensor: str | None = None,
         worn_on: str = "",
+        notes: tuple[str, ...] = (),
     ) -> None:
         """``mayday``: one was latched when the unit last came to a sudden end.  ``raw_uplink``:
-        of a unit that sends its samples for somebody else to track with.  ``worn_on_foot``: false
-        for a tracker that is made for another part of the body.  ``worn_on``: where the tracker
-        expects a sensor whose place nobody has set; its inclination shows the posture.
+        of a unit that sends its samples for somebody else to track with.  ``foot_sensor``: name
+        of the sensor that the tracker needs on a foot.  ``worn_on``: where the tracker expects a
+        sensor whose place nobody has set; its inclination shows the posture.  ``notes``: what is
+        to be said at the start of the tracker and its sensors.
         """
         self._identity = identity
-        self._corrections = {one.name: one.correction() for one in identity.sensors}
+        self._sensors = UnitSensors(identity.sensors)
         self._tracker = tracker
         self._stamper = stamper
         self._positions = PositionPublisher(stamper, position_rate_hz)
-        self._monitor = ActivityMonitor()
-        self._mounting = MountingCheck() if worn_on_foot else None
         self._places = {one.name: one.description.place or worn_on for one in identity.sensors}
         self._body = BodyPostureEstimator()
-        self._health = SensorHealth()
+        self._mounting: MountingCheck | None = None
+        self._foot_sensor: str | None = None
+        self._check_mounting(foot_sensor)
+        self._choice: Choice | None = None
+        self._notes = notes
         self._expected_field = ExpectedField(identity.place)
         self._status_times = Decimator(_rate_hz(STATUS))
         self._raw_uplink = raw_uplink
@@ -121,7 +126,11 @@ class TrackerPipeline:
 
     def start(self) -> tuple[Message, ...]:
         """Return the unit's first messages."""
-        first = (self._event(EventKind.STARTED, None, self._identity.source), self._describe(None))
+        first: tuple[Message, ...] = (
+            self._event(EventKind.STARTED, None, self._identity.source),
+            self._describe(None),
+            *(self._event(EventKind.SENSOR_FAULT, None, note) for note in self._notes),
+        )
         if not self._mayday:
             return first
         return (*first, self._event(EventKind.MAYDAY, None, "still latched after a restart"))
@@ -132,12 +141,12 @@ class TrackerPipeline:
 
     @property
     def motionless_s(self) -> float:
-        return self._monitor.motionless_s
+        return self._sensors.monitor.motionless_s
 
     @property
     def is_worn(self) -> bool:
         """True once it has moved for a while: a unit that lies on a shelf is not worn."""
-        return self._monitor.moving_s >= _WORN_S
+        return self._sensors.monitor.moving_s >= _WORN_S
 
     @property
     def is_on_foot(self) -> bool:
@@ -155,7 +164,7 @@ class TrackerPipeline:
         """Return what is sent of presses; no tracker or sensor has a part in it."""
         presses = tuple(presses)
         if presses:
-            self._monitor.note_press()
+            self._sensors.note_press()
         return tuple(
             message
             for press in presses
@@ -167,28 +176,32 @@ class TrackerPipeline:
 
         Its presses are for ``take_presses``, before it.
         """
+        sensor, as_sampled, own_timeline = batch.sensor, batch.imu, timeline
+        batch, timeline, faults = self._sensors.take(batch, timeline)
         self._update_earth_field(batch, timeline)
-        correction = self._corrections.get(batch.sensor)
-        imu = batch.imu if correction is None else correction.push(batch.imu)
-        track = self._tracker.push(imu)
+        imu = self._sensors.correct(sensor, batch.imu)
+        track = self._tracker.push(sensor, imu) if len(imu) else empty_rows()
         messages: list[Message] = [
             self._event(EventKind.SENSOR_FAULT, _last_ns(batch, timeline), fault)
-            for fault in self._health.push(batch.imu)
+            for fault in faults
         ]
+        messages += self._follow_choice(batch, timeline)
         for sample in batch.others:
             messages += self._take_other(sample, timeline)
         if self._raw_uplink is not None:
-            messages += self._raw_uplink.push(batch.imu, timeline, batch.sensor)
-        if self._mounting is not None:
+            messages += self._raw_uplink.push(as_sampled, own_timeline, sensor)
+        if self._mounting is not None and sensor == self._foot_sensor:
             self._mounting.push(imu)
             self._positions.set_mounting(is_on_foot=self._mounting.is_on_foot)
-        self._positions.take_pressure(batch.imu)
+        if self._sensors.is_barometer(sensor):
+            self._positions.take_pressure(batch.imu)
         messages += self._positions.push(track, timeline)
-        self._body.push(self._places.get(batch.sensor, ""), imu)
-        if self._monitor.push(imu, track):
+        self._body.push(self._places.get(sensor, ""), imu)
+        if self._sensors.watch(sensor, imu, track):
             detail = "fell and has not moved since"
             messages.append(self._event(EventKind.FALL, _last_ns(batch, timeline), detail))
-        messages += self._periodic(batch, timeline)
+        if not len(as_sampled) or self._sensors.leads(sensor):
+            messages += self._periodic(batch, timeline)
         return tuple(messages)
 
     def finish(self, timeline: Timeline = LIVE) -> tuple[Message, ...]:
@@ -211,6 +224,20 @@ class TrackerPipeline:
     def set_journal_pending(self, pending: int) -> None:
         """Set how many messages are not known to have arrived, for the next status."""
         self._journal_pending = pending
+
+    def _follow_choice(self, batch: SensorBatch, timeline: Timeline) -> list[Message]:
+        """Return the description that names the tracker, once the tracker has chosen itself."""
+        tracker = self._tracker
+        if not isinstance(tracker, ChoosesTracker) or tracker.choice is self._choice:
+            return []
+        self._choice = tracker.choice
+        if self._choice is not None:
+            self._check_mounting(self._choice.foot_sensor)
+        return [self._describe(_last_ns(batch, timeline))]
+
+    def _check_mounting(self, foot_sensor: str | None) -> None:
+        self._foot_sensor = foot_sensor
+        self._mounting = None if foot_sensor is None else MountingCheck()
 
     def _update_earth_field(self, batch: SensorBatch, timeline: Timeline) -> None:
         def utc_ns_of(t_ns: int) -> int:
@@ -288,12 +315,12 @@ class TrackerPipeline:
         on_foot = self._mounting is not None
         return Status(
             header=self._stamper.header(timeline.to_mono_ns(t_ns)),
-            activity=self._monitor.activity(t_ns),
-            motionless_s=self._monitor.motionless_s,
+            activity=self._sensors.monitor.activity(t_ns),
+            motionless_s=self._sensors.monitor.motionless_s,
             battery=None if battery is None else battery.level,
             mayday=self._mayday,
-            steps=self._monitor.steps,
-            cadence_hz=self._monitor.cadence_hz(t_ns),
+            steps=self._sensors.monitor.steps,
+            cadence_hz=self._sensors.monitor.cadence_hz(t_ns),
             floors_climbed=self._positions.floors_climbed,
             tracker_rows_dropped=self._positions.rows_dropped,
             journal_pending=self._journal_pending,
@@ -303,16 +330,17 @@ class TrackerPipeline:
             battery_name="" if battery is None else battery.battery,
             posture=posture,
             posture_confidence=confidence,
-            mobility=(self._monitor if on_foot else self._body).mobility(t_ns),
+            mobility=(self._sensors.monitor if on_foot else self._body).mobility(t_ns),
         )
 
     def _describe(self, mono_ns: int | None) -> UnitDescription:
+        choice = self._choice or Choice(self._identity.tracker)
         described = described_unit(
             self._stamper.header(mono_ns),
-            [one.as_sent() for one in self._identity.sensors],
+            [one.as_sent(choice.recognised.get(one.name, "")) for one in self._identity.sensors],
             software_version=self._identity.software_version,
             source=self._identity.source,
-            tracker=self._identity.tracker,
+            tracker=choice.tracker,
             has_gps=self._has_gps,
         )
         return msgspec.structs.replace(

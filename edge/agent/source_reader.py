@@ -7,7 +7,7 @@ none, by itself.
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 from queue import Empty, Full, Queue
@@ -25,6 +25,7 @@ logger = logging.getLogger(__name__)
 
 _QUEUE_SIZE = 32  # batches read before they are asked for
 _PUT_TIMEOUT_S = 0.1
+_SAME_CLOCK_NS = 10 * NS_PER_S  # sensors whose times differ by more are on clocks of their own
 _AUXILIARY_WAIT_NS = NS_PER_S  # without a batch, after which what is read beside waits no longer
 
 
@@ -51,13 +52,17 @@ class SourceReader:
         clock: Clock,
         speed: float | None,
         auxiliaries: tuple[AuxiliarySource, ...] = (),
-        timekeeper: Timekeeper | None = None,
+        timekeeper: Callable[[], Timekeeper] | None = None,
     ) -> None:
-        """``timekeeper``: of a source that is not live; None: its times are a recording's."""
+        """``timekeeper``: makes that of a sensor that is not live; None: its times are a
+        recording's.
+        """
         self._source = source
         self._auxiliaries = auxiliaries
         self._clock = clock
-        self._timekeeper = None if source.is_live else timekeeper or Pacer(speed or 1.0)
+        self._new_timekeeper = timekeeper or (lambda: Pacer(speed or 1.0))
+        self._timekeepers: dict[str, Timekeeper] = {}  # by sensor: each may have its own clock
+        self._newest_ns: dict[str, int] = {}  # by sensor, on its clock
         self._is_paced = speed is not None and not source.is_live
         self._ready: Queue[TimedBatch] = Queue(_QUEUE_SIZE)
         self._stop = Event()
@@ -152,11 +157,23 @@ class SourceReader:
             if self._first_t_ns is None:
                 self._first_t_ns = first_ns
             timeline = Timeline()
-            if self._timekeeper is not None:
-                timeline = self._timekeeper.place(first_ns, last_ns, self._clock.monotonic_ns())
+            if not self._source.is_live:
+                timekeeper = self._timekeeper(batch.sensor, first_ns)
+                timeline = timekeeper.place(first_ns, last_ns, self._clock.monotonic_ns())
+                self._newest_ns[batch.sensor] = last_ns
                 if self._is_paced and not self._wait_until(timeline.to_mono_ns(last_ns)):
                     return
             yield TimedBatch(batch, timeline, (first_ns - self._first_t_ns) / NS_PER_S)
+
+    def _timekeeper(self, sensor: str, first_ns: int) -> Timekeeper:
+        """Return the sensor's timekeeper: of several on one clock the same."""
+        if sensor not in self._timekeepers:
+            for other, newest_ns in self._newest_ns.items():
+                if abs(first_ns - newest_ns) < _SAME_CLOCK_NS:
+                    self._timekeepers[sensor] = self._timekeepers[other]
+                    return self._timekeepers[sensor]
+            self._timekeepers[sensor] = self._new_timekeeper()
+        return self._timekeepers[sensor]
 
     def _wait_until(self, due_ns: int) -> bool:
         """Wait; return False when stopped meanwhile."""

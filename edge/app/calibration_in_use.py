@@ -8,7 +8,6 @@ from pathlib import Path
 
 from edge.calibration.file import identity, read_calibration, write_calibration
 from edge.calibration.model import Calibration
-from edge.config import EdgeConfig
 from edge.samples import SensorDescription
 from shared.errors import ConfigError, UserError
 
@@ -16,21 +15,21 @@ _log = logging.getLogger(__name__)
 
 
 def calibration_in_use(
-    config: EdgeConfig, unit_id: str, sensor: SensorDescription, used: Path
+    path: Path | None, unit_id: str, sensor: SensorDescription, used: Path
 ) -> Calibration | None:
-    """Return the calibration that was set, if it is of this unit and this sensor; a copy is kept
-    with those that were ``used``.
+    """Return the calibration in a file, if it is of this unit and this sensor; a copy is kept with
+    those that were ``used``.
     """
-    if config.calibration is None:
+    if path is None:
         return None
-    calibration = read_calibration(config.calibration)
+    calibration = read_calibration(path)
     for what, made_for, this in (
         ("unit", calibration.unit, unit_id),
         ("sensor", calibration.sensor, sensor.name),
     ):
         if made_for and made_for != this:
             raise ConfigError(
-                f"{config.calibration} is for {what} {made_for!r}, and this is {this!r}; give "
+                f"{path} is for {what} {made_for!r}, and this is {this!r}; give "
                 "its own calibration, or none"
             )
     if calibration.is_old(datetime.now(UTC)):

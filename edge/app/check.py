@@ -10,7 +10,8 @@ from datetime import UTC, datetime
 from rich.console import Console
 
 from edge.agent.source_reader import SourceReader
-from edge.app.calibration_in_use import calibration_in_use
+from edge.app.fitted_sensors import fitted_sensors
+from edge.app.opened_sources import gives_of, open_sources
 from edge.app.run import open_auxiliaries
 from edge.app.zenoh_station import ZenohStation
 from edge.config import EdgeConfig
@@ -26,8 +27,7 @@ from edge.preflight.installation import (
 from edge.preflight.output_check import output_findings
 from edge.preflight.report import encode_report, print_finding, print_verdict
 from edge.preflight.station_check import station_findings
-from edge.sources.interface import Source
-from edge.sources.registry import open_source, source_kind
+from edge.sources.interface import Source, sensors_in
 from edge.storage.data_folder import UnitDataFolder
 from shared.clock import SystemClock
 from shared.errors import ConfigError
@@ -62,11 +62,9 @@ def check_unit(config: EdgeConfig, survey_s: float) -> Iterator[CheckFinding]:
     with closing(UnitDataFolder(config.data / member.unit_id)) as folder:
         yield certificate_finding(member.identity, now)
         yield from storage_findings(folder, config.storage)
-        with closing(open_source(config.source)) as source:
-            calibration = calibration_in_use(
-                config, member.unit_id, source.description, folder.calibrations
-            )
-            yield calibration_finding(calibration, now)
+        with closing(open_sources(config)) as source:
+            for one in fitted_sensors(config, source, member.unit_id, folder.calibrations):
+                yield calibration_finding(one.calibration, now, one.name)
             yield from _sensor_findings(config, source, survey_s)
         yield from output_findings(config.outputs)
         yield from station_findings(member.unit_id, ZenohStation(member), SystemClock())
@@ -74,8 +72,8 @@ def check_unit(config: EdgeConfig, survey_s: float) -> Iterator[CheckFinding]:
 
 def _sensor_findings(config: EdgeConfig, source: Source, survey_s: float) -> Iterator[CheckFinding]:
     reader = SourceReader(source, SystemClock(), config.speed, open_auxiliaries(config))
-    inertial = InertialSurvey(source.description)
-    auxiliary = AuxiliarySurvey(config, source_kind(config.source).gives)
+    inertial = {name: InertialSurvey(one, name) for name, one in sensors_in(source).items()}
+    auxiliary = AuxiliarySurvey(config, gives_of(config))
     faults: list[str] = []
     reader.start()
     try:
@@ -83,7 +81,8 @@ def _sensor_findings(config: EdgeConfig, source: Source, survey_s: float) -> Ite
         while time.monotonic() < end_s and not reader.ended:
             timed = reader.take(_TAKE_S)
             if timed is not None:
-                inertial.push(timed.batch.imu)
+                if len(timed.batch.imu):
+                    inertial[timed.batch.sensor].push(timed.batch.imu)
                 for sample in timed.batch.others:
                     auxiliary.push(sample)
             faults += reader.take_faults()
@@ -94,5 +93,6 @@ def _sensor_findings(config: EdgeConfig, source: Source, survey_s: float) -> Ite
     if reader.failure is not None:
         faults.append(reader.failure)
     yield from (CheckFinding("sensors", Severity.FAILED, fault) for fault in faults)
-    yield from inertial.findings()
+    for survey in inertial.values():
+        yield from survey.findings()
     yield from auxiliary.findings()

@@ -5,9 +5,8 @@ from __future__ import annotations
 import importlib.metadata
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
-from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from queue import SimpleQueue
@@ -24,8 +23,9 @@ from edge.agent.restore_state import answers_before, mayday_before, position_rat
 from edge.agent.runtime import Agent, AgentParts
 from edge.agent.source_reader import SourceReader
 from edge.agent.wearer_notifier import WearerNotifier
-from edge.app.calibration_in_use import calibration_in_use
-from edge.calibration.model import Calibration
+from edge.app.fitted_sensors import fitted_sensors
+from edge.app.opened_sources import gives_of
+from edge.app.tracking import Tracking, tracking_of
 from edge.clocks.station import StationClock
 from edge.clocks.timeline import Follower, Timekeeper
 from edge.config import EdgeConfig
@@ -37,19 +37,16 @@ from edge.preflight.installation import (
     storage_findings,
 )
 from edge.preflight.start_check import StartCheck
-from edge.sample_codec.codec import SampleEncoder, sensor_of, unit_sensor
+from edge.sample_codec.codec import SampleEncoder
 from edge.sample_codec.uplink import RawUplink
 from edge.sources.bus import BusSource
 from edge.sources.interface import AuxiliarySource, Source
-from edge.sources.registry import source_kind
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.server import RecordingServer
 from edge.storage.data_folder import UnitDataFolder
 from edge.storage.journal.journal import Journal, open_journal
 from edge.storage.journal.server import JournalServer
 from edge.storage.journal.writer import JournalWriter
-from edge.tracker.interface import FOOT
-from edge.tracker.registry import NoTracker, find_tracker
 from shared.channels import NO_TRACKER, tracked_unit
 from shared.clock import SystemClock
 from shared.envelope import Stamper
@@ -80,16 +77,17 @@ def compose_agent(
         raw = SampleEncoder(unit_id, journal.boot_id)
         stamper = Stamper(unit_id, journal.boot_id, clock, clock.utc_std_s)
         worn = tracked_unit(unit_id) or unit_id
-        sensor = _fitted_sensor(config, source, worn, folder.calibrations)
+        sensors = fitted_sensors(config, source, worn, folder.calibrations)
+        tracking = tracking_of(config, sensors)
         description = raw.description(
             clock.monotonic_ns(),
-            [sensor.as_sent()],
-            source=config.source,
-            tracker=config.tracker,
+            [one.as_sent() for one in sensors],
+            source=config.source_text,
+            tracker=tracking.name,
         )
         latch = MaydayLatch(folder.mayday, clock)
         on_error.callback(latch.close)
-        pipeline = _pipeline(config, sensor, stamper, journal, latch, outputs, clock)
+        pipeline = _pipeline(config, tracking, sensors, stamper, journal, latch, outputs, clock)
         latch.set(is_active=pipeline.is_mayday_active)
         black_box = BlackBox(
             folder.black_box,
@@ -120,7 +118,7 @@ def compose_agent(
         agent = Agent(
             AgentParts(
                 source=source,
-                reader=SourceReader(source, clock, speed, auxiliaries, _timekeeper(source)),
+                reader=SourceReader(source, clock, speed, auxiliaries, _timekeepers(source)),
                 raw=raw,
                 pipeline=pipeline,
                 wearer=WearerNotifier(
@@ -136,9 +134,7 @@ def compose_agent(
                 link=link,
                 commands=commands,
                 manager=ServiceManager(os.environ),
-                start_check=_start_check(
-                    config, folder, source, speed, sensor.calibration, certificate
-                ),
+                start_check=_start_check(config, folder, source, speed, sensors, certificate),
             )
         )
         on_error.pop_all()  # the agent closes it at its end
@@ -150,7 +146,7 @@ def _start_check(
     folder: UnitDataFolder,
     source: Source,
     speed: float | None,
-    calibration: Calibration | None,
+    sensors: tuple[FittedSensor, ...],
     certificate: TlsIdentity | None,
 ) -> StartCheck | None:
     """Build the check at the start, of a unit with sensors that are read as time goes by."""
@@ -160,15 +156,16 @@ def _start_check(
     def installation() -> Iterator[CheckFinding]:
         now = datetime.now(UTC)
         yield certificate_finding(certificate, now)
-        yield calibration_finding(calibration, now)
+        for one in sensors:
+            yield calibration_finding(one.calibration, now, one.name)
         yield from storage_findings(folder, config.storage)
 
-    gives = source_kind(config.source).gives
-    return StartCheck(config, source.description, gives, installation)
+    described = {one.name: one.description for one in sensors}
+    return StartCheck(config, described, gives_of(config), installation)
 
 
-def _timekeeper(source: Source) -> Timekeeper | None:
-    return Follower() if isinstance(source, BusSource) else None
+def _timekeepers(source: Source) -> Callable[[], Timekeeper] | None:
+    return Follower if isinstance(source, BusSource) else None
 
 
 def _quarantine_reports(folder: UnitDataFolder, damaged: Path | None) -> Iterator[str]:
@@ -180,15 +177,6 @@ def _quarantine_reports(folder: UnitDataFolder, damaged: Path | None) -> Iterato
             "the folder held the journal of another unit, as if copied; it is set aside as "
             f"{folder.quarantine.name}"
         )
-
-
-def _fitted_sensor(config: EdgeConfig, source: Source, unit_id: str, used: Path) -> FittedSensor:
-    """Return the sensor as the wire gives it back, with its settings and calibration."""
-    description = source.description
-    if config.gain_std is not None:
-        description = replace(description, gain_std=config.gain_std)
-    calibration = calibration_in_use(config, unit_id, description, used)
-    return FittedSensor(sensor_of(unit_sensor("", description)), calibration)
 
 
 def _link(
@@ -210,31 +198,31 @@ def _link(
 
 def _pipeline(
     config: EdgeConfig,
-    sensor: FittedSensor,
+    tracking: Tracking,
+    sensors: tuple[FittedSensor, ...],
     stamper: Stamper,
     journal: Journal,
     latch: MaydayLatch,
     outputs: Outputs,
     clock: StationClock,
 ) -> TrackerPipeline:
-    tracks = config.tracker != NO_TRACKER
-    entry = find_tracker(config.tracker, (NO_TRACKER,)) if tracks else None
     return TrackerPipeline(
         UnitIdentity(
             _version(),
-            config.source,
-            config.tracker,
-            (sensor,),
+            config.source_text,
+            tracking.name,
+            sensors,
             outputs=outputs.kinds,
             place=config.place,
         ),
-        NoTracker() if entry is None else entry.make(sensor.corrected),
+        tracking.tracker,
         stamper,
         position_rate_before(journal, clock.monotonic_ns()) or config.position_rate_hz,
         mayday=latch.was_active or mayday_before(journal),
-        raw_uplink=None if tracks else RawUplink(stamper),
-        worn_on_foot=entry is None or FOOT in entry.worn_on,
-        worn_on="" if entry is None else entry.worn_on[0],
+        raw_uplink=RawUplink(stamper) if config.tracker == NO_TRACKER else None,
+        foot_sensor=tracking.foot_sensor,
+        worn_on=tracking.worn_on,
+        notes=tracking.notes,
     )
 
 

@@ -8,6 +8,7 @@ from contextlib import ExitStack, closing, contextmanager
 from threading import Event, Timer
 
 from edge.app.composition import compose_agent
+from edge.app.opened_sources import open_sources
 from edge.app.zenoh_station import ZenohStation
 from edge.config import EdgeConfig
 from edge.identity import unit_connection
@@ -16,7 +17,6 @@ from edge.sources.bus import BusSource
 from edge.sources.gnss.registry import open_receiver
 from edge.sources.interface import AuxiliarySource, Source
 from edge.sources.power_supply import BatteryReader
-from edge.sources.registry import open_source
 from edge.sources.sighting_reader import SightingReader
 from edge.sources.temperature.registry import open_temperature_reader
 from edge.storage.data_folder import UnitDataFolder
@@ -38,7 +38,7 @@ def run_agent(config: EdgeConfig, stop: Event, *, for_s: float | None, paced: bo
     station = ZenohStation(member)
     if member.identity is None:
         logger.warning("the link is not secured: anyone on this network can listen and forge")
-    source = open_source(config.source)
+    source = open_sources(config)
     if isinstance(source, BusSource):
         if config.tracker == NO_TRACKER:
             raise ConfigError(f"{config.source} is there to be tracked; choose a tracker")
@@ -82,7 +82,7 @@ def open_auxiliaries(config: EdgeConfig) -> tuple[AuxiliarySource, ...]:
 @contextmanager
 def opened_source(config: EdgeConfig) -> Iterator[Source]:
     """Open the source that is set, ready to be read; wait for one on the bus until it sends."""
-    source = open_source(config.source)
+    source = open_sources(config)
     with ExitStack() as cleanup:
         cleanup.callback(source.close)
         if isinstance(source, BusSource):

@@ -11,11 +11,12 @@ from rich.console import Console
 from rich.progress import track as progress_bar
 
 from edge.sources.black_box import BlackBoxSource
-from edge.sources.interface import Source
+from edge.sources.interface import Source, sensors_in
 from edge.sources.recording import RecordingSource
+from edge.tracker.choice.selection import select_named
 from edge.tracker.foot.output.track_rows import join_rows
-from edge.tracker.interface import Quality, Reason, TrackBatch
-from edge.tracker.registry import TRACKERS, make_tracker
+from edge.tracker.interface import BodyDimensions, Quality, Reason, TrackBatch
+from edge.tracker.registry import TRACKERS
 from shared.errors import RecordingError
 from shared.mcap_log import segment_paths
 from shared.out_file import whole, writable
@@ -70,7 +71,8 @@ def _quality_summary(rows: TrackBatch) -> str:
 
 def run_tracker(source: Source, name: str, *, quiet: bool) -> TrackBatch:
     """Push a whole recording through a new tracker, as its batches come."""
-    tracker = make_tracker(name, source.description)
+    sensors = sensors_in(source)
+    tracker = select_named(name, sensors, BodyDimensions()).make(sensors, BodyDimensions())
     batches = progress_bar(
         list(source.batches()),
         description="Tracking",
@@ -78,7 +80,7 @@ def run_tracker(source: Source, name: str, *, quiet: bool) -> TrackBatch:
         transient=True,
         disable=quiet,
     )
-    released = [tracker.push(batch.imu) for batch in batches]
+    released = [tracker.push(batch.sensor, batch.imu) for batch in batches]
     return join_rows([*released, tracker.finish()])
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import msgspec
 import numpy as np
 
 from edge.agent.sensor_health import SensorHealth
@@ -35,8 +36,10 @@ _CALIBRATE = "calibrate it with `muster edge calibrate`"
 class InertialSurvey:
     """Takes in consecutive batches; ``findings`` then judges them."""
 
-    def __init__(self, sensor: SensorDescription) -> None:
+    def __init__(self, sensor: SensorDescription, name: str = "") -> None:
+        """``name``: of the sensor in its unit, for the findings; empty: the unit's only one."""
         self._sensor = sensor
+        self._name = name
         self._health = SensorHealth()
         self._rests = RestDetector()
         self._faults: list[str] = []
@@ -59,6 +62,11 @@ class InertialSurvey:
 
     def findings(self, *, asks_rest: bool = True) -> Iterator[CheckFinding]:
         """``asks_rest``: somebody was asked to lay the unit down."""
+        for finding in self._findings(asks_rest=asks_rest):
+            of = f" of {self._name}" if self._name else ""
+            yield msgspec.structs.replace(finding, subject=f"{finding.subject}{of}")
+
+    def _findings(self, *, asks_rest: bool) -> Iterator[CheckFinding]:
         if self._count < 2:  # two times make a rate
             yield CheckFinding(
                 _SENSOR,

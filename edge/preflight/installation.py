@@ -40,8 +40,11 @@ def certificate_finding(certificate: TlsIdentity | None, now: datetime) -> Check
     return CheckFinding(subject, Severity.OK, text)
 
 
-def calibration_finding(calibration: Calibration | None, now: datetime) -> CheckFinding:
-    subject = "calibration"
+def calibration_finding(
+    calibration: Calibration | None, now: datetime, sensor: str = ""
+) -> CheckFinding:
+    """``sensor``: name of the sensor that it is for; empty: the unit's only one."""
+    subject = f"calibration of {sensor}" if sensor else "calibration"
     if calibration is None:
         return CheckFinding(
             subject,

@@ -9,7 +9,7 @@ what fails later is an event of its own.
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from threading import Thread
 
 from edge.config import EdgeConfig
@@ -40,12 +40,16 @@ class StartCheck:
     def __init__(
         self,
         config: EdgeConfig,
-        sensor: SensorDescription,
+        sensors: Mapping[str, SensorDescription],
         gives: frozenset[Quantity],
         installation: Callable[[], Iterable[CheckFinding]],
     ) -> None:
-        """``installation``: makes the findings that need the disk, in a thread of its own."""
-        self._inertial: InertialSurvey | None = InertialSurvey(sensor)  # None: it is over
+        """``sensors``: by their names.  ``installation``: makes the findings that need the disk,
+        in a thread of its own.
+        """
+        self._inertial: dict[str, InertialSurvey] | None = {  # None: it is over
+            name: InertialSurvey(sensor, name) for name, sensor in sensors.items()
+        }
         self._of_inertial: list[CheckFinding] = []
         self._auxiliary = AuxiliarySurvey(config, gives)
         self._has_output = bool(config.outputs)
@@ -65,8 +69,8 @@ class StartCheck:
         if self._error is not None:
             return
         try:
-            if self._inertial is not None:
-                self._inertial.push(batch.imu)
+            if self._inertial is not None and len(batch.imu):
+                self._inertial[batch.sensor].push(batch.imu)
             for sample in batch.others:
                 self._auxiliary.push(sample)
         except Exception as error:  # noqa: BLE001  # reported by the next step
@@ -89,7 +93,11 @@ class StartCheck:
         if self._error is not None:
             raise self._error
         if self._inertial is not None:
-            self._of_inertial = list(self._inertial.findings(asks_rest=False))
+            self._of_inertial = [
+                finding
+                for survey in self._inertial.values()
+                for finding in survey.findings(asks_rest=False)
+            ]
             self._inertial = None
         now = [one for one in self._found() if one.level is not Severity.OK]
         if self._left is None:

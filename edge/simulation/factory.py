@@ -13,6 +13,7 @@ from urllib.parse import parse_qsl
 
 from msgspec.structs import replace
 
+from edge.body_places import PLACES
 from edge.simulation.legs import MOST_M, Point, Segment, Stand, Walk
 from edge.simulation.scenario import Scenario, read_scenario
 from edge.simulation.scenarios import SCENARIOS
@@ -25,27 +26,40 @@ _ARRIVES_MPS = 1.35
 
 def open_simulation(text: str) -> Simulation:
     """Return the simulation that ``NAME`` or ``PATH.toml`` names, with ``?seed=N``,
-    ``&worn_on=chest`` and ``&from=NORTH,EAST`` behind it.
+    ``&worn_on=chest``, ``&from=NORTH,EAST`` and, of a further sensor of the same person,
+    ``&number=1`` behind it.
 
     Raises ``ConfigError``.
     """
     name, _, query = text.partition("?")
     options = dict(parse_qsl(query, keep_blank_values=True))
     scenario = find_scenario(name)
-    worn_on = options.pop("worn_on", scenario.worn_on)
+    worn_on = _segment(options.pop("worn_on", scenario.worn_on))
     if worn_on not in get_args(Segment):
         known = ", ".join(get_args(Segment))
         raise ConfigError(f"simulated:{text}: worn_on is {worn_on!r}; known are {known}")
-    seed = options.pop("seed", "0")
-    if not seed.isdecimal():
-        raise ConfigError(f"simulated:{text}: seed is {seed!r}; give a whole number from 0 up")
+    seed = _whole_number(text, options, "seed")
+    number = _whole_number(text, options, "number")
     if "from" in options:
         scenario = _arriving(scenario, _place(text, options.pop("from")))
     if options:
         raise ConfigError(
-            f"simulated:{text}: unknown option {min(options)!r}; known are seed, worn_on and from"
+            f"simulated:{text}: unknown option {min(options)!r}; known are seed, number, worn_on "
+            "and from"
         )
-    return Simulation(replace(scenario, worn_on=worn_on), int(seed))
+    return Simulation(replace(scenario, worn_on=worn_on), seed, number=number)
+
+
+def _segment(place: str) -> str:
+    """Return the segment that is simulated for a sensor at a part of the body."""
+    return place if place in get_args(Segment) else PLACES.get(place, place)
+
+
+def _whole_number(text: str, options: dict[str, str], name: str) -> int:
+    value = options.pop(name, "0")
+    if not value.isdecimal():
+        raise ConfigError(f"simulated:{text}: {name} is {value!r}; give a whole number from 0 up")
+    return int(value)
 
 
 def _place(text: str, value: str) -> Point:

@@ -87,6 +87,7 @@ class Simulation:
         number: int = 0,
     ) -> None:
         self.scenario = scenario
+        self._number = number
         self.sensors = _limited(sensors, scenario)
         house = load_building()
         self._building = house if scenario.building else None
@@ -165,6 +166,7 @@ class Simulation:
             self.sensors.baro, self._building, self._anchor.height_m, rate_hz, baro_rng
         )
         others = _Others(self, Gps(self._anchor, self._building, gps_rng), other_rng)
+        is_first = self._number == 0  # the slow sensors are the unit's
         total = int(self.duration_s * rate_hz)
         for start in range(0, total, rows):
             index = np.arange(start, min(start + rows, total))
@@ -182,7 +184,7 @@ class Simulation:
                     pressure_pa=baro.measure(start, t_s, body.position_n_m),
                     imu_temperature_degc=temperature_degc,
                 ),
-                others.between(float(t_s[0]), (start + len(index)) / rate_hz),
+                others.between(float(t_s[0]), (start + len(index)) / rate_hz) if is_first else (),
             )
 
     def _field(self, rng: np.random.Generator) -> MagneticField:

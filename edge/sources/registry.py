@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from difflib import get_close_matches
 
 from edge.sources.black_box import BlackBoxSource
@@ -9,7 +10,8 @@ from edge.sources.bus import BusSource
 from edge.sources.iio.source import IioSource
 from edge.sources.interface import Quantity, Source, SourceKind
 from edge.sources.recording import RecordingSource
-from edge.sources.simulated import SimulatedSource
+from edge.sources.sensor_group import SensorGroup
+from edge.sources.simulated import SimulatedSource, worn_by_one
 from edge.sources.tabletop import TabletopSource
 from edge.sources.ximu3.source import Ximu3Source
 from shared.errors import ConfigError
@@ -61,6 +63,20 @@ def open_source(text: str) -> Source:
     ``MusterError`` the source itself raises for its argument.
     """
     return source_kind(text).make(text.partition(":")[2])
+
+
+def open_sensors(sources: Mapping[str, str], places: Mapping[str, str]) -> Source:
+    """Open the sources of several sensors of one person, each under the name of its sensor.
+
+    A simulated one is worn where ``places`` has it, by the person whom the first one simulates.
+    """
+    members: dict[str, Source] = {}
+    for number, (name, text) in enumerate(sources.items()):
+        is_simulated = text.startswith("simulated:")
+        members[name] = open_source(
+            worn_by_one(text, number, places.get(name, "")) if is_simulated else text
+        )
+    return SensorGroup(members)
 
 
 def source_kind(text: str) -> SourceKind:

@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from edge.body_places import FOOT, LEFT_FOOT, RIGHT_FOOT
 from edge.samples import Floats, ImuBatch, Nanoseconds, SensorDescription
 from shared.earth_field import EarthField
 from shared.quality import Quality, Reason
@@ -33,7 +34,6 @@ __all__ = [
     "WornSensor",
 ]
 
-FOOT, LEFT_FOOT, RIGHT_FOOT = "foot", "left_foot", "right_foot"
 MOST_LAG_S = 0.4  # by which samples of one sensor of a person may come behind those of another
 
 
@@ -96,6 +96,7 @@ class TrackerEntry:
     summary: str
     make: Callable[[SensorDescription], Tracker]
     worn_on: tuple[str, ...] = (FOOT,)  # parts of the body, the one it is meant for first
+    by_compass: bool = False  # keeps its heading by the magnetometer
 
 
 @dataclass(frozen=True, slots=True)

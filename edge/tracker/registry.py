@@ -59,15 +59,21 @@ TRACKERS: tuple[TrackerEntry, ...] = (
         "steps of a sensor on the waist, lengths by their frequency",
         WaistTracker,
         ("waist", "hip"),
+        by_compass=True,
     ),
     TrackerEntry(
-        "hip", "velocity of a hip, by a model within each step", HipTracker, ("hip", "waist")
+        "hip",
+        "velocity of a hip, by a model within each step",
+        HipTracker,
+        ("hip", "waist"),
+        by_compass=True,
     ),
     TrackerEntry(
         "hip-corridors",
         "the same; assumes straight corridors that meet at right angles",
         partial(HipTracker, config=HipConfig(straight_walks=True, right_angles=True)),
         ("hip", "waist"),
+        by_compass=True,
     ),
     TrackerEntry(
         "body",

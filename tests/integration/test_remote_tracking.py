@@ -22,6 +22,7 @@ from edge.sources.bus import BusSource
 from edge.sources.registry import open_source
 from edge.storage.journal.journal import Journal, JournalRow
 from edge.storage.journal.server import JournalServer
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import NoTracker, make_tracker
 from shared.bus_memory import MemoryRouter
 from shared.channels import IMU, NO_TRACKER, channel_of, tracker_id
@@ -64,7 +65,7 @@ def pipeline(
     weak = tracker == NO_TRACKER
     return TrackerPipeline(
         UnitIdentity("1", WALK, tracker, (FittedSensor(sensor),)),
-        NoTracker() if weak else make_tracker(tracker, sensor),
+        OneSensorTracker(NoTracker() if weak else make_tracker(tracker, sensor)),
         stamper,
         5.0,
         raw_uplink=RawUplink(stamper) if weak else None,

@@ -26,8 +26,11 @@ LEFT_OUT = {
     "http.certificate",
     "http.private_key",
     "place",
+    "sensors",
     "speed",
     "tak",  # the last test
+    "wearer.height_m",
+    "wearer.leg_length_m",
 }
 _COMMENTED = re.compile(r"^# (\[tak\.\w+\]|\w+ = .*)$", re.MULTILINE)
 

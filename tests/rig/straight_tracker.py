@@ -13,6 +13,7 @@ from edge.samples import (
     SensorBatch,
     SensorDescription,
 )
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import Quality, Reason, TrackBatch
 from shared.clock import NS_PER_S, ManualClock
 from shared.earth_field import EarthField
@@ -72,7 +73,8 @@ def walk(n: int, start_s: float = 0.0, shake_mps2: float = 3.0) -> ImuBatch:
 def pipeline(tracker=None, rate_hz: float = 5.0) -> TrackerPipeline:
     identity = UnitIdentity("1.0", "test", "straight", (FittedSensor(SENSOR),))
     stamper = Stamper("u1", 7, ManualClock())
-    return TrackerPipeline(identity, tracker or StraightAhead(), stamper, rate_hz)
+    worn = OneSensorTracker(tracker or StraightAhead())
+    return TrackerPipeline(identity, worn, stamper, rate_hz, foot_sensor="")
 
 
 def steps(pipe, imu: ImuBatch, sizes: list[int]):

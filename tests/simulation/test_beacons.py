@@ -11,6 +11,7 @@ from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.simulation.factory import open_simulation
 from edge.simulation.simulation import Simulation
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
@@ -36,7 +37,9 @@ def simulation() -> Simulation:
 def said(simulation: Simulation) -> Said:
     identity = UnitIdentity("1", "passes-beacons", "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
-    unit = TrackerPipeline(identity, tracker, Stamper("FF-01", 7, ManualClock()), 2.0)
+    unit = TrackerPipeline(
+        identity, OneSensorTracker(tracker), Stamper("FF-01", 7, ManualClock()), 2.0
+    )
     batches = islice(simulation.batches(1.0), LASTS_S)
     messages = [message for batch in batches for message in unit.step(batch)]
     told = [one for one in messages if isinstance(one, Position | Sighting)]

@@ -25,6 +25,7 @@ from edge.samples import ImuBatch, SensorBatch
 from edge.simulation.handled_unit import HandledUnit, cut
 from edge.sources.bus import BusSource
 from edge.sources.registry import open_source
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import NoTracker
 from shared.bus_memory import MemoryRouter
 from shared.channels import NO_TRACKER, channel_of
@@ -96,7 +97,7 @@ def test_a_unit_is_calibrated_over_the_bus_from_the_raw_samples_that_it_sends(tm
     stamper = Stamper("FF-01", 7, ManualClock())
     pipeline = TrackerPipeline(
         UnitIdentity("1", "bench:3", NO_TRACKER, (FittedSensor(handled.description),)),
-        NoTracker(),
+        OneSensorTracker(NoTracker()),
         stamper,
         5.0,
         raw_uplink=RawUplink(stamper),

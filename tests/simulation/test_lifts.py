@@ -17,6 +17,7 @@ from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.samples import Floats
 from edge.simulation.factory import open_simulation
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
@@ -40,7 +41,7 @@ def ridden(scenario: str, *, with_plan: bool) -> tuple[list[FusedPosition], Floa
     identity = UnitIdentity("1", scenario, "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
     stamper = Stamper("FF-01", 7, ManualClock())
-    unit = TrackerPipeline(identity, tracker, stamper, 2.0)
+    unit = TrackerPipeline(identity, OneSensorTracker(tracker), stamper, 2.0)
     script = Script()
     script.register("FF-01")
     script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.3, 0.1))

@@ -15,6 +15,7 @@ from edge.samples import ApproximatePosition, SensorBatch
 from edge.simulation.building import load_building
 from edge.simulation.factory import find_scenario
 from edge.simulation.simulation import UNCALIBRATED_SENSORS, Simulation
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
@@ -34,7 +35,9 @@ def positions_of(simulation: Simulation) -> list[Position]:
     place = ApproximatePosition(round(anchor.lat_deg, 1), round(anchor.lon_deg, 1))
     identity = UnitIdentity("1", "simulated", "eskf", (FittedSensor(sensor, calibration),), place)
     stamper = Stamper("u1", 7, ManualClock(NOW_NS))
-    pipeline = TrackerPipeline(identity, make_tracker("eskf", sensor), stamper, 5.0)
+    pipeline = TrackerPipeline(
+        identity, OneSensorTracker(make_tracker("eskf", sensor)), stamper, 5.0
+    )
     messages = [*pipeline.start()]
     for batch in simulation.batches(0.5):
         messages += pipeline.step(SensorBatch(batch.imu))  # no receiver

@@ -55,7 +55,7 @@ def muster_edge(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
         ({"unit": "u1", "source": "ximu3:tcp://no..name"}, "names no server"),
         ({"unit": "u1", "connect": ["tls/host:7447"]}, "needs the unit's enrolment"),
         ({"unit": "u1", "tracker": "esfk"}, "eskf"),
-        ({"unit": "u1", "tracker": ""}, "eskf, huang, waist, hip, hip-corridors, body, none"),
+        ({"unit": "u1", "tracker": ""}, "eskf, huang, waist, hip, hip-corridors, body"),
         ({"unit": "u1", "data": Path("/dev/null")}, "/dev/null"),
         ({"unit": "u1", "calibration": Path("nothing.toml")}, "there is no calibration file"),
         ({"enrolment": Path("nothing.toml")}, "there is no such enrolment file"),

@@ -14,6 +14,7 @@ from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.config import EdgeConfig
 from edge.samples import ApproximatePosition, GpsSample, ImuBatch, SensorBatch, SensorDescription
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import NoTracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.config import load_config
@@ -106,7 +107,7 @@ def test_the_pipeline_tells_the_tracker_before_it_gives_it_the_samples():
         "1", "test", "t", (FittedSensor(SensorDescription("s", 100.0)),), place=REYKJAVIK
     )
     stamper = Stamper("u1", 7, ManualClock(NOW_NS))
-    pipeline = TrackerPipeline(identity, Listening(), stamper, 5.0)
+    pipeline = TrackerPipeline(identity, OneSensorTracker(Listening()), stamper, 5.0)
     pipeline.step(samples(3.0))
     pipeline.step(samples(3.1, (fix(SYDNEY, 3.15),)))
     assert told == ["-11 from 3.0", "samples", "13 from 3.15", "samples"]

@@ -11,6 +11,7 @@ from edge.agent.fitted_sensor import FittedSensor
 from edge.agent.pipeline import TrackerPipeline, UnitIdentity
 from edge.clocks.timeline import Timeline
 from edge.samples import SensorBatch, SensorDescription
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import Quality, Reason
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
@@ -146,10 +147,9 @@ def test_a_trunk_that_lies_down_is_in_the_status_with_its_confidence():
     sensor = FittedSensor(SensorDescription("fake", 100.0))
     pipe = TrackerPipeline(
         UnitIdentity("1.0", "test", "straight", (sensor,)),
-        StraightAhead(),
+        OneSensorTracker(StraightAhead()),
         Stamper("u1", 7, ManualClock()),
         5.0,
-        worn_on_foot=False,
         worn_on="waist",
     )
     said = [

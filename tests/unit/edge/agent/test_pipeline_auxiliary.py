@@ -21,6 +21,7 @@ from edge.samples import (
     SensorBatch,
     SightingSample,
 )
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import TrackBatch
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
@@ -163,7 +164,9 @@ def test_the_tracker_gets_calibrated_samples_and_the_description_says_by_which()
     )
     calibration = Calibration("u1", "fake", made, gyroscope=gyroscope)
     identified = UnitIdentity("1.0", "test", "straight", (FittedSensor(SENSOR, calibration),))
-    pipe = TrackerPipeline(identified, Listening(), Stamper("u1", 7, ManualClock()), 5.0)
+    pipe = TrackerPipeline(
+        identified, OneSensorTracker(Listening()), Stamper("u1", 7, ManualClock()), 5.0
+    )
     (description,) = of(pipe.start(), UnitDescription)
     assert description.calibration == identity(calibration)
     assert description.calibrated_s == made.timestamp()

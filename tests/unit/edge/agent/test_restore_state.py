@@ -19,6 +19,7 @@ from edge.samples import SensorDescription
 from edge.storage.journal import journal as journal_module
 from edge.storage.journal import schema as rows_module
 from edge.storage.journal.journal import Journal, JournalRow
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.channels import EVENT, REPLY, channel_of
 from shared.clock import ManualClock
@@ -113,7 +114,7 @@ def test_a_mayday_from_before_is_said_again_first_thing():
     sensor = SensorDescription("s", 100.0)
     pipeline = TrackerPipeline(
         UnitIdentity("", "", "eskf", (FittedSensor(sensor),)),
-        make_tracker("eskf", sensor),
+        OneSensorTracker(make_tracker("eskf", sensor)),
         Stamper("u1", 1, ManualClock()),
         5.0,
         mayday=True,

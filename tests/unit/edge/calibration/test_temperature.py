@@ -16,6 +16,7 @@ from edge.calibration.solver import solve_accelerometer, solve_gyroscope
 from edge.samples import Floats, ImuBatch, SensorBatch, SensorDescription
 from edge.simulation.handled_unit import EDGES, SIDES
 from edge.simulation.imu import GRAVITY_MPS2
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.interface import TrackBatch
 from shared.clock import ManualClock
 from shared.envelope import Stamper
@@ -148,7 +149,9 @@ def test_a_unit_s_tracker_is_given_samples_of_which_the_temperature_has_been_hel
     identity = UnitIdentity(
         "1.0", "test", "straight", (FittedSensor(SENSOR, warm_calibration(20.0)),)
     )
-    pipe = TrackerPipeline(identity, Noting(), Stamper("u1", 7, ManualClock()), 5.0)
+    pipe = TrackerPipeline(
+        identity, OneSensorTracker(Noting()), Stamper("u1", 7, ManualClock()), 5.0
+    )
     for degc in (25.0, np.nan):
         pipe.step(SensorBatch(replace(walk(1), imu_temperature_degc=np.array([degc]))))
     expected = walk(1).accel_mps2 - ACCEL_BIAS - 5.0 * ACCEL_SLOPE

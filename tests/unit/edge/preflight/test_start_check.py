@@ -53,7 +53,7 @@ def samples(duration_s: float, *others: OtherSample, rate_hz: float = RATE_HZ) -
 
 
 def started(config: EdgeConfig = CONFIG, installation=all_well, gives=GIVES) -> StartCheck:
-    check = StartCheck(config, SENSOR, gives, installation)
+    check = StartCheck(config, {"": SENSOR}, gives, installation)
     check.start(0)
     return check
 
@@ -147,5 +147,5 @@ def test_a_check_that_fails_is_said_and_stops_no_unit(monkeypatch: pytest.Monkey
 
 
 def test_before_it_is_started_it_says_nothing() -> None:
-    check = StartCheck(CONFIG, SENSOR, GIVES, all_well)
+    check = StartCheck(CONFIG, {"": SENSOR}, GIVES, all_well)
     assert check.step(5 * END_NS) is None

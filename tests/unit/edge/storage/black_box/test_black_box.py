@@ -21,6 +21,7 @@ from edge.sources.interface import Source
 from edge.sources.registry import open_source
 from edge.storage.black_box.black_box import BlackBox
 from edge.storage.black_box.station_time import read_clock_offset
+from edge.tracker.choice.one_sensor import OneSensorTracker
 from edge.tracker.registry import make_tracker
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
@@ -66,7 +67,7 @@ def messages_of(source: Source, raw: SampleEncoder, batches: list[SensorBatch]) 
     sensor = sensors_of(description)[""]
     pipeline = TrackerPipeline(
         UnitIdentity("", "", "eskf", (FittedSensor(sensor),)),
-        make_tracker("eskf", sensor),
+        OneSensorTracker(make_tracker("eskf", sensor)),
         Stamper("u1", 1, ManualClock()),
         5.0,
     )

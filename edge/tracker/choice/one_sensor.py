@@ -1,0 +1,25 @@
+"""Tracker of one sensor among those of a person."""
+
+from __future__ import annotations
+
+from edge.samples import ImuBatch
+from edge.tracker.foot.output.track_rows import empty_rows
+from edge.tracker.interface import TrackBatch, Tracker
+from shared.earth_field import EarthField
+
+
+class OneSensorTracker:
+    """``MultiSensorTracker`` that tracks by one sensor and leaves the others alone."""
+
+    def __init__(self, tracker: Tracker, sensor: str = "") -> None:
+        self._tracker = tracker
+        self._sensor = sensor
+
+    def push(self, sensor: str, batch: ImuBatch) -> TrackBatch:
+        return self._tracker.push(batch) if sensor == self._sensor else empty_rows()
+
+    def set_earth_field(self, field: EarthField, t_ns: int) -> None:
+        self._tracker.set_earth_field(field, t_ns)
+
+    def finish(self) -> TrackBatch:
+        return self._tracker.finish()
