@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from functools import partial
 from itertools import permutations
 
+from edge.body_places import is_worn_on
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.body.tracker import BodyTracker
 from edge.tracker.foot.eskf import EskfTracker
@@ -155,7 +156,7 @@ def find_multi_sensor_tracker(name: str) -> MultiSensorTrackerEntry:
 def fits_places(entry: MultiSensorTrackerEntry, places: Iterable[str]) -> bool:
     """Return True if sensors at these places, one at each, are those that a tracker needs."""
     return any(
-        all(place in choices for place, choices in zip(order, entry.places, strict=True))
+        all(is_worn_on(*pair) for pair in zip(order, entry.places, strict=True))
         for order in permutations(places)
         if len(order) == len(entry.places)
     )

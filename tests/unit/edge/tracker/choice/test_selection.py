@@ -39,6 +39,7 @@ def one_tracker_of_two(monkeypatch: pytest.MonkeyPatch) -> None:
         (["hand"], "body", ("a",)),
         (["waist", "right_foot"], "eskf", ("b",)),
         (["shank", "chest"], "pair", ("a", "b")),
+        (["lower_back", "shank"], "pair", ("a", "b")),
         (["hand", "chest", "shank"], "pair", ("b", "c")),
     ],
 )
