@@ -90,7 +90,7 @@ def test_a_file_gives_settings_and_flags_overrule_it(tmp_path):
         'unit = "u1"\nsource = "simulated:straight"\ndata = "kept"\n[storage]\njournal_mb = 20\n'
     )
     config = load_config(file, EdgeConfig, {"unit": "u2", "tracker": None})
-    assert (config.unit, config.tracker) == ("u2", "eskf")
+    assert (config.unit, config.tracker) == ("u2", "by-place")
     assert config.data == tmp_path / "kept"
     assert config.storage.journal_mb == 20.0
 
