@@ -43,6 +43,9 @@ def strategy_of(annotation: object) -> st.SearchStrategy[object]:
         return struct_strategy(annotation)
     if typing.get_origin(annotation) is tuple and typing.get_args(annotation)[1:] == (...,):
         return st.lists(strategy_of(typing.get_args(annotation)[0]), max_size=4).map(tuple)
+    if typing.get_origin(annotation) is dict:
+        keys, values = (strategy_of(part) for part in typing.get_args(annotation))
+        return st.dictionaries(keys, values, max_size=4)
     if isinstance(annotation, types.UnionType):
         return st.one_of(*(strategy_of(part) for part in typing.get_args(annotation)))
     return st.from_type(annotation)  # type: ignore[arg-type]  # whatever else a field may be
