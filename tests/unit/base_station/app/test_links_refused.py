@@ -53,13 +53,18 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "users add": ("bob",),
     "users password": ("mia",),
     "users remove": ("mia",),
+    "unit-tokens list": ("FF-01",),
+    "unit-tokens add": ("FF-01", "--user", "mia"),
+    "unit-tokens remove": ("FF-01", "token"),
+    "foxglove live": (),
     "log recover": (),
     "log list": (),
     "fetch-recording": ("FF-01", "--from", "2026-03-01T10:00"),
 }
 WITHOUT_FOLDER = {
     # They look at what somebody gave, and write none of it.
-    *("replay", "assess", "smooth", "report"),
+    *("replay", "assess", "smooth", "report", "export", "foxglove replay"),
+    "foxglove layout",  # it reads the log alone, and writes where it is told to
     "compile",  # into the program's own
 }
 PKI_COMMANDS: dict[str, tuple[str, ...]] = {
