@@ -10,6 +10,7 @@ from edge.tracker.interface import Quality, TrackBatch
 from tests.bench.tracker.scoring import (
     fit_yaw,
     horizontal_nees,
+    is_held,
     rows_at,
     score_track,
     turn_about_start,
@@ -153,3 +154,11 @@ def test_a_closed_walk_is_silently_wrong_by_its_end():
     assert wide.stated_by_error == pytest.approx(
         5.0 * np.sqrt(2.0) / wide.closure_horizontal_m, rel=1e-3
     )
+
+
+def test_a_truth_that_is_held_until_it_jumps_is_none():
+    """Motion capture without its markers; a foot that stands, and one that runs, are no such."""
+    t_s = np.linspace(0.0, 0.35, 8)
+    north_m = np.array([0.0, 0.3, 0.3, 0.3, 1.3, 1.7, 1.7, 2.0])
+    truth = RecordedTruth(t_s, np.column_stack((north_m, np.zeros(8), np.zeros(8))))
+    assert is_held(truth).tolist() == [False, False, True, True, False, False, False, False]
