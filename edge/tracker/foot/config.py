@@ -71,7 +71,10 @@ class ZuptConfig(NamedTuple):
     stance_velocity_per_motion: float = 0.001  # m/s/sqrt(Hz) for each m/s^2 of motion
     stance_excess_power: float = 3.0
     stance_excess_floor_m2ps4: float = 0.3  # a smaller stride minimum is sensor noise
-    glide_gate: float = 5.0  # deviations of the velocity at which a foot does not stand
+    glide_gate: float = 4.0  # deviations of the velocity at which a foot does not stand
+    landing_gate: float = 2.0  # ... by which it falls, where it lands soon
+    landing_ahead_s: float = 0.15  # a swing is as still as a stance so long before it ends
+    landing_rate_share: float = 0.1  # of the statistic of a landing; a lift-off turns the foot
     # Noise density of the rate: base plus per_unrest * unrest^1.5.
     stance_rate_radps_rthz: float = 1e-3
     stance_rate_per_unrest: float = 1.0
@@ -104,9 +107,8 @@ class FloorConfig(NamedTuple):
     gate_m: float = 0.06  # a larger rise of one stride is a stair, a kerb or a ramp
     gate_slope: float = 0.075  # the same by the stride's length, where that is more
     std_m: float = 0.01
-    ramp_m: float = 0.035  # a mean rise of the last strides that is a ramp
-    ramp_stds: float = 1.0  # the same by how well the filter knows a rise
-    ramp_strides: float = 6.0
+    gate_stds: float = 2.0  # the same by how well the filter knows a rise; half of it is ordinary
+    ramp_strides: float = 6.0  # whose ordinary rises are exceeded in sum
     ramp_std_ratio: float = 0.5  # deviation of the height by what the floor has taken out of it
     ramp_max_m: float = 1.0  # ... up to this much: no ramp so gentle is longer
     rise_bias_strides: float = 30.0  # over which the habit on the flat is learned
@@ -217,6 +219,7 @@ class ClippingConfig(NamedTuple):
     hidden_force_limit_mps2: float = 300.0
     hidden_force_floor_mps2: float = 5.0
     hidden_force_std_ratio: float = 1.0  # of the bridged peak
+    hidden_rise_share: float = 0.5  # of what a clipped stride may hide of its rise: alike in all
 
 
 class StartConfig(NamedTuple):

@@ -44,7 +44,7 @@ from edge.tracker.foot.preprocessing.saturation_recovery import recover_forces, 
 from edge.tracker.foot.preprocessing.unstamped_loss import unstamped_loss_s
 from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress, Step, Trail
-from edge.tracker.foot.zupt.level_walking import apply_level_constraint
+from edge.tracker.foot.zupt.level_walking import apply_level_constraint, is_due
 from edge.tracker.foot.zupt.stance_acceptance import (
     is_accepted,
     note_restlessness,
@@ -86,7 +86,7 @@ def filter_sample(
     update_temperature_bias(ring, step, progress, state, slot, config)
     motion = ring[slot].motion_m2ps4
     still = good and motion <= stance_threshold(ring, state, slot, config)
-    still = still and not is_gliding(ring, state, slot, config)
+    still = still and not is_gliding(ring, progress, state, k, config)
     note_restlessness(ring, progress, slot, config)
     if still and not progress.in_stance:
         still = is_accepted(ring, progress, state, k, config)
@@ -103,7 +103,7 @@ def filter_sample(
         inflate_for_misfit(progress, state, ring[slot].t_s, config)
         add_hidden_turn(state, config)
         _end_swing(state)
-        if motion <= ring[slot].stride_minimum_m2ps4 and not state.barometer.riding:
+        if not state.barometer.riding and is_due(ring, progress, k, config):
             apply_level_constraint(ring, step, progress, state, slot, config)
     elif progress.in_stance:
         on_lift_off(state, config)

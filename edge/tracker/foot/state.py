@@ -198,6 +198,7 @@ FILTER = np.dtype(
         ("rest_rate_var_rad2ps2", np.float64),  # the rate's scatter about it
         ("clone", CLONE),  # see correction_tracking
         ("ramp_var_m2", np.float64),  # in case the floor is a ramp; see level_walking
+        ("hidden_rise_m", np.float64),  # that clipping may have hidden, alike in every stride
         # How an ordinary stride's noise is stated; see zupt_residuals.
         ("swing_rad", np.float64),  # that the foot has turned since it stood
         (
@@ -306,6 +307,8 @@ PROGRESS = np.dtype(
         ("climbed", np.float64),  # strides that left a level
         ("withheld_m", np.float64),  # what the floor has taken out in one direction
         ("past_ramps_m2", np.float64),  # in case what it took out before was a ramp
+        ("ramp_evidence_m", np.float64),  # cumulative sum of what strides sink beyond half a ramp
+        ("ramp_withheld_m", np.float64),  # what the floor has taken out since that was nought
         (SOURCES, np.bool_),  # not used; see kernel_cache
     ],
     align=True,

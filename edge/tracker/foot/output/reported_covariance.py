@@ -61,6 +61,7 @@ def report_covariance(
             scale_errors.position_sensitivity[i], scale_errors.heading_column
         )
     reported_m2[2, 2] += (scale_errors.std * state.position_n_m[2]) ** 2 + state.ramp_var_m2
+    reported_m2[2, 2] += state.hidden_rise_m**2
     noise_excess = noise_inflation(state, config) - 1.0
     scale_excess = scale_error_inflation(state, config)
     length_excess = max(scale_excess, 1.0)  # a scale of the accelerometer leaves landings alone

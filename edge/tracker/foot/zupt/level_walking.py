@@ -23,22 +23,41 @@ from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import POSITION, SIZE
 from edge.tracker.foot.filter.correction_tracking import decorrelate_clone
 from edge.tracker.foot.filter.measurement_update import remember
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.foot.sample_ring import Ring, reach, span
 from edge.tracker.foot.state import FilterState, Progress, Step
 
 DOWN = POSITION + 2
 
 
 @njit()
+def is_due(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> bool:
+    """True at the stillest sample of a stance, unless the floor has just been looked at."""
+    mask = len(ring) - 1
+    now_s, motion_m2ps4 = ring[k & mask].t_s, ring[k & mask].motion_m2ps4
+    if progress.on_floor and now_s - progress.footfall_s < config.floor.pause_s:
+        return False
+    reach_s = 0.5 * config.floor.pause_s
+    for i in range(k + 1, min(progress.measured, reach(ring, k))):
+        if ring[i & mask].t_s - now_s > reach_s:
+            break
+        if ring[i & mask].motion_m2ps4 < motion_m2ps4:
+            return False
+    for i in range(k - 1, max(k - span(ring), -1), -1):
+        if now_s - ring[i & mask].t_s > reach_s:
+            break
+        if ring[i & mask].motion_m2ps4 < motion_m2ps4:
+            return False
+    return True
+
+
+@njit()
 def apply_level_constraint(
     ring: Ring, step: Step, progress: Progress, state: FilterState, slot: int, config: EskfConfig
 ) -> None:
-    """Apply the constraint once a stance, at its stillest sample."""
+    """Apply the constraint at a stance; see ``is_due``."""
     if not progress.on_floor:
         progress.on_floor = True
         _enter_level(progress, state)
-    elif ring[slot].t_s - progress.footfall_s < config.floor.pause_s:
-        return
     elif _is_flat(progress, state, config):
         _hold_height(step, progress, state, config)
     else:
@@ -57,21 +76,47 @@ def _is_flat(progress: Progress, state: FilterState, config: EskfConfig) -> bool
     east_m = state.position_n_m[1] - progress.footfall_n_m[1]
     stride_m = math.sqrt(north_m * north_m + east_m * east_m)
     sink_m = state.position_n_m[2] - progress.footfall_n_m[2]
-    if abs(sink_m) >= max(config.floor.gate_m, config.floor.gate_slope * stride_m):
-        ramp = progress.mean_sink_m * sink_m > 0.0
-        if not ramp or abs(progress.mean_sink_m) < 0.5 * config.floor.ramp_m:
-            progress.withheld_m = 0.0
+    std_m = _rise_std_m(progress, state)
+    least_m = max(config.floor.gate_m, config.floor.gate_stds * std_m)  # that is no error
+    if abs(sink_m) >= max(least_m, config.floor.gate_slope * stride_m):
+        if progress.ramp_evidence_m * sink_m < 0.0:
+            progress.ramp_withheld_m = 0.0
+        progress.ramp_evidence_m = 0.0
         progress.mean_sink_m = 0.0
         return False
+    if stride_m <= config.floor.gate_m and not progress.level_constraint_suspended:
+        return True  # a foot that stays where it is tells of no ramp
     progress.mean_sink_m += (sink_m - progress.mean_sink_m) / config.floor.ramp_strides
-    std_m = math.sqrt(max(state.covariance[DOWN, DOWN] - progress.footfall_variance_m2, 0.0))
-    ramp_m = max(config.floor.ramp_m, config.floor.ramp_stds * std_m)
-    if abs(progress.mean_sink_m) >= ramp_m or progress.level_constraint_suspended:
+    if _is_ramp(progress, sink_m, 0.5 * least_m, config):
         return False
-    if stride_m > config.floor.gate_m:
-        progress.flat_strides = min(progress.flat_strides + 1.0, config.floor.rise_bias_strides)
-        progress.rise_bias_m += (sink_m - progress.rise_bias_m) / progress.flat_strides
+    if progress.level_constraint_suspended:
+        progress.ramp_withheld_m = progress.withheld_m
+        return False
+    progress.flat_strides = min(progress.flat_strides + 1.0, config.floor.rise_bias_strides)
+    progress.rise_bias_m += (sink_m - progress.rise_bias_m) / progress.flat_strides
     return True
+
+
+@njit()
+def _rise_std_m(progress: Progress, state: FilterState) -> float:
+    """Return how well the filter knows the rise of the stride before this stance."""
+    return math.sqrt(max(state.covariance[DOWN, DOWN] - progress.footfall_variance_m2, 0.0))
+
+
+@njit()
+def _is_ramp(progress: Progress, sink_m: float, usual_m: float, config: EskfConfig) -> bool:
+    """True where the strides up to this one sink or rise by more than ``usual_m`` each.
+
+    Page's cumulative sum ("Continuous inspection schemes", 1954): a ramp began where the sum was
+    last nought.  The sum goes no higher than it has to, or the floor after a ramp would be one.
+    """
+    total_m = progress.ramp_evidence_m + sink_m
+    evidence_m = max(abs(total_m) - usual_m, 0.0)
+    enough_m = config.floor.ramp_strides * usual_m
+    progress.ramp_evidence_m = math.copysign(min(evidence_m, enough_m), total_m)
+    if evidence_m == 0.0:
+        progress.ramp_withheld_m = 0.0
+    return bool(evidence_m >= enough_m)
 
 
 @njit()
@@ -83,6 +128,7 @@ def _hold_height(step: Step, progress: Progress, state: FilterState, config: Esk
         progress.past_ramps_m2 += _ramp_variance(progress, config)
         progress.withheld_m = 0.0
     progress.withheld_m += taken_m
+    progress.ramp_withheld_m += taken_m
     # The floor is no better known than when it was entered.
     state.covariance[DOWN, DOWN] = max(state.covariance[DOWN, DOWN], progress.level_variance_m2)
 
@@ -98,14 +144,24 @@ def _ramp_variance(progress: Progress, config: EskfConfig) -> float:
 
 @njit()
 def _climb(progress: Progress, state: FilterState, config: EskfConfig) -> None:
-    """Enter a new level, with what a ramp had lost to the one before given back."""
-    state.position_n_m[2] -= progress.withheld_m
+    """Enter a new level, with what a ramp had lost to the one before given back.
+
+    What was taken out before the ramp began was the habit of the strides, as likely as not.
+    """
+    if state.faulty_stride:
+        state.hidden_rise_m += config.clipping.hidden_rise_share * _rise_std_m(progress, state)
+    returned_m = progress.ramp_withheld_m
+    if returned_m != 0.0:
+        progress.withheld_m -= returned_m
+        progress.past_ramps_m2 += _ramp_variance(progress, config)
+    state.position_n_m[2] -= returned_m
     progress.climbed += 1.0
     more = 2.0 * progress.climbed - 1.0  # that one stride more adds to their square
     rise_bias_m2 = progress.rise_bias_m**2 + config.floor.rise_bias_std_m**2
     rise_bias_m2 += (config.floor.rise_bias_per_gain_m * state.scale_errors.std) ** 2
-    state.covariance[DOWN, DOWN] += progress.withheld_m**2 + more * rise_bias_m2
+    state.covariance[DOWN, DOWN] += returned_m**2 + more * rise_bias_m2
     progress.withheld_m = 0.0
+    progress.ramp_withheld_m = 0.0
     _enter_level(progress, state)
 
 

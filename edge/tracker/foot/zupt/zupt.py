@@ -9,6 +9,8 @@ the stiller the sample is.
 
 from __future__ import annotations
 
+import math
+
 from numba import njit
 
 from edge.samples import Floats
@@ -22,8 +24,8 @@ from edge.tracker.foot.filter.measurement_update import (
 )
 from edge.tracker.foot.filter.strapdown import dot
 from edge.tracker.foot.preprocessing.sample_times import lacks_samples
-from edge.tracker.foot.sample_ring import Ring
-from edge.tracker.foot.state import FilterState, Step
+from edge.tracker.foot.sample_ring import Ring, reach
+from edge.tracker.foot.state import FilterState, Progress, Step
 
 MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 
@@ -54,21 +56,45 @@ def apply_zupt(ring: Ring, step: Step, state: FilterState, slot: int, config: Es
 
 
 @njit()
-def is_gliding(ring: Ring, state: FilterState, slot: int, config: EskfConfig) -> bool:
+def is_gliding(
+    ring: Ring, progress: Progress, state: FilterState, k: int, config: EskfConfig
+) -> bool:
     """True when the foot moves evenly where it seems to stand, as one that is dragged does.
 
-    That shows by a velocity that the filter is sure of.  The stillest samples of a stride are
-    used in any case, or a filter that is wrong would never be corrected.
+    That shows by a velocity that the filter is sure of.  The stillest sample of all around is used
+    in any case, or a filter that is wrong would never be corrected: but for a foot that falls and
+    lands soon, for the end of a sprinter's swing is as still as his stance.
     """
-    if (
-        ring[slot].motion_m2ps4
-        <= config.detection.threshold_ratio * ring[slot].stride_minimum_m2ps4
-    ):
+    slot = k & (len(ring) - 1)
+    down_mps = state.velocity_n_mps[2]
+    std_mps = math.sqrt(state.covariance[VELOCITY + 2, VELOCITY + 2])
+    if down_mps > config.zupt.landing_gate * std_mps and _lands_soon(ring, progress, k, config):
+        return True
+    if ring[slot].motion_m2ps4 <= ring[slot].stride_minimum_m2ps4:
         return False
     for i in range(VELOCITY, VELOCITY + 3):
         speed_mps = state.velocity_n_mps[i - VELOCITY]
         if speed_mps * speed_mps > config.zupt.glide_gate**2 * state.covariance[i, i]:
             return True
+    return False
+
+
+@njit()
+def _lands_soon(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> bool:
+    """True where a force, and not a rotation, soon makes the foot less still."""
+    mask = len(ring) - 1
+    restless_m2ps4 = config.detection.threshold_ratio * max(
+        ring[k & mask].motion_m2ps4, config.detection.threshold_min_m2ps4
+    )
+    for i in range(k + 1, min(progress.measured, reach(ring, k))):
+        ahead = ring[i & mask]
+        if ahead.t_s - ring[k & mask].t_s > config.zupt.landing_ahead_s:
+            return False
+        if ahead.motion_m2ps4 > restless_m2ps4:
+            rate = dot(ahead.gyro_radps, ahead.gyro_radps)
+            by_rate = config.detection.rate_weight_m2ps2 * rate
+            if by_rate < config.zupt.landing_rate_share * ahead.motion_m2ps4:
+                return True
     return False
 
 

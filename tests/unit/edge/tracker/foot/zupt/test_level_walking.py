@@ -52,3 +52,15 @@ def test_a_floor_is_no_better_known_than_when_it_was_entered():
     state["covariance"][DOWN, DOWN] = 0.0401
     apply_level_constraint(ring, step, progress, state, 0, config_record(EskfConfig())[0])
     assert state["covariance"][DOWN, DOWN] == 0.04
+
+
+@pytest.mark.slow
+def test_a_stair_does_not_give_back_what_was_the_habit_of_strides_on_the_flat():
+    ring, step = np.zeros(8, RING), np.zeros(1, STEP)[0]
+    ring["t_s"] = 10.0
+    progress, state = new_progress()[0], new_filter_state()[0]
+    progress["on_floor"] = True
+    progress["withheld_m"] = 0.5
+    state["position_n_m"][2] = -0.17
+    apply_level_constraint(ring, step, progress, state, 0, config_record(EskfConfig())[0])
+    assert state["position_n_m"][2] == -0.17
