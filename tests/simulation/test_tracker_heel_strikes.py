@@ -54,7 +54,7 @@ def clipped(description, imu):
 def test_a_strike_is_put_right_and_not_the_swing_before_it(seed, clips):
     simulation = Simulation(Scenario("strikes", "heel strikes", LEGS), seed)
     imu = inertial_samples(simulation)
-    no_floor = EskfConfig(floor=FloorConfig(gate_m=0.0, gate_slope=0.0))
+    no_floor = EskfConfig(floor=FloorConfig(gate_m=0.0, gate_slope=0.0, gate_stds=0.0))
     description = simulation.description
     hard = struck(imu, track(description, imu, no_floor), np.random.default_rng(seed))
     if clips:

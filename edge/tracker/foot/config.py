@@ -94,7 +94,7 @@ class StanceConsistencyConfig(NamedTuple):
 class StanceRevisionConfig(NamedTuple):
     """A brief stance that the next one contradicts (``zupt/stance_revision.py``)."""
 
-    evidence: float = 7.8  # chi-square with three degrees of freedom: one in twenty
+    evidence: float = 11.3  # chi-square with three degrees of freedom: one in a hundred
     memory: float = 0.5  # of the evidence before
     together_nis: float = 11.3  # chi-square with three degrees of freedom: one in a hundred
     longest_stance_s: float = 0.3  # no instant of a swing is as still for longer

@@ -32,7 +32,9 @@ from tests.rig.exact_strides import walk
 
 # Without the floor's correction, and with every rate update used.
 CONFIG = EskfConfig(
-    floor=FloorConfig(gate_m=0.0, gate_slope=0.0, rise_bias_std_m=0.0, rise_bias_per_gain_m=0.0),
+    floor=FloorConfig(
+        gate_m=0.0, gate_slope=0.0, gate_stds=0.0, rise_bias_std_m=0.0, rise_bias_per_gain_m=0.0
+    ),
     zupt=ZuptConfig(stance_rate_gain_min_hz=0.0),
     # Follows the landings, which the plain filter does not.
     process=ProcessNoiseConfig(curvature_noise_per_strike=0.0),

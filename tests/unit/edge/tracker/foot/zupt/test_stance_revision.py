@@ -79,9 +79,9 @@ def test_way_and_velocity_are_given_back_and_a_share_is_doubted():
 
 
 def test_a_stance_that_remains_is_doubted_by_its_probability():
-    certain, uncertain = (two_stances(-v, v)[0]["misfit_n_m"][0] for v in (0.05, 0.18))
+    certain, uncertain = (two_stances(-v, v)[0]["misfit_n_m"][0] for v in (0.05, 0.215))
     assert certain < 0.2 * 0.05 * SWING_S
-    assert 0.25 * 0.18 * SWING_S < uncertain < 0.5 * 0.18 * SWING_S
+    assert 0.25 * 0.215 * SWING_S < uncertain < 0.5 * 0.215 * SWING_S
 
 
 @pytest.mark.parametrize("kwargs", [{"lasts_s": 0.4}, {"level_mps": 3.0}])
@@ -95,13 +95,13 @@ def test_who_does_it_once_does_it_again_on_less_evidence():
     state, progress = two_stances(-0.9, 0.9)
     for i in range(3):  # as after any other swing
         state["covariance"][VELOCITY + i, VELOCITY + i] = STD_MPS**2
-    begin(state, progress, (-0.18, 0.0, 0.0), 11.0)
+    begin(state, progress, (-0.215, 0.0, 0.0), 11.0)
     assert progress["misfit_s"] == 10.5
-    state["error"][VELOCITY] = -0.18
+    state["error"][VELOCITY] = -0.215
     note_correction(state, 11.0, CONFIG)
-    begin(state, progress, (0.18, 0.0, 0.0), 11.5)
+    begin(state, progress, (0.215, 0.0, 0.0), 11.5)
     assert progress["misfit_s"] == 11.5
-    assert not is_taken_back(*two_stances(-0.18, 0.18))
+    assert not is_taken_back(*two_stances(-0.215, 0.18))
 
 
 def test_a_correction_is_carried_on_as_the_filter_carries_an_error():
