@@ -97,7 +97,7 @@ _FIND = """
   }
 
   const map = document.querySelector(".map").getBoundingClientRect();
-  for (const one of document.querySelectorAll(".plan > :not(.map, .zoom, .north)")) {
+  for (const one of document.querySelectorAll(".plan > :not(.map, .zoom, .north, .edges)")) {
     const box = one.getBoundingClientRect();
     const apart =
       box.right <= map.left + 1 || box.left >= map.right - 1 ||

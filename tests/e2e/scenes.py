@@ -446,6 +446,28 @@ def crowd() -> wire.Snapshot:
     return bad_minute(40)
 
 
+def lost_link(index: int, ago_s: float = 41) -> wire.AlarmView:
+    return alarm(index, "link-lost", 2, f"Nothing heard of {unit_id(index)} for 30 s", int(ago_s))
+
+
+def flood(count: int = 200, down: int = 3) -> wire.Snapshot:
+    """All have lost their link at one time; the first few of them are down besides."""
+    units, alarms = [], []
+    for index in range(count):
+        of_unit = [lost_link(index)]
+        if index < down:
+            name = person(index).name
+            of_unit.insert(0, alarm(index, "fall", 1, f"{name} may have fallen", 20 + index))
+        units.append(
+            with_alarms(
+                unit(index), *of_unit, link="lost", last_heard_ms=NOW_MS - 71_000,
+                position=position(index, 71_000),
+            )
+        )  # fmt: skip
+        alarms += of_unit
+    return picture(units, *alarms)
+
+
 def long_names() -> wire.Snapshot:
     """At one of two stations, with an incident that is called by its whole address."""
     shown = bad_minute()

@@ -15,11 +15,10 @@ def test_an_alarm_says_the_figure_of_now_beside_the_time_since(stage: Stage) -> 
     """Its text keeps the figure of when it was raised, which nobody is to take for the present."""
     page, station = stage.open(scenes.bad_minute())
     alarms = page.get_by_role("region", name="Open alarms")
-    row = {rule: alarms.locator(f"[data-alarm^='{rule}']") for rule in ("heat", "no-motion")}
+    row = {rule: alarms.locator(f"[data-alarm^='{rule}']") for rule in ("heat", "fall")}
     expect(row["heat"]).to_contain_text("186 °C around the equipment of Mira Okafor")
     expect(row["heat"]).to_contain_text("now 186 °C")
-    expect(row["no-motion"]).to_contain_text("has not moved for 30 s")
-    expect(row["no-motion"]).to_contain_text("now 55 s")
+    expect(row["fall"]).to_contain_text("+ No motion, now 55 s")
     hot, lying = station.picture.units[2], station.picture.units[1]
     walking = wire.StatusView("walking", 0.0, 0.07, False, 80, 51.0, None, "unknown", ())
     station.change(
@@ -30,7 +29,7 @@ def test_an_alarm_says_the_figure_of_now_beside_the_time_since(stage: Stage) -> 
     )
     expect(row["heat"]).to_contain_text("186 °C around")
     expect(row["heat"].locator(".since")).to_contain_text("ago now 231 °C, 65 %")
-    expect(row["no-motion"].locator(".since")).to_contain_text("ago has moved since")
+    expect(row["fall"]).to_contain_text("+ No motion, has moved since")
     for name, (width, height) in SCREENS.items():
         page.set_viewport_size({"width": width, "height": height})
         assert flaws(page) == [], name

@@ -108,8 +108,8 @@ def test_each_fault_of_a_unit_says_which_it_is(stage: Stage) -> None:
     card = page.locator(".card", has_text="Mira Okafor")
     faults = card.get_by_label("Open alarms of this person").get_by_role("listitem")
     expect(faults).to_have_text([f"Unit fault: {fault}" for fault in scenes.FAULTS])
-    for fault in scenes.FAULTS:
-        expect(strip(page)).to_contain_text(f"Mira Okafor's unit: {fault}")
+    first, second = scenes.FAULTS
+    expect(strip(page)).to_contain_text(f"Mira Okafor's unit: {first} + Unit fault: {second}")
     assert flaws(page) == []
 
 
@@ -152,7 +152,7 @@ def test_a_phone_shows_the_list_or_the_plan(stage: Stage) -> None:
     people, plan = page.get_by_role("region", name="People"), page.locator(".map")
     expect(people).to_be_visible()
     expect(plan).to_be_hidden()
-    strip(page).get_by_role("button", name="Jonas Bergman may have fallen", exact=True).click()
+    strip(page).locator(".what").first.click()
     expect(plan).to_be_visible()
     expect(people).to_be_hidden()
     page.get_by_role("button", name="Menu").click()

@@ -63,7 +63,7 @@ def test_what_is_live_goes_on_after_the_login(stage: Stage) -> None:
     expect(page.locator(".console")).not_to_have_class(re.compile("not-now"))
     station.change(alarms=tuple(map(scenes.taken, station.picture.alarms)))
     alarms = page.get_by_role("region", name="Open alarms")
-    expect(alarms.get_by_role("button", name="Resolve")).to_have_count(4)
+    expect(alarms.get_by_role("button", name="Resolve")).to_have_count(3)
     assert flaws(page) == []
 
 

@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 from base_station.views.wire import Snapshot
 from tests.e2e import scenes
-from tests.e2e.console_page import painted_at_edges
+from tests.e2e.console_page import painted, painted_at_edges
 from tests.e2e.stage import Stage
 
 
@@ -91,3 +91,14 @@ def test_a_pin_that_is_looked_at_stays_on_its_floor(stage: Stage) -> None:
         page.get_by_role("button", name="Pins 2").click()
         page.get_by_role("button", name=f"{name} here").click()
         expect(page.get_by_role("combobox", name="Floor")).to_have_value(floor)
+
+
+def test_a_mark_of_another_floor_is_hollow(stage: Stage) -> None:
+    """Drawn as those on the floor shown, casualties were looked for on the wrong one."""
+    page, _ = stage.open(scenes.bad_minute())
+    red = {}
+    for floor in ("Floor 1", "Floor G"):
+        page.get_by_role("button", name=floor).click()
+        page.wait_for_timeout(800)
+        red[floor] = painted(page, "--immediate")
+    assert 0 < red["Floor G"] < 0.8 * red["Floor 1"], red

@@ -1,8 +1,17 @@
 import { describe, expect, it } from "vitest";
 import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
-import { firstFloor, floorRemark, floorsOf } from "../src/plan/floors";
+import { firstFloor, floorRemark, floorsOf, floorsUp } from "../src/plan/floors";
 import type { Colours } from "../src/plan/colours";
-import { colourOf, filling, isStrong, labelStyle, lettersOf, type Mark } from "../src/plan/marks";
+import {
+  colourOf,
+  filling,
+  floorArrow,
+  isHollow,
+  isStrong,
+  labelStyle,
+  lettersOf,
+  type Mark,
+} from "../src/plan/marks";
 import { placeNames, type Box, type Named, type Pixel, type Place } from "../src/plan/names";
 import { isNamed, pinWords } from "../src/plan/pins";
 import { joinedByTime, spanMs, TRAIL_MS, trailLines } from "../src/plan/trail";
@@ -119,6 +128,22 @@ describe("floorRemark", () => {
   });
 });
 
+describe("somebody on another floor", () => {
+  it("has an arrow with the number of floors", () => {
+    const arrow = (floor: number | null, shown: number | "all", sure: number | null = null) =>
+      floorArrow({ floorsUp: floorsUp(position({ floor, floor_probability: sure }), shown) });
+    expect(arrow(4, 2)).toBe("▲2");
+    expect(arrow(-1, 0)).toBe("▼1");
+    expect([arrow(2, 2), arrow(null, 2), arrow(4, 2, 0.4), arrow(4, "all")]).toEqual(["", "", "", ""]);
+  });
+
+  it("is drawn hollow, as who is old", () => {
+    expect(isHollow({ old: false, floorsUp: -1 })).toBe(true);
+    expect(isHollow({ old: true, floorsUp: 0 })).toBe(true);
+    expect(isHollow({ old: false, floorsUp: 0 })).toBe(false);
+  });
+});
+
 describe("where names stand on the plan", () => {
   const screen: Pixel = [500, 400];
   const named = (mark: Pixel, change: Partial<Named> = {}): Named => {
@@ -219,6 +244,7 @@ describe("the name of somebody on the plan", () => {
     old: false,
     ageMs: 72_000,
     floor: "",
+    floorsUp: 0,
     headingRad: 0,
     headingKnown: false,
   } as const;
@@ -231,8 +257,8 @@ describe("the name of somebody on the plan", () => {
       const one = { ...mark, initials: "AB", ...change };
       return `${colourOf(one, looks)} ${lettersOf(one)}`;
     };
-    expect(seen({ urgency: "immediate" })).toBe("red !");
-    expect(seen({ urgency: "immediate", old: true })).toBe("red !?");
+    expect(seen({ urgency: "immediate" })).toBe("red !AB");
+    expect(seen({ urgency: "immediate", old: true })).toBe("red !?AB");
     expect(seen({ urgency: "soon", old: true })).toBe("grey ?");
     expect(seen({ urgency: "soon" })).toBe("amber AB");
   });

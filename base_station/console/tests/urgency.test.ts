@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { handedTo, hasAlarm, isOfAnother, needsOf, openAlarms, sinceMs } from "../src/live/alarms";
-import { arrange, isJump, nameAmong, samePlaces, urgencyOf, type Place } from "../src/live/urgency";
+import { arrange, isCasualty, isJump, nameAmong, samePlaces, urgencyOf, type Place } from "../src/live/urgency";
 import type { AlarmView, UnitView } from "../src/wire";
 import { alarm, STATUS, unit } from "./fixtures";
 
@@ -78,6 +78,7 @@ describe("arrange", () => {
     ];
     alarms.set("battery", alarm("battery", { priority: 2 }));
     expect(order(arrange([], all, alarms, 0, false))).toBe("decab");
+    expect(order(arrange([], all, alarms, 0, false).filter(isCasualty))).toBe("dec");
   });
 
   it("puts whoever gets worse first at once, even while somebody points at the list", () => {

@@ -46,6 +46,11 @@ export function nameAmong(unit: UnitView, units: readonly UnitView[]): string {
   return namesakes.length > 1 ? `${name} (${unit.unit_id})` : name;
 }
 
+/** Whether a member is down: needs somebody, and is not only overdue. */
+export function isCasualty({ rank }: Place): boolean {
+  return rank <= IN_NEED;
+}
+
 /** Where a unit stands in the list, and since when it could stand lower. */
 export interface Place {
   unitId: string;

@@ -50,6 +50,12 @@ export function floorRemark(position: PositionView, shown: FloorChoice, old = fa
   return position.floor === shown ? "" : floorOf(position, old);
 }
 
+/** From the floor shown up to the one where somebody probably is; 0: the same, or nobody knows. */
+export function floorsUp(position: PositionView, shown: FloorChoice): number {
+  if (shown === "all" || position.floor === null || !isFloorLikely(position)) return 0;
+  return position.floor - shown;
+}
+
 export function shortName(floor: number): string {
   return floor < 0 ? `B${-floor}` : floor === 0 ? "G" : String(floor);
 }

@@ -11,6 +11,7 @@ import type { Plan } from "../wire";
 import { BaseMapLayer } from "./baseMap";
 import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
+import { edgeMarks, type EdgeMark, type Outside } from "./edges";
 import { ExternalLayer, type ExternalScene } from "./externalLayer";
 import { PeopleLayer, type Scene } from "./peopleLayer";
 import { Grid } from "./grid";
@@ -36,6 +37,8 @@ export interface PlanEvents {
   click(place: Place): boolean;
   choose(standing: Standing): void;
   moved(standing: Standing, place: Place): void;
+  /** Towards whom the plan's edge points now. */
+  outside(marks: readonly EdgeMark[]): void;
 }
 
 export class PlanMap {
@@ -174,6 +177,14 @@ export class PlanMap {
     const screen = { size: [right, down], covered, standing, pixelOf } as const;
     const taken = this.peopleLayer.show({ ...this.people, colours: this.colours, screen });
     this.pins.name({ ...screen, standing: [...standing, ...taken] }, this.colours);
+    this.events.outside(edgeMarks(this.endangered(), [right, down], covered));
+  }
+
+  private endangered(): Outside[] {
+    return this.peopleLayer.endangered.flatMap(({ centre, ...one }) => {
+      const mark = this.pixelOf(centre);
+      return mark === null ? [] : [{ ...one, mark }];
+    });
   }
 
   /** What lies over the plan. */

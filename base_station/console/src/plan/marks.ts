@@ -15,11 +15,13 @@ export interface Mark {
   old: boolean;
   ageMs: number;
   floor: string; // where it is not simply the one shown
+  floorsUp: number; // from the floor shown; negative: down; 0: on it, or not known
   headingRad: number;
   headingKnown: boolean;
 }
 
 const RADIUS_PX = 13;
+const DANGER_RADIUS_PX = 17; // has room for the initials beside "!"
 const ARROW_PX = 10;
 const HATCH_PX = 12;
 const MOST_FILLING = 0.18;
@@ -43,10 +45,22 @@ export function colourOf({ old, urgency }: Mark, colours: Colours): string {
   return old && urgency !== "immediate" ? colours.quiet : colours[urgency];
 }
 
-/** In the mark: "!" is danger, "?" an old place. */
+/** In the mark: "!" is danger, "?" an old place.  Of several in danger, the initials tell who is who. */
 export function lettersOf({ old, urgency, initials }: Mark): string {
-  const danger = urgency === "immediate" ? "!" : "";
-  return danger + (old ? "?" : "") || initials;
+  const danger = urgency === "immediate";
+  if (old && !danger) return "?";
+  return danger ? `!${old ? "?" : ""}${initials}` : initials;
+}
+
+/** Beside the mark of somebody on another floor: "▲2" is two floors up. */
+export function floorArrow({ floorsUp }: Pick<Mark, "floorsUp">): string {
+  if (floorsUp === 0) return "";
+  return floorsUp > 0 ? `▲${floorsUp}` : `▼${-floorsUp}`;
+}
+
+/** Only what is on the floor shown, and new, is filled. */
+export function isHollow({ old, floorsUp }: Pick<Mark, "old" | "floorsUp">): boolean {
+  return old || floorsUp !== 0;
 }
 
 /** The larger a region, the fainter its filling: many large ones must not hide the plan. */
@@ -112,36 +126,56 @@ function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours
   context.translate(at[0] ?? 0, at[1] ?? 0);
   context.scale(pixelRatio, pixelRatio);
   const colour = colourOf(mark, colours);
-  if (mark.headingKnown && !mark.old) drawArrow(context, mark.headingRad, colour, colours.halo);
+  const radiusPx = mark.urgency === "immediate" ? DANGER_RADIUS_PX : RADIUS_PX;
+  const hollow = isHollow(mark);
+  if (mark.headingKnown && !mark.old) drawArrow(context, mark.headingRad, radiusPx, colour, colours.halo);
   context.beginPath();
-  context.arc(0, 0, RADIUS_PX, 0, 2 * Math.PI);
-  context.fillStyle = mark.old ? colours.halo : colour;
+  context.arc(0, 0, radiusPx, 0, 2 * Math.PI);
+  context.fillStyle = hollow ? colours.halo : colour;
   context.fill();
-  context.lineWidth = mark.chosen ? 4 : 2;
-  context.strokeStyle = mark.chosen ? colours.chosen : mark.old ? colour : colours.halo;
+  context.lineWidth = mark.chosen ? 4 : hollow ? 2.5 : 2;
+  context.strokeStyle = mark.chosen ? colours.chosen : hollow ? colour : colours.halo;
   if (mark.old) context.setLineDash([4, 3]);
   context.stroke();
-  context.fillStyle = mark.old ? colour : colours.halo;
+  context.fillStyle = hollow ? colour : colours.halo;
   context.font = "700 12px system-ui, sans-serif";
   context.textAlign = "center";
   context.textBaseline = "middle";
-  context.fillText(lettersOf(mark), 0, 0.5);
+  context.fillText(lettersOf(mark), 0, 0.5, 2 * radiusPx - 4);
+  drawFloorArrow(context, floorArrow(mark), radiusPx, colour, colours.halo);
   context.restore();
+}
+
+type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
+
+/** At the upper right of the mark. */
+function drawFloorArrow(context: Context, text: string, radiusPx: number, colour: string, halo: string): void {
+  if (text === "") return;
+  context.font = "800 13px system-ui, sans-serif";
+  context.textAlign = "left";
+  context.setLineDash([]);
+  context.lineJoin = "round";
+  context.lineWidth = 4;
+  context.strokeStyle = halo;
+  context.strokeText(text, radiusPx * 0.7, -radiusPx);
+  context.fillStyle = colour;
+  context.fillText(text, radiusPx * 0.7, -radiusPx);
 }
 
 /** A point on the rim, towards the heading (clockwise from north, which is up). */
 function drawArrow(
-  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+  context: Context,
   headingRad: number,
+  radiusPx: number,
   colour: string,
   halo: string,
 ): void {
   context.save();
   context.rotate(headingRad);
   context.beginPath();
-  context.moveTo(0, -RADIUS_PX - ARROW_PX);
-  context.lineTo(8, -RADIUS_PX + 2);
-  context.lineTo(-8, -RADIUS_PX + 2);
+  context.moveTo(0, -radiusPx - ARROW_PX);
+  context.lineTo(8, -radiusPx + 2);
+  context.lineTo(-8, -radiusPx + 2);
   context.closePath();
   context.lineJoin = "round";
   context.lineWidth = 3;

@@ -15,7 +15,7 @@ import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
 import { initials } from "../format";
 import type { Colours } from "./colours";
 import { isOld, outline } from "./ellipse";
-import { floorRemark } from "./floors";
+import { floorRemark, floorsUp } from "./floors";
 import {
   isStrong,
   labelFont,
@@ -72,7 +72,17 @@ interface Figure {
   label: Feature<Point>;
 }
 
+/** A member in danger, as drawn. */
+export interface Endangered {
+  unitId: string;
+  name: string;
+  initials: string;
+  centre: [number, number];
+}
+
 export class PeopleLayer {
+  /** As last shown. */
+  endangered: readonly Endangered[] = [];
   private readonly figures = new Map<string, Figure>();
   private readonly trails = new VectorSource<Feature<MultiLineString>>();
   private readonly regions = new VectorSource<Feature<Polygon>>();
@@ -101,6 +111,14 @@ export class PeopleLayer {
       if (!shown.has(unitId)) this.forget(unitId);
     }
     const all = [...shown.values()];
+    this.endangered = all
+      .filter(({ looks }) => looks.urgency === "immediate")
+      .map(({ unit, looks, centre }) => ({
+        unitId: unit.unit_id,
+        name: looks.name,
+        initials: looks.initials,
+        centre,
+      }));
     const named = namedOf(all, scene.screen);
     const places = placeNames(named, scene.screen);
     all.forEach((one, i) =>
@@ -217,6 +235,7 @@ function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
     old,
     ageMs: scene.nowMs - position.t_ms,
     floor: floorRemark(position, scene.floor, old),
+    floorsUp: floorsUp(position, scene.floor),
     headingRad: position.heading_rad,
     headingKnown: position.heading_std_rad < HEADING_KNOWN_RAD,
   };

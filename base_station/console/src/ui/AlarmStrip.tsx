@@ -1,117 +1,87 @@
-import { useRef } from "preact/hooks";
-import { attempt, isPast, mayAct } from "../sessions";
-import { find } from "../uiState";
-import * as api from "../api";
-import { handedTo, sinceMs } from "../live/alarms";
-import { alarmCurrentValue } from "../live/alarmCurrentValue";
+import { useSignal } from "@preact/signals";
+import type { RefObject } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import { isPast } from "../sessions";
+import { alarmRows, singleRows, type AlarmRow } from "../live/alarmRows";
 import type { Picture } from "../live/picture";
-import type { AlarmView } from "../wire";
-import { duration } from "../format";
-import { ConfirmButton } from "./ConfirmButton";
+import { AlarmRowView } from "./AlarmRow";
 import { ErrorBoundary } from "./ErrorBoundary";
-import { useGuardedPress } from "./useGuardedPress";
-import { Icon } from "./Icon";
 import { SoundButton } from "./SoundButton";
 
-const PRIORITY: Record<number, string> = { 1: "Immediate", 2: "Soon", 3: "Information" };
-
+/** A zone of one height, whatever happens: nothing below it moves when alarms come and go.  What it has
+ * no room for is listed over the page, one row an alarm, once that is asked for. */
 export function AlarmStrip({ picture }: { picture: Picture }) {
-  const alarms = picture.openAlarms.value;
+  const open = picture.openAlarms.value;
+  const rows = alarmRows(open);
+  const zone = useRef<HTMLDivElement>(null);
+  const room = useRoom(zone);
+  const isListed = useSignal(false);
+  const hidden = Math.max(0, rows.length - room);
+  const listed = isListed.value && open.length > 0;
+  const close = () => (isListed.value = false);
   return (
-    <section class="alarms" aria-label="Open alarms">
+    <section
+      class="alarms"
+      aria-label="Open alarms"
+      onKeyDown={({ key }) => key === "Escape" && close()}
+    >
       <div class="alarms-head">
-        <h2>{alarms.length === 0 ? "No open alarms" : `${alarms.length} open`}</h2>
+        <h2>{open.length === 0 ? "No open alarms" : `${open.length} open`}</h2>
+        {(listed || hidden > 0 || open.length > rows.length) && (
+          <button
+            type="button"
+            class={`more ${hidden > 0 ? "hides" : ""}`}
+            aria-expanded={listed}
+            onClick={() => (isListed.value = !listed)}
+          >
+            {listed ? "Fewer" : hidden > 0 ? `+${hidden} more` : "One by one"}
+          </button>
+        )}
         {!isPast.value && <SoundButton />}
       </div>
-      <ul aria-live="assertive" aria-relevant="additions">
-        {alarms.map((alarm, place) => (
-          <ErrorBoundary as="li" key={alarm.alarm_id} what={`The alarm "${alarm.text}"`}>
-            <AlarmRow alarm={alarm} place={place} picture={picture} />
-          </ErrorBoundary>
-        ))}
-      </ul>
+      <div class="alarm-room" ref={zone}>
+        <Rows
+          key={listed ? "listed" : "zone"} // what is only listed now is not announced anew
+          rows={listed ? singleRows(open) : rows.slice(0, room)}
+          kind={listed ? "listed" : "zone"}
+          picture={picture}
+          onFlood={() => (isListed.value = true)}
+        />
+      </div>
     </section>
   );
 }
 
-interface RowProps {
-  alarm: AlarmView;
-  place: number; // in the list
+interface RowsProps {
+  rows: readonly AlarmRow[];
+  kind: "zone" | "listed";
   picture: Picture;
+  onFlood: () => void;
 }
 
-function AlarmRow({ alarm, place, picture }: RowProps) {
-  const taken = alarm.state === "acknowledged";
-  const unit = picture.unit(alarm.unit_id);
-  const handed = unit === undefined ? "" : handedTo(alarm, unit.value);
-  const nowMs = picture.nowMs.value;
-  const figure =
-    unit === undefined ? "" : alarmCurrentValue(alarm, unit.value, nowMs, picture.silentMs.value > 0);
+function Rows({ rows, kind, picture, onFlood }: RowsProps) {
   return (
-    <li class={`alarm p${alarm.priority} ${taken ? "taken" : ""}`} data-alarm={alarm.alarm_id}>
-      <Icon name={taken ? "check" : "alarm"} />
-      <span class="priority">{PRIORITY[alarm.priority] ?? `Priority ${alarm.priority}`}</span>
-      <button
-        type="button"
-        class="what"
-        title="Show on the plan"
-        disabled={unit === undefined}
-        onClick={() => find(alarm.unit_id, unit?.peek().position?.floor ?? null)}
-      >
-        {alarm.text}
-        {handed !== "" && ` (${handed})`}
-      </button>
-      <span class="since" aria-live="off">
-        {duration(nowMs - sinceMs(alarm))} ago{" "}
-        {figure !== "" && <strong>{figure}</strong>}
-      </span>
-      <State words={stateOf(alarm, mayAct.value)} />
-      {mayAct.value && <AlarmAction alarm={alarm} place={place} />}
-    </li>
+    <ul class={kind} aria-live="assertive" aria-relevant="additions">
+      {rows.map((row, place) => (
+        <ErrorBoundary as="li" key={row.key} what={`The alarm "${row.alarms[0]?.text}"`}>
+          <AlarmRowView row={row} place={place} picture={picture} onFlood={onFlood} />
+        </ErrorBoundary>
+      ))}
+    </ul>
   );
 }
 
-/** A long name is cut; all of it is said to who points at it. */
-function State({ words }: { words: string }) {
-  return (
-    <span class="state" title={words}>
-      {words}
-    </span>
-  );
-}
-
-/** Where there is a button to acknowledge, it says that nobody has. */
-function stateOf(alarm: AlarmView, hasButton: boolean): string {
-  if (alarm.state === "acknowledged") return `acknowledged by ${alarm.by}`;
-  return hasButton ? "" : "not acknowledged";
-}
-
-/** To resolve asks first: it stands where the button to acknowledge was a moment ago. */
-function AlarmAction({ alarm, place }: Omit<RowProps, "picture">) {
-  const steady = useGuardedPress(place);
-  const pressed = useRef(false);
-  if (alarm.state === "acknowledged") {
-    return (
-      <ConfirmButton
-        label="Resolve"
-        about={alarm.text}
-        question="Is it over?"
-        focused={pressed.current}
-        onConfirm={steady(() => void attempt(api.resolve(alarm)))}
-      />
-    );
-  }
-  return (
-    <button
-      type="button"
-      class="act"
-      aria-label={`Acknowledge: ${alarm.text}`}
-      onClick={steady(() => {
-        pressed.current = true;
-        void attempt(api.acknowledge(alarm));
-      })}
-    >
-      Acknowledge
-    </button>
-  );
+/** How many rows the zone has room for: `--alarm-rows` of the style sheet, by the size of the screen. */
+function useRoom(zone: RefObject<HTMLElement | null>): number {
+  const room = useSignal(Infinity);
+  useEffect(() => {
+    const box = zone.current;
+    if (box === null) return undefined;
+    const read = () => (room.value = Number(getComputedStyle(box).getPropertyValue("--alarm-rows")));
+    const watch = new ResizeObserver(read);
+    watch.observe(box);
+    read();
+    return () => watch.disconnect();
+  }, []);
+  return room.value;
 }

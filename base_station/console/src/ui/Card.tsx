@@ -94,7 +94,7 @@ function useInSight(chosen: boolean): RefObject<HTMLLIElement | null> {
   const asked = chosen ? centring.value : 0;
   useLayoutEffect(() => {
     if (asked === 0 || card.current === null) return;
-    const list = card.current.closest(".people");
+    const list = card.current.closest(".people-list");
     const isLonger = list !== null && card.current.offsetHeight > list.clientHeight;
     card.current.scrollIntoView({ block: isLonger ? "start" : "nearest" }); // by its name
   }, [asked]);

@@ -1,14 +1,16 @@
-import { useSignalEffect } from "@preact/signals";
+import { useSignal, useSignalEffect, type Signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
 import { centring, pane, notice, select, selectedUnit } from "../uiState";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
+import type { EdgeMark } from "../plan/edges";
 import { follow } from "../plan/follow";
 import { PlanMap, type PlanEvents } from "../plan/map";
 import type { Standing } from "../plan/pins";
 import { siteCoordinate } from "../plan/site";
 import { click, clicked, take, tool, wantsPlaces, type Place } from "../plan/tools";
+import { Edges } from "./Edges";
 import { Floors } from "./Floors";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { PlanTools, ToolPanel } from "./PlanTools";
@@ -16,10 +18,11 @@ import { PlanTools, ToolPanel } from "./PlanTools";
 export function PlanPanel({ picture }: { picture: Picture }) {
   const target = useRef<HTMLDivElement>(null);
   const map = useRef<PlanMap | null>(null);
+  const outside = useSignal<readonly EdgeMark[]>([]);
 
   useEffect(() => {
     if (target.current === null) return undefined;
-    const made = new PlanMap(target.current, eventsOf(picture));
+    const made = new PlanMap(target.current, eventsOf(picture, outside));
     map.current = made;
     const stop = follow(made, picture);
     return () => {
@@ -64,6 +67,9 @@ export function PlanPanel({ picture }: { picture: Picture }) {
           Fit
         </button>
       </div>
+      <ErrorBoundary what="The arrows at the edge of the plan">
+        <Edges picture={picture} marks={outside} />
+      </ErrorBoundary>
       <div class="north" aria-hidden="true">
         N
       </div>
@@ -86,7 +92,7 @@ function backToCard(): void {
   requestAnimationFrame(() => document.querySelector<HTMLElement>(".chosen .card-head")?.focus());
 }
 
-function eventsOf(picture: Picture): PlanEvents {
+function eventsOf(picture: Picture, outside: Signal<readonly EdgeMark[]>): PlanEvents {
   return {
     select: (unitId) => select(unitId, null),
     click(place) {
@@ -100,6 +106,9 @@ function eventsOf(picture: Picture): PlanEvents {
       else take({ kind: "edit-beacon", beaconId: standing.id });
     },
     moved: (standing, place) => void move(picture, standing, place),
+    outside(marks) {
+      if (JSON.stringify(marks) !== JSON.stringify(outside.peek())) outside.value = marks;
+    },
   };
 }
 

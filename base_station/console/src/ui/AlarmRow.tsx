@@ -1,0 +1,159 @@
+import { useRef } from "preact/hooks";
+import { attempt, mayAct } from "../sessions";
+import { find } from "../uiState";
+import * as api from "../api";
+import { handedTo, sinceMs } from "../live/alarms";
+import { alarmCurrentValue } from "../live/alarmCurrentValue";
+import { floodText, raisedOf, takenBy, type AlarmRow } from "../live/alarmRows";
+import type { Picture } from "../live/picture";
+import type { AlarmView } from "../wire";
+import { alarmLabel, duration } from "../format";
+import { ConfirmButton } from "./ConfirmButton";
+import { useGuardedPress } from "./useGuardedPress";
+import { Icon } from "./Icon";
+
+const PRIORITY: Record<number, string> = { 1: "Immediate", 2: "Soon", 3: "Information" };
+
+interface Props {
+  row: AlarmRow;
+  place: number; // in the list
+  picture: Picture;
+  /** Of a flood, the alarms are listed. */
+  onFlood: () => void;
+}
+
+/** The alarms of one member, or of a flood: what is the matter, since when, and who deals with it. */
+export function AlarmRowView({ row, place, picture, onFlood }: Props) {
+  const [first] = row.alarms;
+  if (first === undefined) return null;
+  const taken = raisedOf(row).length === 0;
+  const unit = picture.unit(first.unit_id);
+  const words = spoken(row, picture);
+  const show = () => find(first.unit_id, unit?.peek().position?.floor ?? null);
+  return (
+    <li class={`alarm p${first.priority} ${taken ? "taken" : ""}`} data-alarm={first.alarm_id}>
+      <Icon name={taken ? "check" : "alarm"} />
+      <span class="priority">{PRIORITY[first.priority] ?? `Priority ${first.priority}`}</span>
+      <button
+        type="button"
+        class="what"
+        title={`${words}. ${row.isFlood ? "List them" : "Show on the plan"}`}
+        disabled={!row.isFlood && unit === undefined}
+        onClick={row.isFlood ? onFlood : show}
+      >
+        {row.isFlood ? floodText(row) : textOf(first, picture)}
+        {!row.isFlood &&
+          row.alarms.slice(1).map((alarm) => (
+            <span class="cause" key={alarm.alarm_id}>
+              {" "}
+              + {alarmLabel(alarm)}
+              <span aria-live="off">{figureBehind(alarm, picture)}</span>
+            </span>
+          ))}
+      </button>
+      <span class="since" aria-live="off">
+        {duration(picture.nowMs.value - sinceMs(first))} ago{" "}
+        {!row.isFlood && <Figure alarm={first} picture={picture} />}
+      </span>
+      <State words={stateOf(row, taken, mayAct.value)} />
+      {mayAct.value && <Action row={row} place={place} words={words} />}
+    </li>
+  );
+}
+
+function textOf(alarm: AlarmView, picture: Picture): string {
+  const unit = picture.unit(alarm.unit_id);
+  const handed = unit === undefined ? "" : handedTo(alarm, unit.value);
+  return handed === "" ? alarm.text : `${alarm.text} (${handed})`;
+}
+
+/** All of it in one sentence, without figures that change. */
+function spoken(row: AlarmRow, picture: Picture): string {
+  const [first, ...others] = row.alarms;
+  if (first === undefined) return "";
+  if (row.isFlood) return floodText(row);
+  return [textOf(first, picture), ...others.map(alarmLabel)].join(", ");
+}
+
+function figureOf(alarm: AlarmView, picture: Picture): string {
+  const unit = picture.unit(alarm.unit_id);
+  if (unit === undefined) return "";
+  return alarmCurrentValue(alarm, unit.value, picture.nowMs.value, picture.silentMs.value > 0);
+}
+
+function figureBehind(alarm: AlarmView, picture: Picture): string {
+  const figure = figureOf(alarm, picture);
+  return figure === "" ? "" : `, ${figure}`;
+}
+
+function Figure({ alarm, picture }: { alarm: AlarmView; picture: Picture }) {
+  const figure = figureOf(alarm, picture);
+  return figure === "" ? null : <strong>{figure}</strong>;
+}
+
+/** A long name is cut; all of it is said to who points at it. */
+function State({ words }: { words: string }) {
+  return (
+    <span class="state" title={words}>
+      {words}
+    </span>
+  );
+}
+
+/** Where there is a button to acknowledge, it says that nobody has. */
+function stateOf(row: AlarmRow, taken: boolean, hasButton: boolean): string {
+  if (taken) return `acknowledged by ${takenBy(row)}`;
+  return hasButton ? "" : "not acknowledged";
+}
+
+type ActionProps = Pick<Props, "row" | "place"> & { words: string };
+
+/** One press acknowledges all of the row that is raised.  To resolve asks first: it stands where the
+ * button to acknowledge was a moment ago.  The alarms of a flood are resolved one by one, as listed. */
+function Action({ row, place, words }: ActionProps) {
+  const ids = row.isFlood ? "" : row.alarms.map((alarm) => alarm.alarm_id).join(" ");
+  const steady = useGuardedPress(`${place} ${ids}`);
+  const pressed = useRef(false);
+  const raised = raisedOf(row);
+  if (raised.length > 0) {
+    return (
+      <button
+        type="button"
+        class="act"
+        aria-label={`Acknowledge: ${words}`}
+        onClick={steady(() => {
+          pressed.current = true;
+          void inTurn(raised, api.acknowledge);
+        })}
+      >
+        Acknowledge
+      </button>
+    );
+  }
+  if (row.isFlood) return null;
+  return (
+    <ConfirmButton
+      label="Resolve"
+      about={words}
+      question={row.alarms.length === 1 ? "Is it over?" : `Are all ${row.alarms.length} over?`}
+      focused={pressed.current}
+      onConfirm={steady(() => void inTurn(row.alarms, api.resolve))}
+    />
+  );
+}
+
+const AT_ONCE = 4;
+
+/** A few at a time: the request after two hundred others would run out of time. */
+async function inTurn(
+  alarms: readonly AlarmView[],
+  act: (alarm: AlarmView) => Promise<void>,
+): Promise<void> {
+  const left = [...alarms];
+  const work = async () => {
+    for (let next = left.shift(); next !== undefined; next = left.shift()) {
+      await attempt(act(next));
+    }
+  };
+  await Promise.all(Array.from({ length: AT_ONCE }, work));
+}

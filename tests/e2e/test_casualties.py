@@ -1,0 +1,82 @@
+"""Members who are down stay on the screen: above the list, and at the edge of the plan."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.e2e import scenes
+from tests.e2e.looks import flaws
+from tests.e2e.stage import Stage
+
+SIZES = ((1920, 1080), (1366, 768), (1024, 768), (390, 844), (844, 390))
+DOWN = 5
+
+
+def casualties(page: Page) -> Locator:
+    return page.get_by_role("list", name="Members who are down").get_by_role("button")
+
+
+@pytest.mark.parametrize(
+    ("count", "size"), [*((40, size) for size in SIZES), (200, SIZES[0]), (200, SIZES[3])]
+)
+def test_who_is_down_is_seen_wherever_the_list_is_scrolled(
+    stage: Stage, count: int, size: tuple[int, int]
+) -> None:
+    page, _ = stage.open(scenes.flood(count, DOWN))
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    expect(casualties(page)).to_have_count(DOWN)
+    for share in (0, 0.5, 1):
+        page.locator(".people-list").evaluate(
+            "(one, share) => one.scrollTo(0, share * one.scrollHeight)", share
+        )
+        for place in range(DOWN):
+            expect(casualties(page).nth(place)).to_be_in_viewport(ratio=0.95)
+    assert flaws(page) == []
+    last = casualties(page).nth(DOWN - 1)
+    name = last.locator(".casualty-name").inner_text()
+    page.wait_for_timeout(600)
+    last.click()
+    expect(page.locator(".card.chosen .name")).to_have_text(name)
+    expect(page.locator(".card.chosen .name")).to_be_in_viewport(ratio=1)
+
+
+def test_a_casualty_says_what_is_the_matter_and_where(stage: Stage) -> None:
+    page, _ = stage.open(scenes.bad_minute())
+    expect(casualties(page)).to_have_count(1)
+    expect(casualties(page)).to_contain_text("Jonas Bergman")
+    expect(casualties(page)).to_contain_text("Fall, No motion · floor 1")
+
+
+def test_overdue_alone_is_no_casualty(stage: Stage) -> None:
+    page, _ = stage.open(scenes.overdue())
+    expect(page.locator(".card").first).to_contain_text("over")
+    expect(casualties(page)).to_have_count(0)
+
+
+@pytest.mark.parametrize("size", [SIZES[0], SIZES[2]])
+def test_the_edge_of_the_plan_points_to_who_is_down_outside_it(
+    stage: Stage, size: tuple[int, int]
+) -> None:
+    page, _ = stage.open(scenes.at_the_edges())
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    arrows = page.get_by_role("list", name="In danger, outside the view").get_by_role("button")
+    page.get_by_role("button", name="Fit").click()
+    page.wait_for_timeout(600)
+    expect(arrows).to_have_count(0)
+    for _ in range(3):
+        page.get_by_role("button", name="Zoom in").click()
+        page.wait_for_timeout(400)
+    expect(arrows).to_have_count(4)
+    assert flaws(page) == []
+    plan = page.locator(".map").bounding_box()
+    assert plan is not None
+    for place in range(4):
+        box = arrows.nth(place).bounding_box()
+        assert box is not None
+        assert plan["x"] <= box["x"] <= plan["x"] + plan["width"] - box["width"]
+        assert plan["y"] <= box["y"] <= plan["y"] + plan["height"] - box["height"]
+    east = page.get_by_role("button", name=f"Show {scenes.NAMES[1]}, outside the view to the east")
+    east.click()
+    expect(east).to_have_count(0)  # it is in the middle now
+    expect(page.locator(".card.chosen .name")).to_have_text(scenes.NAMES[1])
