@@ -60,7 +60,8 @@ _FIND = """
       found.push(`${said(one)} is covered by ${said(hit)}`);
   }
 
-  for (const one of root.querySelectorAll(".what, .name, h2, .fact dd, .mayday, .par-clock")) {
+  const whole = ".what, .name:not(.line *), h2, .fact dd, .mayday, .par-clock";
+  for (const one of root.querySelectorAll(whole)) {
     if (!isShown(one)) continue;
     const [box, around] = [one.getBoundingClientRect(), one.parentElement.getBoundingClientRect()];
     const clips = getComputedStyle(one).overflow !== "visible";

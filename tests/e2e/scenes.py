@@ -468,6 +468,23 @@ def flood(count: int = 200, down: int = 3) -> wire.Snapshot:
     return picture(units, *alarms)
 
 
+def mixed(count: int = 40) -> wire.Snapshot:
+    """One is down, one rests outside, two are not located, and three were never heard."""
+    shown = bad_minute(count)
+    units = list(shown.units[:count])
+    resting = units[10].duty
+    assert resting is not None
+    units[10] = msgspec.structs.replace(
+        units[10],
+        inside_since_ms=None,
+        duty=msgspec.structs.replace(resting, rest_since_ms=NOW_MS - MINUTE_MS),
+    )
+    for index in (11, 12):
+        units[index] = msgspec.structs.replace(units[index], position=None, inside_since_ms=None)
+    units[13:16] = [never_confirmed(one) for one in units[13:16]]
+    return msgspec.structs.replace(shown, units=tuple(units))
+
+
 def long_names() -> wire.Snapshot:
     """At one of two stations, with an incident that is called by its whole address."""
     shown = bad_minute()

@@ -45,7 +45,7 @@ def test_a_casualty_says_what_is_the_matter_and_where(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     expect(casualties(page)).to_have_count(1)
     expect(casualties(page)).to_contain_text("Jonas Bergman")
-    expect(casualties(page)).to_contain_text("Fall, No motion · floor 1")
+    expect(casualties(page)).to_contain_text("floor 1 · Fall, No motion")
 
 
 def test_overdue_alone_is_no_casualty(stage: Stage) -> None:

@@ -20,17 +20,17 @@ describe("the plan's edge", () => {
 
   it("points straight to each side", () => {
     expect(placesOf([[200, -900], [900, 150], [200, 900], [-900, 150]])).toEqual([
-      [200, 24],
-      [376, 150],
-      [200, 276],
-      [24, 150],
+      [200, 28],
+      [372, 150],
+      [200, 272],
+      [28, 150],
     ]);
   });
 
   it("points over the corner to who is beyond it", () => {
-    const [place] = edgeMarks([outside("a", [200 + 352, 150 - 252])], SIZE, []);
-    expect(place?.at[0]).toBeCloseTo(376);
-    expect(place?.at[1]).toBeCloseTo(24);
+    const [place] = edgeMarks([outside("a", [200 + 344, 150 - 244])], SIZE, []);
+    expect(place?.at[0]).toBeCloseTo(372);
+    expect(place?.at[1]).toBeCloseTo(28);
     expect(compassWord(place?.bearingRad ?? 0)).toBe("north-east");
   });
 

@@ -15,7 +15,7 @@ export interface EdgeMark extends Outside {
 
 /** Half of what is drawn there, and how far its middle is from the edge. */
 const HALF_PX = 20;
-const INSET_PX = 24;
+const INSET_PX = 28;
 /** A mark nearer to the edge than this is cut. */
 const CUT_PX = 6;
 const STEP_PX = 8;

@@ -13,36 +13,69 @@ import * as format from "../format";
 import { CardActions } from "./CardActions";
 import { OpenCommands } from "./CommandState";
 import { BriefFacts, Facts } from "./Facts";
+import { Line } from "./Line";
 import { activityIcon, Icon, type IconName } from "./Icon";
 import { isOverdue, ParMark } from "./ParClock";
 import { Photo } from "./Photo";
+import { useGuardedPress } from "./useGuardedPress";
 import { AskWearer } from "./Wearer";
 
 interface Props {
   unitId: string;
   urgency: Urgency;
+  place: number; // in the list
   brief: boolean; // whoever is well is said in short
+  line: boolean; // whoever is not chosen has one line
   picture: Picture;
 }
 
-export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
+/** All of it is pressed to choose its person; by keys, and to who listens, its head is the button. */
+export const Card = memo(({ unitId, urgency, place, brief, line, picture }: Props) => {
   const unit = picture.unit(unitId)?.value;
   const chosen = selectedUnit.value === unitId;
   const card = useInSight(chosen);
+  const steady = useGuardedPress(place, false);
   if (unit === undefined) return null;
-  const name = displayName(unit);
+  const choose = steady(() => select(unitId, unit.position?.floor ?? null));
   const off = unit.switched_off;
   const unheard = !off && (unit.link === "lost" || unit.link === "never");
-  const short = brief && !chosen && urgency === "normal" && isUsual(unit);
+  const lined = line && !chosen;
+  const short = !lined && brief && !chosen && urgency === "normal" && isUsual(unit);
   return (
-    <li class={`card ${urgency} ${flags({ unheard, off, chosen, brief: short })}`} data-unit={unitId} ref={card}>
-      <button
-        type="button"
-        class="card-head"
-        aria-pressed={chosen}
-        title="Show on the plan"
-        onClick={() => select(unitId, unit.position?.floor ?? null)}
-      >
+    <li
+      class={`card ${urgency} ${flags({ unheard, off, chosen, brief: short, line: lined })}`}
+      data-unit={unitId}
+      ref={card}
+      onClick={(press) => !isOnOther(press.target) && choose(press)}
+    >
+      {lined ? (
+        <Line unit={unit} picture={picture} />
+      ) : (
+        <Whole unit={unit} chosen={chosen} short={short} picture={picture} />
+      )}
+    </li>
+  );
+});
+
+/** Whether a press is for something else on the card than the person. */
+function isOnOther(target: EventTarget | null): boolean {
+  const pressed = target instanceof Element ? target.closest("button, select, input, label, a") : null;
+  return pressed !== null && !pressed.matches(".card-head");
+}
+
+interface WholeProps {
+  unit: UnitView;
+  chosen: boolean;
+  short: boolean;
+  picture: Picture;
+}
+
+function Whole({ unit, chosen, short, picture }: WholeProps) {
+  const unitId = unit.unit_id;
+  const name = displayName(unit);
+  return (
+    <>
+      <button type="button" class="card-head" aria-pressed={chosen} title="Show on the plan">
         {!short && <Photo name={name} url={unit.person?.photo_url ?? null} />}
         <span class="names">
           <span class="name">{name}</span>
@@ -70,9 +103,9 @@ export const Card = memo(({ unitId, urgency, brief, picture }: Props) => {
       {chosen && mayAct.value && unit.registered && <CardActions unit={unit} />}
       {!unit.registered && <UnknownUnit unitId={unitId} />}
       {unit.registered && unit.person === null && mayAct.value && <AskWearer unit={unit} />}
-    </li>
+    </>
   );
-});
+}
 
 /** For who comes by keys: the plan, on which this person is in the middle, stands behind all others'
  * cards.  There, Escape leads back (`PlanPanel.tsx`). */

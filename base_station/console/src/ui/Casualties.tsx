@@ -36,7 +36,7 @@ function Casualty({ unitId, place, picture }: Props) {
   if (unit === undefined) return null;
   const name = displayName(unit);
   const matter = needsOf(unit, picture.alarms.value).map(format.alarmLabel).join(", ");
-  const words = [matter || format.activityOf(unit), placeOf(unit, picture.nowMs.value)].join(" · ");
+  const words = [placeOf(unit, picture.nowMs.value), matter || format.activityOf(unit)].join(" · ");
   return (
     <li>
       <button

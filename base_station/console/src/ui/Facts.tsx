@@ -54,7 +54,7 @@ export function BriefFacts({ unit, picture }: Props) {
 }
 
 /** "ground floor, near store, ± 2.1 m". */
-function placeWords(position: PositionView, picture: Picture, old: boolean): string {
+export function placeWords(position: PositionView, picture: Picture, old: boolean): string {
   const region = regionAt(position, picture.silentMs.value);
   const room = roomWord(picture.plan.value, position, region);
   const parts = [format.floorOf(position, old), room, format.plusMinus(region.major_m)];

@@ -1,12 +1,18 @@
 import { untracked, useComputed, useSignal, useSignalEffect } from "@preact/signals";
-import { useRef } from "preact/hooks";
+import { useEffect, useRef } from "preact/hooks";
+import { selectedUnit } from "../uiState";
+import { grouped, sought, type Group } from "../live/finding";
+import { headcountOf } from "../live/headcount";
 import type { Picture } from "../live/picture";
 import { guarded } from "../live/faults";
 import { arrange, isCasualty, isJump, samePlaces, type Place } from "../live/urgency";
-import { Card } from "./Card";
 import { Casualties } from "./Casualties";
 import { CommandBar } from "./CommandBar";
 import { ErrorBoundary } from "./ErrorBoundary";
+import { Headcount } from "./Headcount";
+import { ListTools } from "./ListTools";
+import { finding, order, part, showAll, text } from "./listState";
+import { PeopleGroups } from "./PeopleGroups";
 
 /** With more than this, whoever is well is said in short, so that who is not is seen. */
 const MANY = 6;
@@ -16,8 +22,12 @@ export function People({ picture }: { picture: Picture }) {
   const held = useSignal(false);
   const places = useSignal<readonly Place[]>([]);
   const down = useComputed(() => places.value.filter(isCasualty).map((place) => place.unitId));
-  const seenMs = useRef(0);
   const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
+  const counts = useComputed(() => {
+    void [picture.unitIds.value, second.value];
+    return headcountOf(picture.allUnits());
+  });
+  const seenMs = useRef(0);
   useSignalEffect(() => {
     void [picture.unitIds.value, picture.alarms.value, second.value, held.value];
     guarded("The list of people", () => untracked(() => {
@@ -28,6 +38,9 @@ export function People({ picture }: { picture: Picture }) {
       if (!samePlaces(next, places.value)) places.value = next;
     }));
   });
+  useEffect(() => showAll, [picture]); // what is sought here is not sought in the past
+  if (part.value !== null) void second.value; // people go in and out
+  const shown = shownOf(places.value, picture);
   return (
     <section
       class="people"
@@ -35,13 +48,30 @@ export function People({ picture }: { picture: Picture }) {
       onPointerEnter={() => (held.value = true)}
       onPointerLeave={() => (held.value = false)}
     >
-      <div class="people-top">
-        <ErrorBoundary what="The bar of orders">
-          <CommandBar picture={picture} />
-        </ErrorBoundary>
+      <div class={`people-top ${finding.value ? "finding" : ""}`}>
+        <div class="people-bar">
+          <ErrorBoundary what="The bar of orders">
+            <CommandBar picture={picture} />
+          </ErrorBoundary>
+          <button
+            type="button"
+            class="find"
+            aria-expanded={finding.value}
+            onClick={() => (finding.value = !finding.value)}
+          >
+            Find
+          </button>
+        </div>
         <ErrorBoundary what="The members who are down">
           <Casualties unitIds={down.value} picture={picture} />
         </ErrorBoundary>
+        <ErrorBoundary what="The headcount">
+          <Headcount counts={counts} />
+        </ErrorBoundary>
+        <ErrorBoundary what="The search">
+          <ListTools />
+        </ErrorBoundary>
+        <LeftOut groups={shown} all={places.value.length} />
       </div>
       <div class="people-list">
         {places.value.length === 0 ? (
@@ -51,20 +81,40 @@ export function People({ picture }: { picture: Picture }) {
               : "Waiting for the station."}
           </p>
         ) : (
-          <ul class="cards">
-            {places.value.map((place) => (
-              <ErrorBoundary as="li" key={place.unitId} what={`The card of ${place.name}`}>
-                <Card
-                  unitId={place.unitId}
-                  urgency={place.urgency}
-                  brief={places.value.length > MANY}
-                  picture={picture}
-                />
-              </ErrorBoundary>
-            ))}
-          </ul>
+          <PeopleGroups groups={shown} brief={places.value.length > MANY} picture={picture} />
         )}
       </div>
     </section>
+  );
+}
+
+/** All of them where they cannot be sorted out. */
+function shownOf(places: readonly Place[], picture: Picture): Group[] {
+  let groups: Group[] = [{ crew: null, places, down: 0 }];
+  const what = { text: text.value, part: part.value, always: selectedUnit.value };
+  guarded("The list of people", () => {
+    const units = picture.allUnits();
+    groups = grouped(sought(places, units, what), units, order.value);
+  });
+  return groups;
+}
+
+/** A list in which somebody is sought says that others are left out. */
+function LeftOut({ groups, all }: { groups: readonly Group[]; all: number }) {
+  const shown = groups.reduce((sum, group) => sum + group.places.length, 0);
+  const sought = text.value.trim() !== "" || part.value !== null;
+  return (
+    <div class="left-out" role="status">
+      {sought && (
+        <>
+          <span>
+            {shown} of {all} shown
+          </span>
+          <button type="button" onClick={showAll}>
+            Show all
+          </button>
+        </>
+      )}
+    </div>
   );
 }

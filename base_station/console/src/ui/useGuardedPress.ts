@@ -6,9 +6,10 @@ export const GUARD_MS = 500;
 
 /** For a row of a list that others move in: a press in haste on what has only just come to this place
  * was meant for what stood here before.  Keys press what has the focus, which moves along.
- * `place`: where it stands, and what of it must not be another to whoever presses it. */
-export function useGuardedPress(place: number | string): (act: () => void) => (press: MouseEvent) => void {
-  const here = useRef({ place, sinceMs: performance.now() });
+ * `place`: where it stands, and what of it must not be another to whoever presses it.
+ * `whenNew`: also while it has only just been there at all. */
+export function useGuardedPress(place: number | string, whenNew = true): (act: () => void) => (press: MouseEvent) => void {
+  const here = useRef({ place, sinceMs: whenNew ? performance.now() : -Infinity });
   if (here.current.place !== place) here.current = { place, sinceMs: performance.now() };
   return (act) => (press) => {
     const byKey = press.detail === 0;

@@ -1,0 +1,41 @@
+/** The headcount: everybody on scene is in exactly one part of it, so that the counts add up.  Pure. */
+import type { UnitView } from "../wire";
+import { recipients } from "./commands";
+
+export const PARTS = ["inside", "outside", "rehab", "not_located", "never_heard"] as const;
+export type Part = (typeof PARTS)[number];
+
+export const PART_WORDS: Readonly<Record<Part, string>> = {
+  inside: "Inside",
+  outside: "Outside",
+  rehab: "Rehab",
+  not_located: "Not located",
+  never_heard: "Never heard",
+};
+
+export interface Headcount {
+  onScene: number;
+  parts: Readonly<Record<Part, number>>;
+}
+
+/** Who has a unit, and units in use that are assigned to nobody: those whom an order to everyone is for. */
+export function onScene(units: readonly UnitView[]): UnitView[] {
+  return recipients({ everyone: true }, units);
+}
+
+/** Not located: no message in this incident, no position yet, or switched off while inside.  Who is inside
+ * counts as inside, whatever was entered. */
+export function partOf(unit: UnitView): Part {
+  const inside = unit.inside_since_ms !== null;
+  if (unit.link === "never") return "never_heard";
+  if (unit.position === null || unit.duty?.located === false) return "not_located";
+  if (inside) return unit.switched_off ? "not_located" : "inside";
+  return unit.duty !== null && unit.duty.rest_since_ms !== null ? "rehab" : "outside";
+}
+
+export function headcountOf(units: readonly UnitView[]): Headcount {
+  const parts = { inside: 0, outside: 0, rehab: 0, not_located: 0, never_heard: 0 };
+  const members = onScene(units);
+  for (const unit of members) parts[partOf(unit)] += 1;
+  return { onScene: members.length, parts };
+}

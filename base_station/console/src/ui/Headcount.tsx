@@ -1,0 +1,38 @@
+import type { ReadonlySignal } from "@preact/signals";
+import type { Headcount as Counts } from "../live/headcount";
+import { PART_WORDS, PARTS } from "../live/headcount";
+import type { Sought } from "../live/finding";
+import { part } from "./listState";
+
+/** How many are on scene, and where; each press shows those alone, and the next one everybody again. */
+export function Headcount({ counts }: { counts: ReadonlySignal<Counts> }) {
+  const { onScene, parts } = counts.value;
+  return (
+    <div class="headcount" role="group" aria-label="Headcount">
+      <Count of="on_scene" word="On scene" count={onScene} />
+      {PARTS.map((one) => (
+        <Count key={one} of={one} word={PART_WORDS[one]} count={parts[one]} />
+      ))}
+    </div>
+  );
+}
+
+interface CountProps {
+  of: NonNullable<Sought["part"]>;
+  word: string;
+  count: number;
+}
+
+function Count({ of, word, count }: CountProps) {
+  const missing = (of === "not_located" || of === "never_heard") && count > 0;
+  return (
+    <button
+      type="button"
+      class={missing ? "missing" : ""}
+      aria-pressed={part.value === of}
+      onClick={() => (part.value = part.value === of ? null : of)}
+    >
+      <span>{word}</span> <strong>{count}</strong>
+    </button>
+  );
+}

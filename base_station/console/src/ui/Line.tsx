@@ -1,0 +1,43 @@
+import { isOfAnother } from "../live/alarms";
+import type { Picture } from "../live/picture";
+import { displayName } from "../live/urgency";
+import { isOld, regionAt } from "../plan/ellipse";
+import { shortName } from "../plan/floors";
+import { roomWord } from "../plan/rooms";
+import type { UnitView } from "../wire";
+import * as format from "../format";
+import { placeWords } from "./Facts";
+import { activityIcon, Icon } from "./Icon";
+import { ParMark } from "./ParClock";
+
+/** A member in one line: who, what is the matter or else where, and when the PAR is due. */
+export function Line({ unit, picture }: { unit: UnitView; picture: Picture }) {
+  const name = displayName(unit);
+  const words = whatOrWhere(unit, picture);
+  return (
+    <button type="button" class="card-head" aria-pressed={false} title={`${name}: ${words}. Show on the plan`}>
+      <Icon name={unit.alarms.length > 0 ? "alarm" : activityIcon(unit.status?.activity ?? "")} />
+      <span class="name">{name}</span>
+      <span class="line-words">{words}</span>
+      <ParMark unit={unit} picture={picture} />
+    </button>
+  );
+}
+
+function whatOrWhere(unit: UnitView, picture: Picture): string {
+  const alarms = unit.alarms
+    .map((alarmId) => picture.alarms.value.get(alarmId))
+    .filter((alarm) => alarm !== undefined)
+    .filter((alarm) => !isOfAnother(alarm, unit));
+  if (alarms.length > 0) return alarms.map(format.alarmLabel).join(", ");
+  if (!unit.registered) return "unknown unit";
+  if (unit.link !== "live") return format.linkText(unit);
+  if (unit.position === null) return "not located";
+  const old = isOld(unit.position, picture.nowMs.value) || picture.silentMs.value > 0;
+  const { floor } = unit.position;
+  if (floor === null || old || !format.isFloorLikely(unit.position)) {
+    return placeWords(unit.position, picture, old);
+  }
+  const room = roomWord(picture.plan.value, unit.position, regionAt(unit.position, 0));
+  return room === "" ? format.floorName(floor) : `${shortName(floor)}, ${room}`;
+}

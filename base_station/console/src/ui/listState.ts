@@ -1,0 +1,36 @@
+/** How this console shows the list of members: what is sought, in which order, and how dense. */
+import { effect, signal } from "@preact/signals";
+import type { Order, Sought } from "../live/finding";
+
+export const text = signal("");
+export const part = signal<Sought["part"]>(null);
+export const foldedCrews = signal<ReadonlySet<string>>(new Set());
+/** On a small screen the search is hidden until somebody asks for it. */
+export const finding = signal(false);
+
+export type Density = "cards" | "lines";
+
+const ORDERS: readonly Order[] = ["need", "crew", "name"];
+const DENSITIES: readonly Density[] = ["cards", "lines"];
+
+/** Kept in this browser. */
+export const order = kept("muster-list-order", ORDERS, "need");
+export const density = kept("muster-list-density", DENSITIES, "cards");
+
+function kept<T extends string>(name: string, all: readonly T[], usual: T) {
+  const before = localStorage.getItem(name);
+  const choice = signal<T>(all.find((one) => one === before) ?? usual);
+  effect(() => localStorage.setItem(name, choice.value));
+  return choice;
+}
+
+export function showAll(): void {
+  text.value = "";
+  part.value = null;
+}
+
+export function fold(crew: string): void {
+  const folded = new Set(foldedCrews.value);
+  if (!folded.delete(crew)) folded.add(crew);
+  foldedCrews.value = folded;
+}
