@@ -468,6 +468,17 @@ def flood(count: int = 200, down: int = 3) -> wire.Snapshot:
     return picture(units, *alarms)
 
 
+def some_down(count: int, down: int) -> wire.Snapshot:
+    """The first few have fallen; all others are well."""
+    units = [unit(index) for index in range(count)]
+    falls = [
+        alarm(index, "fall", 1, f"{person(index).name} may have fallen", 20 + index)
+        for index in range(down)
+    ]
+    units[:down] = [with_alarms(one, fall) for one, fall in zip(units, falls, strict=False)]
+    return picture(units, *falls)
+
+
 def mixed(count: int = 40) -> wire.Snapshot:
     """One is down, one rests outside, two are not located, and three were never heard."""
     shown = bad_minute(count)

@@ -23,7 +23,7 @@ def casualties(page: Page) -> Locator:
 def test_who_is_down_is_seen_wherever_the_list_is_scrolled(
     stage: Stage, count: int, size: tuple[int, int]
 ) -> None:
-    page, _ = stage.open(scenes.flood(count, DOWN))
+    page, _ = stage.open(scenes.some_down(count, DOWN))
     page.set_viewport_size({"width": size[0], "height": size[1]})
     expect(casualties(page)).to_have_count(DOWN)
     for share in (0, 0.5, 1):
