@@ -84,6 +84,9 @@ def on_plan(page: Page, right_px: int, down_px: int) -> tuple[float, float]:
     return box["x"] + box["width"] / 2 + right_px, box["y"] + box["height"] / 2 + down_px
 
 
+PLAN_MOVES_MS = 1000  # to what was chosen last: a quarter of a second, and longer on a busy machine
+
+
 def drawn(page: Page) -> None:
     """Wait until the plan stands as it will, however slowly: in the size that panels leave it, and
     moved to where it is going (a quarter of a second).
@@ -106,6 +109,7 @@ def drag(page: Page, start: tuple[int, int], end: tuple[int, int]) -> dict[str, 
     """The pin as it is after it was drawn to another place of the plan, as slowly as by a hand: the
     plan stands on the screen as it is when each thing is done.
     """
+    page.wait_for_timeout(PLAN_MOVES_MS)
     drawn(page)
     page.mouse.move(*on_plan(page, *start))
     page.mouse.down()

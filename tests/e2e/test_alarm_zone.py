@@ -10,7 +10,7 @@ from playwright.sync_api import Page, expect
 
 from base_station.views import wire
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers, press, strip
+from tests.e2e.console_page import barriers, drawn, press, strip
 from tests.e2e.looks import flaws
 from tests.e2e.played_station import PlayedStation
 from tests.e2e.stage import Stage
@@ -20,7 +20,8 @@ STAYS = ("Evacuate", "PAR", "Message")
 
 
 def places(page: Page) -> dict[str, object]:
-    """Where things stand that are pressed in haste."""
+    """Where things stand that are pressed in haste, once the page stands."""
+    drawn(page)
     bar = page.get_by_role("group", name="Commands")
     buttons = {
         name: bar.get_by_role("button", name=name, exact=True).bounding_box() for name in STAYS

@@ -32,6 +32,7 @@ BOUNDED = {  # lists that do not grow with what happens, by what bounds them
         "/users",
         "/tokens",
         "/accountability",
+        "/units/{unit_id}/sample-tokens",  # five of a unit at most
     },
     "what is shown now": {"/pins", "/beacons", "/commands", "/replays", "/recordings"},
     "one incident": {"/incidents/{incident_id}/tracks"},

@@ -25,7 +25,10 @@ from tests.rig.waiting import PATIENCE_S
 
 PACKAGE = "generated_muster_client"
 # It skips media types that it does not know; pictures and exports are files.
-FILES = ("image/jpeg", "image/png", "image/webp", "*/*", "application/x-protobuf")
+FILES = (
+    *("image/jpeg", "image/png", "image/webp", "*/*"),
+    *("application/pdf", "application/x-protobuf"),
+)
 SETTINGS = {
     "post_hooks": [],
     "content_type_overrides": dict.fromkeys(FILES, "application/octet-stream"),
