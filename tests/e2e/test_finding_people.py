@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers, close, command
+from tests.e2e.console_page import barriers, close, command, press
 from tests.e2e.looks import flaws
 from tests.e2e.stage import Stage
 
@@ -93,7 +93,7 @@ def test_crews_fold_with_their_counts(stage: Stage) -> None:
     head.click()
     expect(crew.locator(".card")).to_have_count(0)
     expect(head).to_have_attribute("aria-expanded", "false")
-    page.locator(".casualties button").click()  # of this crew
+    press(page.locator(".casualties button"))  # of this crew
     expect(crew.locator(".card.chosen")).to_contain_text("Jonas Bergman")
     assert flaws(page) == []
     page.get_by_role("combobox", name="Order of the list").select_option("By name")
