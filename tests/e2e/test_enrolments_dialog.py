@@ -167,4 +167,5 @@ def test_a_token_for_posting_samples_is_shown_once(stage: Stage) -> None:
     dialog.get_by_role("button", name="Make token").click()
     expect(dialog.get_by_text("muster_shown-once")).to_be_visible()
     close(dialog)
+    expect(page.get_by_text("muster_shown-once")).to_have_count(0)
     assert "muster_shown-once" not in page.content()
