@@ -4,59 +4,38 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable
-from types import TracebackType
 
+from base_station.app.kept_announcement import KeptAnnouncement
 from base_station.app.listening_addresses import interfaces_of, reachable_addresses
 from base_station.config import HttpConfig, host_and_port
 from base_station.security.pki.certificates import is_valid_for_host
 from base_station.security.pki.hosts import own_hosts
-from shared.discovery import Announcer, ConsoleAnnouncement
-from shared.log_on_change import LogOnChange
+from shared.discovery import ConsoleAnnouncement
 
 _log = logging.getLogger(__name__)
 
 
-class ConsolePresence:
+class ConsolePresence(KeptAnnouncement):
     """Announcement kept as the machine's addresses are; ``update`` now and then."""
 
     def __init__(self, config: HttpConfig, own: Callable[[], Iterable[str]] = own_hosts) -> None:
         """``own``: gives the addresses of this machine."""
+        super().__init__(_log, "the console is not announced on its network")
         self._config = config
         self._own = own
         self._host, self._port = host_and_port(config.listen)
-        self._fault_log = LogOnChange(_log, "the console is not announced on its network")
-        self._announced: ConsoleAnnouncement | None = None
-        self._announcer: Announcer | None = None
-
-    def __enter__(self) -> ConsolePresence:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._withdraw()
 
     def update(self) -> None:
         """Announce what holds now; what fails is tried again the next time."""
         if not self._config.local_name:
             return
-        with self._fault_log:
-            wanted = self._wanted()
-            if wanted == self._announced:
-                return
-            self._withdraw()
-            if wanted.addresses:
-                self._announcer = Announcer(wanted, interfaces_of([self._host]))
-            self._announced = wanted
+        self.keep(self._wanted, lambda: interfaces_of([self._host]))
 
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console."""
         name = f"{self._config.local_name}.local"
-        if self._fault_log.fault:
-            return (f"Browsers do not find this console as {name}: {self._fault_log.fault}",)
+        if self.fault:
+            return (f"Browsers do not find this console as {name}: {self.fault}",)
         if self._config.local_name and not self._is_in_certificate(name):
             return (
                 f"The certificate of the console does not stand for {name}, so that browsers warn "
@@ -80,8 +59,3 @@ class ConsolePresence:
             is_secure=self._config.certificate is not None,
             addresses=reachable_addresses([self._host], self._own),
         )
-
-    def _withdraw(self) -> None:
-        announcer, self._announcer, self._announced = self._announcer, None, None
-        if announcer is not None:
-            announcer.close()

@@ -9,21 +9,20 @@ from __future__ import annotations
 import logging
 import socket
 from collections.abc import Callable, Iterable
-from types import TracebackType
 
+from base_station.app.kept_announcement import KeptAnnouncement
 from base_station.app.listening_addresses import interfaces_of, reachable_addresses
 from base_station.config import StationConfig, endpoint_address
 from base_station.security.pki.certificates import is_valid_for_host
 from base_station.security.pki.folder import PkiFolder
 from base_station.security.pki.hosts import own_hosts
-from shared.discovery import Announcement, Announcer
-from shared.log_on_change import LogOnChange
+from shared.discovery import Announcement
 from shared.tls import fingerprint
 
 _log = logging.getLogger(__name__)
 
 
-class StationPresence:
+class StationPresence(KeptAnnouncement):
     """Kept as the machine's addresses and the certificate are; ``update`` now and then."""
 
     def __init__(
@@ -33,43 +32,23 @@ class StationPresence:
         own: Callable[[], Iterable[str]] = own_hosts,
     ) -> None:
         """``own``: gives the addresses of this machine."""
+        super().__init__(_log, "the station is not announced on its network")
         self._pki = pki
         self._own = own
         self._endpoints = config.bus.secured_endpoints() if config.bus.announce else ()
         self._name = config.standby.name or socket.gethostname().partition(".")[0]
-        self._fault_log = LogOnChange(_log, "the station is not announced on its network")
-        self._announced: Announcement | None = None
-        self._announcer: Announcer | None = None
         self._not_covered: tuple[str, ...] = ()
-
-    def __enter__(self) -> StationPresence:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._withdraw()
 
     def update(self) -> None:
         """Announce what holds now; what fails is tried again the next time."""
         if not self._endpoints:
             return
-        with self._fault_log:
-            wanted = self._wanted()
-            if wanted == self._announced:
-                return
-            self._withdraw()
-            if wanted.addresses:
-                self._announcer = Announcer(wanted, self._interfaces())
-            self._announced = wanted
+        self.keep(self._wanted, self._interfaces)
 
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console."""
-        if self._fault_log.fault:
-            return (f"The station is not announced on its network: {self._fault_log.fault}",)
+        if self.fault:
+            return (f"The station is not announced on its network: {self.fault}",)
         if not self._not_covered:
             return ()
         return (
@@ -103,8 +82,3 @@ class StationPresence:
     def _interfaces(self) -> tuple[str, ...]:
         """Those that the bus listens on; none: all."""
         return interfaces_of([endpoint_address(one)[0] for one in self._endpoints])
-
-    def _withdraw(self) -> None:
-        announcer, self._announcer, self._announced = self._announcer, None, None
-        if announcer is not None:
-            announcer.close()

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.app import console_presence
+from base_station.app import kept_announcement
 from base_station.app.console_presence import ConsolePresence
 from base_station.config import HttpConfig
 from base_station.security.pki.folder import PkiFolder
@@ -38,7 +38,7 @@ class Announced:
 @pytest.fixture
 def announced(monkeypatch: pytest.MonkeyPatch) -> Announced:
     announced = Announced()
-    monkeypatch.setattr(console_presence, "Announcer", announced.begin)
+    monkeypatch.setattr(kept_announcement, "Announcer", announced.begin)
     return announced
 
 

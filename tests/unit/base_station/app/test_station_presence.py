@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from base_station.app import station_presence
+from base_station.app import kept_announcement
 from base_station.app.station_presence import StationPresence
 from base_station.config import BusConfig, StandbyConfig, StationConfig
 from base_station.security.pki.folder import PkiFolder
@@ -39,7 +39,7 @@ class Announced:
 @pytest.fixture
 def announced(monkeypatch: pytest.MonkeyPatch) -> Announced:
     announced = Announced()
-    monkeypatch.setattr(station_presence, "Announcer", announced.begin)
+    monkeypatch.setattr(kept_announcement, "Announcer", announced.begin)
     return announced
 
 

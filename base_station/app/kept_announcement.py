@@ -1,0 +1,57 @@
+"""Announcement on the network that is kept as it should be: begun, replaced and taken back."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from types import TracebackType
+from typing import Self
+
+from shared.discovery import Announcement, Announcer, ConsoleAnnouncement
+from shared.log_on_change import LogOnChange
+
+AnyAnnouncement = Announcement | ConsoleAnnouncement
+
+
+class KeptAnnouncement:
+    """As a context manager it takes the announcement back at the end."""
+
+    def __init__(self, log: logging.Logger, failing: str) -> None:
+        """``failing``: sentence for the log while there is no announcement, without its cause."""
+        self._fault_log = LogOnChange(log, failing)
+        self._announced: AnyAnnouncement | None = None
+        self._announcer: Announcer | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._withdraw()
+
+    @property
+    def fault(self) -> str:
+        """Why it failed the last time; empty: it did not."""
+        return self._fault_log.fault
+
+    def keep(
+        self, wanted: Callable[[], AnyAnnouncement], interfaces: Callable[[], tuple[str, ...]]
+    ) -> None:
+        """Announce what holds now; what fails is tried again the next time."""
+        with self._fault_log:
+            now = wanted()
+            if now == self._announced:
+                return
+            self._withdraw()
+            if now.addresses:
+                self._announcer = Announcer(now, interfaces())
+            self._announced = now
+
+    def _withdraw(self) -> None:
+        announcer, self._announcer, self._announced = self._announcer, None, None
+        if announcer is not None:
+            announcer.close()
