@@ -138,7 +138,7 @@ class OperatorGate(Protocol):
 
 
 class DeliveryResult(NamedTuple):
-    """What became of messages that were handed to the engine at once, one entry each."""
+    """Fate of messages that were handed to the engine at once, one entry each."""
 
     admissions: tuple[Admission, ...]
 

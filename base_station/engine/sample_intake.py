@@ -35,7 +35,7 @@ Deliver = Callable[[Sequence[tuple[str, bytes]]], Future[DeliveryResult]]
 
 
 class Receipt(msgspec.Struct, frozen=True):
-    """What was taken of one post."""
+    """Counts of what was taken of one post."""
 
     accepted: int  # batches that are in the log now
     repeated: int  # batches that were there already

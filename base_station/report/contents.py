@@ -62,7 +62,7 @@ class PersonEntry(msgspec.Struct, frozen=True):
 
 
 class OrderReceipt(msgspec.Struct, frozen=True):
-    """What is known of one order at one unit; None: it did not happen, as far as is known."""
+    """Progress of one order at one unit; None: it did not happen, as far as is known."""
 
     unit_id: str
     received_ns: int | None = None
@@ -89,7 +89,7 @@ class TimelineEntry(msgspec.Struct, frozen=True):
 
 
 class AlarmTrace(msgspec.Struct, frozen=True):
-    """What the station knew about the time at which an alarm was raised."""
+    """Values that the station had about the time at which an alarm was raised."""
 
     alarm_id: str
     raised_ns: int

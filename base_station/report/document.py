@@ -63,7 +63,7 @@ def _summary(report: ReportContents) -> Markup:
 
 
 def _urgent(report: ReportContents) -> Markup:
-    """What a reader without time is to know; the timeline has all of it."""
+    """Urgent entries, for a reader without time; the timeline has all of them."""
     urgent = [one for one in report.timeline if one.is_urgent]
     shown = (
         element("li", f"{texts.clock_time(one.t_ns)} {one.text}") for one in urgent[:_MOST_URGENT]

@@ -83,7 +83,7 @@ def floor_picture(
 
 
 def _walls(plan: Plan | None, floor: int | None) -> list[Line]:
-    """What the plan has of a floor; outlines are the same on each."""
+    """Lines of the plan on a floor; outlines are the same on each."""
     if plan is None:
         return []
     walls = [wall.line for wall in plan.walls if wall.floor == floor]

@@ -55,7 +55,7 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class ReportSources:
-    """What a report is made of; nothing is written."""
+    """Sources that a report is made from; nothing is written to them."""
 
     records: Records
     roster: Roster
@@ -246,7 +246,7 @@ class _Gathering:
 
     def _done(self) -> Iterable[TimelineEntry]:
         for entry in self._entries:
-            said = self._said(entry)
+            said = self._order_details(entry)
             name_of = partial(self._name_at, t_ns=entry.t_ns)
             described = texts.action_text(entry.action, said, name_of) if said else texts.ERASED
             if described is not None:
@@ -254,7 +254,7 @@ class _Gathering:
                 is_urgent = said.get("order") == texts.ORDER_NAMES["EVACUATE"]
                 yield TimelineEntry(entry.t_ns, kind, self._shown(text), entry.by, is_urgent)
 
-    def _said(self, entry: AuditEntry) -> Mapping[str, Any]:
+    def _order_details(self, entry: AuditEntry) -> Mapping[str, Any]:
         said = dict(details_of(entry))
         if "kind" in said:
             said["order"] = texts.order_name(kind_name(said["kind"]))
@@ -299,7 +299,7 @@ class _Gathering:
     # ---- settings
 
     def _times(self) -> tuple[float, float]:
-        """Of the roll call and of the rest, as they were at the end."""
+        """PAR interval and work limit in seconds, as they were at the end."""
         par_s, work_s = PAR_INTERVAL_S, WORK_LIMIT_S
         for entry in self._entries:
             if entry.action in {OpenIncident.__name__, SetAccountability.__name__}:

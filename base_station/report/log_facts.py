@@ -110,7 +110,7 @@ def _take(facts: LogFacts, reader: _UnitReader, event: Received, *, is_live: boo
     if isinstance(message, Command):
         facts.commands.setdefault(message.command_id, {}).setdefault(event.unit_id, event.t_ns)
         return
-    t_ns = reader.hear(event.t_ns, message.header, is_live=is_live)
+    t_ns = reader.note_header(event.t_ns, message.header, is_live=is_live)
     match message:
         case Temperature():
             reader.take_temperature(t_ns, message, is_live=is_live)
@@ -138,7 +138,7 @@ class _UnitReader:
         self._offsets_ns: dict[int, int] = {}  # station time less that of each boot
         self._exposures: dict[int, list[ExposureInterval]] = {}
 
-    def hear(self, t_ns: int, header: Header, *, is_live: bool) -> int:
+    def note_header(self, t_ns: int, header: Header, *, is_live: bool) -> int:
         """Station time at which it was sent; one that came live is radio contact."""
         if not is_live:
             known_ns = self._offsets_ns.get(header.boot_id)

@@ -76,7 +76,7 @@ def _receipt(
 
 
 def _confirmed_by_radio(entries: Iterable[AuditEntry]) -> dict[tuple[str, str], tuple[int, str]]:
-    """When and by whom, by command and unit; what was undone is not there."""
+    """Time and user of each confirmation, by command and unit; those undone are left out."""
     confirmed: dict[tuple[str, str], tuple[int, str]] = {}
     for entry in entries:
         said = details_of(entry)

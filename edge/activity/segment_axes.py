@@ -97,7 +97,7 @@ class SegmentAxes:
         return direction_b
 
     def _learn(self, up_b: Floats, direction_b: Floats) -> None:
-        """Who walks is upright, and walks forward more often than not."""
+        """Learn up and forward from a walk: walkers are upright, and mostly go forward."""
         if self._up_b is not None and float(self._up_b @ up_b) < _WORN_OTHERWISE_COS:
             if not self._contradicted:
                 self._contradicted = True

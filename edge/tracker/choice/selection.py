@@ -59,7 +59,7 @@ class TrackerSelection:
 
     @property
     def worn_on(self) -> str:
-        """Where a tracker of one sensor expects it; empty for one of several sensors."""
+        """Place that a tracker of one sensor expects; empty for one of several sensors."""
         if self.tracker not in _names_of_one():
             return ""
         return find_tracker(self.tracker).worn_on[0]

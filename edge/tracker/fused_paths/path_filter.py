@@ -123,7 +123,7 @@ def _compare(state: FusionState, config: FusionConfig) -> None:
     variance_m2 = _apart_variance(covariance, config.compared_std_m**2)
     off = _solved(variance_m2, apart_n_m)
     if off[0] * apart_n_m[0] + off[1] * apart_n_m[1] > config.outlier_square:
-        _doubt_poorer(state, apart_n_m)
+        _inflate_poorer_path(state, apart_n_m)
         variance_m2 = _apart_variance(covariance, config.compared_std_m**2)
         off = _solved(variance_m2, apart_n_m)
     size = 2 * ERRORS
@@ -172,8 +172,10 @@ def _solved(variance_m2: Floats, vector: Floats) -> Floats:
 
 
 @njit()
-def _doubt_poorer(state: FusionState, apart_n_m: Floats) -> None:
-    """The two contradict each other: doubt the one of poorer quality in this stride, else both."""
+def _inflate_poorer_path(state: FusionState, apart_n_m: Floats) -> None:
+    """Inflate the covariance of the path of poorer quality in this stride, else of both: the two
+    contradict each other.
+    """
     for which in range(2):
         path = state.paths[which]
         if state.paths[1 - which].poor > path.poor:

@@ -58,7 +58,7 @@ def _point_leg(row: Row, shank: ShankState, share: float) -> None:
 
 @njit()
 def _learn_leg(row: Row, shank: ShankState, dt_s: float, config: TorsoShankConfig) -> None:
-    """Who stands has upright legs."""
+    """Learn the axis of the leg while the wearer stands: legs are upright then."""
     if not shank.trunk.still:
         return
     force = row.accel_mps2
