@@ -37,8 +37,8 @@ from edge.samples import (
     SightingSample,
 )
 from edge.tracker.choice.interface import Choice, ChoosesTracker
-from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.interface import MultiSensorTracker
+from edge.tracker.track_rows import empty_rows
 from shared.channels import DESCRIPTION, GPS, STATUS, TEMPERATURE, Channel
 from shared.clock import NS_PER_S
 from shared.envelope import Stamper

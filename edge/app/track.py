@@ -14,9 +14,9 @@ from edge.sources.black_box import BlackBoxSource
 from edge.sources.interface import Source, sensors_in
 from edge.sources.recording import RecordingSource
 from edge.tracker.choice.selection import select_named
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import BodyDimensions, Quality, Reason, TrackBatch
 from edge.tracker.registry import TRACKERS
+from edge.tracker.track_rows import join_rows
 from shared.errors import RecordingError
 from shared.mcap_log import segment_paths
 from shared.out_file import whole, writable

@@ -10,7 +10,6 @@ from edge.body_places import is_worn_on
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.body.tracker import BodyTracker
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.fused_paths.tracker import FOOT_AND_TRUNK, TWO_FEET, FusedPathsTracker
 from edge.tracker.hip.state import HipConfig
 from edge.tracker.hip.tracker import HipTracker
@@ -28,6 +27,7 @@ from edge.tracker.interface import (
     WornSensor,
 )
 from edge.tracker.torso_shank.tracker import TorsoShankTracker
+from edge.tracker.track_rows import empty_rows
 from edge.tracker.waist.tracker import WaistTracker
 from shared.earth_field import EarthField
 from shared.errors import ConfigError

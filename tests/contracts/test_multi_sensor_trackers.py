@@ -11,13 +11,13 @@ import pytest
 from edge.samples import ImuBatch, SensorDescription
 from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import MOST_LAG_S, BodyDimensions, Quality, WornSensor
 from edge.tracker.registry import (
     MULTI_SENSOR_TRACKERS,
     find_multi_sensor_tracker,
     make_multi_sensor_tracker,
 )
+from edge.tracker.track_rows import join_rows
 from shared.earth_field import EarthField
 from shared.errors import ConfigError
 from tests.rig.sensors_of_person import in_turn, track_person, walk_with_sensors, worn

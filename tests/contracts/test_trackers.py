@@ -14,9 +14,9 @@ from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.scenarios import SCENARIOS
 from edge.simulation.simulation import Simulation
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import FOOT, Quality
 from edge.tracker.registry import TRACKERS, find_tracker, make_tracker
+from edge.tracker.track_rows import join_rows
 from shared.earth_field import EarthField
 from shared.errors import ConfigError
 from tests.rig.exact_strides import part, walk

@@ -7,9 +7,9 @@ import pytest
 
 from edge.samples import ImuBatch
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.huang.tracker import HuangTracker
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.track_rows import join_rows
 from tests.rig.faulty_walk import IN_SWING, LENGTH_M, WALK, copy, flagged, index, reached_m, run
 
 ALL = (0, 1, 2)

@@ -7,8 +7,8 @@ import pytest
 
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.track_rows import join_rows
 from tests.rig.faulty_walk import (
     IN_STANCE,
     IN_SWING,

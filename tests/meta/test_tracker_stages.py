@@ -7,9 +7,12 @@ import pytest
 from tests.conftest import PROJECT_ROOT
 from tests.rig.kernel_effects import Kernel, KernelEffects
 
-FOLDER, PACKAGE = PROJECT_ROOT / "edge" / "tracker" / "foot", "edge.tracker.foot"
+FOLDER, PACKAGE = PROJECT_ROOT / "edge" / "tracker", "edge.tracker"
 PAGE = PROJECT_ROOT / "docs" / "tracker-stages.md"
-LOOP, STAGES = Kernel(f"{PACKAGE}.eskf", "work"), Kernel(f"{PACKAGE}.stages", "filter_sample")
+LOOP, STAGES = (
+    Kernel(f"{PACKAGE}.foot.eskf", "work"),
+    Kernel(f"{PACKAGE}.foot.stages", "filter_sample"),
+)
 # A record has one name in the table; helpers that only look at sample numbers are no stages.
 RECORDS = {
     "ring": "ring",
@@ -56,7 +59,9 @@ def test_table_of_stages_names_all_reads_and_writes(kernel: Kernel) -> None:
 
 def test_effects_follow_views_and_calls() -> None:
     """What the table rests on: one stage, by hand."""
-    effects = EFFECTS.of(Kernel(f"{PACKAGE}.filter.temperature_bias", "update_temperature_bias"))
+    effects = EFFECTS.of(
+        Kernel(f"{PACKAGE}.foot.filter.temperature_bias", "update_temperature_bias")
+    )
     written = {place for place in effects.writes if place[0] in RECORDS}
     assert written == {
         ("step", "bias_step_k"),

@@ -15,8 +15,8 @@ from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import Simulation
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.filter.strapdown import rotation_matrix
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.mechanization.strapdown import rotation_matrix
+from edge.tracker.track_rows import join_rows
 from tests.rig.exact_strides import part, walk
 from tests.rig.inertial_walk import inertial_samples
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from edge.samples import ImuBatch
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.track_rows import join_rows
 from tests.rig.exact_strides import walk
 
 WALK = walk(strides=12)

@@ -10,7 +10,6 @@ import numpy as np
 
 from edge.samples import ImuBatch
 from edge.simulation.scenario import Scenario
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import (
     LEFT_FOOT,
     RIGHT_FOOT,
@@ -18,6 +17,7 @@ from edge.tracker.interface import (
     TrackBatch,
     WornSensor,
 )
+from edge.tracker.track_rows import join_rows
 from tests.rig.inertial_walk import InertialWalk, inertial_walk, motion_at
 
 BLOCK_S = 0.1

@@ -16,8 +16,8 @@ from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import CONSUMER_SENSORS, UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.foot.config import EskfConfig, StanceAcceptanceConfig
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.track_rows import join_rows
 from tests.bench.tracker.walk_errors import track
 from tests.rig.exact_strides import walk
 from tests.rig.raised_foot import DESCRIPTION, raised_slowly

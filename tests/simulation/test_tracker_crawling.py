@@ -13,10 +13,10 @@ from edge.simulation.simulation import UNCALIBRATED_SENSORS, Simulation
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import GYRO_BIAS, POSITION, SIZE
 from edge.tracker.foot.filter.initial_gyro_bias import inflate_bias
-from edge.tracker.foot.sample_ring import RING
 from edge.tracker.foot.state import new_filter_state, new_progress
 from edge.tracker.foot.zupt.zupt import is_gliding
 from edge.tracker.interface import Quality
+from edge.tracker.preprocessing.sample_ring import RING
 from tests.bench.tracker.walk_errors import track, true_way_m
 from tests.rig.inertial_walk import inertial_samples
 

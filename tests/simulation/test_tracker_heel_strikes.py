@@ -12,7 +12,7 @@ from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import Simulation
 from edge.tracker.foot.config import EskfConfig, FloorConfig, ProcessNoiseConfig
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.track_rows import join_rows
 from tests.rig.inertial_walk import inertial_samples
 
 LEGS = (Stand(4.0), Walk(((50.0, 0.0), (0.0, 0.0))), Stand(2.0))

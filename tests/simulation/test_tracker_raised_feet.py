@@ -13,8 +13,8 @@ from edge.sources.recording import RecordingSource, read_truth
 from edge.sources.registry import open_source
 from edge.sources.simulated import SimulatedSource
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.track_rows import join_rows
 from tests.bench.tracker.scoring import score_track
 from tests.bench.tracker.walk_errors import track
 from tests.rig.exact_strides import walk

@@ -12,9 +12,9 @@ from numba import njit
 
 from edge.tracker.body.config import BodyConfig
 from edge.tracker.body.state import BIAS, HEADING, TICK_S, BodyState, Sample
-from edge.tracker.foot.filter.quasi_static import turn_upright
-from edge.tracker.foot.filter.strapdown import rotate_attitude, rotate_navigation, rotation_matrix
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.mechanization.quasi_static import turn_upright
+from edge.tracker.mechanization.strapdown import rotate_attitude, rotate_navigation, rotation_matrix
+from edge.tracker.preprocessing.sample_ring import Ring
 
 _LOST_TURN_RAD = 0.35  # of a gap as long as a turn takes
 

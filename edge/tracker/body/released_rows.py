@@ -10,9 +10,9 @@ from numba import njit
 from edge.tracker.body.config import BodyConfig
 from edge.tracker.body.state import EAST, HEADING, MAGNETIC_NORTH, NORTH, BodyState, Sample, Trail
 from edge.tracker.body.walking_direction import direction_rad
-from edge.tracker.foot.filter.quasi_static import turn_heading
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.mechanization.quasi_static import turn_heading
+from edge.tracker.preprocessing.sample_ring import Ring
 
 GOOD, DEGRADED, LOST = int(Quality.GOOD), int(Quality.DEGRADED), int(Quality.LOST)
 UNCERTAIN, UNSETTLED = int(Reason.UNCERTAIN), int(Reason.UNSETTLED)

@@ -43,11 +43,11 @@ from edge.tracker.body.step_length import step_length
 from edge.tracker.body.steps import begins_to_rise
 from edge.tracker.body.ticks import low_pass, next_tick
 from edge.tracker.body.walking_direction import take_direction
-from edge.tracker.foot.output.track_rows import join_rows, rows_of
-from edge.tracker.foot.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
-from edge.tracker.foot.preprocessing.sample_times import regular_time
-from edge.tracker.foot.sample_ring import Ring, new_ring, reach, span
 from edge.tracker.interface import TrackBatch
+from edge.tracker.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
+from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach, span
+from edge.tracker.preprocessing.sample_times import regular_time
+from edge.tracker.track_rows import join_rows, rows_of
 from shared.earth_field import EarthField
 
 

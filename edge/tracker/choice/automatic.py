@@ -20,8 +20,8 @@ from edge.tracker.choice.selection import (
     select_automatically,
     with_places,
 )
-from edge.tracker.foot.output.track_rows import empty_rows, join_rows
 from edge.tracker.interface import BodyDimensions, TrackBatch
+from edge.tracker.track_rows import empty_rows, join_rows
 from shared.clock import NS_PER_S
 from shared.earth_field import EarthField
 

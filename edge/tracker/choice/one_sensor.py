@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from edge.samples import ImuBatch
-from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.interface import TrackBatch, Tracker
+from edge.tracker.track_rows import empty_rows
 from shared.earth_field import EarthField
 
 

@@ -20,12 +20,8 @@ from edge.tracker.foot.config import EskfConfig, config_record
 from edge.tracker.foot.filter.correction_tracking import clone_reference
 from edge.tracker.foot.filter.reinitialisation import is_long_gap, needs_reinitialisation
 from edge.tracker.foot.output.smoothing import smooth
-from edge.tracker.foot.output.track_rows import join_rows, rows_of
-from edge.tracker.foot.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
-from edge.tracker.foot.preprocessing.sample_times import regular_time
 from edge.tracker.foot.preprocessing.similar_strides import find_similar_strides
 from edge.tracker.foot.preprocessing.spike_rejection import SPIKE_NEIGHBOURS, reject_spike
-from edge.tracker.foot.sample_ring import Ring, new_ring, reach, span
 from edge.tracker.foot.stages import filter_sample
 from edge.tracker.foot.state import (
     STEP,
@@ -37,6 +33,10 @@ from edge.tracker.foot.state import (
 )
 from edge.tracker.foot.zupt.stance_detection import measure_motion, stride_minimum
 from edge.tracker.interface import TrackBatch
+from edge.tracker.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
+from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach, span
+from edge.tracker.preprocessing.sample_times import regular_time
+from edge.tracker.track_rows import join_rows, rows_of
 from shared.earth_field import EarthField
 
 KEPT_LAG_SHARE = 0.66  # a release in swing keeps rows younger than this share of the lag

@@ -31,18 +31,13 @@ from edge.tracker.foot.filter.integration import integrate, mean_readings
 from edge.tracker.foot.filter.measurement_update import rotate_state
 from edge.tracker.foot.filter.reinitialisation import open_gap_s, reinitialise
 from edge.tracker.foot.filter.scale_misalignment import propagate_scale_errors
-from edge.tracker.foot.filter.strapdown import dot, rotation_matrix
 from edge.tracker.foot.filter.temperature_bias import update_temperature_bias
 from edge.tracker.foot.filter.unstamped_loss_propagation import hold_readings, inflate_for_loss
 from edge.tracker.foot.output.hidden_turn import add_hidden_turn, propagate_hidden_turn
 from edge.tracker.foot.output.quality import assign_quality, note_faults
 from edge.tracker.foot.output.reported_covariance import accumulate_heading_bias, report_covariance
-from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
-from edge.tracker.foot.preprocessing.sample_times import lacks_samples
-from edge.tracker.foot.preprocessing.saturation_detection import ACCEL_SATURATED, GYRO_SATURATED
 from edge.tracker.foot.preprocessing.saturation_recovery import recover_forces, recover_rates
 from edge.tracker.foot.preprocessing.unstamped_loss import unstamped_loss_s
-from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress, Step, Trail
 from edge.tracker.foot.zupt.level_walking import apply_level_constraint, is_due
 from edge.tracker.foot.zupt.stance_acceptance import (
@@ -60,6 +55,11 @@ from edge.tracker.foot.zupt.stance_revision import (
 )
 from edge.tracker.foot.zupt.zupt import apply_zupt, is_gliding
 from edge.tracker.foot.zupt.zupt_residuals import on_footfall, on_lift_off, strike_share
+from edge.tracker.mechanization.strapdown import dot, rotation_matrix
+from edge.tracker.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
+from edge.tracker.preprocessing.sample_ring import Ring, reach
+from edge.tracker.preprocessing.sample_times import lacks_samples
+from edge.tracker.preprocessing.saturation_detection import ACCEL_SATURATED, GYRO_SATURATED
 
 MIN_STRIDE_M = 0.15  # a smaller move is a shuffle: it counts with the next
 

@@ -10,7 +10,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats
-from edge.tracker.foot.filter.quasi_static import turn_heading
 from edge.tracker.fused_paths.follow import (
     ends_stride,
     follow_row,
@@ -21,6 +20,7 @@ from edge.tracker.fused_paths.follow import (
 from edge.tracker.fused_paths.path_filter import fused_covariance
 from edge.tracker.fused_paths.state import LEAD, FusionConfig, FusionState, PathState
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.mechanization.quasi_static import turn_heading
 
 GOOD, DEGRADED, LOST = int(Quality.GOOD), int(Quality.DEGRADED), int(Quality.LOST)
 UNCERTAIN, SAMPLE_GAP = int(Reason.UNCERTAIN), int(Reason.SAMPLE_GAP)

@@ -12,8 +12,8 @@ from itertools import pairwise
 import numpy as np
 
 from edge.samples import ImuBatch
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import TrackBatch, Tracker
+from edge.tracker.track_rows import join_rows
 
 NEVER_NS = -(2**62)  # before all times
 

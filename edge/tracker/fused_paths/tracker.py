@@ -13,7 +13,6 @@ import numpy as np
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.body.tracker import BodyTracker
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.fused_paths.rows import Columns, fuse
 from edge.tracker.fused_paths.sensor_rows import SensorRows
 from edge.tracker.fused_paths.state import FUSION, FusionConfig
@@ -26,6 +25,7 @@ from edge.tracker.interface import (
     Tracker,
     WornSensor,
 )
+from edge.tracker.track_rows import join_rows
 from shared.earth_field import EarthField
 
 FEET = (FOOT, LEFT_FOOT, RIGHT_FOOT)

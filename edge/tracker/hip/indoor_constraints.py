@@ -12,10 +12,10 @@ import numpy as np
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.filter.quasi_static import turn_heading
-from edge.tracker.foot.filter.strapdown import rotation_matrix
 from edge.tracker.hip.error_state import propagate, update
 from edge.tracker.hip.state import HipConfig, HipState
+from edge.tracker.mechanization.quasi_static import turn_heading
+from edge.tracker.mechanization.strapdown import rotation_matrix
 
 _NO_CHANGE = math.nan
 

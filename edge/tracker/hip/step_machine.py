@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.hip.state import HipConfig, HipState
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.trunk.attitude import norm_of
 
 _REST, _RISING, _HIGH, _FALLING, _LOW = range(5)

@@ -16,13 +16,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats, SensorDescription
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.hip.error_state import propagate, update
 from edge.tracker.hip.indoor_constraints import constrain_heading, end_straight_way
 from edge.tracker.hip.state import HIP, NO_MODEL, HipConfig, HipState
 from edge.tracker.hip.step_length import step_length_m
 from edge.tracker.hip.step_machine import ends_step
 from edge.tracker.hip.velocity_models import model_mps
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.trunk.attitude import add_forward, level_force
 from edge.tracker.trunk.dead_reckoning import (
     begin_walk,

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.huang.state import HuangConfig, HuangState
+from edge.tracker.preprocessing.sample_ring import Ring, reach
 
 
 @njit()

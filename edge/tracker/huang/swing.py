@@ -10,10 +10,10 @@ import numpy as np
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.filter.quasi_static import static_orientation, turn_heading
-from edge.tracker.foot.filter.strapdown import advance, rotation_matrix
-from edge.tracker.foot.sample_ring import Ring, history
 from edge.tracker.huang.state import HuangConfig, HuangState
+from edge.tracker.mechanization.quasi_static import static_orientation, turn_heading
+from edge.tracker.mechanization.strapdown import advance, rotation_matrix
+from edge.tracker.preprocessing.sample_ring import Ring, history
 
 MIN_STRIDE_M = 0.15
 

@@ -15,11 +15,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import ImuBatch, SensorDescription
-from edge.tracker.foot.filter.quasi_static import static_orientation
-from edge.tracker.foot.output.track_rows import join_rows, rows_of
-from edge.tracker.foot.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
-from edge.tracker.foot.preprocessing.sample_times import regular_time
-from edge.tracker.foot.sample_ring import Ring, new_ring, reach, span
 from edge.tracker.huang.stance import follow_pitch_axis, is_stance, pitch_rate
 from edge.tracker.huang.state import HUANG, HuangConfig, HuangState
 from edge.tracker.huang.swing import (
@@ -30,6 +25,11 @@ from edge.tracker.huang.swing import (
     turn_to_true_north,
 )
 from edge.tracker.interface import Quality, Reason, TrackBatch
+from edge.tracker.mechanization.quasi_static import static_orientation
+from edge.tracker.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
+from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach, span
+from edge.tracker.preprocessing.sample_times import regular_time
+from edge.tracker.track_rows import join_rows, rows_of
 from shared.earth_field import EarthField
 
 GOOD, DEGRADED, LOST = int(Quality.GOOD), int(Quality.DEGRADED), int(Quality.LOST)

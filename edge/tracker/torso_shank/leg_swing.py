@@ -15,7 +15,7 @@ import math
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.sample_ring import Ring, reach, span
+from edge.tracker.preprocessing.sample_ring import Ring, reach, span
 from edge.tracker.torso_shank.state import ShankState, TorsoShankConfig
 from edge.tracker.trunk.attitude import begin_attitude, follow_attitude
 from edge.tracker.trunk.state import Row

@@ -6,8 +6,8 @@ import numpy as np
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.interface import Reason
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import ShankState, StrideState, TorsoShankConfig
 from edge.tracker.torso_shank.stride import begin_stride, end_stride, predict
 from edge.tracker.torso_shank.torso_front import learn_front

@@ -10,7 +10,7 @@ from __future__ import annotations
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.sample_ring import Ring, span
+from edge.tracker.preprocessing.sample_ring import Ring, span
 from edge.tracker.torso_shank.leg_swing import follow_shank
 from edge.tracker.torso_shank.state import ShankState, TorsoShankConfig
 from edge.tracker.trunk.kernel_tracker import is_past, take_times

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import StrideState, TorsoShankConfig
 from edge.tracker.torso_shank.torso_front import add_push, learn_front
 from edge.tracker.trunk.dead_reckoning import state_errors, take_step

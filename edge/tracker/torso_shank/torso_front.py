@@ -12,7 +12,7 @@ import math
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import StrideState, TorsoShankConfig
 from edge.tracker.trunk.attitude import level_force
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.torso_shank.state import StrideState, TorsoShankConfig
 from edge.tracker.trunk.dead_reckoning import mean_forward, place_row, take_step, write_rows
 from edge.tracker.waist.steps import NO_STEP, find_step, step_length_m

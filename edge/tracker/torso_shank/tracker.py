@@ -17,10 +17,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import ImuBatch
-from edge.tracker.foot.output.track_rows import join_rows, rows_of
-from edge.tracker.foot.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
-from edge.tracker.foot.sample_ring import Ring, new_ring, reach
 from edge.tracker.interface import BodyDimensions, TrackBatch, WornSensor
+from edge.tracker.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
+from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach
 from edge.tracker.torso_shank.movement import move
 from edge.tracker.torso_shank.shank_samples import (
     NEVER_NS,
@@ -35,6 +34,7 @@ from edge.tracker.torso_shank.state import (
     TorsoShankConfig,
     leg_length_m,
 )
+from edge.tracker.track_rows import join_rows, rows_of
 from edge.tracker.trunk.dead_reckoning import release_standing
 from edge.tracker.trunk.follow import follow_sample
 from edge.tracker.trunk.kernel_tracker import is_past, new_states, take_times

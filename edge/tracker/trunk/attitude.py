@@ -15,9 +15,9 @@ import math
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.filter.quasi_static import static_orientation
-from edge.tracker.foot.filter.strapdown import rotate_attitude, rotation_matrix
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.mechanization.quasi_static import static_orientation
+from edge.tracker.mechanization.strapdown import rotate_attitude, rotation_matrix
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.trunk.state import Row, TrunkConfig, TrunkState
 
 _FIELD_GAP_S = 0.1  # a field that is older says nothing of the time between

@@ -13,8 +13,8 @@ import math
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.sample_ring import Ring, history
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.preprocessing.sample_ring import Ring, history
 from edge.tracker.trunk.attitude import add_forward
 from edge.tracker.trunk.pressure_height import height_var_m2
 from edge.tracker.trunk.state import Row, TrunkConfig, TrunkState

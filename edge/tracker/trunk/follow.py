@@ -5,7 +5,7 @@ from __future__ import annotations
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.trunk.attitude import begin_attitude, follow_attitude
 from edge.tracker.trunk.dead_reckoning import write_standing
 from edge.tracker.trunk.pressure_height import follow_height

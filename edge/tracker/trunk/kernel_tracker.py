@@ -10,11 +10,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import ImuBatch, SensorDescription
-from edge.tracker.foot.output.track_rows import join_rows, rows_of
-from edge.tracker.foot.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
-from edge.tracker.foot.preprocessing.sample_times import regular_time
-from edge.tracker.foot.sample_ring import Ring, new_ring, reach
 from edge.tracker.interface import TrackBatch
+from edge.tracker.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
+from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach
+from edge.tracker.preprocessing.sample_times import regular_time
+from edge.tracker.track_rows import join_rows, rows_of
 from edge.tracker.trunk.state import TrunkConfig, TrunkState, begin_trunk
 from shared.earth_field import EarthField
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.trunk.attitude import norm_of
 from edge.tracker.waist.state import WaistConfig, WaistState
 

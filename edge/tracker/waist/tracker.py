@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats, SensorDescription
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.sample_ring import Ring
 from edge.tracker.trunk.dead_reckoning import (
     begin_walk,
     mean_forward,

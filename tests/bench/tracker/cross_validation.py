@@ -21,7 +21,7 @@ from rich.table import Table
 from edge.sources.recording import RecordingSource, read_truth
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.track_rows import join_rows
 from tests.bench.tracker.scoring import score_track
 
 VARIED = (

@@ -12,9 +12,9 @@ from rich.table import Table
 from edge.samples import Floats, ImuBatch
 from edge.simulation.building import load_building
 from edge.simulation.simulation import Simulation
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import TrackBatch
 from edge.tracker.registry import make_tracker
+from edge.tracker.track_rows import join_rows
 from shared.earth_field import EarthField, earth_field
 from tests.bench.tracker.simulated_calibration import calibration_of
 from tests.bench.tracker.walk_errors import rms, rotations_of

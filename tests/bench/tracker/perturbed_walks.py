@@ -19,9 +19,9 @@ from rich.progress import track as progress_bar
 from rich.table import Table
 
 from edge.sources.recording import RecordedTruth, RecordingSource, read_truth
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import Quality, TrackBatch
 from edge.tracker.registry import make_tracker
+from edge.tracker.track_rows import join_rows
 from tests.bench.tracker.perturbations import PERTURBATIONS, Perturbation
 from tests.bench.tracker.scoring import CHI2_95_2DOF, Score, horizontal_nees, score_track
 

@@ -13,10 +13,10 @@ from edge.calibration.correction import Correction
 from edge.simulation.factory import open_simulation
 from edge.simulation.simulation import Simulation
 from edge.sources.recording import RecordedTruth
-from edge.tracker.foot.filter.strapdown import rotation_matrix
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import FOOT, TrackBatch
+from edge.tracker.mechanization.strapdown import rotation_matrix
 from edge.tracker.registry import find_tracker, make_tracker
+from edge.tracker.track_rows import join_rows
 from tests.bench.tracker.documented_routes import ROUTES
 from tests.bench.tracker.scoring import Score, score_track
 from tests.bench.tracker.simulated_calibration import calibration_of

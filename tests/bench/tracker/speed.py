@@ -13,9 +13,9 @@ from edge.samples import Floats, ImuBatch
 from edge.sources.recording import RecordingSource
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import SIZE
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import TrackBatch
 from edge.tracker.registry import make_tracker
+from edge.tracker.track_rows import join_rows
 from tests.bench.tracker.reference_filter import PlainFilter
 
 BATCH_SAMPLES = 1_000_000  # at least, for a steady figure

@@ -8,9 +8,9 @@ import numpy as np
 
 from edge.samples import Floats, ImuBatch, SensorDescription
 from edge.simulation.kinematics import Motion
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import TrackBatch
 from edge.tracker.registry import make_tracker
+from edge.tracker.track_rows import join_rows
 
 _EVERY_S = 1.0
 _KNOWN_M = 0.02  # a height is shown to no less, whatever the tracker states

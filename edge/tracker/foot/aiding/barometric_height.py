@@ -25,8 +25,8 @@ from edge.tracker.foot.aiding.aiding_filter import measure as measure_aside
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import POSITION
 from edge.tracker.foot.filter.measurement_update import begin_updates, end_updates, measure
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import Aid, FilterState, Progress, Step
+from edge.tracker.preprocessing.sample_ring import Ring
 
 DOWN = POSITION + 2
 OFFSET = 1  # the barometer's own error, after that of the tracker's height

@@ -32,8 +32,8 @@ from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.filter.error_model import heading_variance
 from edge.tracker.foot.filter.initial_gyro_bias import is_bias_unobserved
 from edge.tracker.foot.filter.measurement_update import begin_updates, end_updates, measure_heading
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import Aid, FilterState, Step
+from edge.tracker.preprocessing.sample_ring import Ring
 
 ABSURD_UT = 1000.0  # twenty times the earth's field
 

@@ -14,9 +14,9 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.filter.quasi_static import turn_upright
-from edge.tracker.foot.filter.strapdown import rotate_attitude
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.mechanization.quasi_static import turn_upright
+from edge.tracker.mechanization.strapdown import rotate_attitude
+from edge.tracker.preprocessing.sample_ring import Ring
 
 
 @njit()

@@ -21,8 +21,8 @@ from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, POSITION, VELOCITY
 from edge.tracker.foot.filter.integration import accel_scale, integrate
 from edge.tracker.foot.preprocessing.similar_strides import last_good, lost_periods
-from edge.tracker.foot.sample_ring import Ring, reach, span
 from edge.tracker.foot.state import FilterState, Progress
+from edge.tracker.preprocessing.sample_ring import Ring, reach, span
 
 
 @njit()

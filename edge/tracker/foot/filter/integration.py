@@ -18,10 +18,10 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.filter.strapdown import advance
-from edge.tracker.foot.preprocessing.sample_times import lacks_samples
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import FilterState, Progress
+from edge.tracker.mechanization.strapdown import advance
+from edge.tracker.preprocessing.sample_ring import Ring
+from edge.tracker.preprocessing.sample_times import lacks_samples
 
 EVEN_SPACING = (0.7, 1.4)  # spacings so alike are the same, for stamps jitter more than sensors do
 SPACING_MIN_PERIODS = 0.6  # periods; stamps that are nearer are wrong

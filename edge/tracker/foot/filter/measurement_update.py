@@ -24,8 +24,8 @@ from edge.tracker.foot.error_state import (
 from edge.tracker.foot.filter.correction_tracking import apply_clone_correction, update_clone
 from edge.tracker.foot.filter.error_model import update_heading, update_one, update_with_lever
 from edge.tracker.foot.filter.scale_misalignment import update_scale_errors
-from edge.tracker.foot.filter.strapdown import rotate_navigation, rotation_matrix
 from edge.tracker.foot.state import FilterState, Step
+from edge.tracker.mechanization.strapdown import rotate_navigation, rotation_matrix
 
 
 @njit()

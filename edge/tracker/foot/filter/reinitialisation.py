@@ -15,10 +15,10 @@ from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, POSITION, SIZE, VELOCITY
 from edge.tracker.foot.filter.alignment import level
 from edge.tracker.foot.filter.correction_tracking import decorrelate_clone
-from edge.tracker.foot.filter.strapdown import rotate_attitude, rotation_matrix
-from edge.tracker.foot.preprocessing.preprocess import SAMPLE_GAP
-from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress
+from edge.tracker.mechanization.strapdown import rotate_attitude, rotation_matrix
+from edge.tracker.preprocessing.preprocess import SAMPLE_GAP
+from edge.tracker.preprocessing.sample_ring import Ring, reach
 
 
 @njit()

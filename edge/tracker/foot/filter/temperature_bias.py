@@ -13,8 +13,8 @@ from numba import njit
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.filter.correction_tracking import warm_clone
 from edge.tracker.foot.filter.error_model import propagate_temperature
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import FilterState, Progress, Step
+from edge.tracker.preprocessing.sample_ring import Ring
 
 COLDEST_DEGC = -60.0  # readings beyond these are no temperature
 WARMEST_DEGC = 150.0

@@ -17,8 +17,8 @@ from numba import njit
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, POSITION, SIZE, VELOCITY
 from edge.tracker.foot.filter.integration import accel_scale
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import FilterState
+from edge.tracker.preprocessing.sample_ring import Ring
 
 
 @njit()

@@ -10,13 +10,13 @@ from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, TURN
 from edge.tracker.foot.filter.error_model import heading_variance
 from edge.tracker.foot.filter.initial_gyro_bias import unobserved_heading_variance
-from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
-from edge.tracker.foot.preprocessing.saturation_detection import ACCEL_SATURATED, GYRO_SATURATED
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import FilterState, Progress
 from edge.tracker.foot.zupt.stance_consistency import height_is_lost
 from edge.tracker.foot.zupt.zupt_residuals import noise_inflation, scale_error_inflation
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
+from edge.tracker.preprocessing.sample_ring import Ring
+from edge.tracker.preprocessing.saturation_detection import ACCEL_SATURATED, GYRO_SATURATED
 
 ALIGNING = int(Reason.ALIGNING)
 NO_STANCE = int(Reason.NO_STANCE)

@@ -18,9 +18,9 @@ from edge.tracker.foot.error_state import SIZE, TURN
 from edge.tracker.foot.filter.error_model import heading_variance
 from edge.tracker.foot.filter.initial_gyro_bias import unobserved_heading_variance
 from edge.tracker.foot.filter.scale_misalignment import along, project
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import FilterState, Step
 from edge.tracker.foot.zupt.zupt_residuals import noise_inflation, scale_error_inflation
+from edge.tracker.preprocessing.sample_ring import Ring
 
 
 @njit()

@@ -22,9 +22,9 @@ from edge.tracker.foot.error_state import (
     TURN,
     VELOCITY,
 )
-from edge.tracker.foot.filter.strapdown import rotate_navigation
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import Step, Trail
+from edge.tracker.mechanization.strapdown import rotate_navigation
+from edge.tracker.preprocessing.sample_ring import Ring
 
 
 @njit()

@@ -1,1 +1,1 @@
-"""Checks and repair of samples before the filter: bad samples, times, saturation, spikes, gaps."""
+"""Repair of the foot's samples: saturated swings, spikes, losses that no time stamp shows."""

@@ -19,7 +19,7 @@ from __future__ import annotations
 from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.sample_ring import Ring
 
 SLOPE_SAMPLES = 3
 SLOPE_PART = 4  # a slope of the force is taken over this part of what is hidden

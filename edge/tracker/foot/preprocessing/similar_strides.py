@@ -13,10 +13,10 @@ import math
 from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES
-from edge.tracker.foot.preprocessing.sample_times import lacks_samples
-from edge.tracker.foot.sample_ring import Ring, history, reach, span
 from edge.tracker.foot.state import SIMILAR_STRIDES, Progress
+from edge.tracker.preprocessing.preprocess import BAD_SAMPLES
+from edge.tracker.preprocessing.sample_ring import Ring, history, reach, span
+from edge.tracker.preprocessing.sample_times import lacks_samples
 
 COMPARED_SAMPLES = 12  # samples on a side that are compared, whatever the rate
 SPACING_TOLERANCE = 0.6  # periods by which samples may lie nearer or further where none is missing

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from numba import njit
 
-from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
-from edge.tracker.foot.preprocessing.saturation_detection import GYRO_SATURATED
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
+from edge.tracker.preprocessing.sample_ring import Ring
+from edge.tracker.preprocessing.saturation_detection import GYRO_SATURATED
 
 SPIKE_NEIGHBOURS = 2  # samples on either side
 RATE_MIN_RADPS = 1.5

@@ -13,9 +13,9 @@ import math
 from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import Progress
+from edge.tracker.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
+from edge.tracker.preprocessing.sample_ring import Ring
 
 LONG_PERIODS = 1.6  # periods from which an interval lacks a sample by its stamps
 

@@ -23,8 +23,8 @@ from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import POSITION, SIZE
 from edge.tracker.foot.filter.correction_tracking import decorrelate_clone
 from edge.tracker.foot.filter.measurement_update import remember
-from edge.tracker.foot.sample_ring import Ring, reach, span
 from edge.tracker.foot.state import FilterState, Progress, Step
+from edge.tracker.preprocessing.sample_ring import Ring, reach, span
 
 DOWN = POSITION + 2
 

@@ -31,10 +31,10 @@ from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import VELOCITY
-from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress
 from edge.tracker.foot.zupt.stance_consistency import swing_scale_error_mps
 from edge.tracker.foot.zupt.zupt_residuals import scale_error_inflation
+from edge.tracker.preprocessing.sample_ring import Ring, reach
 
 
 @njit()

@@ -25,10 +25,10 @@ from __future__ import annotations
 from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.filter.strapdown import dot
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import FilterState, Progress, Step
 from edge.tracker.foot.zupt.zupt import lever_velocity_row
+from edge.tracker.mechanization.strapdown import dot
+from edge.tracker.preprocessing.sample_ring import Ring
 
 
 @njit()

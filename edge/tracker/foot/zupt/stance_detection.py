@@ -16,8 +16,8 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.sample_ring import Ring, reach, span
 from edge.tracker.foot.state import FilterState, Progress
+from edge.tracker.preprocessing.sample_ring import Ring, reach, span
 
 
 @njit()

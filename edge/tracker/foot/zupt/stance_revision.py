@@ -39,9 +39,9 @@ from edge.tracker.foot.error_state import (
     SIZE,
     VELOCITY,
 )
-from edge.tracker.foot.filter.strapdown import dot, rotate_navigation, rotation_matrix
 from edge.tracker.foot.state import FilterState, Progress
 from edge.tracker.foot.zupt.zupt_residuals import scale_error_inflation
+from edge.tracker.mechanization.strapdown import dot, rotate_navigation, rotation_matrix
 
 
 @njit()

@@ -22,10 +22,10 @@ from edge.tracker.foot.filter.measurement_update import (
     measure,
     measure_with_lever,
 )
-from edge.tracker.foot.filter.strapdown import dot
-from edge.tracker.foot.preprocessing.sample_times import lacks_samples
-from edge.tracker.foot.sample_ring import Ring, reach
 from edge.tracker.foot.state import FilterState, Progress, Step
+from edge.tracker.mechanization.strapdown import dot
+from edge.tracker.preprocessing.sample_ring import Ring, reach
+from edge.tracker.preprocessing.sample_times import lacks_samples
 
 MIN_INTERVAL_S = 2e-4  # a shorter one would make a stance update weigh nothing
 

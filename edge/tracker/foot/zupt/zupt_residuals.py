@@ -22,10 +22,10 @@ from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, GYRO_BIAS, POSITION, VELOCITY
-from edge.tracker.foot.filter.strapdown import dot
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.foot.state import FilterState, Step
 from edge.tracker.foot.zupt.zupt import lever_velocity_row
+from edge.tracker.mechanization.strapdown import dot
+from edge.tracker.preprocessing.sample_ring import Ring
 
 SWING_RAD = 0.3  # that a foot turns at least in a stride; a crawling one hardly more
 

@@ -10,8 +10,8 @@ import pytest
 
 from edge.activity.monitor import ActivityMonitor
 from edge.samples import ImuBatch
-from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.interface import TrackBatch
+from edge.tracker.track_rows import empty_rows
 from shared.clock import NS_PER_S
 from shared.messages import Activity
 

@@ -17,8 +17,8 @@ from edge.simulation.factory import open_simulation
 from edge.sources.recording import RecordedTruth, RecordingSource, read_truth
 from edge.sources.registry import open_source
 from edge.sources.simulated import SimulatedSource
-from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.registry import make_tracker
+from edge.tracker.track_rows import empty_rows
 from shared.clock import NS_PER_S
 from shared.messages import Activity
 from tests.bench.tracker.activity_scoring import ActivityScore, recorded_label, score_activity

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from edge.activity.strides import Stride, StrideCutter, up_in_body
-from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.interface import TrackBatch
+from edge.tracker.track_rows import empty_rows
 from shared.clock import NS_PER_S
 
 Row = tuple[float, float, float, float, bool]  # time, north, east, down, standing

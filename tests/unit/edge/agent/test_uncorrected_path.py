@@ -18,8 +18,8 @@ from edge.simulation.simulation import (
     Simulation,
 )
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import TrackBatch
+from edge.tracker.track_rows import join_rows
 from shared.clock import NS_PER_S, SystemClock
 from shared.envelope import Stamper
 from tests.rig.inertial_walk import inertial_samples

@@ -10,8 +10,8 @@ import pytest
 
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.body.tracker import BodyTracker
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.track_rows import join_rows
 from tests.rig.exact_steps import RATE_HZ, imu, steps, still
 
 

@@ -10,9 +10,9 @@ import pytest
 from edge.samples import ImuBatch, SensorDescription
 from edge.simulation.factory import open_simulation
 from edge.tracker.choice.automatic import AutomaticTracker
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import BodyDimensions, TrackBatch
 from edge.tracker.registry import make_tracker
+from edge.tracker.track_rows import join_rows
 
 BATCH_S = 0.5
 

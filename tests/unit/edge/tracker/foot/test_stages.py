@@ -23,10 +23,10 @@ from edge.tracker.foot.error_state import (
 from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.filter.alignment import level
 from edge.tracker.foot.filter.integration import mean_readings
-from edge.tracker.foot.filter.strapdown import rotation_matrix
-from edge.tracker.foot.sample_ring import new_ring
 from edge.tracker.foot.state import new_filter_state
 from edge.tracker.foot.zupt.zupt import MIN_INTERVAL_S, stance_velocity_noise
+from edge.tracker.mechanization.strapdown import rotation_matrix
+from edge.tracker.preprocessing.sample_ring import new_ring
 from tests.bench.tracker.reference_filter import PlainFilter
 from tests.rig.exact_strides import walk
 

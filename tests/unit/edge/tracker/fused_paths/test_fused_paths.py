@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from edge.samples import ImuBatch
-from edge.tracker.foot.output.track_rows import empty_rows
 from edge.tracker.fused_paths.sensor_rows import SensorRows
 from edge.tracker.fused_paths.tracker import TWO_FEET, FusedPathsTracker
 from edge.tracker.interface import (
@@ -17,6 +16,7 @@ from edge.tracker.interface import (
     TrackBatch,
     WornSensor,
 )
+from edge.tracker.track_rows import empty_rows
 from tests.rig.exact_strides import walk
 from tests.rig.sensors_of_person import track_person
 

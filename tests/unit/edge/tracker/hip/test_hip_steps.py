@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.hip.state import NO_MODEL, HipConfig
 from edge.tracker.hip.tracker import HipTracker
+from edge.tracker.track_rows import join_rows
 from tests.rig.trunk_walk import DESCRIPTION, bobbing, joined
 
 CORNERS = HipConfig(velocity_model=NO_MODEL, right_angles=True)

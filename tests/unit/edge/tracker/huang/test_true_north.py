@@ -9,9 +9,9 @@ import pytest
 
 from edge.simulation.factory import open_simulation
 from edge.simulation.simulation import IDEAL_SENSORS, Simulation
-from edge.tracker.foot.filter.strapdown import rotation_matrix
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.huang.tracker import HuangTracker
+from edge.tracker.mechanization.strapdown import rotation_matrix
+from edge.tracker.track_rows import join_rows
 from shared.earth_field import EarthField
 
 SIMULATED_RAD = np.arctan2(1.48, 16.07)  # declination of the simulated field

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from edge.samples import ImuBatch
-from edge.tracker.foot.filter.strapdown import rotation_matrix
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.interface import Reason
+from edge.tracker.mechanization.strapdown import rotation_matrix
+from edge.tracker.track_rows import join_rows
 from edge.tracker.waist.tracker import WaistTracker
 from tests.rig.trunk_walk import DESCRIPTION, UPRIGHT, bobbing
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.tracker.foot.sample_ring import RING
 from edge.tracker.interface import Quality, Reason
+from edge.tracker.preprocessing.sample_ring import RING
 from edge.tracker.trunk.dead_reckoning import begin_walk, state_errors, take_step
 from edge.tracker.trunk.state import TRUNK, TrunkConfig
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.track_rows import join_rows
 from edge.tracker.trunk.pressure_height import pressure_height_m
 from edge.tracker.waist.tracker import WaistTracker
 from tests.rig.trunk_walk import DESCRIPTION, bobbing

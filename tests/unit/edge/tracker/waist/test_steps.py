@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.track_rows import join_rows
 from edge.tracker.waist.state import WaistConfig
 from edge.tracker.waist.steps import length_std, step_length_m
 from edge.tracker.waist.tracker import WaistTracker

@@ -13,7 +13,7 @@ from edge.simulation.legs import Ride, Stand, Turn, Walk
 from edge.simulation.scenario import Scenario
 from edge.simulation.simulation import Simulation
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.track_rows import join_rows
 from tests.rig.exact_strides import walk
 from tests.rig.inertial_walk import inertial_walk, samples
 

@@ -23,9 +23,9 @@ from edge.tracker.foot.aiding.magnetic_field import (
 )
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.filter.strapdown import rotate_navigation, rotation_matrix
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.foot.state import COMPASS, COMPASS_SIZE, FIELD_HYPOTHESIS
+from edge.tracker.mechanization.strapdown import rotate_navigation, rotation_matrix
+from edge.tracker.track_rows import join_rows
 from tests.bench.tracker.walk_errors import rms
 from tests.rig.compass_walk import SEEDS, bent, searched
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.filter.strapdown import rotation_matrix
-from edge.tracker.foot.output.track_rows import join_rows
+from edge.tracker.mechanization.strapdown import rotation_matrix
+from edge.tracker.track_rows import join_rows
 from shared.earth_field import EarthField
 from tests.bench.tracker.walk_errors import rms
 from tests.rig.compass_walk import DURATION_S, SEEDS, bent, searched

@@ -28,15 +28,15 @@ from edge.tracker.foot.filter.error_model import (
     update_one,
     update_with_lever,
 )
-from edge.tracker.foot.filter.strapdown import (
+from edge.tracker.foot.state import new_filter_state
+from edge.tracker.foot.zupt.zupt import lever_velocity_row
+from edge.tracker.mechanization.strapdown import (
     GRAVITY_MPS2,
     advance,
     rotate_attitude,
     rotate_navigation,
     rotation_matrix,
 )
-from edge.tracker.foot.state import new_filter_state
-from edge.tracker.foot.zupt.zupt import lever_velocity_row
 
 Floats = NDArray[np.float64]
 Interval = tuple[Floats, Floats]  # what a transition is made of

@@ -7,8 +7,8 @@ import pytest
 
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.filter.integration import mean_readings
-from edge.tracker.foot.sample_ring import RING
 from edge.tracker.foot.state import new_filter_state, new_progress
+from edge.tracker.preprocessing.sample_ring import RING
 from tests.bench.tracker.reference_filter import turn
 
 

@@ -13,9 +13,9 @@ from edge.tracker.foot.eskf import EskfTracker
 from edge.tracker.foot.filter.error_model import heading_variance
 from edge.tracker.foot.filter.measurement_update import begin_updates, end_updates, measure_heading
 from edge.tracker.foot.filter.scale_misalignment import project, propagate_scale_errors
-from edge.tracker.foot.filter.strapdown import rotate_attitude, rotation_matrix
-from edge.tracker.foot.output.track_rows import join_rows
 from edge.tracker.foot.state import SCALE_ERRORS, STEP, new_filter_state
+from edge.tracker.mechanization.strapdown import rotate_attitude, rotation_matrix
+from edge.tracker.track_rows import join_rows
 from tests.rig.exact_strides import walk
 
 CONFIG = EskfConfig()

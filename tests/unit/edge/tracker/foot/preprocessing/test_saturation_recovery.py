@@ -7,7 +7,7 @@ import pytest
 
 from edge.tracker.foot.config import EskfConfig, config_record
 from edge.tracker.foot.preprocessing.saturation_recovery import recover_forces
-from edge.tracker.foot.sample_ring import RING
+from edge.tracker.preprocessing.sample_ring import RING
 
 PERIOD_S = 0.004
 FULL_SCALE_MPS2 = 20.0

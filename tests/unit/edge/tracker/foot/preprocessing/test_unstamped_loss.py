@@ -7,8 +7,8 @@ import pytest
 
 from edge.tracker.foot.config import EskfConfig, config_record
 from edge.tracker.foot.preprocessing.unstamped_loss import unstamped_loss_s
-from edge.tracker.foot.sample_ring import RING
 from edge.tracker.foot.state import new_progress
+from edge.tracker.preprocessing.sample_ring import RING
 
 PERIOD_S = 0.01
 SAMPLES = 60

@@ -7,10 +7,10 @@ import pytest
 
 from edge.tracker.foot.config import EskfConfig, config_record
 from edge.tracker.foot.eskf import EskfTracker
-from edge.tracker.foot.output.track_rows import join_rows
-from edge.tracker.foot.sample_ring import RING
 from edge.tracker.foot.state import STEP, new_filter_state, new_progress
 from edge.tracker.foot.zupt.level_walking import DOWN, apply_level_constraint
+from edge.tracker.preprocessing.sample_ring import RING
+from edge.tracker.track_rows import join_rows
 from tests.rig.exact_strides import walk
 
 

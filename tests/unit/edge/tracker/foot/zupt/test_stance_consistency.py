@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from edge.tracker.foot.config import EskfConfig, config_record
-from edge.tracker.foot.sample_ring import new_ring
 from edge.tracker.foot.state import STEP, new_filter_state, new_progress
 from edge.tracker.foot.zupt.stance_consistency import begin_stance, inflate_for_misfit
+from edge.tracker.preprocessing.sample_ring import new_ring
 
 CONFIG = config_record(EskfConfig())[0]
 

@@ -7,9 +7,9 @@ import pytest
 
 from edge.tracker.foot.config import EskfConfig, config_record
 from edge.tracker.foot.error_state import SIZE, VELOCITY
-from edge.tracker.foot.sample_ring import RING
 from edge.tracker.foot.state import STEP, new_filter_state
 from edge.tracker.foot.zupt.zupt import apply_zupt
+from edge.tracker.preprocessing.sample_ring import RING
 
 CONFIG = config_record(EskfConfig())[0]
 PERIOD_S = 0.005

@@ -15,16 +15,16 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats, ImuBatch, SensorDescription
-from edge.tracker.foot.preprocessing.saturation_detection import (
+from edge.tracker.interface import Reason
+from edge.tracker.kernel_cache import SOURCES
+from edge.tracker.preprocessing.sample_ring import Ring, span
+from edge.tracker.preprocessing.saturation_detection import (
     ACCEL_SATURATED,
     FULL_SCALE,
     GYRO_SATURATED,
     detect_full_scale,
     set_declared_range,
 )
-from edge.tracker.foot.sample_ring import Ring, span
-from edge.tracker.interface import Reason
-from edge.tracker.kernel_cache import SOURCES
 from shared.errors import ConfigError
 
 BAD_SAMPLES = int(Reason.BAD_SAMPLES)

@@ -1,10 +1,10 @@
-"""Orientation of a foot at rest from gravity and the earth's magnetic field.
+"""Orientation of a sensor at rest from gravity and the earth's magnetic field.
 
 Huang 2009, section 3.5: the acceleration, low-passed at about 1 Hz by a filter of
 linear phase, gives pitch and roll; the magnetic field, turned level by them, gives
 the heading (equations 3.5 to 3.16).  Written with vectors instead of Euler angles,
 which holds for any mount.  The filter's window ends where a swing begins: swings
-within it would tilt the foot by several degrees.  Without a magnetometer the heading
+within it would tilt the sensor by several degrees.  Without a magnetometer the heading
 stays as tracked.
 """
 
@@ -17,10 +17,10 @@ import numpy as np
 from numba import njit
 
 from edge.samples import Floats
-from edge.tracker.foot.filter.strapdown import rotate_navigation, rotation_matrix
-from edge.tracker.foot.sample_ring import Ring, reach, span
+from edge.tracker.mechanization.strapdown import rotate_navigation, rotation_matrix
+from edge.tracker.preprocessing.sample_ring import Ring, reach, span
 
-QUIET_RADPS = 0.6  # a foot that turns faster swings
+QUIET_RADPS = 0.6  # a sensor that turns faster swings
 
 
 @njit()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from numba import njit
 
-from edge.tracker.foot.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
-from edge.tracker.foot.sample_ring import Ring
+from edge.tracker.preprocessing.preprocess import BAD_SAMPLES, SAMPLE_GAP
+from edge.tracker.preprocessing.sample_ring import Ring
 
 CUBIC_MAX_PERIODS = 3.5  # periods; what more than two missing samples hid is no cubic
 

@@ -21,8 +21,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from edge.samples import Floats
-from edge.tracker.foot.sample_ring import Ring, span
 from edge.tracker.interface import Reason
+from edge.tracker.preprocessing.sample_ring import Ring, span
 
 GYRO_SATURATED = int(Reason.GYRO_SATURATED)
 ACCEL_SATURATED = int(Reason.ACCEL_SATURATED)

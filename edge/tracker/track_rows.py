@@ -7,8 +7,8 @@ from dataclasses import fields
 
 import numpy as np
 
-from edge.tracker.foot.sample_ring import Ring
 from edge.tracker.interface import TrackBatch
+from edge.tracker.preprocessing.sample_ring import Ring
 
 _COLUMNS = tuple(field.name for field in fields(TrackBatch))
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from edge.tracker.foot.filter.strapdown import GRAVITY_MPS2, advance, rotation_matrix
+from edge.tracker.mechanization.strapdown import GRAVITY_MPS2, advance, rotation_matrix
 
 AT_REST = (0.0, 0.0, -GRAVITY_MPS2)
 NO_TURN = (0.0, 0.0, 0.0)

@@ -1,0 +1,1 @@
+"""Strapdown mechanization: attitude, velocity and position from samples, for every tracker."""
