@@ -16,6 +16,7 @@ from base_station.app.export_command import export
 from base_station.app.foxglove_cli import foxglove
 from base_station.app.progress_bar import progress_bar
 from base_station.app.recordings_command import fetch_recording
+from base_station.app.rehearse_command import rehearse
 from base_station.app.report_command import report
 from base_station.app.unit_tokens_cli import unit_tokens
 from base_station.app.users_cli import users
@@ -33,6 +34,7 @@ log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
 app.command()(export)
 app.command()(report)
+app.command()(rehearse)
 app.add_typer(users, name="users")
 app.add_typer(unit_tokens, name="unit-tokens")
 app.add_typer(log, name="log")

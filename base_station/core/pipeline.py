@@ -6,7 +6,7 @@ nobody anything, and numbers its own outputs, so that the same events give the s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import assert_never
 
 from base_station.core import accountability, external_markers, idempotency
@@ -61,8 +61,11 @@ class StationPipeline:
         checkpoint: Checkpoint | None = None,
         smoother: Smoother = SMOOTHERS[0],
         plans: PlanReader | None = None,
+        make_alarms: Callable[[Sequence[AlarmRule]], AlarmManager] = AlarmManager,
     ) -> None:
-        """``plans``: for who has them read beforehand."""
+        """``plans``: for who has them read beforehand; ``make_alarms``: for who judges by other
+        thresholds beside.
+        """
         self._fuser_kind = fuser_kind
         usable = checkpoint is not None and checkpoint.fuser == fuser_kind.name
         self.state = checkpoint.state if checkpoint is not None else StationState()
@@ -78,7 +81,7 @@ class StationPipeline:
             checkpoint.pinned if checkpoint is not None and usable else {},
         )
         self._positioning.set_map(self.state.placed_plan)
-        self._alarms = AlarmManager(rules)
+        self._alarms = make_alarms(rules)
         self._alarms.use_thresholds(self.state.thresholds)
         self._unit_messages = UnitMessages(self._alarms, self._positioning)
         self._actions = ActionHandler(self._alarms, self._positioning, plans)

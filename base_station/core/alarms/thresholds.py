@@ -27,31 +27,38 @@ def thresholds_of(
 
     Raises ConfigError where no rule has such a threshold, or cannot have such a value.
     """
-    by_name = {rule.name: rule for rule in rules}
     found = {}
     for rule_name, values in settings.items():
-        if rule_name not in by_name:
-            raise ConfigError(
-                f"alarms.{rule_name} is no alarm; {nearest(rule_name, by_name, by_name)}"
-            )
-        rule = by_name[rule_name]
-        limits = limits_of(rule)
+        rule = _named(rules, rule_name)
         for name, value in values.items():
-            where = f"alarms.{rule_name}.{name}"
-            if name not in limits:
-                known = nearest(name, limits, limits) if limits else f"{rule_name} has none"
-                raise ConfigError(f"{where} is not a setting; {known}")
-            try:
-                msgspec.convert(value, limits[name])
-            except msgspec.ValidationError as error:
-                raise ConfigError(f"{where}: {error}") from error
+            require_threshold(rules, rule_name, name, value)
             if value != getattr(rule, name):
                 found[f"{rule_name}.{name}"] = value
         try:
-            _changed(rule, found)
+            changed_rule(rule, found)
         except ConfigError as error:
             raise ConfigError(f"alarms.{rule_name}: {error}") from error
     return found
+
+
+def require_threshold(rules: Sequence[AlarmRule], rule_name: str, name: str, value: float) -> None:
+    """Raises ConfigError where no rule has such a threshold, or where it cannot have the value."""
+    limits = limits_of(_named(rules, rule_name))
+    where = f"alarms.{rule_name}.{name}"
+    if name not in limits:
+        known = nearest(name, limits, limits) if limits else f"{rule_name} has none"
+        raise ConfigError(f"{where} is not a setting; {known}")
+    try:
+        msgspec.convert(value, limits[name])
+    except msgspec.ValidationError as error:
+        raise ConfigError(f"{where}: {error}") from error
+
+
+def _named(rules: Sequence[AlarmRule], rule_name: str) -> AlarmRule:
+    by_name = {rule.name: rule for rule in rules}
+    if rule_name not in by_name:
+        raise ConfigError(f"alarms.{rule_name} is no alarm; {nearest(rule_name, by_name, by_name)}")
+    return by_name[rule_name]
 
 
 def with_thresholds(rules: Sequence[AlarmRule], thresholds: Thresholds) -> tuple[AlarmRule, ...]:
@@ -61,14 +68,16 @@ def with_thresholds(rules: Sequence[AlarmRule], thresholds: Thresholds) -> tuple
 
 def _changed_or_as_it_was(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
     try:
-        return _changed(rule, thresholds)
+        return changed_rule(rule, thresholds)
     except (ConfigError, msgspec.ValidationError):
         return rule
 
 
-def _changed(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
-    """Raises ValidationError where one is beyond its limits, ConfigError where they do not go
-    together.
+def changed_rule(rule: AlarmRule, thresholds: Thresholds) -> AlarmRule:
+    """The rule with these thresholds.
+
+    Raises ValidationError where one is beyond its limits, ConfigError where they do not
+    go together.
     """
     changes = {
         name: msgspec.convert(thresholds[key], limits)

@@ -1,0 +1,1 @@
+"""Rehearsal: other thresholds of alarm rules over recorded incidents."""
