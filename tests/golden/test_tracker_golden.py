@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from edge.tracker.registry import TRACKERS
-from tests.golden.tracker_figures import GOLDEN, golden_path, measure, read_golden, trials_of
-
-NAMES = [entry.name for entry in TRACKERS]
+from tests.golden.tracker_figures import (
+    GOLDEN,
+    NAMES,
+    golden_path,
+    measure,
+    read_golden,
+    trials_of,
+)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -38,7 +38,7 @@ _FIT_OF = {"body"}  # trackers with a length that was fitted to these people
 
 
 class _Walk(msgspec.Struct):
-    """What is used of the ``trial.json`` of a lower back."""
+    """What is used of the ``trial.json`` of a walk."""
 
     subject: int
     path_length_m: float
@@ -46,8 +46,8 @@ class _Walk(msgspec.Struct):
 
 
 @dataclass(frozen=True, slots=True)
-class BackWalk:
-    """One walk out and back, tracked at the lower back."""
+class ReturnWalk:
+    """One walk out and back."""
 
     person: int
     length_ratio: float  # tracked by true
@@ -110,17 +110,21 @@ def _phones(data: Path) -> list[Path]:
     return sorted(path.parent for path in data.glob("phones/*/*/imu.csv.gz"))
 
 
-def track_back(file: Path, name: str) -> BackWalk:
+def track_back(file: Path, name: str) -> ReturnWalk:
     """Track one lower back between standing and standing."""
-    text = (file.parent / "trial.json").read_text(encoding="utf-8")
+    return score_return(file.parent, run_tracker(RecordingSource(file), name, quiet=True))
+
+
+def score_return(folder: Path, rows: TrackBatch) -> ReturnWalk:
+    """Score the rows of a walk out and back between standing and standing."""
+    text = (folder / "trial.json").read_text(encoding="utf-8")
     trial = msgspec.convert(json.loads(text), _Walk)  # a weight may be NaN
-    rows = run_tracker(RecordingSource(file), name, quiet=True)
     first_s, last_s = trial.walk_s[0] - _BEFORE_S, trial.walk_s[1] + _AFTER_S
     place_m, covariance_m2 = rows_at(rows, np.array([first_s, last_s]))
     distance_m = np.interp([first_s, last_s], rows.t_ns * 1e-9, rows.distance_m)
     known_m2 = covariance_m2[1:] + _RETURN_STD_M**2 * np.eye(3)
     nees = horizontal_nees(place_m[1:], place_m[:1], known_m2)
-    return BackWalk(
+    return ReturnWalk(
         person=trial.subject,
         length_ratio=float(distance_m[1] - distance_m[0]) / trial.path_length_m,
         closure_m=float(np.hypot(*(place_m[1] - place_m[0])[:2])),
@@ -128,7 +132,7 @@ def track_back(file: Path, name: str) -> BackWalk:
     )
 
 
-def left_out_errors(walks: Sequence[BackWalk], *, fitted: bool) -> list[float]:
+def left_out_errors(walks: Sequence[ReturnWalk], *, fitted: bool) -> list[float]:
     """Return the share by which each length is off, corrected by all other people if fitted."""
     errors = []
     for walk in walks:
@@ -138,7 +142,7 @@ def left_out_errors(walks: Sequence[BackWalk], *, fitted: bool) -> list[float]:
     return errors
 
 
-def _known_length_errors(walks: Sequence[BackWalk]) -> Iterator[float]:
+def _known_length_errors(walks: Sequence[ReturnWalk]) -> Iterator[float]:
     """Each walk, scaled by each other walk of the same person."""
     for known, walk in permutations(walks, 2):
         if known.person == walk.person:

@@ -27,6 +27,12 @@ from tests.bench.tracker.hard_motions import hard_motions_table, measure_hard_mo
 from tests.bench.tracker.honesty import honesty_table, measure_honesty
 from tests.bench.tracker.perturbed_walks import perturbed_table, score_perturbed
 from tests.bench.tracker.scoring import Score, score_track
+from tests.bench.tracker.several_sensors import (
+    footfalls_line,
+    measure_footfalls,
+    measure_returns,
+    returns_table,
+)
 from tests.bench.tracker.simulated_walks import score_simulated, simulated_walks
 from tests.bench.tracker.speed import measure_speed, print_speed
 from tests.bench.tracker.wearers import measure_wearers, wearers_table
@@ -94,7 +100,8 @@ ElsewhereOption = Annotated[
     Path | None,
     typer.Option(
         "--elsewhere",
-        help="Folder with body/ipol and phones: also compare the trackers that are not for a foot.",
+        help="Folder with body/ipol and phones: also compare the trackers that are not for a foot, "
+        "or for several sensors.",
     ),
 ]
 LeftOutOption = Annotated[
@@ -158,6 +165,12 @@ def bench_track(
         compared = measure_elsewhere(elsewhere)
         console.print(elsewhere_table(compared))
         report["elsewhere"] = [asdict(one) for one in compared]
+        returns = measure_returns(elsewhere)
+        console.print(returns_table(returns))
+        report["several_sensors"] = [asdict(one) for one in returns]
+        footfalls = measure_footfalls(elsewhere)
+        console.print(footfalls_line(footfalls))
+        report["footfalls"] = asdict(footfalls)
     write_figures(json_file, report)
 
 
