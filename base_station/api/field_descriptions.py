@@ -232,6 +232,22 @@ FIELDS: Mapping[str, str] = {
     "made_ms": "When it was worked out.",
     "is_newest": "false: more of the incident has come since, and it is worked out again soon.",
     "trails": "One for each unit that moved.",
+    # ---- routes to a member who is down
+    "RouteAnswer.unit_id": "The unit of the rescuer.",
+    "rescuer_id": "The unit of the rescuer who may go; without it the nearest are named.",
+    "known": "Whether a way is known; false: it is a straight line.",
+    "RouteAnswer.distance_m": "Length of the way with its stairs, or of the straight line, metres.",
+    "RouteLegAnswer.distance_m": "Length of the leg, metres.",
+    "uncertainty_m": "Radius of the circle in which the member is with 95 % probability, as seen "
+    "from the rescuer, metres.",
+    "crosses_walls": "Whether somebody's trail on it leads through a wall of the plan.",
+    "RouteAnswer.text": "The steps, or the straight line, in words.",
+    "legs": "Its legs in order; empty: no way is known.",
+    "places": "Its corners, from the rescuer to the member.",
+    "turn": "From the leg before, at first from the rescuer's heading: ahead, left, right or back; "
+    "null: it is not known how the rescuer stands then.",
+    "bearing_rad": "Direction of the leg, clockwise from north.",
+    "floors": "Floors that are climbed at the end of the leg, negative: down.",
     # ---- assessment
     "smoother": "Name of the smoother that it is held against.",
     "IncidentReport.flaws": "Why the log does not tell all of it, in sentences.",

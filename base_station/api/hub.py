@@ -112,6 +112,13 @@ class Hub:
             self._source.request_snapshot(lambda snapshot, _: future.set_result(snapshot))
         return future
 
+    def picture(self) -> Future[tuple[Snapshot, Trails]]:
+        """The same with the trails of all units."""
+        future: Future[tuple[Snapshot, Trails]] = Future()
+        if self._source is not None:
+            self._source.request_snapshot(lambda *picture: future.set_result(picture))
+        return future
+
     # ---- in the source's thread
 
     def delta(self, delta: Delta) -> None:

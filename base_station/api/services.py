@@ -16,10 +16,11 @@ from base_station.api.ha_status import HaStatus
 from base_station.api.hub import Hub
 from base_station.api.problems import Problem
 from base_station.api.replays import Replays
+from base_station.api.route_finder import RouteFinder
 from base_station.config import AccountabilityConfig
 from base_station.core.idempotency import is_same_request
 from base_station.core.person_references import with_references
-from base_station.engine.ports import ActionResult, OperatorGate
+from base_station.engine.ports import ActionResult, OperatorGate, Trails
 from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.replay.post_processing import PostProcessor
@@ -62,6 +63,7 @@ class Services:
     intake: SampleIntake | None = None  # None: a station that only replays
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     plans: PlanReader = field(default_factory=PlanReader)  # of the drive that acts
+    route_finder: RouteFinder = field(default_factory=RouteFinder)
     image_lock: Lock = field(default_factory=Lock)  # decoding takes up to 200 MB: one at a time
     # One whole incident at a time: an hour of a hundred units takes 300 MB.  Who waits holds no
     # thread: those are for who acts.
@@ -98,6 +100,13 @@ class Services:
         """Gives the snapshot of now, without trails."""
         try:
             return self.hub.snapshot().result(ACTION_TIMEOUT_S)
+        except FutureTimeoutError:
+            raise StoreError("the station is too busy to say this now; try again") from None
+
+    def picture_with_trails(self) -> tuple[Snapshot, Trails]:
+        """Gives the same with the trails of all units."""
+        try:
+            return self.hub.picture().result(ACTION_TIMEOUT_S)
         except FutureTimeoutError:
             raise StoreError("the station is too busy to say this now; try again") from None
 

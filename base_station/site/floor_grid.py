@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +23,27 @@ from base_station.site.wall_crossing import (
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Index = NDArray[np.intp]
 
 CELL_M = 0.2
 MARGIN_M = 3.0  # of open ground about the building
 SAMPLING_M = 0.12  # how far apart a step is looked at: a wall is a square thick
 MOST_CELLS = 4_000_000
 PLACES_AT_ONCE = 200_000
+LATTICE = 2  # squares between two points of the lattice: doors are wider
 _OPEN = np.zeros((1, 1), dtype=np.uint8)
 _EVERYWHERE = np.ones((1, 1), dtype=np.bool_)
+
+
+class FreeLattice(NamedTuple):
+    """Points of one floor, ``LATTICE`` squares apart, and the steps between neighbours that meet no
+    wall.
+    """
+
+    is_free: Flags  # (r, c), no wall is there
+    places_m: Floats  # (r, c, 2), north and east
+    # Rows and columns where they begin and where they end, and the length of each, m.
+    steps: tuple[tuple[tuple[Index, Index], tuple[Index, Index], float], ...]
 
 
 class FloorGrid:
@@ -127,6 +141,42 @@ class FloorGrid:
         return np.asarray(self._within[self._rows(place_m[:, 0]), self._columns(place_m[:, 1])])
 
     @property
+    def floors(self) -> tuple[int, ...]:
+        """Floors of which the plan has walls."""
+        return tuple(self._walls)
+
+    def free_lattice(self, floor: int) -> FreeLattice:
+        """Lattice of a floor.  A step to the side has no wall on its squares, one across none on
+        those beside it either: it would slip through a wall that runs across.
+        """
+        free = ~self._walls[floor]
+        is_free = free[::LATTICE, ::LATTICE]
+        rows, columns = is_free.shape
+        north_m = self._north_m + CELL_M * LATTICE * np.arange(rows)
+        east_m = self._east_m + CELL_M * LATTICE * np.arange(columns)
+        places_m = np.stack(np.meshgrid(north_m, east_m, indexing="ij"), axis=-1)
+        side_m, across_m = LATTICE * CELL_M, LATTICE * CELL_M * math.sqrt(2.0)
+        ways = (((0, 1), side_m), ((1, 0), side_m), ((1, 1), across_m), ((1, -1), across_m))
+        steps = []
+        for (north, east), length_m in ways:
+            begin = np.nonzero(_free_steps(free, north, east))
+            end = begin[0] + north, begin[1] + east
+            steps.append(((begin[0], begin[1]), end, length_m))
+        return FreeLattice(is_free, places_m, tuple(steps))
+
+    def lattice_points(self, places_m: Floats) -> tuple[Index, Index]:
+        """Rows and columns of the points of the lattice nearest to places (n, 2); beyond the
+        plan's edge they are beyond the lattice's.
+        """
+        corner = np.array([self._north_m, self._east_m])
+        points = np.rint((places_m - corner) / (CELL_M * LATTICE)).astype(np.intp)
+        return points[:, 0], points[:, 1]
+
+    def lattice_stairs(self, floor: int) -> Flags:
+        """Points of the lattice on stairs."""
+        return self._stairs[floor][::LATTICE, ::LATTICE]
+
+    @property
     def area_m2(self) -> float:
         """Area of all buildings."""
         return float(np.count_nonzero(self._within)) * CELL_M**2
@@ -183,6 +233,21 @@ class FloorGrid:
         north_m = self._north_m + CELL_M * np.arange(self._shape[0])
         east_m = self._east_m + CELL_M * np.arange(self._shape[1])
         return _within(ring, north_m, east_m)
+
+
+def _free_steps(free: Flags, north: int, east: int) -> Flags:
+    """Points of the lattice from which a step to a neighbour, so many points north and east, is
+    free: the block of squares that it spans is.
+    """
+    padded = np.pad(free, ((0, LATTICE), (LATTICE, LATTICE)))  # no way beyond the edge
+    rows, columns = free[::LATTICE, ::LATTICE].shape
+    is_free = np.ones((rows, columns), dtype=np.bool_)
+    for row in range(LATTICE * north + 1):
+        for column in range(LATTICE * abs(east) + 1):
+            shift = LATTICE + (column if east >= 0 else -column)
+            squares = padded[row::LATTICE, shift::LATTICE]
+            is_free &= squares[:rows, :columns]
+    return is_free
 
 
 def _portions(counts: NDArray[np.intp]) -> Iterator[slice]:

@@ -240,6 +240,7 @@ def snapshot(
         anchor=anchor_view(state.anchor) if state.anchor else None,
         health=health_view(state, facts),
         replay=replay,
+        plan_placed=state.plan is state.placed_plan,
     )
 
 

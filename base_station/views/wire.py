@@ -384,6 +384,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     anchor: AnchorView | None
     health: HealthView
     replay: ReplayView | None
+    plan_placed: bool = True  # False: nobody knows yet where on the plan people are
 
 
 class Trail(msgspec.Struct, frozen=True, tag="trail"):

@@ -52,7 +52,7 @@ LEAST: dict[str, dict[str, Role | None]] = {
                   "GET /incidents/{incident_id}/alarms": V,
                   "GET /incidents/{incident_id}/assessment": V},
     "tracks": {"GET /units/{unit_id}/track": V, "GET /incidents/{incident_id}/tracks": V,
-               "GET /incidents/{incident_id}/trails": V},
+               "GET /incidents/{incident_id}/trails": V, "GET /units/{unit_id}/routes": V},
     "alarms": {"GET /alarms": V, "GET /alarms/{alarm_id}": V,
                "POST /alarms/{alarm_id}/acknowledge": C, "POST /alarms/{alarm_id}/resolve": C},
     "commands": {"GET /commands": V, "POST /commands": C, "GET /commands/{command_id}": V,

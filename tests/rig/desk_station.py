@@ -29,6 +29,7 @@ from base_station.core.pipeline import StationPipeline
 from base_station.engine.admission import Admission, classify
 from base_station.engine.ports import ActionResult, DeliveryResult, Trails
 from base_station.engine.sample_intake import SampleIntake
+from base_station.engine.trail_encoder import TrailEncoder
 from base_station.fusion import FUSERS
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.privacy.erasure_service import ClosedLog, ErasureService
@@ -132,7 +133,8 @@ class DeskDrive:
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         with self._lock:
-            deliver(self.picture(), {})
+            trails = TrailEncoder().all(self._pipeline.state.units.values())
+            deliver(self.picture(), trails)
 
     def picture(self) -> Snapshot:
         with self._lock:

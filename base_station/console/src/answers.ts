@@ -520,6 +520,30 @@ export interface Rest {
   resting: boolean;
 }
 
+export interface RouteAnswer {
+  unit_id: string;
+  known: boolean;
+  distance_m: number;
+  uncertainty_m: number;
+  crosses_walls: boolean;
+  text: string;
+  legs: RouteLegAnswer[];
+  places: RoutePlace[];
+}
+
+export interface RouteLegAnswer {
+  turn: "ahead" | "left" | "right" | "back" | null;
+  bearing_rad: number;
+  distance_m: number;
+  floors: number;
+}
+
+export interface RoutePlace {
+  north_m: number;
+  east_m: number;
+  floor: number | null;
+}
+
 export interface SampleBatch {
   seq: number;
   t_ns: number[];

@@ -304,6 +304,7 @@ export interface Snapshot {
   anchor: AnchorView | null;
   health: HealthView;
   replay: ReplayView | null;
+  plan_placed: boolean;
 }
 
 export interface Trail {

@@ -165,6 +165,7 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
     anchor: null,
     health: HEALTH,
     replay: null,
+    plan_placed: true,
     ...change,
   };
 }

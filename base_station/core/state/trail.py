@@ -12,8 +12,8 @@ from itertools import pairwise
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
+from base_station.site.simplified_line import corners
 from shared.clock import NS_PER_S
 from shared.messages import FusedPosition
 
@@ -106,38 +106,5 @@ def _simplified(steps: list[TrailStep], tolerance_m: float) -> list[TrailStep]:
     ]
     kept = np.zeros(len(steps), dtype=np.bool_)
     for begin, end in pairwise([0, *begins, len(steps)]):
-        _keep(places_m, begin, end - 1, tolerance_m, kept)
+        kept[begin:end] = corners(places_m[begin:end], tolerance_m)
     return [step for step, keep in zip(steps, kept.tolist(), strict=True) if keep]
-
-
-def _keep(
-    places_m: NDArray[np.float64],
-    first: int,
-    last: int,
-    tolerance_m: float,
-    kept: NDArray[np.bool_],
-) -> None:
-    """Mark both ends, and between them whatever lies off what is marked."""
-    kept[[first, last]] = True
-    parts = [(first, last)]
-    while parts:
-        begin, end = parts.pop()
-        if end - begin < 2:
-            continue
-        off_m = _distances_m(places_m[begin + 1 : end], places_m[begin], places_m[end])
-        worst = int(off_m.argmax())
-        if off_m[worst] > tolerance_m:
-            middle = begin + 1 + worst
-            kept[middle] = True
-            parts += [(begin, middle), (middle, end)]
-
-
-def _distances_m(
-    places_m: NDArray[np.float64], begin_m: NDArray[np.float64], end_m: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Distances of places (n, 2) from a straight line between two."""
-    way_m, from_begin_m = end_m - begin_m, places_m - begin_m
-    length2_m2 = float(way_m @ way_m)
-    along = (from_begin_m @ way_m) / length2_m2 if length2_m2 > 0.0 else np.zeros(len(places_m))
-    off_m: NDArray[np.float64] = from_begin_m - np.clip(along, 0.0, 1.0)[:, None] * way_m
-    return np.asarray(np.hypot(off_m[:, 0], off_m[:, 1]))

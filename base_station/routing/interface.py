@@ -1,0 +1,41 @@
+"""Trails and places that ways are searched over, and the routes that are found."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Whole = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+NO_FLOOR = -1_000_000  # number of a floor that is not known
+STOREY_M = 3.0  # rise of a storey of which no plan says it (ours)
+
+
+class Waypoint(msgspec.Struct, frozen=True):
+    """Point in the incident frame."""
+
+    north_m: float
+    east_m: float
+    floor: int | None
+
+
+class WalkedTrail(msgspec.Struct, frozen=True):
+    """Way of one unit until now, oldest point first; the last one is where it is."""
+
+    unit_id: str
+    places_m: Floats  # (n, 2), north and east
+    floors: Whole  # (n,), ``NO_FLOOR`` where it is not known
+    after_gap: Flags  # (n,), nothing tells the way from the point before
+    std_m: float  # of the position now, in one direction; of the trail it is no less
+
+
+class Route(msgspec.Struct, frozen=True):
+    """Shortest known way of one unit to another."""
+
+    places: tuple[Waypoint, ...]  # its corners, both ends among them
+    distance_m: float  # walked, with what stairs add
+    std_m: float  # of its end as seen from its begin, in one direction
+    crosses_walls: bool  # a trail on it leads through a wall of the plan

@@ -1,0 +1,95 @@
+"""Lattice of the ground that a plan shows to be free, with the stairs between its storeys."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from base_station.routing.interface import Floats, Whole
+from base_station.site.floor_grid import FloorGrid
+
+MOST_NODES = 400_000  # of all floors; in a larger plan only trails tell a way
+UNWALKED = 1.3  # cost of ground that only the plan knows: a door may be locked (ours)
+STAIRS_SLOPE = 2.0  # way on stairs for each metre of rise: they are about 30 degrees steep
+
+
+class PlanLattice(NamedTuple):
+    """Nodes and edges, floor by floor."""
+
+    places_m: Floats  # (n, 2)
+    floors: Whole  # (n,)
+    edges: Whole  # (m, 2), of nodes
+    costs_m: Floats  # (m,), for each its length, and more on level ground that nobody has walked
+    # By floor: the node of each point of the lattice, -1 where a wall is.
+    nodes: dict[int, Whole]
+    grid: FloorGrid | None
+
+    @property
+    def is_empty(self) -> bool:
+        return not self.nodes
+
+    def node_at(self, floor: int, places_m: Floats) -> Whole:
+        """Node (k,) nearest to each place (k, 2); -1 beside the plan, or where a wall is."""
+        if self.grid is None or floor not in self.nodes:
+            return np.full(len(places_m), -1, dtype=np.int64)
+        nodes = self.nodes[floor]
+        rows, columns = self.grid.lattice_points(places_m)
+        within = (rows >= 0) & (rows < nodes.shape[0])
+        within &= (columns >= 0) & (columns < nodes.shape[1])
+        found = np.full(len(places_m), -1, dtype=np.int64)
+        found[within] = nodes[rows[within], columns[within]]
+        return found
+
+
+NO_LATTICE = PlanLattice(
+    np.empty((0, 2)), np.empty(0, np.int64), np.empty((0, 2), np.int64), np.empty(0), {}, None
+)
+
+
+def plan_lattice(grid: FloorGrid | None) -> PlanLattice:
+    """Lattice of all floors of which the plan shows walls; an empty one where there is none."""
+    if grid is None:
+        return NO_LATTICE
+    lattices = {floor: grid.free_lattice(floor) for floor in grid.floors}
+    if sum(int(np.count_nonzero(one.is_free)) for one in lattices.values()) > MOST_NODES:
+        return NO_LATTICE
+    nodes: dict[int, Whole] = {}
+    places, floors, edges, costs = [], [], [], []
+    count = 0
+    for floor, lattice in lattices.items():
+        numbers = np.full(lattice.is_free.shape, -1, dtype=np.int64)
+        free = int(np.count_nonzero(lattice.is_free))
+        numbers[lattice.is_free] = np.arange(count, count + free)
+        nodes[floor] = numbers
+        places.append(lattice.places_m[lattice.is_free])
+        floors.append(np.full(free, floor))
+        for begin, end, length_m in lattice.steps:
+            edges.append(np.column_stack([numbers[begin], numbers[end]]))
+            costs.append(np.full(len(edges[-1]), UNWALKED * length_m))
+        count += free
+    storeys = [storey for storey in grid.plan.storeys if storey.floor in nodes]
+    for lower, upper in pairwise(storeys):
+        climbs = _climbs(grid, nodes, lower.floor, upper.floor)
+        edges.append(climbs)
+        rise_m = abs(upper.down_m - lower.down_m)
+        costs.append(np.full(len(climbs), STAIRS_SLOPE * rise_m))
+    return PlanLattice(
+        np.concatenate(places),
+        np.concatenate(floors),
+        np.concatenate(edges),
+        np.concatenate(costs),
+        nodes,
+        grid,
+    )
+
+
+def _climbs(grid: FloorGrid, nodes: dict[int, Whole], lower: int, upper: int) -> Whole:
+    """Edges (k, 2) where stairs of both storeys lie over each other, or where one has stairs."""
+    both = [floor for floor in (lower, upper) if grid.has_stairs(floor)]
+    if not both:
+        return np.empty((0, 2), dtype=np.int64)
+    on_stairs = np.logical_and.reduce([grid.lattice_stairs(floor) for floor in both])
+    on_stairs = on_stairs & (nodes[lower] >= 0) & (nodes[upper] >= 0)
+    return np.column_stack([nodes[lower][on_stairs], nodes[upper][on_stairs]])

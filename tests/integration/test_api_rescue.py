@@ -1,0 +1,109 @@
+"""Routes to a member by way of the API."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+
+import httpx
+import msgspec
+import pytest
+import pytest_asyncio
+
+from base_station.accounts.principals import Role
+from shared.clock import NS_PER_S, ManualClock
+from shared.messages import EventKind, Header, Position, UnitEvent
+from tests.rig.desk_station import DeskStation
+
+pytestmark = pytest.mark.asyncio
+UNITS = ("FF-01", "FF-02", "FF-03", "FF-04", "FF-05")
+
+
+@pytest_asyncio.fixture
+async def commander(
+    station: DeskStation, clock: ManualClock, make_position: Callable[..., Position]
+) -> AsyncIterator[httpx.AsyncClient]:
+    """Five members came in at one place and walked north, each ten metres less; FF-01 is the
+    farthest.
+    """
+    async with station.client(Role.COMMANDER) as commander:
+        for unit_id in UNITS:
+            await commander.post("/units", json={"unit_id": unit_id})
+            person = await commander.post("/people", json={"name": unit_id, "crew": "", "role": ""})
+            worn = {"unit_id": unit_id, "person_id": person.json()["person_id"]}
+            await commander.post("/assignments", json=worn)
+        await commander.post("/incidents", json={"name": "Mill Lane"})
+        start = {"north_m": 0.0, "east_m": 0.0, "heading_std_rad": 0.1}
+        for unit_id in UNITS:
+            await commander.put(f"/units/{unit_id}/start", json=start)
+        for second in range(1, 60):
+            clock.advance(1.0)
+            for number, unit_id in enumerate(UNITS):
+                north_m = float(min(second, 50 - 10 * number))
+                station.drive.hear(
+                    msgspec.structs.replace(
+                        make_position(),
+                        header=Header(unit_id, 7, second, second * NS_PER_S),
+                        north_m=north_m,
+                        east_m=0.0,
+                    )
+                )
+        yield commander
+
+
+async def test_the_three_nearest_and_any_other_that_is_named(
+    commander: httpx.AsyncClient,
+) -> None:
+    nearest = (await commander.get("/units/FF-01/routes")).json()
+    assert [route["unit_id"] for route in nearest] == ["FF-02", "FF-03", "FF-04"]
+    assert [route["known"] for route in nearest] == [True] * 3
+    assert [route["distance_m"] for route in nearest] == pytest.approx([10, 20, 30], abs=2)
+    first = nearest[0]
+    assert first["text"].endswith("10 m")
+    assert first["places"][0]["north_m"] == pytest.approx(40.0, abs=1.0)
+    assert first["places"][-1]["north_m"] == pytest.approx(50.0, abs=1.0)
+    assert 0.0 < first["uncertainty_m"] < 60.0
+    named = (await commander.get("/units/FF-01/routes?rescuer_id=FF-05")).json()
+    assert [route["unit_id"] for route in named] == ["FF-05"]
+    assert named[0]["distance_m"] == pytest.approx(40, abs=2)
+
+
+async def test_who_is_in_danger_is_not_sent(
+    commander: httpx.AsyncClient, station: DeskStation, clock: ManualClock
+) -> None:
+    clock.advance(1.0)
+    header = Header("FF-02", 7, 90, 70 * NS_PER_S)
+    station.drive.hear(UnitEvent(header, EventKind.MAYDAY))
+    nearest = (await commander.get("/units/FF-01/routes")).json()
+    assert [route["unit_id"] for route in nearest] == ["FF-03", "FF-04", "FF-05"]
+
+
+async def test_without_a_known_way_the_straight_line_is_named_as_such(
+    commander: httpx.AsyncClient,
+    station: DeskStation,
+    clock: ManualClock,
+    make_position: Callable[..., Position],
+) -> None:
+    """FF-03 stood still for a minute without contact, and is elsewhere."""
+    clock.advance(60.0)
+    station.drive.hear(
+        msgspec.structs.replace(
+            make_position(),
+            header=Header("FF-03", 7, 200, 130 * NS_PER_S),
+            north_m=30.0,
+            east_m=400.0,
+        )
+    )
+    (answer,) = (await commander.get("/units/FF-01/routes?rescuer_id=FF-03")).json()
+    assert answer["text"].startswith("no known way; ")
+    assert not answer["known"]
+    assert answer["legs"] == []
+
+
+async def test_unknown_units_and_units_without_a_position(commander: httpx.AsyncClient) -> None:
+    assert (await commander.get("/units/FF-09/routes")).status_code == 404
+    assert (await commander.get("/units/FF-01/routes?rescuer_id=FF-09")).status_code == 404
+    await commander.post("/units", json={"unit_id": "FF-08"})
+    nowhere = await commander.get("/units/FF-08/routes")
+    assert nowhere.status_code == 409
+    assert "no position" in nowhere.json()["detail"]
+    assert (await commander.get("/units/FF-01/routes?rescuer_id=FF-08")).status_code == 409
