@@ -9,6 +9,7 @@ from typing import Annotated
 
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from base_station.forwarders.tak.config import TakConfig
+from base_station.storage.db.server_address import ServerAddress
 from shared.channels import validate_unit_id
 from shared.config import Within
 from shared.errors import ConfigError
@@ -110,10 +111,28 @@ class StationConfig:
     bus: BusConfig = field(default_factory=BusConfig)
     http: HttpConfig = field(default_factory=HttpConfig)
     log: LogConfig = field(default_factory=LogConfig)
+    # Of tables on a PostgreSQL server, as postgresql+psycopg://USER@HOST/NAME; "": a file in data.
+    database: str = ""
+    database_password_file: Path | None = None  # its first line; else PGPASSWORD or PGPASSFILE
     standby: StandbyConfig = field(default_factory=StandbyConfig)
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
     tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
+
+    def __post_init__(self) -> None:
+        if self.database_password_file is not None and not self.database:
+            raise ConfigError("database_password_file is of a database: give its address, too")
+        _ = self.database_server
+
+    @property
+    def database_server(self) -> ServerAddress | None:
+        """None: the tables are in a file.  Raises ConfigError where the address is none."""
+        if not self.database:
+            return None
+        password_file = self.database_password_file
+        return ServerAddress(
+            self.database, "" if password_file is None else str(password_file.absolute())
+        )
 
     def unencrypted_endpoints(self) -> tuple[str, ...]:
         """Endpoints that are not encrypted and leave this machine, where others could listen in."""

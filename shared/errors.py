@@ -12,6 +12,7 @@
       │    └─ DataFolderInUseError  another station writes to this folder
       ├─ StoreError         the database, or a file beside it, cannot do what was asked
       │    ├─ DiskHangsError        its disk does not answer
+      │    ├─ DatabaseAwayError     its server does not answer
       │    ├─ DiskFullError         its disk takes nothing: it is full, or can only be read
       │    └─ MemoryLimitError      it would take more memory than it may
       ├─ LinkRefusedError   a link leads out of a folder
@@ -69,6 +70,10 @@ class StoreError(MusterError):
 
 class DiskHangsError(StoreError):
     """The database's disk does not answer: nothing is asked of it until it does."""
+
+
+class DatabaseAwayError(StoreError):
+    """The database's server does not answer: nothing is asked of it until it does."""
 
 
 class DiskFullError(StoreError):

@@ -1,4 +1,4 @@
-"""Cache of principals that were let in, for as long as the disk does not answer."""
+"""Cache of principals that were let in, for as long as the database does not answer."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable
 from threading import Lock
 
 from base_station.accounts.principals import Principal
-from shared.errors import DiskHangsError
+from shared.errors import DatabaseAwayError, DiskHangsError
 
 _MOST = 1000
 
@@ -21,14 +21,14 @@ class PrincipalCache:
 
     def resolve(self, secret: str, look_up: Callable[[str], Principal | None]) -> Principal | None:
         """Whoever a secret stands for.  A commander who has to get people out is not asked to wait
-        for a disk; nobody comes in by this who was not in before.
+        for a disk or a server; nobody comes in by this who was not in before.
 
         Raises StoreError, as ``look_up``.
         """
         name = hashlib.sha256(secret.encode()).digest()
         try:
             found = look_up(secret)
-        except DiskHangsError:
+        except (DatabaseAwayError, DiskHangsError):
             with self._lock:
                 known = self._known.get(name)
             if known is None:

@@ -18,6 +18,7 @@ from base_station.security.pki.folder import PkiFolder
 from base_station.standby.log_truncation import APART, MERGED_SUFFIX
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.copying import copy_database, known_segments
+from base_station.storage.db.opening import copy_to_file
 from shared.errors import LogError, StoreError, UserError
 from shared.mcap_log import segment_paths
 from shared.own_files import give_to_owner, make_folder, read_own, refuse_links, write_own
@@ -91,7 +92,8 @@ def _copy_database(source: DataFolder, copy: DataFolder) -> StoreError | None:
     """Gives the reason why it cannot be copied; the log has positions and alarms all the same."""
     try:
         with _part_of(copy.database) as part:
-            copy_database(source.database, part)
+            if not copy_to_file(source.database, part):
+                copy_database(source.database, part)
     except StoreError as error:
         return error
     return None

@@ -19,26 +19,35 @@ _ADVICE = {
     "first-login.txt": "give the administrator another password",
 }
 _OTHERWISE = "if strangers use this machine, make another key"
+_DATABASE = "if strangers use this machine, give the database's user another password"
 _ACCOUNTS = "if strangers use this machine, give every user another password"
 
 
 class ExposedSecrets:
-    def __init__(self, folder: DataFolder, console_key: Path | None) -> None:
-        """Closes them; ``console_key`` may be one that other programs of its group use, too."""
-        self._problems = tuple(_sentences(folder, console_key))
+    def __init__(
+        self, folder: DataFolder, console_key: Path | None, database_password: Path | None = None
+    ) -> None:
+        """Closes them; ``console_key`` and the file of the ``database_password`` may be some that
+        other programs of their group use, too.
+        """
+        self._problems = tuple(_sentences(folder, console_key, database_password))
 
     def problems(self) -> tuple[str, ...]:
         """Sentences for the console."""
         return self._problems
 
 
-def _sentences(folder: DataFolder, console_key: Path | None) -> Iterator[str]:
+def _sentences(
+    folder: DataFolder, console_key: Path | None, database_password: Path | None
+) -> Iterator[str]:
     pki = PkiFolder(folder.path).path
     for path in (*sorted(pki.glob("*.key")), folder.first_login, folder.database):
         remedy = _ACCOUNTS if path == folder.database else _ADVICE.get(path.name, _OTHERWISE)
         yield from _closed(path, ALL_BUT_OWNER, remedy)
     if console_key is not None and console_key.parent.resolve() != pki.resolve():
         yield from _closed(console_key, OTHERS, _OTHERWISE)
+    if database_password is not None:
+        yield from _closed(database_password, OTHERS, _DATABASE)
 
 
 def _closed(path: Path, whom: int, remedy: str) -> Iterator[str]:

@@ -16,11 +16,11 @@ from base_station.replay.processes.replay_process import ReplayContext, ReplayPr
 from base_station.replay.rebuild import project_log
 from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.database import Database
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
-from base_station.storage.db.store import Store
 from base_station.storage.projection import Projection
 from base_station.storage.segment_index import SegmentIndex
 from shared.clock import Clock, SystemClock
@@ -68,7 +68,7 @@ def announce_first_login(accounts: Accounts, note: Path | None, announce: Announ
         announce(f"first login: {USERNAME}  password: {password}  ({where})")
 
 
-def project_whole_log(store: Store, log: Path, on_progress: Callable[[float], None]) -> int:
+def project_whole_log(store: Database, log: Path, on_progress: Callable[[float], None]) -> int:
     """Cut short, it leaves a database that knows no segment of the log."""
     records = Records(store, SystemClock())
     records.forget_projections()

@@ -24,14 +24,16 @@ from base_station.standby.log_truncation import set_aside
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.database import Database
 from base_station.storage.db.erasure import ids_of
 from base_station.storage.db.models import IncidentRow
+from base_station.storage.db.opening import open_database
 from base_station.storage.db.records import Records
 from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.salvage import salvage_if_damaged
+from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.smoothed import SmoothedTracks
-from base_station.storage.db.store import Store
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from shared.clock import SystemClock
 from shared.errors import UserError
@@ -74,10 +76,11 @@ def rebuild(
     folder.require()
     lock = folder.lock()
     try:
-        salvage = salvage_if_damaged(folder.database, math.inf)
+        is_file = noted_server(folder.database) is None
+        salvage = salvage_if_damaged(folder.database, math.inf) if is_file else None
         if salvage is not None:
             report(salvage.described(alone=False))
-        with Store(folder.database) as store:
+        with open_database(folder.database) as store:
             if salvage is not None:
                 ReplicatedTables(store).note_lost(salvage.lost)
             return project_whole_log(store, folder.log, on_progress)
@@ -90,7 +93,8 @@ def cut_log(data: Path, place: LogPosition, on_progress: Callable[[float], None]
     folder = DataFolder(data)
     lock = folder.lock()
     try:
-        with Store(folder.database) as store:  # it must not know what is cut, however this ends
+        # It must not know what is cut, however this ends.
+        with open_database(folder.database) as store:
             Records(store, SystemClock()).forget_projections()
         set_aside(folder, place)
     finally:
@@ -113,14 +117,14 @@ def forget(
     folder = DataFolder(data)
     folder.require()
     if FolderLock.is_held(data):
-        with Store(folder.require_database()) as store:
+        with open_database(folder.require_database()) as store:
             subject = _subject(subject_name, store)
         confirm(subject.description)
         return hand_over(folder, subject.kind, subject.subject_id, on_progress)
     lock = folder.lock()
     try:
         recover_log(folder.log)
-        with Store(folder.database) as store:
+        with open_database(folder.database) as store:
             subject = _subject(subject_name, store)
             forgetter = _forgetter(folder, store)
             if subject.kind == "person":
@@ -140,7 +144,7 @@ def forget(
         lock.close()
 
 
-def _forgetter(folder: DataFolder, store: Store) -> ErasureService:
+def _forgetter(folder: DataFolder, store: Database) -> ErasureService:
     clock = SystemClock()
     return ErasureService(
         ClosedLog(folder.log),
@@ -162,7 +166,7 @@ class _Subject:
     worn: Sequence[str] = ()  # units that the person wears
 
 
-def _subject(subject_name: str, store: Store) -> _Subject:
+def _subject(subject_name: str, store: Database) -> _Subject:
     """UserError where it is not one person, or an incident is open."""
     records, roster = Records(store, SystemClock()), Roster(store, SystemClock())
     _require_no_open_incident(records, roster)
@@ -176,7 +180,7 @@ def _subject(subject_name: str, store: Store) -> _Subject:
     return _Subject("person", person_id, f"person {subject_name}{wears}", worn)
 
 
-def _person_id(subject_name: str, store: Store) -> str:
+def _person_id(subject_name: str, store: Database) -> str:
     """The id, whether or not the person is on the roster still."""
     with store.read() as session:
         named = sorted(ids_of(session, subject_name))
@@ -226,5 +230,5 @@ def open_post_processing(
 
 def open_accounts(data: Path, closing: ExitStack) -> tuple[Accounts, Records]:
     """Accounts and audit of a folder's database, beside a running station or without one."""
-    store = closing.enter_context(Store(DataFolder(data).require_database()))
+    store = closing.enter_context(open_database(DataFolder(data).require_database()))
     return Accounts(store, SystemClock()), Records(store, SystemClock())

@@ -5,8 +5,8 @@ from __future__ import annotations
 import secrets
 
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.database import Database
 from base_station.storage.db.projecting import project_into
-from base_station.storage.db.store import Store
 from base_station.storage.projection import Projection
 from shared.channels import OPERATOR
 from shared.clock import SystemClock
@@ -18,7 +18,7 @@ from shared.messages import STATION_ID, OperatorAction
 from shared.messages.station import Action
 
 
-def log_action(folder: DataFolder, store: Store, by: str, action: Action) -> None:
+def log_action(folder: DataFolder, store: Database, by: str, action: Action) -> None:
     """In a segment of its own behind all others, and in the tables.  The folder is locked.
 
     Raises LogError where the disk does not take it.

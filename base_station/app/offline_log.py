@@ -21,13 +21,16 @@ from base_station.replay.version_check import DIFFERS, decisions_differ
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.copying import copy_database
+from base_station.storage.db.database import Database
+from base_station.storage.db.opening import open_database
 from base_station.storage.db.records import Records
 from base_station.storage.db.salvage import damage_of
+from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.store import Store
 from base_station.storage.log_defects import LogDefects
 from base_station.storage.segment_index import known_segments_of
 from shared.clock import SystemClock
-from shared.errors import LogError
+from shared.errors import DatabaseAwayError, LogError
 from shared.folder_lock import FolderLock
 from shared.mcap_log import (
     SegmentInfo,
@@ -48,7 +51,7 @@ class OfflineLog:
     """Nothing is written to ``folder`` but to its database, where ``keeps_result``."""
 
     folder: DataFolder
-    store: Store
+    store: Database
     keeps_result: bool  # what is worked out; else it is gone with the command
     scratch: Path
     log: LogFeed
@@ -92,12 +95,13 @@ def open_offline_log(
     """
     scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-past-")))
     folder, left_out = _folder_with_log(path, scratch)
-    damage = damage_of(folder.database)
+    server = noted_server(folder.database)
+    damage = "" if server is not None else damage_of(folder.database)
     if damage:
         report(f"the database is damaged ({damage}); the log is read instead")
-    elif in_place and _is_writable(folder):
-        store = closing.enter_context(Store(folder.database))
-        if not _lacks_incident(store, folder, incident_id):
+    elif server is not None or (in_place and _is_writable(folder)):
+        store = _opened(folder, closing, report)
+        if store is not None and not _lacks_incident(store, folder, incident_id):
             log, defects = _open_log(folder, store, left_out, report)
             return OfflineLog(
                 folder,
@@ -109,7 +113,7 @@ def open_offline_log(
                 report=report,
             )
     copy = scratch / "station.sqlite"
-    if not damage:
+    if not damage and server is None:
         copy_database(folder.database, copy)
     store = closing.enter_context(Store(copy))
     log, defects = _open_log(folder, store, left_out, report)
@@ -121,8 +125,17 @@ def open_offline_log(
     )
 
 
+def _opened(folder: DataFolder, closing: ExitStack, report: Report) -> Database | None:
+    """None where the server that has it does not answer: the log knows the incident, too."""
+    try:
+        return closing.enter_context(open_database(folder.database))
+    except DatabaseAwayError as error:
+        report(f"{error}; the log is read instead")
+        return None
+
+
 def _open_log(
-    folder: DataFolder, store: Store, left_out: Mapping[Path, str], report: Report
+    folder: DataFolder, store: Database, left_out: Mapping[Path, str], report: Report
 ) -> tuple[LogFeed, LogDefects]:
     """Opens the log with its known defects, which are reported."""
     known = known_segments_of(Records(store, SystemClock()))
@@ -187,7 +200,7 @@ def _is_writable(folder: DataFolder) -> bool:
     return os.access(folder.database, os.W_OK) and os.access(folder.path, os.W_OK)
 
 
-def _lacks_incident(store: Store, folder: DataFolder, incident_id: str) -> bool:
+def _lacks_incident(store: Database, folder: DataFolder, incident_id: str) -> bool:
     """True where the log may have an incident that the database does not have."""
     records = Records(store, SystemClock())
     if records.incident(incident_id) is not None:

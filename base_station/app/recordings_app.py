@@ -12,9 +12,10 @@ from base_station.config import StationConfig
 from base_station.engine.station_clock import SteadyClock
 from base_station.security.router.router import station_endpoint
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.database import Database
+from base_station.storage.db.opening import open_database
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
-from base_station.storage.db.store import Store
 from base_station.unit_sync.recordings.transfer import (
     Transfer,
     TransferRequest,
@@ -79,5 +80,5 @@ def _now_ns(records: Records) -> int:
     return SteadyClock(SystemClock(), recorded_ns).utc_ns()
 
 
-def _store(config: StationConfig, closing: ExitStack) -> Store:
-    return closing.enter_context(Store(DataFolder(config.data).require_database()))
+def _store(config: StationConfig, closing: ExitStack) -> Database:
+    return closing.enter_context(open_database(DataFolder(config.data).require_database()))

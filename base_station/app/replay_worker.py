@@ -33,10 +33,10 @@ from base_station.report.gathering import ReportSources, gather
 from base_station.report.pdf import pdf_document
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.opening import open_database
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
-from base_station.storage.db.store import Store
 from base_station.storage.log_defects import LogDefects
 from shared.clock import SystemClock
 from shared.errors import MusterError
@@ -93,7 +93,7 @@ def _flaws_of(job: Job) -> LogDefects:
 
 def _look_back(job: PostProcessingJob, archive: Archive, line: FrameChannel) -> None:
     stand_back(line)
-    with bounded(job, line), Store(Path(job.database)) as store:
+    with bounded(job, line), open_database(Path(job.database)) as store:
         clock = StationTime(job.now_ns, SystemClock())
         post_processor = PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
         post_process(job, post_processor, Records(store, clock).tracks_of(incident_of(job)), line)
@@ -102,7 +102,7 @@ def _look_back(job: PostProcessingJob, archive: Archive, line: FrameChannel) -> 
 def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel) -> None:
     stand_back(line)
     try:
-        with Store(Path(job.database)) as store:
+        with open_database(Path(job.database)) as store:
             clock = SystemClock()
             records = Records(store, clock)
             sources = ReportSources(

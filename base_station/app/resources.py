@@ -71,14 +71,16 @@ def open_station(
     )
     closing.callback(recorder.close)
     listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
-    exposed = ExposedSecrets(folder, config.http.private_key)
+    exposed = ExposedSecrets(folder, config.http.private_key, config.database_password_file)
     for sentence in exposed.problems():
         announce(sentence)
     alone = not config.standby.name
     # It opens while the disk is looked at.
     router = RouterProcess(folder.path, config.bus.listen, config.standby.peer, loading_router)
     try:
-        disk = open_storage(folder, recorder, clock, announce, closing, alone=alone)
+        disk = open_storage(
+            folder, recorder, clock, announce, closing, config.database_server, alone=alone
+        )
     finally:
         closing.callback(router.close)
     router.wait_open()

@@ -24,13 +24,15 @@ from base_station.replay.processes.server import ReplayProcesses
 from base_station.storage.checkpoints import Checkpoints, SavedState
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.database import Database
+from base_station.storage.db.opening import open_live_server, require_noted_server
 from base_station.storage.db.projection import SqlProjection
 from base_station.storage.db.records import Records
 from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.db.roster import Roster
-from base_station.storage.db.salvage import ONLY_HERE, gone, open_live
+from base_station.storage.db.salvage import ONLY_HERE, Salvage, gone, open_live
+from base_station.storage.db.server_address import ServerAddress, note_server
 from base_station.storage.db.smoothed import SmoothedTracks
-from base_station.storage.db.store import Store
 from base_station.storage.integrity_checker import IntegrityChecker
 from base_station.storage.missing_segments import KnownSegment, log_gaps
 from base_station.storage.recorder import Recorder
@@ -53,7 +55,7 @@ _MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when
 class StationStorage:
     folder: DataFolder
     recorder: Recorder
-    store: Store
+    store: Database
     accounts: Accounts
     records: Records
     roster: Roster
@@ -156,15 +158,16 @@ def open_storage(
     clock: Clock,
     announce: Announce,
     closing: ExitStack,
+    server: ServerAddress | None = None,
     *,
     alone: bool = True,
 ) -> StationStorage:
-    """The database is made from the log where it is damaged, or lacks what that knows.  ``alone``:
-    no other station has a copy of that.
+    """The database is made from the log where it is damaged, or lacks what that knows.  ``server``
+    has its tables; None: they are in a file.  ``alone``: no other station has a copy of that.
 
     Raises StoreError where the database cannot be used, or is of another log.
     """
-    store, salvage = open_live(folder.database, lambda: recorder.hangs)
+    store, salvage = _open_database(folder.database, recorder, server, announce)
     closing.enter_context(store)
     lost = () if salvage is None else salvage.lost
     known = known_segments_of(Records(store, clock))
@@ -207,11 +210,29 @@ def open_storage(
     )
 
 
+def _open_database(
+    path: Path, recorder: Recorder, server: ServerAddress | None, announce: Announce
+) -> tuple[Database, Salvage | None]:
+    """Raises StoreError."""
+    require_noted_server(path, server)
+    if server is None:
+        return open_live(path, lambda: recorder.hangs)
+    store, is_copied = open_live_server(server, path)
+    if is_copied:
+        announce(f"users, people and the audit were copied from {path} to {store.name}")
+    try:
+        note_server(path, server)
+    except StoreError:
+        store.close()
+        raise
+    return store, None
+
+
 def _numbers(names: Iterable[str]) -> list[int]:
     return sorted(segment_number(Path(name)) for name in names)
 
 
-def _lacks_records(store: Store, recorder: Recorder, segments: Sequence[KnownSegment]) -> bool:
+def _lacks_records(store: Database, recorder: Recorder, segments: Sequence[KnownSegment]) -> bool:
     """True where it is new, or was not made from the log to its end.  Raises StoreError
     where it has another log's: two incidents would be one.  One that goes on behind a log that is
     gone begins with a higher number.
@@ -221,7 +242,7 @@ def _lacks_records(store: Store, recorder: Recorder, segments: Sequence[KnownSeg
     goes_on = _numbers(logged)[:1] > _numbers(known)[-1:]
     if known and logged and not known & logged and not goes_on:
         raise StoreError(
-            f"the database {store.path} is of another log than the one beside it "
+            f"the database {store.name} is of another log than the one beside it "
             f"(it knows {max(known)}, here is {max(logged)}); put the right one there, or move it "
             "away: what the log knows is then made again, and people and users are not"
         )

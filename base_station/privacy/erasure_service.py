@@ -34,10 +34,9 @@ from base_station.engine.ports import ActionResult
 from base_station.privacy.pending_erasure import PendingErasure
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
-from base_station.storage.db.damaged_file import remove_damaged
+from base_station.storage.db.database import Database
 from base_station.storage.db.erasure import forget_in, known_names
 from base_station.storage.db.records import Records
-from base_station.storage.db.store import Store
 from base_station.storage.segment_index import segment_row
 from shared.channels import CHANNELS, OPERATOR, Direction, tracker_id
 from shared.clock import Clock
@@ -143,7 +142,7 @@ class ErasureService:
     def __init__(
         self,
         log: LogFiles,
-        store: Store,
+        store: Database,
         checkpoints: Checkpoints,
         records: Records,
         clock: Clock,
@@ -223,8 +222,7 @@ class ErasureService:
         self._rewrite_log(erasure, on_progress, tally)
         with self._store.write() as session:
             forget_in(session, erasure)
-        self._store.compact()
-        tally.files += remove_damaged(self._store.path)
+        tally.files += self._store.compact()
         self._checkpoints.clear()  # one that was being written meanwhile
         self._begun.let_go(erasure.incident_id)
         done = ErasureResult(what, tally.records, tally.files, tally.damaged)

@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 
+from base_station.storage.db.server_address import noted_server
 from base_station.storage.recorder import LOG_FOLDER
 from shared.errors import LogError, StoreError
 from shared.folder_lock import FolderLock
@@ -31,8 +32,10 @@ class DataFolder:
         refuse_links(self.path)
 
     def require_database(self) -> Path:
-        """StoreError where no station has ever run here."""
-        if not self.database.exists():
+        """The file, beside which a note may name a server instead (``db.opening``); StoreError
+        where no station has ever run here.
+        """
+        if not self.database.exists() and noted_server(self.database) is None:
             raise StoreError(
                 f"there is no station's database in {self.path}; give the folder with --data, or "
                 "start the station there once"

@@ -34,7 +34,7 @@ def bundle(
     python: Annotated[str, typer.Option(help="Python's version on those machines.")] = _THIS_PYTHON,
     part: Annotated[
         list[str] | None,
-        typer.Option(help="Optional part: foxglove, parquet or pictures; repeatable."),
+        typer.Option(help="Optional part: foxglove, parquet, pictures or postgresql; repeatable."),
     ] = None,
 ) -> None:
     """Make a file that installs Muster on a machine without a network; needs a checkout.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import math
 import shutil
 import sqlite3
 import subprocess
@@ -11,9 +10,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
-from typing import Any
 
-import msgspec
 import pytest
 from alembic import command
 from alembic.script import ScriptDirectory
@@ -25,25 +22,16 @@ from base_station.storage.db.alembic_migration import alembic_config
 from base_station.storage.db.copying import copy_database, known_segments
 from base_station.storage.db.migrate import newest_revision
 from base_station.storage.db.models import Base, PersonRow
-from base_station.storage.db.projecting import project_into
 from base_station.storage.db.projection import SqlProjection
 from base_station.storage.db.records import FOREVER_NS, Records, Window
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
-from base_station.storage.projection import Projection
 from shared.clock import NS_PER_S, ManualClock
-from shared.envelope import Stamper
 from shared.errors import StoreError
-from shared.messages import AlarmChange, AlarmState, FusedPosition, Header, OperatorAction
 from shared.messages.station import (
-    Action,
-    Assign,
-    CloseIncident,
-    OpenIncident,
     RegisterUnit,
-    Unassign,
 )
-from tests.rig import message_factory
+from tests.rig.projected_story import STORY, acted
 from tests.rig.waiting import until
 
 ALL = Window(0, FOREVER_NS)
@@ -267,92 +255,6 @@ def _limit_pages(store: Store, pages: int = 0) -> None:
 # ---- the projection
 
 
-def header(t_s: float) -> Header:
-    t_ns = round(t_s * NS_PER_S)
-    return Header("station", 1, 1, t_ns, t_utc_ns=t_ns)
-
-
-def alarm(t_s: float, state: AlarmState, by: str = "") -> AlarmChange:
-    return AlarmChange(
-        header(t_s), "heat:FF-01:5", "heat", "FF-01", 1, state, "critical", "hot", by,
-        5 * NS_PER_S, 5 * NS_PER_S,
-    )  # fmt: skip
-
-
-def fused(t_s: float, north_m: float) -> FusedPosition:
-    return message_factory.fused(header(t_s), "FF-01", north_m=north_m)
-
-
-def acted(t_s: float, *actions: Action) -> Projection:
-    stamper = Stamper("station", round(t_s), ManualClock())
-    return Projection(
-        round(t_s * NS_PER_S),
-        actions=tuple(
-            OperatorAction(header(t_s), f"{t_s}-{stamper.header().seq}", "mia", action)
-            for action in actions
-        ),
-    )
-
-
-STORY = (
-    acted(1, RegisterUnit("FF-01", "one"), RegisterUnit("FF-02", "two")),
-    acted(2, OpenIncident("i-1", "Kitchen")),
-    acted(3, Assign("FF-01", "p-1", "Ada", "A", "")),
-    Projection(5 * NS_PER_S, alarms=(alarm(5, AlarmState.RAISED),), heard=(("FF-01", 5),)),
-    Projection(6 * NS_PER_S, tracks=(fused(5.2, 1.0), fused(6.2, 2.0)), heard=(("FF-03", 6),)),
-    acted(7, Assign("FF-02", "p-1", "Ada", "A", "")),
-    Projection(8 * NS_PER_S, alarms=(alarm(8, AlarmState.ACKNOWLEDGED, "mia"),)),
-    acted(9, Unassign("FF-02")),
-    acted(10, CloseIncident("i-1")),
-)
-
-
-def contents(store: Store) -> dict[str, list[Any]]:
-    with store.engine.connect() as connection:
-        return {
-            name: sorted(map(repr, connection.execute(table.select())))
-            for name, table in Base.metadata.tables.items()
-        }
-
-
-def test_a_story_is_told_by_the_tables(store: Store, clock: ManualClock) -> None:
-    projection = SqlProjection(store)
-    for part in STORY:
-        projection.project(part)
-    assert projection.flush()
-    roster, records = Roster(store, clock), Records(store, clock)
-    assert [unit.unit_id for unit, _ in roster.units()] == ["FF-01", "FF-02", "FF-03"]
-    assert [unit.registered_ns is not None for unit, _ in roster.units()] == [True, True, False]
-    worn = [(one.unit_id, one.from_ns, one.until_ns) for one in roster.assignments(0, FOREVER_NS)]
-    second = NS_PER_S
-    assert worn == [("FF-01", 3 * second, 7 * second), ("FF-02", 7 * second, 9 * second)]
-    (incident,) = records.incidents()
-    assert (incident.opened_ns, incident.closed_ns) == (2 * second, 10 * second)
-    (stands,) = records.alarms(ALL)
-    assert (stands.state, stands.by) == ("acknowledged", "mia")
-    assert [one.state for one in records.alarm_life(stands.alarm_id)] == ["raised", "acknowledged"]
-    assert [point.north_m for point in records.track("FF-01", ALL)] == [1.0, 2.0]
-    projection.close()
-
-
-def test_projecting_the_log_again_changes_nothing(store: Store, clock: ManualClock) -> None:
-    projection = SqlProjection(store)
-    for part in STORY:
-        projection.project(part)
-    projection.flush()
-    before = contents(store)
-    for part in STORY:
-        projection.project(part)
-    projection.flush()
-    assert contents(store) == before
-
-    Records(store, clock).forget_projections()
-    for part in STORY:
-        projection.project(part)
-    projection.close()
-    assert contents(store) == before
-
-
 def test_a_store_that_fails_is_said_and_catches_up(store: Store, clock: ManualClock) -> None:
     projection = SqlProjection(store)
     projection.project(STORY[0])
@@ -370,19 +272,6 @@ def test_a_store_that_fails_is_said_and_catches_up(store: Store, clock: ManualCl
     projection.close()
 
 
-def test_who_asks_for_what_was_decided_waits_for_no_position(store: Store) -> None:
-    projection = SqlProjection(store)
-    with store.write():  # nothing else is written
-        projection.project(Projection(NS_PER_S, tracks=(fused(1.0, 1.0),), heard=(("FF-01", 1),)))
-        assert projection.hasten()()
-        projection.project(acted(2, RegisterUnit("FF-01", "one")))
-        is_over = projection.hasten()
-        projection.project(acted(3, RegisterUnit("FF-02", "two")))
-        assert not is_over()
-    until(is_over, "the action is in the table")
-    projection.close()
-
-
 def test_nobody_waits_for_what_the_store_does_not_take(store: Store) -> None:
     projection = SqlProjection(store)
     _limit_pages(store)
@@ -391,50 +280,3 @@ def test_nobody_waits_for_what_the_store_does_not_take(store: Store) -> None:
     until(is_over, "it is given up")
     assert "full" in projection.problem()
     projection.close()
-
-
-def test_a_projection_that_cannot_be_written_is_said_and_holds_up_no_other(
-    store: Store, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    projection = SqlProjection(store)
-    with monkeypatch.context() as broken:
-        broken.setattr("base_station.storage.db.projection.project_into", _break)
-        projection.project(STORY[0])
-        assert projection.flush()
-    projection.project(STORY[1])
-    assert projection.flush()
-    assert "muster base rebuild" in projection.problem()
-    assert [one.incident_id for one in Records(store, clock).incidents()] == ["i-1"]
-    projection.close()
-
-
-def test_a_change_that_no_table_can_hold_costs_itself_and_nothing_that_waits_beside_it(
-    store: Store, clock: ManualClock
-) -> None:
-    impossible = Projection(6 * NS_PER_S, tracks=(fused(5.2, math.nan),))
-    projection = SqlProjection(store)
-    with store.write():  # until all of it waits
-        for part in (STORY[0], impossible, *STORY[1:]):
-            projection.project(part)
-    assert projection.flush()
-    assert "1 changes did not get into the database" in projection.problem()
-    assert "muster base rebuild" in projection.problem()
-    assert [one.incident_id for one in Records(store, clock).incidents()] == ["i-1"]
-    assert [point.north_m for point in Records(store, clock).track("FF-01", ALL)] == [1.0, 2.0]
-    projection.close()
-
-
-def test_a_place_that_is_no_number_costs_nothing_else_of_its_projection(
-    store: Store, clock: ManualClock
-) -> None:
-    """The tables made again from the log have ten seconds in one."""
-    tracks = (fused(5.2, math.nan), fused(6.2, 1.0), fused(7.2, math.nan))
-    story = msgspec.structs.replace(acted(5.0, OpenIncident("i-9", "Mill Lane")), tracks=tracks)
-    with store.write() as session:
-        assert project_into(session, (story,)) == 2
-    assert [one.incident_id for one in Records(store, clock).incidents()] == ["i-9"]
-    assert [point.north_m for point in Records(store, clock).track("FF-01", ALL)] == [1.0]
-
-
-def _break(*_: object) -> None:
-    raise ZeroDivisionError

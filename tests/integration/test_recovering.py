@@ -30,6 +30,7 @@ from base_station.engine.ports import Record, Trails
 from base_station.security.pki.certificates import issue, make_authority
 from base_station.site.max_travel import max_travel_m
 from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.store import Store
 from base_station.storage.projection import Projection
 from base_station.storage.recorder import Recorder
 from base_station.views.wire import Snapshot
@@ -137,6 +138,7 @@ def test_who_was_last_heard_of_long_ago_in_this_incident_is_shown_where_that_was
     with ExitStack() as closing:
         closing.callback(recorder.close)
         disk = open_storage(folder, recorder, clock, lambda _: None, closing)
+        assert isinstance(disk.store, Store)
         disk.store.hangs = lambda: False  # hours go by between two turns of the recorder
         store_what_happened(disk, raised_before_s=600.0)
         pictures = []
@@ -160,6 +162,7 @@ def test_where_they_can_be_by_now_grows_while_nobody_is_heard(
         recorder = Recorder(tmp_path, clock)
         closing.callback(recorder.close)
         disk = open_storage(DataFolder(tmp_path), recorder, clock, lambda _: None, closing)
+        assert isinstance(disk.store, Store)
         disk.store.hangs = lambda: False
         store_what_happened(disk)
         known = StoredSnapshotSource(disk.roster, disk.records, clock, Nobody())
@@ -199,6 +202,7 @@ def test_tables_that_cannot_be_read_for_a_while_end_no_start(
         disk = open_storage(folder, recorder, clock, lambda _: None, closing)
         store_what_happened(disk)
         hangs = True
+        assert isinstance(disk.store, Store)
         disk.store.hangs = lambda: hangs
         consoles = Consoles()
         known = StoredSnapshotSource(disk.roster, disk.records, clock, consoles)

@@ -18,6 +18,7 @@ from base_station.app.station_storage import StationStorage, open_storage
 from base_station.core.log_position import LogPosition
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.store import Store
 from base_station.storage.recorder import Recorder
 from shared.clock import ManualClock
 from shared.errors import LogError, StoreError
@@ -233,6 +234,7 @@ def test_a_salvage_that_is_cut_short_is_gone_on_with(
 def test_damage_that_is_met_later_is_said_and_rebuilding_mends_it(served: Path) -> None:
     with opened(served) as disk:
         spoil(served, "units")
+        assert isinstance(disk.store, Store)
         disk.store.engine.dispose()  # what it has read of it is in memory still
         with pytest.raises(StoreError, match="malformed"):
             disk.roster.units()

@@ -21,6 +21,7 @@ EXAMPLES = PROJECT_ROOT / "deploy" / "examples"
 # Explained in a comment rather than set, or only meant for the command line.
 LEFT_OUT = {
     "calibration",
+    "database_password_file",
     "enrolment",
     "gain_std",
     "http.certificate",

@@ -22,6 +22,7 @@ from sqlalchemy.orm import Session
 from base_station.accounts.passwords import Passwords
 from base_station.accounts.principal_cache import PrincipalCache
 from base_station.accounts.principals import Principal, Role, require_username
+from base_station.storage.db.database import Database
 from base_station.storage.db.models import (
     ApiToken,
     LoginSession,
@@ -29,7 +30,6 @@ from base_station.storage.db.models import (
     Tombstone,
     User,
 )
-from base_station.storage.db.store import Store
 from base_station.storage.db.tombstones import end
 from base_station.storage.db.unit_tokens import TOKEN_PREFIX, UnitTokens, sha256
 from shared.clock import NS_PER_S, Clock
@@ -44,7 +44,7 @@ MOST_TOKENS = 100  # of one user: the other station copies all of them
 class Accounts:
     """Thread-safe; every method is one transaction."""
 
-    def __init__(self, store: Store, clock: Clock, hasher: PasswordHash | None = None) -> None:
+    def __init__(self, store: Database, clock: Clock, hasher: PasswordHash | None = None) -> None:
         self._store = store
         self._clock = clock
         self._passwords = Passwords(hasher)

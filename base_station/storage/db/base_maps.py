@@ -6,14 +6,14 @@ import msgspec
 from sqlalchemy import delete, select
 
 from base_station.site.base_map import Corners
+from base_station.storage.db.database import Database
 from base_station.storage.db.models import BaseMap
-from base_station.storage.db.store import Store
 
 
 class BaseMaps:
     """Thread-safe; every method is one transaction."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Database) -> None:
         self._store = store
 
     def put(self, image: bytes, image_hash: str, corners: Corners) -> None:

@@ -218,6 +218,7 @@ class TrackPoint(Base):
     """Where a unit was, at most once a second; NED metres about the site anchor."""
 
     __tablename__ = "tracks"
+    __table_args__ = {"postgresql_partition_by": "RANGE (t_s)"}  # noqa: RUF012  # as above
 
     unit_id: Mapped[str] = mapped_column(primary_key=True)
     t_s: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)  # whole seconds

@@ -8,7 +8,6 @@ from typing import Any
 
 import msgspec
 from sqlalchemy import ColumnElement, func, select, update
-from sqlalchemy.dialects.sqlite import Insert, insert
 from sqlalchemy.orm import Session
 
 from base_station.core.person_references import reference_to
@@ -24,6 +23,8 @@ from base_station.storage.db.models import (
     Unit,
     UnitStart,
 )
+from base_station.storage.db.track_partitions import make_partitions
+from base_station.storage.db.upserts import Insert, insert_into, is_on_server, later_of
 from base_station.storage.projection import Projection
 from shared.clock import NS_PER_S
 from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDescription
@@ -169,7 +170,7 @@ def _alarm(session: Session, change: AlarmChange) -> None:
         "changed_ns": t_ns,
     }
     session.execute(
-        insert(AlarmRow)
+        insert_into(session, AlarmRow)
         .values(alarm_id=change.alarm_id, **current)
         .on_conflict_do_update(
             index_elements=[AlarmRow.alarm_id], set_=current, where=AlarmRow.changed_ns <= t_ns
@@ -206,7 +207,9 @@ def _tracks(session: Session, tracks: Sequence[FusedPosition]) -> int:
         if not any(isinstance(value, float) and math.isnan(value) for value in row.values())
     ]
     if rows:
-        _execute_many(session, insert(TrackPoint).on_conflict_do_nothing(), rows)
+        if is_on_server(session):
+            make_partitions(session, (fused.t_meas_ns // NS_PER_S for fused in tracks))
+        _execute_many(session, insert_into(session, TrackPoint).on_conflict_do_nothing(), rows)
     return len(all_rows) - len(rows)
 
 
@@ -215,8 +218,9 @@ def _heard(session: Session, heard: Mapping[str, int]) -> None:
         {"unit_id": unit_id, **_NEW_UNIT, "last_heard_ns": t_ns} for unit_id, t_ns in heard.items()
     ]
     if rows:
-        statement = insert(Unit)
-        latest = func.max(func.coalesce(Unit.last_heard_ns, 0), statement.excluded.last_heard_ns)
+        statement = insert_into(session, Unit)
+        before_ns = func.coalesce(Unit.last_heard_ns, 0)
+        latest = later_of(session, before_ns, statement.excluded.last_heard_ns)
         update_it = statement.on_conflict_do_update(
             index_elements=[Unit.unit_id], set_={"last_heard_ns": latest}
         )
@@ -235,7 +239,7 @@ def _described(description: UnitDescription) -> dict[str, object]:
 
 def _unit(session: Session, unit_id: str, **columns: object) -> None:
     session.execute(
-        insert(Unit)
+        insert_into(session, Unit)
         .values(unit_id=unit_id, **(_NEW_UNIT | columns))
         .on_conflict_do_update(index_elements=[Unit.unit_id], set_=columns)
     )
@@ -251,4 +255,4 @@ def _end_assignments(session: Session, t_ns: int, which: ColumnElement[bool]) ->
 
 def _add(session: Session, table: type, **columns: object) -> None:
     """Insert unless it is there already."""
-    session.execute(insert(table).values(**columns).on_conflict_do_nothing())
+    session.execute(insert_into(session, table).values(**columns).on_conflict_do_nothing())

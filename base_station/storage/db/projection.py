@@ -15,8 +15,8 @@ from itertools import islice, takewhile
 
 from sqlalchemy.exc import DataError, IntegrityError
 
+from base_station.storage.db.database import IN_MEMORY, Database
 from base_station.storage.db.projecting import project_into
-from base_station.storage.db.store import IN_MEMORY, Store
 from base_station.storage.projection import Projection
 from shared.errors import StoreError
 from shared.worker import Worker
@@ -33,7 +33,7 @@ logger = logging.getLogger(__name__)
 class SqlProjection:
     """A ``ProjectionSink`` on the store, and the ``ProjectedTables`` of those who read it."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Database) -> None:
         self._store = store
         self._pending: deque[Projection] = deque()
         self._changed = threading.Condition()
@@ -101,7 +101,7 @@ class SqlProjection:
         given_up = self._failed_tries + 2
 
         def is_over() -> bool:
-            return self._done >= goal or self._failed_tries >= given_up or self._store.hangs()
+            return self._done >= goal or self._failed_tries >= given_up or self._store.is_away
 
         if not is_over():
             self._wanted = True

@@ -6,12 +6,12 @@ import secrets
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import msgspec
-from sqlalchemy import ColumnElement, delete, exists, func, or_, select
-from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy import ColumnElement, delete, exists, func, insert, or_, select, text
 from sqlalchemy.orm import InstrumentedAttribute
 
 from base_station.fusion.lazy_mapping import LastValueMapping
 from base_station.storage.db import models
+from base_station.storage.db.database import Database
 from base_station.storage.db.known_people import load_people, person_lookup, shown_text
 from base_station.storage.db.models import (
     PROJECTIONS,
@@ -25,7 +25,7 @@ from base_station.storage.db.models import (
     Unit,
 )
 from base_station.storage.db.pages import newest
-from base_station.storage.db.store import Store
+from base_station.storage.db.upserts import insert_into, is_on_server
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
 from shared.geo import Anchor
@@ -86,7 +86,7 @@ def _in(
 class Records:
     """Thread-safe; every method is one transaction."""
 
-    def __init__(self, store: Store, clock: Clock) -> None:
+    def __init__(self, store: Database, clock: Clock) -> None:
         self._store = store
         self._clock = clock
 
@@ -205,6 +205,10 @@ class Records:
     def forget_projections(self) -> None:
         """Empty every table that the log can make again."""
         with self._store.write() as session:
+            if is_on_server(session):  # which would go through every row
+                names = ", ".join(table.__tablename__ for table in PROJECTIONS)
+                session.execute(text(f"TRUNCATE {names}"))
+                return
             for table in PROJECTIONS:
                 session.execute(delete(table))
 
@@ -230,7 +234,7 @@ class Records:
             for entry_id, (action, detail) in done.items()
         ]
         with self._store.write() as session:
-            session.execute(insert(AuditEntry).on_conflict_do_nothing(), rows)
+            session.execute(insert_into(session, AuditEntry).on_conflict_do_nothing(), rows)
 
     def audited(self, beginnings: Iterable[str]) -> AuditEntry | None:
         """The first entry whose id begins in one of these ways."""

@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 
 from sqlalchemy import delete, func, select
-from sqlalchemy.dialects.sqlite import insert
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
+from base_station.storage.db.database import Database
 from base_station.storage.db.lost_tables import lost_tables, take_back, with_what_it_lost
 from base_station.storage.db.models import (
     ApiToken,
@@ -36,7 +36,7 @@ from base_station.storage.db.replicated_rows import (
     rows_of,
     without_ended,
 )
-from base_station.storage.db.store import Store
+from base_station.storage.db.upserts import insert_into
 
 _REMOVED = "removed_ns"  # of an earlier version's rows there is none
 _NUMBER = "number"  # of an audit entry, at the station that is asked
@@ -46,7 +46,7 @@ _SINCE = {"role_ns": 0, "password_ns": 0}  # as a station says that is of an ear
 class ReplicatedTables:
     """Thread-safe; every method is one transaction."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Database) -> None:
         self._store = store
 
     def read(self) -> ReplicatedRows:
@@ -93,7 +93,9 @@ class ReplicatedTables:
                 (LoginTransferTicket, theirs.hand_overs),
             ):
                 if rows:
-                    session.execute(insert(table).on_conflict_do_nothing(), list(rows))
+                    session.execute(
+                        insert_into(session, table).on_conflict_do_nothing(), list(rows)
+                    )
             if not theirs.base_map:
                 session.execute(delete(BaseMap))
         return dropped
@@ -193,7 +195,7 @@ class ReplicatedTables:
         new = [{name: row[name] for name in row if name != _NUMBER} for row in rows]
         if new:
             with self._store.write() as session:
-                session.execute(insert(AuditEntry).on_conflict_do_nothing(), new)
+                session.execute(insert_into(session, AuditEntry).on_conflict_do_nothing(), new)
 
 
 def _with_the_later(session: Session, theirs: Row) -> Row:
@@ -229,7 +231,7 @@ def _replace(
 ) -> None:
     session.execute(delete(table).where(key.not_in([row[key.key] for row in rows])))
     for row in rows:
-        statement = insert(table).values(**row)
+        statement = insert_into(session, table).values(**row)
         session.execute(statement.on_conflict_do_update(index_elements=[key], set_=row))
 
 

@@ -9,6 +9,7 @@ from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session
 
 from base_station.core.idempotency import KEY_DIGITS
+from base_station.storage.db.database import Database
 from base_station.storage.db.erasure import known_names
 from base_station.storage.db.known_people import (
     FORGOTTEN,
@@ -21,7 +22,6 @@ from base_station.storage.db.known_people import (
 )
 from base_station.storage.db.models import Assignment, PersonRow, Unit
 from base_station.storage.db.pages import newest
-from base_station.storage.db.store import Store
 from shared.clock import Clock
 from shared.errors import UserError
 
@@ -29,7 +29,7 @@ from shared.errors import UserError
 class Roster:
     """Thread-safe; every method is one transaction."""
 
-    def __init__(self, store: Store, clock: Clock) -> None:
+    def __init__(self, store: Database, clock: Clock) -> None:
         self._store = store
         self._clock = clock
         self._known = self._load_people()

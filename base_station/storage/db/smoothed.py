@@ -9,14 +9,13 @@ from itertools import starmap
 
 import msgspec
 import zstandard
-from sqlalchemy import delete, select
-from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy import delete, insert, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from base_station.fusion.lazy_mapping import LastValueMapping
+from base_station.storage.db.database import Database
 from base_station.storage.db.models import IncidentTrails, PostProcessingCache, SmoothedIncident
 from base_station.storage.db.records import TrackSample
-from base_station.storage.db.store import Store
 
 Tracks = Mapping[str, Sequence[TrackSample]]
 _COLUMNS = TrackSample.__struct_fields__
@@ -37,7 +36,7 @@ def unpacked(track: bytes) -> list[TrackSample]:
 class SmoothedTracks:
     """Thread-safe; every method is one transaction."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Database) -> None:
         self._store = store
 
     def put(

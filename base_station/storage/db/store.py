@@ -19,6 +19,8 @@ from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
+from base_station.storage.db.damaged_file import remove_damaged
+from base_station.storage.db.database import IN_MEMORY
 from base_station.storage.db.engines import (
     DAMAGE,
     NO_ROOM,
@@ -39,7 +41,6 @@ _LOOK_S = 0.5  # whether the disk hangs, while another change is waited for
 _RETRY_S = 2.0  # how often a disk that takes nothing is tried again
 _ROOM_BYTES = 4_000_000  # with less the next changes would fill it again
 _CAN_BE_READ = (*NO_ROOM, *NOT_OURS)  # though it cannot be written
-IN_MEMORY = "muster_in_memory"  # of ``Session.info``, behind ``write``
 
 
 class Store:
@@ -87,6 +88,15 @@ class Store:
     @property
     def engine(self) -> Engine:
         return self._engine
+
+    @property
+    def name(self) -> str:
+        return str(self.path)
+
+    @property
+    def is_away(self) -> bool:
+        """True if its disk does not answer just now."""
+        return self.hangs()
 
     @property
     def unreadable(self) -> tuple[str, ...]:
@@ -160,8 +170,10 @@ class Store:
             with suppress(DiskHangsError), self._alone():
                 self._leave_memory_if_due()
 
-    def compact(self) -> None:
-        """Leave no byte in the file of what was deleted or replaced."""
+    def compact(self) -> int:
+        """Leave no byte in the file of what was deleted or replaced, and no damaged file of before;
+        gives the number of these.
+        """
         with self._alone():
             if self.in_memory:
                 raise DiskFullError(f"the database cannot be made compact: {self._reason}")
@@ -173,6 +185,7 @@ class Store:
                 raise StoreError(f"the database cannot be made compact: {error}") from error
             finally:
                 connection.close()
+        return remove_damaged(self.path)
 
     def close(self) -> None:
         if self._memory is not None:

@@ -14,8 +14,8 @@ from collections.abc import Callable, Sequence
 from sqlalchemy import delete, func, select
 
 from base_station.accounts.principals import Role
+from base_station.storage.db.database import Database
 from base_station.storage.db.models import ApiToken, User
-from base_station.storage.db.store import Store
 from base_station.storage.db.tombstones import end
 from shared.clock import Clock
 from shared.errors import UserError
@@ -28,7 +28,9 @@ MOST_OF_A_UNIT = 5  # one in use, and one that takes its place
 class UnitTokens:
     """Thread-safe; every method is one transaction."""
 
-    def __init__(self, store: Store, clock: Clock, forget_principals: Callable[[], None]) -> None:
+    def __init__(
+        self, store: Database, clock: Clock, forget_principals: Callable[[], None]
+    ) -> None:
         """``forget_principals``: has every token looked up again."""
         self._store = store
         self._clock = clock

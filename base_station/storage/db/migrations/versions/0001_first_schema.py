@@ -154,6 +154,7 @@ def upgrade() -> None:
         sa.Column("floor", sa.BigInteger(), nullable=True),
         sa.Column("quality", sa.String(), nullable=False),
         sa.PrimaryKeyConstraint("unit_id", "t_s", name=op.f("pk_tracks")),
+        postgresql_partition_by="RANGE (t_s)",
     )
     op.create_table(
         "units",

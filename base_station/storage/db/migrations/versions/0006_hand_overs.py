@@ -47,6 +47,9 @@ def downgrade() -> None:
 def _make_audit_again(*parts: sa.Column[int] | sa.Constraint) -> None:
     """SQLite changes no primary key in place."""
     op.rename_table("audit", "audit_before")
+    if op.get_context().dialect.name == "postgresql":  # its names are of the schema, not the table
+        for name in ("pk_audit", "uq_audit_entry_id"):
+            op.execute(f"ALTER TABLE audit_before DROP CONSTRAINT IF EXISTS {name}")
     op.drop_index("ix_audit_t_ns", "audit_before")
     op.create_table(
         "audit",

@@ -1,0 +1,67 @@
+"""The database of a station, as those use it who read and write its tables."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from types import TracebackType
+from typing import Protocol, Self
+
+from sqlalchemy.orm import Session
+
+IN_MEMORY = "muster_in_memory"  # of ``Session.info``, behind ``write``
+
+
+class Database(Protocol):
+    """A file (``store.Store``) or a server (``server_store.ServerStore``).  Thread-safe."""
+
+    loss: str  # what it lacks since it was made again, as a sentence for a person
+
+    @property
+    def name(self) -> str:
+        """The file, or the server's address, for messages; without a password."""
+        ...
+
+    @property
+    def problem(self) -> str:
+        """What is wrong with the database, as a sentence for a person; empty: nothing."""
+        ...
+
+    @property
+    def in_memory(self) -> bool:
+        """True if its disk takes nothing, and what is changed waits for that."""
+        ...
+
+    @property
+    def is_away(self) -> bool:
+        """True if it does not answer just now: nobody waits for it then."""
+        ...
+
+    def read(self) -> AbstractContextManager[Session]:
+        """A consistent view for one reader.  Raises StoreError where it cannot be read."""
+        ...
+
+    def write(self, *, is_kept: bool = True) -> AbstractContextManager[Session]:
+        """One transaction, committed at the end of the block; one at a time.  What is not
+        ``is_kept`` while the database takes nothing is done again by the caller.  Raises
+        StoreError where the database cannot take it.
+        """
+        ...
+
+    def look_at_disk(self) -> None:
+        """Called now and then while nothing is to be written: go on where it works again."""
+        ...
+
+    def compact(self) -> int:
+        """Leave no byte of what was deleted or replaced; gives the number of files removed."""
+        ...
+
+    def close(self) -> None: ...
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None: ...
