@@ -18,6 +18,7 @@ from base_station.app.progress_bar import progress_bar
 from base_station.app.recordings_command import fetch_recording
 from base_station.app.rehearse_command import rehearse
 from base_station.app.report_command import report
+from base_station.app.rerun_command import rerun
 from base_station.app.unit_tokens_cli import unit_tokens
 from base_station.app.users_cli import users
 from base_station.process import gc_tuning
@@ -35,6 +36,7 @@ app.command("fetch-recording")(fetch_recording)
 app.command()(export)
 app.command()(report)
 app.command()(rehearse)
+app.command()(rerun)
 app.add_typer(users, name="users")
 app.add_typer(unit_tokens, name="unit-tokens")
 app.add_typer(log, name="log")

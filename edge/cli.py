@@ -8,12 +8,14 @@ from typing import Annotated
 import typer
 
 from edge.app.calibrate import calibrate
+from edge.app.retrack_command import retrack
 from shared.options import finite
 
 app = typer.Typer(
     help="One agent for each wearable.", no_args_is_help=True, pretty_exceptions_enable=False
 )
 app.command()(calibrate)
+app.command()(retrack)
 
 
 Config = Annotated[Path | None, typer.Option(help="TOML file with settings; flags overrule it.")]

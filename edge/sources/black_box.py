@@ -29,7 +29,8 @@ class BlackBoxSource(OfflineSource):
     def __init__(self, path: Path | str) -> None:
         self._path = Path(path)
         _check(self._path)
-        self._unit_id, self._sensors = self._read_sensors()
+        self._unit_id, self._recorded = self._read_description()
+        self._sensors = sensors_of(self._recorded)
 
     @property
     def description(self) -> SensorDescription:
@@ -39,27 +40,41 @@ class BlackBoxSource(OfflineSource):
     def sensors(self) -> dict[str, SensorDescription]:
         return self._sensors
 
+    @property
+    def unit_id(self) -> str:
+        """Sender of the samples: a unit, or the agent that tracked for one."""
+        return self._unit_id
+
+    @property
+    def recorded(self) -> UnitDescription:
+        """Description of the unit by the agent that recorded: its boot, tracker, calibrations."""
+        return self._recorded
+
     def batches(self) -> Iterator[SensorBatch]:
         """Yield batches as they were written: at one instant, inertial samples first; there may
         be none.
         """
+        return (batch for _, batch in self.logged_batches())
+
+    def logged_batches(self) -> Iterator[tuple[int, SensorBatch]]:
+        """Yield the same with the log time at which each was written."""
         group: list[Message] = []
         group_ns = 0
         for log_ns, message in self._messages():
             if group and (isinstance(message, RawImu) or log_ns != group_ns):
-                yield batch_of(tuple(group))
+                yield group_ns, batch_of(tuple(group))
                 group = []
             group_ns = log_ns
             group.append(message)
         if group:
-            yield batch_of(tuple(group))
+            yield group_ns, batch_of(tuple(group))
 
-    def _read_sensors(self) -> tuple[str, dict[str, SensorDescription]]:
+    def _read_description(self) -> tuple[str, UnitDescription]:
         for _, unit_id, channel, payload in self._records():
             if channel is DESCRIPTION:
                 description = decode(channel, payload)
                 assert isinstance(description, UnitDescription)
-                return unit_id, sensors_of(description)
+                return unit_id, description
         raise RecordingError(
             f"{self._path} does not say which sensor it is from; it is no black box of a unit"
         )

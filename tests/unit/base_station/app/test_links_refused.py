@@ -63,7 +63,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 }
 WITHOUT_FOLDER = {
     # They look at what somebody gave, and write none of it.
-    *("replay", "assess", "smooth", "report", "export", "rehearse", "foxglove replay"),
+    *("replay", "assess", "smooth", "report", "export", "rehearse", "rerun", "foxglove replay"),
     "foxglove layout",  # it reads the log alone, and writes where it is told to
     "compile",  # into the program's own
 }

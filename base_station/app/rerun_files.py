@@ -1,0 +1,35 @@
+"""Files that a re-run leaves: figures, a page with pictures, and its trails for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from base_station.app.offline_rerun import OpenedRerun, Rerun
+from base_station.exporters import exporter_of
+from base_station.exporters.incident import incident_tracks
+from base_station.replay.assessment.wearers import wearers
+from base_station.report.rerun_page import rerun_page
+from shared.out_file import whole
+
+
+def write_rerun(opened: OpenedRerun, result: Rerun, folder: Path) -> list[str]:
+    """Names of the files, each of which is whole or not there.  Raises UserError."""
+    worn = wearers(opened.roster, opened.incident)
+    names = {unit_id: ", ".join(people) for unit_id, people in worn.items()}
+    tracks = incident_tracks(opened.records, opened.roster, opened.incident, result.rerun)
+    formats = ["csv", "gpx"] if tracks.anchor is not None else ["csv"]
+    contents = {
+        "report.json": msgspec.json.format(msgspec.json.encode(result.report)) + b"\n",
+        "report.html": rerun_page(result.report, opened.plan, result.shown, result.rerun, names),
+        **{
+            f"trails.{one}": exporter_of(one).export(tracks.named_as("tracked again"))
+            for one in formats
+        },
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in contents.items():
+        with whole(folder / name) as making:
+            making.write_bytes(content)
+    return list(contents)
