@@ -23,10 +23,11 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.projection import Projection
 from base_station.storage.segment_index import SegmentIndex
-from shared.clock import Clock, SystemClock
+from shared.clock import NS_PER_S, Clock, SystemClock
 from shared.mcap_log import SegmentReader, own_segments
 
 _log = logging.getLogger(__name__)
+_OVERLAP_NS = 60 * NS_PER_S  # longer than what one projection holds
 Announce = Callable[[str], None]
 
 
@@ -66,6 +67,18 @@ def announce_first_login(accounts: Accounts, note: Path | None, announce: Announ
     if password is not None:
         where = "only here: the disk takes nothing" if note is None else f"also in {note}"
         announce(f"first login: {USERNAME}  password: {password}  ({where})")
+
+
+def project_since(store: Database, archive: Archive, since_ns: int) -> None:
+    """Project again what the log has from a time on; what the tables have of it stays as it is."""
+
+    def write(projection: Projection) -> None:
+        if projection.t_ns >= since_ns - _OVERLAP_NS:
+            with store.write() as session:
+                project_into(session, (projection,))
+
+    pipeline, records = archive.resume(since_ns - _OVERLAP_NS)
+    project_log(records, pipeline, write, lambda _: None)
 
 
 def project_whole_log(store: Database, log: Path, on_progress: Callable[[float], None]) -> int:

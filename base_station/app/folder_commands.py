@@ -34,6 +34,7 @@ from base_station.storage.db.roster import Roster
 from base_station.storage.db.salvage import salvage_if_damaged
 from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.projection_mark import ProjectionMark
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from shared.clock import SystemClock
 from shared.errors import UserError
@@ -83,7 +84,9 @@ def rebuild(
         with open_database(folder.database) as store:
             if salvage is not None:
                 ReplicatedTables(store).note_lost(salvage.lost)
-            return project_whole_log(store, folder.log, on_progress)
+            count = project_whole_log(store, folder.log, on_progress)
+            ProjectionMark(folder.tables_behind).clear()
+            return count
     finally:
         lock.close()
 

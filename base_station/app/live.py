@@ -10,6 +10,7 @@ from contextlib import AbstractContextManager, ExitStack
 from subprocess import Popen
 
 from base_station.api.server import serve_until_stopped
+from base_station.app.catch_up import CatchUp
 from base_station.app.factories import Announce, announce_first_login
 from base_station.app.folder_commands import cut_log
 from base_station.app.health_facts import health_facts
@@ -174,6 +175,8 @@ class _Station:
         closing.enter_context(
             PostProcessingWorker(post_processor, records.incidents, records.tracks_of)
         )
+        prepare = self._disk.recorder.flush
+        closing.enter_context(CatchUp(self._disk.folder, replays, self._disk.projection, prepare))
         self._parts = LiveParts(
             resources=resources,
             announce=announce,

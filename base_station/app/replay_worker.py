@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from base_station.app.factories import project_since
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
@@ -18,6 +19,8 @@ from base_station.replay.processes.post_processing_work import (
 )
 from base_station.replay.processes.replay_work import replay
 from base_station.replay.processes.wire import (
+    CatchUpJob,
+    CaughtUp,
     Damage,
     Failure,
     FrameChannel,
@@ -62,9 +65,13 @@ def work(line: FrameChannel) -> None:
             _look_back(job, _archive(job, log, flaws), line)
         case ReportJob():
             _report(job, log, flaws, line)
+        case CatchUpJob():
+            _catch_up(job, _archive(job, log, flaws), line)
 
 
-def _archive(job: ReplayJob | PostProcessingJob, log: LogFeed, flaws: LogDefects) -> Archive:
+def _archive(
+    job: ReplayJob | PostProcessingJob | CatchUpJob, log: LogFeed, flaws: LogDefects
+) -> Archive:
     return Archive(
         log.records,
         Checkpoints(Path(job.checkpoints)),
@@ -81,6 +88,8 @@ def _flaws_of(job: Job) -> LogDefects:
     match job:
         case ReplayJob():
             return LogDefects(log, job.known_segments, is_written=True, until_ns=job.end_ns)
+        case CatchUpJob():
+            return LogDefects(log, (), is_written=True, from_ns=job.since_ns)
         case PostProcessingJob() | ReportJob():
             return LogDefects(
                 log,
@@ -97,6 +106,16 @@ def _look_back(job: PostProcessingJob, archive: Archive, line: FrameChannel) -> 
         clock = StationTime(job.now_ns, SystemClock())
         post_processor = PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock)
         post_process(job, post_processor, Records(store, clock).tracks_of(incident_of(job)), line)
+
+
+def _catch_up(job: CatchUpJob, archive: Archive, line: FrameChannel) -> None:
+    stand_back(line)
+    try:
+        with open_database(Path(job.database)) as store:
+            project_since(store, archive, job.since_ns)
+        line.send(CaughtUp())
+    except MusterError as error:
+        line.send(Failure(str(error), is_memory=False))
 
 
 def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel) -> None:

@@ -35,6 +35,7 @@ from base_station.storage.db.server_address import ServerAddress, note_server
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.integrity_checker import IntegrityChecker
 from base_station.storage.missing_segments import KnownSegment, log_gaps
+from base_station.storage.projection_mark import ProjectionMark
 from base_station.storage.recorder import Recorder
 from base_station.storage.segment_index import known_segments_of
 from base_station.unit_sync.log_gap_detector import LogGapDetector, Lost
@@ -182,7 +183,8 @@ def open_storage(
         announce(store.loss)
         Records(store, clock).audit(STATION_ID, "MadeDatabaseAgain", store.loss)
         ReplicatedTables(store).note_lost(lost)
-    projection = SqlProjection(store)
+    mark = None if server is None else ProjectionMark(folder.tables_behind)
+    projection = SqlProjection(store, mark)
     closing.callback(projection.close)
     check = IntegrityChecker(_RESTORE if alone else _MENDED_FROM_THE_OTHER)
     newest = max((one.path for one in recorder.segments()), default=None)

@@ -55,6 +55,15 @@ class Archive:
             until_ns = saved.t_ns - 1
         return None
 
+    def resume(self, until_ns: int) -> tuple[StationPipeline, Iterable[Record]]:
+        """A pipeline of the newest state at or before ``until_ns``, and the records behind that."""
+        saved = self.latest(until_ns)
+        if saved is None:
+            return self.make_pipeline(None), self.open_log(0)
+        records = self.open_log(saved.t_ns)
+        pipeline = self.make_pipeline(saved.pipeline)
+        return pipeline, _records_behind(records, saved.t_ns, saved.events_at_t)
+
     def _saved(self, until_ns: int | None, after_ns: int) -> SavedState | None:
         found = self.checkpoints.latest(until_ns, after_ns)
         own = None

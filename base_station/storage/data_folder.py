@@ -21,6 +21,7 @@ class DataFolder:
         self.checkpoints = path / "checkpoints"
         self.recordings = path / "recordings"  # of units' raw sensors, pulled on request
         self.database = path / "station.sqlite"
+        self.tables_behind = path / "tables-behind"  # since when, while a server was away
         self.forgettings = path / "forgetting.json"  # what is to be forgotten, until it is
         self.begun = path / "forgetting-begun.json"  # whom that concerns, of incidents
         self.first_login = path / "first-login.txt"

@@ -22,10 +22,11 @@ from base_station.storage.db.models import (
     PersonRow,
     TrackPoint,
 )
-from base_station.storage.db.projection import SqlProjection
+from base_station.storage.db.projection import Missing, SqlProjection
 from base_station.storage.db.server_address import ServerAddress
 from base_station.storage.db.server_store import ServerStore
 from base_station.storage.db.store import Store
+from base_station.storage.projection_mark import ProjectionMark
 from shared.errors import DatabaseAwayError, StoreError
 from tests.rig.database_server import DatabaseServer, database_server
 from tests.rig.projected_story import STORY
@@ -55,6 +56,7 @@ class Served(NamedTuple):
     browser: Browser
     unit: Unit
     data: Path
+    flags: tuple[str, ...]  # to serve it again
 
 
 @pytest.fixture
@@ -65,15 +67,15 @@ def served(address: ServerAddress, tmp_path: Path, make_position: MakePosition) 
     settings.write_text("\n".join(lines))
     listens = ("--listen", f"tcp/127.0.0.1:{port}", "--http", "127.0.0.1:0")
     with ExitStack() as closing:
-        output = tmp_path / "output.txt"
-        station = Command(output, "serve", "--config", str(settings), "--data", str(data), *listens)
+        flags = ("serve", "--config", str(settings), "--data", str(data), *listens)
+        station = Command(tmp_path / "output.txt", *flags)
         closing.callback(station.kill)
         browser = closing.enter_context(Browser(station.wait_ready(), data))
         unit = Unit(port, "FF-01")
         closing.callback(unit.close)
         prepare(browser)
         greet(browser, unit, make_position)
-        yield Served(station, browser, unit, data)
+        yield Served(station, browser, unit, data, flags)
 
 
 def rows(store: Database, table: type[Base]) -> list[str]:
@@ -84,7 +86,7 @@ def rows(store: Database, table: type[Base]) -> list[str]:
 def test_a_station_goes_on_without_its_database_and_brings_it_up_to_date_afterwards(
     served: Served, server: DatabaseServer, address: ServerAddress, tmp_path: Path
 ) -> None:
-    station, browser, unit, data = served
+    station, browser, unit, data, _ = served
     assert not (data / "station.sqlite").exists()
     with ExitStack() as walking:
         walk = Walk(browser, unit, walking)
@@ -121,14 +123,75 @@ def test_a_station_goes_on_without_its_database_and_brings_it_up_to_date_afterwa
     there = logged(data / "log")
     assert len(there) == len(set(there))
     assert walk.said <= set(there)
-    with ServerStore(address) as store, Store(tmp_path / "log.sqlite") as of_log:
+    require_all(address, data, tmp_path)
+    with ServerStore(address) as store, store.read() as session:
+        assert session.scalars(select(PersonRow.name)).all() == ["Ada"]
+
+
+def require_all(address: ServerAddress, data: Path, scratch: Path) -> None:
+    """The server has what the log knows, once."""
+    with ServerStore(address) as store, Store(scratch / "log.sqlite") as of_log:
         project_whole_log(of_log, data / "log", lambda _: None)
         for table in DECIDED:
             assert rows(store, table) == rows(of_log, table)
         with store.read() as session, of_log.read() as reading:
             by_log = set(reading.scalars(select(AuditEntry.entry_id)))
             assert by_log <= set(session.scalars(select(AuditEntry.entry_id)))
-            assert session.scalars(select(PersonRow.name)).all() == ["Ada"]
+
+
+def test_what_a_killed_station_could_not_write_is_projected_from_the_log(
+    served: Served, server: DatabaseServer, address: ServerAddress, tmp_path: Path
+) -> None:
+    station, browser, unit, data, flags = served
+    with ExitStack() as walking:
+        walk = Walk(browser, unit, walking)
+        until(lambda: walk.shown > 5)
+        server.kill()
+        try:
+            walk.press_mayday()
+            until(lambda: walk.alarms.get("mayday") == "raised", "mayday is raised")
+            until((data / "tables-behind").exists, "it is noted")
+            station.kill()
+        finally:
+            server.start()
+    with Command(tmp_path / "again.txt", *flags) as again:
+        again.wait_ready()
+        until(lambda: not (data / "tables-behind").exists(), "the tables have all")
+        assert again.stop() == 0
+    require_all(address, data, tmp_path)
+    with ServerStore(address) as store:
+        assert rows(store, AlarmTransition)
+
+
+def test_what_has_no_room_in_the_queue_is_missing_until_it_is_projected_again(
+    server: DatabaseServer,
+    address: ServerAddress,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("base_station.storage.db.projection.MAX_PENDING", len(STORY) - 2)
+    mark = ProjectionMark(tmp_path / "tables-behind")
+    with ServerStore(address, is_station=True) as store:
+        projection = SqlProjection(store, mark)
+        server.stop()
+        try:
+            projection.project(STORY[0])
+            assert not projection.flush()
+            until(lambda: mark.since_ns() == STORY[0].t_ns)
+            for part in STORY[1:]:
+                projection.project(part)
+            assert projection.missing() is None  # the database is away still
+        finally:
+            server.start()
+        until(lambda: projection.flush(1.0), "the others are written")
+        until(lambda: projection.missing() is not None)
+        assert "is being brought into it from the log" in projection.problem()
+        missing = projection.missing()
+        assert missing == Missing(STORY[0].t_ns, 2)
+        projection.note_caught_up(missing)
+        assert projection.problem() == ""
+        assert mark.since_ns() is None
+        projection.close()
 
 
 @pytest.fixture(scope="module")

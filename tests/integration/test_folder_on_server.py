@@ -8,17 +8,30 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from sqlalchemy import select
+from sqlalchemy import delete, select, update
 
 from base_station.accounts.principals import Role
 from base_station.app import folder_commands
 from base_station.app.backup import back_up
+from base_station.app.factories import project_since
+from base_station.app.pipeline_factory import past_pipeline
 from base_station.app.station_storage import open_storage
 from base_station.config import StationConfig
+from base_station.engine.feed import LogFeed
+from base_station.replay.playback import Archive
+from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.database import Database
-from base_station.storage.db.models import PROJECTIONS, Base, LogSegment
+from base_station.storage.db.models import (
+    PROJECTIONS,
+    AlarmRow,
+    AlarmTransition,
+    Assignment,
+    Base,
+    LogSegment,
+    TrackPoint,
+)
 from base_station.storage.db.opening import open_database
 from base_station.storage.db.records import Records
 from base_station.storage.db.server_address import NOTE, ServerAddress
@@ -117,6 +130,23 @@ def test_commands_on_the_folder_find_the_server_by_its_note(
     with ServerStore(address) as store:
         before = rows(store, LOGGED)
         assert folder_commands.rebuild(moved, lambda _: None, pytest.fail) > 0
+        assert rows(store, LOGGED) == before
+
+
+def test_what_the_tables_lack_of_a_time_is_projected_again_and_the_rest_stays(
+    moved: Path, address: ServerAddress
+) -> None:
+    archive = Archive(
+        LogFeed(moved / "log").records, Checkpoints(moved / "checkpoints"), past_pipeline
+    )
+    with ServerStore(address) as store:
+        before = rows(store, LOGGED)
+        (incident,) = Records(store, SystemClock()).incidents()
+        with store.write() as session:
+            for table in (TrackPoint, AlarmTransition, Assignment):
+                session.execute(delete(table))
+            session.execute(update(AlarmRow).values(state="raised", changed_ns=0))
+        project_since(store, archive, incident.opened_ns)
         assert rows(store, LOGGED) == before
 
 

@@ -25,7 +25,7 @@ from base_station.replay.processes.post_processing_process import (
     PostProcessingProcess,
 )
 from base_station.replay.processes.server import ReplayProcesses
-from base_station.replay.processes.wire import FrameChannel, Job
+from base_station.replay.processes.wire import FrameChannel, Job, PostProcessingJob
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.models import IncidentRow
@@ -210,6 +210,7 @@ class AtWork(ReplayProcesses):
         self.far_end: socket.socket | None = None
 
     def start(self, job: Job) -> FrameChannel:
+        assert isinstance(job, PostProcessingJob)
         assert job.incident_id == "i1"
         ours, self.far_end = socket.socketpair()
         self.begun.set()

@@ -57,6 +57,16 @@ class ReportJob(msgspec.Struct, frozen=True, tag="report"):
     known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
 
 
+class CatchUpJob(msgspec.Struct, frozen=True, tag="catch_up"):
+    """First to a new process: to project the log from some time on into the tables."""
+
+    log: str
+    checkpoints: str
+    database: str
+    since_ns: int  # station time
+    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+
+
 class Play(msgspec.Struct, frozen=True, tag="play"):
     pass
 
@@ -133,6 +143,10 @@ class ReportFrame(msgspec.Struct, frozen=True, tag="reported"):
     content: bytes
 
 
+class CaughtUp(msgspec.Struct, frozen=True, tag="caught_up"):
+    """The last message: the log is projected to where it ended."""
+
+
 class Failure(msgspec.Struct, frozen=True, tag="failure"):
     """The last message: why there is no more, as a sentence for a person."""
 
@@ -140,13 +154,14 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
     is_memory: bool  # there is not enough of it, nor would there be the next time
 
 
-Job = ReplayJob | PostProcessingJob | ReportJob
+Job = ReplayJob | PostProcessingJob | ReportJob | CatchUpJob
 Command = Play | Pause | Seek | SetSpeed | People | SnapshotRequest
 ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
 PostProcessingReport = (
     ProgressFrame | UnitTrailsFrame | PostProcessingResultFrame | Damage | Failure
 )
 IncidentReportResult = ReportFrame | Damage | Failure
+CatchUpResult = CaughtUp | Damage | Failure
 
 
 class FrameChannel:
@@ -157,7 +172,7 @@ class FrameChannel:
         self._sending = Lock()
 
     def send(
-        self, message: Job | Command | ReplayReport | PostProcessingReport | ReportFrame
+        self, message: Job | Command | ReplayReport | PostProcessingReport | ReportFrame | CaughtUp
     ) -> None:
         """Raises StoreError where the other end is gone."""
         encoded = msgspec.msgpack.encode(message)
@@ -223,4 +238,9 @@ def read_look_back(encoded: bytes) -> PostProcessingReport:
 
 def read_report_result(encoded: bytes) -> IncidentReportResult:
     result: IncidentReportResult = msgspec.msgpack.decode(encoded, type=IncidentReportResult)
+    return result
+
+
+def read_catch_up(encoded: bytes) -> CatchUpResult:
+    result: CatchUpResult = msgspec.msgpack.decode(encoded, type=CatchUpResult)
     return result

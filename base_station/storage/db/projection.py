@@ -12,13 +12,16 @@ import threading
 from collections import deque
 from collections.abc import Callable, Sequence
 from itertools import islice, takewhile
+from typing import NamedTuple
 
 from sqlalchemy.exc import DataError, IntegrityError
 
 from base_station.storage.db.database import IN_MEMORY, Database
 from base_station.storage.db.projecting import project_into
 from base_station.storage.projection import Projection
+from base_station.storage.projection_mark import ProjectionMark
 from shared.errors import StoreError
+from shared.log_on_change import LogOnChange
 from shared.worker import Worker
 
 PERIOD_S = 0.5
@@ -27,14 +30,27 @@ MAX_PENDING = 100_000  # about an hour of twenty units; past it the log alone kn
 
 _NO_NUMBER = "where somebody was is no number"
 
+_MISSED = "What was decided while the database did not answer is being brought into it from the log"
+
 logger = logging.getLogger(__name__)
+
+
+class Missing(NamedTuple):
+    since_ns: int  # station time
+    parts: int
 
 
 class SqlProjection:
     """A ``ProjectionSink`` on the store, and the ``ProjectedTables`` of those who read it."""
 
-    def __init__(self, store: Database) -> None:
+    def __init__(self, store: Database, mark: ProjectionMark | None = None) -> None:
+        """``mark``: of a database that may be away for long; what it misses for want of room here,
+        or by a kill, is projected again from the log (``missing``).
+        """
         self._store = store
+        self._mark = mark
+        self._marked = mark is not None and mark.since_ns() is not None
+        self._missed = int(self._marked)  # parts that are to be projected again, at least
         self._pending: deque[Projection] = deque()
         self._changed = threading.Condition()
         self._taken = 0  # projections given to ``project`` so far
@@ -46,6 +62,7 @@ class SqlProjection:
         self._failure = ""
         self._drop_reason = ""
         self._failed_tries = 0
+        self._mark_trouble = LogOnChange(logger, "that the tables are behind cannot be noted")
         self._worker = Worker(
             "sql-projection",
             self._step,
@@ -65,7 +82,8 @@ class SqlProjection:
             if len(self._pending) > MAX_PENDING:
                 self._pending.popleft()
                 self._in_memory = max(self._in_memory - 1, 0)
-                self._dropped += 1
+                self._missed += self._marked
+                self._dropped += not self._marked
                 self._drop_reason = self._failure or self._store.problem
                 self._settled += 1
 
@@ -77,7 +95,21 @@ class SqlProjection:
                     f"({self._drop_reason}); the log has them: run 'muster base rebuild' once the "
                     "cause is gone"
                 )
-            return self._failure or self._store.problem
+            missed = _MISSED if self._missed else ""
+            return "; ".join(filter(None, (self._failure or self._store.problem, missed)))
+
+    def missing(self) -> Missing | None:
+        """What is to be projected again from the log, now that the database answers."""
+        with self._changed:
+            if self._mark is None or not self._missed or self._failure or self._store.is_away:
+                return None
+            return Missing(self._mark.since_ns() or 0, self._missed)
+
+    def note_caught_up(self, missing: Missing) -> None:
+        """The tables have what the log had when ``missing`` was called."""
+        with self._changed:
+            self._missed -= missing.parts
+        self._clear_mark()
 
     def flush(self, timeout_s: float = 5.0) -> bool:
         """Wait until all that was projected before this call is in the tables; False where the
@@ -181,6 +213,25 @@ class SqlProjection:
             self._failure = str(error)
             self._failed_tries += 1
             self._changed.notify_all()
+        self._set_mark()
+
+    def _set_mark(self) -> None:
+        """A kill does not make it forgotten that something waits."""
+        with self._changed:
+            since_ns = self._pending[0].t_ns if self._pending else None
+        if self._mark is not None and not self._marked and since_ns is not None:
+            with self._mark_trouble:
+                self._mark.note(since_ns)
+                self._marked = True
+
+    def _clear_mark(self) -> None:
+        """Where nothing waits, and nothing is missing."""
+        with self._changed:
+            is_behind = bool(self._missed or self._pending)
+        if self._mark is not None and self._marked and not is_behind:
+            with self._mark_trouble:
+                self._mark.clear()
+                self._marked = False
 
     def _settle(self, batch: Sequence[Projection], given_up: str, left_out: int) -> None:
         """Done with the batch: written, or given up for a reason; ``left_out``: places in it."""
@@ -195,6 +246,7 @@ class SqlProjection:
                 self._settled += 1
                 self._dropped += bool(given_up)
             self._changed.notify_all()
+        self._clear_mark()
 
 
 def _is_impossible(error: StoreError) -> bool:
