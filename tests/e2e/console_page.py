@@ -28,6 +28,13 @@ def command(page: Page, name: str) -> Locator:
     return dialog
 
 
+def choose_theme(page: Page, name: str) -> None:
+    """In the dialog *Display*; the page has its colours afterwards."""
+    dialog = menu(page, "Display")
+    dialog.get_by_role("radio", name=name, exact=True).check()
+    close(dialog)
+
+
 def strip(page: Page) -> Locator:
     return page.get_by_role("region", name="Open alarms")
 

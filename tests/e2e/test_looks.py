@@ -9,7 +9,7 @@ from playwright.sync_api import Page, expect
 
 from base_station.views.wire import Snapshot
 from tests.e2e import scenes
-from tests.e2e.console_page import barriers, close, menu, strip
+from tests.e2e.console_page import barriers, choose_theme, close, menu, strip
 from tests.e2e.looks import flaws
 from tests.e2e.stage import ANSWERS, PAST, SCREENS, Stage
 
@@ -76,6 +76,8 @@ def test_everybody_can_use_every_scene(stage: Stage, scene: Callable[[], Snapsho
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
         assert barriers(page) == [], scheme
+    choose_theme(page, "Red light")
+    assert barriers(page) == [], "red light"
     page.set_viewport_size({"width": 390, "height": 844})
     assert barriers(page) == []
 

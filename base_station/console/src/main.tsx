@@ -1,5 +1,6 @@
 import { render } from "preact";
 import "ol/ol.css";
+import "./styles/colours.css";
 import "./styles/theme.css";
 import "./styles/frame.css";
 import "./styles/alarms.css";
@@ -8,6 +9,8 @@ import "./styles/commands.css";
 import "./styles/plan.css";
 import "./styles/dialogs.css";
 import "./styles/small.css";
+import "./styles/red-light.css";
+import "./appearance";
 import { resume } from "./sessions";
 import { App } from "./ui/App";
 

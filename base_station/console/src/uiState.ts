@@ -18,6 +18,7 @@ export type DialogName =
   | "flaws"
   | "roll_call"
   | "account"
+  | "display"
   | "users"
   | "audit"
   | "enrolments"

@@ -32,14 +32,22 @@ const NAMES: Record<keyof Colours, string> = {
 
 export function readColours(): Colours {
   const style = getComputedStyle(document.documentElement);
+  const canvas = document.createElement("canvas").getContext("2d");
   const entries = Object.entries(NAMES).map(([key, name]) => [
     key,
-    style.getPropertyValue(name).trim(),
+    inSixDigits(style.getPropertyValue(name).trim(), canvas),
   ]);
   return Object.fromEntries(entries) as Colours;
 }
 
-/** A colour with another opacity; colours in the theme are `#rrggbb`. */
+/** `#rrggbb`: the built style sheet writes "red" for `#ff0000`. */
+function inSixDigits(colour: string, canvas: CanvasRenderingContext2D | null): string {
+  if (canvas === null) return colour;
+  canvas.fillStyle = colour;
+  return canvas.fillStyle;
+}
+
+/** A colour `#rrggbb` with another opacity. */
 export function faint(colour: string, opacity: number): string {
   const alpha = Math.round(opacity * 255);
   return colour + alpha.toString(16).padStart(2, "0");

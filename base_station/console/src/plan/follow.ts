@@ -1,5 +1,6 @@
 /** Keeps the plan as the picture is, a few times a second at most. */
 import { effect } from "@preact/signals";
+import { shownTheme } from "../appearance";
 import { guarded } from "../live/faults";
 import { floor, selectedUnit } from "../uiState";
 import type { Picture } from "../live/picture";
@@ -29,7 +30,8 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       }),
     ),
   );
-  const drawPins = () =>
+  const drawPins = () => {
+    void shownTheme.value;
     map.showPins({
       pins: picture.pins.value,
       beacons: picture.beacons.value,
@@ -38,37 +40,36 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       chosen: chosenOnPlan(),
       clicked: clicked.value,
     });
-  const theme = matchMedia("(prefers-color-scheme: dark)");
-  const recolour = () => {
-    map.recolour();
-    redraw.ask();
-    drawPins();
   };
-  theme.addEventListener("change", recolour);
   const ends = [
-    () => theme.removeEventListener("change", recolour),
     () => redraw.cancel(),
+    following("The colours of the plan", () => {
+      void shownTheme.value; // what is drawn below with these colours looks at it too, and later
+      map.recolour();
+    }),
     following("The building", () => map.showPlan(picture.plan.value)),
     followBaseMap(map.ground, () => picture.anchor.value),
     effect(() => {
       void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value];
       void [picture.nowMs.value, floor.value, selectedUnit.value, shownKinds.value];
-      void pastTrails.value;
+      void [pastTrails.value, shownTheme.value];
       redraw.ask();
     }),
     following("The pins on the plan", drawPins),
-    following("The trails on the plan", () =>
+    following("The trails on the plan", () => {
+      void shownTheme.value;
       map.showPast({
         past: pastTrails.value,
         shown: picture.trails.peek(),
         nowMs: picture.nowMs.value,
         floor: floor.value,
         chosen: selectedUnit.value,
-      }),
-    ),
-    following("Other teams on the plan", () =>
-      map.showExternal({ external: picture.external.value, nowMs: picture.nowMs.value }),
-    ),
+      });
+    }),
+    following("Other teams on the plan", () => {
+      void shownTheme.value;
+      map.showExternal({ external: picture.external.value, nowMs: picture.nowMs.value });
+    }),
     followTrails(picture),
     beginOnAFloor(picture),
   ];

@@ -20,6 +20,11 @@ export interface Mark {
   headingKnown: boolean;
 }
 
+/** How many corners, and where the first is, in steps between two of them from straight down. */
+const CORNERS: Partial<Record<Urgency, readonly [count: number, first: number]>> = {
+  immediate: [8, 0.5],
+  soon: [4, 0],
+};
 const RADIUS_PX = 13;
 const DANGER_RADIUS_PX = 17; // has room for the initials beside "!"
 const ARROW_PX = 10;
@@ -129,8 +134,7 @@ function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours
   const radiusPx = mark.urgency === "immediate" ? DANGER_RADIUS_PX : RADIUS_PX;
   const hollow = isHollow(mark);
   if (mark.headingKnown && !mark.old) drawArrow(context, mark.headingRad, radiusPx, colour, colours.halo);
-  context.beginPath();
-  context.arc(0, 0, radiusPx, 0, 2 * Math.PI);
+  outline(context, mark.urgency, radiusPx);
   context.fillStyle = hollow ? colours.halo : colour;
   context.fill();
   context.lineWidth = mark.chosen ? 4 : hollow ? 2.5 : 2;
@@ -144,6 +148,24 @@ function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours
   context.fillText(lettersOf(mark), 0, 0.5, 2 * radiusPx - 4);
   drawFloorArrow(context, floorArrow(mark), radiusPx, colour, colours.halo);
   context.restore();
+}
+
+/** Urgency as a shape, where colours look alike: immediate is an octagon, soon a square on its corner,
+ * others are round. */
+function outline(context: Context, urgency: Urgency, radiusPx: number): void {
+  context.beginPath();
+  const corners = CORNERS[urgency];
+  if (corners === undefined) {
+    context.arc(0, 0, radiusPx, 0, 2 * Math.PI);
+    return;
+  }
+  const [count, first] = corners;
+  const rimPx = radiusPx / Math.cos(Math.PI / count) ** 0.5; // as large as the circle
+  for (let i = 0; i < count; i++) {
+    const angle = (first + i) * ((2 * Math.PI) / count);
+    context.lineTo(rimPx * Math.sin(angle), rimPx * Math.cos(angle));
+  }
+  context.closePath();
 }
 
 type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;

@@ -1,4 +1,5 @@
 import { useEffect, useLayoutEffect } from "preact/hooks";
+import { shownTheme } from "../appearance";
 import { isPast, live, picture, replay, user, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { sound } from "../sound";
@@ -15,6 +16,7 @@ import { Login } from "./Login";
 import { Notice } from "./Notice";
 import { People } from "./People";
 import { PlanPanel } from "./PlanPanel";
+import { RedLight } from "./RedLight";
 import { ReplayBar } from "./ReplayBar";
 import { StandbyBar } from "./StandbyBar";
 import { UndoBar } from "./UndoBar";
@@ -23,13 +25,13 @@ import { Sending } from "./Waiting";
 export function App() {
   useAttention();
   useWaiting();
-  if (user.value === null) return <Login />;
   const shown = picture.value;
-  if (shown === null) return null;
+  const login = user.value === null || waiting.value;
   return (
     <>
-      <Console shown={shown} />
-      {waiting.value && <Login />}
+      {shownTheme.value === "red" && <RedLight />}
+      {user.value !== null && shown !== null && <Console shown={shown} />}
+      {login && <Login />}
     </>
   );
 }

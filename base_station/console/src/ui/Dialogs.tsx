@@ -5,6 +5,7 @@ import { AccountDialog } from "./AccountDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
 import { CommandDialog } from "./CommandDialog";
+import { DisplayDialog } from "./DisplayDialog";
 import { EnrolmentsDialog } from "./EnrolmentsDialog";
 import { FlawsDialog } from "./FlawsDialog";
 import { ErrorBoundary } from "./ErrorBoundary";
@@ -51,6 +52,8 @@ function Opened() {
       return <RollCallDialog />;
     case "account":
       return <AccountDialog />;
+    case "display":
+      return <DisplayDialog />;
     case "users":
       return <UsersDialog />;
     case "audit":

@@ -53,6 +53,9 @@ export function Menu() {
             {word}
           </button>
         ))}
+        <button type="button" onClick={() => choose("display")}>
+          Display
+        </button>
         <button
           type="button"
           onClick={() => choose("account")}

@@ -1,5 +1,6 @@
 /** How this console shows the list of members: what is sought, in which order, and how dense. */
-import { effect, signal } from "@preact/signals";
+import { signal } from "@preact/signals";
+import { kept } from "../kept";
 import type { Order, Sought } from "../live/finding";
 
 export const text = signal("");
@@ -16,13 +17,6 @@ const DENSITIES: readonly Density[] = ["cards", "lines"];
 /** Kept in this browser. */
 export const order = kept("muster-list-order", ORDERS, "need");
 export const density = kept("muster-list-density", DENSITIES, "cards");
-
-function kept<T extends string>(name: string, all: readonly T[], usual: T) {
-  const before = localStorage.getItem(name);
-  const choice = signal<T>(all.find((one) => one === before) ?? usual);
-  effect(() => localStorage.setItem(name, choice.value));
-  return choice;
-}
 
 export function showAll(): void {
   text.value = "";

@@ -1,0 +1,22 @@
+/** How the page looks at this console: the theme, kept in this browser. */
+import { effect, signal } from "@preact/signals";
+import { kept } from "./kept";
+
+export const THEMES = ["system", "light", "dark", "red"] as const;
+export type Theme = (typeof THEMES)[number];
+
+export const theme = kept<Theme>("muster-theme", THEMES, "system");
+
+const systemDark = matchMedia("(prefers-color-scheme: dark)");
+const isSystemDark = signal(systemDark.matches);
+systemDark.addEventListener("change", ({ matches }) => (isSystemDark.value = matches));
+
+/** The theme on the page, once its colours hold: what draws on a canvas reads them then. */
+export const shownTheme = signal<Exclude<Theme, "system">>("light");
+
+effect(() => {
+  const chosen = theme.value;
+  const next = chosen === "system" ? (isSystemDark.value ? "dark" : "light") : chosen;
+  document.documentElement.dataset.theme = next;
+  shownTheme.value = next;
+});
