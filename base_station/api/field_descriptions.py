@@ -248,6 +248,24 @@ FIELDS: Mapping[str, str] = {
     "null: it is not known how the rescuer stands then.",
     "bearing_rad": "Direction of the leg, clockwise from north.",
     "floors": "Floors that are climbed at the end of the leg, negative: down.",
+    # ---- timelines
+    "TimelineAnswer.from_ms": "Beginning of the span.",
+    "TimelineAnswer.until_ms": "End of the span: not later than now.",
+    "TimelineAnswer.temperature_degc": "Of the air around the equipment, degrees Celsius.",
+    "TimelineAnswer.height_m": "Above the origin of the incident frame, metres, as it was shown.",
+    "TimelineAnswer.floor": "As it was shown; 0: ground floor.",
+    "TimelineAnswer.activity": "Index of activity_names.",
+    "TimelineAnswer.activity_names": "Activities by the values of the column activity.",
+    "TimelineAnswer.battery": "0 empty ... 1 full.",
+    "TimelineAnswer.position_error_m": "Stated horizontal error of what was shown, metres: the "
+    "root of the summed variances north and east (DRMS).",
+    "TimelineAnswer.silence_s": "Seconds without a message before each one that came live.",
+    "TimelineAnswer.radio_gaps_ms": "Times without a message for longer than 10 s: "
+    "[from_ms, until_ms].",
+    "TimelineAnswer.defects": "Parts of the log that cannot be read, in words.",
+    "TimelineColumn.t_ms": "Times, not descending.",
+    "TimelineColumn.values": "At most two for a bucket, the least and the greatest; null: a gap, "
+    "in which nothing is known.",
     # ---- assessment
     "smoother": "Name of the smoother that it is held against.",
     "IncidentReport.flaws": "Why the log does not tell all of it, in sentences.",
@@ -370,6 +388,8 @@ PARAMETERS: Mapping[str, str] = {
     "limit": "How many to give, the newest; those of the same millisecond as the last come along. "
     "The page before has until_ms at that millisecond.",
     "only": "Ids of units, or names of people or crews; left out: everybody.",
+    "buckets": "Parts of the span: each has at most two values of a column, its least and its "
+    "greatest.",
     "every_s": "One point for so many seconds.",
     "kind": FIELDS["Trails.kind"],
     "format_name": "A name of /export-formats.",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from dataclasses import dataclass, field
 from threading import Lock
@@ -24,6 +24,7 @@ from base_station.engine.ports import ActionResult, OperatorGate, Trails
 from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.replay.post_processing import PostProcessor
+from base_station.replay.timelines.unit_timeline import TimelineRequest, UnitTimeline
 from base_station.report.process import ReportProcess
 from base_station.security.pki.folder import PkiFolder
 from base_station.site.plan_reader import PlanReader
@@ -59,6 +60,8 @@ class Services:
     recordings: TransferQueue | None = None  # None: a station that only replays
     post_processor: PostProcessor | None = None  # None: a station without a log
     reports: ReportProcess | None = None  # None: a station that only replays
+    # None: a station without a log.
+    read_timeline: Callable[[TimelineRequest], UnitTimeline] | None = None
     pki: PkiFolder | None = None  # None: a station that enrols nobody
     intake: SampleIntake | None = None  # None: a station that only replays
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
@@ -68,6 +71,7 @@ class Services:
     # One whole incident at a time: an hour of a hundred units takes 300 MB.  Who waits holds no
     # thread: those are for who acts.
     export_lock: asyncio.Lock = field(default_factory=asyncio.Lock)
+    timeline_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # as above, shorter work
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
         """Have the drive take a person's action, and wait until it is decided and in the log; not

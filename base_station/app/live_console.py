@@ -13,6 +13,7 @@ from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.sample_intake import SampleIntake
 from base_station.replay.processes.replay_process import ReplayContext
+from base_station.replay.processes.timeline_process import TimelineProcess
 from base_station.report.process import ReportProcess
 from base_station.storage.db.base_maps import BaseMaps
 
@@ -36,6 +37,7 @@ def new_services(parts: LiveParts) -> Services:
         recordings=resources.recordings,
         post_processor=parts.post_processor,
         reports=_reports(parts),
+        read_timeline=_timelines(parts).read,
         plans=parts.plans,
         pki=resources.pki,
         intake=SampleIntake(parts.gate.deliver, resources.bus, disk.clock),
@@ -60,6 +62,18 @@ def new_server(parts: LiveParts, services: Services, on_stop: Callable[[], None]
 def _reports(parts: LiveParts) -> ReportProcess:
     disk = parts.resources.disk
     return ReportProcess(
+        processes=parts.replays,
+        log=str(disk.folder.log),
+        database=str(disk.folder.database),
+        prepare=disk.recorder.flush,
+        note_damage=disk.check.recheck,
+        known_segments=disk.known_segments,
+    )
+
+
+def _timelines(parts: LiveParts) -> TimelineProcess:
+    disk = parts.resources.disk
+    return TimelineProcess(
         processes=parts.replays,
         log=str(disk.folder.log),
         database=str(disk.folder.database),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 
 from base_station.api.app import create_app
 from base_station.api.hub import Hub
@@ -21,6 +22,7 @@ from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.read_only import ReadOnlyGate
+from base_station.replay.timelines.unit_timeline import read_timeline
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.records import Records
@@ -71,6 +73,7 @@ def run_replay_station(
             secure=config.http.certificate is not None,
             is_replay_only=True,
             post_processor=PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
+            read_timeline=partial(read_timeline, records, offline_log.log),
         )
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, "", hub))

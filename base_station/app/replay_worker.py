@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
+
 from base_station.app.factories import project_since
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.feed import LogFeed
@@ -29,15 +31,18 @@ from base_station.replay.processes.wire import (
     ReplayJob,
     ReportFrame,
     ReportJob,
+    TimelineFrame,
+    TimelineJob,
     read_job,
 )
+from base_station.replay.timelines.unit_timeline import TimelineRequest, read_timeline
 from base_station.report.document import html_document
 from base_station.report.gathering import ReportSources, gather
 from base_station.report.pdf import pdf_document
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.opening import open_database
-from base_station.storage.db.records import Records
+from base_station.storage.db.records import Records, Window
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.log_defects import LogDefects
@@ -67,6 +72,8 @@ def work(line: FrameChannel) -> None:
             _report(job, log, flaws, line)
         case CatchUpJob():
             _catch_up(job, _archive(job, log, flaws), line)
+        case TimelineJob():
+            _timeline(job, log, flaws, line)
 
 
 def _archive(
@@ -97,6 +104,14 @@ def _flaws_of(job: Job) -> LogDefects:
                 is_written=True,
                 from_ns=job.opened_ns,
                 until_ns=job.closed_ns,
+            )
+        case TimelineJob():
+            return LogDefects(
+                log,
+                job.known_segments,
+                is_written=True,
+                from_ns=job.from_ns,
+                until_ns=job.until_ns,
             )
 
 
@@ -134,5 +149,16 @@ def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel)
             )
             page = html_document(gather(sources, records.require_incident(job.incident_id)))
         line.send(ReportFrame(pdf_document(page) if job.as_pdf else page))
+    except MusterError as error:
+        line.send(Failure(str(error), is_memory=False))
+
+
+def _timeline(job: TimelineJob, log: LogFeed, flaws: LogDefects, line: FrameChannel) -> None:
+    stand_back(line)
+    request = TimelineRequest(job.unit_id, Window(job.from_ns, job.until_ns), job.buckets)
+    try:
+        with open_database(Path(job.database)) as store:
+            timeline = read_timeline(Records(store, SystemClock()), log, request)
+        line.send(TimelineFrame(msgspec.structs.replace(timeline, defects=tuple(flaws()))))
     except MusterError as error:
         line.send(Failure(str(error), is_memory=False))

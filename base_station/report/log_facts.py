@@ -13,18 +13,15 @@ import msgspec
 from base_station.core.events import Received, event_of
 from base_station.core.state.unit_heat import ExposureInterval
 from base_station.core.units import thermal_dose
+from base_station.replay.radio_contact import GAP_NS, HEARD, SentTimes
 from base_station.report.contents import Interval, Series
 from shared.channels import (
     COMMAND,
-    EVENT,
-    HEARTBEAT,
     REPLY,
-    STATUS,
     TEMPERATURE,
     backfilled_key,
     is_backfilled,
 )
-from shared.clock import NS_PER_S
 from shared.mcap_log import LogRecord
 from shared.messages import (
     Command,
@@ -36,9 +33,6 @@ from shared.messages import (
     UnitEvent,
 )
 
-assert STATUS.stale_after_s is not None
-GAP_NS = round(STATUS.stale_after_s * NS_PER_S)  # without a message: no radio contact
-_HEARD = (STATUS, TEMPERATURE, HEARTBEAT, EVENT, REPLY)
 _LATE = (TEMPERATURE, REPLY)  # of the journal
 
 
@@ -71,7 +65,7 @@ def wanted_keys(unit_ids: Iterable[str]) -> Collection[str]:
     """Keys of the records that ``read_facts`` looks at."""
     keys = set[str]()
     for unit_id in unit_ids:
-        keys |= {channel.key(unit_id) for channel in (*_HEARD, COMMAND)}
+        keys |= {channel.key(unit_id) for channel in (*HEARD, COMMAND)}
         keys |= {backfilled_key(unit_id, channel.suffix) for channel in _LATE}
     return keys
 
@@ -135,23 +129,18 @@ class _UnitReader:
         self._about = about
         self._heard_ns: int | None = None
         self._is_stopped = False
-        self._offsets_ns: dict[int, int] = {}  # station time less that of each boot
+        self._sent_times = SentTimes()
         self._exposures: dict[int, list[ExposureInterval]] = {}
 
     def note_header(self, t_ns: int, header: Header, *, is_live: bool) -> int:
         """Station time at which it was sent; one that came live is radio contact."""
-        if not is_live:
-            known_ns = self._offsets_ns.get(header.boot_id)
-            sent_ns = header.t_utc_ns if known_ns is None else header.t_mono_ns + known_ns
-            return min(t_ns, sent_ns or t_ns)
-        offset_ns = t_ns - header.t_mono_ns
-        least_ns = self._offsets_ns.get(header.boot_id, offset_ns)  # of the fastest message
-        self._offsets_ns[header.boot_id] = min(offset_ns, least_ns)
-        self._note_gap(t_ns)
-        self._heard_ns, self._is_stopped = t_ns, False
-        if self._is_about(t_ns):
-            self.facts.heard_ns.append(t_ns)
-        return t_ns
+        sent_ns = self._sent_times.sent_ns(t_ns, header, is_live=is_live)
+        if is_live:
+            self._note_gap(t_ns)
+            self._heard_ns, self._is_stopped = t_ns, False
+            if self._is_about(t_ns):
+                self.facts.heard_ns.append(t_ns)
+        return sent_ns
 
     def stop(self) -> None:
         """The unit was switched off: its silence is no radio gap."""

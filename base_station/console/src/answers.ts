@@ -600,6 +600,27 @@ export interface Ticket {
   lasts_s: number;
 }
 
+export interface TimelineAnswer {
+  unit_id: string;
+  from_ms: number;
+  until_ms: number;
+  temperature_degc: TimelineColumn;
+  height_m: TimelineColumn;
+  floor: TimelineColumn;
+  activity: TimelineColumn;
+  activity_names: string[];
+  battery: TimelineColumn;
+  position_error_m: TimelineColumn;
+  silence_s: TimelineColumn;
+  radio_gaps_ms: [number, number][];
+  defects: string[];
+}
+
+export interface TimelineColumn {
+  t_ms: number[];
+  values: (number | null)[];
+}
+
 export interface Times {
   par_interval_s: number;
   work_limit_s: number;

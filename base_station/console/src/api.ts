@@ -195,6 +195,13 @@ export const removeBeacon = (beaconId: string) =>
 export const trails = (incidentId: string, kind: string) =>
   call<TrailsAnswer>("GET", `/incidents/${id(incidentId)}/trails?kind=${kind}`);
 
+/** Of a span of at most a day. */
+export const timeline = (unitId: string, fromMs: number, untilMs: number, buckets: number) =>
+  call<answers.TimelineAnswer>(
+    "GET",
+    `/units/${id(unitId)}/timeline?from_ms=${fromMs}&until_ms=${untilMs}&buckets=${buckets}`,
+  );
+
 /** Takes some seconds: the smoothed trails are worked out for it. */
 export const assessment = (incidentId: string) =>
   call<Assessment>("GET", `/incidents/${id(incidentId)}/assessment`);

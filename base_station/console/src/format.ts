@@ -157,7 +157,7 @@ export function percent(part: number | null): string {
   return part === null ? "unknown" : `${Math.round(part * 100)}\u00a0%`;
 }
 
-const ACTIVITIES: Record<string, string> = {
+export const ACTIVITIES: Record<string, string> = {
   unknown: "Unknown",
   still: "Still",
   walking: "Walking",

@@ -8,6 +8,7 @@ import "./styles/people.css";
 import "./styles/commands.css";
 import "./styles/plan.css";
 import "./styles/dialogs.css";
+import "./styles/timeline.css";
 import "./styles/small.css";
 import "./styles/red-light.css";
 import "./appearance";

@@ -25,7 +25,8 @@ export type DialogName =
   | "evacuate"
   | "par_request"
   | "locate"
-  | "text";
+  | "text"
+  | "timeline";
 export const dialog = signal<DialogName | null>(null);
 /** The unit that the dialog is about, where it is about one. */
 export const dialogUnit = signal<string | null>(null);

@@ -10,6 +10,7 @@ from threading import Lock
 
 import msgspec
 
+from base_station.replay.timelines.unit_timeline import UnitTimeline
 from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.missing_segments import KnownSegment
 from base_station.views.wire import ReplayView
@@ -64,6 +65,18 @@ class CatchUpJob(msgspec.Struct, frozen=True, tag="catch_up"):
     checkpoints: str
     database: str
     since_ns: int  # station time
+    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+
+
+class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
+    """First to a new process: to read the timeline of a unit."""
+
+    log: str
+    database: str
+    unit_id: str
+    from_ns: int
+    until_ns: int
+    buckets: int
     known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
 
 
@@ -147,6 +160,12 @@ class CaughtUp(msgspec.Struct, frozen=True, tag="caught_up"):
     """The last message: the log is projected to where it ended."""
 
 
+class TimelineFrame(msgspec.Struct, frozen=True, tag="timeline_read"):
+    """The last message: the timeline."""
+
+    timeline: UnitTimeline
+
+
 class Failure(msgspec.Struct, frozen=True, tag="failure"):
     """The last message: why there is no more, as a sentence for a person."""
 
@@ -154,7 +173,7 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
     is_memory: bool  # there is not enough of it, nor would there be the next time
 
 
-Job = ReplayJob | PostProcessingJob | ReportJob | CatchUpJob
+Job = ReplayJob | PostProcessingJob | ReportJob | CatchUpJob | TimelineJob
 Command = Play | Pause | Seek | SetSpeed | People | SnapshotRequest
 ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
 PostProcessingReport = (
@@ -162,6 +181,7 @@ PostProcessingReport = (
 )
 IncidentReportResult = ReportFrame | Damage | Failure
 CatchUpResult = CaughtUp | Damage | Failure
+TimelineResult = TimelineFrame | Damage | Failure
 
 
 class FrameChannel:
@@ -172,7 +192,14 @@ class FrameChannel:
         self._sending = Lock()
 
     def send(
-        self, message: Job | Command | ReplayReport | PostProcessingReport | ReportFrame | CaughtUp
+        self,
+        message: Job
+        | Command
+        | ReplayReport
+        | PostProcessingReport
+        | ReportFrame
+        | CaughtUp
+        | TimelineFrame,
     ) -> None:
         """Raises StoreError where the other end is gone."""
         encoded = msgspec.msgpack.encode(message)
@@ -243,4 +270,9 @@ def read_report_result(encoded: bytes) -> IncidentReportResult:
 
 def read_catch_up(encoded: bytes) -> CatchUpResult:
     result: CatchUpResult = msgspec.msgpack.decode(encoded, type=CatchUpResult)
+    return result
+
+
+def read_timeline_result(encoded: bytes) -> TimelineResult:
+    result: TimelineResult = msgspec.msgpack.decode(encoded, type=TimelineResult)
     return result

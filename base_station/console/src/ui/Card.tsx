@@ -3,7 +3,7 @@ import { memo } from "preact/compat";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
-import { centring, pane, select, selectedUnit } from "../uiState";
+import { centring, openDialog, pane, select, selectedUnit } from "../uiState";
 import { isOfAnother } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName, type Urgency } from "../live/urgency";
@@ -101,6 +101,11 @@ function Whole({ unit, chosen, short, picture }: WholeProps) {
       )}
       <Trust unit={unit} />
       {chosen && mayAct.value && unit.registered && <CardActions unit={unit} />}
+      {chosen && (
+        <button type="button" class="to-timeline" onClick={() => openDialog("timeline", unitId)}>
+          Timeline
+        </button>
+      )}
       {!unit.registered && <UnknownUnit unitId={unitId} />}
       {unit.registered && unit.person === null && mayAct.value && <AskWearer unit={unit} />}
     </>

@@ -14,6 +14,7 @@ import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
 import { RollCallDialog } from "./RollCallDialog";
 import { SiteDialog } from "./SiteDialog";
+import { TimelineDialog } from "./TimelineDialog";
 import { UnitsDialog } from "./UnitsDialog";
 import { UsersDialog } from "./UsersDialog";
 
@@ -60,6 +61,8 @@ function Opened() {
       return <AuditDialog />;
     case "enrolments":
       return <EnrolmentsDialog />;
+    case "timeline":
+      return <TimelineDialog />;
     case "evacuate":
     case "par_request":
     case "locate":

@@ -1,0 +1,247 @@
+import { useSignal, type ReadonlySignal, type Signal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import * as api from "../api";
+import { dateAndTime, timeSince } from "../format";
+import { displayName } from "../live/urgency";
+import { attempt, picture, replay, steer } from "../sessions";
+import type { Charts } from "../timeline/charts";
+import {
+  bounded,
+  extremes,
+  moved,
+  STRIPS,
+  valueAt,
+  within,
+  zoomed,
+  type Span,
+  type Strip,
+  type Timeline,
+} from "../timeline/series";
+import { dialogUnit } from "../uiState";
+import { Dialog } from "./Dialog";
+
+const WITHOUT_INCIDENT_MS = 3_600_000;
+const BUCKETS = 1000; // one a pixel of the widest dialog
+
+/** What one unit measured and stated, over the incident; in a replay with the moment that is shown. */
+export function TimelineDialog() {
+  const unitId = dialogUnit.value;
+  const unit = unitId === null ? undefined : picture.value?.unit(unitId)?.peek();
+  if (unitId === null || unit === undefined) return null;
+  return (
+    <Dialog title={`Timeline of ${displayName(unit)}`} wide>
+      <UnitTimeline unitId={unitId} />
+    </Dialog>
+  );
+}
+
+function UnitTimeline({ unitId }: { unitId: string }) {
+  const whole = useSignal(wholeSpan());
+  const shown = useSignal(whole.peek());
+  const timeline = useSignal<Timeline | null>(null);
+  const asking = useSignal(true);
+  const lookedAt = useSignal<number | null>(null);
+  useEffect(() => {
+    let isWanted = true;
+    asking.value = true;
+    const { fromMs, untilMs } = shown.value;
+    void attempt(api.timeline(unitId, fromMs, untilMs, BUCKETS)).then((answer) => {
+      if (!isWanted) return;
+      asking.value = false;
+      if (answer !== null) timeline.value = answer;
+    });
+    return () => {
+      isWanted = false;
+    };
+  }, [unitId, shown.value]);
+  const show = (span: Span) => {
+    lookedAt.value = null;
+    shown.value = span;
+  };
+  return (
+    <div class="timeline" aria-busy={asking.value}>
+      <Steps
+        whole={whole.value}
+        shown={shown.value}
+        show={show}
+        again={() => show((whole.value = wholeSpan()))}
+      />
+      <p class="quiet">
+        {timeSince(whole.value.fromMs, shown.value.fromMs)} to{" "}
+        {timeSince(whole.value.fromMs, shown.value.untilMs)}, {dateAndTime(shown.value.fromMs).slice(0, 10)}.
+        Grey: no radio contact. Draw over a line to zoom in.
+        {isReplay() && " Press on a line to go there in the replay."}
+        <span role="status">{asking.value && " The station reads its log …"}</span>
+      </p>
+      {timeline.value?.defects.map((defect) => (
+        <p key={defect} class="warned">
+          {defect}
+        </p>
+      ))}
+      {timeline.value && <Moment timeline={timeline.value} lookedAt={lookedAt} />}
+      {timeline.value && (
+        <Lines
+          timeline={timeline.value}
+          lookedAt={lookedAt}
+          zoom={(span) => show(within(span, whole.value))}
+        />
+      )}
+    </div>
+  );
+}
+
+/** Of the replay, of the incident that runs, or the last hour. */
+function wholeSpan(): Span {
+  const of = picture.peek();
+  const past = of?.replay.peek() ?? null;
+  if (past !== null) return bounded({ fromMs: past.start_ms, untilMs: past.end_ms });
+  const untilMs = of?.nowMs.peek() ?? 0;
+  const incident = of?.incident.peek() ?? null;
+  const runs = incident !== null && incident.closed_ms === null;
+  return bounded({ fromMs: runs ? incident.opened_ms : untilMs - WITHOUT_INCIDENT_MS, untilMs });
+}
+
+function isReplay(): boolean {
+  return replay.value !== null;
+}
+
+/** The moment on the screen behind; null: what is live. */
+function shownMs(): number | null {
+  return picture.value?.replay.value?.at_ms ?? null;
+}
+
+function seek(atMs: number): void {
+  const watched = replay.peek();
+  if (watched !== null) steer(watched, { at_ms: Math.round(atMs) });
+}
+
+interface StepsProps {
+  whole: Span;
+  shown: Span;
+  show: (span: Span) => void;
+  again: () => void;
+}
+
+function Steps({ whole, shown, show, again }: StepsProps) {
+  const isWhole = shown.fromMs === whole.fromMs && shown.untilMs === whole.untilMs;
+  const step = (word: string, isDone: boolean, go: () => void) => (
+    <button type="button" disabled={isDone} onClick={go}>
+      {word}
+    </button>
+  );
+  return (
+    <div class="row" role="group" aria-label="Time shown">
+      {step("Earlier", shown.fromMs <= whole.fromMs, () => show(moved(shown, -1, whole)))}
+      {step("Later", shown.untilMs >= whole.untilMs, () => show(moved(shown, 1, whole)))}
+      {step("Zoom in", false, () => show(zoomed(shown, 0.5, whole)))}
+      {step("Zoom out", isWhole, () => show(zoomed(shown, 2, whole)))}
+      {step("All of it", isWhole, () => show(whole))}
+      {!isReplay() && step("Until now", false, again)}
+    </div>
+  );
+}
+
+interface LookProps {
+  timeline: Timeline;
+  lookedAt: Signal<number | null>;
+}
+
+/** The moment whose values are written beside the lines; by keys, too. */
+function Moment({ timeline, lookedAt }: LookProps) {
+  const { from_ms: fromMs, until_ms: untilMs } = timeline;
+  const atMs = momentOf(timeline, lookedAt);
+  return (
+    <div class="row moment">
+      <label class="long">
+        Values at {timeSince(fromMs, atMs)}
+        <input
+          type="range"
+          min={fromMs}
+          max={untilMs}
+          step={1000}
+          value={atMs}
+          aria-valuetext={timeSince(fromMs, atMs)}
+          onInput={(event) => (lookedAt.value = Number(event.currentTarget.value))}
+        />
+      </label>
+      {isReplay() && (
+        <button type="button" onClick={() => seek(atMs)}>
+          Replay from here
+        </button>
+      )}
+    </div>
+  );
+}
+
+/** Where the person looks, else what the replay shows, else the end. */
+function momentOf({ from_ms, until_ms }: Timeline, lookedAt: ReadonlySignal<number | null>): number {
+  const atMs = lookedAt.value ?? shownMs() ?? until_ms;
+  return Math.min(Math.max(atMs, from_ms), until_ms);
+}
+
+interface LinesProps extends LookProps {
+  zoom: (span: Span) => void;
+}
+
+function Lines({ timeline, lookedAt, zoom }: LinesProps) {
+  const places = useRef<HTMLElement[]>([]);
+  const charts = useSignal<Charts | null>(null);
+  useEffect(() => {
+    let isWanted = true;
+    void attempt(import("../timeline/charts")).then((loaded) => {
+      if (!isWanted || loaded === null) return;
+      const look = (atMs: number | null) => (lookedAt.value = atMs);
+      charts.value = new loaded.Charts(places.current, timeline, { look, seek, zoom });
+    });
+    return () => {
+      isWanted = false;
+      charts.peek()?.destroy();
+      charts.value = null;
+    };
+  }, [timeline]);
+  const [shown, looked] = [shownMs(), lookedAt.value];
+  useEffect(() => charts.value?.mark({ shownMs: shown, lookedAtMs: looked }), [
+    charts.value,
+    shown,
+    looked,
+  ]);
+  useEffect(() => {
+    const resize = () => charts.peek()?.resize();
+    addEventListener("resize", resize);
+    return () => removeEventListener("resize", resize);
+  }, []);
+  return (
+    <>
+      {STRIPS.map((strip, number) => (
+        <section key={strip.column} class="timeline-strip" aria-label={strip.title}>
+          <Reading strip={strip} timeline={timeline} atMs={momentOf(timeline, lookedAt)} />
+          <div
+            class="timeline-line"
+            role="img"
+            aria-label={`${strip.title}: ${extremes(strip, timeline) ?? "no values"}`}
+            ref={(place) => {
+              if (place !== null) places.current[number] = place;
+            }}
+          />
+        </section>
+      ))}
+    </>
+  );
+}
+
+interface ReadingProps {
+  strip: Strip;
+  timeline: Timeline;
+  atMs: number;
+}
+
+function Reading({ strip, timeline, atMs }: ReadingProps) {
+  const value = valueAt(timeline[strip.column], atMs);
+  const isEmpty = timeline[strip.column].t_ms.length === 0;
+  return (
+    <h3>
+      {strip.title}{" "}
+      <output>{value === null ? (isEmpty ? "no values" : "not known") : strip.text(value, timeline)}</output>
+    </h3>
+  );
+}
