@@ -54,7 +54,7 @@ class ServerStore:
         self._engines = server_engines(server, is_limited=is_station)
         self.name = self._engines.writing.url.render_as_string(hide_password=True)
         try:
-            self._open()
+            self._open(server)
         except SQLAlchemyError as error:
             self.close()
             kind = DatabaseAwayError if is_away(error) else StoreError
@@ -126,7 +126,7 @@ class ServerStore:
 
     # ---- at the beginning
 
-    def _open(self) -> None:
+    def _open(self, server: ServerAddress) -> None:
         """Raises SQLAlchemyError or StoreError."""
         with self._engines.plain.connect() as connection:
             version = int(connection.scalar(text("SHOW server_version_num")) or 0)
@@ -148,7 +148,11 @@ class ServerStore:
             )
         if self._is_station:
             self._be_the_only_station(STATION_WAIT_S)
-        migrate(self._engines.writing)
+        patient = server_engines(server, is_limited=False)  # a migration may take its time
+        try:
+            migrate(patient.writing)
+        finally:
+            patient.dispose()
 
     def _be_the_only_station(self, wait_s: int) -> None:
         """Take the lock that one station at a time has, for as long as this connection lasts."""
