@@ -99,6 +99,9 @@ def replay(
         float, typer.Option(min=0.25, max=1000.0, callback=finite, help="Times real time.")
     ] = 1.0,
     insecure: InsecureOption = None,
+    recompute: Annotated[
+        bool, typer.Option(help="Decide everything again instead of playing what was shown.")
+    ] = False,
 ) -> None:
     """Show a past incident in a console of its own; the folder is only read."""
     flags = {"data": data, "http.listen": http, "insecure": insecure or None}
@@ -107,7 +110,7 @@ def replay(
         from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
     with sigterm_as_ctrl_c(), progress_bar("reading the log") as on_progress:
-        run_replay_station(settings, incident, speed, _announce, on_progress)
+        run_replay_station(settings, incident, speed, _announce, on_progress, recompute=recompute)
 
 
 @app.command()

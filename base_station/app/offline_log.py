@@ -58,8 +58,10 @@ class OfflineLog:
     defects: LogDefects
     report: Report
 
-    def archive(self) -> Archive:
-        """Uses the station's checkpoints where there are any that fit this program; what is come by
+    def archive(self, *, recompute: bool = False) -> Archive:
+        """``recompute``: what consoles were shown is decided again, and not played from the log.
+
+        Uses the station's checkpoints where there are any that fit this program; what is come by
         is saved elsewhere: to go back is not to step an hour again.
         """
         own = Checkpoints(self.scratch / "checkpoints", self.report)
@@ -76,6 +78,7 @@ class OfflineLog:
             flaws=defects,
             look=defects.look,
             note=defects.note,
+            console=None if recompute else log.everything,
         )
 
 
@@ -87,8 +90,10 @@ def open_offline_log(
     on_progress: Progress,
     *,
     in_place: bool,
+    decides_again: bool = True,
 ) -> OfflineLog:
     """``in_place``: with the database that is there, where it can be written; else with a copy.
+    ``decides_again``: it is looked whether this version decides otherwise than the station did.
 
     A database that is missing, or older than the incident, is made of the log.  ``report`` hears in
     words of that and of what cannot be read, ``on_progress`` the fraction done.
@@ -99,10 +104,17 @@ def open_offline_log(
     damage = "" if server is not None else damage_of(folder.database)
     if damage:
         report(f"the database is damaged ({damage}); the log is read instead")
+<<<<<<< HEAD
     elif server is not None or (in_place and _is_writable(folder)):
         store = _opened(folder, closing, report)
         if store is not None and not _lacks_incident(store, folder, incident_id):
             log, defects = _open_log(folder, store, left_out, report)
+=======
+    elif in_place and _is_writable(folder):
+        store = closing.enter_context(Store(folder.database))
+        if not _lacks_incident(store, folder, incident_id):
+            log, defects = _open_log(folder, store, left_out, report, decides_again=decides_again)
+>>>>>>> 1601ca19 (Replay: play what consoles were shown, which the engine records in the log; deciding again stays as proof)
             return OfflineLog(
                 folder,
                 store,
@@ -116,7 +128,7 @@ def open_offline_log(
     if not damage and server is None:
         copy_database(folder.database, copy)
     store = closing.enter_context(Store(copy))
-    log, defects = _open_log(folder, store, left_out, report)
+    log, defects = _open_log(folder, store, left_out, report, decides_again=decides_again)
     if _lacks_incident(store, folder, incident_id):
         report("the database does not have this incident; the log is read instead")
         project_whole_log(store, folder.log, on_progress)
@@ -135,7 +147,16 @@ def _opened(folder: DataFolder, closing: ExitStack, report: Report) -> Database 
 
 
 def _open_log(
+<<<<<<< HEAD
     folder: DataFolder, store: Database, left_out: Mapping[Path, str], report: Report
+=======
+    folder: DataFolder,
+    store: Store,
+    left_out: Mapping[Path, str],
+    report: Report,
+    *,
+    decides_again: bool,
+>>>>>>> 1601ca19 (Replay: play what consoles were shown, which the engine records in the log; deciding again stays as proof)
 ) -> tuple[LogFeed, LogDefects]:
     """Opens the log with its known defects, which are reported."""
     known = known_segments_of(Records(store, SystemClock()))
@@ -146,7 +167,7 @@ def _open_log(
         defects.note_foreign(path, reason)
     defects.look_at_files()
     log = LogFeed(folder.log, on_damage=defects.note_damage)
-    if not defects() and decisions_differ(log.records(), past_pipeline(None)):
+    if decides_again and not defects() and decisions_differ(log.records(), past_pipeline(None)):
         defects.note(DIFFERS)
     return log, defects
 

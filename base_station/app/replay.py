@@ -38,8 +38,13 @@ def run_replay_station(
     speed: float,
     announce: Announce,
     on_progress: Callable[[float], None],
+    *,
+    recompute: bool = False,
 ) -> None:
     """A station that shows one past incident, and writes nothing to the folder.
+
+    It plays what consoles were shown; with ``recompute``, and where the log has nothing of that,
+    everything is decided again.
 
     A live station may be running on it: the database is copied first.  ``on_progress`` hears the
     fraction done of reading the log, where that must be.
@@ -48,7 +53,13 @@ def run_replay_station(
     with ExitStack() as closing:
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
         offline_log = open_offline_log(
-            config.data, incident_id, closing, announce, on_progress, in_place=False
+            config.data,
+            incident_id,
+            closing,
+            announce,
+            on_progress,
+            in_place=False,
+            decides_again=recompute,
         )
         folder, store = offline_log.folder, offline_log.store
         accounts, records = Accounts(store, clock), Records(store, clock)
@@ -57,7 +68,7 @@ def run_replay_station(
         username, password = add_own_login(accounts)
         announce(f"login for this replay: {username}  password: {password}")
 
-        archive = offline_log.archive()
+        archive = offline_log.archive(recompute=recompute)
         replays = Replays(replay_starter(archive, roster, clock, folder.recorded_until_ns))
         services = Services(
             accounts=accounts,

@@ -87,6 +87,7 @@ def _archive(
         flaws=flaws,
         look=flaws.look,
         note=flaws.note,
+        console=log.everything,
     )
 
 

@@ -22,6 +22,7 @@ from base_station.engine.action_queue import ActionQueue
 from base_station.engine.admission import Admission, classify, mark_missing
 from base_station.engine.checkpoint_writer import CheckpointWriter
 from base_station.engine.console_publisher import ConsolePublisher
+from base_station.engine.console_recorder import ConsoleRecorder
 from base_station.engine.delivery_queue import DeliveryQueue
 from base_station.engine.health_monitor import HealthMonitor
 from base_station.engine.message_report import message_report
@@ -30,7 +31,7 @@ from base_station.engine.projector import Projector
 from base_station.engine.write_ahead import WriteAhead
 from base_station.unit_sync.log_gap_detector import Lost
 from base_station.views.wire import Snapshot
-from shared.channels import EXTERNAL, TICK
+from shared.channels import EXTERNAL, OPERATOR, TICK
 from shared.clock import NS_PER_S
 from shared.codec import encode
 from shared.envelope import Stamper
@@ -60,6 +61,7 @@ FINISH_NS = 2 * NS_PER_S  # at the end, for what waits in the feed
 STOP_TIMEOUT_S = 10.0
 
 _EXTERNAL_KEY = EXTERNAL.key(STATION_ID)
+_OPERATOR_KEY = OPERATOR.key(STATION_ID)
 _EXTERNAL_WAITING = 20  # batches of other systems, of a second each
 # What is to be sent to units changes with these at once; with all else at the next tick.
 _CHANGES_ORDERS = (
@@ -92,9 +94,11 @@ class StationEngine:
         self._stamper = Stamper(STATION_ID, ports.boot_id, ports.clock)
         self._health = HealthMonitor()
         self._publisher = ConsolePublisher(pipeline, ports.live, ports.people)
+        self._console_recorder = ConsoleRecorder(pipeline, ports.log)
         self._projector = Projector()
+        publishers = self._publisher, self._console_recorder.publisher
         self._write_ahead = WriteAhead(
-            pipeline, ports.log, self._publisher, self._projector, self._health
+            pipeline, ports.log, publishers, self._projector, self._health
         )
         self._checkpoint_writer = CheckpointWriter(ports.log, ports.checkpoints, self._health)
         self._actions = ActionQueue(pipeline, self._write_ahead, self._stamper)
@@ -214,6 +218,8 @@ class StationEngine:
             try:
                 if follows:
                     self._write_ahead.append_and_apply(t_ns, key, payload)
+                    if key == _OPERATOR_KEY:
+                        self._record_console(at_once=True)
                 else:
                     self._admit(t_ns, key, payload)
             except Exception as error:  # noqa: BLE001  # costs this record, not those behind it
@@ -285,6 +291,7 @@ class StationEngine:
     def _take_actions(self) -> None:
         for done in self._actions.perform_waiting(lambda: self._checkpoint_writer.is_under_way):
             self._flush_urgent()
+            self._record_console(at_once=True)
             if isinstance(done.action, _CHANGES_ORDERS):
                 self._ports.send_orders(command_tracker.open_orders(self._pipeline.state))
             done.answer()
@@ -339,6 +346,11 @@ class StationEngine:
         self._project()
         health, self._health_due = self._health_due, False
         self._publisher.publish_delta(health)
+        self._record_console()
+
+    def _record_console(self, *, at_once: bool = False) -> None:
+        with self._health.guard("console recorder"):
+            self._console_recorder.record(at_once=at_once)
 
     def _save_checkpoint(self) -> None:
         with self._health.guard("checkpoint"):

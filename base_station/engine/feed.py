@@ -182,6 +182,17 @@ class LogFeed:
         self._flush()
         return read_log(self._folder, start_ns, end_ns, keys, self._on_damage)
 
+    def everything(
+        self, start_ns: int, end_ns: int | None, topics: Collection[str] | None
+    ) -> Iterator[LogRecord]:
+        """Records of these topics, of those that follow from others too; None: all that happened
+        and was decided.
+        """
+        self._flush()
+        return read_log(
+            self._folder, start_ns, end_ns, topics, self._on_damage, derived=topics is not None
+        )
+
     def watch(self) -> Callable[[], bool]:
         """Gives what tells whether a segment of now has been written anew since, or is gone."""
         now = self._files()

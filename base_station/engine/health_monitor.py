@@ -11,7 +11,13 @@ from shared.messages.station import ReportProblem
 
 WELL_AFTER = 5  # checks in a row without a problem, one a second
 _NUMBER = re.compile(r"\d+")
-_REPORTED_PARTS = ("drive", "pipeline", "bus", "checkpoint")  # by ``report`` and ``report_bug``
+_REPORTED_PARTS = (
+    "drive",
+    "pipeline",
+    "bus",
+    "checkpoint",
+    "console recorder",
+)  # by ``report`` and ``report_bug``
 log = logging.getLogger(__name__)
 
 

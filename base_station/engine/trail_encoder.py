@@ -83,14 +83,15 @@ class _EncodedTrail:
 
 def _encoded(steps: Sequence[TrailStep]) -> bytes:
     """The points, without the brackets about them."""
-    points = [
-        TrailPoint(
-            step.t_ns // NS_PER_MS,
-            round(step.north_m, 2),
-            round(step.east_m, 2),
-            step.floor,
-            int(step.after_gap),
-        )
-        for step in steps
-    ]
-    return encoded_trail(points)[1:-1]
+    return encoded_trail(map(trail_point, steps))[1:-1]
+
+
+def trail_point(step: TrailStep) -> TrailPoint:
+    """As a console gets it: to a centimetre."""
+    return TrailPoint(
+        step.t_ns // NS_PER_MS,
+        round(step.north_m, 2),
+        round(step.east_m, 2),
+        step.floor,
+        int(step.after_gap),
+    )

@@ -4,7 +4,7 @@ its decisions are logged too.  The log alone gives the same run again.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from base_station.core.events import Output, StationEvent, event_of, is_decision, number_of
 from base_station.core.pipeline import StationPipeline
@@ -24,19 +24,19 @@ _KEYS = {FusedPosition: FUSED.key(STATION_ID), AlarmChange: ALARM.key(STATION_ID
 
 
 class WriteAhead:
-    """``append_and_apply`` events; picture and projector are told what follows from them."""
+    """``append_and_apply`` events; publishers and projector are told what follows from them."""
 
     def __init__(
         self,
         pipeline: StationPipeline,
         log: Log,
-        publisher: ConsolePublisher,
+        publishers: Sequence[ConsolePublisher],
         projector: Projector,
         health: HealthMonitor,
     ) -> None:
         self._pipeline = pipeline
         self._log = log
-        self._publisher = publisher
+        self._publishers = publishers
         self._projector = projector
         self._health = health
         self._foxglove = FoxgloveTopics()
@@ -129,7 +129,8 @@ class WriteAhead:
         except Exception as error:  # noqa: BLE001  # costs one message, not the station
             self._health.report_bug("pipeline", error)
             outputs = []
-        self._publisher.mark_changed(outputs)
+        for publisher in self._publishers:
+            publisher.mark_changed(outputs)
         self._projector.note(event, outputs)
         return outputs
 

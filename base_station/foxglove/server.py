@@ -16,7 +16,14 @@ from foxglove.websocket import (
 )
 
 from shared.errors import UserError
-from shared.mcap_log import LogRecord, descriptor_set, is_derived, log_topic, wire_type_of
+from shared.mcap_log import (
+    LogRecord,
+    descriptor_set,
+    is_console,
+    is_derived,
+    log_topic,
+    wire_type_of,
+)
 
 EVERY_ALARM = "foxglove/all/log"  # alarms of all units and of the station, for one panel
 _ALARM_NAME = log_topic("").rpartition("/")[2]
@@ -64,11 +71,13 @@ class FoxgloveServer:
     def advertise(self, topics: Iterable[str]) -> None:
         """Make channels ahead of their messages: a client subscribes only to what it knows."""
         for topic in topics:
-            if topic not in self._channels:
+            if topic not in self._channels and not is_console(topic):
                 self._open(topic)
 
     def publish(self, records: Iterable[LogRecord]) -> None:
         for t_ns, topic, payload in records:
+            if is_console(topic):  # as a console is shown it, which Foxglove shows by other topics
+                continue
             self._log(t_ns, topic, payload)
             if is_derived(topic) and topic.endswith(f"/{_ALARM_NAME}"):
                 self._log(t_ns, EVERY_ALARM, payload)

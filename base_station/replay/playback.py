@@ -8,7 +8,7 @@ live station had decided, one by one.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
@@ -22,6 +22,8 @@ from shared.messages import AlarmChange, FusedPosition
 
 Record = tuple[int, str, bytes]  # station time, key, payload
 OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the order of writing
+# From a log time on, until before another one; topics, or None: all that happened and was decided.
+ReadLog = Callable[[int, int | None, Collection[str] | None], Iterator[Record]]
 MakePipeline = Callable[[Checkpoint | None], StationPipeline]
 Watch = Callable[[], Callable[[], bool]]  # what it gives tells whether the past was changed since
 Decision = FusedPosition | AlarmChange
@@ -42,6 +44,7 @@ class Archive:
     flaws: Callable[[], Sequence[str]] = tuple  # what is known by now not to be as it was, in words
     look: Callable[[], bool] = lambda: False  # a little more for flaws; False: all is looked at
     note: Callable[[str], object] = lambda _: None  # a flaw that somebody else has found
+    console: ReadLog | None = None  # what consoles were shown; None: it is decided again
     has_lost: Callable[[int], bool] = lambda _: False  # whether the log had records of that time
 
     def latest(self, until_ns: int | None = None, after_ns: int = -1) -> SavedState | None:

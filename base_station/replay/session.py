@@ -6,12 +6,14 @@ import logging
 import math
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.ports import LiveSink, Trails
-from base_station.replay.playback import Archive, Playback
+from base_station.replay.playback import Archive
+from base_station.replay.player import Player
+from base_station.replay.recomputed_player import RecomputedPlayer
+from base_station.replay.recorded_player import RecordedPlayer
 from base_station.replay.unrecorded import RecordGap
 from base_station.replay.version_check import DIFFERS, VersionCheck
 from base_station.storage.db.known_people import PersonLookup
@@ -69,10 +71,13 @@ class ReplaySession:
         self._was_changed: Callable[[], bool]
         self._looking = LogOnChange(_log, "what the log lacks cannot be seen")
         self._trouble = LogOnChange(_log, "whether the past was changed cannot be seen")
-        self._playback: Playback
-        self._version_check: VersionCheck | None = None  # until the first picture is shown
-        self._publisher = ConsolePublisher(archive.make_pipeline(None), sink, people)
+        self._sink, self._people = sink, people
+        self._player: Player  # that is shown
+        self._recorded: RecordedPlayer | None  # of what the log has of consoles
+        self._recomputed: RecomputedPlayer | None  # once it is needed
+        self._version_check: VersionCheck | None = None  # until something was decided again
         self._looked_ns = self._whole_ns = clock.monotonic_ns()
+        self._is_behind = False  # the past goes by as fast as it is read
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._lock = threading.Lock()  # guards what follows
         self._speed = checked_speed(speed)
@@ -186,7 +191,8 @@ class ReplaySession:
                 continue  # a picture now would be of another time than asked for
             self._answer()
             looks = self._look_for_flaws()
-            self._news.wait(DELTA_S if self._playing or looks else PAUSED_S)
+            if not self._is_behind:
+                self._news.wait(DELTA_S if self._playing or looks else PAUSED_S)
             self._news.clear()
 
     def _look_for_flaws(self) -> bool:
@@ -200,9 +206,11 @@ class ReplaySession:
 
     def _checks_version(self) -> bool:
         """A record more; False: it was checked, or so much is missing that nobody can tell."""
+        if self._recomputed is None:
+            return False  # what is played was decided then
         if self._version_check is None:
             self._archive.look()  # at its files
-            self._version_check = VersionCheck(self._playback, self._window.end_ns)
+            self._version_check = self._recomputed.version_check(self._window.end_ns)
         differs = None if self._archive.flaws() else self._version_check.look()
         if differs:
             self._archive.note(DIFFERS)
@@ -211,8 +219,20 @@ class ReplaySession:
     def _open(self) -> None:
         """The log as it is now, from its beginning."""
         self._was_changed = self._archive.watch()
-        self._playback = Playback(self._archive)
-        self._version_check = None
+        self._recomputed = self._version_check = None
+        read = self._archive.console
+        self._recorded = None if read is None else RecordedPlayer(read, self._sink, self._people)
+        self._player = self._recorded or self._recomputing_player()
+
+    def _recomputing_player(self) -> RecomputedPlayer:
+        if self._recomputed is None:
+            self._recomputed = RecomputedPlayer(self._archive, self._sink, self._people)
+        return self._recomputed
+
+    def _players(self) -> Iterator[Player]:
+        if self._recorded is not None:
+            yield self._recorded
+        yield self._recomputing_player()
 
     def _follow_changes(self) -> None:
         """Where somebody was forgotten since, it shows the past as the log has it now."""
@@ -241,17 +261,19 @@ class ReplaySession:
         if seek_ns is None:
             return
         published_ns = self._clock.monotonic_ns()
-        for _ in self._playback.seek(seek_ns):
-            if self._closed.is_set() or self._seek_ns is not None:
-                return
-            if self._clock.monotonic_ns() - published_ns >= PAUSED_S * NS_PER_S:
-                published_ns = self._clock.monotonic_ns()
-                self._publish_seeking()
-        self._playback.show_unrecorded()
+        for player in self._players():
+            for _ in player.seek(seek_ns):
+                if self._closed.is_set() or self._seek_ns is not None:
+                    return
+                if self._clock.monotonic_ns() - published_ns >= PAUSED_S * NS_PER_S:
+                    published_ns = self._clock.monotonic_ns()
+                    self._publish_seeking()
+            if not player.is_lost:
+                break
+        self._player = player
         with self._lock:
-            self._at_ns, self._seeking, self._gap = seek_ns, False, self._playback.gap
-        self._publisher.use_pipeline(self._playback.pipeline)
-        self._publisher.reset(self.view())
+            self._at_ns, self._seeking, self._gap = seek_ns, False, player.gap
+        player.reset(self.view())
         with self._lock:
             self._moved_ns = self._clock.monotonic_ns()  # the way there is not played
 
@@ -259,15 +281,16 @@ class ReplaySession:
         """A long way: consoles see that somebody is there, and where it goes."""
         with self._lock:
             self._seeking = True
-        self._publisher.publish_delta(replay=self.view())
+        self._player.publish(self.view(), whole=False)
         self._answer()
 
     def _answer(self) -> None:
         while self._asked:
-            self._asked.popleft()(*self._publisher.snapshot(self.view()))
+            self._asked.popleft()(*self._player.snapshot(self.view()))
 
     def _move(self) -> None:
         """Let as much of the past go by as the clock and the speed say."""
+        self._is_behind = False
         with self._lock:
             now_ns = self._clock.monotonic_ns()
             elapsed_ns, self._moved_ns = now_ns - self._moved_ns, now_ns
@@ -278,17 +301,18 @@ class ReplaySession:
         if until_ns is None:
             self._publish()
             return
-        began_ns = self._clock.monotonic_ns()
-        while (outputs := self._playback.advance(until_ns)) is not None:
-            self._publisher.mark_changed(outputs)
+        began_ns, player = self._clock.monotonic_ns(), self._player
+        while player.advance(until_ns):
             if self._clock.monotonic_ns() - began_ns > DELTA_S * NS_PER_S:
-                until_ns = self._playback.at_ns  # as fast as it goes
+                until_ns = player.at_ns
+                self._is_behind = True  # as fast as it goes
                 break
-        self._publisher.mark_changed(self._playback.show_unrecorded())
         with self._lock:
             if self._seek_ns is None:
-                self._at_ns, self._gap = until_ns, self._playback.gap
+                self._at_ns, self._gap = until_ns, player.gap
                 self._playing = self._playing and until_ns < self._window.end_ns
+                if player.is_lost:  # behind what consoles were shown, and the log goes on
+                    self._seek_ns = until_ns
         self._publish()
 
     def _publish(self) -> None:
@@ -296,7 +320,7 @@ class ReplaySession:
         whole = now_ns - self._whole_ns >= WHOLE_NS
         if whole:
             self._whole_ns = now_ns
-        self._publisher.publish_delta(whole, self.view())
+        self._player.publish(self.view(), whole=whole)
 
 
 def checked_speed(speed: float) -> float:

@@ -20,8 +20,12 @@ from shared.mcap_log.rebuilding import RebuiltSegment
 from shared.mcap_log.recovery import Recovery, recover_log
 from shared.mcap_log.rewriting import remove_torn, rewrite_segment, write_segment_like
 from shared.mcap_log.schemas import (
+    DELTA_TOPIC,
     PLAN_TOPIC,
+    SNAPSHOT_TOPIC,
+    TRAIL_TOPIC,
     descriptor_set,
+    is_console,
     is_derived,
     location_topic,
     log_topic,
@@ -37,8 +41,11 @@ from shared.mcap_log.writing import (
 )
 
 __all__ = [
+    "DELTA_TOPIC",
     "LEFT_OUT",
     "PLAN_TOPIC",
+    "SNAPSHOT_TOPIC",
+    "TRAIL_TOPIC",
     "LogRecord",
     "LogTail",
     "RebuiltSegment",
@@ -53,6 +60,7 @@ __all__ = [
     "foreign_in_words",
     "identity_in_log",
     "identity_of",
+    "is_console",
     "is_derived",
     "location_topic",
     "log_topic",

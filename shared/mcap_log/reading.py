@@ -133,7 +133,7 @@ class SegmentReader:
         )
         for index, chunk in enumerate(self._contents.chunks):
             outside = chunk.end_ns < wanted.low_ns or chunk.start_ns >= wanted.high_ns
-            if outside and index < self._contents.chunks_learned:
+            if index < self._contents.chunks_learned and (outside or self._lacks(chunk, keys)):
                 continue
             data = self._chunk_data(chunk)
             offsets = None if keys is None else self._indexed_offsets(chunk, keys, data)
@@ -170,6 +170,13 @@ class SegmentReader:
                 unknown += 1
         if unknown:
             self._file.note(f"{unknown} records whose key was in a damaged part are lost")
+
+    def _lacks(self, chunk: Chunk, keys: Container[str] | None) -> bool:
+        """True where the chunk's index has none of the topics: it need not be unpacked."""
+        if keys is None or chunk.topic_offsets is None:
+            return False
+        topics = (topic for topic, _ in INDEX_OFFSET.iter_unpack(chunk.topic_offsets))
+        return not any(self._contents.topics.get(topic) in keys for topic in topics)
 
     def _chunk_data(self, chunk: Chunk) -> bytes:
         """The chunk's records; nothing, and a note of the damage, where they are not intact."""
@@ -227,8 +234,8 @@ def read_log(
 
     From ``start_ns`` until before ``end_ns``; log times must not go back from one segment to the
     next.  Files that are no segments of this log are left out.  ``on_damage`` hears in words of
-    each part that could not be read; ``derived``: topics made for Foxglove are given, too.  Raises
-    LogError when a segment is taken away meanwhile.
+    each part that could not be read; ``derived``: topics that follow from others are given, too.
+    Raises LogError when a segment is taken away meanwhile.
     """
     foreign: dict[Path, str] = {}
     following = dict(candidates(folder, foreign))

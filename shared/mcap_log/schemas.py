@@ -16,27 +16,37 @@ from shared.codec import WIRE_TYPES
 from shared.errors import UnknownChannelError
 from shared.messages.muster.v1.header_pb2 import Header
 
-DERIVED = "foxglove/"  # topics made from others for Foxglove; our own readers skip them
+FOXGLOVE = "foxglove/"  # topics made from others for Foxglove
+CONSOLE = "console/"  # what consoles were shown, once a second: a replay plays it
+DERIVED = (FOXGLOVE, CONSOLE)  # beginnings of topics that follow from the others
 _DERIVED_TYPES: dict[str, Any] = {"location": LocationFix, "log": Log, "plan": GeoJSON}
-PLAN_TOPIC = f"{DERIVED}station/plan"
+PLAN_TOPIC = f"{FOXGLOVE}station/plan"
+SNAPSHOT_TOPIC = f"{CONSOLE}snapshot"
+TRAIL_TOPIC = f"{CONSOLE}trail"  # behind a snapshot: one unit's
+DELTA_TOPIC = f"{CONSOLE}delta"
 
 
 def location_topic(unit_id: str) -> str:
-    return f"{DERIVED}{unit_id}/location"
+    return f"{FOXGLOVE}{unit_id}/location"
 
 
 def log_topic(unit_id: str) -> str:
-    return f"{DERIVED}{unit_id}/log"
+    return f"{FOXGLOVE}{unit_id}/log"
 
 
 def is_derived(key: str) -> bool:
-    """True if a topic only repeats others for Foxglove."""
+    """True if a topic only repeats what follows from others."""
     return key.startswith(DERIVED)
+
+
+def is_console(key: str) -> bool:
+    """True if a topic has what consoles were shown."""
+    return key.startswith(CONSOLE)
 
 
 def wire_type_of(key: str) -> Any | None:
     """The generated message class of a key's payloads; None where the key says nothing."""
-    if key.startswith(DERIVED):
+    if is_derived(key):
         return _DERIVED_TYPES.get(key.rpartition("/")[2])
     try:
         return WIRE_TYPES[parse_key(key)[1].message]

@@ -21,6 +21,7 @@ from shared.mcap_log.identity import SegmentIdentity
 from shared.mcap_log.making import ChunkMaker, McapFile, bytes_of
 from shared.mcap_log.schemas import (
     descriptor_set,
+    is_console,
     is_derived,
     sender_time_and_sequence,
     wire_type_of,
@@ -28,6 +29,7 @@ from shared.mcap_log.schemas import (
 from shared.own_files import make_folder
 
 _ENCODING = "protobuf"
+_CONSOLE_ENCODING = "json"
 _LOG_ID_BYTES = 8
 _TOPICS_MAX = 60_000  # a channel id has 16 bits
 
@@ -132,6 +134,8 @@ class Segment:
         topic = len(self._topics) + 1
         registered = self._topics[key] = topic, not is_derived(key)
         encoding = "" if wire_type is None else _ENCODING
+        if is_console(key):
+            encoding = _CONSOLE_ENCODING
         record = bytes_of(Channel(topic, key, encoding, {}, schema))
         self._mcap.topics[topic] = record
         self._chunk.add_record(record)

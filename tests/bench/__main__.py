@@ -17,6 +17,7 @@ BENCHES = {
     "instructions": "tests.bench.tracker.instructions:bench_instructions",
     "past": "tests.bench.past.command:bench_past",
     "published": "tests.bench.tracker.published:bench_published",
+    "replay": "tests.bench.past.replay:bench_replay",
     "routes": "tests.bench.routes:bench_routes",
     "restart": "tests.bench.restart:bench_restart",
     "sensor": "tests.bench.sensor:bench_sensor",

@@ -54,6 +54,7 @@ class Erasure(msgspec.Struct, frozen=True):
     closing_id: str = ""
     about_until_ns: int = FOREVER_NS  # alarms of its units: until the next incident is opened
     person_ids: frozenset[str] = frozenset()  # whose references go: of the people in the incident
+    openings_ns: tuple[int, ...] = ()  # of all incidents, in order: trails begin anew with each
 
     @property
     def unit_ids(self) -> frozenset[str]:
@@ -87,6 +88,17 @@ class Erasure(msgspec.Struct, frozen=True):
         return any(
             one.unit_id == unit_id and one.from_ns <= t_ns < one.until_ns for one in self.wearings
         )
+
+    def is_shown(self, t_ns: int) -> bool:
+        """True where a console may have shown where somebody was: with the trail that stays until
+        the next incident is opened.
+        """
+        return any(
+            one.from_ns <= t_ns < self._next_opening_ns(one.until_ns) for one in self.wearings
+        )
+
+    def _next_opening_ns(self, t_ns: int) -> int:
+        return next((one for one in self.openings_ns if one >= t_ns), FOREVER_NS)
 
     def is_about(self, unit_id: str, raised_ns: int) -> bool:
         """True if an alarm may name who is to be forgotten: also where it was raised when an
@@ -139,6 +151,7 @@ def erasure_of_person(
     names = {*names}
     since: dict[str, int] = {}  # by unit, while the person wears it
     wearings: list[Wearing] = []
+    openings_ns: list[int] = []
 
     def hand_back(unit_id: str, t_ns: int) -> None:
         if unit_id in since:
@@ -156,9 +169,16 @@ def erasure_of_person(
                 since.setdefault(assign.unit_id, t_ns)
         elif isinstance(action.action, Unassign):
             hand_back(action.action.unit_id, t_ns)
+        elif isinstance(action.action, OpenIncident):
+            openings_ns.append(t_ns)
     for unit_id in list(since):
         hand_back(unit_id, until_ns)
-    return Erasure(tuple(wearings), _longest_first(names), person_id=person_id)
+    return Erasure(
+        tuple(wearings),
+        _longest_first(names),
+        person_id=person_id,
+        openings_ns=tuple(openings_ns),
+    )
 
 
 def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
@@ -199,6 +219,9 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         raise UserError(f"the log knows no incident {incident_id}")
     if closed_ns is None:
         raise UserError(f"the incident {incident_id} is open; close it first")
+    next_opening_ns = next(
+        (t_ns for t_ns, later in actions if isinstance(later.action, OpenIncident)), FOREVER_NS
+    )
     return Erasure(
         tuple(Wearing(unit_id, opened_ns, closed_ns) for unit_id in sorted(units)),
         _longest_first(people.values()),
@@ -209,10 +232,9 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
         assigned_after=tuple(worn.values()),
         opening_id=opening_id,
         closing_id=closing_id,
-        about_until_ns=next(
-            (t_ns for t_ns, later in actions if isinstance(later.action, OpenIncident)), FOREVER_NS
-        ),
+        about_until_ns=next_opening_ns,
         person_ids=frozenset(people),
+        openings_ns=(next_opening_ns,),
     )
 
 

@@ -32,7 +32,7 @@ from shared.channels import (
 )
 from shared.codec import encode
 from shared.errors import UnknownChannelError
-from shared.mcap_log.schemas import is_derived, wire_type_of
+from shared.mcap_log.schemas import is_console, is_derived, wire_type_of
 from shared.messages import (
     STATION_ID,
     AlarmChange,
@@ -149,8 +149,12 @@ class Redactor:
         return t_ns, key, encode(msgspec.structs.replace(change, text=ERASED_TEXT, by=by))
 
     def _derived(self, record: Record) -> list[Record]:
-        """Records that only repeat others for Foxglove."""
-        t_ns, key, _ = record
+        """Records that only repeat others.  What consoles were shown is taken out whole: a replay
+        decides it again, of what is left.
+        """
+        t_ns, key, payload = record
+        if is_console(key):
+            return [] if self._erasure.is_shown(t_ns) or self._mentions(payload) else [record]
         if self._erasure.covers(key.split("/")[1], t_ns):
             return []
         return [self._renamed(record)]

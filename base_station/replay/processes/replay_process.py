@@ -36,7 +36,7 @@ from base_station.replay.processes.wire import (
 from base_station.replay.session import GRACE_S, PAUSED_S, ReplayWindow, checked_speed
 from base_station.storage.db.known_people import KnownPerson, person_lookup
 from base_station.storage.missing_segments import KnownSegment
-from base_station.views.wire import ReplayView, Snapshot
+from base_station.views.wire import ReplayView, Snapshot, read_snapshot
 from shared.clock import NS_PER_MS
 from shared.errors import StoreError
 
@@ -253,7 +253,7 @@ class ReplayProcess:
             return
         with self._lock:
             asked, self._asked = self._asked, deque()
-        snapshot = msgspec.json.decode(encoded, type=Snapshot)
+        snapshot = read_snapshot(encoded)
         for deliver in asked:
             deliver(snapshot, trails)
 

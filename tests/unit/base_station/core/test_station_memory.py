@@ -55,7 +55,7 @@ class Station:
         self.pipeline, self.screen, self.projector = make_pipeline(), Screen(), Projector()
         self.publisher = ConsolePublisher(self.pipeline, self.screen, person_lookup({}))
         self.keeping = WriteAhead(
-            self.pipeline, Room(), self.publisher, self.projector, HealthMonitor()
+            self.pipeline, Room(), (self.publisher,), self.projector, HealthMonitor()
         )
         self.t_ns = 1000 * NS_PER_S
         self.said = {STATION_ID: count(1), UNIT: count(1)}

@@ -78,7 +78,7 @@ def over(disk: Disk, outputs: list[Output]) -> WriteAhead:
         cast("StationPipeline", Decides(outputs)),
         cast("ConsolePublisher", Publisher()),
     )
-    return WriteAhead(pipeline, disk, publisher, Projector(), HealthMonitor())
+    return WriteAhead(pipeline, disk, (publisher,), Projector(), HealthMonitor())
 
 
 @pytest.mark.parametrize(

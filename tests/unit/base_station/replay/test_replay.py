@@ -23,6 +23,7 @@ from shared.codec import encode
 from shared.errors import StoreError, UserError
 from shared.messages.station import CloseIncident, OpenIncident, ReportProblem
 from tests.rig import message_factory
+from tests.rig.console_log import reader, with_console
 from tests.rig.live_station import Screen, make_pipeline
 from tests.rig.logged_walk import DURATION_S, MAYDAY_S, archive, walk_with_mayday
 from tests.rig.station_script import START_NS, Record, Script
@@ -34,12 +35,18 @@ def screen() -> Screen:
     return Screen()
 
 
+@pytest.fixture(params=["decided again", "played as recorded"])
+def source(tmp_path: Path, request: pytest.FixtureRequest) -> Archive:
+    found = archive(walk_with_mayday(), tmp_path)
+    if request.param == "decided again":
+        return found
+    return replace(found, console=reader(with_console(walk_with_mayday(), make_pipeline())))
+
+
 @pytest.fixture
-def session(tmp_path: Path, screen: Screen) -> Iterator[ReplaySession]:
+def session(source: Archive, screen: Screen) -> Iterator[ReplaySession]:
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
-    session = ReplaySession(
-        archive(walk_with_mayday(), tmp_path), window, 1.0, screen, person_lookup({}), SystemClock()
-    )
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), SystemClock())
     yield session
     session.close()
 
@@ -93,6 +100,7 @@ def test_on_a_long_way_it_says_where_it_goes(
     until(lambda: len(screen.resets) == 1)
     monkeypatch.setattr("base_station.replay.session.PAUSED_S", 0.0)
     monkeypatch.setattr("base_station.replay.playback.BURST", 1)
+    monkeypatch.setattr("base_station.replay.recorded_player.BURST", 1)
     session.seek(START_NS + 100 * NS_PER_S)
     until(lambda: len(screen.resets) == 2)
     under_way = [delta.replay for delta in screen.deltas if delta.replay and delta.replay.seeking]

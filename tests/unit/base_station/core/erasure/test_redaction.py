@@ -19,6 +19,7 @@ from shared.channels import (
     unread_key,
 )
 from shared.codec import decode, encode
+from shared.mcap_log import DELTA_TOPIC
 from shared.messages import (
     STATION_ID,
     AlarmChange,
@@ -258,6 +259,30 @@ def test_an_alarm_about_an_incident_and_what_is_noted_of_it_name_nobody_after_it
     ((_, _, payload),) = redact((t_ns, OPERATOR.key(STATION_ID), encode(done)))
     told = msgspec.structs.replace(noted, note=f"spoke to {left}")
     assert encode(msgspec.structs.replace(done, action=told)) == payload
+
+
+@pytest.mark.parametrize(
+    ("t_ns", "shown", "stays"),
+    [
+        (100, b"{}", True),
+        (120, b"{}", False),
+        (250, b"{}", False),  # the trail stays until the next incident
+        (350, b"{}", True),
+        (350, b'{"text": "{person p1} may have fallen"}', False),
+    ],
+)
+def test_what_consoles_were_shown_goes_where_they_showed_who_is_forgotten(
+    t_ns: int, shown: bytes, stays: bool
+) -> None:
+    person = Erasure(
+        (Wearing("anna", 110, 200),),
+        (),
+        person_id="p1",
+        openings_ns=(100, 300),
+        person_ids=frozenset({"p1"}),
+    )
+    record = (t_ns, DELTA_TOPIC, shown)
+    assert Redactor(person, CaptureClocks())(record) == ([record] if stays else [])
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,98 @@
+"""Console messages as the log keeps them: those of ``wire``, with references in the place of names,
+numbers no finer than a console shows, and the points that were added to trails.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import msgspec
+
+from base_station.core.person_references import reference_to
+from base_station.storage.db.known_people import KnownPerson, PersonLookup, shown_text
+from base_station.views.wire import (
+    AlarmView,
+    BeaconView,
+    CommandView,
+    Delta,
+    IncidentView,
+    PersonView,
+    PinView,
+    TrailPoint,
+    UnitView,
+)
+
+# Decimals of a position: a millimetre, a twentieth of a degree, a millimetre on the Earth.
+_DECIMALS = {
+    "north_m": 3,
+    "east_m": 3,
+    "down_m": 3,
+    "ellipse_major_m": 3,
+    "ellipse_minor_m": 3,
+    "ellipse_heading_rad": 3,
+    "std_down_m": 3,
+    "heading_rad": 3,
+    "heading_std_rad": 3,
+    "since_gps_s": 3,
+    "lat_deg": 8,
+    "lon_deg": 8,
+    "floor_probability": 3,
+}
+
+
+class RecordedDelta(Delta, frozen=True, tag="delta", omit_defaults=True):
+    points: Mapping[str, tuple[TrailPoint, ...]] = {}  # by unit, behind what its trail had before
+
+
+def reference_person(person_id: str) -> KnownPerson:
+    """The ``PersonLookup`` of what is recorded: the log has no names."""
+    return KnownPerson(reference_to(person_id))
+
+
+def rounded_unit(unit: UnitView) -> UnitView:
+    position = unit.position
+    if position is None:
+        return unit
+    values = {name: (getattr(position, name), digits) for name, digits in _DECIMALS.items()}
+    rounded = {name: round(one, digits) for name, (one, digits) in values.items() if one}
+    return msgspec.structs.replace(unit, position=msgspec.structs.replace(position, **rounded))
+
+
+def named_unit(unit: UnitView, people: PersonLookup) -> UnitView:
+    person = None if unit.person is None else _named_person(unit.person, people)
+    label = shown_text(unit.label, people)
+    return msgspec.structs.replace(unit, person=person, label=label)
+
+
+def _named_person(person: PersonView, people: PersonLookup) -> PersonView:
+    """A log of an earlier version has the name of then."""
+    known = people(person.person_id)
+    if person.name != reference_to(person.person_id):
+        return msgspec.structs.replace(person, photo_url=known.photo_url)
+    return PersonView(person.person_id, known.name, known.crew, known.role, known.photo_url)
+
+
+def named_alarm(alarm: AlarmView, people: PersonLookup) -> AlarmView:
+    text, by = shown_text(alarm.text, people), shown_text(alarm.by, people)
+    return msgspec.structs.replace(alarm, text=text, by=by)
+
+
+def named_command(command: CommandView, people: PersonLookup) -> CommandView:
+    units = tuple(
+        msgspec.structs.replace(one, acknowledged_by=shown_text(one.acknowledged_by, people))
+        for one in command.units
+    )
+    text = shown_text(command.text, people)
+    return msgspec.structs.replace(command, text=text, units=units)
+
+
+def named_incident(incident: IncidentView, people: PersonLookup) -> IncidentView:
+    return msgspec.structs.replace(incident, name=shown_text(incident.name, people))
+
+
+def named_pin(pin: PinView, people: PersonLookup) -> PinView:
+    return msgspec.structs.replace(pin, note=shown_text(pin.note, people))
+
+
+def named_beacon(beacon: BeaconView, people: PersonLookup) -> BeaconView:
+    return msgspec.structs.replace(beacon, label=shown_text(beacon.label, people))
