@@ -104,17 +104,10 @@ def open_offline_log(
     damage = "" if server is not None else damage_of(folder.database)
     if damage:
         report(f"the database is damaged ({damage}); the log is read instead")
-<<<<<<< HEAD
     elif server is not None or (in_place and _is_writable(folder)):
         store = _opened(folder, closing, report)
         if store is not None and not _lacks_incident(store, folder, incident_id):
-            log, defects = _open_log(folder, store, left_out, report)
-=======
-    elif in_place and _is_writable(folder):
-        store = closing.enter_context(Store(folder.database))
-        if not _lacks_incident(store, folder, incident_id):
             log, defects = _open_log(folder, store, left_out, report, decides_again=decides_again)
->>>>>>> 1601ca19 (Replay: play what consoles were shown, which the engine records in the log; deciding again stays as proof)
             return OfflineLog(
                 folder,
                 store,
@@ -147,16 +140,12 @@ def _opened(folder: DataFolder, closing: ExitStack, report: Report) -> Database 
 
 
 def _open_log(
-<<<<<<< HEAD
-    folder: DataFolder, store: Database, left_out: Mapping[Path, str], report: Report
-=======
     folder: DataFolder,
-    store: Store,
+    store: Database,
     left_out: Mapping[Path, str],
     report: Report,
     *,
     decides_again: bool,
->>>>>>> 1601ca19 (Replay: play what consoles were shown, which the engine records in the log; deciding again stays as proof)
 ) -> tuple[LogFeed, LogDefects]:
     """Opens the log with its known defects, which are reported."""
     known = known_segments_of(Records(store, SystemClock()))

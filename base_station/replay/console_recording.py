@@ -1,4 +1,4 @@
-"""What consoles were shown, as a log has it: keyframes, what follows them, where it is missing."""
+"""Recording of what consoles were shown, in a log: keyframes, what follows them, and its gaps."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import msgspec
 from base_station.engine.console_recorder import KEYFRAME_NS
 from base_station.replay.playback import ReadLog
 from base_station.replay.unrecorded import LONGEST_NS, RecordGap
-from base_station.views.recorded import RecordedDelta
-from base_station.views.wire import Snapshot, Trail, read_snapshot
+from base_station.views.recorded import RecordedDelta, read_snapshot
+from base_station.views.wire import Snapshot, Trail
 from shared.mcap_log import DELTA_TOPIC, SNAPSHOT_TOPIC, TRAIL_TOPIC
 
 _TOPICS = frozenset({SNAPSHOT_TOPIC, TRAIL_TOPIC, DELTA_TOPIC})

@@ -1,4 +1,4 @@
-"""What moves through the past and publishes it; without threads and without a clock."""
+"""Player: moves through the past and publishes it; without threads and without a clock."""
 
 from __future__ import annotations
 

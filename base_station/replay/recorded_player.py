@@ -38,7 +38,8 @@ class RecordedPlayer:
         self._shown_ns: int | None = None  # log time of the frame that is shown
         self._looked_ns: int | None = None  # of the frame behind which it was looked for a gap
         self._stretch: RecordGap | None = None  # what was found there
-        self._next = next(self._frames, None)
+        self._is_unreadable = False
+        self._next = self._following()
 
     @property
     def at_ns(self) -> int:
@@ -46,7 +47,7 @@ class RecordedPlayer:
 
     @property
     def is_lost(self) -> bool:
-        if self._shown_ns is None:
+        if self._shown_ns is None or self._is_unreadable:
             return True
         return self._is_far and self._stretch is None
 
@@ -59,13 +60,6 @@ class RecordedPlayer:
         return None if is_over else stretch
 
     def seek(self, t_ns: int) -> Iterator[None]:
-        try:
-            yield from self._seek(t_ns)
-        except msgspec.MsgspecError as error:
-            _log.warning("what consoles were shown cannot be read, and is decided again: %s", error)
-            self._begin(iter(()))
-
-    def _seek(self, t_ns: int) -> Iterator[None]:
         is_near = self._shown_ns is not None and 0 <= t_ns - self._at_ns < KEYFRAME_NS
         if not is_near or self.is_lost:
             keyframe_ns = self._recording.keyframe_before(t_ns)
@@ -79,7 +73,7 @@ class RecordedPlayer:
                 break
             self._picture.apply(self._next)
             self._shown_ns = self._at_ns = self._next.t_ns
-            self._next = next(self._frames, None)
+            self._next = self._following()
         else:
             return True
         self._at_ns = t_ns
@@ -88,7 +82,7 @@ class RecordedPlayer:
             return False
         self._picture.apply(self._next)  # on the other side of a gap
         self._shown_ns = self._next.t_ns
-        self._next = next(self._frames, None)
+        self._next = self._following()
         return True
 
     def reset(self, view: ReplayView) -> None:
@@ -109,6 +103,14 @@ class RecordedPlayer:
     def snapshot(self, view: ReplayView) -> tuple[Snapshot, Trails]:
         self.publish(view, whole=False)
         return self._picture.snapshot(self._seq, self._now_ms, self._people, view)
+
+    def _following(self) -> Frame | None:
+        try:
+            return next(self._frames, None)
+        except msgspec.MsgspecError as error:
+            _log.warning("what consoles were shown cannot be read, and is decided again: %s", error)
+            self._is_unreadable = True
+            return None
 
     @property
     def _now_ms(self) -> int:

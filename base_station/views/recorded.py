@@ -5,6 +5,7 @@ numbers no finer than a console shows, and the points that were added to trails.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Final
 
 import msgspec
 
@@ -18,6 +19,7 @@ from base_station.views.wire import (
     IncidentView,
     PersonView,
     PinView,
+    Snapshot,
     TrailPoint,
     UnitView,
 )
@@ -42,6 +44,20 @@ _DECIMALS = {
 
 class RecordedDelta(Delta, frozen=True, tag="delta", omit_defaults=True):
     points: Mapping[str, tuple[TrailPoint, ...]] = {}  # by unit, behind what its trail had before
+
+
+class _EncodedSnapshot(Snapshot, frozen=True, tag="snapshot"):
+    plan: msgspec.Raw  # null, where there is none: msgspec reads no optional raw value
+
+
+_SNAPSHOTS: Final = msgspec.json.Decoder(_EncodedSnapshot)
+
+
+def read_snapshot(encoded: bytes) -> Snapshot:
+    """Raises msgspec.MsgspecError."""
+    values = msgspec.structs.asdict(_SNAPSHOTS.decode(encoded))
+    plan = bytes(values.pop("plan"))
+    return Snapshot(**values, plan=None if plan == b"null" else msgspec.Raw(plan))
 
 
 def reference_person(person_id: str) -> KnownPerson:

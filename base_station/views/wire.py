@@ -387,20 +387,6 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     plan_placed: bool = True  # False: nobody knows yet where on the plan people are
 
 
-class _EncodedSnapshot(Snapshot, frozen=True, tag="snapshot"):
-    plan: msgspec.Raw  # null, where there is none: msgspec reads no optional raw value
-
-
-_SNAPSHOTS: Final = msgspec.json.Decoder(_EncodedSnapshot)
-
-
-def read_snapshot(encoded: bytes) -> Snapshot:
-    """Raises msgspec.MsgspecError."""
-    values = msgspec.structs.asdict(_SNAPSHOTS.decode(encoded))
-    plan = bytes(values.pop("plan"))
-    return Snapshot(**values, plan=None if plan == b"null" else msgspec.Raw(plan))
-
-
 class Trail(msgspec.Struct, frozen=True, tag="trail"):
     """Where a unit was before the last snapshot; deltas since then have gone on from there."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from operator import itemgetter
 from pathlib import Path
 
 from shared.mcap_log.container import (
@@ -175,8 +176,9 @@ class SegmentReader:
         """True where the chunk's index has none of the topics: it need not be unpacked."""
         if keys is None or chunk.topic_offsets is None:
             return False
-        topics = (topic for topic, _ in INDEX_OFFSET.iter_unpack(chunk.topic_offsets))
-        return not any(self._contents.topics.get(topic) in keys for topic in topics)
+        topics = self._contents.topics
+        here = map(itemgetter(0), INDEX_OFFSET.iter_unpack(chunk.topic_offsets))
+        return not any(key in keys for key in map(topics.get, here))
 
     def _chunk_data(self, chunk: Chunk) -> bytes:
         """The chunk's records; nothing, and a note of the damage, where they are not intact."""

@@ -36,7 +36,8 @@ from base_station.replay.processes.wire import (
 from base_station.replay.session import GRACE_S, PAUSED_S, ReplayWindow, checked_speed
 from base_station.storage.db.known_people import KnownPerson, person_lookup
 from base_station.storage.missing_segments import KnownSegment
-from base_station.views.wire import ReplayView, Snapshot, read_snapshot
+from base_station.views.recorded import read_snapshot
+from base_station.views.wire import ReplayView, Snapshot
 from shared.clock import NS_PER_MS
 from shared.errors import StoreError
 

@@ -96,6 +96,7 @@ class ReplayFigures:
     warm_worst_s: float
     cold_s: float  # with a log that is not in memory
     times_real: float
+    times_a_core: float  # the same, a second of a core
     peak_mb: float  # of its process
     again_first_s: float  # by deciding again
     again_seek_s: float
@@ -156,8 +157,11 @@ def _figures(
             for share in _COLD:
                 _drop_from_memory(folder)
                 cold_s.append(_seek_s(player, watcher, window, share))
-            times_real = _times_real(player, watcher, window)
-            peak_mb = _peak_mb(processes)
+            worker = _worker(processes)
+            before_s = _cpu_s(worker)
+            times_real, played_s = _times_real(player, watcher, window)
+            times_a_core = played_s / (_cpu_s(worker) - before_s)
+            peak_mb = _peak_mb(worker)
         alone, meanwhile = _live_ages(folder, context, window, live_units, live_s)
     again_first_s, again_s, again_times = _decided_again(folder, window)
     return ReplayFigures(
@@ -174,6 +178,7 @@ def _figures(
         warm_worst_s=max(warm_s),
         cold_s=max(cold_s),
         times_real=times_real,
+        times_a_core=times_a_core,
         peak_mb=peak_mb,
         again_first_s=again_first_s,
         again_seek_s=max(again_s),
@@ -214,8 +219,8 @@ def _seek_s(
 
 def _times_real(
     player: ReplayProcess | ReplaySession, watcher: Watcher, window: ReplayWindow
-) -> float:
-    """All of it, or as much as goes by in half a minute."""
+) -> tuple[float, float]:
+    """Of all of it, or as much as goes by in half a minute; and how much that was."""
     _seek_s(player, watcher, window, 0.0)
     player.set_speed(FASTEST)
     began_s, began_ms = time.perf_counter(), player.view().at_ms
@@ -223,7 +228,8 @@ def _times_real(
     while (view := player.view()).playing and time.perf_counter() - began_s < 30.0:
         time.sleep(0.01)
     player.pause()
-    return (view.at_ms - began_ms) / 1e3 / (time.perf_counter() - began_s)
+    played_s = (view.at_ms - began_ms) / 1e3
+    return played_s / (time.perf_counter() - began_s), played_s
 
 
 def _decided_again(folder: DataFolder, window: ReplayWindow) -> tuple[float, list[float], float]:
@@ -236,7 +242,7 @@ def _decided_again(folder: DataFolder, window: ReplayWindow) -> tuple[float, lis
         session.pause()
         watcher.wait_for(1)
         first_s = time.perf_counter() - began_s
-        times_real = _times_real(session, watcher, window)
+        times_real, _ = _times_real(session, watcher, window)
         return first_s, [_seek_s(session, watcher, window, one) for one in _AGAIN], times_real
     finally:
         session.close()
@@ -275,11 +281,20 @@ def _drop_from_memory(folder: DataFolder) -> None:
             os.close(file)
 
 
-def _peak_mb(processes: ReplayProcesses) -> float:
-    """Of the replay's process so far, with what it shares with the one it is copied from."""
+def _worker(processes: ReplayProcesses) -> psutil.Process:
     assert processes.pid is not None
     (child,) = psutil.Process(processes.pid).children()
-    status = Path(f"/proc/{child.pid}/status").read_text(encoding="ascii")
+    return child
+
+
+def _cpu_s(worker: psutil.Process) -> float:
+    times = worker.cpu_times()
+    return float(times.user + times.system)
+
+
+def _peak_mb(worker: psutil.Process) -> float:
+    """Of the replay's process so far, with what it shares with the one it is copied from."""
+    status = Path(f"/proc/{worker.pid}/status").read_text(encoding="ascii")
     (peak_kb,) = (line.split()[1] for line in status.splitlines() if line.startswith("VmHWM"))
     return int(peak_kb) / 1e3
 
@@ -310,6 +325,7 @@ def _table(figures: ReplayFigures) -> Table:
     table.add_row("seek, log not in memory", f"{figures.cold_s:.2f} s", "1 s")
     times = f"{figures.times_real:.0f} x", "300 x", f"{figures.again_times_real:.0f} x"
     table.add_row("fastest, times real time", *times)
+    table.add_row("the same, a second of a core", f"{figures.times_a_core:.0f} x")
     table.add_row("memory of its process, at most", f"{figures.peak_mb:.0f} MB")
     for name, ages in (("no replay", figures.alone), ("eight replays", figures.meanwhile)):
         shown = f"{ages.p50_ms:.0f}, {ages.p99_ms:.0f} ms"

@@ -140,10 +140,21 @@ def test_where_the_log_lacks_only_what_consoles_were_shown_it_is_decided_again(
             assert north_m(session, second) == pytest.approx(second - 1.0, abs=0.1)
 
 
+def unreadable(record: Record) -> Record:
+    t_ns, key, payload = record
+    return t_ns, key, b'{"type":"delta","units":[{"new":1}]}' if key == DELTA_TOPIC else payload
+
+
+@pytest.mark.parametrize("how", ["missing", "of another version"])
 def test_played_into_such_a_stretch_it_goes_on_by_deciding_again(
-    recorded: Sequence[Record], tmp_path: Path
+    recorded: Sequence[Record], how: str, tmp_path: Path
 ) -> None:
-    records = [one for one in recorded if not (is_console(one[1]) and is_between(one))]
+    records: list[Record] = []
+    for one in recorded:
+        if not (is_console(one[1]) and is_between(one)):
+            records.append(one)
+        elif how != "missing":
+            records.append(unreadable(one))
     screen = Screen()
     source = replace(archive(walk_with_mayday(), tmp_path), console=reader(records))
     with session_of(source, screen) as session:
@@ -163,11 +174,8 @@ def test_played_into_such_a_stretch_it_goes_on_by_deciding_again(
 def test_a_recording_of_another_version_is_decided_again(
     recorded: Sequence[Record], second: int, tmp_path: Path
 ) -> None:
-    unreadable = [
-        (t_ns, key, b'{"type":"delta","units":[{"new":1}]}' if key == DELTA_TOPIC else payload)
-        for t_ns, key, payload in recorded
-    ]
-    source = replace(archive(walk_with_mayday(), tmp_path), console=reader(unreadable))
+    others = [unreadable(one) for one in recorded]
+    source = replace(archive(walk_with_mayday(), tmp_path), console=reader(others))
     with session_of(source) as session:
         assert north_m(session, second) == pytest.approx(second - 1.0, abs=0.1)
 
