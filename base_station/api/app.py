@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
@@ -15,6 +16,7 @@ from base_station.api.connections import KnownNetworks
 from base_station.api.console_files import serve_console
 from base_station.api.document import complete_document, operation_id
 from base_station.api.forms import MAX_BYTES
+from base_station.api.guidance import STEP_S, Guidance
 from base_station.api.head import HeadRequestMiddleware
 from base_station.api.headers import SecurityHeadersMiddleware
 from base_station.api.login_throttle import LoginThrottle
@@ -27,8 +29,11 @@ from base_station.api.route_table import DOCUMENT_PATH, PREFIX, allowed_methods,
 from base_station.api.routes import ROUTERS
 from base_station.api.services import Services
 from base_station.api.uploads import UploadTurns
+from shared.errors import MusterError
 
 _REPLAY_CHECK_S = 5.0
+
+log = logging.getLogger(__name__)
 
 
 def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop], None]) -> FastAPI:
@@ -40,8 +45,10 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
         app.state.loop = loop
         started(loop)
         closing_unwatched = asyncio.create_task(_close_unwatched_replays(services))
+        guiding = asyncio.create_task(_guide_rescuers(services, guidance))
         yield
         closing_unwatched.cancel()
+        guiding.cancel()
         queue.close()
         await asyncio.to_thread(services.replays.close_all)
 
@@ -60,6 +67,7 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
     throttle = app.state.login_throttle = LoginThrottle()
     queue = app.state.login_queue = LoginQueue()
     app.state.known_networks = KnownNetworks()
+    guidance = app.state.guidance = Guidance()
     app.state.upload_turns = UploadTurns()
     ha_status = services.ha_status
     app.add_middleware(UnhandledErrorMiddleware)
@@ -85,3 +93,12 @@ async def _close_unwatched_replays(services: Services) -> None:
     while True:
         await asyncio.sleep(_REPLAY_CHECK_S)
         await asyncio.to_thread(services.replays.close_unwatched)
+
+
+async def _guide_rescuers(services: Services, guidance: Guidance) -> None:
+    while True:
+        await asyncio.sleep(STEP_S)
+        try:
+            await asyncio.to_thread(guidance.step, services)
+        except MusterError as error:
+            log.warning("rescuers are not guided: %s", error)

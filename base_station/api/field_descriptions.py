@@ -242,6 +242,11 @@ FIELDS: Mapping[str, str] = {
     "from the rescuer, metres.",
     "crosses_walls": "Whether somebody's trail on it leads through a wall of the plan.",
     "RouteAnswer.text": "The steps, or the straight line, in words.",
+    "next_text": "The next two legs in words, as they are sent to a unit.",
+    "GuideAnswer.unit_id": "The unit of the member to whom the rescuer goes.",
+    "GuideAnswer.text": "The piece of the way that was sent last.",
+    "GuideAnswer.by": "Who has sent the rescuer.",
+    "GuideAnswer.sent_ms": "When that piece was sent.",
     "legs": "Its legs in order; empty: no way is known.",
     "places": "Its corners, from the rescuer to the member.",
     "turn": "From the leg before, at first from the rescuer's heading: ahead, left, right or back; "

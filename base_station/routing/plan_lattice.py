@@ -12,6 +12,7 @@ from base_station.site.floor_grid import FloorGrid
 
 MOST_NODES = 400_000  # of all floors; in a larger plan only trails tell a way
 UNWALKED = 1.3  # cost of ground that only the plan knows: a door may be locked (ours)
+OPEN_GROUND_M = 100.0  # about a plan: so far out the straight way to it is open (ours)
 STAIRS_SLOPE = 2.0  # way on stairs for each metre of rise: they are about 30 degrees steep
 
 
@@ -29,6 +30,18 @@ class PlanLattice(NamedTuple):
     @property
     def is_empty(self) -> bool:
         return not self.nodes
+
+    def edge_node(self, floor: int, place_m: Floats) -> int:
+        """Node at the edge of the plan nearest to a place (2,) beyond it; -1: there is none."""
+        if self.grid is None or floor not in self.nodes:
+            return -1
+        nodes = self.nodes[floor]
+        (row,), (column,) = self.grid.lattice_points(place_m[None])
+        within = (0 <= row < nodes.shape[0]) and (0 <= column < nodes.shape[1])
+        if within:
+            return -1
+        last_row, last_column = nodes.shape[0] - 1, nodes.shape[1] - 1
+        return int(nodes[min(max(row, 0), last_row), min(max(column, 0), last_column)])
 
     def node_at(self, floor: int, places_m: Floats) -> Whole:
         """Node (k,) nearest to each place (k, 2); -1 beside the plan, or where a wall is."""

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import KDTree
 
 from base_station.routing.interface import NO_FLOOR, STOREY_M, Flags, Floats, WalkedTrail, Whole
-from base_station.routing.plan_lattice import PlanLattice
+from base_station.routing.plan_lattice import OPEN_GROUND_M, UNWALKED, PlanLattice
 from base_station.routing.walked_cells import Samples, sample_trails
 from base_station.site.floor_grid import CELL_M as SQUARE_M
 from base_station.site.floor_grid import LATTICE
@@ -84,6 +84,7 @@ class WayGraph:
         nodes = self._nodes_of(samples)
         self.nodes = {unit_id: int(nodes[at]) for unit_id, at in samples.last.items()}
         self._add_walked_edges(nodes, samples.joined)
+        self._add_open_ground()
         self._bridge()
 
     def _nodes_of(self, samples: Samples) -> Whole:
@@ -159,6 +160,17 @@ class WayGraph:
             self._add_edges(level[is_far & ~meets_wall])
             self._add_edges(level[meets_wall], WALL_COST_M)
             self._through_walls |= set(map(_pair, *level[meets_wall].T.tolist()))
+
+    def _add_open_ground(self) -> None:
+        """Who stands beyond the edge of the plan can walk straight to it."""
+        for node in set(self.nodes.values()):
+            to = self.lattice.edge_node(int(self.floors[node]), self.places_m[node])
+            if to < 0:
+                continue
+            way_m = float(np.hypot(*(self.places_m[node] - self.places_m[to])))
+            if way_m < OPEN_GROUND_M:
+                self._edges.append(np.array([[node, to]]))
+                self._costs_m.append(np.array([UNWALKED * way_m]))
 
     def _add_edges(self, edges: Whole, more_m: float = 0.0) -> None:
         """Edges (k, 2), with the rise between two floors."""

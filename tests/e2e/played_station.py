@@ -180,5 +180,7 @@ def answers(role: str, more: Answers, people: Sequence[object] = ()) -> dict[str
         "/users": [],
         "/audit": [],
         "/forgettings": [],
+        "/guides": [],
+        "/units/FF-02/routes": scenes.routes(),  # to who is down in a bad minute
         **more,
     }

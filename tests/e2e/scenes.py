@@ -175,6 +175,26 @@ def par_requested() -> wire.Snapshot:
     return picture(units)
 
 
+def routes() -> list[dict[str, object]]:
+    """Ways of two rescuers to a member, as the station answers."""
+    corners = ((0.0, 12.0, 0), (8.5, 12.7, 0), (8.5, 12.7, 1), (7.0, 5.0, 1))
+    places = [{"north_m": n, "east_m": e, "floor": floor} for n, e, floor in corners]
+    known = {
+        "unit_id": unit_id(0),
+        "known": True,
+        "distance_m": 21.4,
+        "uncertainty_m": 3.1,
+        "crosses_walls": True,
+        "text": "9 m to the stairs, up one floor, west, 8 m",
+        "next_text": "9 m to the stairs, up one floor, west, 8 m",
+        "legs": [],
+        "places": places,
+    }
+    text = "no known way; 23 m to the north-east, one floor up"
+    line = {"unit_id": unit_id(4), "known": False, "crosses_walls": False, "text": text}
+    return [known, {**known, **line, "places": [places[0], places[-1]]}]
+
+
 def alarm(index: int, rule: str, priority: int, text: str, ago_s: int) -> wire.AlarmView:
     raised_ms = NOW_MS - 1000 * ago_s
     return wire.AlarmView(

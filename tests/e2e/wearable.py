@@ -15,6 +15,7 @@ from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.messages import (
     Command,
+    CommandKind,
     CommandReply,
     CommandState,
     EventKind,
@@ -44,6 +45,7 @@ class Wearable:
             COMMAND.key(unit_id), lambda _, payload: self._commands.put(payload)
         )
         self._last_command_id = ""
+        self.texts: list[str] = []  # of messages to the wearer
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._walk, name=unit_id)
 
@@ -91,6 +93,8 @@ class Wearable:
         while not self._commands.empty():
             command = decode(COMMAND, self._commands.get())
             assert isinstance(command, Command)
+            if command.kind is CommandKind.TEXT and command.command_id != self._last_command_id:
+                self.texts.append(command.text)
             self._last_command_id = command.command_id
             self._say(self._desk.take(command))
 

@@ -10,6 +10,7 @@ import pytest
 import pytest_asyncio
 
 from base_station.accounts.principals import Role
+from base_station.api import route_finder
 from shared.clock import NS_PER_S, ManualClock
 from shared.messages import EventKind, Header, Position, UnitEvent
 from tests.rig.desk_station import DeskStation
@@ -107,3 +108,59 @@ async def test_unknown_units_and_units_without_a_position(commander: httpx.Async
     assert nowhere.status_code == 409
     assert "no position" in nowhere.json()["detail"]
     assert (await commander.get("/units/FF-01/routes?rescuer_id=FF-08")).status_code == 409
+
+
+async def test_pieces_of_the_way_are_sent_as_the_rescuer_advances(
+    commander: httpx.AsyncClient,
+    station: DeskStation,
+    clock: ManualClock,
+    make_position: Callable[..., Position],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """FF-02 turns off the way; the next piece says to turn back; the end is told, too."""
+    begun = await commander.post("/units/FF-01/guides", json={"rescuer_id": "FF-02"})
+    assert begun.status_code == 201, begun.text
+    assert begun.json()["text"].startswith("Way to FF-01: ")
+
+    async def pieces() -> list[str]:
+        commands = (await commander.get("/commands")).json()
+        assert {unit["unit_id"] for one in commands for unit in one["units"]} == {"FF-02"}
+        return [command["text"] for command in commands]
+
+    guidance = station.app.state.guidance
+    for _ in range(3):
+        guidance.step(station.services)
+    assert len(await pieces()) == 1, "nothing has changed"
+    for second in range(61, 73):
+        clock.advance(1.0)
+        header = Header("FF-02", 7, second, second * NS_PER_S)
+        east_m = float(second - 60)
+        station.drive.hear(
+            msgspec.structs.replace(make_position(), header=header, north_m=40.0, east_m=east_m)
+        )
+    monkeypatch.setattr(route_finder, "KEPT_S", 0.0)
+    for _ in range(3):
+        guidance.step(station.services)
+    first, then = await pieces()
+    assert "m in all" not in first
+    assert then.endswith("m in all")
+    assert (await commander.delete("/guides/FF-02")).status_code == 204
+    assert (await pieces())[-1] == "Way to FF-01: ended"
+    assert (await commander.delete("/guides/FF-02")).status_code == 404
+
+
+async def test_guidance_is_over_with_the_alarms_of_the_member(
+    commander: httpx.AsyncClient, station: DeskStation, clock: ManualClock
+) -> None:
+    clock.advance(1.0)
+    header = Header("FF-01", 7, 90, 70 * NS_PER_S)
+    station.drive.hear(UnitEvent(header, EventKind.MAYDAY))
+    await commander.post("/units/FF-01/guides", json={"rescuer_id": "FF-02"})
+    guidance = station.app.state.guidance
+    guidance.step(station.services)
+    assert [one["rescuer_id"] for one in (await commander.get("/guides")).json()] == ["FF-02"]
+    (alarm,) = station.drive.picture().alarms
+    seen = {"last_raised_ms": alarm.last_raised_ms}
+    await commander.post(f"/alarms/{alarm.alarm_id}/resolve", json=seen)
+    guidance.step(station.services)
+    assert (await commander.get("/guides")).json() == []

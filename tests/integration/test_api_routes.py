@@ -24,6 +24,7 @@ from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import StandbyView
 from shared.clock import NS_PER_MS, ManualClock
 from shared.messages import EventKind, Header, UnitEvent
+from tests.rig import message_factory
 from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 from tests.rig.waiting import until
 
@@ -52,13 +53,14 @@ LEAST: dict[str, dict[str, Role | None]] = {
                   "GET /incidents/{incident_id}/alarms": V,
                   "GET /incidents/{incident_id}/assessment": V},
     "tracks": {"GET /units/{unit_id}/track": V, "GET /incidents/{incident_id}/tracks": V,
-               "GET /incidents/{incident_id}/trails": V, "GET /units/{unit_id}/routes": V,
-               "GET /units/{unit_id}/timeline": V},
+               "GET /incidents/{incident_id}/trails": V, "GET /units/{unit_id}/timeline": V},
     "alarms": {"GET /alarms": V, "GET /alarms/{alarm_id}": V,
                "POST /alarms/{alarm_id}/acknowledge": C, "POST /alarms/{alarm_id}/resolve": C},
     "commands": {"GET /commands": V, "POST /commands": C, "GET /commands/{command_id}": V,
                  "POST /commands/{command_id}/confirm": C,
-                 "POST /commands/{command_id}/confirm/undo": C},
+                 "POST /commands/{command_id}/confirm/undo": C,
+                 "GET /units/{unit_id}/routes": V, "GET /guides": V,
+                 "POST /units/{unit_id}/guides": C, "DELETE /guides/{rescuer_id}": C},
     "accountability": {"GET /accountability": V, "GET /accountability/usual": V,
                        "POST /check-ins": C, "POST /check-ins/{check_in_id}/undo": C,
                        "PUT /incidents/{incident_id}/accountability": C,
@@ -308,7 +310,11 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     await do("POST /commands/{command_id}/confirm", unit, command_id=told["command_id"])
     await do("POST /commands/{command_id}/confirm/undo", unit, command_id=told["command_id"])
     await act_on_pins(do)
-    station.drive.hear(UnitEvent(Header("FF-01", 7, 1, 5), EventKind.MAYDAY))
+    for here in (unit, other):
+        station.drive.hear(message_factory.position(Header(here["unit_id"], 7, 1, 4)))
+    await do("POST /units/{unit_id}/guides", {"rescuer_id": "FF-02"}, **unit)
+    await do("DELETE /guides/{rescuer_id}", rescuer_id="FF-02")
+    station.drive.hear(UnitEvent(Header("FF-01", 7, 2, 5), EventKind.MAYDAY))
     station.services.projection.flush()
     (alarm, *_) = station.services.records.alarms(Window(0, 2**62))
     seen = {"last_raised_ms": alarm.last_raised_ns // NS_PER_MS}

@@ -1,61 +1,37 @@
-"""Ways to a member who is down: the nearest rescuers, and their routes."""
+"""Ways to a member who is down: the nearest rescuers, their routes, and their guidance."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated
 
 from fastapi import APIRouter, Query
 
 from base_station.api.authentication import Viewer
-from base_station.api.forms import UnitId, UnitIdText
+from base_station.api.forms import Form, UnitId, UnitIdText
+from base_station.api.guidance import Guide, Guiding
+from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
-from base_station.api.route_finder import NEAREST, place_of, std_m_of
+from base_station.api.route_answers import RouteAnswer, find_routes
 from base_station.api.services import Station
-from base_station.core.alarms.interface import EMERGENCY
-from base_station.core.alarms.missed_check_in import MissedCheckIn
-from base_station.routing.interface import Route, Waypoint
-from base_station.routing.legs import RouteLeg, Turn, legs_of
-from base_station.routing.words import line_text, route_text
-from base_station.site.max_travel import RADII_95
-from base_station.views.answer import Answer
-from base_station.views.wire import PositionView, Snapshot, UnitView
+from base_station.views.answer import Answer, to_ms
 
-router = APIRouter(tags=["tracks"])
-
-_MISSED_CHECK_IN = MissedCheckIn().name  # who has not answered is not down yet
-HEADING_KNOWN_RAD = 0.8  # standard deviation up to which left and right mean something
+router = APIRouter(tags=["commands"])
 
 
-class RoutePlace(Answer, frozen=True):
-    """A corner of a route."""
+class GuideForm(Form):
+    """Who goes."""
 
-    north_m: float
-    east_m: float
-    floor: int | None
+    rescuer_id: UnitIdText
 
 
-class RouteLegAnswer(Answer, frozen=True):
-    """One leg of a route."""
+class GuideAnswer(Answer, frozen=True):
+    """Guidance of a rescuer to a member."""
 
-    turn: Turn | None
-    bearing_rad: float
-    distance_m: float
-    floors: int
-
-
-class RouteAnswer(Answer, frozen=True):
-    """Way of one rescuer to the member, or the straight line where no way is known."""
-
+    rescuer_id: str
     unit_id: str
-    known: bool
-    distance_m: float
-    uncertainty_m: float
-    crosses_walls: bool
+    by: str
     text: str
-    legs: tuple[RouteLegAnswer, ...]
-    places: tuple[RoutePlace, ...]
+    sent_ms: int
 
 
 @router.get("/units/{unit_id}/routes")
@@ -68,96 +44,31 @@ def routes_to_member(
     """Of the three rescuers with the shortest known ways, the nearest first, or of the one that is
     named.  Without enough known ways the nearest in a straight line follow.
     """
-    chosen = {rescuer_id} if rescuer_id else None
-
-    def may_go(snapshot: Snapshot) -> Sequence[str]:
-        return rescuers(snapshot, unit_id) if chosen is None else tuple(chosen)
-
-    picture, known = station.route_finder.routes(station.picture_with_trails, unit_id, may_go)
-    units = {unit.unit_id: unit for unit in picture.units}
-    for required in (unit_id, *(chosen or ())):
-        if required not in units:
-            raise Problem(404, "There is no such unit.")
-    member = units[unit_id].position
-    if member is None:
-        raise Problem(409, "Nobody knows where this member is: no position has come.")
-    if rescuer_id and units[rescuer_id].position is None:
-        raise Problem(409, "Nobody knows where the rescuer is: no position has come.")
-    return answers(units, member, known, may_go(picture))[:NEAREST]
+    return find_routes(station, unit_id, rescuer_id)
 
 
-def rescuers(snapshot: Snapshot, unit_id: str) -> list[str]:
-    """Ids of the units whose wearers can go: located and heard, and not in danger themselves."""
-    in_danger = {
-        alarm.unit_id
-        for alarm in snapshot.alarms
-        if alarm.state != "resolved"
-        and alarm.priority == EMERGENCY
-        and alarm.rule != _MISSED_CHECK_IN
-    }
-    return [
-        unit.unit_id
-        for unit in snapshot.units
-        if unit.unit_id not in {unit_id, *in_danger} and _can_go(unit)
-    ]
+@router.get("/guides")
+def list_guides(guidance: Guiding, _: Viewer) -> list[GuideAnswer]:
+    """Rescuers who are guided now."""
+    return [_answer(guide) for guide in guidance.guides()]
 
 
-def _can_go(unit: UnitView) -> bool:
-    worn = unit.registered and unit.person is not None and not unit.switched_off
-    return worn and unit.position is not None and unit.link in {"live", "stale"}
+@router.post("/units/{unit_id}/guides", status_code=201)
+def begin_guide(
+    unit_id: UnitId, form: GuideForm, station: Station, guidance: Guiding, perform: Perform
+) -> GuideAnswer:
+    """The next legs of the way are sent to the rescuer's unit as messages, now and as the rescuer
+    advances, until the member's alarms are resolved.  A rescuer is guided to one member at a time.
+    """
+    return _answer(guidance.begin(station, perform.by, unit_id, form.rescuer_id, perform))
 
 
-def answers(
-    units: Mapping[str, UnitView],
-    member: PositionView,
-    known: Mapping[str, Route],
-    may_go: Iterable[str],
-) -> list[RouteAnswer]:
-    """Known routes first, then straight lines, both the nearest first."""
-    routes = [_route_answer(units[one], route) for one, route in known.items()]
-    lines = [
-        _line_answer(one, position, member)
-        for one in may_go
-        if one not in known and (position := units[one].position) is not None
-    ]
-    return [*routes, *sorted(lines, key=lambda line: line.distance_m)]
+@router.delete("/guides/{rescuer_id}", status_code=204)
+def end_guide(rescuer_id: UnitId, station: Station, guidance: Guiding, perform: Perform) -> None:
+    """The rescuer's unit is told that it is over."""
+    if not guidance.end(station, rescuer_id, perform):
+        raise Problem(404, "This rescuer is not guided.")
 
 
-def _route_answer(unit: UnitView, route: Route) -> RouteAnswer:
-    position = unit.position
-    is_facing = position is not None and position.heading_std_rad < HEADING_KNOWN_RAD
-    legs = legs_of(route.places, position.heading_rad if position and is_facing else None)
-    return RouteAnswer(
-        unit_id=unit.unit_id,
-        known=True,
-        distance_m=round(route.distance_m, 1),
-        uncertainty_m=round(RADII_95 * route.std_m, 1),
-        crosses_walls=route.crosses_walls,
-        text=route_text(legs),
-        legs=tuple(map(_leg, legs)),
-        places=tuple(map(_place, route.places)),
-    )
-
-
-def _line_answer(unit_id: str, rescuer: PositionView, member: PositionView) -> RouteAnswer:
-    begin, end = place_of(rescuer), place_of(member)
-    std_m = math.hypot(std_m_of(rescuer), std_m_of(member))
-    distance_m = math.hypot(end.north_m - begin.north_m, end.east_m - begin.east_m)
-    return RouteAnswer(
-        unit_id=unit_id,
-        known=False,
-        distance_m=round(distance_m, 1),
-        uncertainty_m=round(RADII_95 * std_m, 1),
-        crosses_walls=False,
-        text=line_text(begin, end),
-        legs=(),
-        places=(_place(begin), _place(end)),
-    )
-
-
-def _leg(leg: RouteLeg) -> RouteLegAnswer:
-    return RouteLegAnswer(leg.turn, round(leg.bearing_rad, 3), round(leg.distance_m, 1), leg.floors)
-
-
-def _place(place: Waypoint) -> RoutePlace:
-    return RoutePlace(round(place.north_m, 2), round(place.east_m, 2), place.floor)
+def _answer(guide: Guide) -> GuideAnswer:
+    return GuideAnswer(guide.rescuer_id, guide.unit_id, guide.by, guide.text, to_ms(guide.sent_ns))

@@ -195,6 +195,18 @@ export interface GapView {
   until_ms: number;
 }
 
+export interface GuideAnswer {
+  rescuer_id: string;
+  unit_id: string;
+  by: string;
+  text: string;
+  sent_ms: number;
+}
+
+export interface GuideForm {
+  rescuer_id: string;
+}
+
 export interface Health {
   problems: string[];
   messages: number;
@@ -527,6 +539,7 @@ export interface RouteAnswer {
   uncertainty_m: number;
   crosses_walls: boolean;
   text: string;
+  next_text: string;
   legs: RouteLegAnswer[];
   places: RoutePlace[];
 }

@@ -37,6 +37,8 @@ export type Start = Required<Omit<answers.StartForm, "heading_std_rad">>;
 export type TrailsAnswer = answers.Trails;
 /** What became of a request that had no answer; the station refuses (404) what it has not done. */
 export type CarriedOut = answers.CarriedOut;
+export type Route = answers.RouteAnswer;
+export type Guide = answers.GuideAnswer;
 export type CommandKind = Exclude<answers.Kind, "set_position_rate">;
 
 /** Parts of the API that a token can be for (base_station/api/authentication.py). */
@@ -139,6 +141,19 @@ export const resolve = ({ alarm_id, last_raised_ms }: AlarmView) =>
 
 export const sendCommand = (kind: CommandKind, target: Target, text: string) =>
   act<CommandView>("POST", "/commands", { kind, target, text });
+/** To a member: of the three nearest by way, or of one rescuer. */
+export const routes = (unitId: string, rescuerId: string | null = null) =>
+  call<Route[]>(
+    "GET",
+    `/units/${id(unitId)}/routes${rescuerId === null ? "" : `?rescuer_id=${id(rescuerId)}`}`,
+  );
+export const guides = () => call<Guide[]>("GET", "/guides");
+/** The way is sent to the rescuer's unit, piece by piece. */
+export const guide = (unitId: string, rescuerId: string) =>
+  act<Guide>("POST", `/units/${id(unitId)}/guides`, { rescuer_id: rescuerId });
+export const endGuide = (rescuerId: string) =>
+  call<void>("DELETE", `/guides/${id(rescuerId)}`);
+
 export const setPositionRate = (unitId: string, rateHz: number) =>
   act<CommandView>("POST", "/commands", {
     kind: "set_position_rate",

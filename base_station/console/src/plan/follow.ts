@@ -4,6 +4,7 @@ import { shownTheme } from "../appearance";
 import { guarded } from "../live/faults";
 import { floor, selectedUnit } from "../uiState";
 import type { Picture } from "../live/picture";
+import { drawnRoute, rescue } from "../live/rescue";
 import { displayName } from "../live/urgency";
 import type { TrailPoint } from "../wire";
 import { followBaseMap } from "./baseMap";
@@ -65,6 +66,11 @@ export function follow(map: PlanMap, picture: Picture): () => void {
         floor: floor.value,
         chosen: selectedUnit.value,
       });
+    }),
+    following("The way on the plan", () => {
+      void shownTheme.value;
+      const now = rescue.value;
+      map.showRoute(now === null ? null : drawnRoute(now), floor.value);
     }),
     following("Other teams on the plan", () => {
       void shownTheme.value;

@@ -7,6 +7,8 @@ import { buffer, containsExtent, createEmpty, extend } from "ol/extent";
 import Point from "ol/geom/Point";
 import { defaults } from "ol/interaction/defaults";
 import Translate from "ol/interaction/Translate";
+import type { Route } from "../api";
+import type { FloorChoice } from "../uiState";
 import type { Plan } from "../wire";
 import { BaseMapLayer } from "./baseMap";
 import { Building } from "./building";
@@ -18,6 +20,7 @@ import { Grid } from "./grid";
 import { fitMargins, leastMargins } from "./margins";
 import type { Box, Pixel } from "./names";
 import { PastLayer, type PastScene } from "./pastLayer";
+import { RouteLayer } from "./routeLayer";
 import { PIN_HALF_PX, PIN_HEIGHT_PX, PinLayer, type PinScene, type Standing } from "./pins";
 import { SITE } from "./site";
 import type { Place } from "./tools";
@@ -50,6 +53,7 @@ export class PlanMap {
   private readonly pins = new PinLayer();
   private readonly past = new PastLayer();
   private readonly external = new ExternalLayer();
+  private readonly route = new RouteLayer();
   private readonly view = new View({
     projection: SITE,
     center: [0, 0],
@@ -77,6 +81,7 @@ export class PlanMap {
         this.ground,
         this.building.layer,
         this.past.layer,
+        this.route.layer,
         this.external.layer,
         this.pins.labelLayer,
         ...this.peopleLayer.layers,
@@ -110,6 +115,10 @@ export class PlanMap {
 
   showPast(scene: PastScene): void {
     this.past.show(scene, this.colours);
+  }
+
+  showRoute(route: Route | null, floor: FloorChoice): void {
+    this.route.show(route, floor, this.colours);
   }
 
   showExternal(scene: ExternalScene): void {

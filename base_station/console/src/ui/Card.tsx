@@ -17,6 +17,7 @@ import { Line } from "./Line";
 import { activityIcon, Icon, type IconName } from "./Icon";
 import { isOverdue, ParMark } from "./ParClock";
 import { Photo } from "./Photo";
+import { RescueView } from "./RescueView";
 import { useGuardedPress } from "./useGuardedPress";
 import { AskWearer } from "./Wearer";
 
@@ -90,6 +91,7 @@ function Whole({ unit, chosen, short, picture }: WholeProps) {
       </button>
       {chosen && <ToPlan />}
       <OpenAlarms unit={unit} picture={picture} />
+      {chosen && <RescueView unit={unit} picture={picture} />}
       {unit.cloned && <TwoMachines />}
       {unit.registered && unit.can_be_notified === false && <NotNotifiable />}
       <NotReady unit={unit} chosen={chosen} />

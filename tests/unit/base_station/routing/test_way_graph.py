@@ -173,6 +173,17 @@ def test_a_trail_through_a_wall_is_the_last_way_and_is_named(house: PlanLattice)
     assert only.distance_m == pytest.approx(2.0, abs=0.5)
 
 
+def test_the_ground_about_a_plan_is_open_but_not_without_end(house: PlanLattice) -> None:
+    member = walked("M", [(7.0, 18.5, 0)])
+    found = route(member, walked("R", [(8.0, 45.0, 0)]), lattice=house)
+    assert found is None, "no door leads in"
+    outside = walked("M", [(-2.0, 10.0, 0)])
+    found = route(outside, walked("R", [(-40.0, 10.0, 0)]), lattice=house)
+    assert found is not None
+    assert found.distance_m == pytest.approx(38.0, abs=2 * CELL_M)
+    assert route(outside, walked("R", [(-140.0, 10.0, 0)]), lattice=house) is None
+
+
 def test_who_stands_outside_the_plan_walks_in_on_a_trail(house: PlanLattice) -> None:
     rescuer = walked("R", [(-30.0, 2.0, 0), (-30.0, 3.0, 0)])
     member = walked("M", [(-30.0, 2.0, 0), (-3.0, 2.0, 0), (-2.8, 2.0, 0)])

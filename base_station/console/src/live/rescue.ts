@@ -1,0 +1,100 @@
+/** Ways to a member who is down: what the station says of them while somebody looks, and who is guided. */
+import { signal } from "@preact/signals";
+import * as api from "../api";
+import type { UnitView } from "../wire";
+import { displayName } from "./urgency";
+
+/** Routes to one member as last answered, and whose is drawn. */
+export interface Rescue {
+  unitId: string;
+  rescuerId: string | null; // who was chosen; null: nobody yet
+  routes: readonly api.Route[]; // the nearest first; of who was chosen it may be a fourth one
+  guides: readonly api.Guide[];
+  fault: string; // for a person: why there are none; empty: there are
+}
+
+export const rescue = signal<Rescue | null>(null);
+
+const AGAIN_MS = 2_000;
+/** A crew whose name begins so is the rapid intervention crew: it is named so under *People*. */
+const RIC = /^(RIC|RIT)\b/i;
+
+/** Ask for the ways to a member, now and again; the result ends it. */
+export function followRescue(unitId: string): () => void {
+  rescue.value = { unitId, rescuerId: null, routes: [], guides: [], fault: "" };
+  let asking = false;
+  const again = () => {
+    if (asking) return;
+    asking = true;
+    void ask(unitId).finally(() => (asking = false));
+  };
+  again();
+  const timer = window.setInterval(again, AGAIN_MS);
+  return () => {
+    clearInterval(timer);
+    if (rescue.peek()?.unitId === unitId) rescue.value = null;
+  };
+}
+
+/** Show the way of another rescuer. */
+export function chooseRescuer(rescuerId: string | null): void {
+  const now = rescue.peek();
+  if (now === null) return;
+  rescue.value = { ...now, rescuerId };
+  void ask(now.unitId);
+}
+
+/** After something was done. */
+export function askAgain(): void {
+  const now = rescue.peek();
+  if (now !== null) void ask(now.unitId);
+}
+
+async function ask(unitId: string): Promise<void> {
+  const chosen = rescue.peek()?.rescuerId ?? null;
+  try {
+    const [nearest, guides] = await Promise.all([api.routes(unitId), api.guides()]);
+    const isListed = chosen === null || nearest.some((one) => one.unit_id === chosen);
+    const other = isListed ? [] : await api.routes(unitId, chosen);
+    say(unitId, { routes: [...nearest, ...other], guides, fault: "" }, chosen);
+  } catch (error) {
+    const fault = error instanceof Error ? error.message : String(error);
+    say(unitId, { routes: [], fault }, chosen);
+  }
+}
+
+/** Unless somebody looks elsewhere by now. */
+function say(unitId: string, answer: Partial<Rescue>, chosen: string | null): void {
+  const now = rescue.peek();
+  if (now?.unitId === unitId && now.rescuerId === chosen) rescue.value = { ...now, ...answer };
+}
+
+/** The route that is drawn: of who was chosen, or of the nearest. */
+export function drawnRoute({ routes, rescuerId }: Rescue): api.Route | null {
+  return routes.find((one) => one.unit_id === rescuerId) ?? routes[0] ?? null;
+}
+
+/** "14 m to the stairs, up one floor, left, 9 m": or how far off a line, where no way is known. */
+export function routeWords(route: api.Route): string {
+  const warned = route.crosses_walls ? "; a trail on it leads through a wall of the plan" : "";
+  return route.text + warned;
+}
+
+/** "38 m ± 4 m"; of a straight line nobody knows how far it is to walk. */
+export function wayWords({ known, distance_m, uncertainty_m }: api.Route): string {
+  const figure = `${Math.round(distance_m)} m ± ${Math.max(1, Math.round(uncertainty_m))} m`;
+  return known ? figure : `${figure} in a straight line`;
+}
+
+/** Members of the rapid intervention crew, but for who is down. */
+export function ricOf(units: readonly UnitView[], unitId: string): UnitView[] {
+  return units.filter((unit) => unit.unit_id !== unitId && RIC.test(unit.person?.crew ?? ""));
+}
+
+/** Who else can be chosen, by name. */
+export function others(units: readonly UnitView[], unitId: string): UnitView[] {
+  return units
+    .filter((unit) => unit.unit_id !== unitId && unit.registered)
+    .filter((unit) => unit.person !== null && unit.position !== null)
+    .sort((a, b) => displayName(a).localeCompare(displayName(b)));
+}
