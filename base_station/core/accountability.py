@@ -64,7 +64,7 @@ def end(state: StationState, unit: UnitState) -> None:
 def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
     """PARs confirmed by radio.  UserError where nobody is on duty."""
     if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
-        raise UserError("say one of: a unit, a crew that has members, everyone")
+        raise UserError("say one of: a unit, a crew or floor that has members, everyone")
     if action.check_in_id and _is_taken(state, action.check_in_id):
         raise UserError(f"a check-in needs an id of its own, not {action.check_in_id!r}")
     found = [unit for unit in state.units.values() if _is_addressed(unit, action)]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import msgspec
 import pytest
 
 from base_station.accounts.principals import Role
+from edge.simulation.building import plan_path
 from shared.clock import ManualClock
 from shared.messages import CommandReply, CommandState, Header
 from tests.rig import message_factory
@@ -49,6 +51,37 @@ async def test_a_crew_is_told_and_its_answers_are_shown(
     async with station.client(Role.ADMINISTRATOR) as administrator:
         entries = (await administrator.get("/audit")).json()
     assert {"SendCommand", "ConfirmCommand"} <= {entry["action"] for entry in entries}
+
+
+async def test_a_floor_is_told_and_so_is_whose_floor_is_not_known(
+    station: DeskStation, clock: ManualClock
+) -> None:
+    """A plan of two floors; FF-01 is on the upper one, of FF-03 no position has come."""
+    async with station.client(Role.COMMANDER) as commander:
+        plan = msgspec.json.decode(plan_path().read_bytes())
+        laid = await commander.put("/site/plan", json=plan)
+        assert laid.status_code == 204, laid.text
+        for number, down_m in ((1, -3.2), (2, 0.0), (3, None)):
+            unit_id = f"FF-0{number}"
+            person = (await commander.post("/people", json={"name": unit_id})).json()
+            await commander.post("/units", json={"unit_id": unit_id})
+            worn = {"unit_id": unit_id, "person_id": person["person_id"]}
+            await commander.post("/assignments", json=worn)
+            if down_m is not None:
+                start = {"north_m": 7.0, "east_m": 9.0, "down_m": down_m}
+                await commander.put(f"/units/{unit_id}/start", json=start)
+                clock.advance(1.0)
+                header = Header(unit_id, 7, 1, 1)
+                station.drive.hear(message_factory.position(header))
+        floors = {
+            one.unit_id: one.position.floor
+            for one in station.drive.picture().units
+            if one.position is not None
+        }
+        assert floors == {"FF-01": 1, "FF-02": 0}
+        order = {"kind": "evacuate", "target": {"floor": 1}}
+        told = (await commander.post("/commands", json=order)).json()["units"]
+        assert [unit["unit_id"] for unit in told] == ["FF-01", "FF-03"]
 
 
 async def test_of_a_unit_it_is_shown_whether_it_can_notify_and_that_it_has(

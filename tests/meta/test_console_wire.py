@@ -43,7 +43,7 @@ def test_generated_types_declare_what_a_message_may_hold(declared: str) -> None:
         "  floor?: number | null;",
         "  raisings: Raising[];",
         "  upper_left: [number, number];",
-        "  target: UnitTarget | CrewTarget | EveryoneTarget;",
+        "  target: UnitTarget | CrewTarget | FloorTarget | EveryoneTarget;",
         'export type TrailKind = "raw" | "fused" | "smoothed";',
     ],
 )

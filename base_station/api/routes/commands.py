@@ -41,6 +41,10 @@ class EveryoneTarget(Form):
     everyone: Literal[True]
 
 
+class FloorTarget(Form):
+    floor: Annotated[int, Field(ge=-100, le=200)]
+
+
 def _kind_of_target(target: object) -> object:
     """The one key that says which it is; None where there is not just one."""
     return next(iter(target)) if isinstance(target, dict) and len(target) == 1 else None
@@ -49,18 +53,31 @@ def _kind_of_target(target: object) -> object:
 Target = Annotated[
     Annotated[UnitTarget, Tag("unit_id")]
     | Annotated[CrewTarget, Tag("crew")]
+    | Annotated[FloorTarget, Tag("floor")]
     | Annotated[EveryoneTarget, Tag("everyone")],
     Discriminator(
         _kind_of_target,
         custom_error_type="target",
-        custom_error_message="must be one of: unit_id, crew, everyone",
+        custom_error_message="must be one of: unit_id, crew, floor, everyone",
     ),
 ]
 
 
 def members_of(target: object, station: Services) -> tuple[str, ...]:
-    """Ids of the people who are a crew now; empty where the target is no crew."""
-    return station.roster.crew(target.crew) if isinstance(target, CrewTarget) else ()
+    """Ids of the people who are a crew or on a floor now; empty where the target is neither.
+
+    Whose floor is not known may be on it.
+    """
+    if isinstance(target, CrewTarget):
+        return station.roster.crew(target.crew)
+    if not isinstance(target, FloorTarget):
+        return ()
+    floors = {target.floor, None}
+    return tuple(
+        unit.person.person_id
+        for unit in station.picture().units
+        if unit.person is not None and (unit.position is None or unit.position.floor in floors)
+    )
 
 
 class NewCommand(Form):

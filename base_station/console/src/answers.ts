@@ -172,6 +172,10 @@ export interface Figures {
   se95_m: number;
 }
 
+export interface FloorTarget {
+  floor: number;
+}
+
 export interface Format {
   name: string;
   suffix: string;
@@ -290,13 +294,13 @@ export interface NewAssignment {
 }
 
 export interface NewCheckIn {
-  target: UnitTarget | CrewTarget | EveryoneTarget;
+  target: UnitTarget | CrewTarget | FloorTarget | EveryoneTarget;
   check_in_id?: string | null;
 }
 
 export interface NewCommand {
   kind: Kind;
-  target: UnitTarget | CrewTarget | EveryoneTarget;
+  target: UnitTarget | CrewTarget | FloorTarget | EveryoneTarget;
   text?: string;
   position_rate_hz?: number;
   expires_s?: number;

@@ -140,6 +140,7 @@ describe("commands", () => {
       recipients(target, units).map((one) => one.unit_id);
     expect(ids({ everyone: true })).toEqual(["a", "b", "spare"]);
     expect(ids({ crew: "Red" })).toEqual(["a"]);
+    expect(ids({ floor: 1 })).toEqual(["a", "b"]); // of both the floor is not known
     expect(ids({ unit_id: "drawer" })).toEqual(["drawer"]);
     expect(ids({ unit_id: "stranger" })).toEqual([]);
   });

@@ -242,7 +242,7 @@ def _check(state: StationState, action: SendCommand) -> None:
     if not math.isfinite(action.position_rate_hz):
         raise UserError("a position rate is no finite number")
     if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
-        raise UserError("say one of: a unit, a crew that has members, everyone")
+        raise UserError("say one of: a unit, a crew or floor that has members, everyone")
     most = 2 * MAX_OPEN if action.kind is CommandKind.EVACUATE else MAX_OPEN
     if sum(map(_is_open_order, state.commands.values())) >= most:
         raise UserError(f"{most} commands are open; wait until some are answered")

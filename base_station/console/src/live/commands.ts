@@ -87,16 +87,29 @@ export function crewsOf(units: Iterable<UnitView>): string[] {
   return [...new Set(crews)].filter((crew) => crew !== "").sort();
 }
 
-export type Target = { everyone: true } | { crew: string } | { unit_id: string };
+export type Target = { everyone: true } | { crew: string } | { floor: number } | { unit_id: string };
 
 /** Whom an order would go to, as the station decides it. */
 export function recipients(target: Target, units: readonly UnitView[]): UnitView[] {
   const ours = units.filter((unit) => unit.registered);
   if ("unit_id" in target) return ours.filter((unit) => unit.unit_id === target.unit_id);
+  if ("floor" in target) return ours.filter((unit) => mayBeOn(unit, target.floor));
   if ("crew" in target) return ours.filter((unit) => unit.person?.crew === target.crew);
   return ours.filter(
     (unit) => unit.person !== null || (unit.last_heard_ms !== null && !unit.switched_off),
   );
+}
+
+/** Whose floor is not known may be on it. */
+function mayBeOn({ person, position }: UnitView, floor: number): boolean {
+  const on = position?.floor ?? null;
+  return person !== null && (on === null || on === floor);
+}
+
+/** The floors on which somebody is known to be, the highest first. */
+export function floorsOf(units: Iterable<UnitView>): number[] {
+  const floors = [...units].map((unit) => unit.position?.floor ?? null);
+  return [...new Set(floors)].filter((floor) => floor !== null).sort((a, b) => b - a);
 }
 
 /** "2 of 5 cannot be notified: use the voice radio: Astrid Lindqvist, Jonas Bergman"; where it is all of

@@ -4,6 +4,7 @@ import { dialogUnit } from "../uiState";
 import * as api from "../api";
 import {
   crewsOf,
+  floorsOf,
   current,
   kindWord,
   LOCATE_HINT,
@@ -14,6 +15,7 @@ import {
 import type { Picture } from "../live/picture";
 import { nameAmong } from "../live/urgency";
 import type { CommandView } from "../wire";
+import { floorName } from "../format";
 import { Deliveries } from "./Deliveries";
 import { Dialog } from "./Dialog";
 import { Icon } from "./Icon";
@@ -79,6 +81,7 @@ function CommandForm({ kind, picture, sent }: FormProps) {
   const targets = new Map([
     [EVERYONE, "Everyone"],
     ...crewsOf(units).map((crew) => [`crew:${crew}`, crew] as const),
+    ...floorsOf(units).map((floor) => [`floor:${floor}`, floorWord(floor)] as const),
     ...units.map((unit) => [`unit:${unit.unit_id}`, nameAmong(unit, units)] as const),
   ]);
   // Else the list would turn to its first entry, which is everyone.
@@ -134,6 +137,11 @@ function CommandForm({ kind, picture, sent }: FormProps) {
   );
 }
 
+function floorWord(floor: number): string {
+  const name = floorName(floor);
+  return `${name.charAt(0).toUpperCase()}${name.slice(1)}, and whose floor is not known`;
+}
+
 function clearText(form: HTMLFormElement): void {
   const text = form.elements.namedItem("text");
   if (text instanceof HTMLInputElement) text.value = "";
@@ -142,6 +150,7 @@ function clearText(form: HTMLFormElement): void {
 function targetOf(value: string): Target {
   const name = nameIn(value);
   if (value.startsWith("crew:")) return { crew: name };
+  if (value.startsWith("floor:")) return { floor: Number(name) };
   return value.startsWith("unit:") ? { unit_id: name } : { everyone: true };
 }
 

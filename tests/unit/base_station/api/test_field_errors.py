@@ -50,7 +50,11 @@ COMMAND = {"kind": "text", "target": {"everyone": True}}
         (StartForm, PLACE | {"unit_ids": "A"}, "unit_ids must be a list"),
         (NewToken, TOKEN | {"scopes": ["all"]}, "scopes.0 must be 'accountability', 'alarms'"),
         (NewToken, TOKEN | {"days": 0}, "days must be 1 or more"),
-        (NewCommand, COMMAND | {"target": "all"}, "target must be one of: unit_id, crew, everyone"),
+        (
+            NewCommand,
+            COMMAND | {"target": "all"},
+            "target must be one of: unit_id, crew, floor, everyone",
+        ),
         (NewCommand, COMMAND | {"target": {"crew": ""}}, "target.crew is empty; fill it in"),
         (NewCommand, COMMAND | {"target": {"everyone": False}}, "target.everyone must be True"),
     ],
