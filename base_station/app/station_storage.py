@@ -133,6 +133,8 @@ class StationStorage:
         def obstacle(job: ErasureJob) -> str:
             if not job.told and not leads():
                 return "this station is the standby; ask the one that leads"
+            if self.projection.is_behind:  # what is read of the log may be of the person
+                return "the database is brought up to date from the log; it is done after that"
             # One may have opened since it was wished; of what it follows, the other one has asked.
             is_open = leads() and any(one.closed_ns is None for one in self.records.incidents())
             return "an incident is open; it is done when that is closed" if is_open else ""

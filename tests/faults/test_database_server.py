@@ -178,6 +178,7 @@ def test_what_has_no_room_in_the_queue_is_missing_until_it_is_projected_again(
             projection.project(STORY[0])
             assert not projection.flush()
             until(lambda: mark.since_ns() == STORY[0].t_ns)
+            until(lambda: projection.is_behind)
             for part in STORY[1:]:
                 projection.project(part)
             assert projection.missing() is None  # the database is away still
@@ -191,6 +192,7 @@ def test_what_has_no_room_in_the_queue_is_missing_until_it_is_projected_again(
         projection.note_caught_up(missing)
         assert projection.problem() == ""
         assert mark.since_ns() is None
+        until(lambda: not projection.is_behind)
         projection.close()
 
 

@@ -18,6 +18,7 @@ from base_station.app.pipeline_factory import past_pipeline
 from base_station.app.station_storage import open_storage
 from base_station.config import StationConfig
 from base_station.engine.feed import LogFeed
+from base_station.privacy.erasure_queue import ErasureJob
 from base_station.replay.playback import Archive
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
@@ -37,7 +38,9 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.server_address import NOTE, ServerAddress
 from base_station.storage.db.server_store import ServerStore
 from base_station.storage.db.store import Store
+from base_station.storage.projection_mark import ProjectionMark
 from base_station.storage.recorder import Recorder
+from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from shared.clock import SystemClock
 from shared.config import load_config
 from shared.errors import ConfigError, StoreError
@@ -148,6 +151,29 @@ def test_what_the_tables_lack_of_a_time_is_projected_again_and_the_rest_stays(
             session.execute(update(AlarmRow).values(state="raised", changed_ns=0))
         project_since(store, archive, incident.opened_ns)
         assert rows(store, LOGGED) == before
+
+
+def test_nobody_is_forgotten_while_the_log_is_projected_again(
+    moved: Path, address: ServerAddress
+) -> None:
+    """What was read of the log before would be written behind the erasure."""
+    ProjectionMark(moved / "tables-behind").note(1)
+    clock = SystemClock()
+    with ExitStack() as closing:
+        recorder = Recorder(moved, clock)
+        closing.callback(recorder.close)
+        data = DataFolder(moved)
+        disk = open_storage(data, recorder, clock, pytest.fail, closing, address)
+        recordings = TransferQueue(lambda *_: None, data.recordings, clock)
+        queue = disk.forgetting_desk(
+            recordings, lambda *_: None, lambda: None, lambda: True, lambda: False
+        )
+        job = ErasureJob("1", "chief", "person", "p-77")
+        assert "brought up to date from the log" in queue._obstacle(job)
+        missing = disk.projection.missing()
+        assert missing is not None
+        disk.projection.note_caught_up(missing)
+        assert queue._obstacle(job) == ""
 
 
 def test_a_past_incident_is_read_from_the_log_while_the_server_is_away(

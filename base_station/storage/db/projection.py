@@ -98,6 +98,11 @@ class SqlProjection:
             missed = _MISSED if self._missed else ""
             return "; ".join(filter(None, (self._failure or self._store.problem, missed)))
 
+    @property
+    def is_behind(self) -> bool:
+        """True while something that the log has waits for a database that was away."""
+        return self._marked
+
     def missing(self) -> Missing | None:
         """What is to be projected again from the log, now that the database answers."""
         with self._changed:
