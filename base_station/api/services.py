@@ -25,6 +25,7 @@ from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.timelines.unit_timeline import TimelineRequest, UnitTimeline
+from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.report.process import ReportProcess
 from base_station.security.pki.folder import PkiFolder
 from base_station.site.plan_reader import PlanReader
@@ -62,6 +63,7 @@ class Services:
     reports: ReportProcess | None = None  # None: a station that only replays
     # None: a station without a log.
     read_timeline: Callable[[TimelineRequest], UnitTimeline] | None = None
+    alarm_explainer: AlarmExplainer | None = None  # None: a station without a log
     pki: PkiFolder | None = None  # None: a station that enrols nobody
     intake: SampleIntake | None = None  # None: a station that only replays
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)

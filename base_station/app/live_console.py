@@ -11,9 +11,11 @@ from base_station.api.services import Services
 from base_station.app.factories import replay_process_starter
 from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
+from base_station.engine.feed import LogFeed
 from base_station.engine.sample_intake import SampleIntake
 from base_station.replay.processes.replay_process import ReplayContext
 from base_station.replay.processes.timeline_process import TimelineProcess
+from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.report.process import ReportProcess
 from base_station.storage.db.base_maps import BaseMaps
 
@@ -38,6 +40,7 @@ def new_services(parts: LiveParts) -> Services:
         post_processor=parts.post_processor,
         reports=_reports(parts),
         read_timeline=_timelines(parts).read,
+        alarm_explainer=AlarmExplainer(disk.records, _log_feed(parts).records),
         plans=parts.plans,
         pki=resources.pki,
         intake=SampleIntake(parts.gate.deliver, resources.bus, disk.clock),
@@ -81,6 +84,11 @@ def _timelines(parts: LiveParts) -> TimelineProcess:
         note_damage=disk.check.recheck,
         known_segments=disk.known_segments,
     )
+
+
+def _log_feed(parts: LiveParts) -> LogFeed:
+    disk = parts.resources.disk
+    return LogFeed(disk.folder.log, disk.recorder.flush, disk.check.recheck)
 
 
 def _replay_context(parts: LiveParts) -> ReplayContext:

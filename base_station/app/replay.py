@@ -23,6 +23,7 @@ from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.read_only import ReadOnlyGate
 from base_station.replay.timelines.unit_timeline import read_timeline
+from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.records import Records
@@ -85,6 +86,7 @@ def run_replay_station(
             is_replay_only=True,
             post_processor=PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
             read_timeline=partial(read_timeline, records, offline_log.log),
+            alarm_explainer=AlarmExplainer(records, offline_log.log.records),
         )
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, "", hub))

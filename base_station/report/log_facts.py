@@ -27,6 +27,7 @@ from shared.messages import (
     Command,
     CommandReply,
     CommandState,
+    EventKind,
     Header,
     Status,
     Temperature,
@@ -53,6 +54,8 @@ class UnitFacts(msgspec.Struct):
     motionless_s: list[tuple[int, float]] = msgspec.field(default_factory=list)
     temperature_degc: list[tuple[int, float]] = msgspec.field(default_factory=list)
     heard_ns: list[int] = msgspec.field(default_factory=list)
+    battery: list[tuple[int, float]] = msgspec.field(default_factory=list)  # 0..1
+    events: list[tuple[int, EventKind]] = msgspec.field(default_factory=list)
 
 
 class LogFacts(msgspec.Struct):
@@ -110,8 +113,8 @@ def _take(facts: LogFacts, reader: _UnitReader, event: Received, *, is_live: boo
             reader.take_temperature(t_ns, message, is_live=is_live)
         case Status():
             reader.take_status(t_ns, message)
-        case UnitEvent(is_stop_in_order=True):
-            reader.stop()
+        case UnitEvent():
+            reader.take_event(t_ns, message)
         case CommandReply():
             facts.replies.append(
                 ReplyRecord(t_ns, event.unit_id, message.command_id, message.state, message.detail)
@@ -142,9 +145,11 @@ class _UnitReader:
                 self.facts.heard_ns.append(t_ns)
         return sent_ns
 
-    def stop(self) -> None:
-        """The unit was switched off: its silence is no radio gap."""
-        self._is_stopped = True
+    def take_event(self, t_ns: int, message: UnitEvent) -> None:
+        if message.is_stop_in_order:  # it was switched off: its silence is no radio gap
+            self._is_stopped = True
+        if self._is_about(t_ns):
+            self.facts.events.append((t_ns, message.kind))
 
     def end(self) -> None:
         self._note_gap(self._during.until_ns)
@@ -166,6 +171,8 @@ class _UnitReader:
     def take_status(self, t_ns: int, message: Status) -> None:
         if self._is_about(t_ns):
             self.facts.motionless_s.append((t_ns, message.motionless_s))
+            if message.battery is not None:
+                self.facts.battery.append((t_ns, message.battery))
 
     def _note_gap(self, t_ns: int) -> None:
         heard_ns = self._heard_ns

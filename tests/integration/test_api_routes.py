@@ -55,6 +55,7 @@ LEAST: dict[str, dict[str, Role | None]] = {
     "tracks": {"GET /units/{unit_id}/track": V, "GET /incidents/{incident_id}/tracks": V,
                "GET /incidents/{incident_id}/trails": V, "GET /units/{unit_id}/timeline": V},
     "alarms": {"GET /alarms": V, "GET /alarms/{alarm_id}": V,
+               "GET /alarms/{alarm_id}/explanation": V,
                "POST /alarms/{alarm_id}/acknowledge": C, "POST /alarms/{alarm_id}/resolve": C},
     "commands": {"GET /commands": V, "POST /commands": C, "GET /commands/{command_id}": V,
                  "POST /commands/{command_id}/confirm": C,

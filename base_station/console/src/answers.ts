@@ -8,6 +8,21 @@ export interface Acknowledgement {
   last_raised_ms: number;
 }
 
+export interface AlarmExplanationAnswer {
+  alarm_id: string;
+  rule: string;
+  raised_ms: number;
+  motionless_s: TracePoint[];
+  temperature_degc: TracePoint[];
+  battery_level: TracePoint[];
+  height_m: TracePoint[];
+  stated_error_m: TracePoint[];
+  live_ms: number[];
+  buttons_ms: number[];
+  thresholds: Record<string, number>;
+  crossing: ThresholdCrossing | null;
+}
+
 export interface AlarmHistoryEntry {
   t_ms: number;
   state: string;
@@ -612,6 +627,14 @@ export interface StartForm {
   t_ms?: number;
 }
 
+export interface ThresholdCrossing {
+  series: string;
+  threshold: string;
+  limit: number;
+  t_ms: number;
+  value: number;
+}
+
 export interface Ticket {
   ticket: string;
   lasts_s: number;
@@ -655,6 +678,11 @@ export interface Token {
 export interface TokenSecret {
   token_id: string;
   token: string;
+}
+
+export interface TracePoint {
+  t_ms: number;
+  value: number;
 }
 
 export interface Track {
