@@ -56,8 +56,10 @@ class RouteAnswer(Answer, frozen=True):
 def find_routes(station: Services, unit_id: str, rescuer_id: str | None) -> list[RouteAnswer]:
     """Routes of the nearest rescuers, or of the one that is named, to a unit.
 
-    Problem 404 for an unknown unit, 409 for one without a position.
+    Problem 404 for an unknown unit, 409 for one without a position and for the member itself.
     """
+    if rescuer_id == unit_id:
+        raise Problem(409, "The rescuer is the member: name another rescuer.")
 
     def may_go(snapshot: Snapshot) -> Sequence[str]:
         return rescuers(snapshot, unit_id) if rescuer_id is None else (rescuer_id,)

@@ -104,6 +104,9 @@ async def test_unknown_units_and_units_without_a_position(commander: httpx.Async
     assert (await commander.get("/units/FF-09/routes")).status_code == 404
     assert (await commander.get("/units/FF-01/routes?rescuer_id=FF-09")).status_code == 404
     await commander.post("/units", json={"unit_id": "FF-08"})
+    itself = await commander.get("/units/FF-01/routes?rescuer_id=FF-01")
+    assert itself.status_code == 409
+    assert "name another rescuer" in itself.json()["detail"]
     nowhere = await commander.get("/units/FF-08/routes")
     assert nowhere.status_code == 409
     assert "no position" in nowhere.json()["detail"]
