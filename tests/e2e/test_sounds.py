@@ -14,11 +14,17 @@ def test_alarms_are_heard_unless_switched_off(stage: Stage) -> None:
     page.evaluate(
         """() => {
           window.tones = 0;
-          const silent = { frequency: {}, connect() {}, start() {}, stop() {} };
+          const part = { setValueAtTime() {}, linearRampToValueAtTime() {} };
+          const silent = {
+            frequency: {}, gain: part, setPeriodicWave() {}, start() {}, stop() {},
+            connect: (next) => next,
+          };
           window.AudioContext = class {
             state = "running";
             constructor() { window.tones += 1; }
             createOscillator() { return { ...silent }; }
+            createGain() { return { ...silent }; }
+            createPeriodicWave() {}
             close() {}
           };
         }"""
@@ -53,10 +59,16 @@ def test_sound_that_the_browser_keeps_silent_is_not_said_to_be_on(stage: Stage) 
     page, _ = stage.open(scenes.quiet())
     page.evaluate(
         """() => {
-          const silent = { frequency: {}, connect() {}, start() {}, stop() {} };
+          const part = { setValueAtTime() {}, linearRampToValueAtTime() {} };
+          const silent = {
+            frequency: {}, gain: part, setPeriodicWave() {}, start() {}, stop() {},
+            connect: (next) => next,
+          };
           window.AudioContext = class {
             state = "suspended";
             createOscillator() { return { ...silent }; }
+            createGain() { return { ...silent }; }
+            createPeriodicWave() {}
             close() {}
           };
         }"""

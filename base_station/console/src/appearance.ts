@@ -1,11 +1,21 @@
-/** How the page looks at this console: the theme, kept in this browser. */
+/** How the page looks at this console: the theme and keys, kept in this browser. */
 import { effect, signal } from "@preact/signals";
-import { kept } from "./kept";
+import { kept, keptSwitch } from "./kept";
 
 export const THEMES = ["system", "light", "dark", "red"] as const;
 export type Theme = (typeof THEMES)[number];
 
 export const theme = kept<Theme>("muster-theme", THEMES, "system");
+
+/** Letters as shortcuts get in the way of who speaks to the computer (WCAG 2.1.4): they can be off. */
+export const shortcutsOn = keptSwitch("muster-shortcuts", "on");
+
+/** Targets for hands in gloves. */
+export const gloves = keptSwitch("muster-gloves", "off");
+
+effect(() => {
+  document.documentElement.dataset.gloves = gloves.value;
+});
 
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
 const isSystemDark = signal(systemDark.matches);

@@ -10,11 +10,15 @@ import "./styles/plan.css";
 import "./styles/dialogs.css";
 import "./styles/timeline.css";
 import "./styles/small.css";
+import "./styles/gloves.css";
 import "./styles/red-light.css";
+import "./styles/print.css";
 import "./appearance";
+import { install } from "./install";
 import { resume } from "./sessions";
 import { App } from "./ui/App";
 
+install();
 await resume();
 const root = document.getElementById("app");
 if (root) render(<App />, root);

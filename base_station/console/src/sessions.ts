@@ -1,7 +1,7 @@
 /** Who is logged in, what is live, and which replay is watched. */
 import { batch, computed, effect, signal } from "@preact/signals";
 import * as api from "./api";
-import { ApiError, UNREACHABLE } from "./http";
+import { ApiError, isUnanswered, UNREACHABLE } from "./http";
 import { arrivalSoundNotice, ticketOf, withoutTicket } from "./live/loginTransfer";
 import { NOT_LOGGED_IN } from "./live/connection";
 import { watchOver } from "./live/failover";
@@ -21,6 +21,8 @@ export interface Replay {
 export const user = signal<api.Me | null>(null);
 /** The station has ended this login: what was being done waits, unseen, for the same person. */
 export const waiting = signal(false);
+/** The page was opened while its station did not answer. */
+export const stationAway = signal(false);
 export const live = signal<Session | null>(null);
 export const replay = signal<Replay | null>(null);
 
@@ -47,15 +49,27 @@ export async function resume(): Promise<void> {
   const ticket = ticketOf(location.hash);
   if (ticket !== "") history.replaceState(null, "", withoutTicket(location.hash));
   try {
-    const me = await api.me().catch((error) => (ticket === "" ? Promise.reject(error) : api.goOn(ticket)));
+    const me = await inTime(api.me()).catch((error) => (ticket === "" ? Promise.reject(error) : api.goOn(ticket)));
+    stationAway.value = false;
     if (me.must_change_password) return; // the login form asks for it
     begin(me);
     if (ticket !== "" && soundOn.peek() && soundBlocked.peek()) {
       notice.value = arrivalSoundNotice(location.hash);
     }
-  } catch {
+  } catch (error) {
     user.value = null;
+    stationAway.value = isUnanswered(error);
   }
+}
+
+const AWAY_AFTER_MS = 8_000;
+
+/** A station that hangs is as good as away. */
+function inTime<T>(work: Promise<T>): Promise<T> {
+  const late = new Promise<never>((_, reject) =>
+    setTimeout(() => reject(new ApiError(UNREACHABLE, 0)), AWAY_AFTER_MS),
+  );
+  return Promise.race([work, late]);
 }
 
 export function begin(me: api.Me): void {

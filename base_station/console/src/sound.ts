@@ -2,6 +2,8 @@
 import { effect, signal } from "@preact/signals";
 import type { Picture } from "./live/picture";
 import { NO_TONES_YET, nextTone, type Tone } from "./live/alarmTones";
+import { burst, type Pulse } from "./live/tonePulses";
+import { speak } from "./speech";
 
 const KEPT_AS = "muster-sound";
 
@@ -21,7 +23,7 @@ for (const kind of ["click", "keyup"]) {
 export function switchSound(on: boolean): void {
   soundOn.value = on;
   localStorage.setItem(KEPT_AS, on ? "on" : "off");
-  if (on) play("soon");
+  if (on) play("medium");
 }
 
 /** Sound what a picture brings, until the returned function is called. */
@@ -30,7 +32,7 @@ export function sound(picture: Picture): () => void {
   return effect(() => {
     void picture.nowMs.value; // goes on without the station too
     if (picture.replay.value !== null) return;
-    const { tone, toneState } = nextTone(
+    const { tone, alarm, toneState } = nextTone(
       {
         alarms: picture.openAlarms.value,
         linkLost: picture.link.value.kind === "down",
@@ -39,32 +41,44 @@ export function sound(picture: Picture): () => void {
       before,
     );
     before = toneState;
-    if (tone !== null && soundOn.peek() && !soundBlocked.peek()) play(tone);
+    if (tone === null || !soundOn.peek() || soundBlocked.peek()) return;
+    play(tone);
+    speak(tone, alarm);
   });
 }
 
-/** Pitches in Hz, one after the other. */
-const PITCHES: Record<Tone, readonly number[]> = {
-  immediate: [880, 880, 880],
-  soon: [660],
-  link: [440, 330],
-};
-const TONE_S = 0.18;
-const STEP_S = 0.3;
-const OVER_MS = 2_000; // for the longest tone
+/** IEC 60601-1-8: at least four harmonics between 300 and 4000 Hz, within 15 dB of the fundamental. */
+const HARMONICS = [0, 1, 0.8, 0.65, 0.5, 0.4];
+const RISE = 0.15; // of a pulse: it begins and ends without a click
+const LOUDNESS = 0.5; // of full scale
+const OVER_MS = 4_500; // for the longest burst
 
 function play(tone: Tone): void {
   const context = new AudioContext();
-  const pitches = PITCHES[tone];
-  pitches.forEach((pitch, i) => {
-    const one = context.createOscillator();
-    one.frequency.value = pitch;
-    one.connect(context.destination);
-    one.start(context.currentTime + i * STEP_S);
-    one.stop(context.currentTime + i * STEP_S + TONE_S);
-  });
+  const wave = context.createPeriodicWave(
+    new Float32Array(HARMONICS.length),
+    new Float32Array(HARMONICS),
+  );
+  for (const pulse of burst(tone)) schedule(context, wave, pulse);
   setTimeout(() => {
     soundBlocked.value = context.state !== "running"; // the browser has kept it silent
     void context.close();
   }, OVER_MS);
+}
+
+function schedule(context: AudioContext, wave: PeriodicWave, { startS, durationS, pitchHz }: Pulse): void {
+  const from = context.currentTime + startS;
+  const until = from + durationS;
+  const rise = RISE * durationS;
+  const gain = context.createGain();
+  gain.gain.setValueAtTime(0, from);
+  gain.gain.linearRampToValueAtTime(LOUDNESS, from + rise);
+  gain.gain.setValueAtTime(LOUDNESS, until - rise);
+  gain.gain.linearRampToValueAtTime(0, until);
+  const oscillator = context.createOscillator();
+  oscillator.setPeriodicWave(wave);
+  oscillator.frequency.value = pitchHz;
+  oscillator.connect(gain).connect(context.destination);
+  oscillator.start(from);
+  oscillator.stop(until);
 }

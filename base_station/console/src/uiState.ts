@@ -19,6 +19,7 @@ export type DialogName =
   | "roll_call"
   | "account"
   | "display"
+  | "board"
   | "users"
   | "audit"
   | "enrolments"

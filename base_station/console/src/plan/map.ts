@@ -25,7 +25,7 @@ import { PIN_HALF_PX, PIN_HEIGHT_PX, PinLayer, type PinScene, type Standing } fr
 import { SITE } from "./site";
 import type { Place } from "./tools";
 
-const TAP_PX = 26;
+const TAP_PX = 29; // 15 mm across, as for hands in gloves
 const CLOSE_M_PER_PX = 0.06;
 const MOVING_KEYS = /^(Arrow.*|[+-])$/;
 const MOVE_MS = 250;

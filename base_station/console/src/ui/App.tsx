@@ -1,6 +1,6 @@
 import { useEffect, useLayoutEffect } from "preact/hooks";
 import { shownTheme } from "../appearance";
-import { isPast, live, picture, replay, user, waiting } from "../sessions";
+import { isPast, live, picture, replay, stationAway, user, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { sound } from "../sound";
 import { entitle } from "../title";
@@ -19,12 +19,16 @@ import { PlanPanel } from "./PlanPanel";
 import { RedLight } from "./RedLight";
 import { ReplayBar } from "./ReplayBar";
 import { StandbyBar } from "./StandbyBar";
+import { StationAway } from "./StationAway";
 import { UndoBar } from "./UndoBar";
+import { useShortcuts } from "./shortcuts";
 import { Sending } from "./Waiting";
 
 export function App() {
   useAttention();
   useWaiting();
+  useShortcuts();
+  if (stationAway.value) return <StationAway />;
   const shown = picture.value;
   const login = user.value === null || waiting.value;
   return (

@@ -11,10 +11,10 @@ export function CommandBar({ picture }: { picture: Picture }) {
     <div class="command-bar" role="group" aria-label="Commands">
       {mayAct.value && (
         <>
-          <button type="button" class="danger" onClick={() => openDialog("evacuate")}>
+          <button type="button" class="danger" aria-keyshortcuts="E" onClick={() => openDialog("evacuate")}>
             Evacuate
           </button>
-          <button type="button" onClick={() => openDialog("par_request")}>
+          <button type="button" aria-keyshortcuts="P" onClick={() => openDialog("par_request")}>
             PAR
           </button>
           <button type="button" onClick={() => openDialog("text")}>

@@ -4,6 +4,7 @@ import { dialog } from "../uiState";
 import { AccountDialog } from "./AccountDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
+import { BoardDialog } from "./BoardDialog";
 import { CommandDialog } from "./CommandDialog";
 import { DisplayDialog } from "./DisplayDialog";
 import { EnrolmentsDialog } from "./EnrolmentsDialog";
@@ -53,6 +54,8 @@ function Opened() {
       return <RollCallDialog />;
     case "account":
       return <AccountDialog />;
+    case "board":
+      return <BoardDialog />;
     case "display":
       return <DisplayDialog />;
     case "users":

@@ -1,7 +1,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { Order } from "../live/finding";
-import { pane } from "../uiState";
-import { density, finding, order, text } from "./listState";
+import { openDialog } from "../uiState";
+import { density, finding, order, seeking, text } from "./listState";
 
 const ORDERS: readonly [Order, string][] = [
   ["need", "By need"],
@@ -9,21 +9,12 @@ const ORDERS: readonly [Order, string][] = [
   ["name", "By name"],
 ];
 
-/** Search, order and density of the list.  "/" leads to the search from wherever nothing is written. */
+/** Search, order and density of the list. */
 export function ListTools() {
   const field = useRef<HTMLInputElement>(null);
   useEffect(() => {
-    const seek = (press: KeyboardEvent) => {
-      if (press.key !== "/" || press.ctrlKey || press.metaKey || press.altKey) return;
-      if (isWriting(press.target) || document.querySelector("dialog[open]")) return;
-      press.preventDefault();
-      pane.value = "people";
-      finding.value = true;
-      requestAnimationFrame(() => field.current?.focus());
-    };
-    document.addEventListener("keydown", seek);
-    return () => document.removeEventListener("keydown", seek);
-  }, []);
+    if (seeking.value > 0) requestAnimationFrame(() => field.current?.focus());
+  }, [seeking.value]);
   const leave = () => {
     text.value = "";
     finding.value = false;
@@ -59,10 +50,9 @@ export function ListTools() {
       >
         One line each
       </button>
+      <button type="button" onClick={() => openDialog("board")}>
+        Board
+      </button>
     </div>
   );
-}
-
-function isWriting(target: EventTarget | null): boolean {
-  return target instanceof Element && target.matches("input, textarea, select");
 }

@@ -9,6 +9,9 @@ export const foldedCrews = signal<ReadonlySet<string>>(new Set());
 /** On a small screen the search is hidden until somebody asks for it. */
 export const finding = signal(false);
 
+/** Counts up when somebody asks for the search. */
+export const seeking = signal(0);
+
 export type Density = "cards" | "lines";
 
 const ORDERS: readonly Order[] = ["need", "crew", "name"];

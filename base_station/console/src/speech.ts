@@ -1,0 +1,24 @@
+/** Alarms are spoken after their tone, where the browser can and somebody has chosen it. */
+import { keptSwitch } from "./kept";
+import type { Tone } from "./live/alarmTones";
+import type { AlarmView } from "./wire";
+
+export const canSpeak = "speechSynthesis" in window;
+/** Off until somebody chooses it: a radio stands beside the console. */
+export const speechOn = keptSwitch("muster-speech", "off");
+
+/** When the bursts of a tone are over. */
+const AFTER_MS: Partial<Record<Tone, number>> = { high: 3_400, medium: 1_100, link: 700 };
+
+/** Only the newest: nobody wants to listen to what was urgent before. */
+export function speak(tone: Tone, alarm: AlarmView | null): void {
+  const afterMs = AFTER_MS[tone];
+  const words = tone === "link" ? "Connection to the station lost" : alarm?.text;
+  if (!canSpeak || speechOn.peek() === "off" || afterMs === undefined || words === undefined) return;
+  setTimeout(() => {
+    speechSynthesis.cancel();
+    const utterance = new SpeechSynthesisUtterance(words);
+    utterance.lang = "en";
+    speechSynthesis.speak(utterance);
+  }, afterMs);
+}

@@ -1,0 +1,70 @@
+/** Keys for what is needed at once.  Each opens what its button opens, and asks the same. */
+import { useEffect } from "preact/hooks";
+import { shortcutsOn } from "../appearance";
+import type { Picture } from "../live/picture";
+import { mayAct, picture, waiting } from "../sessions";
+import { dialog, find, openDialog, pane } from "../uiState";
+import { finding, seeking } from "./listState";
+
+interface Shortcut {
+  key: string; // as `KeyboardEvent.key`, in lower case
+  words: string;
+  acts?: boolean; // only for who may act
+  run(): void;
+}
+
+export const SHORTCUTS: readonly Shortcut[] = [
+  { key: "e", words: "Evacuate: opens the order, sends nothing yet", acts: true, run: () => openDialog("evacuate") },
+  { key: "p", words: "PAR: opens the request, sends nothing yet", acts: true, run: () => openDialog("par_request") },
+  { key: "n", words: "Next alarm: shows its member on the plan", run: showNextAlarm },
+  { key: "/", words: "Search the list of people", run: seek },
+  { key: "?", words: "This list", run: () => openDialog("display") },
+];
+
+/** The shortcut of a press, or undefined: a key held down, one of a text, or one for the browser is none. */
+export function shortcutOf(press: Press, acts: boolean): Shortcut | undefined {
+  if (press.repeat || press.ctrlKey || press.metaKey || press.altKey) return undefined;
+  const found = SHORTCUTS.find(({ key }) => key === press.key.toLowerCase());
+  return found?.acts === true && !acts ? undefined : found;
+}
+
+type Press = Pick<KeyboardEvent, "key" | "repeat" | "ctrlKey" | "metaKey" | "altKey">;
+
+/** They hold from wherever nothing is written and no dialog is open. */
+export function useShortcuts(): void {
+  useEffect(() => {
+    const act = (press: KeyboardEvent) => {
+      if (shortcutsOn.peek() === "off" || waiting.peek() || dialog.peek() !== null) return;
+      if (picture.peek() === null || isWriting(press.target)) return;
+      const found = shortcutOf(press, mayAct.peek());
+      if (found === undefined) return;
+      press.preventDefault();
+      found.run();
+    };
+    document.addEventListener("keydown", act);
+    return () => document.removeEventListener("keydown", act);
+  }, []);
+}
+
+function isWriting(target: EventTarget | null): boolean {
+  return target instanceof Element && target.matches("input, textarea, select");
+}
+
+function seek(): void {
+  pane.value = "people";
+  finding.value = true;
+  seeking.value += 1;
+}
+
+let lastShown = "";
+
+/** In the order of the zone, and from the beginning after the last. */
+function showNextAlarm(): void {
+  const shown: Picture | null = picture.peek();
+  const alarms = (shown?.openAlarms.peek() ?? []).filter(({ unit_id }) => shown?.unit(unit_id));
+  const before = alarms.findIndex(({ alarm_id }) => alarm_id === lastShown);
+  const next = alarms[(before + 1) % alarms.length];
+  if (shown === null || next === undefined) return;
+  lastShown = next.alarm_id;
+  find(next.unit_id, shown.unit(next.unit_id)?.peek().position?.floor ?? null);
+}
