@@ -1,5 +1,5 @@
-"""Batches of a recording, put together to about a second each: a pipeline takes them in a tenth of
-the time.
+"""Batches of a recording, put together to about a second each: a pipeline takes them in a quarter
+of the time.
 
 What the pipeline does once a batch, it does once a second of the samples' clock.  So each merged
 batch ends with the first batch that reaches another second: statuses come at the same samples.
