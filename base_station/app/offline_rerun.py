@@ -158,7 +158,7 @@ def _report(
         for unit_id in sorted({*shown, *result.trails})
     )
     raised = [
-        RaisedAlarm(one.rule, one.unit_id, one.raised_ns, one.text)
+        RaisedAlarm(one.rule, one.unit_id, one.raised_ns)
         for one in opened.records.alarms(Window(opened.from_ns, opened.until_ns + 1))
     ]
     aligned = [

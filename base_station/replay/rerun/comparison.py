@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from enum import StrEnum
 
 import msgspec
@@ -52,7 +52,6 @@ class RaisedAlarm(msgspec.Struct, frozen=True):
     rule: str
     unit_id: str
     raised_ns: int
-    text: str
 
 
 class AlarmDifference(msgspec.Struct, frozen=True):
@@ -167,6 +166,3 @@ def _floor_changes(pairs: Iterable[tuple[TrackSample, TrackSample]]) -> Iterable
             change = FloorChange(t_ms, t_ms, then.floor, now.floor)
     if change is not None:
         yield change
-
-
-Trails = Mapping[str, Sequence[TrackSample]]  # by unit

@@ -63,7 +63,7 @@ class _Collected:
             elif isinstance(output, AlarmChange) and output.state is AlarmState.RAISED:
                 self.alarms.setdefault(
                     output.alarm_id,
-                    RaisedAlarm(output.rule, output.unit_id, output.raised_ns, output.text),
+                    RaisedAlarm(output.rule, output.unit_id, output.raised_ns),
                 )
 
     def sorted_trails(self) -> dict[str, list[TrackSample]]:

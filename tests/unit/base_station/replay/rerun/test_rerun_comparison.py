@@ -37,7 +37,7 @@ def test_trails_without_a_common_second_have_no_figures() -> None:
 
 def test_alarms_are_paired_with_the_nearest_of_their_kind() -> None:
     def alarm(rule: str, second: int) -> RaisedAlarm:
-        return RaisedAlarm(rule, "FF-01", second * NS_PER_S, "")
+        return RaisedAlarm(rule, "FF-01", second * NS_PER_S)
 
     shown = [alarm("fall", 10), alarm("heat", 50), alarm("fall", 900)]
     rerun = [alarm("fall", 12), alarm("fall", 100), alarm("heat", 50)]
