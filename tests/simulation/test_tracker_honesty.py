@@ -46,6 +46,13 @@ def test_a_sensor_that_nobody_calibrated_is_not_stated_too_sure():
         assert rms(np.array([one.heading_rad for one in endings])) < np.radians(20.0)
 
 
+def test_gains_that_a_long_walk_no_longer_shows_are_stated():
+    """Strides that are alike for a lap teach the filter's biases what gains do to them."""
+    endings = [ending("track of 400 m", seed, calibrated=False) for seed in range(6)]
+    assert np.mean([one.nees for one in endings]) < nees_bounds(6)[1]
+    assert np.mean([one.inside for one in endings]) > 0.92
+
+
 @pytest.mark.parametrize("bias_radps", [0.005, 0.03, 0.06])
 def test_whatever_the_gyroscope_shows_at_rest_is_its_bias(bias_radps):
     made = walk(strides=8, gyro_bias_radps=(0.3 * bias_radps, -bias_radps, 0.6 * bias_radps))

@@ -163,6 +163,7 @@ RIVAL = np.dtype(
         ("mean_zupt_residual", np.float64),
         ("mean_strike_residual", np.float64),
         ("mean_scale_residual", np.float64),
+        ("gain_residual", np.float64),
         ("misfit_n_m", np.float64, 3),
     ],
     align=True,
@@ -218,6 +219,7 @@ FILTER = np.dtype(
             "mean_scale_residual",
             np.float64,
         ),  # mean of landings that tell of the gains, at an ordinary speed
+        ("gain_residual", np.float64),  # the largest such mean
         ("faulty_stride", np.bool_),  # since the last lift-off
         # Whether stances and swings agree; see stance_consistency.
         ("stance_nis", np.float64),  # normalised innovation squared of this stance so far

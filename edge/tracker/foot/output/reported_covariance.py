@@ -19,7 +19,7 @@ from edge.tracker.foot.filter.error_model import heading_variance
 from edge.tracker.foot.filter.initial_gyro_bias import unobserved_heading_variance
 from edge.tracker.foot.filter.scale_misalignment import along, project
 from edge.tracker.foot.state import FilterState, Step
-from edge.tracker.foot.zupt.zupt_residuals import noise_inflation, scale_error_inflation
+from edge.tracker.foot.zupt.zupt_residuals import noise_inflation, reported_gain_inflation
 from edge.tracker.preprocessing.sample_ring import Ring
 
 
@@ -31,7 +31,7 @@ def accumulate_heading_bias(state: FilterState, dt_s: float, config: EskfConfig)
     """
     p = state.covariance
     heading_var = heading_variance(p) + unobserved_heading_variance(state)
-    heading_var += (scale_error_inflation(state, config) - 1.0) * p[TURN, TURN]
+    heading_var += (reported_gain_inflation(state, config) - 1.0) * p[TURN, TURN]
     heading_var = max(heading_var, 0.0)
     variance = 2.0 * (1.0 - math.exp(-0.5 * heading_var))
     for i in range(2):
@@ -63,7 +63,7 @@ def report_covariance(
     reported_m2[2, 2] += (scale_errors.std * state.position_n_m[2]) ** 2 + state.ramp_var_m2
     reported_m2[2, 2] += state.hidden_rise_m**2
     noise_excess = noise_inflation(state, config) - 1.0
-    scale_excess = scale_error_inflation(state, config)
+    scale_excess = reported_gain_inflation(state, config)
     length_excess = max(scale_excess, 1.0)  # a scale of the accelerometer leaves landings alone
     for j in range(2):
         project(scale_errors, scale_errors.position_sensitivity[j], scale_errors.column)

@@ -62,6 +62,16 @@ def on_footfall(ring: Ring, step: Step, state: FilterState, slot: int, config: E
     if state.swing_speed_mps > config.residuals.zupt_residual_slow_mps:
         residual *= min(config.residuals.zupt_residual_speed_mps / state.swing_speed_mps, 1.0)
         state.mean_scale_residual += weight * (residual - state.mean_scale_residual)
+        _remember_gains(state, config)
+
+
+@njit()
+def _remember_gains(state: FilterState, config: EskfConfig) -> None:
+    """Hold the largest mean residual: gains are constant, and later landings show less of them."""
+    if state.zupt_residual_count < config.residuals.zupt_residual_memory:
+        state.gain_residual = state.mean_scale_residual
+    else:
+        state.gain_residual = max(state.gain_residual, state.mean_scale_residual)
 
 
 @njit()
@@ -111,17 +121,32 @@ def _bias_is_known(state: FilterState, config: EskfConfig) -> bool:
 
 @njit()
 def scale_error_inflation(state: FilterState, config: EskfConfig) -> float:
-    """Return the factor on the variance of the scale errors, as this sensor's landings show them.
+    """Return the factor on the variance of what gains do to a landing, as the last ones show it."""
+    return _gain_share(state, state.mean_scale_residual, config)
 
-    A residual has a part by the gains and one that the best sensors have as well.  By 1 once a
-    compass has been used, for it has observed the gains.
+
+@njit()
+def reported_gain_inflation(state: FilterState, config: EskfConfig) -> float:
+    """Return the factor on the variance of the gains, as all landings of this sensor show them."""
+    return _gain_share(state, state.gain_residual, config)
+
+
+@njit()
+def _gain_share(state: FilterState, residual: float, config: EskfConfig) -> float:
+    """Return the share of the assumed variance of the gains that a mean residual shows.
+
+    A residual has a part by the gains and one that the best sensors have as well.  It shows whether
+    a sensor was calibrated, and little of the gains that turn the heading: those are as good as an
+    uncalibrated sensor's are, unless the residual is too large for one.  By 1 once a compass has
+    been used, for it has observed the gains.
     """
     if state.scale_errors.compass_used:
         return 1.0
     quiet = config.residuals.zupt_residual_quiet**2
-    shown = (state.mean_scale_residual**2 - quiet) / (
-        config.residuals.zupt_residual_usual**2 - quiet
-    )
+    by_gains = residual**2 - quiet
+    uncalibrated = by_gains / (config.residuals.zupt_residual_uncalibrated**2 - quiet)
+    shown = config.residuals.uncalibrated_share * min(uncalibrated, 1.0)
+    shown = max(shown, by_gains / (config.residuals.zupt_residual_usual**2 - quiet))
     return float(max(shown, state.scale_errors.least_share))
 
 

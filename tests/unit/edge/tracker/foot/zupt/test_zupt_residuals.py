@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from edge.tracker.foot.config import EskfConfig, config_record
-from edge.tracker.foot.error_state import ATTITUDE, POSITION
-from edge.tracker.foot.state import new_filter_state
-from edge.tracker.foot.zupt.zupt_residuals import on_lift_off, scale_error_inflation
+from edge.tracker.foot.error_state import ATTITUDE, POSITION, VELOCITY
+from edge.tracker.foot.state import STEP, new_filter_state
+from edge.tracker.foot.zupt.zupt_residuals import (
+    on_footfall,
+    on_lift_off,
+    reported_gain_inflation,
+    scale_error_inflation,
+)
+from edge.tracker.preprocessing.sample_ring import new_ring
 
 HEADING = ATTITUDE + 2
 CONFIG = config_record(EskfConfig())[0]
@@ -73,3 +80,36 @@ def test_quiet_landings_do_not_make_gains_better_than_the_best_or_than_described
 @pytest.mark.slow
 def test_gains_that_a_compass_has_observed_are_left_to_it():
     assert gains(0.05, compass=True) == pytest.approx(1.0)
+
+
+def land(state, residual, *, times):
+    """So many landings after swings of 3 rad, each off by ``residual`` for a radian."""
+    ring, step = new_ring(200.0), np.zeros(1, STEP)[0]
+    for _ in range(times):
+        state["swing_rad"], state["swing_speed_mps"] = 3.0, 4.0
+        state["velocity_n_mps"] = (3.0 * residual, 0.0, 0.0)
+        state["covariance"][VELOCITY + 2, VELOCITY + 2] = 1e-4
+        on_footfall(ring, step, state, 0, CONFIG)
+
+
+@pytest.mark.slow
+def test_gains_that_landings_have_shown_are_reported_after_the_filter_has_adapted():
+    """The accelerometer's bias takes up what gains do to alike strides; the gains remain."""
+    state = new_filter_state()[0]
+    state["rotation_nb"] = np.eye(3)
+    land(state, 0.03, times=60)
+    shown = reported_gain_inflation(state, CONFIG)
+    assert shown == pytest.approx(1.0, abs=0.05)
+    land(state, 0.008, times=300)
+    assert scale_error_inflation(state, CONFIG) < 0.1
+    assert reported_gain_inflation(state, CONFIG) == shown
+
+
+@pytest.mark.slow
+def test_gains_are_as_early_landings_show_them_until_enough_of_them_have_been_seen():
+    state = new_filter_state()[0]
+    state["rotation_nb"] = np.eye(3)
+    land(state, 0.03, times=3)
+    louder = reported_gain_inflation(state, CONFIG)
+    land(state, 0.01, times=20)
+    assert reported_gain_inflation(state, CONFIG) < louder
