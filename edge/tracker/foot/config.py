@@ -201,10 +201,8 @@ class LandingResidualConfig(NamedTuple):
     mean_strike_residual: float = 0.01  # the same of the vertical velocity, before any landing
     strike_prior_count: float = 2.0
     zupt_residual_bias_std_radps: float = 1e-3  # of the gyroscope; more is no ordinary stride
-    zupt_residual_quiet: float = 0.0125  # of a sensor whose gains are right
-    zupt_residual_uncalibrated: float = 0.02  # of one that is certainly not calibrated
-    uncalibrated_share: float = 0.5  # of the variance by a data sheet, that such a sensor has
-    zupt_residual_usual: float = 0.03  # of one whose gains are off as a data sheet allows
+    zupt_residual_usual: float = 0.025  # of a sensor with the gains of a data sheet
+    zupt_residual_quiet: float = 0.012  # of one whose gains are right
     least_gain_std: float = 0.002  # that is reported where nobody describes them
     zupt_residual_speed_mps: float = 5.0  # of the swing; what gains do grows with it beyond
     zupt_residual_slow_mps: float = 2.0  # a slower swing does not show them

@@ -135,18 +135,13 @@ def reported_gain_inflation(state: FilterState, config: EskfConfig) -> float:
 def _gain_share(state: FilterState, residual: float, config: EskfConfig) -> float:
     """Return the share of the assumed variance of the gains that a mean residual shows.
 
-    A residual has a part by the gains and one that the best sensors have as well.  It shows whether
-    a sensor was calibrated, and little of the gains that turn the heading: those are as good as an
-    uncalibrated sensor's are, unless the residual is too large for one.  By 1 once a compass has
-    been used, for it has observed the gains.
+    A residual has a part by the gains and one that the best sensors have as well.  By 1 once a
+    compass has been used, for it has observed the gains.
     """
     if state.scale_errors.compass_used:
         return 1.0
     quiet = config.residuals.zupt_residual_quiet**2
-    by_gains = residual**2 - quiet
-    uncalibrated = by_gains / (config.residuals.zupt_residual_uncalibrated**2 - quiet)
-    shown = config.residuals.uncalibrated_share * min(uncalibrated, 1.0)
-    shown = max(shown, by_gains / (config.residuals.zupt_residual_usual**2 - quiet))
+    shown = (residual**2 - quiet) / (config.residuals.zupt_residual_usual**2 - quiet)
     return float(max(shown, state.scale_errors.least_share))
 
 
