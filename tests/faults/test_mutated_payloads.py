@@ -34,6 +34,7 @@ from shared.clock import ManualClock
 from shared.codec import decode, encode
 from shared.envelope import Stamper
 from shared.errors import UnknownChannelError, WireError
+from shared.mcap_log import is_derived
 from shared.messages import (
     Command,
     JournalBoot,
@@ -123,7 +124,7 @@ class Written:
     def write(self, t_ns: int, key: str, payload: bytes) -> bool:
         if self._keeps:
             self.records.append((t_ns, key, payload))
-        if not key.startswith(("foxglove/", "muster/v1/station/")):
+        if not is_derived(key) and not key.startswith("muster/v1/station/"):
             self.from_bus += 1
             self.unreadable += isinstance(event_of(t_ns, key, payload), Rejected)
         return True
