@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from pathlib import Path
 
 import numpy as np
@@ -66,7 +67,7 @@ def test_keys_open_what_buttons_open_and_send_nothing(page: Page, mayday: Locato
         expect(dialog.get_by_role("heading", level=2)).to_have_text(title)
         page.keyboard.press("n")  # belongs to the dialog
         page.keyboard.press("Escape")
-        expect(dialog).to_have_count(0)
+        expect(page.locator("dialog")).to_have_count(0)  # closed, and the page knows it
     assert sent == []
     search = page.get_by_role("searchbox")
     page.keyboard.press("/")
@@ -85,6 +86,41 @@ def test_keys_open_what_buttons_open_and_send_nothing(page: Page, mayday: Locato
     expect(dialog).to_have_count(0)
     menu(page, "Display").get_by_role("checkbox", name="Use them").check()
     close(dialog)
+
+
+# A screen of 24 inches and 1920 x 1080, seen from 2 m; capitals are measured as they are drawn.
+PIXEL_MM = 24 * 25.4 * (16 / math.hypot(16, 9)) / 1920
+ARC_MIN_PER_PX = 60 * math.degrees(math.atan(PIXEL_MM / 2000))
+_CAPITALS_PX = """
+() => {
+  const pen = document.createElement("canvas").getContext("2d");
+  return [...document.querySelectorAll(".wall *")]
+    .filter((one) => one.checkVisibility() && [...one.childNodes].some(
+      ({ nodeType, data }) => nodeType === Node.TEXT_NODE && data.trim() !== ""))
+    .filter((one) => !one.matches(".spoken"))
+    .map((one) => {
+      const { fontWeight, fontSize, fontFamily } = getComputedStyle(one);
+      pen.font = `${fontWeight} ${fontSize} ${fontFamily}`;
+      return [one.textContent, pen.measureText("H").actualBoundingBoxAscent];
+    });
+}
+"""
+
+
+def test_the_wall_is_read_from_2_m(page: Page, mayday: Locator, tmp_path: Path) -> None:
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    menu(page, "Display").get_by_role("checkbox", name="Names, state and floor").check()
+    close(page.get_by_role("dialog"))
+    row = page.get_by_role("list", name="People").get_by_role("listitem").filter(has_text=NAME)
+    expect(row).to_contain_text("Mayday")
+    capitals = page.evaluate(_CAPITALS_PX)
+    assert len(capitals) >= 5
+    assert [one for one in capitals if one[1] * ARC_MIN_PER_PX < 16] == []
+    assert barriers(page) == []
+    page.screenshot(path=tmp_path / "wall.png")
+    page.get_by_role("button", name="Leave wall").click()
+    page.set_viewport_size({"width": 1280, "height": 800})
+    expect(mayday).to_be_visible()
 
 
 GLOVED_PX = 15 / 25.4 * 96
@@ -156,6 +192,11 @@ def test_the_board_is_printed_black_on_white(page: Page, card: Locator, tmp_path
     black_on_white = ["rgb(0, 0, 0)", "rgb(255, 255, 255)"]
     assert row.get_by_role("cell").first.evaluate(colours) == black_on_white
     assert dialog.evaluate(colours) == black_on_white
+    heading = dialog.get_by_role("heading", name="Board").locator("..")
+    assert heading.evaluate(colours) == black_on_white
+    top = dialog.bounding_box()
+    assert top is not None
+    assert top["y"] < 1
     page.screenshot(path=tmp_path / "board.png")
     page.emulate_media(media="screen")
     close(dialog)

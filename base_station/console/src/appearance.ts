@@ -10,6 +10,9 @@ export const theme = kept<Theme>("muster-theme", THEMES, "system");
 /** Letters as shortcuts get in the way of who speaks to the computer (WCAG 2.1.4): they can be off. */
 export const shortcutsOn = keptSwitch("muster-shortcuts", "on");
 
+/** The layout for a screen on a wall. */
+export const wall = keptSwitch("muster-wall", "off");
+
 /** Targets for hands in gloves. */
 export const gloves = keptSwitch("muster-gloves", "off");
 

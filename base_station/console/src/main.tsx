@@ -12,6 +12,7 @@ import "./styles/timeline.css";
 import "./styles/small.css";
 import "./styles/gloves.css";
 import "./styles/red-light.css";
+import "./styles/wall.css";
 import "./styles/print.css";
 import "./appearance";
 import { install } from "./install";

@@ -1,5 +1,5 @@
 import { useEffect, useLayoutEffect } from "preact/hooks";
-import { shownTheme } from "../appearance";
+import { shownTheme, wall } from "../appearance";
 import { isPast, live, picture, replay, stationAway, user, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { sound } from "../sound";
@@ -23,6 +23,7 @@ import { StationAway } from "./StationAway";
 import { UndoBar } from "./UndoBar";
 import { useShortcuts } from "./shortcuts";
 import { Sending } from "./Waiting";
+import { Wall } from "./Wall";
 
 export function App() {
   useAttention();
@@ -64,6 +65,25 @@ function Console({ shown }: { shown: Picture }) {
           <ReplayBar replay={replay.value} live={live.value.picture} />
         </ErrorBoundary>
       )}
+      {wall.value === "on" ? (
+        <ErrorBoundary what="The wall">
+          <Wall picture={shown} />
+        </ErrorBoundary>
+      ) : (
+        <Desk shown={shown} kind={kind} />
+      )}
+      {dialog.value === null && <Sending />}
+      {dialog.value === null && <Notice />}
+      {dialog.value === null && <UndoBar />}
+      <Dialogs />
+    </div>
+  );
+}
+
+/** What stands between the banners and what is said last. */
+function Desk({ shown, kind }: { shown: Picture; kind: "live" | "replay" }) {
+  return (
+    <>
       <ErrorBoundary what="The header">
         <Header picture={shown} />
       </ErrorBoundary>
@@ -86,11 +106,7 @@ function Console({ shown }: { shown: Picture }) {
         Muster supplements a certified PASS device and never replaces it.{" "}
         <span>Temperatures are of the equipment’s environment, not of the wearer.</span>
       </footer>
-      {dialog.value === null && <Sending />}
-      {dialog.value === null && <Notice />}
-      {dialog.value === null && <UndoBar />}
-      <Dialogs />
-    </div>
+    </>
   );
 }
 

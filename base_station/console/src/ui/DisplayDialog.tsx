@@ -1,5 +1,5 @@
 import type { Signal } from "@preact/signals";
-import { gloves, shortcutsOn, theme, THEMES, type Theme } from "../appearance";
+import { gloves, shortcutsOn, theme, THEMES, type Theme, wall } from "../appearance";
 import { canSpeak, speechOn } from "../speech";
 import { Dialog } from "./Dialog";
 import { SHORTCUTS } from "./shortcuts";
@@ -28,6 +28,10 @@ export function DisplayDialog() {
             {THEME_WORDS[one]}
           </label>
         ))}
+      </fieldset>
+      <fieldset class="choices">
+        <legend>Wall</legend>
+        <Switch label="Names, state and floor, to be read from 2 m" choice={wall} />
       </fieldset>
       <fieldset class="choices">
         <legend>Gloves</legend>

@@ -24,7 +24,8 @@ export function Line({ unit, picture }: { unit: UnitView; picture: Picture }) {
   );
 }
 
-function whatOrWhere(unit: UnitView, picture: Picture): string {
+/** The alarms, or else where it is. */
+export function whatOrWhere(unit: UnitView, picture: Picture): string {
   const alarms = unit.alarms
     .map((alarmId) => picture.alarms.value.get(alarmId))
     .filter((alarm) => alarm !== undefined)

@@ -1,0 +1,91 @@
+import { useComputed, useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { wall } from "../appearance";
+import { clockTime } from "../format";
+import { headcountOf } from "../live/headcount";
+import type { Picture } from "../live/picture";
+import { arrange, displayName, type Place } from "../live/urgency";
+import { shortName } from "../plan/floors";
+import type { UnitView } from "../wire";
+import { Icon } from "./Icon";
+import { whatOrWhere } from "./Line";
+import { ParClock } from "./ParClock";
+
+/** For a screen on a wall, read from 2 m: names, state and floor, who needs help first. */
+export function Wall({ picture }: { picture: Picture }) {
+  const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
+  void [picture.unitsChanged.value, picture.alarms.value, second.value];
+  const list = useRef<HTMLUListElement>(null);
+  const room = useRoom(list);
+  const units = picture.allUnits();
+  const places = arrange([], units, picture.alarms.value, picture.nowMs.peek(), false);
+  const counts = headcountOf(units);
+  const left = places.slice(room);
+  return (
+    <main class="wall">
+      <header>
+        <h1>{picture.incident.value?.name ?? "No incident open"}</h1>
+        <span>{counts.parts.inside} inside</span>
+        <ParClock picture={picture} />
+        <time>{clockTime(picture.nowMs.value)}</time>
+        <button type="button" onClick={() => (wall.value = "off")}>
+          Leave wall
+        </button>
+      </header>
+      <ul class="wall-people" ref={list} aria-label="People">
+        {places.slice(0, room).map((place) => (
+          <Row key={place.unitId} place={place} picture={picture} />
+        ))}
+      </ul>
+      {left.length > 0 && <p class="wall-more">{moreWords(left)}</p>}
+    </main>
+  );
+}
+
+function Row({ place, picture }: { place: Place; picture: Picture }) {
+  const unit = picture.unit(place.unitId)?.value;
+  if (unit === undefined) return null;
+  const urgent = place.urgency === "immediate" || place.urgency === "soon";
+  return (
+    <li class={place.urgency}>
+      {urgent && <Icon name="alarm" />}
+      <span class="wall-name">{displayName(unit)}</span>
+      <span class="wall-words">{whatOrWhere(unit, picture)}</span>
+      <span class="wall-floor">{floorOf(unit)}</span>
+    </li>
+  );
+}
+
+function floorOf({ position }: UnitView): string {
+  return position === null || position.floor === null ? "?" : shortName(position.floor);
+}
+
+/** Whom the wall has no room for; the most urgent stand above. */
+function moreWords(left: readonly Place[]): string {
+  const inNeed = left.filter(({ urgency }) => urgency !== "normal").length;
+  return `+${left.length} more, ${inNeed === 0 ? "none in need" : `${inNeed} of them in need`}`;
+}
+
+/** How many rows there is room for. */
+function useRoom(list: { current: HTMLUListElement | null }): number {
+  const room = useSignal(0);
+  useEffect(() => {
+    const box = list.current;
+    if (box === null) return undefined;
+    const read = () => {
+      const style = getComputedStyle(box);
+      const columns = style.gridTemplateColumns.split(" ").length;
+      const rowPx = ROW_LINES * parseFloat(style.fontSize) + ROW_EDGES_PX;
+      room.value = columns * Math.max(1, Math.floor((box.clientHeight - EDGES_PX) / rowPx));
+    };
+    const watch = new ResizeObserver(read);
+    watch.observe(box);
+    read();
+    return () => watch.disconnect();
+  }, []);
+  return room.value;
+}
+
+const ROW_LINES = 1.15; // as in wall.css
+const ROW_EDGES_PX = 18; // of a row, with the gap below it
+const EDGES_PX = 16; // of the list
