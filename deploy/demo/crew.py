@@ -16,9 +16,19 @@ class Responder(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     role: str
     helmet: str  # colour in the drawn portrait
     source: str
+    sensors: tuple[str, ...] = ()  # places of several; none: one, on a foot
     reacts_to: tuple[str, ...] = ()  # signals upon which the button is pressed
     mayday_at_s: float | None = None  # after the beginning
     evacuated_at_s: float | None = None  # when the commander orders it
+
+    @property
+    def source_flags(self) -> tuple[str, ...]:
+        """Of ``muster edge run``."""
+        if not self.sensors:
+            return "--source", self.source
+        return tuple(
+            flag for place in self.sensors for flag in ("--sensor", f"{place}={self.source}")
+        )
 
 
 class Crew(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -169,10 +169,10 @@ class _Demo:
         arriving = [one.unit for one in self._crew.responder if "from=" in one.source]
         console.start_at_engine(arriving, *_ENGINE)
         for responder, enrolment in zip(self._crew.responder, enrolments, strict=True):
-            unit, source = responder.unit, responder.source
-            if source.startswith("recording:"):
+            unit = responder.unit
+            if responder.source.startswith("recording:"):
                 console.start_unit_at(unit, north_m=-6.0, east_m=4.0)
-            flags = ("--enrolment", str(enrolment), "--source", source, "--data", data)
+            flags = ("--enrolment", str(enrolment), *responder.source_flags, "--data", data)
             self._children.start(unit, ("edge", "run", *flags, *self._wearers.flags(unit)))
 
     def _watch(self, console: ConsoleClient, stop: Event, for_s: float | None) -> None:

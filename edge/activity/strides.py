@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import atan2, hypot, isfinite, pi, remainder
+from math import atan2, hypot, pi, remainder
 
 import numpy as np
 
@@ -15,6 +15,7 @@ _SHORTEST_SWING_NS = 7 * NS_PER_S // 20  # sprinters need longer
 _SHORTEST_STANCE_NS = NS_PER_S // 10  # after a shorter swing: else the foot was still in the air
 _SWING_SHARE = 0.75  # of a stride: gives the period of the first one after a rest
 _LONGEST_PERIOD_NS = 3 * NS_PER_S  # longer: the foot rested before
+_USUAL_PERIOD_NS = 11 * NS_PER_S // 10  # of the first stride of a trunk after a rest
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,9 +51,33 @@ class StrideCutter:
         self._lifted: _Footing | None = None  # where the foot left the ground
         self._footfall_ns: int | None = None
         self._unconfirmed_ns: int | None = None  # a footfall after too short a swing
+        self._steps = 0  # of the row before
+        self._counted: _Footing | None = None  # where a trunk's tracker has counted the last one
 
     def push(self, track: TrackBatch) -> list[Stride]:
-        """Return the strides that end within these rows."""
+        """Return the strides that end within these rows.
+
+        A foot stands still at the end of each; a trunk does not, and its tracker counts them.
+        """
+        if not len(track):
+            return []
+        counted = (np.diff(track.steps, prepend=self._steps) > 0) & ~track.stationary
+        self._steps = int(track.steps[-1])
+        if self._counted is not None or counted.any():
+            return [self._count(track, row) for row in np.flatnonzero(counted).tolist()]
+        return self._by_stances(track)
+
+    def _count(self, track: TrackBatch, row: int) -> Stride:
+        """Return the stride that a trunk's tracker has counted in this row."""
+        here = _footing(track, row)
+        begin = self._counted or self._lifted or here
+        period_ns = here.t_ns - begin.t_ns
+        if not _SHORTEST_SWING_NS <= period_ns <= _LONGEST_PERIOD_NS:
+            period_ns = _USUAL_PERIOD_NS
+        self._counted = here
+        return _stride(begin, here, period_ns)
+
+    def _by_stances(self, track: TrackBatch) -> list[Stride]:
         strides: list[Stride] = []
         changes = np.flatnonzero(np.diff(track.stationary, prepend=self._standing))
         for row in changes.tolist():
@@ -61,8 +86,7 @@ class StrideCutter:
                 strides += self._step_down(track, row)
             else:
                 self._lift(_footing(track, row - 1) if row else self._last)
-        if len(track):
-            self._last = _footing(track, len(track) - 1)
+        self._last = _footing(track, len(track) - 1)
         return strides
 
     def _lift(self, footing: _Footing | None) -> None:
@@ -77,28 +101,30 @@ class StrideCutter:
         lifted = self._lifted
         if lifted is None or down.t_ns <= lifted.t_ns:
             return []
-        north_m, east_m, sink_m = (down.position_n_m - lifted.position_n_m).tolist()
-        up_b = up_in_body(track.quaternion_nb[row])
         swing_ns = down.t_ns - lifted.t_ns
-        if swing_ns < _SHORTEST_SWING_NS or not isfinite(north_m + east_m + sink_m + up_b.sum()):
+        finite = np.isfinite([*down.position_n_m, *lifted.position_n_m, *down.quaternion_nb]).all()
+        if swing_ns < _SHORTEST_SWING_NS or not finite:
             self._unconfirmed_ns = down.t_ns
             return []
         period_ns = down.t_ns - self._footfall_ns if self._footfall_ns is not None else 0
         self._footfall_ns = down.t_ns
         if not swing_ns <= period_ns <= _LONGEST_PERIOD_NS:
             period_ns = round(swing_ns / _SWING_SHARE)
-        step_n_m = down.position_n_m - lifted.position_n_m
-        return [
-            Stride(
-                down.t_ns,
-                period_ns / NS_PER_S,
-                hypot(north_m, east_m),
-                -sink_m,
-                up_b,
-                _in_body(down.quaternion_nb, step_n_m),
-                _turn_rad(lifted.quaternion_nb, down.quaternion_nb),
-            )
-        ]
+        return [_stride(lifted, down, period_ns)]
+
+
+def _stride(begin: _Footing, end: _Footing, period_ns: int) -> Stride:
+    step_n_m = end.position_n_m - begin.position_n_m
+    north_m, east_m, sink_m = step_n_m.tolist()
+    return Stride(
+        end.t_ns,
+        period_ns / NS_PER_S,
+        hypot(north_m, east_m),
+        -sink_m,
+        up_in_body(end.quaternion_nb),
+        _in_body(end.quaternion_nb, step_n_m),
+        _turn_rad(begin.quaternion_nb, end.quaternion_nb),
+    )
 
 
 def up_in_body(quaternion_nb: Floats) -> Floats:

@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from edge.activity.monitor import ActivityMonitor
 from edge.samples import ImuBatch, SensorDescription
 from edge.simulation.legs import Stand, Walk
 from edge.simulation.scenario import Scenario
@@ -110,6 +111,17 @@ def test_fifty_metres_are_fifty_metres_at_any_rate(name, rate_hz):
     assert rows.distance_m[-1] == pytest.approx(50.0, rel=0.05)
     away_m = np.hypot(*(rows.position_n_m[-1] - rows.position_n_m[0])[:2])
     assert away_m == pytest.approx(50.0, rel=0.05)
+
+
+def test_the_wearer_is_found_to_step_as_often_as_the_tracker_counts(name):
+    tracker, samples = made(name)
+    monitor, strides, leading = ActivityMonitor(), 0, places_of(name)[0]
+    for sensor, batch in in_turn(samples):
+        rows = tracker.push(sensor, batch)
+        monitor.push(batch if sensor == leading else batch.part(slice(0)), rows)
+        strides = int(rows.steps[-1]) if len(rows) else strides
+    assert strides >= 3
+    assert monitor.steps == pytest.approx(2 * strides, abs=2)
 
 
 @pytest.mark.parametrize("gone", [0, 1])

@@ -149,7 +149,7 @@ def _write(
     turn_heading(fused.quaternion_nb[at], path.turn_rad)
     heading_rad2 = fused_covariance(state, fused.position_cov_m2[at], config)
     fused.heading_std_rad[at] = math.sqrt(heading_rad2)
-    fused.stationary[at] = path.stationary and (alone or companion.stationary)
+    fused.stationary[at] = path.stationary  # of this foot: two are at rest together only in a halt
     fused.past_shift_n_m[at] = state.past_shift_n_m
     fused.past_turn_rad[at] = state.past_turn_rad
     fused.distance_m[at] = state.distance_m
