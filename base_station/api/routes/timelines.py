@@ -24,7 +24,6 @@ from shared.messages import Activity
 router = APIRouter(tags=["tracks"])
 
 Buckets = Annotated[int, Query(ge=10, le=2000)]
-_HOURS = MAX_SPAN_NS // 3_600_000_000_000
 
 
 class TimelineColumn(Answer, frozen=True):
@@ -57,17 +56,18 @@ async def unit_timeline(
     until_ms: UntilMs = MAX_TIME_MS,
     buckets: Buckets = 600,
 ) -> Response:
-    """Downsampled so that peaks stay.  A span of at most 24 hours, which ends now at the latest."""
+    """Downsampled so that peaks stay.  The last 24 hours of a longer span, until now at the
+    latest: the answer has the span that it is of.
+    """
     until_ns = min(until_ms * NS_PER_MS, station.clock.utc_ns())
-    request = TimelineRequest(unit_id, Window(from_ms * NS_PER_MS, until_ns), buckets)
+    from_ns = max(from_ms * NS_PER_MS, until_ns - MAX_SPAN_NS)
+    request = TimelineRequest(unit_id, Window(from_ns, until_ns), buckets)
     async with station.timeline_lock:
         return await run_in_threadpool(_timeline, station, request)
 
 
 def _timeline(station: Services, request: TimelineRequest) -> Response:
     window = request.window
-    if window.until_ns - window.from_ns > MAX_SPAN_NS:
-        raise Problem(422, f"A timeline has at most {_HOURS} hours: give a later from_ms.")
     if station.roster.unit(request.unit_id) is None:
         raise Problem(404, f"There is no unit {request.unit_id}: none is registered or was heard.")
     if station.read_timeline is None:
