@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
+Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 NO_FLOOR = -1_000_000  # number of a floor that is not known
@@ -27,7 +27,7 @@ class WalkedTrail(msgspec.Struct, frozen=True):
 
     unit_id: str
     places_m: Floats  # (n, 2), north and east
-    floors: Whole  # (n,), ``NO_FLOOR`` where it is not known
+    floors: Indices  # (n,), ``NO_FLOOR`` where it is not known
     after_gap: Flags  # (n,), nothing tells the way from the point before
     std_m: float  # of the position now, in one direction; of the trail it is no less
 

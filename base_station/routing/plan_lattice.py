@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from base_station.routing.interface import Floats, Whole
+from base_station.routing.interface import Floats, Indices
 from base_station.site.floor_grid import FloorGrid
 
 MOST_NODES = 400_000  # of all floors; in a larger plan only trails tell a way
@@ -20,11 +20,11 @@ class PlanLattice(NamedTuple):
     """Nodes and edges, floor by floor."""
 
     places_m: Floats  # (n, 2)
-    floors: Whole  # (n,)
-    edges: Whole  # (m, 2), of nodes
+    floors: Indices  # (n,)
+    edges: Indices  # (m, 2), of nodes
     costs_m: Floats  # (m,), for each its length, and more on level ground that nobody has walked
     # By floor: the node of each point of the lattice, -1 where a wall is.
-    nodes: dict[int, Whole]
+    nodes: dict[int, Indices]
     grid: FloorGrid | None
 
     @property
@@ -43,7 +43,7 @@ class PlanLattice(NamedTuple):
         last_row, last_column = nodes.shape[0] - 1, nodes.shape[1] - 1
         return int(nodes[min(max(row, 0), last_row), min(max(column, 0), last_column)])
 
-    def node_at(self, floor: int, places_m: Floats) -> Whole:
+    def node_at(self, floor: int, places_m: Floats) -> Indices:
         """Node (k,) nearest to each place (k, 2); -1 beside the plan, or where a wall is."""
         if self.grid is None or floor not in self.nodes:
             return np.full(len(places_m), -1, dtype=np.int64)
@@ -68,7 +68,7 @@ def plan_lattice(grid: FloorGrid | None) -> PlanLattice:
     lattices = {floor: grid.free_lattice(floor) for floor in grid.floors}
     if sum(int(np.count_nonzero(one.is_free)) for one in lattices.values()) > MOST_NODES:
         return NO_LATTICE
-    nodes: dict[int, Whole] = {}
+    nodes: dict[int, Indices] = {}
     places, floors, edges, costs = [], [], [], []
     count = 0
     for floor, lattice in lattices.items():
@@ -98,7 +98,7 @@ def plan_lattice(grid: FloorGrid | None) -> PlanLattice:
     )
 
 
-def _climbs(grid: FloorGrid, nodes: dict[int, Whole], lower: int, upper: int) -> Whole:
+def _climbs(grid: FloorGrid, nodes: dict[int, Indices], lower: int, upper: int) -> Indices:
     """Edges (k, 2) where stairs of both storeys lie over each other, or where one has stairs."""
     both = [floor for floor in (lower, upper) if grid.has_stairs(floor)]
     if not both:

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from base_station.routing.interface import NO_FLOOR, Route, Waypoint, Whole
+from base_station.routing.interface import NO_FLOOR, Indices, Route, Waypoint
 from base_station.routing.line_of_sight import straightened
 from base_station.routing.way_graph import WayGraph
 
@@ -33,7 +33,7 @@ def routes_to(
     return dict(sorted(routes.items(), key=lambda one: one[1].distance_m)[:most])
 
 
-def _nodes(graph: WayGraph, rescuer_id: str, following: Whole) -> Iterator[int]:
+def _nodes(graph: WayGraph, rescuer_id: str, following: Indices) -> Iterator[int]:
     at = graph.nodes[rescuer_id]
     while at >= 0:
         yield at

@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from base_station.routing.interface import Flags, Floats, WalkedTrail, Whole
+from base_station.routing.interface import Flags, Floats, Indices, WalkedTrail
 
 
 class Samples(NamedTuple):
     """Points of all trails, one trail after another."""
 
     places_m: Floats  # (n, 2)
-    floors: Whole  # (n,)
+    floors: Indices  # (n,)
     std_m: Floats  # (n,)
     joined: Flags  # (n,), walked from the sample before
     last: dict[str, int]  # by unit: its sample of now

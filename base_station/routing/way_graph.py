@@ -15,7 +15,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import KDTree
 
-from base_station.routing.interface import NO_FLOOR, STOREY_M, Flags, Floats, WalkedTrail, Whole
+from base_station.routing.interface import NO_FLOOR, STOREY_M, Flags, Floats, Indices, WalkedTrail
 from base_station.routing.plan_lattice import OPEN_GROUND_M, UNWALKED, PlanLattice
 from base_station.routing.walked_cells import Samples, sample_trails
 from base_station.site.floor_grid import CELL_M as SQUARE_M
@@ -52,7 +52,7 @@ class WayGraph:
         costs_m = np.concatenate(self._costs_m)
         self.matrix = csr_array((costs_m, (edges[:, 0], edges[:, 1])), shape=(count, count))
 
-    def ways_to(self, unit_id: str) -> tuple[Floats, Whole]:
+    def ways_to(self, unit_id: str) -> tuple[Floats, Indices]:
         """Cost of the way from each node to a unit, and the next node on it (``scipy``'s
         predecessors, -9999 where there is none); Dijkstra (1959).
         """
@@ -87,7 +87,7 @@ class WayGraph:
         self._add_open_ground()
         self._bridge()
 
-    def _nodes_of(self, samples: Samples) -> Whole:
+    def _nodes_of(self, samples: Samples) -> Indices:
         """Node of each sample: on the lattice where there is one, else in a cell of its own."""
         nodes = np.full(len(samples.floors), -1, dtype=np.int64)
         for floor in self.lattice.nodes:
@@ -108,7 +108,7 @@ class WayGraph:
         self._std_m = np.concatenate([self._std_m, std_m])
         return nodes
 
-    def _on_lattice(self, floor: int, places_m: Floats) -> Whole:
+    def _on_lattice(self, floor: int, places_m: Floats) -> Indices:
         """Nearest free point; beside a wall a neighbour on this side of it."""
         nodes = self.lattice.node_at(floor, places_m)
         grid = self.lattice.grid
@@ -128,7 +128,7 @@ class WayGraph:
             nodes[left[is_better]] = beside[is_better]
         return nodes
 
-    def _add_walked_edges(self, nodes: Whole, joined: Flags) -> None:
+    def _add_walked_edges(self, nodes: Indices, joined: Flags) -> None:
         """Edges along trails, and between cells that touch; each once."""
         ends = np.flatnonzero(joined)
         walked = np.column_stack([nodes[ends - 1], nodes[ends]])
@@ -143,7 +143,7 @@ class WayGraph:
         self._add_edges(edges[~on_lattice])
         self._add_on_lattice(edges[on_lattice])
 
-    def _add_on_lattice(self, edges: Whole) -> None:
+    def _add_on_lattice(self, edges: Indices) -> None:
         """Steps from point to point of the lattice, through walls too."""
         grid, floors = self.lattice.grid, self.floors
         if grid is None:
@@ -172,7 +172,7 @@ class WayGraph:
                 self._edges.append(np.array([[node, to]]))
                 self._costs_m.append(np.array([UNWALKED * way_m]))
 
-    def _add_edges(self, edges: Whole, more_m: float = 0.0) -> None:
+    def _add_edges(self, edges: Indices, more_m: float = 0.0) -> None:
         """Edges (k, 2), with the rise between two floors."""
         begins, ends = edges.T
         level_m = np.hypot(*(self.places_m[begins] - self.places_m[ends]).T)
@@ -195,7 +195,7 @@ class WayGraph:
             for part in np.unique(parts[cells]).tolist()[1:]:
                 self._bridge_part(cells[parts[cells] == part], cells[parts[cells] != part])
 
-    def _bridge_part(self, cells: Whole, others: Whole) -> None:
+    def _bridge_part(self, cells: Indices, others: Indices) -> None:
         places_m = self.places_m[cells]
         low, high = places_m.min(axis=0) - MOST_BRIDGE_M, places_m.max(axis=0) + MOST_BRIDGE_M
         to_m = self.places_m[others]
@@ -213,7 +213,7 @@ class WayGraph:
         self._bridges.update(zip(pairs, variance_m2[within].tolist(), strict=True))
 
 
-def _climbs(lattice: PlanLattice) -> Whole:
+def _climbs(lattice: PlanLattice) -> Indices:
     """Edges of stairs that the plan shows."""
     is_climb: Flags = np.diff(lattice.floors[lattice.edges], axis=1)[:, 0] != 0
     return lattice.edges[is_climb]
@@ -223,13 +223,13 @@ def _pair(begin: int, end: int) -> tuple[int, int]:
     return (begin, end) if begin < end else (end, begin)
 
 
-def _keys(edges: Whole, count: int) -> Whole:
+def _keys(edges: Indices, count: int) -> Indices:
     """One number an edge, the same in both directions."""
-    keys: Whole = np.minimum(*edges.T) * count + np.maximum(*edges.T)
+    keys: Indices = np.minimum(*edges.T) * count + np.maximum(*edges.T)
     return keys
 
 
-def _unique(edges: Whole, count: int) -> Whole:
+def _unique(edges: Indices, count: int) -> Indices:
     """Each edge once, without those from a node to itself."""
     keys = np.unique(_keys(edges[edges[:, 0] != edges[:, 1]], count))
     return np.column_stack(np.divmod(keys, count))

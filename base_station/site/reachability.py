@@ -19,7 +19,7 @@ from base_station.site.plan import Ring
 
 Flags = NDArray[np.bool_]
 Floats = NDArray[np.float64]
-Whole = NDArray[np.int64]
+Indices = NDArray[np.int64]
 
 SECTORS = 48
 MOST_SQUARES = 100_000  # of ground: then the region without walls tells as much
@@ -38,7 +38,7 @@ class ReachableArea:
         """``at``: the place in squares, rows and columns, on the floor."""
         self._walls, self._at, self._square_m = walls, at, square_m
         self._seen = np.zeros(walls.size // 8 + 1, dtype=np.uint8)  # a bit a square
-        self._next: Whole = np.zeros(_ROOM, dtype=np.int64)  # a heap: way, then square
+        self._next: Indices = np.zeros(_ROOM, dtype=np.int64)  # a heap: way, then square
         row, column = (min(round(one), most - 1) for one, most in zip(at, walls.shape, strict=True))
         self._next[0] = row * walls.shape[1] + column
         self._counts = np.array([1, 0])
@@ -79,7 +79,7 @@ def ring_about(north_m: float, east_m: float, reach_m: Floats) -> Ring:
 
 
 @_compiled(int64(int64[::1], int64))
-def _heap_pop(heap: Whole, size: int) -> int:
+def _heap_pop(heap: Indices, size: int) -> int:
     """Remove the least value of a heap of ``size``."""
     least, last = heap[0], heap[size - 1]
     at = 0
@@ -96,7 +96,7 @@ def _heap_pop(heap: Whole, size: int) -> int:
 
 
 @_compiled(void(int64[::1], int64, int64))
-def _heap_push(heap: Whole, size: int, value: int) -> None:
+def _heap_push(heap: Indices, size: int, value: int) -> None:
     at = size
     while at > 0 and heap[(at - 1) // 2] > value:
         heap[at] = heap[(at - 1) // 2]
@@ -120,8 +120,8 @@ def _heap_push(heap: Whole, size: int, value: int) -> None:
 def _expand(
     walls: Flags,
     seen: NDArray[np.uint8],
-    heap: Whole,
-    counts: Whole,
+    heap: Indices,
+    counts: Indices,
     inside: Floats,
     beyond: Floats,
     from_row: float,
