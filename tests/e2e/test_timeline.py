@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from base_station.app import folder_commands
 from shared.clock import NS_PER_MS
 from tests.e2e.conftest import log_in
-from tests.e2e.console_page import barriers, close, menu
+from tests.e2e.console_page import barriers, close, menu, press
 from tests.e2e.station_process import StationProcess
 from tests.rig.reported_incident import incident_records, write_log
 from tests.rig.station_script import START_NS
@@ -43,7 +43,7 @@ def station(
     station.stop()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def page(chromium: Browser, station: StationProcess) -> Iterator[Page]:
     page = chromium.new_page(viewport={"width": 1280, "height": 1000}, reduced_motion="reduce")
     log_in(page, station)
@@ -71,14 +71,20 @@ def read_at(dialog: Locator, share: float) -> None:
     dialog.page.mouse.move(box["x"] + share * box["width"], box["y"] + box["height"] / 2)
 
 
-def test_a_timeline_goes_with_the_replay_both_ways(page: Page) -> None:
+def paused_replay(page: Page) -> Locator:
+    """Open the replay; return its bar."""
+    bar = page.get_by_role("region", name="Replay")
     incidents = menu(page, "Incidents")
     incidents.get_by_role("button", name="Replay Mill Lane 4").click()
-    bar = page.get_by_role("region", name="Replay")
     expect(bar.get_by_label("Time of the incident")).to_be_visible()
     if incidents.is_visible():
         close(incidents)
     bar.get_by_role("button", name="Pause").click()
+    return bar
+
+
+def test_a_timeline_goes_with_the_replay_both_ways(page: Page) -> None:
+    bar = paused_replay(page)
 
     dialog = open_timeline(page, "FF-03")
     for title in STRIPS:
@@ -125,3 +131,18 @@ def test_a_timeline_goes_with_the_replay_both_ways(page: Page) -> None:
     temperature = gap.get_by_role("region", name="Temperature").get_by_role("status")
     expect(temperature).to_have_text("not known")
     close(gap)
+
+
+def test_an_alarm_shows_the_threshold_that_was_crossed_and_the_values_about_it(page: Page) -> None:
+    paused_replay(page).get_by_label("Time of the incident").press("End")
+    card = page.locator("[data-unit='FF-01']")
+    expect(card).to_contain_text("No motion")
+    press(card.locator(".card-head, .line").first)
+    card.get_by_role("button", name=re.compile("^Reasons? of the alarm")).click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text("time without motion was")
+    expect(dialog).to_contain_text('beyond the threshold "pre alert" (20 s)')
+    expect(dialog).to_contain_text("Thresholds at that time: pre alert 20 s, alarm 25 s")
+    expect(dialog.locator("canvas")).to_have_count(len(STRIPS))
+    assert barriers(page) == []
+    close(dialog)

@@ -33,6 +33,8 @@ BOUNDED = {  # lists that do not grow with what happens, by what bounds them
         "/tokens",
         "/accountability",
         "/units/{unit_id}/sample-tokens",  # five of a unit at most
+        "/guides",  # one for each rescuer
+        "/units/{unit_id}/routes",  # the nearest three
     },
     "what is shown now": {"/pins", "/beacons", "/commands", "/replays", "/recordings"},
     "one incident": {"/incidents/{incident_id}/tracks"},

@@ -217,6 +217,10 @@ export const timeline = (unitId: string, fromMs: number, untilMs: number, bucket
     `/units/${id(unitId)}/timeline?from_ms=${fromMs}&until_ms=${untilMs}&buckets=${buckets}`,
   );
 
+/** Values about the time of an alarm, and the threshold that one of them crossed. */
+export const alarmExplanation = (alarmId: string) =>
+  call<answers.AlarmExplanationAnswer>("GET", `/alarms/${id(alarmId)}/explanation`);
+
 /** Takes some seconds: the smoothed trails are worked out for it. */
 export const assessment = (incidentId: string) =>
   call<Assessment>("GET", `/incidents/${id(incidentId)}/assessment`);

@@ -27,7 +27,8 @@ export type DialogName =
   | "par_request"
   | "locate"
   | "text"
-  | "timeline";
+  | "timeline"
+  | "alarm_reason";
 export const dialog = signal<DialogName | null>(null);
 /** The unit that the dialog is about, where it is about one. */
 export const dialogUnit = signal<string | null>(null);

@@ -102,15 +102,28 @@ function Whole({ unit, chosen, short, picture }: WholeProps) {
         <Facts unit={unit} picture={picture} />
       )}
       <Trust unit={unit} />
+      {chosen && <ToRecords unit={unit} />}
       {chosen && mayAct.value && unit.registered && <CardActions unit={unit} />}
-      {chosen && (
-        <button type="button" class="to-timeline" onClick={() => openDialog("timeline", unitId)}>
-          Timeline
-        </button>
-      )}
       {!unit.registered && <UnknownUnit unitId={unitId} />}
       {unit.registered && unit.person === null && mayAct.value && <AskWearer unit={unit} />}
     </>
+  );
+}
+
+/** What is recorded of this person: above what can be done, which stays in sight on low screens. */
+function ToRecords({ unit }: { unit: UnitView }) {
+  const show = (name: "timeline" | "alarm_reason") => () => openDialog(name, unit.unit_id);
+  return (
+    <div class="to-records">
+      <button type="button" onClick={show("timeline")}>
+        Timeline
+      </button>
+      {unit.alarms.length > 0 && (
+        <button type="button" onClick={show("alarm_reason")}>
+          {unit.alarms.length === 1 ? "Reason of the alarm" : "Reasons of the alarms"}
+        </button>
+      )}
+    </div>
   );
 }
 

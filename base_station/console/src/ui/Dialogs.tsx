@@ -2,6 +2,7 @@ import { useLayoutEffect } from "preact/hooks";
 import { report } from "../live/faults";
 import { dialog } from "../uiState";
 import { AccountDialog } from "./AccountDialog";
+import { AlarmReasonDialog } from "./AlarmReasonDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
 import { BoardDialog } from "./BoardDialog";
@@ -18,6 +19,7 @@ import { SiteDialog } from "./SiteDialog";
 import { TimelineDialog } from "./TimelineDialog";
 import { UnitsDialog } from "./UnitsDialog";
 import { UsersDialog } from "./UsersDialog";
+
 
 export function Dialogs() {
   useFocusBack(dialog.value !== null);
@@ -66,6 +68,8 @@ function Opened() {
       return <EnrolmentsDialog />;
     case "timeline":
       return <TimelineDialog />;
+    case "alarm_reason":
+      return <AlarmReasonDialog />;
     case "evacuate":
     case "par_request":
     case "locate":

@@ -50,7 +50,7 @@ export function ListTools() {
       >
         One line each
       </button>
-      <button type="button" onClick={() => openDialog("board")}>
+      <button type="button" class="to-board" onClick={() => openDialog("board")}>
         Board
       </button>
     </div>

@@ -35,8 +35,14 @@ export function TimelineDialog() {
   );
 }
 
-function UnitTimeline({ unitId }: { unitId: string }) {
-  const whole = useSignal(wholeSpan());
+interface UnitTimelineProps {
+  unitId: string;
+  /** Of that span only. */
+  only?: Span;
+}
+
+export function UnitTimeline({ unitId, only }: UnitTimelineProps) {
+  const whole = useSignal(only ?? wholeSpan());
   const shown = useSignal(whole.peek());
   const timeline = useSignal<Timeline | null>(null);
   const asking = useSignal(true);
@@ -64,7 +70,7 @@ function UnitTimeline({ unitId }: { unitId: string }) {
         whole={whole.value}
         shown={shown.value}
         show={show}
-        again={() => show((whole.value = wholeSpan()))}
+        again={only === undefined ? () => show((whole.value = wholeSpan())) : null}
       />
       <p class="quiet">
         {timeSince(whole.value.fromMs, shown.value.fromMs)} to{" "}
@@ -119,7 +125,7 @@ interface StepsProps {
   whole: Span;
   shown: Span;
   show: (span: Span) => void;
-  again: () => void;
+  again: (() => void) | null; // null: the end is that of a span that is over
 }
 
 function Steps({ whole, shown, show, again }: StepsProps) {
@@ -136,7 +142,7 @@ function Steps({ whole, shown, show, again }: StepsProps) {
       {step("Zoom in", false, () => show(zoomed(shown, 0.5, whole)))}
       {step("Zoom out", isWhole, () => show(zoomed(shown, 2, whole)))}
       {step("All of it", isWhole, () => show(whole))}
-      {!isReplay() && step("Until now", false, again)}
+      {!isReplay() && again !== null && step("Until now", false, again)}
     </div>
   );
 }
