@@ -147,7 +147,7 @@ def _message(unit_id: str, text: str) -> SendCommand:
 
 
 def _manoeuvre(route: RouteAnswer) -> object:
-    """What the rescuer does at the end of this leg, and how many legs are left."""
+    """Manoeuvre at the end of this leg, and the number of legs left."""
     following = [(leg.turn, leg.floors) for leg in route.legs[1:2]]
     climbed = [leg.floors for leg in route.legs[:1]]
     return route.known, len(route.legs), climbed, following

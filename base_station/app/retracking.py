@@ -131,7 +131,7 @@ class Retracker:
         on_progress(min(sum(list(self._done_ns.values())) / max(total_ns, 1), 1.0))
 
     def _digest(self, wanted: Retracking) -> str:
-        """Of everything that the result depends on."""
+        """Return the digest of everything that the result depends on."""
         digest = hashlib.sha256(version("muster").encode())
         digest.update(repr((wanted.rate_hz, self._settings.tracker)).encode())
         digest.update(repr(self._settings.settings).encode())

@@ -89,7 +89,7 @@ class ConsoleRecorder:
         return trail[-1].t_ns if trail else -1
 
     def _new_points(self, unit_id: str) -> tuple[TrailPoint, ...]:
-        """What came since; a trail that has changed before is told whole, some time later."""
+        """Return the points since the last record, oldest first."""
         trail = self._pipeline.state.units[unit_id].trails.shown
         known_ns = self._points_ns.get(unit_id, -1)
         new: list[TrailStep] = []

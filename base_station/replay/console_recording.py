@@ -70,7 +70,7 @@ class ConsoleRecording:
             yield Frame(*begun, trails)
 
     def stretch_behind(self, frame_ns: int, next_ns: int | None) -> RecordGap | None:
-        """What is between two frames that are far apart: the time of which the log has no record;
+        """Gap between two frames that are far apart: the time of which the log has no record;
         None where it has some, and only what consoles were shown is missing.
         """
         begun_ns = frame_ns + LONGEST_NS

@@ -14,7 +14,7 @@ HEARD = (STATUS, TEMPERATURE, HEARTBEAT, EVENT, REPLY)  # channels that contact 
 
 
 class SentTimes:
-    """Of the messages of one unit, in the order of the log."""
+    """Times of the messages of one unit, in the order of the log."""
 
     def __init__(self) -> None:
         self._offsets_ns: dict[int, int] = {}  # station time less that of each boot

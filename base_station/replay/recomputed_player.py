@@ -31,7 +31,7 @@ class RecomputedPlayer:
         return self._playback.gap
 
     def version_check(self, until_ns: int) -> VersionCheck:
-        """Of what is about to be shown."""
+        """Return the check of the versions of what is about to be shown."""
         return VersionCheck(self._playback, until_ns)
 
     def seek(self, t_ns: int) -> Iterator[None]:

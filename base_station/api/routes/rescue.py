@@ -19,7 +19,7 @@ router = APIRouter(tags=["commands"])
 
 
 class GuideForm(Form):
-    """Who goes."""
+    """Rescuer who is sent."""
 
     rescuer_id: UnitIdText
 
@@ -41,8 +41,8 @@ def routes_to_member(
     _: Viewer,
     rescuer_id: Annotated[UnitIdText | None, Query()] = None,
 ) -> list[RouteAnswer]:
-    """Of the three rescuers with the shortest known ways, the nearest first, or of the one that is
-    named.  Without enough known ways the nearest in a straight line follow.
+    """Routes of the three rescuers with the shortest known ways, the nearest first, or of the one
+    that is named.  Without enough known ways the nearest in a straight line follow.
     """
     return find_routes(station, unit_id, rescuer_id)
 
