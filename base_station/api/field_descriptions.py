@@ -410,6 +410,7 @@ PARAMETERS: Mapping[str, str] = {
     "limit": "How many to give, the newest; those of the same millisecond as the last come along. "
     "The page before has until_ms at that millisecond.",
     "only": "Ids of units, or names of people or crews; left out: everybody.",
+    "gzip": "Compressed, as a file whose name ends in .gz.",
     "buckets": "Parts of the span: each has at most two values of a column, its least and its "
     "greatest.",
     "every_s": "One point for so many seconds.",

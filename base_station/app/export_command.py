@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
@@ -34,14 +35,21 @@ def export(
     start: Start = None,
     end: End = None,
 ) -> None:
-    """Write an incident's tracks for other programs: GPX, KML, GeoJSON, CSV or Parquet."""
+    """Write an incident's tracks for other programs: GPX, KML, GeoJSON, CSV or Parquet.
+
+    A file whose name ends in .gz, such as tracks.gpx.gz, is compressed.
+    """
     from base_station.app.folder_commands import open_post_processing  # noqa: PLC0415
     from base_station.exporters import exporter_of  # noqa: PLC0415
+    from base_station.exporters.compression import SUFFIX, gzipped  # noqa: PLC0415
     from base_station.exporters.incident import incident_tracks  # noqa: PLC0415
+    from base_station.exporters.interface import TrackCount  # noqa: PLC0415
     from base_station.exporters.selection import TrackSelection  # noqa: PLC0415
     from base_station.storage.db.records import FOREVER_NS  # noqa: PLC0415
 
-    exporter = exporter_of(file_format or out.suffix.removeprefix("."))
+    is_gzip = out.suffix == SUFFIX
+    named = out.with_suffix("") if is_gzip else out
+    exporter = exporter_of(file_format or named.suffix.removeprefix("."))
     writable(out)
     selection = TrackSelection(only or (), _ns(start, 0), _ns(end, FOREVER_NS))
     with sigterm_as_ctrl_c(), ExitStack() as closing:
@@ -49,15 +57,15 @@ def export(
         trails = context.tracks(kind)
         tracks = incident_tracks(context.records, context.roster, context.incident, trails)
         chosen = selection.of(tracks).named_as(kind.in_words)
-        content = exporter.export(chosen)
-        with whole(out) as part:
-            part.write_bytes(content)
+        count = TrackCount(chosen.tracks)
+        content = exporter.export(replace(chosen, tracks=count))
+        with whole(out) as part, part.open("wb") as file:
+            file.writelines(gzipped(content) if is_gzip else content)
         if context.keeps_result:
             context.records.audit(
                 "muster base export", "Exported", f"{incident} ({kind.value}) as {exporter.name}"
             )
-    points = sum(len(track.points) for track in chosen.tracks)
-    typer.echo(f"{out}: {len(chosen.tracks)} tracks, {points} points")
+    typer.echo(f"{out}: {count.tracks} tracks, {count.points} points")
 
 
 def _ns(time: datetime | None, default_ns: int) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import msgspec
@@ -20,9 +21,10 @@ def write_rerun(opened: OpenedRerun, result: Rerun, folder: Path) -> list[str]:
     names = {unit_id: ", ".join(people) for unit_id, people in worn.items()}
     tracks = incident_tracks(opened.records, opened.roster, opened.incident, result.rerun)
     formats = ["csv", "gpx"] if tracks.anchor is not None else ["csv"]
-    contents = {
-        "report.json": msgspec.json.format(msgspec.json.encode(result.report)) + b"\n",
-        "report.html": rerun_page(result.report, opened.plan, result.shown, result.rerun, names),
+    page = rerun_page(result.report, opened.plan, result.shown, result.rerun, names)
+    contents: dict[str, Iterable[bytes]] = {
+        "report.json": [msgspec.json.format(msgspec.json.encode(result.report)), b"\n"],
+        "report.html": [page],
         **{
             f"trails.{one}": exporter_of(one).export(tracks.named_as("tracked again"))
             for one in formats
@@ -30,6 +32,6 @@ def write_rerun(opened: OpenedRerun, result: Rerun, folder: Path) -> list[str]:
     }
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in contents.items():
-        with whole(folder / name) as making:
-            making.write_bytes(content)
+        with whole(folder / name) as making, making.open("wb") as file:
+            file.writelines(content)
     return list(contents)

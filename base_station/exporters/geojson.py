@@ -4,7 +4,7 @@ the times beside it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import msgspec
@@ -15,18 +15,17 @@ from base_station.views.answer import to_ms
 from shared.geo import Anchor
 
 
-def export_geojson(incident: IncidentTracks) -> bytes:
-    anchor = incident.anchor_or_refuse()
-    return msgspec.json.encode(
-        {
-            "type": "FeatureCollection",
-            "features": [
-                _feature(track, piece, anchor)
-                for track in incident.tracks
-                for piece in track.pieces
-            ],
-        }
-    )
+def export_geojson(incident: IncidentTracks) -> Iterator[bytes]:
+    return _collection(incident, incident.anchor_or_refuse())
+
+
+def _collection(incident: IncidentTracks, anchor: Anchor) -> Iterator[bytes]:
+    before = b'{"type":"FeatureCollection","features":['
+    for track in incident.tracks:
+        for piece in track.pieces:
+            yield before + msgspec.json.encode(_feature(track, piece, anchor))
+            before = b",\n"
+    yield b"]}\n" if before == b",\n" else before + b"]}\n"
 
 
 def _feature(track: WornTrack, piece: Sequence[TrackSample], anchor: Anchor) -> dict[str, Any]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from base_station.exporters.interface import IncidentTracks, WornTrack
+from base_station.exporters.interface import IncidentTracks, LazyTracks, WornTrack
+from base_station.site.plan import salvage_plan
+from base_station.site.storeys import storey_of
 from base_station.storage.db.known_people import PersonLookup, shown_wearer
 from base_station.storage.db.models import Assignment, IncidentRow
 from base_station.storage.db.records import FOREVER_NS, Records, TrackSample, Window
@@ -22,21 +24,29 @@ def incident_tracks(
     place of what was shown at the time.
     """
     window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
-    assignments = roster.assignments(window.from_ns, window.until_ns)
     by_unit = records.tracks_of(incident) if trails is None else trails
-    tracks = tuple(
-        worn
-        for unit_id, points in by_unit.items()
-        for worn in _split(
-            roster.known, unit_id, points, [one for one in assignments if one.unit_id == unit_id]
-        )
-    )
+    assignments: dict[str, list[Assignment]] = {unit_id: [] for unit_id in by_unit}
+    for one in roster.assignments(window.from_ns, window.until_ns):
+        assignments.setdefault(one.unit_id, []).append(one)
+
+    def tracks() -> Iterator[WornTrack]:
+        for unit_id in by_unit:
+            yield from _split(roster.known, unit_id, by_unit[unit_id], assignments[unit_id])
+
     return IncidentTracks(
         incident_id=incident.incident_id,
         name=roster.shown(incident.name),
         anchor=records.anchor(window.until_ns),
-        tracks=tracks,
+        tracks=LazyTracks(tracks),
+        ground_down_m=_ground_down_m(records.plan(window.until_ns)),
     )
+
+
+def _ground_down_m(geojson: bytes | None) -> float | None:
+    """Of the plan's ground floor, which is at the ground outside."""
+    storeys = () if geojson is None else salvage_plan(geojson).storeys
+    ground = storey_of(storeys, 0)
+    return None if ground is None else ground.down_m
 
 
 def _split(

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import msgspec
 
@@ -19,6 +19,7 @@ from shared.geo import Anchor
 # Somebody at rest leaves a point every 15 s; over a longer gap nobody knows the way.
 LONGEST_STEP_NS = 20 * NS_PER_S
 _SAME_PLACE_M = 1.0
+_BLOCK_CHARACTERS = 1 << 16
 
 
 class WornTrack(msgspec.Struct, frozen=True):
@@ -39,15 +40,44 @@ class WornTrack(msgspec.Struct, frozen=True):
         return tuple(map(tuple, pieces_of(self.points)))
 
 
-class IncidentTracks(msgspec.Struct, frozen=True):
+class LazyTracks(Iterable[WornTrack]):
+    """Tracks that are made while they are gone through, each time anew: those of all units at once
+    would be too large.
+    """
+
+    def __init__(self, make: Callable[[], Iterator[WornTrack]]) -> None:
+        self._make = make
+
+    def __iter__(self) -> Iterator[WornTrack]:
+        return self._make()
+
+
+class TrackCount(Iterable[WornTrack]):
+    """The same tracks, counted as they are gone through the last time."""
+
+    def __init__(self, of: Iterable[WornTrack]) -> None:
+        self._of = of
+        self.tracks = self.points = 0
+
+    def __iter__(self) -> Iterator[WornTrack]:
+        self.tracks = self.points = 0
+        for track in self._of:
+            self.tracks += 1
+            self.points += len(track.points)
+            yield track
+
+
+@dataclass(frozen=True, slots=True)
+class IncidentTracks:
     incident_id: str
     name: str
     anchor: Anchor | None
-    tracks: tuple[WornTrack, ...]
+    tracks: Iterable[WornTrack]  # may be gone through more than once
+    ground_down_m: float | None = None  # down of the ground floor; None: no plan lists it
 
     def named_as(self, description: str) -> IncidentTracks:
         """With what its trails are in its name."""
-        return msgspec.structs.replace(self, name=f"{self.name}, {description}")
+        return replace(self, name=f"{self.name}, {description}")
 
     def anchor_or_refuse(self) -> Anchor:
         """For formats that know only places on the Earth; UserError without an anchor."""
@@ -83,12 +113,36 @@ def time_of(point: TrackSample) -> str:
     return f"{at:%Y-%m-%dT%H:%M:%S}.{at.microsecond // 1000:03}Z"
 
 
+def in_blocks(texts: Iterable[str]) -> Iterator[bytes]:
+    """The same as UTF-8, in parts that are worth to be written one by one."""
+    block: list[str] = []
+    size = 0
+    for text in texts:
+        block.append(text)
+        size += len(text)
+        if size >= _BLOCK_CHARACTERS:
+            yield "".join(block).encode()
+            block.clear()
+            size = 0
+    if block:
+        yield "".join(block).encode()
+
+
 @dataclass(frozen=True, slots=True)
 class Exporter:
-    """``export`` is pure: the same incident gives the same bytes."""
+    """``export`` is pure: the same incident gives the same bytes.  It holds no more of them in
+    memory than a track needs, and refuses (UserError) before it gives the first.
+    """
 
     name: str  # as in the address
     suffix: str  # of the file
     media_type: str
     needs_anchor: bool
-    export: Callable[[IncidentTracks], bytes]
+    export: Callable[[IncidentTracks], Iterator[bytes]]
+    is_compressed: bool = False  # so that gzip makes it no smaller
+
+    def begun(self, incident: IncidentTracks) -> Iterator[bytes]:
+        """The same bytes, of which the first are made: whatever is refused is refused here."""
+        content = self.export(incident)
+        first = next(content, b"")
+        return chain((first,), content)

@@ -1,56 +1,62 @@
 """KML 2.2 with ``gx:Track``: a track that Google Earth and its like play by time, one for each
 known stretch of the way.
+
+Where the plan lists the ground floor, heights are above the ground, which is drawn as the viewer's
+terrain has it; else above the ellipsoid, which viewers take for the sea.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from xml.etree import ElementTree as ET
+from collections.abc import Iterator, Sequence
 
-from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack, time_of
+from base_station.exporters.interface import (
+    Exporter,
+    IncidentTracks,
+    WornTrack,
+    in_blocks,
+    time_of,
+)
 from base_station.storage.db.records import TrackSample
 from shared.geo import Anchor
-from shared.xml_text import in_xml
+from shared.xml_text import XML_DECLARATION, escaped
 
-_GX = "http://www.google.com/kml/ext/2.2"
+_BEGIN = '<kml xmlns="http://www.opengis.net/kml/2.2" xmlns:gx="http://www.google.com/kml/ext/2.2">'
 
 
-def export_kml(incident: IncidentTracks) -> bytes:
-    anchor = incident.anchor_or_refuse()
-    kml = ET.Element("kml", {"xmlns": "http://www.opengis.net/kml/2.2", "xmlns:gx": _GX})
-    document = ET.SubElement(kml, "Document")
-    ET.SubElement(document, "name").text = in_xml(incident.name)
+def export_kml(incident: IncidentTracks) -> Iterator[bytes]:
+    return in_blocks(_document(incident, incident.anchor_or_refuse()))
+
+
+def _document(incident: IncidentTracks, anchor: Anchor) -> Iterator[str]:
+    yield f"{XML_DECLARATION}{_BEGIN}<Document><name>{escaped(incident.name)}</name>"
     for track in incident.tracks:
-        _add_track(document, track, anchor)
-    written: bytes = ET.tostring(kml, encoding="utf-8", xml_declaration=True)
-    return written
+        yield from _placemark(track, anchor, incident.ground_down_m)
+    yield "</Document></kml>\n"
 
 
-def _add_track(document: ET.Element, worn: WornTrack, anchor: Anchor) -> None:
-    placemark = ET.SubElement(document, "Placemark")
-    ET.SubElement(placemark, "name").text = in_xml(worn.title)
-    if worn.crew:
-        ET.SubElement(placemark, "description").text = in_xml(worn.crew)
-    # Heights are those of the floors, not of the ground below them.
-    absolute = "absolute"
-    within = placemark
-    if len(worn.pieces) > 1:
-        within = ET.SubElement(placemark, "gx:MultiTrack")
-        ET.SubElement(within, "altitudeMode").text = absolute
-        ET.SubElement(within, "gx:interpolate").text = "0"
-    for piece in worn.pieces:
-        track = ET.SubElement(within, "gx:Track")
-        ET.SubElement(track, "altitudeMode").text = absolute
-        _add_points(track, piece, anchor)
+def _placemark(worn: WornTrack, anchor: Anchor, ground_down_m: float | None) -> Iterator[str]:
+    crew = f"<description>{escaped(worn.crew)}</description>" if worn.crew else ""
+    yield f"\n<Placemark><name>{escaped(worn.title)}</name>{crew}"
+    above = "absolute" if ground_down_m is None else "relativeToGround"
+    mode = f"<altitudeMode>{above}</altitudeMode>"
+    pieces = worn.pieces
+    is_parted = len(pieces) > 1
+    if is_parted:
+        yield f"<gx:MultiTrack>{mode}<gx:interpolate>0</gx:interpolate>"
+    for piece in pieces:
+        times = "".join(f"<when>{time_of(point)}</when>" for point in piece)
+        yield f"<gx:Track>{mode}{times}{_places(piece, anchor, ground_down_m)}</gx:Track>"
+    yield "</gx:MultiTrack></Placemark>" if is_parted else "</Placemark>"
 
 
-def _add_points(track: ET.Element, piece: Sequence[TrackSample], anchor: Anchor) -> None:
-    for point in piece:
-        ET.SubElement(track, "when").text = time_of(point)
+def _places(piece: Sequence[TrackSample], anchor: Anchor, ground_down_m: float | None) -> str:
+    lines = []
     for point in piece:
         lat_deg, lon_deg, height_m = anchor.to_geodetic(point.north_m, point.east_m, point.down_m)
-        coord = f"{lon_deg:.8f} {lat_deg:.8f} {height_m:.2f}"
-        ET.SubElement(track, "gx:coord").text = coord
+        if ground_down_m is not None:
+            height_m = ground_down_m - point.down_m
+        lines.append(f"\n<gx:coord>{lon_deg:.8f} {lat_deg:.8f} {height_m:.2f}</gx:coord>")
+    return "".join(lines)
 
 
 KML = Exporter("kml", "kml", "application/vnd.google-earth.kml+xml", True, export_kml)

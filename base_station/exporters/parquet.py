@@ -6,7 +6,9 @@ for data frames and databases.
 
 from __future__ import annotations
 
+import io
 import json
+from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -14,8 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from base_station.exporters.interface import Exporter, IncidentTracks
-from base_station.storage.db.records import TrackSample
+from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack
 from shared.errors import UserError
 from shared.geo import Anchor
 
@@ -27,16 +28,57 @@ _GEO = {
     "columns": {"geometry": {"encoding": "WKB", "geometry_types": ["Point Z"]}},
 }
 _POINT_Z = 1001  # of ISO well-known binary
+_ROWS = 1 << 16  # of a row group, at least but in the last one
 
 
-def export_parquet(incident: IncidentTracks) -> bytes:
+def export_parquet(incident: IncidentTracks) -> Iterator[bytes]:
     pyarrow, parquet = _library("pyarrow"), _library("pyarrow.parquet")
-    points = [point for track in incident.tracks for point in track.points]
-    table = pyarrow.table(_columns(pyarrow, incident, points), schema=_schema(pyarrow, incident))
-    written = pyarrow.BufferOutputStream()
-    parquet.write_table(table, written, compression="zstd")
-    content: bytes = written.getvalue().to_pybytes()
-    return content
+    return _written(pyarrow, parquet, incident)
+
+
+def _written(pyarrow: ModuleType, parquet: ModuleType, incident: IncidentTracks) -> Iterator[bytes]:
+    schema = _schema(pyarrow, incident)
+    outlet = _Outlet()
+    with parquet.ParquetWriter(
+        pyarrow.PythonFile(outlet, mode="w"), schema, compression="zstd"
+    ) as writer:
+        for tracks in _row_groups(incident.tracks):
+            columns = _columns(pyarrow, tracks, incident.anchor)
+            writer.write_table(pyarrow.table(columns, schema=schema))
+            yield outlet.take()
+    yield outlet.take()  # what stands at the file's end
+
+
+class _Outlet(io.RawIOBase):
+    """File whose content is taken out as it comes."""
+
+    def __init__(self) -> None:
+        self._parts: list[bytes] = []
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, content: Any, /) -> int:  # whatever has a buffer
+        part = bytes(content)
+        self._parts.append(part)
+        return len(part)
+
+    def take(self) -> bytes:
+        content = b"".join(self._parts)
+        self._parts.clear()
+        return content
+
+
+def _row_groups(tracks: Iterable[WornTrack]) -> Iterator[list[WornTrack]]:
+    """Many points each: a row group is the smallest part that a reader takes."""
+    group: list[WornTrack] = []
+    for track in tracks:
+        group.append(track)
+        if sum(len(one.points) for one in group) >= _ROWS:
+            yield group
+            group = []
+    if group:
+        yield group
 
 
 def _library(name: str) -> ModuleType:
@@ -69,21 +111,17 @@ def _schema(pyarrow: ModuleType, incident: IncidentTracks) -> Any:
 
 
 def _columns(
-    pyarrow: ModuleType, incident: IncidentTracks, points: list[TrackSample]
+    pyarrow: ModuleType, tracks: Sequence[WornTrack], anchor: Anchor | None
 ) -> dict[str, Any]:
-    wearers = [
-        (track.unit_id, track.person_name, track.crew)
-        for track in incident.tracks
-        for _ in track.points
-    ]
-    unit_ids, people, crews = zip(*wearers, strict=True) if wearers else ((), (), ())
+    points = [point for track in tracks for point in track.points]
+    counts = [len(track.points) for track in tracks]
     numbers = np.array([[getattr(point, key) for key in _METRES] for point in points])
     numbers = numbers.reshape(len(points), len(_METRES))
     t_ms = np.array([point.t_ns for point in points], np.int64) // 1_000_000
     columns: dict[str, Any] = {
-        "unit_id": pyarrow.array(unit_ids, pyarrow.string()).dictionary_encode(),
-        "person": pyarrow.array(people, pyarrow.string()).dictionary_encode(),
-        "crew": pyarrow.array(crews, pyarrow.string()).dictionary_encode(),
+        "unit_id": _repeated(pyarrow, [track.unit_id for track in tracks], counts),
+        "person": _repeated(pyarrow, [track.person_name for track in tracks], counts),
+        "crew": _repeated(pyarrow, [track.crew for track in tracks], counts),
         "t_utc": t_ms.astype("datetime64[ms]"),
         **dict(zip(_METRES, numbers.T, strict=True)),
         "heading_rad": [point.heading_rad for point in points],
@@ -92,10 +130,19 @@ def _columns(
             [point.quality for point in points], pyarrow.string()
         ).dictionary_encode(),
     }
-    if incident.anchor is not None:
-        places = _places(incident.anchor, numbers)
-        columns |= {"height_m": places["height_m"], "geometry": list(map(bytes, places))}
+    if anchor is not None:
+        places = _places(anchor, numbers)
+        fixed = pyarrow.binary(places.itemsize)
+        content = [None, pyarrow.py_buffer(places)]
+        geometry = pyarrow.FixedSizeBinaryArray.from_buffers(fixed, len(places), content)
+        columns |= {"height_m": places["height_m"], "geometry": geometry.cast(pyarrow.binary())}
     return columns
+
+
+def _repeated(pyarrow: ModuleType, texts: Sequence[str], counts: Sequence[int]) -> Any:
+    """Each text as often as its count says, as a dictionary and indices."""
+    indices = np.repeat(np.arange(len(texts), dtype=np.int32), counts)
+    return pyarrow.DictionaryArray.from_arrays(indices, pyarrow.array(texts, pyarrow.string()))
 
 
 def _places(anchor: Anchor, metres: NDArray[np.float64]) -> NDArray[Any]:
@@ -105,11 +152,20 @@ def _places(anchor: Anchor, metres: NDArray[np.float64]) -> NDArray[Any]:
         [("little_endian", "u1"), ("type", "<u4"), ("lon_deg", "<f8"), ("lat_deg", "<f8"),
          ("height_m", "<f8")],
     )  # fmt: skip
+    geodetic = [anchor.to_geodetic(*place_m) for place_m in metres[:, :3].tolist()]
     places["little_endian"], places["type"] = 1, _POINT_Z
-    for place, (north_m, east_m, down_m) in zip(places, metres[:, :3].tolist(), strict=True):
-        lat_deg, lon_deg, height_m = anchor.to_geodetic(north_m, east_m, down_m)
-        place["lon_deg"], place["lat_deg"], place["height_m"] = lon_deg, lat_deg, height_m
+    for name, column in zip(
+        ("lat_deg", "lon_deg", "height_m"), zip(*geodetic, strict=True), strict=True
+    ):
+        places[name] = column
     return places
 
 
-PARQUET = Exporter("parquet", "parquet", "application/vnd.apache.parquet", False, export_parquet)
+PARQUET = Exporter(
+    "parquet",
+    "parquet",
+    "application/vnd.apache.parquet",
+    needs_anchor=False,
+    export=export_parquet,
+    is_compressed=True,
+)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import msgspec
 
-from base_station.exporters.interface import IncidentTracks, WornTrack
+from base_station.exporters.interface import IncidentTracks, LazyTracks, WornTrack
 from base_station.storage.db.records import FOREVER_NS
 from shared.errors import UserError
 
@@ -23,11 +23,15 @@ class TrackSelection:
     def of(self, incident: IncidentTracks) -> IncidentTracks:
         """Raises UserError for a name that nobody there has, and where no point is left."""
         self._require_known(incident)
-        tracks = [self._within(track) for track in incident.tracks if self._has(track)]
-        kept = tuple(track for track in tracks if track.points)
-        if incident.tracks and not kept:
+        chosen = LazyTracks(lambda: self._chosen(incident.tracks))
+        if any(True for _ in incident.tracks) and not any(True for _ in chosen):
             raise UserError("nobody who is asked for has a track in that time")
-        return msgspec.structs.replace(incident, tracks=kept)
+        return replace(incident, tracks=chosen)
+
+    def _chosen(self, tracks: Iterable[WornTrack]) -> Iterator[WornTrack]:
+        for track in tracks:
+            if self._has(track) and (within := self._within(track)).points:
+                yield within
 
     def _has(self, track: WornTrack) -> bool:
         return not self.names or bool(_names(track) & {name.casefold() for name in self.names})
@@ -39,13 +43,18 @@ class TrackSelection:
         return msgspec.structs.replace(track, points=points)
 
     def _require_known(self, incident: IncidentTracks) -> None:
-        known = {name for track in incident.tracks for name in _names(track)}
+        if not self.names:  # to know who there is, all tracks are gone through
+            return
+        known: set[str] = set()
+        people: set[str] = set()
+        for track in incident.tracks:
+            known |= _names(track)
+            people.add(track.title)
         unknown = [name for name in self.names if name.casefold() not in known]
         if unknown:
-            people = sorted({track.title for track in incident.tracks})
             raise UserError(
                 f"{unknown[0]!r} is no unit, person or crew with a track in this incident; there "
-                f"are {', '.join(people) or 'none'}"
+                f"are {', '.join(sorted(people)) or 'none'}"
             )
 
 

@@ -5,19 +5,28 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Callable
+import weakref
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
+import fastkml
+import geojson
+import gpxpy
 import msgspec
 import pytest
+from lxml import etree
 from pyarrow import parquet
 
 from base_station.exporters import EXPORTERS
+from base_station.exporters.compression import gzipped
 from base_station.exporters.csv_tracks import CSV
 from base_station.exporters.geojson import GEOJSON
 from base_station.exporters.gpx import GPX
 from base_station.exporters.incident import _split
-from base_station.exporters.interface import Exporter, IncidentTracks, WornTrack
+from base_station.exporters.interface import Exporter, IncidentTracks, LazyTracks, WornTrack
 from base_station.exporters.kml import KML
 from base_station.storage.db.known_people import FORGOTTEN, KnownPerson, person_lookup
 from base_station.storage.db.models import Assignment
@@ -35,20 +44,29 @@ NO_ROSTER = person_lookup({})
 anyone = pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda exporter: exporter.name)
 
 
-def incident(anchor: Anchor | None = None, points: int = 3) -> IncidentTracks:
-    """Two wearers, of whom one went north."""
+def worn_tracks(points: int = 3) -> tuple[WornTrack, ...]:
+    """Of two wearers, of whom one went north."""
     walked = tuple(
         TrackSample(T0_NS + n * NS_PER_S, float(n), 0.5, -1.5, 0.1, 0.1, 0.2, 0.0, None, "good")
         for n in range(points)
     )
-    tracks = (
-        WornTrack("FF-01", HOSTILE, "A", walked),
-        WornTrack("FF-02", "", "", walked[:1]),
-    )
-    return IncidentTracks("i-1", HOSTILE, anchor, tracks)
+    return WornTrack("FF-01", HOSTILE, "A", walked), WornTrack("FF-02", "", "", walked[:1])
+
+
+def incident(anchor: Anchor | None = None, points: int = 3) -> IncidentTracks:
+    return IncidentTracks("i-1", HOSTILE, anchor, worn_tracks(points))
+
+
+class Held(WornTrack, frozen=True, weakref=True):
+    """A track that one can see to be gone."""
+
+
+def written(exporter: Exporter, of: IncidentTracks) -> bytes:
+    return b"".join(exporter.export(of))
 
 
 ANCHOR = Anchor(52.0, 13.0, 40.0)
+MOST_TRACKS = {"parquet": 140}  # of the row group that is made, and the next one
 BYTES_A_POINT = {"parquet": 2}  # compressed; of the others 10 at least
 
 
@@ -62,38 +80,52 @@ def test_names_can_stand_in_an_address_and_are_taken_once(exporter: Exporter) ->
 
 @anyone
 def test_the_same_incident_gives_the_same_bytes(exporter: Exporter) -> None:
-    assert exporter.export(incident(ANCHOR)) == exporter.export(incident(ANCHOR)) != b""
+    assert written(exporter, incident(ANCHOR)) == written(exporter, incident(ANCHOR)) != b""
 
 
 @anyone
 def test_nothing_is_written_at_zero_zero_for_want_of_an_anchor(exporter: Exporter) -> None:
     if exporter.needs_anchor:
         with pytest.raises(UserError, match="anchor"):
-            exporter.export(incident())
+            written(exporter, incident())
     else:
-        assert exporter.export(incident())
+        assert written(exporter, incident())
 
 
 @anyone
 def test_every_unit_is_in_it_and_every_point_counts(exporter: Exporter) -> None:
-    written = exporter.export(incident(ANCHOR))
-    assert b"FF-01" in written
-    assert b"FF-02" in written
-    longest = exporter.export(incident(ANCHOR, points=50_000))
-    assert len(longest) > len(written) + 49_950 * BYTES_A_POINT.get(exporter.suffix, 10)
+    short = written(exporter, incident(ANCHOR))
+    assert b"FF-01" in short
+    assert b"FF-02" in short
+    longest = written(exporter, incident(ANCHOR, points=50_000))
+    assert len(longest) > len(short) + 49_950 * BYTES_A_POINT.get(exporter.suffix, 10)
 
 
 @anyone
 def test_an_incident_without_tracks_can_be_written(exporter: Exporter) -> None:
-    empty = msgspec.structs.replace(incident(ANCHOR), tracks=())
-    assert exporter.export(empty)
+    empty = replace(incident(ANCHOR), tracks=())
+    assert written(exporter, empty)
 
 
-# By the file's suffix, a reader that tells whether it is well formed.
+def valid_kml(content: bytes) -> object:
+    """Against the schemas of the OGC and of Google's extensions, which the library brings."""
+    kml = etree.fromstring(content)
+    schemas = Path(fastkml.__file__).parent / "schema"
+    etree.XMLSchema(etree.parse(schemas / "kml22gx.xsd")).assertValid(kml)
+    return kml
+
+
+def valid_geojson(content: bytes) -> object:
+    collection = geojson.loads(content.decode())
+    assert collection.is_valid, collection.errors()
+    return collection
+
+
+# By the file's suffix, a reader of others that tells whether it is as its standard says.
 READERS: dict[str, Callable[[bytes], object]] = {
-    "gpx": ET.fromstring,
-    "kml": ET.fromstring,
-    "geojson": msgspec.json.decode,
+    "gpx": lambda content: gpxpy.parse(content.decode()),
+    "kml": valid_kml,
+    "geojson": valid_geojson,
     "csv": lambda content: list(csv.reader(io.StringIO(content.decode()), strict=True)),
     "parquet": lambda content: parquet.read_table(io.BytesIO(content)),
 }
@@ -101,22 +133,41 @@ READERS: dict[str, Callable[[bytes], object]] = {
 
 @anyone
 def test_it_can_be_read_whatever_people_are_called(exporter: Exporter) -> None:
-    content = exporter.export(incident(ANCHOR))
+    content = written(exporter, incident(ANCHOR))
     read = READERS.get(exporter.suffix)
     if read is None:
         pytest.skip(f"nobody here reads {exporter.suffix}")
     assert read(content) is not None
+    assert zlib.decompress(b"".join(gzipped([content])), wbits=31) == content
+
+
+@anyone
+def test_it_holds_one_track_at_a_time_and_refuses_before_the_first(exporter: Exporter) -> None:
+    alive: weakref.WeakSet[Held] = weakref.WeakSet()
+    most = 0
+
+    def tracks() -> Iterator[WornTrack]:
+        nonlocal most
+        for number in range(200):
+            track = Held(f"FF-{number}", "", "", worn_tracks(1000)[0].points)
+            alive.add(track)
+            most = max(most, len(alive))
+            yield track
+
+    content = exporter.export(replace(incident(ANCHOR), tracks=LazyTracks(tracks)))
+    assert sum(map(len, content)) > 0
+    assert most <= MOST_TRACKS.get(exporter.name, 3)
+    if exporter.needs_anchor:
+        with pytest.raises(UserError, match="anchor"):
+            exporter.begun(incident())
 
 
 def test_every_format_says_the_same_millisecond() -> None:
     """That of the API and the console: the one that had begun."""
     late_ns = 455_999_600
-    sample = msgspec.structs.replace(incident().tracks[0].points[0], t_ns=T0_NS + late_ns)
-    track = msgspec.structs.replace(incident().tracks[0], points=(sample,))
-    of = {
-        one.name: one.export(msgspec.structs.replace(incident(ANCHOR), tracks=(track,)))
-        for one in EXPORTERS
-    }
+    sample = msgspec.structs.replace(worn_tracks()[0].points[0], t_ns=T0_NS + late_ns)
+    track = msgspec.structs.replace(worn_tracks()[0], points=(sample,))
+    of = {one.name: written(one, replace(incident(ANCHOR), tracks=(track,))) for one in EXPORTERS}
     assert b"1700000000.455," in of["csv"]
     assert b'"times_ms":[1700000000455]' in of["geojson"]
     assert b"<time>2023-11-14T22:13:20.455Z</time>" in of["gpx"]
@@ -127,8 +178,8 @@ def test_every_format_says_the_same_millisecond() -> None:
 
 @pytest.mark.parametrize("name", ["=1+1", "+1", "-1+1", "@SUM(1)", "\t=1+1", "\r=1+1"])
 def test_a_name_does_not_become_a_formula(name: str) -> None:
-    track = msgspec.structs.replace(incident().tracks[0], person_name=name, crew=name)
-    table = CSV.export(msgspec.structs.replace(incident(), tracks=(track,))).decode()
+    track = msgspec.structs.replace(worn_tracks()[0], person_name=name, crew=name)
+    table = written(CSV, replace(incident(), tracks=(track,))).decode()
     rows = list(csv.reader(io.StringIO(table, newline="")))
     assert rows[1][1:3] == [f"'{name}"] * 2
 
@@ -141,7 +192,7 @@ def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
             from_ns=T0_NS + from_s * NS_PER_S, until_ns=until_ns,
         )  # fmt: skip
 
-    points = incident(points=8).tracks[0].points
+    points = worn_tracks(8)[0].points
     hands = [worn("Ada", 1, 3), worn("Bea", 3, 5), worn("Ada", 6, None)]
     tracks = [
         (one.person_name, len(one.points)) for one in _split(NO_ROSTER, "FF-01", points, hands)
@@ -164,7 +215,7 @@ def test_tracks_have_the_names_that_the_roster_has_for_ids() -> None:
 
     people = person_lookup({"p1": KnownPerson("Ada", "red"), "p2": FORGOTTEN})
     worn_by = [worn("p1", 0, 3), worn("p2", 3, 6), worn("p3", 6, 9)]
-    tracks = list(_split(people, "FF-01", incident(points=8).tracks[0].points, worn_by))
+    tracks = list(_split(people, "FF-01", worn_tracks(8)[0].points, worn_by))
     assert [(one.person_name, one.crew) for one in tracks] == [
         ("Ada", "red"), ("(forgotten)", ""), ("person p3", ""),
     ]  # fmt: skip
@@ -174,16 +225,13 @@ def test_tracks_have_the_names_that_the_roster_has_for_ids() -> None:
 def test_no_line_is_drawn_over_a_way_that_nobody_knows(
     gap_s: int, north_m: float, pieces: int
 ) -> None:
-    track = incident(points=6).tracks[0]
+    track = worn_tracks(6)[0]
     moved = tuple(
         msgspec.structs.replace(one, t_ns=one.t_ns + gap_s * NS_PER_S, north_m=2.0 + north_m)
         for one in track.points[3:]
     )
     parted = msgspec.structs.replace(track, points=(*track.points[:3], *moved))
-    of = {
-        one.name: one.export(msgspec.structs.replace(incident(ANCHOR), tracks=(parted,)))
-        for one in EXPORTERS
-    }
+    of = {one.name: written(one, replace(incident(ANCHOR), tracks=(parted,))) for one in EXPORTERS}
     gpx, kml = ET.fromstring(of["gpx"]), ET.fromstring(of["kml"])
     segments = list(gpx.iter(f"{{{GPX_NAMESPACE}}}trkseg"))
     assert [len(one) for one in segments] == [6 // pieces] * pieces
@@ -200,7 +248,7 @@ def test_no_line_is_drawn_over_a_way_that_nobody_knows(
 
 
 def test_gpx_goes_north_with_the_wearer() -> None:
-    points = list(ET.fromstring(GPX.export(incident(ANCHOR))).iter(f"{{{GPX_NAMESPACE}}}trkpt"))
+    points = list(ET.fromstring(written(GPX, incident(ANCHOR))).iter(f"{{{GPX_NAMESPACE}}}trkpt"))
     assert len(points) == 4
     assert float(points[2].get("lat", "")) > float(points[0].get("lat", ""))
     assert [child.tag.rpartition("}")[2] for child in points[0]] == ["ele", "time"]
@@ -209,7 +257,7 @@ def test_gpx_goes_north_with_the_wearer() -> None:
 
 
 def test_kml_has_a_time_for_every_place() -> None:
-    tracks = list(ET.fromstring(KML.export(incident(ANCHOR))).iter(f"{{{GX_NAMESPACE}}}Track"))
+    tracks = list(ET.fromstring(written(KML, incident(ANCHOR))).iter(f"{{{GX_NAMESPACE}}}Track"))
     assert len(tracks) == 2
     tags = [child.tag.rpartition("}")[2] for child in tracks[0]]
     assert tags == ["altitudeMode", *["when"] * 3, *["coord"] * 3]
@@ -219,8 +267,17 @@ def test_kml_has_a_time_for_every_place() -> None:
     )
 
 
+def test_kml_has_heights_above_the_ground_where_the_plan_lists_it() -> None:
+    placed = replace(incident(ANCHOR), ground_down_m=0.5)
+    content = written(KML, placed)
+    valid_kml(content)
+    (walked, _) = ET.fromstring(content).iter(f"{{{GX_NAMESPACE}}}Track")
+    assert walked[0].text == "relativeToGround"
+    assert float((walked[4].text or "").split()[2]) == 2.0
+
+
 def test_geojson_is_longitude_first() -> None:
-    collection = msgspec.json.decode(GEOJSON.export(incident(ANCHOR)))
+    collection = msgspec.json.decode(written(GEOJSON, incident(ANCHOR)))
     line, point = collection["features"]
     assert line["geometry"]["coordinates"][0] == pytest.approx([13.0, 52.0, 41.5], abs=1e-4)
     assert point["geometry"]["type"] == "Point"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 from collections.abc import AsyncIterator
 from dataclasses import replace
 from pathlib import Path
@@ -200,6 +201,14 @@ async def test_a_file_says_which_trails_it_has(
             kind: await commander.get(f"/incidents/{incident_id}/export/gpx", params={"kind": kind})
             for kind in ("fused", "smoothed", "raw")
         }
+        path = f"/incidents/{incident_id}/export"
+        packed = await commander.get(f"{path}/gpx", params={"gzip": True})
+        plain = await commander.get(f"{path}/gpx", headers={"Accept-Encoding": "gzip;q=0, br"})
+        table = await commander.get(f"{path}/parquet")
+    assert packed.headers["content-disposition"].endswith('.gpx.gz"')
+    assert gzip.decompress(packed.content) == saved["fused"].content == plain.content
+    assert saved["fused"].headers["content-encoding"] == "gzip"
+    assert not {"content-encoding"} & (set(plain.headers) | set(table.headers))
     names = [answer.headers["content-disposition"] for answer in saved.values()]
     assert names == [
         f'attachment; filename="{incident_id}.gpx"',

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 from contextlib import closing
 from pathlib import Path
 
@@ -52,6 +53,20 @@ def test_a_file_has_everybody_or_whom_one_asks_for(log: Path, tmp_path: Path) ->
     assert units_in(everybody) == set(UNITS)
     assert export(log, one, "--only", "ff-02").exit_code == 0
     assert units_in(one) == {"FF-02"}
+
+
+def test_a_name_that_ends_in_gz_is_of_a_compressed_file(log: Path, tmp_path: Path) -> None:
+    plain, packed = tmp_path / "tracks.csv", tmp_path / "tracks.csv.gz"
+    assert export(log, plain).exit_code == 0
+    assert export(log, packed).exit_code == 0
+    assert gzip.decompress(packed.read_bytes()) == plain.read_bytes()
+    assert packed.stat().st_size < plain.stat().st_size / 2
+
+
+def test_a_full_disk_leaves_no_file(log: Path) -> None:
+    result = export(log, Path("/dev/full"), "--format", "csv")
+    assert isinstance(result.exception, UserError), result.output
+    assert "No space left" in str(result.exception)
 
 
 @pytest.mark.parametrize("kind", ["raw", "smoothed"])

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import AsyncIterator, Iterator
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi.responses import StreamingResponse
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 
@@ -18,7 +21,9 @@ from base_station.api.routes.incidents import incident_or_404
 from base_station.api.routes.trails import trails_of
 from base_station.api.services import Services
 from base_station.exporters import EXPORTERS, exporter_of
+from base_station.exporters.compression import SUFFIX, gzipped
 from base_station.exporters.incident import incident_tracks
+from base_station.exporters.interface import Exporter
 from base_station.exporters.selection import TrackSelection
 from base_station.replay.trail_kind import TrailKind
 from base_station.storage.db.records import Window
@@ -53,27 +58,41 @@ async def export_incident(
     station: CurrentStation,
     who: Viewer,
     when: Annotated[Window, Depends(window)],
+    request: Request,
     kind: TrailKind = TrailKind.FUSED,
     only: Names = (),
+    gzip: bool = False,
 ) -> Response:
     """``kind``: what was shown at the time, or the trails as they are known afterwards; ``only``:
-    units, people or crews, else everybody.
+    units, people or crews, else everybody; ``gzip``: a compressed file, beside which the answer is
+    compressed on its way to whoever accepts that.
     """
     selection = TrackSelection(only, when.from_ns, when.until_ns)
     async with station.export_lock:
-        return await run_in_threadpool(
-            _export, incident_id, format_name, station, who, kind, selection
+        exporter, content = await run_in_threadpool(
+            _begun, incident_id, format_name, station, who, kind, selection
         )
+    name = kind.file_name(incident_id, exporter.suffix)
+    headers = {"Vary": "Accept-Encoding"}
+    media_type = exporter.media_type
+    if gzip:
+        name, media_type, content = f"{name}{SUFFIX}", "application/gzip", gzipped(content)
+    elif not exporter.is_compressed and _accepts_gzip(request.headers.get("Accept-Encoding", "")):
+        headers["Content-Encoding"], content = "gzip", gzipped(content)
+    headers["Content-Disposition"] = f'attachment; filename="{name}"'
+    in_turn = _in_turn(content, station.export_lock)
+    return StreamingResponse(in_turn, media_type=media_type, headers=headers)
 
 
-def _export(
+def _begun(
     incident_id: str,
     format_name: str,
     station: Services,
     who: Principal,
     kind: TrailKind,
     selection: TrackSelection,
-) -> Response:
+) -> tuple[Exporter, Iterator[bytes]]:
+    """The exporter, and what it writes; whatever is refused is refused here."""
     try:
         exporter = exporter_of(format_name)
     except UserError as error:
@@ -81,13 +100,30 @@ def _export(
     incident = incident_or_404(station, incident_id)
     _, trails = trails_of(station, incident, kind)
     tracks = incident_tracks(station.records, station.roster, incident, trails)
-    body = exporter.export(selection.of(tracks).named_as(kind.in_words))
+    content = exporter.begun(selection.of(tracks).named_as(kind.in_words))
     try:
         station.records.audit(
             who.username, "Exported", f"{incident_id} ({kind.value}) as {format_name}"
         )
     except StoreError as error:
         raise Problem(503, f"Nothing is given out that the audit cannot say: {error}.") from error
-    file_name = kind.file_name(incident_id, exporter.suffix)
-    headers = {"Content-Disposition": f'attachment; filename="{file_name}"'}
-    return Response(body, media_type=exporter.media_type, headers=headers)
+    return exporter, content
+
+
+def _accepts_gzip(accept_encoding: str) -> bool:
+    """True where ``gzip`` is named (RFC 9110, section 12.5.3) and not with a weight of 0."""
+    for offer in accept_encoding.lower().split(","):
+        coding, _, weight = offer.replace(" ", "").partition(";q=")
+        if coding == "gzip":
+            return weight.strip("0.") != "" or not weight
+    return False
+
+
+async def _in_turn(content: Iterator[bytes], lock: asyncio.Lock) -> AsyncIterator[bytes]:
+    """One part at a time of all that is exported is made; who takes it slowly holds up nobody."""
+    while True:
+        async with lock:
+            part = await run_in_threadpool(next, content, None)
+        if part is None:
+            return
+        yield part

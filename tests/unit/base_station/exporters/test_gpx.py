@@ -28,7 +28,7 @@ def test_each_person_is_a_track_and_a_gap_ends_a_segment() -> None:
         WornTrack("FF-01", "Zoë <&> Ärlig", "A", walked),
         WornTrack("FF-02", "", "", walked[:2]),
     )
-    read = gpxpy.parse(GPX.export(IncidentTracks("i-1", "Mill", ANCHOR, tracks)).decode())
+    read = gpxpy.parse(b"".join(GPX.export(IncidentTracks("i-1", "Mill", ANCHOR, tracks))).decode())
     assert [track.name for track in read.tracks] == ["Zoë <&> Ärlig (FF-01)", "FF-02"]
     assert [[len(part.points) for part in track.segments] for track in read.tracks] == [[2, 2], [2]]
     first = read.tracks[0].segments[0].points[0]

@@ -6,10 +6,10 @@ import io
 import json
 import struct
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import duckdb
-import msgspec
 import pytest
 from pyarrow import parquet
 
@@ -33,9 +33,13 @@ def incident(anchor: Anchor | None = ANCHOR) -> IncidentTracks:
     return IncidentTracks("i-1", "Mill", anchor, tracks)
 
 
+def written(of: IncidentTracks) -> io.BytesIO:
+    return io.BytesIO(b"".join(export_parquet(of)))
+
+
 def test_a_database_answers_questions_about_it(tmp_path: Path) -> None:
     file = tmp_path / "tracks.parquet"
-    file.write_bytes(export_parquet(incident()))
+    file.write_bytes(written(incident()).getvalue())
     found = duckdb.execute(
         "select unit_id, any_value(person), count(*), max(north_m), count(floor), "
         f"epoch_ms(min(t_utc)) from '{file}' group by unit_id order by unit_id"
@@ -45,7 +49,7 @@ def test_a_database_answers_questions_about_it(tmp_path: Path) -> None:
 
 
 def test_places_are_geoparquet_with_longitude_first() -> None:
-    table = parquet.read_table(io.BytesIO(export_parquet(incident())))
+    table = parquet.read_table(written(incident()))
     geo = json.loads(table.schema.metadata[b"geo"])
     assert geo["columns"][geo["primary_column"]]["encoding"] == "WKB"
     points = (point for track in incident().tracks for point in track.points)
@@ -58,7 +62,7 @@ def test_places_are_geoparquet_with_longitude_first() -> None:
 
 
 def test_without_an_anchor_it_has_metres_alone() -> None:
-    table = parquet.read_table(io.BytesIO(export_parquet(incident(None))))
+    table = parquet.read_table(written(incident(None)))
     assert "geometry" not in table.column_names
     assert b"geo" not in table.schema.metadata
     assert table["down_m"].to_pylist() == [-1.5] * 5
@@ -66,8 +70,8 @@ def test_without_an_anchor_it_has_metres_alone() -> None:
 
 
 def test_nobody_walked_is_an_empty_table() -> None:
-    empty = msgspec.structs.replace(incident(), tracks=())
-    assert parquet.read_table(io.BytesIO(export_parquet(empty))).num_rows == 0
+    empty = replace(incident(), tracks=())
+    assert parquet.read_table(written(empty)).num_rows == 0
 
 
 def test_a_missing_library_is_named_with_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:

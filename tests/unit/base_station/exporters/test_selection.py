@@ -70,4 +70,4 @@ def test_a_window_without_a_point_is_refused() -> None:
 
 def test_an_incident_in_which_nobody_walked_is_empty() -> None:
     empty = IncidentTracks("i-1", "Mill", None, ())
-    assert TrackSelection().of(empty).tracks == ()
+    assert list(TrackSelection().of(empty).tracks) == []

@@ -408,10 +408,10 @@ def test_the_assessment_says_how_long_the_lights_were_which(past: Past) -> None:
 
 def test_an_exporter_takes_the_smoothed_trail(past: Past) -> None:
     smoothed = past.post_processor.smoothed(past.incident).tracks
-    shown = incident_tracks(past.records, past.roster, past.incident)
-    chosen = incident_tracks(past.records, past.roster, past.incident, smoothed)
-    assert [track.unit_id for track in chosen.tracks] == [track.unit_id for track in shown.tracks]
-    assert [point.t_ns for point in chosen.tracks[0].points] == [
+    shown = [*incident_tracks(past.records, past.roster, past.incident).tracks]
+    chosen = [*incident_tracks(past.records, past.roster, past.incident, smoothed).tracks]
+    assert [track.unit_id for track in chosen] == [track.unit_id for track in shown]
+    assert [point.t_ns for point in chosen[0].points] == [
         sample.t_ns for sample in smoothed["FF-01"]
     ]
 
