@@ -19,19 +19,27 @@ from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.messages import CommandKind
-from shared.messages.station import CheckIn, OpenIncident, SetAccountability, UndoConfirmation
+from shared.messages.station import (
+    CheckIn,
+    NoteDispatch,
+    OpenIncident,
+    SetAccountability,
+    UndoConfirmation,
+)
 
 ANSWER_NS = 180 * NS_PER_S  # for a roll call that somebody asks for, or an evacuation (ours)
 SHORTEST_S, LONGEST_S = 30.0, 12 * 3600.0
 PAR_REQUESTS = frozenset({CommandKind.PAR_REQUEST, CommandKind.EVACUATE})  # to be answered
 
 
-def new_incident(state: StationState, action: OpenIncident) -> Incident:
+def new_incident(
+    state: StationState, action: OpenIncident, dispatch: NoteDispatch | None
+) -> Incident:
     """New incident, with the usual intervals where none are given."""
     par_s = action.par_interval_s or PAR_INTERVAL_S
     work_s = action.work_limit_s or WORK_LIMIT_S
     _check(par_s, work_s)
-    return Incident(action.incident_id, action.name, state.t_ns, None, par_s, work_s)
+    return Incident(action.incident_id, action.name, state.t_ns, None, par_s, work_s, dispatch)
 
 
 def change_intervals(state: StationState, action: SetAccountability) -> Iterator[UnitState]:

@@ -1,4 +1,4 @@
-"""Operator actions about people: incidents, wearers, accountability and rest."""
+"""Operator actions about people: dispatches, incidents, wearers, accountability and rest."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import assert_never
 
 import msgspec
 
-from base_station.core import accountability
+from base_station.core import accountability, dispatches
 from base_station.core.closed_incidents import add_closed_incident
 from base_station.core.state import Person, StationState, UnitState
 from base_station.core.state.trust_tally import TrustTally
@@ -17,6 +17,8 @@ from shared.messages.station import (
     Assign,
     CheckIn,
     CloseIncident,
+    DismissDispatch,
+    NoteDispatch,
     OpenIncident,
     SetAccountability,
     SetRest,
@@ -24,7 +26,15 @@ from shared.messages.station import (
 )
 
 PeopleAction = (
-    OpenIncident | CloseIncident | Assign | Unassign | CheckIn | SetAccountability | SetRest
+    OpenIncident
+    | CloseIncident
+    | NoteDispatch
+    | DismissDispatch
+    | Assign
+    | Unassign
+    | CheckIn
+    | SetAccountability
+    | SetRest
 )
 
 
@@ -36,6 +46,12 @@ def apply_people_action(state: StationState, by: str, action: PeopleAction) -> I
             changed = _open(state, action)
         case CloseIncident():
             changed = _close(state, action)
+        case NoteDispatch():
+            dispatches.note(state, action)
+            changed = []
+        case DismissDispatch():
+            dispatches.dismiss(state, action.number)
+            changed = []
         case Assign():
             changed = _assign(state, action)
         case Unassign():
@@ -57,7 +73,9 @@ def _open(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
     running = state.incident
     if running is not None and running.closed_ns is None:
         raise UserError(f"the incident {running.name!r} is open; close it first")
-    state.incident = accountability.new_incident(state, action)
+    number = action.dispatch_number
+    report = dispatches.take(state, number) if number else None
+    state.incident = accountability.new_incident(state, action, report)
     for unit in state.units.values():
         _restart(unit)
         accountability.begin(state, unit)

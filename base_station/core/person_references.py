@@ -14,6 +14,7 @@ import msgspec
 from shared.messages.pins import PlaceBeacon, SetMeeting, SetPin, StartTogether
 from shared.messages.station import (
     Action,
+    NoteDispatch,
     OpenIncident,
     RegisterUnit,
     ResolveAlarm,
@@ -30,6 +31,7 @@ FREE_TEXTS: Mapping[type[Action], str] = {
     RegisterUnit: "label",
     ResolveAlarm: "note",
     SendCommand: "text",
+    NoteDispatch: "remarks",
     SetPin: "note",
     StartTogether: "note",
     SetMeeting: "note",

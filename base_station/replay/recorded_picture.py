@@ -16,6 +16,7 @@ from base_station.views.recorded import (
     named_alarm,
     named_beacon,
     named_command,
+    named_dispatch,
     named_incident,
     named_pin,
     named_unit,
@@ -128,6 +129,7 @@ class RecordedPicture:
             commands=tuple(named_command(one, people) for one in self._commands.values()),
             pins=tuple(named_pin(one, people) for one in apart.pins),
             beacons=tuple(named_beacon(one, people) for one in apart.beacons),
+            dispatches=tuple(named_dispatch(one, people) for one in apart.dispatches),
             replay=replay,
         )
         return shown, {unit_id: trail.whole() for unit_id, trail in self._trails.items()}
@@ -140,8 +142,9 @@ class RecordedPicture:
 
     def _take_snapshot(self, snapshot: Snapshot, trails: Trails) -> None:
         was = self._apart
-        before = (was.incident, was.plan, was.anchor)
-        self.is_new = self.is_new or before != (snapshot.incident, snapshot.plan, snapshot.anchor)
+        names = ("incident", "plan", "anchor", "dispatches")
+        is_other = any(getattr(was, name) != getattr(snapshot, name) for name in names)
+        self.is_new = self.is_new or is_other
         changed = [one for one in snapshot.units if self._units.get(one.unit_id) != one]
         self._changed_units |= {one.unit_id: None for one in changed}
         self._apart = snapshot

@@ -202,6 +202,17 @@ def _despite(said: Said) -> str:
     )
 
 
+def _from(said: Said) -> str:
+    number = said.get("dispatch_number", "")
+    return f", from dispatch {number}" if number else ""
+
+
+def _dispatch(said: Said) -> str:
+    words = said["type"] or said["type_code"], said["address"], " ".join(said["units"])
+    ended = "; ended by the dispatch centre" if said["has_ended"] else ""
+    return f"{said['number']}: {', '.join(filter(None, words)) or UNKNOWN}{ended}"
+
+
 _ACTIONS: Mapping[str, Callable[[Said, NameOf], tuple[str, str]]] = {
     "SendCommand": _order,
     "ConfirmCommand": lambda said, name_of: (
@@ -213,7 +224,9 @@ _ACTIONS: Mapping[str, Callable[[Said, NameOf], tuple[str, str]]] = {
         ORDER,
         f"Answer by radio taken back: {name_of(said['unit_id']) if said['unit_id'] else EVERYONE}",
     ),
-    "OpenIncident": lambda said, _: (INCIDENT, f"Incident opened: {said['name']}"),
+    "OpenIncident": lambda said, _: (INCIDENT, f"Incident opened: {said['name']}{_from(said)}"),
+    "NoteDispatch": lambda said, _: (INCIDENT, f"Dispatch {_dispatch(said)}"),
+    "DismissDispatch": lambda said, _: (INCIDENT, f"Dispatch {said['number']} dismissed"),
     "CloseIncident": lambda said, _: (INCIDENT, f"Incident closed{_despite(said)}"),
     "Assign": lambda said, _: (PERSON, f"{said['person_name']} wears {said['unit_id']}"),
     "Unassign": lambda said, _: (PERSON, f"{said['unit_id']} is worn by nobody"),

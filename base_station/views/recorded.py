@@ -16,6 +16,7 @@ from base_station.views.wire import (
     BeaconView,
     CommandView,
     Delta,
+    DispatchView,
     IncidentView,
     PersonView,
     PinView,
@@ -103,7 +104,14 @@ def named_command(command: CommandView, people: PersonLookup) -> CommandView:
 
 
 def named_incident(incident: IncidentView, people: PersonLookup) -> IncidentView:
-    return msgspec.structs.replace(incident, name=shown_text(incident.name, people))
+    known = incident.dispatch
+    dispatch = None if known is None else named_dispatch(known, people)
+    name = shown_text(incident.name, people)
+    return msgspec.structs.replace(incident, name=name, dispatch=dispatch)
+
+
+def named_dispatch(dispatch: DispatchView, people: PersonLookup) -> DispatchView:
+    return msgspec.structs.replace(dispatch, remarks=shown_text(dispatch.remarks, people))
 
 
 def named_pin(pin: PinView, people: PersonLookup) -> PinView:

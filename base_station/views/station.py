@@ -6,7 +6,7 @@ import msgspec
 
 from base_station.core.accountability import warning_s
 from base_station.core.pins.evidence import location_of
-from base_station.core.state import Alarm, Incident, StationState
+from base_station.core.state import Alarm, Dispatch, Incident, StationState
 from base_station.core.state.command import Delivery, SentCommand
 from base_station.core.state.pin import WAITING, Pin
 from base_station.core.units.unkept_messages import unkept_problem
@@ -20,6 +20,7 @@ from base_station.views.wire import (
     BeaconView,
     CommandView,
     DeliveryView,
+    DispatchView,
     ExternalMarkerView,
     ForwarderView,
     HealthView,
@@ -32,6 +33,7 @@ from base_station.views.wire import (
 )
 from shared.geo import Anchor
 from shared.messages import AlarmChange, ExternalKind, ExternalMarker
+from shared.messages.station import NoteDispatch
 
 RESOLVED_SHOWN = 20
 _EXTERNAL_KINDS = {ExternalKind.PERSON: "person", ExternalKind.EMERGENCY: "emergency"}
@@ -110,6 +112,37 @@ def incident_view(incident: Incident, people: PersonLookup) -> IncidentView:
         par_interval_s=incident.par_interval_s,
         par_warning_s=warning_s(incident),
         work_limit_s=incident.work_limit_s,
+        dispatch=dispatch_view(incident.dispatch, people) if incident.dispatch else None,
+    )
+
+
+def dispatch_view(report: NoteDispatch, people: PersonLookup) -> DispatchView:
+    times_ns = report.called_ns, report.dispatched_ns, report.updated_ns
+    called_ms, dispatched_ms, updated_ms = (to_ms(t_ns) if t_ns else None for t_ns in times_ns)
+    return DispatchView(
+        number=report.number,
+        source=report.source,
+        type=report.type,
+        type_code=report.type_code,
+        priority=report.priority,
+        address=report.address,
+        lat_deg=report.lat_deg,
+        lon_deg=report.lon_deg,
+        units=report.units,
+        called_ms=called_ms,
+        dispatched_ms=dispatched_ms,
+        updated_ms=updated_ms,
+        remarks=shown_text(report.remarks, people),
+        has_ended=report.has_ended,
+        warnings=report.warnings,
+    )
+
+
+def _offered_view(dispatch: Dispatch, people: PersonLookup) -> DispatchView:
+    return msgspec.structs.replace(
+        dispatch_view(dispatch.report, people),
+        received_ms=to_ms(dispatch.received_ns),
+        is_dismissed=dispatch.is_dismissed,
     )
 
 
@@ -241,6 +274,7 @@ def snapshot(
         health=health_view(state, facts),
         replay=replay,
         plan_placed=state.plan is state.placed_plan,
+        dispatches=tuple(_offered_view(one, people) for one in state.dispatches),
     )
 
 

@@ -251,6 +251,28 @@ class CommandView(Answer, frozen=True):
     incident_id: str  # that was open when it was given; empty: none was
 
 
+class DispatchView(Answer, frozen=True):
+    """Newest report of the dispatch centre about an incident."""
+
+    number: str
+    source: str  # eido | json
+    type: str  # of the incident, in words
+    type_code: str
+    priority: str
+    address: str
+    lat_deg: float | None
+    lon_deg: float | None
+    units: tuple[str, ...]  # call signs
+    called_ms: int | None
+    dispatched_ms: int | None
+    updated_ms: int | None
+    remarks: str
+    has_ended: bool
+    warnings: tuple[str, ...]  # about parts that were left out
+    received_ms: int | None = None  # None: it has opened an incident
+    is_dismissed: bool = False
+
+
 class IncidentView(Answer, frozen=True):
     incident_id: str
     name: str
@@ -259,6 +281,7 @@ class IncidentView(Answer, frozen=True):
     par_interval_s: float  # everybody is to be heard from this often
     par_warning_s: float  # how long before it is due a check-in is announced
     work_limit_s: float
+    dispatch: DispatchView | None = None  # from which it was opened
 
 
 class StandbyView(Answer, frozen=True):
@@ -385,6 +408,7 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     health: HealthView
     replay: ReplayView | None
     plan_placed: bool = True  # False: nobody knows yet where on the plan people are
+    dispatches: tuple[DispatchView, ...] = ()  # from which no incident was opened, oldest first
 
 
 class Trail(msgspec.Struct, frozen=True, tag="trail"):

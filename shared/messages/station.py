@@ -52,6 +52,7 @@ class OpenIncident(msgspec.Struct, frozen=True):
     name: str
     par_interval_s: float = 0.0  # 0: the usual
     work_limit_s: float = 0.0
+    dispatch_number: str = ""  # of the dispatch from which it is opened; empty: of none
 
 
 class CloseIncident(msgspec.Struct, frozen=True):
@@ -204,6 +205,32 @@ class DoneApart(msgspec.Struct, frozen=True):
     what: str  # a sentence
 
 
+class NoteDispatch(msgspec.Struct, frozen=True):
+    """Report of the dispatch centre about an incident; a later one with the number replaces it."""
+
+    number: str
+    source: str  # format in which it came: "eido" or "json"
+    type: str = ""  # of the incident, in words
+    type_code: str = ""  # as the dispatch centre has it
+    priority: str = ""
+    address: str = ""
+    lat_deg: float | None = None
+    lon_deg: float | None = None
+    units: tuple[str, ...] = ()  # call signs of vehicles or crews
+    called_ns: int = 0  # UTC: the call was taken; 0: unknown
+    dispatched_ns: int = 0
+    updated_ns: int = 0  # when the dispatch centre changed it last
+    remarks: str = ""
+    has_ended: bool = False  # the dispatch centre has closed or cancelled it
+    warnings: tuple[str, ...] = ()  # about parts of the report that were left out
+
+
+class DismissDispatch(msgspec.Struct, frozen=True):
+    """This dispatch opens no incident here."""
+
+    number: str
+
+
 Action = (
     AcknowledgeAlarm
     | ResolveAlarm
@@ -233,6 +260,8 @@ Action = (
     | ForgetWearers
     | TakeOver
     | DoneApart
+    | NoteDispatch
+    | DismissDispatch
 )
 
 _FIELD_OF_ACTION: dict[type[Action], str] = {
@@ -264,6 +293,8 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     ForgetWearers: "forget_wearers",
     TakeOver: "take_over",
     DoneApart: "done_apart",
+    NoteDispatch: "note_dispatch",
+    DismissDispatch: "dismiss_dispatch",
 }
 _ACTION_OF_FIELD = {field: action for action, field in _FIELD_OF_ACTION.items()}
 

@@ -161,7 +161,7 @@ def test_what_is_played_is_what_was_live(tmp_path: Path) -> None:
     messages = [one for one in told.records if "/up/" in one[1] or "/alert/" in one[1]][:600]
     live: list[tuple[int, Snapshot]] = []
     with LiveStation(tmp_path) as station:
-        for action in actions[:8]:
+        for action in actions[:11]:
             assert isinstance(action, OperatorAction)
             station.act(action.action, action.by)
         for number, (_, key, payload) in enumerate(messages):

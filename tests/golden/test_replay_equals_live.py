@@ -32,6 +32,8 @@ from shared.messages.station import (
     CheckIn,
     CloseIncident,
     ConfirmCommand,
+    DismissDispatch,
+    NoteDispatch,
     OpenIncident,
     ResolveAlarm,
     SendCommand,
@@ -61,7 +63,10 @@ def incident() -> Script:
     script.register("FF-01", "FF-02", "FF-03")
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.3))
     script.act(SetPlan(PLAN))
-    script.act(OpenIncident("i1", "Mill Lane", par_interval_s=100.0, work_limit_s=120.0))
+    script.act(NoteDispatch("2024-7", "json", "Kitchen fire", address="Mill Lane", units=("E12",)))
+    script.act(NoteDispatch("2024-8", "json", "Alarm"))
+    script.act(DismissDispatch("2024-8"))
+    script.act(OpenIncident("i1", "Mill Lane", 100.0, 120.0, dispatch_number="2024-7"))
     for number in (1, 2, 3):
         script.act(Assign(f"FF-0{number}", f"p{number}", f"Person {number}", "red", "firefighter"))
     script.act(SetStart("FF-01", 5.0, 5.0, 0.0, 0.4, 0.5, 0.2))
@@ -101,6 +106,8 @@ def _second(script: Script, second: int) -> None:
         script.act(CheckIn("", "red", False, f"k{second}"))
     if second == 245:  # one of them had not answered
         script.act(UndoConfirmation("k240", "FF-01"))
+    if second == 20:
+        script.act(NoteDispatch("2024-7", "json", "Structure fire", lat_deg=52.0, lon_deg=4.0))
     if second == 130:
         script.act(SetRest("FF-01", True))
     if second == 50:

@@ -27,7 +27,9 @@ from shared.messages.station import (
     CheckIn,
     CloseIncident,
     ConfirmCommand,
+    DismissDispatch,
     ForgetWearers,
+    NoteDispatch,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
@@ -52,6 +54,7 @@ METRES = st.floats(-1e4, 1e4)
 ANY = st.floats(allow_nan=True, allow_infinity=True, width=32)
 COMMAND_IDS = st.sampled_from(["c1", "c2", "c3"])
 CHECK_IN_IDS = st.sampled_from(["k1", "k2"])
+DISPATCHES = st.sampled_from(["d1", "d2"])
 ANGLES = st.floats(0.0, 6.28)
 
 THRESHOLDS = [f"{rule.name}.{name}" for rule in ALARMS for name in limits_of(rule)]
@@ -157,6 +160,14 @@ DEEDS: st.SearchStrategy[Deed] = st.one_of(
         st.just("") | CHECK_IN_IDS | COMMAND_IDS,
         st.just("") | UNITS,
     ),
+    st.builds(
+        lambda n, u, t: lambda s: s.act(NoteDispatch(n, "json", units=u, updated_ns=t)),
+        DISPATCHES,
+        st.sampled_from([(), ("E12",)]),
+        st.integers(0, 2),
+    ),
+    st.builds(lambda n: lambda s: s.act(DismissDispatch(n)), DISPATCHES),
+    st.builds(lambda n: lambda s: s.act(OpenIncident(f"i{n}", n, 0.0, 0.0, n)), DISPATCHES),
     st.builds(lambda p, w: lambda s: s.act(SetAccountability(p, w)), st.just(30.0) | ANY, ANY),
     st.builds(
         lambda v: lambda s: s.act(SetThresholds(v)),

@@ -198,6 +198,26 @@ export interface CommandView {
   incident_id: string;
 }
 
+export interface DispatchView {
+  number: string;
+  source: string;
+  type: string;
+  type_code: string;
+  priority: string;
+  address: string;
+  lat_deg: number | null;
+  lon_deg: number | null;
+  units: string[];
+  called_ms: number | null;
+  dispatched_ms: number | null;
+  updated_ms: number | null;
+  remarks: string;
+  has_ended: boolean;
+  warnings: string[];
+  received_ms: number | null;
+  is_dismissed: boolean;
+}
+
 export interface IncidentView {
   incident_id: string;
   name: string;
@@ -206,6 +226,7 @@ export interface IncidentView {
   par_interval_s: number;
   par_warning_s: number;
   work_limit_s: number;
+  dispatch: DispatchView | null;
 }
 
 export interface StandbyView {
@@ -305,6 +326,7 @@ export interface Snapshot {
   health: HealthView;
   replay: ReplayView | null;
   plan_placed: boolean;
+  dispatches: DispatchView[];
 }
 
 export interface Trail {

@@ -63,6 +63,7 @@ describe("commands", () => {
       par_interval_s: 1200,
       par_warning_s: 300,
       work_limit_s: 2400,
+      dispatch: null,
     });
     const done = { open: false };
     const commands = [

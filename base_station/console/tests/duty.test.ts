@@ -12,6 +12,7 @@ const INCIDENT: IncidentView = {
   par_interval_s: 1200,
   par_warning_s: 300,
   work_limit_s: 2400,
+  dispatch: null,
 };
 
 function duty(dueMs: number, change: Partial<DutyView> = {}): DutyView {

@@ -166,6 +166,7 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
     health: HEALTH,
     replay: null,
     plan_placed: true,
+    dispatches: [],
     ...change,
   };
 }

@@ -6,7 +6,7 @@ the core.
 """
 
 from base_station.core.state.alarm import Alarm
-from base_station.core.state.incident import Incident
+from base_station.core.state.incident import Dispatch, Incident
 from base_station.core.state.station import Counts, IdempotencyRecord, StationState
 from base_station.core.state.unit import STILL_NS, Fault, GpsUse, UnitState
 from base_station.core.state.unit_wearer import ERASED_TEXT, WEARERS_KEPT, FormerWearer, Person
@@ -17,6 +17,7 @@ __all__ = [
     "WEARERS_KEPT",
     "Alarm",
     "Counts",
+    "Dispatch",
     "Fault",
     "FormerWearer",
     "GpsUse",

@@ -1,10 +1,11 @@
-"""An incident, as the pipeline keeps it."""
+"""An incident, and a dispatch that has opened none yet, as the pipeline keeps them."""
 
 from __future__ import annotations
 
 import msgspec
 
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from shared.messages.station import NoteDispatch
 
 
 class Incident(msgspec.Struct, frozen=True):
@@ -14,3 +15,12 @@ class Incident(msgspec.Struct, frozen=True):
     closed_ns: int | None = None
     par_interval_s: float = PAR_INTERVAL_S  # everybody is to be heard from this often
     work_limit_s: float = WORK_LIMIT_S  # of work, after which somebody should rest
+    dispatch: NoteDispatch | None = None  # newest report of the dispatch from which it was opened
+
+
+class Dispatch(msgspec.Struct, frozen=True):
+    """What the dispatch centre has reported of an incident that is not opened here."""
+
+    report: NoteDispatch  # the newest
+    received_ns: int  # station time of the first report
+    is_dismissed: bool = False

@@ -6,7 +6,7 @@ import msgspec
 
 from base_station.core.state.alarm import Alarm
 from base_station.core.state.command import SentCommand
-from base_station.core.state.incident import Incident
+from base_station.core.state.incident import Dispatch, Incident
 from base_station.core.state.pin import Beacon, Pin, PinVerdict
 from base_station.core.state.resolve_queue import PendingResolve
 from base_station.core.state.unit import UnitState
@@ -79,6 +79,7 @@ class StationState(msgspec.Struct):
     )  # by key, oldest first
     take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
     external: dict[str, ExternalMarker] = msgspec.field(default_factory=dict)  # of other teams
+    dispatches: tuple[Dispatch, ...] = ()  # from which no incident was opened, oldest first
     counts: Counts = msgspec.field(default_factory=Counts)
 
     def sender(self, unit_id: str) -> UnitState | None:

@@ -163,6 +163,17 @@ class IncidentRow(Base):
     closed_by: Mapped[str]
     # station time of the newest data that came after the end
     late_data_ns: Mapped[int] = mapped_column("news_ns", server_default="0")
+    dispatch_number: Mapped[str] = mapped_column(server_default="")  # empty: opened from none
+
+
+class DispatchRow(Base):
+    """The newest report of a dispatch."""
+
+    __tablename__ = "dispatches"
+
+    number: Mapped[str] = mapped_column(primary_key=True)
+    updated_ns: Mapped[int]  # when the dispatch centre changed it; 0: it has not said
+    report: Mapped[str]  # JSON of ``shared.messages.station.NoteDispatch``
 
 
 class Assignment(Base):
@@ -321,6 +332,7 @@ class LogSegment(Base):
 PROJECTIONS: tuple[type[Base], ...] = (
     Unit,
     IncidentRow,
+    DispatchRow,
     Assignment,
     AlarmRow,
     AlarmTransition,

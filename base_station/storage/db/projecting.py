@@ -17,6 +17,7 @@ from base_station.storage.db.models import (
     AnchorRow,
     Assignment,
     AuditEntry,
+    DispatchRow,
     IncidentRow,
     PlanRow,
     TrackPoint,
@@ -34,6 +35,7 @@ from shared.messages.station import (
     Assign,
     CloseIncident,
     ForgetWearers,
+    NoteDispatch,
     OpenIncident,
     RegisterUnit,
     ReportProblem,
@@ -87,11 +89,13 @@ def project_into(session: Session, projections: Sequence[Projection]) -> int:
 def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
     key = {"action_id": done.action_id, "t_ns": t_ns}
     match done.action:
-        case OpenIncident(incident_id=incident_id, name=name):
+        case OpenIncident(incident_id=incident_id, name=name, dispatch_number=number):
             _add(
                 session, IncidentRow, incident_id=incident_id, name=name, opened_ns=t_ns,
-                opened_by=done.by, closed_ns=None, closed_by="",
+                opened_by=done.by, closed_ns=None, closed_by="", dispatch_number=number,
             )  # fmt: skip
+        case NoteDispatch() as report:
+            _dispatch(session, report)
         case CloseIncident(incident_id=incident_id):
             session.execute(
                 update(IncidentRow)
@@ -122,6 +126,22 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
             pass  # what is stored was rewritten before
         case _:
             pass  # the audit and the log have it
+
+
+def _dispatch(session: Session, report: NoteDispatch) -> None:
+    columns = {
+        "updated_ns": report.updated_ns,
+        "report": msgspec.json.encode(report).decode(),
+    }
+    session.execute(
+        insert_into(session, DispatchRow)
+        .values(number=report.number, **columns)
+        .on_conflict_do_update(
+            index_elements=[DispatchRow.number],
+            set_=columns,
+            where=DispatchRow.updated_ns <= report.updated_ns,
+        )
+    )
 
 
 _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
