@@ -23,7 +23,7 @@ from base_station.core.pins import pin_registry
 from base_station.core.pins.incident_scope import concerns_closed_incident
 from base_station.core.pins.pin_registry import PinAction, change_pins, units_of
 from base_station.core.positioning.positioning import Positioning
-from base_station.core.state import Alarm, StationState, UnitState
+from base_station.core.state import OWN_SITE_ID, Alarm, SiteState, StationState, UnitState
 from base_station.core.state.command import SentCommand
 from base_station.core.state.resolve_queue import request_resolve
 from base_station.fusion.gnss.common_mode_error import CommonModeError
@@ -118,34 +118,34 @@ class ActionHandler:
                 return self._with_alarms(state, apply_people_action(state, by, action))
 
     def _site(self, state: StationState, action: SetAnchor | SetPlan | SetReference) -> None:
+        site_id = OWN_SITE_ID
+        site = state.sites[site_id]
         if isinstance(action, SetAnchor):
-            self._positioning.set_anchor(state, _anchor(action))
+            self._positioning.set_anchor(state, site_id, _anchor(action))
         elif isinstance(action, SetReference):
             _require_finite(action.down_m)
             unit_id = state.registered_unit(action.unit_id).unit_id if action.unit_id else None
-            state.barometers.set_reference(unit_id, action.down_m)
-            state.common_mode_error = CommonModeError()
+            site.barometers.set_reference(unit_id, action.down_m)
+            site.common_mode_error = CommonModeError()
         else:
-            state.plan = self._plans.plan(action.geojson)
-            self._positioning.replace_map(state)
-            for unit_id in sorted(set().union(*map(units_of, state.pins.values()))):
+            site.plan = self._plans.plan(action.geojson)
+            self._positioning.replace_map(state, site_id)
+            for unit_id in sorted(set().union(*map(units_of, site.pins.values()))):
                 request_resolve(state.late, unit_id, state.t_ns)  # one by one: live goes first
 
     def _pin(self, state: StationState, by: str, action: PinAction) -> Iterator[StateChange]:
-        is_first = isinstance(
-            action, SetPin | StartTogether | PlaceBeacon
-        ) and _is_first_known_place(state)
+        site_id = _site_of_place(state, action)
+        is_first = site_id is not None and _is_first_known_place(state.sites[site_id])
         running = state.incident
         closed_ns = None if running is None else running.closed_ns
         is_of_past = closed_ns is not None and concerns_closed_incident(state, action, closed_ns)
         changed = change_pins(state, by, action)
         if is_of_past and running is not None:
             yield ClosedIncidentChanged(running.incident_id)
-        if is_first:
-            yield from map(
-                TrailBackfilled, moved := sorted(self._positioning.switch_to_plan_frame(state))
-            )
-            changed |= set(moved)
+        if site_id is not None and is_first:
+            moved = self._positioning.switch_to_plan_frame(state, site_id)
+            yield from map(TrailBackfilled, sorted(moved))
+            changed |= moved
         yield _pins_changed(changed)
 
     def _alarm(
@@ -219,7 +219,7 @@ class ActionHandler:
         before = state.incident
         units = list(apply_people_action(state, by, action))
         before_ns = 0 if before is None else before.closed_ns or 0
-        yield _pins_changed(self._positioning.begin_incident(state, before_ns))
+        yield _pins_changed(self._positioning.begin_incident(state, OWN_SITE_ID, before_ns))
         yield from self._with_alarms(state, units)
 
     def _forget(self, state: StationState, action: ForgetWearers) -> list[StateChange]:
@@ -255,20 +255,34 @@ class ActionHandler:
             action.heading_std_rad,
         )
         touched = {unit.unit_id}
-        if _is_first_known_place(state):
-            touched |= self._positioning.switch_to_plan_frame(state)
+        if _is_first_known_place(state.sites[unit.site_id]):
+            touched |= self._positioning.switch_to_plan_frame(state, unit.site_id)
         self._positioning.start(state, unit, start)
         yield _pins_changed(touched)
         yield from map(TrailBackfilled, sorted(touched))
 
 
-def _is_first_known_place(state: StationState) -> bool:
+def _site_of_place(state: StationState, action: PinAction) -> str | None:
+    """Site on which an action gives a place; None where it gives none."""
+    match action:
+        case SetPin():
+            unit_ids: tuple[str, ...] = (action.unit_id,)
+        case StartTogether():
+            unit_ids = action.unit_ids[:1]
+        case PlaceBeacon():
+            return OWN_SITE_ID
+        case _:
+            return None
+    return next((state.units[one].site_id for one in unit_ids if one in state.units), None)
+
+
+def _is_first_known_place(site: SiteState) -> bool:
     """True if a place that is said now is the first one that is said on a plan, of which nobody
     knows where it lies: people are where satellites have them.
     """
-    pinned = any(pin.kind in {"place", "start"} for pin in state.pins.values())
-    is_known = state.start_set or pinned or bool(state.beacons)
-    return state.plan is not state.placed_plan and not is_known
+    pinned = any(pin.kind in {"place", "start"} for pin in site.pins.values())
+    is_known = site.start_set or pinned or bool(site.beacons)
+    return site.plan is not site.placed_plan and not is_known
 
 
 def _anchor(action: SetAnchor) -> Anchor:

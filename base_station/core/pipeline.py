@@ -70,9 +70,10 @@ class StationPipeline:
         usable = checkpoint is not None and checkpoint.fuser == fuser_kind.name
         self.state = checkpoint.state if checkpoint is not None else StationState()
         plans = plans or PlanReader()
-        plan = self.state.plan
-        if plan is not None and not plan.read_whole:  # by another version, which looked at less
-            self.state.plan = plans.plan(plan.geojson)
+        for site in self.state.sites.values():
+            plan = site.plan
+            if plan is not None and not plan.read_whole:  # by another version, which looked at less
+                site.plan = plans.plan(plan.geojson)
         self._positioning = Positioning(
             fuser_kind,
             smoother,
@@ -80,7 +81,8 @@ class StationPipeline:
             checkpoint.fusers if checkpoint is not None and usable else {},
             checkpoint.pinned if checkpoint is not None and usable else {},
         )
-        self._positioning.set_map(self.state.placed_plan)
+        for site_id in self.state.sites:
+            self._positioning.set_map(self.state, site_id)
         self._alarms = make_alarms(rules)
         self._alarms.use_thresholds(self.state.thresholds)
         self._unit_messages = UnitMessages(self._alarms, self._positioning)

@@ -148,11 +148,12 @@ class UnitMessages:
         changed = note_sighting(state, unit, sighting)
         if not changed:
             return []
-        if state.t_ns - state.sighting_solved_ns < NS_PER_S:
+        site = state.sites[unit.site_id]
+        if state.t_ns - site.sighting_solved_ns < NS_PER_S:
             for unit_id in changed:
                 request_resolve(state.late, unit_id, state.t_ns)
             return [PinsChanged(tuple(sorted(changed)))]
-        state.sighting_solved_ns = state.t_ns
+        site.sighting_solved_ns = state.t_ns
         return self._positioning.solve_pins(state, changed)
 
 

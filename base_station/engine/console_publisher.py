@@ -172,4 +172,4 @@ class ConsolePublisher:
     def _frame_now(self) -> tuple[object, ...]:
         """Parts that deltas do not carry; the pipeline replaces them whole when they change."""
         state = self._pipeline.state
-        return state.incident, state.plan, state.anchor, state.dispatches
+        return state.incident, state.site.plan, state.site.anchor, state.dispatches

@@ -138,12 +138,12 @@ class WriteAhead:
         self._urgent = self._urgent or type(output) is AlarmChange
         t_ns = output.header.t_utc_ns
         self._log.write(t_ns, _KEYS[type(output)], encode(output))
-        shown = self._foxglove.of(output, self._pipeline.state.anchor)
+        shown = self._foxglove.of(output, self._pipeline.state.site.anchor)
         if shown is not None:
             self._log.write(t_ns, *shown)
 
     def _log_plan(self, t_ns: int) -> None:
         state = self._pipeline.state
-        shown = self._foxglove.plan(state.plan, state.anchor, t_ns)
+        shown = self._foxglove.plan(state.site.plan, state.site.anchor, t_ns)
         if shown is not None:
             self._log.write(t_ns, *shown)

@@ -17,10 +17,10 @@ from typing import TypeVar
 import msgspec
 import numpy as np
 
-from base_station.core.pins.evidence import encounters_of, evidence_of_all
+from base_station.core.pins.evidence import encounters_of, evidence_of_site
 from base_station.core.pins.pin_registry import units_of
 from base_station.core.pins.pin_solver import floors_along
-from base_station.core.state import StationState
+from base_station.core.state import OWN_SITE_ID, StationState
 from base_station.fusion.lazy_mapping import LastValueMapping
 from base_station.fusion.odometry.points import NO_FLOOR, RESTART, PathArrays
 from base_station.fusion.smoothing.interface import SmoothedPath, Smoother, Solution
@@ -261,10 +261,11 @@ class PostProcessor:
             until_ns = incident.closed_ns or _EVER_NS
             is_outdated = self._archive.watch()
             state = self._state_at(until_ns, _late_data_ns(incident), on_progress)
-            evidence = evidence_of_all(state, FloorGrid.of(state.placed_plan))
+            site = state.site
+            evidence = evidence_of_site(state, OWN_SITE_ID, FloorGrid.of(site.placed_plan))
             solution = Solution({}, {})  # nobody has been heard of yet
             if evidence:
-                solution = self._smoother.smooth(evidence, encounters_of(state))
+                solution = self._smoother.smooth(evidence, encounters_of(state, site))
             on_progress(1.0)
             return SolvedIncident(state, solution, is_outdated)
 
@@ -322,7 +323,7 @@ def _samples(incident: IncidentRow, known: SolvedIncident, unit_id: str) -> list
     path = known.solution.paths[unit_id]
     points = known.state.paths[unit_id].arrays()
     is_placed = _is_placed(known, unit_id, points)
-    floors = floors_along(known.state, points, path.places_m)
+    floors = floors_along(known.state.site_of(unit_id), points, path.places_m)
     heading_rad = (path.turn_rad + points.heading_rad) % (2.0 * np.pi)
     return [
         TrackSample(
@@ -344,7 +345,9 @@ def _samples(incident: IncidentRow, known: SolvedIncident, unit_id: str) -> list
 def _is_placed(known: SolvedIncident, unit_id: str, points: PathArrays) -> bool:
     """True if anything ties its path to the incident frame; else it lies about its own start."""
     verdicts, state = known.solution.verdicts, known.state
-    pins = (pin_id for pin_id, pin in state.pins.items() if unit_id in units_of(pin))
+    pins = (
+        pin_id for pin_id, pin in state.site_of(unit_id).pins.items() if unit_id in units_of(pin)
+    )
     is_pinned = any(pin_id in verdicts and verdicts[pin_id].used for pin_id in pins)
     has_start = state.paths[unit_id].start.in_path is not None
     return has_start or is_pinned or len(points.fix_t_ns) > 0

@@ -148,12 +148,12 @@ def _offered_view(dispatch: Dispatch, people: PersonLookup) -> DispatchView:
 
 def pin_views(state: StationState, people: PersonLookup) -> tuple[PinView, ...]:
     """All pins, in the order of setting."""
-    return tuple(_pin_view(state, pin, people) for pin in state.pins.values())
+    return tuple(_pin_view(state, pin, people) for pin in state.site.pins.values())
 
 
 def _pin_view(state: StationState, pin: Pin, people: PersonLookup) -> PinView:
-    verdict = state.pin_verdicts.get(pin.pin_id, WAITING)
-    at = location_of(state, pin)
+    verdict = state.site.pin_verdicts.get(pin.pin_id, WAITING)
+    at = location_of(state.site, pin)
     return PinView(
         pin_id=pin.pin_id,
         kind=pin.kind,
@@ -188,13 +188,13 @@ def beacon_views(state: StationState, people: PersonLookup) -> tuple[BeaconView,
             reach_m=beacon.reach_m,
             seen_ms=to_ms_or_none(beacon.seen_ns),
         )
-        for beacon in state.beacons.values()
+        for beacon in state.site.beacons.values()
     )
 
 
 def external_views(state: StationState) -> tuple[ExternalMarkerView, ...]:
     """On the plan; without an anchor nobody knows where that is."""
-    anchor = state.anchor
+    anchor = state.site.anchor
     if anchor is None:
         return ()
     return tuple(_external_view(anchor, marker) for marker in state.external.values())
@@ -219,8 +219,8 @@ def _external_view(anchor: Anchor, marker: ExternalMarker) -> ExternalMarkerView
 def health_view(state: StationState, facts: StationFacts) -> HealthView:
     counts = state.counts
     problems = [*state.problems.values(), *facts.problems]
-    if state.plan is not None and state.plan.damage:
-        problems.append(state.plan.damage)
+    if state.site.plan is not None and state.site.plan.damage:
+        problems.append(state.site.plan.damage)
     if unkept := unkept_problem(state):
         problems.append(unkept)
     if counts.undecodable:
@@ -269,11 +269,11 @@ def snapshot(
         pins=pin_views(state, people),
         beacons=beacon_views(state, people),
         external=external_views(state),
-        plan=msgspec.Raw(state.plan.geojson) if state.plan else None,
-        anchor=anchor_view(state.anchor) if state.anchor else None,
+        plan=msgspec.Raw(state.site.plan.geojson) if state.site.plan else None,
+        anchor=anchor_view(state.site.anchor) if state.site.anchor else None,
         health=health_view(state, facts),
         replay=replay,
-        plan_placed=state.plan is state.placed_plan,
+        plan_placed=state.site.plan is state.site.placed_plan,
         dispatches=tuple(_offered_view(one, people) for one in state.dispatches),
     )
 

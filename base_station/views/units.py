@@ -182,8 +182,9 @@ def _sensors_view(sensors: Sequence[SensorTemperature]) -> tuple[SensorTemperatu
 
 def _position_view(state: StationState, fused: FusedPosition, reach: Ring) -> PositionView:
     lat_deg = lon_deg = None
-    if state.anchor is not None:
-        lat_deg, lon_deg, _ = state.anchor.to_geodetic(fused.north_m, fused.east_m, fused.down_m)
+    anchor = state.site_of(fused.unit_id).anchor
+    if anchor is not None:
+        lat_deg, lon_deg, _ = anchor.to_geodetic(fused.north_m, fused.east_m, fused.down_m)
     silent_m = max_travel_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
     major_m, minor_m, heading_rad = _ellipse(fused)
     return PositionView(  # by place: there are thousands a second

@@ -48,6 +48,8 @@ def logged(walk: Walk) -> list[Record]:
 def test_a_replay_of_pins_decides_the_same() -> None:
     walk = told()
     state = walk.script.pipeline.state
-    assert {pin_id: one.state for pin_id, one in state.pin_verdicts.items()}["bad"] == "conflict"
-    assert {pin.kind for pin in state.pins.values()} == {"place", "meeting", "beacon"}
+    assert {pin_id: one.state for pin_id, one in state.site.pin_verdicts.items()}[
+        "bad"
+    ] == "conflict"
+    assert {pin.kind for pin in state.site.pins.values()} == {"place", "meeting", "beacon"}
     assert list(compare(logged(walk), make_pipeline())) == []

@@ -52,10 +52,10 @@ def test_with_all_pins_taken_back_everything_is_as_it_was(
         assert all(map(math.isfinite, (unit.place.fused.north_m, unit.place.fused.std_north_m)))
         assert all(math.isfinite(step.north_m) for step in unit.trails.shown)
         state = walk.script.pipeline.state
-        assert state.pin_verdicts.keys() == state.pins.keys()
+        assert state.site.pin_verdicts.keys() == state.site.pins.keys()
         if taken_back:
             walk.script.act(RemovePin(pin_id))
-    for pin_id in list(walk.script.pipeline.state.pins):
+    for pin_id in list(walk.script.pipeline.state.site.pins):
         walk.script.act(RemovePin(pin_id))
     walk.go(10)
     mine, theirs = (one.script.pipeline.state.units["FF-01"] for one in (walk, plain))

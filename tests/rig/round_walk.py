@@ -73,7 +73,7 @@ class Walk:
         return max(apart)
 
     def state(self, pin_id: str) -> str:
-        return self.script.pipeline.state.pin_verdicts[pin_id].state
+        return self.script.pipeline.state.site.pin_verdicts[pin_id].state
 
     def now_off_m(self, unit_id: str) -> float:
         fused = self.script.pipeline.state.units[unit_id].place.fused

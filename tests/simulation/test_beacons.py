@@ -85,8 +85,8 @@ def test_beacons_on_the_way_correct_the_trail(simulation: Simulation, said: Said
     plain = told(simulation, said, with_beacons=False)
     pinned = told(simulation, said, with_beacons=True)
     state = pinned.pipeline.state
-    verdicts = [state.pin_verdicts[pin_id].state for pin_id in state.pins]
-    assert {pin.other_id for pin in state.pins.values()} >= {"entrance", "corridor-west"}
+    verdicts = [state.site.pin_verdicts[pin_id].state for pin_id in state.site.pins]
+    assert {pin.other_id for pin in state.site.pins.values()} >= {"entrance", "corridor-west"}
     assert verdicts.count("used") > 0.8 * len(verdicts)
     assert trail_off_m(simulation, pinned) < 0.7 * trail_off_m(simulation, plain)
 
@@ -96,11 +96,11 @@ def test_beacons_that_nobody_placed_wait_and_count_once_they_are(
 ) -> None:
     script = told(simulation, said, with_beacons=False)
     state = script.pipeline.state
-    assert {one.state for one in state.pin_verdicts.values()} == {"waiting"}
+    assert {one.state for one in state.site.pin_verdicts.values()} == {"waiting"}
     script.act(PlaceBeacon("corridor-west", "", 7.0, 3.0, 0, 0.3, 5.0))
-    assert "used" in {one.state for one in state.pin_verdicts.values()}
+    assert "used" in {one.state for one in state.site.pin_verdicts.values()}
     script.act(RemoveBeacon("corridor-west"))
-    assert {one.state for one in state.pin_verdicts.values()} == {"waiting"}
+    assert {one.state for one in state.site.pin_verdicts.values()} == {"waiting"}
 
 
 def test_a_seed_hears_the_same_again(simulation: Simulation) -> None:

@@ -63,7 +63,7 @@ class People:
 
     def seen(self) -> dict[int, float]:
         """Storeys that somebody walked on, and their heights."""
-        storeys = self.script.pipeline.state.storeys_at(0.0, 0.0)
+        storeys = self.script.pipeline.state.site.storeys_at(0.0, 0.0)
         return {one.floor: round(-one.down_m, 1) for one in storeys if one.seen}
 
     def _say(self, unit_id: str, ahead_m: float, down_m: float, way_m: float) -> None:
@@ -156,7 +156,7 @@ def test_what_a_person_says_of_a_floor_numbers_it_until_the_pin_is_removed(
 def test_a_pin_that_contradicts_where_somebody_was_numbers_no_floors(people: People) -> None:
     script = people.script
     script.act(SetPin("p1", "FF-01", script.t_ns, 0.0, 500.0, 1.0, 2, None, 0.0, ""))
-    assert script.pipeline.state.pin_verdicts["p1"].state == "conflict"
+    assert script.pipeline.state.site.pin_verdicts["p1"].state == "conflict"
     people.walk("FF-01", 1)
     assert people.floor("FF-01") == 3
 
@@ -192,7 +192,7 @@ def test_buildings_apart_have_floors_of_their_own(people: People) -> None:
     people.walk("FF-02", 20)
     assert people.floor("FF-02") == 1
     heights = [
-        one.down_m for one in people.script.pipeline.state.storeys_at(200.0, 0.0) if one.seen
+        one.down_m for one in people.script.pipeline.state.site.storeys_at(200.0, 0.0) if one.seen
     ]
     assert heights == pytest.approx([0.0, -5.0], abs=0.3)
     assert people.seen()[1] == pytest.approx(3.4, abs=0.3)

@@ -11,7 +11,7 @@ import numpy as np
 
 from base_station.core.durations import format_duration
 from base_station.core.pins.pin_registry import BEFORE_NS
-from base_station.core.state import StationState
+from base_station.core.state import SiteState, StationState
 from base_station.core.state.pin import WAITING, Beacon, Pin
 from base_station.fusion.odometry.path_history import PathHistory
 from base_station.fusion.odometry.points import PathArrays
@@ -30,21 +30,23 @@ NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
 MIN_STD_M = 0.05  # nobody knows a place better
 
 
-def evidence_of_all(state: StationState, grid: FloorGrid | None) -> Mapping[str, UnitEvidence]:
-    """Everything that is known of every unit that has a path, but for meetings; ``grid``: the
-    plan's walls.
+def evidence_of_site(
+    state: StationState, site_id: str, grid: FloorGrid | None
+) -> Mapping[str, UnitEvidence]:
+    """Everything that is known of every unit of a site that has a path, but for meetings;
+    ``grid``: the plan's walls.
     """
     return {
         unit_id: evidence_of_one(state, unit_id, own_places(state, unit_id, history), grid)
         for unit_id, history in sorted(state.paths.items())
-        if history.begin_ns is not None
+        if history.begin_ns is not None and state.units[unit_id].site_id == site_id
     }
 
 
-def encounters_of(state: StationState) -> list[EncounterConstraint]:
+def encounters_of(state: StationState, site: SiteState) -> list[EncounterConstraint]:
     """Meetings of units whose paths both reach them."""
     encounters = []
-    for pin in state.pins.values():
+    for pin in site.pins.values():
         paths = [state.paths.get(one) for one in (pin.unit_id, pin.other_id)]
         reached = [path for path in paths if path is not None and path.begin_ns is not None]
         if pin.kind == "meeting" and len(reached) == 2:
@@ -57,18 +59,20 @@ def encounters_of(state: StationState) -> list[EncounterConstraint]:
     return encounters
 
 
-def reported_floors(state: StationState, judged_anew: Collection[str] = ()) -> list[ReportedFloor]:
+def reported_floors(
+    state: StationState, site: SiteState, judged_anew: Collection[str] = ()
+) -> list[ReportedFloor]:
     """Floors that pins and beacons give, each with the height estimated there without any pin. A
     pin in conflict is left out, unless its unit is in ``judged_anew``.
     """
     floors = []
     unpacked: dict[str, PathArrays] = {}
-    for pin in state.pins.values():
+    for pin in site.pins.values():
         history = state.paths.get(pin.unit_id)
-        floor = location_of(state, pin).floor
+        floor = location_of(site, pin).floor
         if floor is None or history is None or history.begin_ns is None:
             continue
-        verdict = state.pin_verdicts.get(pin.pin_id, WAITING)
+        verdict = site.pin_verdicts.get(pin.pin_id, WAITING)
         if verdict.state == "conflict" and pin.unit_id not in judged_anew:
             continue
         t_ns = time_of(history, pin)
@@ -82,14 +86,14 @@ def reported_floors(state: StationState, judged_anew: Collection[str] = ()) -> l
     return floors
 
 
-def location_of(state: StationState, pin: Pin) -> Pin | Beacon:
+def location_of(site: SiteState, pin: Pin) -> Pin | Beacon:
     """Object that holds the place of a pin: the placed beacon that was sighted, else the pin."""
-    return pin if pin.kind == "meeting" else state.beacons.get(pin.other_id, pin)
+    return pin if pin.kind == "meeting" else site.beacons.get(pin.other_id, pin)
 
 
-def receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:
-    """Evidence of the reference unit at the station, if its start position is set; by unit."""
-    unit_id = state.barometers.reference_id or ""
+def reference_receiver(state: StationState, site: SiteState) -> dict[str, UnitEvidence]:
+    """Evidence of the site's reference unit, if its start position is set; by unit."""
+    unit_id = site.barometers.reference_id or ""
     history = state.paths.get(unit_id)
     if history is None or history.begin_ns is None or history.start.position is None:
         return {}
@@ -98,28 +102,29 @@ def receiver_of_station(state: StationState) -> dict[str, UnitEvidence]:
 
 def own_places(state: StationState, unit_id: str, history: PathHistory) -> list[PositionConstraint]:
     """Position constraints of a unit's pins, without encounters."""
-    pins = [one for one in state.pins.values() if one.unit_id == unit_id and one.kind != "meeting"]
-    places = [place_of(state, history, pin) for pin in pins]
+    site = state.site_of(unit_id)
+    pins = [one for one in site.pins.values() if one.unit_id == unit_id and one.kind != "meeting"]
+    places = [place_of(site, history, pin) for pin in pins]
     return [place for place in places if not isinstance(place, str)]
 
 
-def place_of(state: StationState, history: PathHistory, pin: Pin) -> PositionConstraint | str:
+def place_of(site: SiteState, history: PathHistory, pin: Pin) -> PositionConstraint | str:
     """Position constraint of a pin on the path, or the reason for which it waits."""
     t_ns = time_of(history, pin)
-    return t_ns if isinstance(t_ns, str) else place_at(state, pin, t_ns)
+    return t_ns if isinstance(t_ns, str) else place_at(site, pin, t_ns)
 
 
-def place_at(state: StationState, pin: Pin, t_ns: int) -> PositionConstraint | str:
+def place_at(site: SiteState, pin: Pin, t_ns: int) -> PositionConstraint | str:
     """Position constraint at a time from a pin that is no encounter, or the reason for which it
     waits.
     """
-    beacon = state.beacons.get(pin.other_id) if pin.other_id else None
+    beacon = site.beacons.get(pin.other_id) if pin.other_id else None
     if pin.other_id and beacon is None:
         return f"nobody has said where {pin.kind} {pin.other_id} hangs"
     at: Pin | Beacon = beacon or pin
     assert at.north_m is not None
     assert at.east_m is not None
-    storey = storey_of(state.storeys_at(at.north_m, at.east_m), at.floor)
+    storey = storey_of(site.storeys_at(at.north_m, at.east_m), at.floor)
     return PositionConstraint(
         name=pin.pin_id,
         t_ns=t_ns,
@@ -159,7 +164,7 @@ def evidence_of_one(
     run of its program.
     """
     history = state.paths[unit_id]
-    stays = unit_id == state.barometers.reference_id
+    stays = unit_id == state.site_of(unit_id).barometers.reference_id
     start = history.start.position if stays else history.start.in_path
     return UnitEvidence(
         history.arrays(), start, history.start.begin_ns, places, grid, history.latest.height_assumed

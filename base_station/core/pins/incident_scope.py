@@ -29,19 +29,20 @@ def concerns_closed_incident(state: StationState, action: PinAction, closed_ns: 
     Beacons are taken down after an incident and put up for the next one. So a placed beacon counts
     if it was passed while it had no place, and a removed one never does.
     """
+    pins = {pin_id: pin for site in state.sites.values() for pin_id, pin in site.pins.items()}
     match action:
         case SetPin() | SetMeeting():
-            earlier = state.pins.get(action.pin_id)
+            earlier = pins.get(action.pin_id)
             is_moved = earlier is not None and is_about(earlier, closed_ns)
             return is_moved or _is_then(action.t_ns, closed_ns)
         case StartTogether():
             return _is_then(action.t_ns, closed_ns)
         case RemovePin(pin_id=pin_id):
-            removed = (one for one in state.pins.values() if _goes_with(one, pin_id))
+            removed = (one for one in pins.values() if _goes_with(one, pin_id))
             return any(is_about(one, closed_ns) for one in removed)
         case PlaceBeacon(beacon_id=beacon_id):
-            passed = (one for one in state.pins.values() if one.other_id == beacon_id)
-            is_new = beacon_id not in state.beacons
+            passed = (one for one in pins.values() if one.other_id == beacon_id)
+            is_new = beacon_id not in state.site.beacons
             return is_new and any(is_about(one, closed_ns) for one in passed)
         case RemoveBeacon():
             return False

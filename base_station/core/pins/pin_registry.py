@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 import msgspec
 
 from base_station.core.durations import format_duration
-from base_station.core.state import StationState
+from base_station.core.state import SiteState, StationState
 from base_station.core.state.pin import WAITING, Beacon, Pin, reach_std_m
 from base_station.core.state.resolve_queue import request_resolve
 from base_station.site.plan import Plan
@@ -55,35 +55,36 @@ def change_pins(state: StationState, by: str, action: PinAction) -> set[str]:
 
 def forget(state: StationState, unit_id: str) -> set[str]:
     """Remove every pin that constrains this unit; returns the other units whose paths change."""
-    return drop(state, lambda pin: unit_id in units_of(pin)) - {unit_id}
+    pinned = (drop(site, lambda pin: unit_id in units_of(pin)) for site in state.sites.values())
+    return set().union(*pinned) - {unit_id}
 
 
-def drop(state: StationState, unwanted: Callable[[Pin], bool]) -> set[str]:
+def drop(site: SiteState, unwanted: Callable[[Pin], bool]) -> set[str]:
     """Gives whose past the pins were about."""
     changed: set[str] = set()
-    for pin_id in [one for one, pin in state.pins.items() if unwanted(pin)]:
-        changed |= units_of(state.pins.pop(pin_id))
-        state.pin_verdicts.pop(pin_id, None)
+    for pin_id in [one for one, pin in site.pins.items() if unwanted(pin)]:
+        changed |= units_of(site.pins.pop(pin_id))
+        site.pin_verdicts.pop(pin_id, None)
     return changed
 
 
-def reframe_pins(state: StationState, turn_rad: float, north_m: float, east_m: float) -> None:
+def reframe_pins(site: SiteState, turn_rad: float, north_m: float, east_m: float) -> None:
     """The incident frame was moved: turned clockwise, then shifted."""
-    for pin_id, pin in state.pins.items():
+    for pin_id, pin in site.pins.items():
         heading_rad = None if pin.heading_rad is None else pin.heading_rad + turn_rad
         if pin.north_m is not None and pin.east_m is not None:
             north, east = rotate(pin.north_m, pin.east_m, turn_rad)
-            state.pins[pin_id] = msgspec.structs.replace(
+            site.pins[pin_id] = msgspec.structs.replace(
                 pin, north_m=north + north_m, east_m=east + east_m, heading_rad=heading_rad
             )
-    for beacon in state.beacons.values():
+    for beacon in site.beacons.values():
         north, east = rotate(beacon.north_m, beacon.east_m, turn_rad)
         beacon.north_m, beacon.east_m = north + north_m, east + east_m
 
 
 def has_pins(state: StationState, unit_id: str) -> bool:
     """True where a pin concerns this unit's path."""
-    return any(unit_id in units_of(pin) for pin in state.pins.values())
+    return any(unit_id in units_of(pin) for pin in state.site_of(unit_id).pins.values())
 
 
 def resolve_later(state: StationState, unit_id: str) -> None:
@@ -97,29 +98,34 @@ def units_of(pin: Pin) -> set[str]:
     return {pin.unit_id, pin.other_id} if pin.kind == "meeting" else {pin.unit_id}
 
 
-def put(state: StationState, pin: Pin) -> None:
+def put(site: SiteState, pin: Pin) -> None:
     """Keep a pin that was checked, in the place of an earlier one with its id."""
-    state.pins[pin.pin_id] = pin
-    state.pin_verdicts[pin.pin_id] = WAITING
+    site.pins[pin.pin_id] = pin
+    site.pin_verdicts[pin.pin_id] = WAITING
 
 
 def _set(state: StationState, pins: Sequence[Pin]) -> set[str]:
-    new = sum(pin.pin_id not in state.pins for pin in pins)
-    if new and len(state.pins) + new > MAX_PINS:
-        there = len(state.pins)
+    """Raises UserError for pins of several sites, or for too many."""
+    sites = {state.units[unit_id].site_id for pin in pins for unit_id in units_of(pin)}
+    if len(sites) > 1:
+        raise UserError("these units are in different incidents: they have no place in common")
+    site = state.sites[sites.pop()]
+    new = sum(pin.pin_id not in site.pins for pin in pins)
+    if new and len(site.pins) + new > MAX_PINS:
+        there = len(site.pins)
         raise UserError(f"there is room for {MAX_PINS} pins, not {there + new}; remove some first")
     changed: set[str] = set()
     for pin in pins:
-        earlier = state.pins.get(pin.pin_id)
+        earlier = site.pins.get(pin.pin_id)
         changed |= units_of(pin) | (units_of(earlier) if earlier is not None else set())
-        put(state, pin)
+        put(site, pin)
     return changed
 
 
 def _place_pin(state: StationState, by: str, action: SetPin) -> Pin:
     state.registered_unit(action.unit_id)
     _check_time(state, action.unit_id, action.t_ns)
-    _check_place(state, action)
+    _check_place(state.site_of(action.unit_id), action)
     return Pin(kind="place", set_ns=state.t_ns, by=by, **msgspec.structs.asdict(action))
 
 
@@ -127,7 +133,7 @@ def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin
     """Pins of a common start position, for the units that were switched on after its time."""
     if not action.unit_ids:
         raise UserError("nobody to place: name at least one unit")
-    _check_place(state, action)
+    _check_place(state.site_of(action.unit_ids[0]), action)
     common = msgspec.structs.asdict(action)
     del common["pin_id"], common["unit_ids"], common["t_ns"]
     pins = []
@@ -162,40 +168,45 @@ def _meeting_pin(state: StationState, by: str, action: SetMeeting) -> Pin:
 
 def _remove(state: StationState, pin_id: str) -> set[str]:
     group = f"{pin_id}:"
-    changed = drop(state, lambda pin: pin.pin_id == pin_id or pin.pin_id.startswith(group))
+    changed: set[str] = set()
+    for site in state.sites.values():
+        changed |= drop(site, lambda pin: pin.pin_id == pin_id or pin.pin_id.startswith(group))
     if not changed:
         raise UserError(f"there is no pin {pin_id}; it may have been removed already")
     return changed
 
 
 def _place_beacon(state: StationState, by: str, action: PlaceBeacon) -> set[str]:
-    _check_place(state, action)
+    site = state.site
+    _check_place(site, action)
     if not (math.isfinite(action.reach_m) and action.reach_m >= 0.0):
         raise UserError("how far a beacon reaches is a number of metres, 0 or more")
-    earlier = state.beacons.get(action.beacon_id)
-    for pin in _sightings_of(state, action.beacon_id):
+    earlier = site.beacons.get(action.beacon_id)
+    for pin in _sightings_of(site, action.beacon_id):
         if not pin.is_ranged:
             std_m = reach_std_m(action.reach_m)
-            state.pins[pin.pin_id] = msgspec.structs.replace(pin, std_m=std_m)
-    state.beacons[action.beacon_id] = Beacon(
+            site.pins[pin.pin_id] = msgspec.structs.replace(pin, std_m=std_m)
+    site.beacons[action.beacon_id] = Beacon(
         **msgspec.structs.asdict(action),
         placed_ns=state.t_ns,
         by=by,
         seen_ns=earlier.seen_ns if earlier is not None else None,
     )
-    return {pin.unit_id for pin in _sightings_of(state, action.beacon_id)}
+    return {pin.unit_id for pin in _sightings_of(site, action.beacon_id)}
 
 
 def _remove_beacon(state: StationState, beacon_id: str) -> set[str]:
-    if state.beacons.pop(beacon_id, None) is None:
+    site = next((one for one in state.sites.values() if beacon_id in one.beacons), None)
+    if site is None:
         raise UserError(f"there is no beacon {beacon_id}; it may have been removed already")
-    return {pin.unit_id for pin in _sightings_of(state, beacon_id)}
+    del site.beacons[beacon_id]
+    return {pin.unit_id for pin in _sightings_of(site, beacon_id)}
 
 
-def _sightings_of(state: StationState, beacon_id: str) -> list[Pin]:
+def _sightings_of(site: SiteState, beacon_id: str) -> list[Pin]:
     return [
         pin
-        for pin in state.pins.values()
+        for pin in site.pins.values()
         if pin.kind in {"beacon", "tag"} and pin.other_id == beacon_id
     ]
 
@@ -220,13 +231,13 @@ def _early_s(state: StationState, unit_id: str, t_ns: int) -> float:
     return (begin_ns - t_ns) / NS_PER_S
 
 
-def _check_place(state: StationState, action: SetPin | StartTogether | PlaceBeacon) -> None:
+def _check_place(site: SiteState, action: SetPin | StartTogether | PlaceBeacon) -> None:
     if not (math.isfinite(action.north_m) and math.isfinite(action.east_m)):
         raise UserError("the place is no pair of numbers")
     _check_std(action.std_m)
     if not isinstance(action, PlaceBeacon) and action.heading_rad is not None:
         _check_heading(action.heading_rad, action.heading_std_rad)
-    plan = state.plan
+    plan = site.plan
     if action.floor is not None:
         _check_floor(plan, action.floor)
     if plan is not None and plan.outlines:

@@ -19,11 +19,11 @@ from base_station.core.pins.evidence import (
     evidence_of_one,
     own_places,
     place_of,
-    receiver_of_station,
+    reference_receiver,
     time_of,
 )
 from base_station.core.pins.pin_registry import units_of
-from base_station.core.state import StationState
+from base_station.core.state import SiteState, StationState
 from base_station.core.state.pin import WAITING, Pin, PinVerdict
 from base_station.core.state.trail import TRAIL_GAP_NS, TRAIL_POINTS, TrailStep
 from base_station.fusion.odometry.path_history import PathHistory
@@ -59,7 +59,7 @@ class PathSolver:
         self, state: StationState, unit_id: str, places: Sequence[PositionConstraint]
     ) -> Solution:
         """Solve one unit's path; the reference unit is part of it, for the common-mode error."""
-        evidence = receiver_of_station(state)
+        evidence = reference_receiver(state, state.site_of(unit_id))
         evidence[unit_id] = evidence_of_one(state, unit_id, places, self.grid)
         solution = self.smoother.solve(evidence)
         verdicts = {place.name: solution.verdicts[place.name] for place in places}
@@ -84,7 +84,9 @@ class SolvedUnit:
 def with_partners(state: StationState, unit_ids: Iterable[str]) -> list[str]:
     """These units and those that met them, whose past hangs on theirs; in a fixed order."""
     required = set(unit_ids)
-    met = [units_of(pin) for pin in state.pins.values() if pin.kind == "meeting"]
+    sites = {state.units[one].site_id for one in required if one in state.units}
+    pins = [pin for site_id in sites for pin in state.sites[site_id].pins.values()]
+    met = [units_of(pin) for pin in pins if pin.kind == "meeting"]
     for pair in met:
         if pair & set(unit_ids):
             required |= pair
@@ -98,8 +100,8 @@ def solve_pins(
     results: dict[str, SolvedUnit] = {}
     verdicts: dict[str, dict[str, PinVerdict]] = {}  # by pin, then by unit
     for unit_id in unit_ids:
-        history = state.paths.get(unit_id)
-        pins = [pin for pin in state.pins.values() if unit_id in units_of(pin)]
+        history, site = state.paths.get(unit_id), state.site_of(unit_id)
+        pins = [pin for pin in site.pins.values() if unit_id in units_of(pin)]
         solution: Solution | None = None
         if history is not None and history.begin_ns is not None:
             places, waiting = _places(state, solver, unit_id, history, pins)
@@ -113,41 +115,43 @@ def solve_pins(
         results[unit_id] = SolvedUnit(None, [])
         if solution is not None and history is not None:
             for pin_id, verdict in solution.verdicts.items():
-                judged = _verdict_of(state, pin_id, unit_id, verdict)
+                judged = _verdict_of(site, pin_id, unit_id, verdict)
                 verdicts.setdefault(pin_id, {})[unit_id] = judged
             if any(verdict.used for verdict in solution.verdicts.values()):
                 path = solution.paths[unit_id]
-                trail = trail_of(state, history.arrays(), path.places_m)
+                trail = trail_of(state, unit_id, history.arrays(), path.places_m)
                 results[unit_id] = SolvedUnit(path, trail)
     for pin_id, found in verdicts.items():
-        _store_verdict(state, pin_id, found)
+        _store_verdict(state.site_of(next(iter(found))), pin_id, found)
     return results
 
 
-def _store_verdict(state: StationState, pin_id: str, found: Mapping[str, PinVerdict]) -> None:
+def _store_verdict(site: SiteState, pin_id: str, found: Mapping[str, PinVerdict]) -> None:
     """Store the worst verdict of the units that a pin concerns. Of an encounter one unit may not
     have been solved now: its earlier verdict counts.
     """
-    of_units = {**dict(state.pin_verdicts.get(pin_id, WAITING).of_units), **found}
+    of_units = {**dict(site.pin_verdicts.get(pin_id, WAITING).of_units), **found}
     worst = max(of_units.values(), key=lambda one: _SEVERITY[one.state])
     reasons = [one for one in of_units.values() if one.text]
     worst_reasons = dict.fromkeys(one.text for one in reasons if one.state == worst.state)
     text = ". ".join(worst_reasons) or next((one.text for one in reasons), "")
     verdict = msgspec.structs.replace(worst, text=text, of_units=tuple(of_units.items()))
-    state.pin_verdicts[pin_id] = verdict
+    site.pin_verdicts[pin_id] = verdict
 
 
 _SEVERITY = {"waiting": 0, "used": 1, "conflict": 2}
 
 
-def trail_of(state: StationState, points: PathArrays, places_m: Floats) -> list[TrailStep]:
+def trail_of(
+    state: StationState, unit_id: str, points: PathArrays, places_m: Floats
+) -> list[TrailStep]:
     """A path (n, 3) as the consoles draw it: thinned evenly, since the incident began."""
     since_ns = state.incident.opened_ns if state.incident is not None else 0
     rows = np.flatnonzero(points.t_ns >= since_ns)
     gaps_before = np.cumsum(np.diff(points.t_ns, prepend=points.t_ns[:1]) > TRAIL_GAP_NS)
     if len(rows) > TRAIL_POINTS:
         rows = rows[np.linspace(0, len(rows) - 1, TRAIL_POINTS).round().astype(int)]
-    floors = floors_along(state, points, places_m)
+    floors = floors_along(state.site_of(unit_id), points, places_m)
     after_gap = np.diff(gaps_before[rows], prepend=gaps_before[rows[:1]]) > 0
     return [
         TrailStep(
@@ -161,14 +165,14 @@ def trail_of(state: StationState, points: PathArrays, places_m: Floats) -> list[
     ]
 
 
-def floors_along(state: StationState, points: PathArrays, places_m: Floats) -> list[int | None]:
+def floors_along(site: SiteState, points: PathArrays, places_m: Floats) -> list[int | None]:
     """Floor of each point by its height and the storeys known now; without storeys, the floor as
     estimated live.
     """
     floors: list[int | None] = []
     live_floors = points.floor.tolist()
     for (north_m, east_m, down_m), live_floor in zip(places_m.tolist(), live_floors, strict=True):
-        storeys = state.storeys_at(north_m, east_m)
+        storeys = site.storeys_at(north_m, east_m)
         held = floors[-1] if floors else None
         known = None if live_floor == NO_FLOOR else live_floor
         floors.append(floor_at(storeys, down_m, held) if storeys else known)
@@ -176,13 +180,13 @@ def floors_along(state: StationState, points: PathArrays, places_m: Floats) -> l
 
 
 def renumbered_trail(
-    state: StationState, trail: Sequence[TrailStep], points: PathArrays
+    site: SiteState, trail: Sequence[TrailStep], points: PathArrays
 ) -> list[TrailStep]:
     """A trail as it was drawn, with the floors of the storeys that are known now."""
     again: list[TrailStep] = []
     rows = np.searchsorted(points.t_ns, [step.t_ns for step in trail]).clip(0, len(points) - 1)
     for step, down_m in zip(trail, points.down_m[rows].tolist(), strict=True):
-        storeys = state.storeys_at(step.north_m, step.east_m)
+        storeys = site.storeys_at(step.north_m, step.east_m)
         held = again[-1].floor if again else None
         floor = floor_at(storeys, down_m, held) if storeys else step.floor
         again.append(msgspec.structs.replace(step, floor=floor))
@@ -203,7 +207,7 @@ def _places(
         if pin.kind == "meeting":
             place = _met(state, solver, unit_id, history, pin)
         else:
-            place = place_of(state, history, pin)
+            place = place_of(state.site_of(unit_id), history, pin)
         if isinstance(place, str):
             waiting[pin.pin_id] = place
         else:
@@ -253,11 +257,11 @@ def _await(history: PathHistory, pins: Sequence[Pin]) -> None:
     history.awaited_ns = min(times, default=None)
 
 
-def _verdict_of(state: StationState, pin_id: str, unit_id: str, verdict: Verdict) -> PinVerdict:
+def _verdict_of(site: SiteState, pin_id: str, unit_id: str, verdict: Verdict) -> PinVerdict:
     """Verdict of a pin for one unit's path, with a text for a person."""
     if verdict.used:
         return PinVerdict("used", verdict.residual_m, verdict.sigmas)
-    pin, other = state.pins[pin_id], state.pins.get(verdict.against)
+    pin, other = site.pins[pin_id], site.pins.get(verdict.against)
     path, of = "the path walked", ""
     if pin.kind == "meeting":
         path, of = f"the path of {unit_id}", f" for {unit_id}"

@@ -22,7 +22,6 @@ class PinnedUnits:
     def __init__(self, kind: FuserKind, smoother: Smoother, saved: Mapping[str, bytes]) -> None:
         self._kind = kind
         self._smoother = smoother
-        self.grid: FloorGrid | None = None  # what stands in everybody's way
         self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
 
     def save(self) -> dict[str, bytes]:
@@ -36,32 +35,41 @@ class PinnedUnits:
         self._fusers.pop(unit.unit_id, None)
         unit.trails.unpinned = None
 
-    def all(self) -> Iterable[Fuser]:
-        return self._fusers.values()
-
-    def solver(self) -> PathSolver:
-        """Solver for the evidence as it is now; a new one is needed after a change."""
-        return PathSolver(self._smoother, self.grid)
+    def solver(self, grid: FloorGrid | None) -> PathSolver:
+        """Solver for the evidence as it is now; a new one is needed after a change.  ``grid``: what
+        stands in the way on the site.
+        """
+        return PathSolver(self._smoother, grid)
 
     def solve(
-        self, state: StationState, unit_ids: Iterable[str], plain: Callable[[str], Fuser]
+        self,
+        state: StationState,
+        unit_ids: Iterable[str],
+        plain: Callable[[str], Fuser],
+        grid: FloorGrid | None,
     ) -> dict[str, bool]:
-        """Solve the past of these units, and of whom they met: all of them, and whether the trail
-        is another now.  ``plain`` gives the fuser that knows of no pin.
+        """Solve the past of these units of one site, and of whom they met: all of them, and whether
+        the trail is another now.  ``plain`` gives the fuser that knows of no pin.
         """
         known = [one for one in with_partners(state, unit_ids) if one in state.units]
-        solved = solve_pins(state, self.solver(), known)
+        solved = solve_pins(state, self.solver(grid), known)
         return {
-            unit_id: self._take(state.units[unit_id], result, plain)
+            unit_id: self._take(state.units[unit_id], result, plain, grid)
             for unit_id, result in solved.items()
         }
 
-    def _take(self, unit: UnitState, result: SolvedUnit, plain: Callable[[str], Fuser]) -> bool:
+    def _take(
+        self,
+        unit: UnitState,
+        result: SolvedUnit,
+        plain: Callable[[str], Fuser],
+        grid: FloorGrid | None,
+    ) -> bool:
         if result.path is None:
             self._fusers.pop(unit.unit_id, None)
             return unit.trails.restore_unpinned()
         fuser = self._kind.restore(plain(unit.unit_id).save())
-        fuser.set_map(self.grid)
+        fuser.set_map(grid)
         fuser.set_posterior(result.path.posterior)
         self._fusers[unit.unit_id] = fuser
         unit.trails.show_solved(result.trail)

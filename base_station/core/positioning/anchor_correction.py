@@ -11,9 +11,13 @@ from base_station.core.state.resolve_queue import request_resolve
 from base_station.fusion.interface import Fuser
 
 
-def move_fixes(state: StationState, turn_rad: float, north_m: float, east_m: float) -> None:
-    """Move the kept fixes of all units; units that had any are relocated later, one a tick."""
-    for unit_id, history in state.paths.items():
+def move_fixes(
+    state: StationState, site_id: str, turn_rad: float, north_m: float, east_m: float
+) -> None:
+    """Move the kept fixes of all units of a site; units that had any are relocated later, one a
+    tick.
+    """
+    for unit_id, history in state.paths_on(site_id).items():
         if history.move_fixes(turn_rad, north_m, east_m):
             request_resolve(state.late, unit_id, state.t_ns)
 
@@ -29,5 +33,5 @@ def relocate_unit(state: StationState, unit: UnitState, fuser: Fuser, solver: Pa
     drop_learnt(state, unit.unit_id)
     path = solver.solve(state, unit.unit_id, ()).paths[unit.unit_id]
     fuser.set_posterior(path.posterior)
-    unit.trails.replace_plain(0, trail_of(state, history.arrays(), path.places_m))
+    unit.trails.replace_plain(0, trail_of(state, unit.unit_id, history.arrays(), path.places_m))
     return True

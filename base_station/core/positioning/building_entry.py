@@ -30,7 +30,7 @@ def note_inside(state: StationState, unit: UnitState) -> None:
     fused = place.fused
     if fused is None:
         return
-    plan = state.placed_plan
+    plan = state.sites[unit.site_id].placed_plan
     if plan is not None and plan.outlines:
         was_inside = place.inside_since_ns is not None
         is_inside = plan.is_inside(fused.north_m, fused.east_m, was_inside)

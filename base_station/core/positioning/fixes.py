@@ -7,7 +7,7 @@ from collections.abc import Callable
 from base_station.core.pins.pin_registry import resolve_later
 from base_station.core.positioning.clocks import in_clock_of_path, station_ns
 from base_station.core.positioning.unit_fusers import UnitFusers
-from base_station.core.state import GpsUse, StationState, UnitState
+from base_station.core.state import GpsUse, SiteState, StationState, UnitState
 from base_station.fusion.gnss.common_mode_error import CommonModeError
 from base_station.fusion.gnss.screening import in_incident_frame, may_anchor, screen_fix
 from base_station.fusion.interface import Estimate, FixVerdict, PlaceFix
@@ -55,37 +55,39 @@ def place_fix(
         return FixVerdict(False, "of a time that nothing else has told yet")
     if boot.station_ns(fix.header.t_mono_ns) > state.t_ns + FUTURE_NS:
         return FixVerdict(False, "from the future", faulty=True)
-    if state.anchor is None and not state.start_set and state.plan is None and may_anchor(fix):
-        _set_anchor_by(state, fix, estimate())
-    if state.anchor is None:
+    site = state.sites[unit.site_id]
+    if site.anchor is None and not site.start_set and site.plan is None and may_anchor(fix):
+        _set_anchor_by(site, fix, estimate())
+    if site.anchor is None:
         return FixVerdict(False, "the site has no anchor")
-    place = in_incident_frame(in_clock_of_path(unit, fix), state.anchor)
+    place = in_incident_frame(in_clock_of_path(unit, fix), site.anchor)
     if isinstance(place, PlaceFix):
-        state.far_fixes = 0
-    elif state.anchor_by_gps and may_anchor(fix):
-        state.far_fixes += 1
-        if state.far_fixes >= FAR_FIXES:
-            _set_anchor_by(state, fix, estimate())
+        site.far_fixes = 0
+    elif site.anchor_by_gps and may_anchor(fix):
+        site.far_fixes += 1
+        if site.far_fixes >= FAR_FIXES:
+            _set_anchor_by(site, fix, estimate())
     return place
 
 
-def _set_anchor_by(state: StationState, fix: GpsFix, here: Estimate | None) -> None:
+def _set_anchor_by(site: SiteState, fix: GpsFix, here: Estimate | None) -> None:
     here_m = (0.0, 0.0, 0.0) if here is None else (here.north_m, here.east_m, here.down_m)
-    state.anchor = anchor_through(fix.lat_deg, fix.lon_deg, fix.height_m, here_m)
-    state.anchor_by_gps, state.far_fixes, state.common_mode_error = True, 0, CommonModeError()
+    site.anchor = anchor_through(fix.lat_deg, fix.lon_deg, fix.height_m, here_m)
+    site.anchor_by_gps, site.far_fixes, site.common_mode_error = True, 0, CommonModeError()
 
 
 def without_common_mode_error(state: StationState, unit: UnitState, fix: PlaceFix) -> PlaceFix:
     """Fix without the common-mode error that the reference unit at the station shows."""
     t_ns = station_ns(state, unit, fix.t_mono_ns)
-    if unit.unit_id != state.barometers.reference_id:
-        return state.common_mode_error.correct(fix, t_ns)
+    site = state.sites[unit.site_id]
+    if unit.unit_id != site.barometers.reference_id:
+        return site.common_mode_error.correct(fix, t_ns)
     history = state.paths.get(unit.unit_id)
     start = None if history is None else history.start.position
     walked_m = unit.position.distance_m if unit.position is not None else 0.0
     if start is not None and walked_m < STAYS_M:
         off_m = fix.north_m - start.north_m, fix.east_m - start.east_m
-        state.common_mode_error.update(t_ns, off_m, fix.horizontal_std_m, start.std_m)
+        site.common_mode_error.update(t_ns, off_m, fix.horizontal_std_m, start.std_m)
     return fix
 
 
@@ -98,7 +100,8 @@ def _update(
     own = without_common_mode_error(state, unit, place)
     verdict, *pinned = [fuser.update_gnss(own) for fuser in fusers.of(unit)]
     if verdict.accepted:
-        state.fixes_anchor = state.anchor
+        site = state.sites[unit.site_id]
+        site.fixes_anchor = site.anchor
         t_ns = station_ns(state, unit, place.t_mono_ns)
         state.path_of(unit.unit_id).fix(place, t_ns)
         contradicts_pins = not all(one.accepted for one in pinned)

@@ -40,19 +40,20 @@ def moved_by(anchor: Anchor, old: Anchor, taken_by: Anchor | None) -> RigidTrans
     return moved_to(old, taken_by).inverse().followed_by(moved_to(anchor, taken_by))
 
 
-def reframe(state: StationState, move: RigidTransform2D) -> None:
-    """Paths, trails, pins and what was learnt; the fusers move by themselves."""
+def reframe(state: StationState, site_id: str, move: RigidTransform2D) -> None:
+    """Paths, trails, pins of a site and what was learnt; the fusers move by themselves."""
+    site = state.sites[site_id]
     shift_m = (move.north_m, move.east_m)
-    for history in state.paths.values():
+    for history in state.paths_on(site_id).values():
         history.reframe(move.turn_rad, *shift_m, move.down_m)
-    for unit in state.units.values():
+    for unit in state.units_on(site_id):
         trails = unit.trails
         trails.shown = [_moved(step, move) for step in trails.shown]
         if trails.unpinned is not None:
             trails.unpinned = [_moved(step, move) for step in trails.unpinned]
-    state.learnt_building = state.learnt_building.reframed(move.turn_rad, *shift_m)
-    reframe_pins(state, move.turn_rad, *shift_m)
-    state.learnt_floors.reframe(move.turn_rad, *shift_m, move.down_m)
+    site.learnt_building = site.learnt_building.reframed(move.turn_rad, *shift_m)
+    reframe_pins(site, move.turn_rad, *shift_m)
+    site.learnt_floors.reframe(move.turn_rad, *shift_m, move.down_m)
 
 
 def _moved(step: TrailStep, move: RigidTransform2D) -> TrailStep:

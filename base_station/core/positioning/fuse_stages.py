@@ -9,7 +9,7 @@ import msgspec
 
 from base_station.core.positioning.building_entry import is_outside
 from base_station.core.positioning.clocks import placed_ns
-from base_station.core.state import StationState, UnitState
+from base_station.core.state import SiteState, StationState, UnitState
 from base_station.core.state.boot_state import BootState
 from base_station.fusion.horizontal.compass import compass_heading
 from base_station.fusion.interface import CompassHeading, Fuser
@@ -25,6 +25,7 @@ class PositionUpdate(msgspec.Struct, gc=False):
     """Position of a unit's own path; a stage reads what those before it have set."""
 
     state: StationState
+    site: SiteState
     unit: UnitState
     position: Position
     history: PathHistory
@@ -60,10 +61,10 @@ def predict(update: PositionUpdate) -> None:
 
 def update_height_and_heading(update: PositionUpdate) -> None:
     """Update with barometer and compass, where the unit has them."""
-    state, unit, position = update.state, update.unit, update.position
-    update.is_outside = outside = is_outside(state.placed_plan, update.history)
-    air = state.barometers.update(unit.unit_id, update.t_ns, position, is_outside=outside)
-    heading = _compass_heading(state, position)
+    site, unit, position = update.site, update.unit, update.position
+    update.is_outside = outside = is_outside(site.placed_plan, update.history)
+    air = site.barometers.update(unit.unit_id, update.t_ns, position, is_outside=outside)
+    heading = _compass_heading(update.state.t_ns, site, position)
     for fuser in update.fusers:
         if air is not None:
             fuser.update_barometer(air)
@@ -75,11 +76,11 @@ def match_building(update: PositionUpdate) -> None:
     """Match the path with the building that all units have walked; only a path without pins adds
     to that.
     """
-    state = update.state
+    site = update.site
     fuser, *pinned = update.fusers
-    state.learnt_building = fuser.match_building(state.learnt_building)
+    site.learnt_building = fuser.match_building(site.learnt_building)
     for one in pinned:
-        one.match_building(state.learnt_building)
+        one.match_building(site.learnt_building)
 
 
 def extend_path(update: PositionUpdate) -> None:
@@ -89,27 +90,27 @@ def extend_path(update: PositionUpdate) -> None:
 
 def learn_storey(update: PositionUpdate) -> None:
     """Learn a storey, or its height, where the wearer walks on the level."""
-    state, unit = update.state, update.unit
-    if not state.learnt_floors.follow(update.position, unit.unit_id):
+    site, unit = update.site, update.unit
+    if not site.learnt_floors.follow(update.position, unit.unit_id):
         return
     estimate = update.fusers[0].estimate()
     if estimate is None:
         return
     place = estimate.north_m, estimate.east_m
     start = update.history.start.position
-    state.learnt_floors.add_landing(
+    site.learnt_floors.add_landing(
         Landing(update.t_ns, unit.unit_id, *place, estimate.down_m, estimate.std_down_m),
         is_outside=update.is_outside,
         began_on_ground=start is None or abs(start.down_m) < GROUND_RANGE_M,
     )
     if not update.has_plan:  # else the fuser knows the plan's storeys, and when it is inside
-        storeys = [one for one in state.storeys_at(*place) if one.seen]
+        storeys = [one for one in site.storeys_at(*place) if one.seen]
         for fuser in update.fusers:
             fuser.constrain_to_floors(storeys)
 
 
-def _compass_heading(state: StationState, position: Position) -> CompassHeading | None:
+def _compass_heading(t_ns: int, site: SiteState, position: Position) -> CompassHeading | None:
     """Heading of the own frame by the compass; None without a compass or an anchor."""
-    if position.magnetic_north is None or state.anchor is None:
+    if position.magnetic_north is None or site.anchor is None:
         return None
-    return compass_heading(position.magnetic_north, state.anchor, state.t_ns)
+    return compass_heading(position.magnetic_north, site.anchor, t_ns)

@@ -26,7 +26,8 @@ def fused_message(
     """``boot``: in whose clock the estimate's time is; ``held``: the floor it was on, where that is
     known.
     """
-    storeys = state.storeys_at(estimate.north_m, estimate.east_m)
+    site = state.sites[unit.site_id]
+    storeys = site.storeys_at(estimate.north_m, estimate.east_m)
     floor = floor_at(storeys, estimate.down_m, held)
     std_down_m = estimate.std_down_m
     if estimate.height_assumed:
@@ -35,7 +36,7 @@ def fused_message(
     if floor is not None:
         sure = floor_probability(storeys, floor, estimate.down_m, std_down_m)
     quality, reason = estimate.quality, estimate.quality_reason
-    if state.plan is not state.placed_plan and quality is not LOST:
+    if site.plan is not site.placed_plan and quality is not LOST:
         quality, reason = DEGRADED, "nobody has said where the plan lies"
     return FusedPosition(  # by place: every position comes through here
         header,

@@ -44,7 +44,7 @@ from base_station.fusion.building_model.building import LearntBuilding
 from base_station.fusion.gnss.common_mode_error import CommonModeError
 from base_station.fusion.interface import MAX_FIX_DISTANCE_M, Fuser, FuserKind, Start
 from base_station.fusion.smoothing.interface import Smoother
-from base_station.site.plan import Plan, Ring
+from base_station.site.plan import Ring
 from base_station.site.plan_reader import PlanReader
 from shared.clock import NS_PER_S
 from shared.geo import Anchor
@@ -82,7 +82,7 @@ class Positioning:
     ) -> None:
         self._plans = plans
         self._fusers = UnitFusers(kind, smoother, saved, saved_pinned)
-        self._lost_contact = LostContact(None)
+        self._lost_contact: dict[str, LostContact] = {}  # by site
 
     def save(self) -> tuple[dict[str, bytes], dict[str, bytes]]:
         """Saved states of the fusers: of those that ignore pins, and of those that follow them."""
@@ -93,8 +93,9 @@ class Positioning:
     def fuse(self, state: StationState, unit: UnitState, position: Position) -> list[Output]:
         """Take a position into the estimate, and show where that leads."""
         fusers, history = self._fusers.of(unit), state.path_of(unit.unit_id)
-        has_plan = self._fusers.grid is not None
-        update = PositionUpdate(state, unit, position, history, fusers, has_plan)
+        has_plan = self._fusers.grids.get(unit.site_id) is not None
+        site = state.sites[unit.site_id]
+        update = PositionUpdate(state, site, unit, position, history, fusers, has_plan)
         for stage in FUSE:
             stage(update)
         if history.is_awaited or (update.begins_path and has_pins(state, unit.unit_id)):
@@ -179,38 +180,42 @@ class Positioning:
 
     def reach(self, state: StationState, unit: UnitState) -> Ring:
         """``LostContact.reach`` of now."""
-        return self._lost_contact.reach(state.t_ns, unit)
+        return self._lost_contact[unit.site_id].reach(state.t_ns, unit)
 
     # ---- frame, map and incident
 
-    def set_map(self, plan: Plan | None) -> None:
-        """Set the plan whose walls all fusers use."""
-        grid = self._plans.grid(plan)
-        self._fusers.set_map(grid)
-        self._lost_contact = LostContact(grid)
+    def set_map(self, state: StationState, site_id: str) -> None:
+        """Use the walls of a site's plan in the fusers of its units."""
+        grid = self._plans.grid(state.sites[site_id].placed_plan)
+        self._fusers.set_map(site_id, grid, state.units_on(site_id))
+        self._lost_contact[site_id] = LostContact(grid)
 
-    def replace_map(self, state: StationState) -> None:
+    def replace_map(self, state: StationState, site_id: str) -> None:
         """Use another plan; its floors may have other numbers."""
-        self.set_map(state.placed_plan)
-        renumber(state)
+        self.set_map(state, site_id)
+        renumber(state, site_id)
 
-    def begin_incident(self, state: StationState, before_ns: int) -> set[str]:
-        """Drop paths and pins before that time; returns the units whose paths change by it."""
-        state.learnt_floors.trim(before_ns)
-        state.learnt_building = LearntBuilding()
-        for history in state.paths.values():
+    def begin_incident(self, state: StationState, site_id: str, before_ns: int) -> set[str]:
+        """Drop paths and pins of a site before that time; returns the units whose paths change by
+        it.
+        """
+        site = state.sites[site_id]
+        site.learnt_floors.trim(before_ns)
+        site.learnt_building = LearntBuilding()
+        for history in state.paths_on(site_id).values():
             history.begin_incident(state.t_ns, before_ns)
-        for unit in state.units.values():
+        for unit in state.units_on(site_id):
             if unit.trails.unpinned is not None:
                 unit.trails.unpinned.clear()
-        kept = set().union(*map(units_of, state.pins.values()))
-        return kept | drop(state, lambda pin: is_about(pin, before_ns))
+        kept = set().union(*map(units_of, site.pins.values()))
+        return kept | drop(site, lambda pin: is_about(pin, before_ns))
 
     def start(self, state: StationState, unit: UnitState, start: Start) -> None:
         """On the plan, where there is one that people lie on (``switch_to_plan_frame``)."""
-        state.start_set = True
-        if unit.unit_id == state.barometers.reference_id:
-            state.common_mode_error = CommonModeError()
+        site = state.sites[unit.site_id]
+        site.start_set = True
+        if unit.unit_id == site.barometers.reference_id:
+            site.common_mode_error = CommonModeError()
         history = state.path_of(unit.unit_id)
         if history.is_before_incident and unit.link != "live":  # of the run that is to come
             self._fusers.forget(unit)
@@ -218,13 +223,15 @@ class Positioning:
             drop_learnt(state, unit.unit_id)
         begin(state, unit, self._fusers.plain(unit), history, start)
 
-    def switch_to_plan_frame(self, state: StationState) -> set[str]:
-        """Make the plan's frame the incident frame, at the first place that a person gives on the
-        plan: estimates from satellites do not hold in it. Returns the units whose paths change.
+    def switch_to_plan_frame(self, state: StationState, site_id: str) -> set[str]:
+        """Make the plan's frame the incident frame of a site, at the first place that a person
+        gives on the plan: estimates from satellites do not hold in it. Returns the units whose
+        paths change.
         """
-        state.anchor, state.anchor_by_gps, state.common_mode_error = None, False, CommonModeError()
-        self.set_map(state.placed_plan)
-        for unit_id, history in state.paths.items():
+        site, paths = state.sites[site_id], state.paths_on(site_id)
+        site.anchor, site.anchor_by_gps, site.common_mode_error = None, False, CommonModeError()
+        self.set_map(state, site_id)
+        for unit_id, history in paths.items():
             unit = state.units[unit_id]
             before = self._fusers.forget(unit)
             history.drop_fixes()
@@ -236,34 +243,32 @@ class Positioning:
             self._fusers.plain(unit).predict(unit.position)
             was = None if before is None else before.estimate()
             replay_from_start(state, unit, self._fusers.plain(unit), history, was)
-        return set(state.paths)
+        return set(paths)
 
     def forget(self, state: StationState, unit: UnitState) -> None:
         """Delete a unit's paths and all that was learnt from them."""
         self._fusers.forget(unit)
         state.paths.pop(unit.unit_id, None)
-        state.learnt_floors.forget(unit.unit_id)
-        state.learnt_building = state.learnt_building.without(unit.unit_id)
+        site = state.sites[unit.site_id]
+        site.learnt_floors.forget(unit.unit_id)
+        site.learnt_building = site.learnt_building.without(unit.unit_id)
         state.late.pop(unit.unit_id, None)
         unit.place.fused, unit.position = None, None
         unit.trails.shown.clear()
 
-    def set_anchor(self, state: StationState, anchor: Anchor) -> None:
-        """Set the anchor. Places set by hand stay on the plan; a frame that the first fix had
-        defined moves with the new anchor, unless that fix was far off.
+    def set_anchor(self, state: StationState, site_id: str, anchor: Anchor) -> None:
+        """Set the anchor of a site. Places set by hand stay on the plan; a frame that the first fix
+        had defined moves with the new anchor, unless that fix was far off.
         """
-        old = state.anchor
+        site = state.sites[site_id]
+        old = site.anchor
         if old is not None and old != anchor:
-            move = moved_by(anchor, old, state.fixes_anchor)
-            if state.anchor_by_gps and math.hypot(move.north_m, move.east_m) <= MAX_FIX_DISTANCE_M:
-                for fuser in self._fusers:
+            move = moved_by(anchor, old, site.fixes_anchor)
+            if site.anchor_by_gps and math.hypot(move.north_m, move.east_m) <= MAX_FIX_DISTANCE_M:
+                for fuser in self._fusers.existing(state.units_on(site_id)):
                     fuser.reframe(move.turn_rad, move.north_m, move.east_m, move.down_m)
-                reframe(state, move)
+                reframe(state, site_id, move)
             else:
-                move_fixes(state, move.turn_rad, move.north_m, move.east_m)
-        state.anchor, state.anchor_by_gps, state.common_mode_error = (
-            anchor,
-            False,
-            CommonModeError(),
-        )
-        self.set_map(state.placed_plan)
+                move_fixes(state, site_id, move.turn_rad, move.north_m, move.east_m)
+        site.anchor, site.anchor_by_gps, site.common_mode_error = anchor, False, CommonModeError()
+        self.set_map(state, site_id)

@@ -7,7 +7,7 @@ import math
 import msgspec
 
 from base_station.core.pins.evidence import NEAR_NS, location_of, place_at
-from base_station.core.state import StationState
+from base_station.core.state import SiteState, StationState
 from base_station.core.state.pin import Pin
 from base_station.fusion.odometry.path_history import PathHistory
 from base_station.fusion.smoothing.interface import PositionConstraint
@@ -20,8 +20,9 @@ def apply_reported_place(
     state: StationState, history: PathHistory, fused: FusedPosition
 ) -> FusedPosition:
     """At the newest pin of a place that the path has not come to; ``fused`` where there is none."""
-    pin = _newest(state, history, fused.unit_id)
-    place = None if pin is None else place_at(state, pin, pin.t_ns)
+    site = state.site_of(fused.unit_id)
+    pin = _newest(site, history, fused.unit_id)
+    place = None if pin is None else place_at(site, pin, pin.t_ns)
     if pin is None or not isinstance(place, PositionConstraint):
         return fused
     reported = msgspec.structs.replace(
@@ -36,12 +37,12 @@ def apply_reported_place(
         quality=Quality.GOOD,
         quality_reason="",
     )
-    floor = location_of(state, pin).floor
+    floor = location_of(site, pin).floor
     if floor is None:
         return reported
     if place.down_m is None:  # nobody knows how high that is
         return msgspec.structs.replace(reported, floor=floor, floor_probability=None)
-    storeys = state.storeys_at(place.north_m, place.east_m)
+    storeys = site.storeys_at(place.north_m, place.east_m)
     return msgspec.structs.replace(
         reported,
         down_m=place.down_m,
@@ -51,13 +52,13 @@ def apply_reported_place(
     )
 
 
-def _newest(state: StationState, history: PathHistory, unit_id: str) -> Pin | None:
+def _newest(site: SiteState, history: PathHistory, unit_id: str) -> Pin | None:
     if history.awaited_ns is None or history.end_ns is None:  # nearly always
         return None
     ahead_ns = history.end_ns + NEAR_NS
     pins = (
         pin
-        for pin in state.pins.values()
+        for pin in site.pins.values()
         if pin.unit_id == unit_id and pin.kind != "meeting" and pin.t_ns > ahead_ns
     )
     return max(pins, key=lambda pin: pin.t_ns, default=None)

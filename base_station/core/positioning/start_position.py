@@ -44,14 +44,16 @@ def replay_from_start(
     drop_learnt(state, unit.unit_id)
     points = history.arrays()
     places_m = np.column_stack((points.shown_m, points.down_m))
-    since = [one for one in trail_of(state, points, places_m) if one.t_ns >= correction.begin_ns]
+    trail = trail_of(state, unit.unit_id, points, places_m)
+    since = [one for one in trail if one.t_ns >= correction.begin_ns]
     unit.trails.replace_plain(correction.begin_ns, since)
 
 
 def drop_learnt(state: StationState, unit_id: str) -> None:
     """Drop what was learnt of the building from a unit that was elsewhere."""
-    state.learnt_floors.drop_learnt(unit_id)
-    state.learnt_building = state.learnt_building.without(unit_id)
+    site = state.site_of(unit_id)
+    site.learnt_floors.drop_learnt(unit_id)
+    site.learnt_building = site.learnt_building.without(unit_id)
 
 
 def _start_correction(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from base_station.core.pins.pinned_units import PinnedUnits
 from base_station.core.state import UnitState
@@ -22,18 +22,21 @@ class UnitFusers:
         saved_pinned: Mapping[str, bytes],
     ) -> None:
         self.kind = kind
-        self.grid: FloorGrid | None = None  # walls and storeys of the plan
+        self.grids: dict[str, FloorGrid | None] = {}  # walls and storeys of plans, by site
         self.pinned = PinnedUnits(kind, smoother, saved_pinned)
         self._plain = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
 
-    def __iter__(self) -> Iterator[Fuser]:
-        yield from self._plain.values()
-        yield from self.pinned.all()
+    def existing(self, units: Iterable[UnitState]) -> Iterator[Fuser]:
+        """Fusers of these units, as far as any was made."""
+        for unit in units:
+            for fuser in (self._plain.get(unit.unit_id), self.pinned.get(unit.unit_id)):
+                if fuser is not None:
+                    yield fuser
 
-    def set_map(self, grid: FloorGrid | None) -> None:
-        """Set the walls that all fusers use."""
-        self.grid = self.pinned.grid = grid
-        for fuser in self:
+    def set_map(self, site_id: str, grid: FloorGrid | None, units: Iterable[UnitState]) -> None:
+        """Set the walls that the fusers of a site's units use."""
+        self.grids[site_id] = grid
+        for fuser in self.existing(units):
             fuser.set_map(grid)
 
     def plain(self, unit: UnitState) -> Fuser:
@@ -41,7 +44,7 @@ class UnitFusers:
         fuser = self._plain.get(unit.unit_id)
         if fuser is None:
             fuser = self._plain[unit.unit_id] = self.kind.new()
-            fuser.set_map(self.grid)
+            fuser.set_map(self.grids.get(unit.site_id))
         return fuser
 
     def of(self, unit: UnitState) -> tuple[Fuser, ...]:

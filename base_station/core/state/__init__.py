@@ -7,12 +7,14 @@ the core.
 
 from base_station.core.state.alarm import Alarm
 from base_station.core.state.incident import Dispatch, Incident
+from base_station.core.state.site import OWN_SITE_ID, SiteState
 from base_station.core.state.station import Counts, IdempotencyRecord, StationState
 from base_station.core.state.unit import STILL_NS, Fault, GpsUse, UnitState
 from base_station.core.state.unit_wearer import ERASED_TEXT, WEARERS_KEPT, FormerWearer, Person
 
 __all__ = [
     "ERASED_TEXT",
+    "OWN_SITE_ID",
     "STILL_NS",
     "WEARERS_KEPT",
     "Alarm",
@@ -24,6 +26,7 @@ __all__ = [
     "IdempotencyRecord",
     "Incident",
     "Person",
+    "SiteState",
     "StationState",
     "UnitState",
 ]

@@ -7,19 +7,12 @@ import msgspec
 from base_station.core.state.alarm import Alarm
 from base_station.core.state.command import SentCommand
 from base_station.core.state.incident import Dispatch, Incident
-from base_station.core.state.pin import Beacon, Pin, PinVerdict
 from base_station.core.state.resolve_queue import PendingResolve
+from base_station.core.state.site import OWN_SITE_ID, SiteState
 from base_station.core.state.unit import UnitState
-from base_station.fusion.building_model.building import LearntBuilding
-from base_station.fusion.gnss.common_mode_error import CommonModeError
 from base_station.fusion.odometry.path_history import PathHistory
-from base_station.fusion.vertical.weather import Barometers
-from base_station.site.learnt_floors import LearntFloors
-from base_station.site.plan import Plan
-from base_station.site.storeys import Storey
 from shared.channels import tracked_unit
 from shared.errors import UserError
-from shared.geo import Anchor
 from shared.messages import STATION_ID, ExternalMarker, Header
 from shared.messages.station import TakeOver
 
@@ -53,25 +46,14 @@ class StationState(msgspec.Struct):
     commands: dict[str, SentCommand] = msgspec.field(default_factory=dict)  # oldest first
     incident: Incident | None = None
     closed_incidents: list[Incident] = msgspec.field(default_factory=list)  # closed, oldest first
-    plan: Plan | None = None
-    anchor: Anchor | None = None
-    anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
-    fixes_anchor: Anchor | None = None  # as it was when a fix was taken last
-    far_fixes: int = 0  # in a row, too far from there to be of this site
-    common_mode_error: CommonModeError = msgspec.field(default_factory=CommonModeError)
-    barometers: Barometers = msgspec.field(default_factory=Barometers)
-    start_set: bool = False  # somebody said where a unit began
+    sites: dict[str, SiteState] = msgspec.field(
+        default_factory=lambda: {OWN_SITE_ID: SiteState()}
+    )  # by id
     paths: dict[str, PathHistory] = msgspec.field(default_factory=dict)  # of units
-    pins: dict[str, Pin] = msgspec.field(default_factory=dict)  # in the order of setting
-    pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
-    beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
     trust_ns: int = 0  # when lights were last looked at
-    sighting_solved_ns: int = 0  # when a sighting was last solved at once
     late: dict[str, PendingResolve] = msgspec.field(
         default_factory=dict
     )  # pinned units: to be solved again
-    learnt_building: LearntBuilding = LearntBuilding()
-    learnt_floors: LearntFloors = msgspec.field(default_factory=LearntFloors)
     thresholds: dict[str, float] = msgspec.field(default_factory=dict)  # of alarm rules
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
     idempotency_records: dict[str, IdempotencyRecord] = msgspec.field(
@@ -97,6 +79,25 @@ class StationState(msgspec.Struct):
             raise UserError(f"no registered unit {unit_id!r}; register it first")
         return unit
 
+    @property
+    def site(self) -> SiteState:
+        """The station's own site."""
+        return self.sites[OWN_SITE_ID]
+
+    def site_of(self, unit_id: str) -> SiteState:
+        """The site in whose frame a unit is; of an unknown one the station's own."""
+        unit = self.units.get(unit_id)
+        return self.sites[OWN_SITE_ID if unit is None else unit.site_id]
+
+    def units_on(self, site_id: str) -> list[UnitState]:
+        """Units whose path and position are in the frame of that site."""
+        return [unit for unit in self.units.values() if unit.site_id == site_id]
+
+    def paths_on(self, site_id: str) -> dict[str, PathHistory]:
+        """Paths in the frame of that site, by unit."""
+        paths = self.paths.items()
+        return {one: path for one, path in paths if self.units[one].site_id == site_id}
+
     def path_of(self, unit_id: str) -> PathHistory:
         """Path of a unit, which begins here where there is none."""
         history = self.paths.get(unit_id)
@@ -108,16 +109,3 @@ class StationState(msgspec.Struct):
         """Header of the next output."""
         self.seq += 1
         return Header(STATION_ID, self.boot_id, self.seq, self.t_ns, t_utc_ns=self.t_ns)
-
-    @property
-    def placed_plan(self) -> Plan | None:
-        """The plan, unless nobody knows where on it people are: they are where the first fix put
-        the frame, before there was any.
-        """
-        return None if self.anchor_by_gps else self.plan
-
-    def storeys_at(self, north_m: float, east_m: float) -> tuple[Storey, ...]:
-        """Storeys of the building there, lowest first: the plan's, or else the learnt ones."""
-        if self.plan is not None and self.plan.storeys:
-            return self.plan.storeys
-        return self.learnt_floors.storeys_at(north_m, east_m)

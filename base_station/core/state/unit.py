@@ -7,6 +7,7 @@ import msgspec
 from base_station.core.state.boot_state import BootState
 from base_station.core.state.duty import Duty
 from base_station.core.state.message_stream import STALE_AFTER_S, Link, MessageStream
+from base_station.core.state.site import OWN_SITE_ID
 from base_station.core.state.trust_tally import TrustTally
 from base_station.core.state.unit_alert import MaydayCall, UnitAlert
 from base_station.core.state.unit_heat import UnitHeat
@@ -45,6 +46,7 @@ class UnitState(MessageStream):
 
     label: str = ""
     registered: bool = False
+    site_id: str = OWN_SITE_ID  # in whose frame its path and position are
     wearer: UnitWearer = msgspec.field(default_factory=UnitWearer)
     link: Link = "never"
     status: Status | None = None

@@ -61,9 +61,10 @@ def conflicts_of(state: StationState) -> Counter[str]:
     """Number of pins that contradict each unit's trail."""
     return Counter(
         unit_id
-        for pin_id, verdict in state.pin_verdicts.items()
-        if verdict.state == "conflict" and pin_id in state.pins
-        for unit_id in units_of(state.pins[pin_id])
+        for site in state.sites.values()
+        for pin_id, verdict in site.pin_verdicts.items()
+        if verdict.state == "conflict" and pin_id in site.pins
+        for unit_id in units_of(site.pins[pin_id])
     )
 
 

@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 
 from base_station.core.pins.evidence import location_of
-from base_station.core.state import StationState
+from base_station.core.state import SiteState, StationState
 from base_station.core.state.trust_tally import TrustTally
 from base_station.fusion.smoothing.interface import Verdict
 from base_station.replay.assessment.figures import (
@@ -126,7 +126,7 @@ def _unit(
         walked_m=round(_length_m(raw), 1),
         stated=stated_figures(stated_m(live)),
         against_smoothed=figures_of(errors_against(live, smoothed)),
-        floor_probability=_floor_probability(state, live),
+        floor_probability=_floor_probability(state.site_of(unit_id), live),
         floor_right=_floor_right(live, smoothed),
         trust=_trust(state, unit_id),
         pin_residuals=_pin_residuals(state, verdicts, unit_id, live),
@@ -137,11 +137,11 @@ def _unit(
     )
 
 
-def _floor_probability(state: StationState, live: Sequence[TrackSample]) -> float | None:
+def _floor_probability(site: SiteState, live: Sequence[TrackSample]) -> float | None:
     if not live:
         return None
     middle = live[len(live) // 2]
-    downs = sorted(storey.down_m for storey in state.storeys_at(middle.north_m, middle.east_m))
+    downs = sorted(storey.down_m for storey in site.storeys_at(middle.north_m, middle.east_m))
     heights = [b - a for a, b in pairwise(downs)]
     return floor_probability(live, min(heights)) if heights and min(heights) > 0.0 else None
 
@@ -191,11 +191,12 @@ def _pin_residuals(
     live: Sequence[TrackSample],
 ) -> tuple[PinResidual, ...]:
     found = []
-    for pin in state.pins.values():
+    site = state.site_of(unit_id)
+    for pin in site.pins.values():
         verdict = verdicts.get(pin.pin_id)
         if pin.unit_id != unit_id or verdict is None:
             continue
-        place = location_of(state, pin)
+        place = location_of(site, pin)
         shown = _at(live, pin.t_ns)
         shown_m = None
         if shown is not None and place.north_m is not None and place.east_m is not None:

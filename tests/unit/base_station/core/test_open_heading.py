@@ -50,7 +50,7 @@ class Walk:
         self.script.act(StartTogether("s", (U,), 0, 0.0, 0.0, 0.5, None, None, 0.3, ""))
 
     def state(self, pin_id: str) -> str:
-        return self.script.pipeline.state.pin_verdicts[pin_id].state
+        return self.script.pipeline.state.site.pin_verdicts[pin_id].state
 
     def off_m(self) -> float:
         shown = self.script.pipeline.state.units[U].place.fused

@@ -87,7 +87,7 @@ class Station:
         """Of everything that it holds but the path, and storeys that are learnt: of these there
         are so many at most.
         """
-        return size_bytes([self.keeping], (self.path, self.pipeline.state.learnt_floors))
+        return size_bytes([self.keeping], (self.path, self.pipeline.state.site.learnt_floors))
 
 
 def walk_on(station: Station, walk: Walk, rng: np.random.Generator, until_s: int) -> None:

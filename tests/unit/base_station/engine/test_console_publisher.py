@@ -140,9 +140,9 @@ def test_another_plan_or_anchor_resets_all_consoles() -> None:
     screen, pipeline = Screen(), make_pipeline()
     publisher = walked_in(pipeline, screen)
     geojson = b'{"type":"FeatureCollection","features":[],"muster":{"frame":"site-m"}}'
-    pipeline.state.plan = read_plan(geojson)
+    pipeline.state.site.plan = read_plan(geojson)
     publisher.publish_delta()
-    pipeline.state.anchor = Anchor(48.0, 11.0, 0.0, 0.0)
+    pipeline.state.site.anchor = Anchor(48.0, 11.0, 0.0, 0.0)
     publisher.publish_delta()
     publisher.publish_delta()
     laid, anchored = screen.resets

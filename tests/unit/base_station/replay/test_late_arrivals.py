@@ -308,7 +308,7 @@ def test_what_is_said_for_the_next_incident_is_not(station: Station) -> None:
     station.script.act(OpenIncident("i2", "Station Road"))
     assert station.incident.late_data_ns == 0
     assert station.trail("FF-02") == trail
-    pins = station.script.pipeline.state.pins
+    pins = station.script.pipeline.state.site.pins
     assert set(pins) == {"s:FF-01", "s:FF-02", "p2"}
 
 
@@ -317,7 +317,7 @@ def test_a_pin_of_the_past_is_none_of_the_next_incident(station: Station) -> Non
     station.script.act(station.pin(145.0, "FF-02"))
     station.wait(10.0)
     station.script.act(OpenIncident("i2", "Station Road"))
-    assert not station.script.pipeline.state.pins
+    assert not station.script.pipeline.state.site.pins
     refused = station.script.act(station.pin(145.0, "FF-02", "p2"))
     assert not any(isinstance(one, ClosedIncidentChanged) for one in refused)
     station.wait(QUIET_S)
@@ -349,5 +349,5 @@ def test_a_sighting_of_the_incident_before_is_no_pin_of_this_one(station: Statio
     sighting = Sighting(seen, SightingKind.BEACON, "b1")
     station.script.record(backfilled_key("FF-01", SIGHTING.suffix), encode(sighting))
     state = station.script.pipeline.state
-    assert not state.pins
+    assert not state.site.pins
     assert state.units["FF-01"].rejected_counts["a sighting of before this incident"] == 1

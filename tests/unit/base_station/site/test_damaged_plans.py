@@ -95,7 +95,7 @@ def test_a_station_that_reads_a_damaged_plan_goes_on(damaged: object) -> None:
     script.act(SetAnchor(60.0, 10.0, 0.0, 0.0))
     script.act(SetPlan(plan_of(OUTLINE, damaged, WALL)))
     script.tick()
-    plan = script.pipeline.state.plan
+    plan = script.pipeline.state.site.plan
     assert plan is not None
     (problem,) = health_view(script.pipeline.state, StationFacts()).problems
     assert "feature 1" in problem
@@ -106,8 +106,8 @@ def test_a_state_that_another_version_saved_is_looked_at_anew() -> None:
     script.act(SetPlan(plan_of(OUTLINE, WALL)))
     saved = msgspec.msgpack.decode(script.pipeline.checkpoint(), type=Checkpoint)
     geojson = plan_of(OUTLINE, BROKEN["a room without a place"])
-    saved.state.plan = Plan(geojson, (), ())  # it did not look at rooms
-    again = make_pipeline(saved).state.plan
+    saved.state.site.plan = Plan(geojson, (), ())  # it did not look at rooms
+    again = make_pipeline(saved).state.site.plan
     assert again is not None
     assert "feature 1" in again.damage
     assert len(again.outlines) == 1

@@ -41,10 +41,10 @@ def test_start_set_before_the_first_position_holds_from_then() -> None:
     script = Script()
     script.register("FF-01")
     script.act(StartTogether("s", ("FF-01",), 0, -30.0, 9.0, 1.0, None, None, 0.3, ""))
-    verdicts = [script.pipeline.state.pin_verdicts["s:FF-01"].state]
+    verdicts = [script.pipeline.state.site.pin_verdicts["s:FF-01"].state]
     script.position("FF-01", 0.0, 0.0)
     fused = script.pipeline.state.units["FF-01"].place.fused
-    verdicts.append(script.pipeline.state.pin_verdicts["s:FF-01"].state)
+    verdicts.append(script.pipeline.state.site.pin_verdicts["s:FF-01"].state)
     assert verdicts == ["waiting", "used"]
     assert fused is not None
     assert (fused.north_m, fused.east_m) == pytest.approx((-30.0, 9.0), abs=0.1)
@@ -90,7 +90,7 @@ def test_removing_a_pin_leaves_exactly_what_would_be_without_it() -> None:
     assert mine.place.fused.north_m == theirs.place.fused.north_m
     assert mine.place.fused.std_north_m == theirs.place.fused.std_north_m
     assert mine.trails.shown == theirs.trails.shown
-    assert pinned.script.pipeline.state.pins == {}
+    assert pinned.script.pipeline.state.site.pins == {}
 
 
 def test_removed_pin_leaves_no_unit_on_its_floor() -> None:
@@ -173,7 +173,7 @@ def test_of_pins_whose_names_begin_alike_only_the_one_that_is_named_is_removed(w
     walk.pin("p1", "FF-01", 100.0)
     walk.pin("p10", "FF-01", 200.0)
     walk.script.act(RemovePin("p1"))
-    assert list(walk.script.pipeline.state.pins) == ["p10"]
+    assert list(walk.script.pipeline.state.site.pins) == ["p10"]
 
 
 def test_a_pin_that_contradicts_everything_is_kept_and_nobody_moves(walk: Walk) -> None:
@@ -181,7 +181,7 @@ def test_a_pin_that_contradicts_everything_is_kept_and_nobody_moves(walk: Walk) 
     before = walk.now_off_m("FF-01")
     trail = walk.trail("FF-01")
     walk.pin("bad", "FF-01", 200.0, off_m=200.0)
-    verdict = walk.script.pipeline.state.pin_verdicts["bad"]
+    verdict = walk.script.pipeline.state.site.pin_verdicts["bad"]
     assert verdict.state == "conflict"
     assert "not used" in verdict.text
     assert verdict.residual_m == pytest.approx(200.0, abs=10.0)
@@ -215,11 +215,11 @@ def test_all_start_at_the_engine_looking_the_same_way() -> None:
     # What their own frames call heading 0 is the way they looked.
     start = StartTogether("s", ("FF-01", "FF-02"), 0, 0.0, 0.0, 0.5, None, -1.0, 0.05, "engine 1")
     walk.script.act(start)
-    assert set(walk.script.pipeline.state.pins) == {"s:FF-01", "s:FF-02"}
+    assert set(walk.script.pipeline.state.site.pins) == {"s:FF-01", "s:FF-02"}
     for unit_id in walk.units:
         assert walk.worst_m(unit_id) < 6.0
     walk.script.act(RemovePin("s"))
-    assert walk.script.pipeline.state.pins == {}
+    assert walk.script.pipeline.state.site.pins == {}
 
 
 def test_all_are_at_the_engine_now_though_they_were_switched_on_long_before() -> None:
@@ -240,7 +240,7 @@ def test_who_was_switched_on_after_all_were_at_the_engine_begins_there() -> None
     then_ns = walk.script.t_ns - 30 * 10**9
     walk.go(20)
     walk.script.act(StartTogether("s", walk.units, then_ns, 0.0, 0.0, 0.5, None, None, 0.3, ""))
-    pins = walk.script.pipeline.state.pins
+    pins = walk.script.pipeline.state.site.pins
     assert (pins["s:FF-01"].t_ns, pins["s:FF-02"].t_ns) == (then_ns, 0)
 
 
@@ -294,9 +294,12 @@ def test_floor_of_a_future_time_numbers_no_storeys_yet(walk: Walk) -> None:
     t_ns = walk.script.t_ns
     walk.script.act(SetPin("p", "FF-01", t_ns, north_m, east_m, 0.5, 2, None, 0.0, ""))
     assert walk.state("p") == "waiting"
-    assert reported_floors(walk.script.pipeline.state) == []
+    assert reported_floors(walk.script.pipeline.state, walk.script.pipeline.state.site) == []
     walk.go(1)
-    assert [one.floor for one in reported_floors(walk.script.pipeline.state)] == [2]
+    assert [
+        one.floor
+        for one in reported_floors(walk.script.pipeline.state, walk.script.pipeline.state.site)
+    ] == [2]
 
 
 def test_a_meeting_ties_two_whose_paths_have_both_come_to_it() -> None:
@@ -309,10 +312,10 @@ def test_a_meeting_ties_two_whose_paths_have_both_come_to_it() -> None:
         walk.script.act(SetMeeting(pin_id, "FF-01", other_id, t_ns, 1.0, ""))
     assert [
         (encounter.name, encounter.unit_id, encounter.other_id)
-        for encounter in encounters_of(state)
+        for encounter in encounters_of(state, state.site)
     ] == [("m2", "FF-01", "FF-02")]
     walk.go(1)
-    assert [encounter.name for encounter in encounters_of(state)] == ["m1", "m2", "m3"]
+    assert [encounter.name for encounter in encounters_of(state, state.site)] == ["m1", "m2", "m3"]
 
 
 def test_a_trail_of_more_points_than_are_drawn_begins_and_ends_where_it_did() -> None:
@@ -320,7 +323,7 @@ def test_a_trail_of_more_points_than_are_drawn_begins_and_ends_where_it_did() ->
     rows = rows_of([Point((1 + second) * NS_PER_S) for second in range(count)])
     places_m = np.zeros((count, 3))
     places_m[:, 0] = np.arange(count)
-    trail = trail_of(StationState(), arrays_of(rows, np.empty(0, FIX_ROW)), places_m)
+    trail = trail_of(StationState(), "FF-01", arrays_of(rows, np.empty(0, FIX_ROW)), places_m)
     assert len(trail) == TRAIL_POINTS
     assert (trail[0].north_m, trail[-1].north_m) == (0.0, count - 1.0)
     assert np.diff([step.north_m for step in trail]).max() == 2.0
@@ -350,7 +353,7 @@ def test_encounter_with_an_uncertain_place_changes_little() -> None:
         script.now_s += 1.0
         script.position("FF-01", 0.0, 0.0)
         script.position("FF-02", float(second), 0.0, distance_m=float(second))
-    units, verdicts = script.pipeline.state.units, script.pipeline.state.pin_verdicts
+    units, verdicts = script.pipeline.state.units, script.pipeline.state.site.pin_verdicts
     before, vague = units["FF-01"].place.fused, units["FF-02"].place.fused
     script.act(SetMeeting("m", "FF-01", "FF-02", script.t_ns, 1.0, ""))
     after, sharp = units["FF-01"].place.fused, units["FF-02"].place.fused
@@ -383,7 +386,7 @@ def test_conflict_of_an_encounter_stays_whichever_unit_is_solved_later() -> None
     meet("contradicted", "FF-02", "FF-03", 20, 1.0)
     meet("other", "FF-03", "FF-04", 40, 30.0)
     assert walk.state("contradicted") == "conflict"
-    verdict = walk.script.pipeline.state.pin_verdicts["contradicted"]
+    verdict = walk.script.pipeline.state.site.pin_verdicts["contradicted"]
     assert [one for one, of in verdict.of_units if of.state == "used"] == ["FF-03"]
     assert verdict.text.endswith("kept, and not used for FF-02"), "of FF-03 it may tell something"
     walk.pin("p", "FF-04", 60.0)
@@ -402,7 +405,7 @@ def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
     both.script.act(CloseIncident("i1"))
     both.script.act(ForgetWearers("FF-01"))
     state = both.script.pipeline.state
-    assert state.pins.keys() == state.pin_verdicts.keys() == {"of FF-02", "of FF-03"}
+    assert state.site.pins.keys() == state.site.pin_verdicts.keys() == {"of FF-02", "of FF-03"}
     assert state.units["FF-01"].trails.unpinned is None
     saved = read_checkpoint(both.script.pipeline.checkpoint())
     assert saved is not None
@@ -464,5 +467,5 @@ def test_who_is_between_two_floors_stays_on_the_one_he_was_on(walk: Walk) -> Non
     points = state.paths["FF-01"].arrays()
     down_m = np.full(len(points), -3.2)
     down_m[1::2] = -1.5  # a little nearer to the ground floor
-    floors = floors_along(state, points, np.column_stack((points.shown_m, down_m)))
+    floors = floors_along(state.site, points, np.column_stack((points.shown_m, down_m)))
     assert set(floors) == {1}

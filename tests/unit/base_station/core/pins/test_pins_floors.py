@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
-from base_station.core.pins.evidence import encounters_of, evidence_of_all
+from base_station.core.pins.evidence import encounters_of, evidence_of_site
+from base_station.core.state import OWN_SITE_ID
 from base_station.core.state.pin import PinVerdict
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.fusion.smoothing.interface import Solution
@@ -68,12 +69,14 @@ class Wearer:
         return self.verdict(pin_id)
 
     def verdict(self, pin_id: str) -> PinVerdict:
-        return self.script.pipeline.state.pin_verdicts[pin_id]
+        return self.script.pipeline.state.site.pin_verdicts[pin_id]
 
     def smoothed(self) -> Solution:
         """As it is known afterwards."""
         state = self.script.pipeline.state
-        return SMOOTHERS[0].smooth(evidence_of_all(state, None), encounters_of(state))
+        return SMOOTHERS[0].smooth(
+            evidence_of_site(state, OWN_SITE_ID, None), encounters_of(state, state.site)
+        )
 
     @property
     def fused(self) -> FusedPosition:
@@ -325,7 +328,7 @@ def test_beacon_on_a_wrong_floor_is_one_source_however_often_passed(
         header = wearer.script.header("FF-01")
         wearer.script.say(Sighting(header, SightingKind.BEACON, beacon_id, range_m=1.0))
     wearer.script.wait(15)
-    states = {one.state for one in wearer.script.pipeline.state.pin_verdicts.values()}
+    states = {one.state for one in wearer.script.pipeline.state.site.pin_verdicts.values()}
     assert states == {"used" if floor else "conflict"}
     assert wearer.fused.floor == floor
 

@@ -37,8 +37,8 @@ def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
     walk.go(5)
     walk.script.act(OpenIncident("i2", "Another"))
     state = walk.script.pipeline.state
-    assert not state.pins
-    assert not state.pin_verdicts
+    assert not state.site.pins
+    assert not state.site.pin_verdicts
     assert state.paths["FF-01"].begin_ns == walk.script.t_ns - 4 * 10**9, "since the last closed"
     walk.go(5)
     assert len(walk.trail("FF-01")) <= 6
@@ -147,7 +147,7 @@ def test_a_start_of_a_run_that_is_over_contradicts_nothing_in_the_next_incident(
     script.boot_ids["FF-01"] = 8
     go_north(script, 60)
     script.act(SetPin("p", "FF-01", script.t_ns, 300.0, 50.0, 1.0, None, None, 0.0, ""))
-    assert script.pipeline.state.pin_verdicts["p"].state == "used"
+    assert script.pipeline.state.site.pin_verdicts["p"].state == "used"
 
 
 def test_a_start_of_the_run_that_goes_on_holds_in_the_next_incident() -> None:
@@ -161,4 +161,4 @@ def test_a_start_of_the_run_that_goes_on_holds_in_the_next_incident() -> None:
     script.act(OpenIncident("i1", "Mill Lane"))
     go_north(script, 10, since_m=60.0)
     script.act(SetPin("p", "FF-01", script.t_ns, 300.0, 50.0, 1.0, None, None, 0.0, ""))
-    assert script.pipeline.state.pin_verdicts["p"].state == "conflict"
+    assert script.pipeline.state.site.pin_verdicts["p"].state == "conflict"

@@ -83,10 +83,10 @@ CHANGES: dict[str, Change] = {
     "a pin is removed": lambda s: [RemovePin("of A")],
     "the other's pin is removed": lambda s: [RemovePin("of B")],
     "a meeting is removed": lambda s: [RemovePin("met")],
-    "every pin is removed": lambda s: [RemovePin(one) for one in s.script.pipeline.state.pins],
+    "every pin is removed": lambda s: [RemovePin(one) for one in s.script.pipeline.state.site.pins],
     "a start is said": lambda s: [SetStart(A, 5.0, 5.0, -3.2, -0.5, 0.5, 0.05)],
     "a start is said of who has no pins": lambda s: [
-        *(RemovePin(one) for one in s.script.pipeline.state.pins),
+        *(RemovePin(one) for one in s.script.pipeline.state.site.pins),
         SetStart(A, 5.0, 5.0, -3.2, -0.5, 0.5, 0.05),
     ],
     "the anchor is moved": lambda s: [SetAnchor(52.001, 4.001, 0.0, 0.1)],
@@ -173,7 +173,7 @@ def looked_at_again(script: Watched) -> Script:
     but where everybody is.
     """
     again = script.restarted()
-    anchor = again.pipeline.state.anchor
+    anchor = again.pipeline.state.site.anchor
     assert anchor is not None
     again.act(SetAnchor(anchor.lat_deg, anchor.lon_deg, anchor.height_m, anchor.rotation_rad))
     return again
@@ -251,7 +251,7 @@ def test_start_set_late_corrects_the_whole_trail(unit_id: str) -> None:
     script.act(SetStart(unit_id, 0.0, 0.0, -3.2, -0.7, 0.5, 0.05))
     assert walk.worst_m(unit_id) < 9.0, "what its heading drifted"
     assert {step.floor for step in walk.trail(unit_id)} == {3}
-    assert not script.pipeline.state.learnt_floors.buildings, "it was not there that it walked"
+    assert not script.pipeline.state.site.learnt_floors.buildings, "it was not there that it walked"
     assert off_m(script.console.trails[unit_id], script.joined().trails[unit_id]) == 0.0
     before = walk.trail(unit_id).copy()
     walk.go(20)
@@ -266,7 +266,7 @@ def test_of_who_is_forgotten_no_place_is_left() -> None:
     walk.pin("p", A, 50.0)
     state = script.pipeline.state
     assert len(walk.trail(A)) > 20
-    assert A in state.learnt_floors.walks
+    assert A in state.site.learnt_floors.walks
     script.act(CloseIncident("i1"))
     script.act(ForgetWearers(A))
     unit = state.units[A]
@@ -277,7 +277,7 @@ def test_of_who_is_forgotten_no_place_is_left() -> None:
         None,
     )
     assert A not in state.paths
-    assert A not in state.learnt_floors.walks
+    assert A not in state.site.learnt_floors.walks
     assert not script.joined().trails.get(A)
 
 

@@ -52,7 +52,7 @@ def test_bad_pins_are_refused_with_a_sentence(
     outputs = walk.script.act(SetPin(**fields))
     (refused,) = [output for output in outputs if isinstance(output, Refused)]
     assert sentence in refused.reason
-    assert walk.script.pipeline.state.pins == {}
+    assert walk.script.pipeline.state.site.pins == {}
     assert walk.trail("FF-01") == before
 
 
@@ -78,7 +78,7 @@ def test_bad_meetings_are_refused_with_a_sentence(
     outputs = walk.script.act(SetMeeting("m", "FF-01", other_id, t_ns, std_m, ""))
     (refused,) = [output for output in outputs if isinstance(output, Refused)]
     assert sentence in refused.reason
-    assert walk.script.pipeline.state.pins == {}
+    assert walk.script.pipeline.state.site.pins == {}
 
 
 @pytest.mark.slow
@@ -102,7 +102,7 @@ def test_bad_starts_and_beacons_are_refused_with_a_sentence(
     assert isinstance(refused, Refused)
     assert sentence in refused.reason
     state = walk.script.pipeline.state
-    assert (state.pins, state.beacons) == ({}, {})
+    assert (state.site.pins, state.site.beacons) == ({}, {})
 
 
 def test_what_is_not_there_cannot_be_removed() -> None:
@@ -117,7 +117,7 @@ def test_there_are_not_more_pins_than_can_be_solved(monkeypatch: pytest.MonkeyPa
     walk.go(20)
     for pin_id in ("p1", "p2", "p2", "p3"):
         walk.pin(pin_id, "FF-01", 10.0)
-    assert list(walk.script.pipeline.state.pins) == ["p1", "p2"]
+    assert list(walk.script.pipeline.state.site.pins) == ["p1", "p2"]
     assert [type(one) for one in walk.script.outputs].count(Refused) == 1
 
 
@@ -131,4 +131,4 @@ def test_of_those_who_start_together_none_is_placed_where_there_is_no_room_for_a
     both = StartTogether("s", walk.units, 0, 0.0, 0.0, 0.5, None, None, 0.3, "")
     (refused,) = walk.script.act(both)
     assert isinstance(refused, Refused)
-    assert list(walk.script.pipeline.state.pins) == ["p1"]
+    assert list(walk.script.pipeline.state.site.pins) == ["p1"]

@@ -46,7 +46,7 @@ def sighting(
 
 def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None:
     sighting(walk, SightingKind.TAG, "door-3")
-    (pin,) = walk.script.pipeline.state.pins.values()
+    (pin,) = walk.script.pipeline.state.site.pins.values()
     assert walk.state(pin.pin_id) == "waiting"
     before_m = walk.now_off_m("FF-01")
     north_m, east_m = truth(walk.walked_s)
@@ -56,7 +56,7 @@ def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None
     sighting(walk, SightingKind.TAG, "door-3")
     sighting(walk, SightingKind.TAG, "door-3", captured_s=walk.script.now_s - 60.0)  # heard of late
     walk.script.act(PlaceBeacon("door-3", "front door", north_m, east_m, None, 0.2, 0.5))
-    assert walk.script.pipeline.state.beacons["door-3"].seen_ns == walk.script.t_ns
+    assert walk.script.pipeline.state.site.beacons["door-3"].seen_ns == walk.script.t_ns
     walk.script.act(RemoveBeacon("door-3"))
     assert walk.state(pin.pin_id) == "waiting"
     assert walk.now_off_m("FF-01") == before_m
@@ -64,7 +64,7 @@ def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None
 
 def test_a_radio_beacon_that_is_placed_later_counts_for_who_passed_it(walk: Walk) -> None:
     sighting(walk, SightingKind.BEACON, "b1", 0.5)
-    (pin,) = walk.script.pipeline.state.pins
+    (pin,) = walk.script.pipeline.state.site.pins
     assert walk.state(pin) == "waiting"
     walk.script.act(PlaceBeacon("b1", "door", *truth(walk.walked_s), None, 0.2, 3.0))
     assert walk.state(pin) == "used"
@@ -78,7 +78,7 @@ def test_sighting_before_its_beacon_was_placed_counts_once_it_is(
     for reach_m in (30.0, 12.0):
         for beacon_id in ("b1", "b2"):
             walk.script.act(PlaceBeacon(beacon_id, "mast", 0.0, 0.0, None, 0.2, reach_m))
-        somewhere, ranged = walk.script.pipeline.state.pins.values()
+        somewhere, ranged = walk.script.pipeline.state.site.pins.values()
         assert somewhere.std_m == reach_m / 2.0
         assert ranged.std_m == pytest.approx(math.hypot(4.0 / math.sqrt(2.0), 0.5))
 
@@ -91,7 +91,7 @@ def test_beacon_passed_without_contact_counts_once_backfilled(
     before_m = walk.worst_m("FF-01")
     seen = Sighting(script.header("FF-01", float(passed_s)), SightingKind.BEACON, "b1", 0.5)
     script.record(backfilled_key("FF-01", SIGHTING.suffix), encode(seen))
-    (pin,) = script.pipeline.state.pins.values()
+    (pin,) = script.pipeline.state.site.pins.values()
     assert walk.state(pin.pin_id) == "used"
     assert pin.t_ns == script.t_ns - 100 * 10**9
     assert walk.worst_m("FF-01") < 0.7 * before_m
@@ -101,11 +101,11 @@ def test_who_stays_near_a_beacon_passes_it_once(walk: Walk) -> None:
     for range_m in (8.0, 3.0, 1.0, 5.0):
         sighting(walk, SightingKind.BEACON, "b1", range_m)
         walk.go(2)
-    (pin,) = walk.script.pipeline.state.pins.values()
+    (pin,) = walk.script.pipeline.state.site.pins.values()
     assert pin.std_m == pytest.approx(math.hypot(1.0 / math.sqrt(2.0), 0.5))
     walk.go(30)
     sighting(walk, SightingKind.BEACON, "b1", 4.0)
-    assert len(walk.script.pipeline.state.pins) == 2
+    assert len(walk.script.pipeline.state.site.pins) == 2
 
 
 def test_a_journal_of_sightings_is_solved_now_and_then(walk: Walk) -> None:
@@ -120,11 +120,15 @@ def test_a_journal_of_sightings_is_solved_now_and_then(walk: Walk) -> None:
         script.record(backfilled_key("FF-01", SIGHTING.suffix), encode(sighting))
     told = script.outputs[begun:]
     assert sum(isinstance(one, TrailBackfilled) for one in told) <= 1
-    assert sum(isinstance(one, PinsChanged) for one in told) == len(script.pipeline.state.pins) > 9
+    assert (
+        sum(isinstance(one, PinsChanged) for one in told)
+        == len(script.pipeline.state.site.pins)
+        > 9
+    )
     script.wait(4)
     told = script.outputs[begun:]
     assert sum(isinstance(one, TrailBackfilled) for one in told) <= 2
-    assert "waiting" not in {walk.state(one) for one in script.pipeline.state.pins}
+    assert "waiting" not in {walk.state(one) for one in script.pipeline.state.site.pins}
 
 
 def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None:
@@ -133,7 +137,7 @@ def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None
     sighting(walk, SightingKind.UNKNOWN, "x")
     sighting(walk, SightingKind.BEACON, "far", 5000.0)
     sighting(walk, SightingKind.BEACON, "", 1.0)
-    assert walk.script.pipeline.state.pins == {}
+    assert walk.script.pipeline.state.site.pins == {}
     assert sum(walk.script.pipeline.state.units["FF-01"].rejected_counts.values()) == 5
 
 
@@ -141,7 +145,7 @@ def test_sighting_of_an_unregistered_unit_is_not_used(walk: Walk) -> None:
     script = walk.script
     for kind, seen_id in ((SightingKind.UNIT, "FF-01"), (SightingKind.BEACON, "b1")):
         script.say(Sighting(script.header("stranger"), kind, seen_id, 1.0))
-    assert script.pipeline.state.pins == {}
+    assert script.pipeline.state.site.pins == {}
 
 
 def test_two_who_see_each_other_have_met_once() -> None:
@@ -151,9 +155,9 @@ def test_two_who_see_each_other_have_met_once() -> None:
     other = both.script.header("FF-02")
     both.script.say(Sighting(other, SightingKind.UNIT, "FF-01", 1.0))
     state = both.script.pipeline.state
-    (pin,) = state.pins.values()
+    (pin,) = state.site.pins.values()
     assert pin.unit_id == "FF-02", "the nearer of the two"
-    assert state.pin_verdicts.keys() == state.pins.keys()
+    assert state.site.pin_verdicts.keys() == state.site.pins.keys()
 
 
 @pytest.mark.parametrize("range_m", [1.0, 30.0], ids=["surer", "vaguer"])
@@ -163,7 +167,7 @@ def test_encounter_set_by_a_person_is_not_replaced_by_sightings(range_m: float) 
     both.go(10)
     both.script.act(SetMeeting("m", "FF-01", "FF-02", both.script.t_ns, 5.0, "at the stairs"))
     sighting(both, SightingKind.UNIT, "FF-02", range_m)
-    pins = both.script.pipeline.state.pins
+    pins = both.script.pipeline.state.site.pins
     assert [pin.by for pin in pins.values()] == ["chief", "FF-01"]
     both.script.act(RemovePin("m"))
     assert [pin.by for pin in pins.values()] == ["FF-01"]
@@ -175,12 +179,12 @@ def test_a_unit_that_is_met_is_no_beacon_of_the_same_name() -> None:
     walk.go(20)
     sighting(walk, SightingKind.UNIT, "FF-02")
     state = walk.script.pipeline.state
-    assert state.beacons["FF-02"].seen_ns is None
-    assert reported_floors(state) == []
+    assert state.site.beacons["FF-02"].seen_ns is None
+    assert reported_floors(state, state.site) == []
     (met,) = pin_views(state, person_lookup({}))
     assert (met.kind, met.north_m, met.floor) == ("meeting", None, None)
     sighting(walk, SightingKind.BEACON, "FF-02")
-    assert [said.floor for said in reported_floors(state)] == [3]
+    assert [said.floor for said in reported_floors(state, state.site)] == [3]
 
 
 def test_path_is_unpacked_once_for_all_reported_floors(
@@ -198,7 +202,10 @@ def test_path_is_unpacked_once_for_all_reported_floors(
         return arrays(history)
 
     monkeypatch.setattr(PathHistory, "arrays", counting)
-    assert len(reported_floors(walk.script.pipeline.state, ["FF-01"])) == 4
+    assert (
+        len(reported_floors(walk.script.pipeline.state, walk.script.pipeline.state.site, ["FF-01"]))
+        == 4
+    )
     assert len(unpacked) == 1
 
 
@@ -220,7 +227,7 @@ def test_sighting_without_a_range_lies_within_the_reach(
     if placed:
         walk.script.act(PlaceBeacon("FF-02", "door", 0.0, 0.0, None, 0.2, 8.0))
     sighting(walk, kind, "FF-02")
-    (pin,) = walk.script.pipeline.state.pins.values()
+    (pin,) = walk.script.pipeline.state.site.pins.values()
     assert pin.std_m == pytest.approx(std_m)
 
 
@@ -234,7 +241,7 @@ def test_encounter_before_the_path_of_one_changes_nothing() -> None:
             sighting(walk, SightingKind.UNIT, "FF-02", 1.0)
         walk.go(60, silent=("FF-02",))
         walk.go(10)
-    (pin,) = met.script.pipeline.state.pins
+    (pin,) = met.script.pipeline.state.site.pins
     assert met.state(pin) == "waiting"
     assert met.trail("FF-01") == alone.trail("FF-01")
     assert met.trail("FF-02") == alone.trail("FF-02")
@@ -245,7 +252,7 @@ def test_what_was_seen_before_the_incident_is_not_where_the_path_begins(walk: Wa
     walk.script.act(PlaceBeacon("door-3", "door", north_m, east_m + 50.0, None, 0.2, 0.5))
     before = walk.trail("FF-01")
     sighting(walk, SightingKind.TAG, "door-3", captured_s=-600.0)
-    (pin,) = walk.script.pipeline.state.pins
+    (pin,) = walk.script.pipeline.state.site.pins
     assert walk.state(pin) == "waiting"
     assert walk.trail("FF-01") == before
 
@@ -256,7 +263,7 @@ def test_what_units_see_leaves_room_for_what_people_say(
     monkeypatch.setattr("base_station.core.pins.sightings.MAX_SIGHTINGS", 3)
     for number in range(5):
         sighting(walk, SightingKind.TAG, f"door-{number}")
-    assert len(walk.script.pipeline.state.pins) == 3
+    assert len(walk.script.pipeline.state.site.pins) == 3
     walk.pin("p1", "FF-01", 250.0)
     assert walk.state("p1") == "used"
     assert seen_ids(walk) == ["door-2", "door-3", "door-4"]
@@ -269,7 +276,7 @@ def test_people_s_pins_are_not_given_up_for_what_units_see(
     for pin_id in ("p1", "p2"):
         walk.pin(pin_id, "FF-01", 250.0)
     sighting(walk, SightingKind.TAG, "door-3")
-    assert list(walk.script.pipeline.state.pins) == ["p1", "p2"]
+    assert list(walk.script.pipeline.state.site.pins) == ["p1", "p2"]
     counts = walk.script.pipeline.state.units["FF-01"].rejected_counts
     assert counts == {"no room for sightings beside what people pinned": 1}
 
@@ -284,14 +291,14 @@ def test_a_long_stay_gives_up_its_beginning_and_a_passing_stays(
     for ago_s in (200.0, 150.0, 100.0, 50.0, 0.0):
         sighting(walk, SightingKind.BEACON, "pump", captured_s=walk.script.now_s - ago_s)
     sighting(walk, SightingKind.TAG, "door-2")
-    kept = sorted((pin.t_ns - state.t_ns) / NS_PER_S for pin in state.pins.values())
+    kept = sorted((pin.t_ns - state.t_ns) / NS_PER_S for pin in state.site.pins.values())
     assert kept == [-250.0, -50.0, 0.0, 0.0]
     assert sorted(seen_ids(walk)) == ["door-1", "door-2", "pump", "pump"]
 
 
 def seen_ids(walk: Walk) -> list[str]:
     """In the order in which they came, without what people pinned."""
-    return [pin.other_id for pin in walk.script.pipeline.state.pins.values() if pin.other_id]
+    return [pin.other_id for pin in walk.script.pipeline.state.site.pins.values() if pin.other_id]
 
 
 @pytest.mark.slow
@@ -316,5 +323,5 @@ def test_unit_met_often_is_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
         if number == 3:
             monkeypatch.setattr(PathGraph, "solve", counting)
         sighting(both, SightingKind.UNIT, "FF-02", 1.0)
-    assert len(both.script.pipeline.state.pins) == 4
+    assert len(both.script.pipeline.state.site.pins) == 4
     assert sorted(solved) == [("FF-01",)] * 2 + [("FF-02",)] * 2

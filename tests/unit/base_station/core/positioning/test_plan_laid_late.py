@@ -84,7 +84,7 @@ def script() -> Outside:
 
 def test_plan_without_a_known_place_is_not_used(script: Outside) -> None:
     assert script.why(A) == script.why(B) == ADRIFT
-    anchor = script.pipeline.state.anchor
+    anchor = script.pipeline.state.site.anchor
     assert anchor is not None
     earth = {one: anchor.to_geodetic(*script.place_m(one), 0.0)[:2] for one in (A, B)}
     script.act(SetAnchor(LIES.lat_deg, LIES.lon_deg, LIES.height_m, LIES.rotation_rad))
@@ -144,7 +144,7 @@ def test_first_place_on_a_plan_counts_from_the_beginning(said: Action, script: O
             )
             assert mine.quality_reason == theirs.quality_reason
             assert script.unit(unit_id).gps is not None
-        states = script.pipeline.state.pin_verdicts, earlier.pipeline.state.pin_verdicts
+        states = script.pipeline.state.site.pin_verdicts, earlier.pipeline.state.site.pin_verdicts
         assert states[0] == states[1]
         if not number:
             script.walk(5)
@@ -166,7 +166,9 @@ def test_fixes_count_again_once_the_plan_has_an_anchor(script: Outside) -> None:
     script.act(START)
     script.act(SetAnchor(LIES.lat_deg, LIES.lon_deg, LIES.height_m, LIES.rotation_rad))
     script.walk(30)
-    assert {verdict.state for verdict in script.pipeline.state.pin_verdicts.values()} == {"used"}
+    assert {verdict.state for verdict in script.pipeline.state.site.pin_verdicts.values()} == {
+        "used"
+    }
     assert script.off_m(A) < 3.0
     assert script.off_m(B) < 3.0
 
@@ -178,7 +180,7 @@ def test_action_without_a_place_leaves_people_at_their_fixes(met: bool, script: 
         if met
         else SetPin("p", A, script.t_ns, math.nan, 0.0, 0.5, None, None, 0.0, "")
     )
-    assert script.pipeline.state.anchor_by_gps
+    assert script.pipeline.state.site.anchor_by_gps
     assert script.why(A) == ADRIFT
 
 
@@ -188,7 +190,7 @@ def test_place_set_before_the_plan_stays_on_the_earth() -> None:
     script.act(SetPin("p", A, script.t_ns, *script.place_m(A), 0.5, None, None, 0.0, ""))
     script.act(SetPlan(PLAN))
     script.act(SetPin("q", B, script.t_ns, *script.place_m(B), 0.5, None, None, 0.0, ""))
-    assert script.pipeline.state.anchor_by_gps
+    assert script.pipeline.state.site.anchor_by_gps
     assert script.why(A) == ADRIFT
 
 

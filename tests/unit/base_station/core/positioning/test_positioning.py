@@ -42,11 +42,13 @@ def test_outage_is_time_since_last_position_of_path() -> None:
     state.t_ns = script.t_ns
     position = message_factory.position(script.header(U), north_m=5.0)
     fuser = FUSERS[0].new()
-    update = PositionUpdate(state, unit, position, state.path_of(U), (fuser,), has_plan=False)
+    update = PositionUpdate(
+        state, state.site, unit, position, state.path_of(U), (fuser,), has_plan=False
+    )
     place_in_time(update)
     assert (update.t_ns, update.outage_s) == (script.t_ns, 2.0)
     first = PositionUpdate(
-        state, unit, position, StationState().path_of(U), (fuser,), has_plan=False
+        state, state.site, unit, position, StationState().path_of(U), (fuser,), has_plan=False
     )
     place_in_time(first)
     assert math.isinf(first.outage_s)

@@ -126,7 +126,7 @@ def test_what_the_unit_brings_of_before_moves_nobody_back(script: Script) -> Non
 def test_contact_regained_continues_from_there(script: Script) -> None:
     pin(script, (10.0, 30.0), floor=0)
     walk(script, WALKED_S, WALKED_S + 5)
-    assert script.pipeline.state.pin_verdicts["p"].state == "used"
+    assert script.pipeline.state.site.pin_verdicts["p"].state == "used"
     assert far_m(shown(script), (10.0, 30.0 + 0.9 * 5)) < 2.0
     assert shown(script).t_meas_ns == script.t_ns
 

@@ -19,7 +19,7 @@ def new_fusers(saved: dict[str, bytes] | None = None) -> UnitFusers:
 def test_unit_without_pins_has_one_fuser_and_keeps_it() -> None:
     fusers = new_fusers()
     assert fusers.of(UNIT) == (fusers.plain(UNIT),)
-    assert list(fusers) == [fusers.plain(UNIT)]
+    assert list(fusers.existing([UNIT])) == [fusers.plain(UNIT)]
 
 
 def test_saved_fuser_is_restored_with_its_estimate() -> None:
@@ -34,5 +34,5 @@ def test_forgotten_unit_begins_anew() -> None:
     fusers = new_fusers()
     before = fusers.plain(UNIT)
     assert fusers.forget(UNIT) is before
-    assert list(fusers) == []
+    assert list(fusers.existing([UNIT])) == []
     assert fusers.plain(UNIT) is not before

@@ -40,7 +40,7 @@ def script() -> Script:
 
 
 def reference(script: Script) -> str | None:
-    return script.pipeline.state.barometers.reference_id
+    return script.pipeline.state.site.barometers.reference_id
 
 
 def test_a_floor_comes_with_its_probability(script: Script) -> None:
@@ -99,7 +99,7 @@ def test_weather_is_of_units_outside_and_not_of_doors_and_fans(
         script.position("FF-02", 0.0, 0.0, pressure_pa=pressure_pa)
 
     script.wait(60, each_second)
-    weather = script.pipeline.state.barometers.weather
+    weather = script.pipeline.state.site.barometers.weather
     assert weather.is_known(script.t_ns) is feels_it
     assert weather.rise_m == pytest.approx(-5.0 if feels_it else 0.0, abs=1.0)
 
@@ -130,11 +130,11 @@ def test_a_pin_that_turns_fixes_away_changes_nothing_of_the_weather() -> None:
             script.position(U, 1.0 * second, 0.0, distance_m=1.0 * second, pressure_pa=pressure_pa)
             if second == 5 and is_pinned:
                 script.act(SetPin("p", U, script.t_ns, 5.0, 50.0, 0.3, None, None, 0.0, ""))
-                assert script.pipeline.state.pin_verdicts["p"].state == "used"
+                assert script.pipeline.state.site.pin_verdicts["p"].state == "used"
             if second > 5:
                 script.gps(U, *anchor.to_geodetic(1.0 * second, 0.0, 0.0)[:2])
         assert (script.fused[-1].since_gps_s is None) is is_pinned
-        rises_m[is_pinned] = script.pipeline.state.barometers.weather.rise_m
+        rises_m[is_pinned] = script.pipeline.state.site.barometers.weather.rise_m
     assert rises_m[True] == rises_m[False] != 0.0
 
 
@@ -170,7 +170,7 @@ def test_fixes_out_of_a_journal_correct_where_the_unit_is_now(script: Script) ->
     """The unit begins 6 m from where people think; its fixes of the silent minute come late."""
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     script.act(SetStart(U, -60.0, 0.0, 0.0, 0.0, 10.0, 0.05))
-    anchor = script.pipeline.state.anchor
+    anchor = script.pipeline.state.site.anchor
     assert anchor is not None
     late = []
     for second in range(60):

@@ -93,7 +93,7 @@ def rebooted(script: Script, seconds: int) -> None:
         script.now_s += 1.0
         header = script.header(U, captured_s=second - 900.0)
         script.say(message_factory.status(header))
-        if script.pipeline.state.anchor is not None:
+        if script.pipeline.state.site.anchor is not None:
             script.say(
                 message_factory.gps_fix(script.header(U, captured_s=second - 900.0), 52.0, 4.0)
             )
@@ -243,8 +243,8 @@ def test_a_place_that_cannot_be_is_refused_in_words(
 ) -> None:
     outputs = script.act(action)
     assert [type(output) for output in outputs] == [Refused]
-    assert script.pipeline.state.anchor is None
-    assert not script.pipeline.state.start_set
+    assert script.pipeline.state.site.anchor is None
+    assert not script.pipeline.state.site.start_set
 
 
 def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
@@ -274,7 +274,7 @@ def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
     assert place == pytest.approx((unpinned_trail[-1].north_m, unpinned_trail[-1].east_m), abs=1.0)
     assert after.t_meas_ns == before.t_meas_ns
     assert after.floor == 3
-    pin = script.pipeline.state.pins["p1"]
+    pin = script.pipeline.state.site.pins["p1"]
     assert (pin.north_m, pin.east_m) == pytest.approx((0.0, -111.3 - 19.0), abs=1.0)
     assert pin.heading_rad == pytest.approx(0.1 - math.pi / 2.0)
 

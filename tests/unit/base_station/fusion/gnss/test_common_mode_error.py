@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from base_station.core.pins.evidence import evidence_of_all, receiver_of_station
+from base_station.core.pins.evidence import evidence_of_site, reference_receiver
+from base_station.core.state import OWN_SITE_ID
 from base_station.fusion.gnss.common_mode_error import (
     COMMON_MOST_M,
     OWN_PART,
@@ -207,9 +208,9 @@ def test_reference_with_a_corrected_start_drops_its_evidence(
     action: SetAnchor | SetStart,
 ) -> None:
     site = a_site(station_has_a_receiver=True)
-    assert site.pipeline.state.common_mode_error != CommonModeError()
+    assert site.pipeline.state.site.common_mode_error != CommonModeError()
     site.act(action)
-    assert site.pipeline.state.common_mode_error == CommonModeError()
+    assert site.pipeline.state.site.common_mode_error == CommonModeError()
 
 
 def test_start_of_the_reference_holds_for_every_run() -> None:
@@ -224,10 +225,12 @@ def test_start_of_the_reference_holds_for_every_run() -> None:
     for unit_id in site.boot_ids:
         site.position(unit_id, 0.0, 0.0)
     state = site.pipeline.state
-    starts = {unit_id: one.start for unit_id, one in evidence_of_all(state, None).items()}
+    starts = {
+        unit_id: one.start for unit_id, one in evidence_of_site(state, OWN_SITE_ID, None).items()
+    }
     assert starts["FF-01"] is None
     assert starts["FF-09"] is not None
-    assert receiver_of_station(state)["FF-09"].start == starts["FF-09"]
+    assert reference_receiver(state, state.site)["FF-09"].start == starts["FF-09"]
 
 
 @pytest.mark.slow
@@ -238,4 +241,4 @@ def test_solving_again_uses_the_reference_and_each_fix_once() -> None:
         assert fixes[:, 0] == pytest.approx(3.0, abs=0.1)  # as they came
         script.act(SetPin("p", "FF-01", 0, 0.0, 0.0, 3.0, None, None, 0.35, ""))
     assert 0.0 < north_m(helped) < north_m(alone) - 0.2
-    assert set(helped.pipeline.state.pin_verdicts) == {"p"}
+    assert set(helped.pipeline.state.site.pin_verdicts) == {"p"}

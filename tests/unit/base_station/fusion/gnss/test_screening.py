@@ -259,7 +259,7 @@ def test_fix_places_no_frame_that_a_person_has_placed(
     script.act(said_by_hand)
     script.position(U, 0.0, 0.0)
     script.gps(U, 52.0, 4.0)
-    assert script.pipeline.state.anchor is None
+    assert script.pipeline.state.site.anchor is None
     assert not_used(script) == {"the site has no anchor": 1}
 
 
@@ -269,7 +269,7 @@ def test_without_an_anchor_everything_works_in_metres(script: Script) -> None:
     script.wait(3, lambda: script.position(U, 2.0, 0.0))
     script.gps(U, 52.0, 4.0)
     assert (script.fused[-1].north_m, script.fused[-1].east_m) == pytest.approx((7.0, 7.0))
-    assert script.pipeline.state.anchor is None
+    assert script.pipeline.state.site.anchor is None
     assert not_used(script) == {"the site has no anchor": 1}
 
 
@@ -281,7 +281,7 @@ def test_the_first_good_fix_anchors_a_site_that_nobody_placed_and_moves_nobody(
     script.gps(U, 52.0, 4.0, horizontal_std_m=40.0)
     assert not_used(script) == {"the site has no anchor": 1}, "a poor fix places no site"
     script.gps(U, 52.0, 4.0)
-    anchor = script.pipeline.state.anchor
+    anchor = script.pipeline.state.site.anchor
     assert anchor is not None
     assert anchor.to_incident_m(52.0, 4.0, 50.0)[:2] == pytest.approx((2.0, 1.0), abs=1e-6)
     after = script.fused[-1]
@@ -300,7 +300,7 @@ def test_a_first_fix_from_elsewhere_does_not_shut_out_all_others(script: Script)
         script.gps(U, 52.0 + north_m / NORTH_M_PER_DEG, 4.0)
         shown_m.append((script.fused[-1].north_m, script.fused[-1].east_m))
     assert max(math.dist(*pair) for pair in pairwise(shown_m)) < 5.0
-    anchor = script.pipeline.state.anchor
+    anchor = script.pipeline.state.site.anchor
     assert anchor is not None
     off_m = anchor.to_incident_m(52.0 + north_m / NORTH_M_PER_DEG, 4.0, 50.0)[:2]
     assert off_m == pytest.approx(shown_m[-1], abs=3.0)
@@ -316,7 +316,7 @@ def test_a_receiver_gone_wrong_does_not_move_the_site_of_those_that_are_right(
         for unit_id, lat_deg in ((U, 52.0), ("FF-02", 55.0)):
             script.position(unit_id, 0.0, 0.0)
             script.gps(unit_id, lat_deg + second * 1e-7, 4.0)
-    anchor = script.pipeline.state.anchor
+    anchor = script.pipeline.state.site.anchor
     assert anchor is not None
     assert anchor.lat_deg == pytest.approx(52.0, abs=1e-3)
 
@@ -328,7 +328,7 @@ def test_fixes_too_poor_to_say_where_the_site_is_do_not_move_it(script: Script) 
         std_m = 3.0 if second == 0 else 50.0
         lat_deg = 52.0 if second == 0 else 55.0
         script.gps(U, lat_deg + second * 1e-7, 4.0, horizontal_std_m=std_m)
-    anchor = script.pipeline.state.anchor
+    anchor = script.pipeline.state.site.anchor
     assert anchor is not None
     assert anchor.lat_deg == pytest.approx(52.0, abs=1e-3)
 
@@ -338,7 +338,7 @@ def test_site_placed_by_a_person_stays_where_it_is(script: Script) -> None:
     for _ in range(30):
         script.wait(1, lambda: script.position(U, 0.0, 0.0))
         script.gps(U, -52.0, 4.0)
-    assert script.pipeline.state.anchor == Anchor(52.0, 4.0, 10.0, 0.0)
+    assert script.pipeline.state.site.anchor == Anchor(52.0, 4.0, 10.0, 0.0)
     assert not_used(script) == {"too far from the site": 30}
 
 
@@ -354,12 +354,12 @@ def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) 
     """The frame moves under people, not people over the Earth; trails move with them."""
     script.act(OpenIncident("i1", "Mill Lane"))
     walk_a_minute(script)
-    old = script.pipeline.state.anchor
+    old = script.pipeline.state.site.anchor
     before, trail = script.fused[-1], list(script.pipeline.state.units[U].trails.shown)
     assert old is not None
     script.act(SetAnchor(52.0003, 4.0004, 20.0, 0.8))
     script.position(U, 1.2 * 59, 0.0, distance_m=1.2 * 59)
-    new, after = script.pipeline.state.anchor, script.fused[-1]
+    new, after = script.pipeline.state.site.anchor, script.fused[-1]
     assert new is not None
     was = old.to_geodetic(before.north_m, before.east_m, before.down_m)
     now = new.to_geodetic(after.north_m, after.east_m, after.down_m)
@@ -375,24 +375,24 @@ def test_what_was_learnt_of_the_building_stays_where_it_is_on_the_earth(script: 
     walk_a_minute(script)
     state = script.pipeline.state
     stairs = LearntStairs(30.0, 4.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)
-    state.learnt_building = (
+    state.site.learnt_building = (
         LearntBuilding().with_stairs(-1, U, stairs).with_axis(U, Axis(0.1, 1e-3))
     )
     script.act(PlaceBeacon("b", "door", 30.0, 4.0, None, 0.5, 3.0))
-    old, storeys = state.anchor, state.storeys_at(30.0, 4.0)
+    old, storeys = state.site.anchor, state.site.storeys_at(30.0, 4.0)
     assert old is not None
     assert storeys
     script.act(SetAnchor(52.0003, 4.0004, 20.0, 0.3))
-    new = state.anchor
+    new = state.site.anchor
     assert new is not None
     north_m, east_m, lower_m = new.to_incident_m(*old.to_geodetic(30.0, 4.0, 0.0))
     assert abs(lower_m) > 10.0
-    found, beacon = state.learnt_building.stairs[0].mean, state.beacons["b"]
+    found, beacon = state.site.learnt_building.stairs[0].mean, state.site.beacons["b"]
     assert (found.north_m, found.east_m) == pytest.approx((north_m, east_m), abs=0.05)
     assert (beacon.north_m, beacon.east_m) == pytest.approx((north_m, east_m), abs=0.05)
-    assert state.learnt_building.axis is not None
-    assert state.learnt_building.axis.direction_rad == pytest.approx(0.1 - 0.3, abs=1e-3)
-    moved = state.storeys_at(north_m, east_m)
+    assert state.site.learnt_building.axis is not None
+    assert state.site.learnt_building.axis.direction_rad == pytest.approx(0.1 - 0.3, abs=1e-3)
+    moved = state.site.storeys_at(north_m, east_m)
     assert [one.floor for one in moved] == [one.floor for one in storeys]
     expected_m = [one.down_m + lower_m for one in storeys]
     assert [one.down_m for one in moved] == pytest.approx(expected_m, abs=0.05)
@@ -411,7 +411,7 @@ def test_a_pin_after_the_frame_was_moved_means_the_plan_as_it_lies_now(script: S
 
     script.act(SetPin("p", U, begin_ns + 30 * NS_PER_S, *truth_m(30.0), 0.5, None, None, 0.0, ""))
     state = script.pipeline.state
-    assert state.pin_verdicts["p"].state == "used"
+    assert state.site.pin_verdicts["p"].state == "used"
     for step in state.units[U].trails.shown:
         true_m = truth_m((step.t_ns - begin_ns) / NS_PER_S)
         assert math.dist((step.north_m, step.east_m), true_m) < 3.0

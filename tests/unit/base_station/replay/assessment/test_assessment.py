@@ -145,13 +145,13 @@ def test_nobody_heard_nobody_known_and_nobody_registered_are_red() -> None:
 
 def test_a_pin_that_contradicts_the_trail_is_amber() -> None:
     state = StationState()
-    state.pins["p"] = Pin("p", "place", "FF-01", 1, 1.0, 1, "chief")
-    state.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
+    state.site.pins["p"] = Pin("p", "place", "FF-01", 1, 1.0, 1, "chief")
+    state.site.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
     trust = trust_of(known(), conflicts_of(state)["FF-01"])
     assert (trust.level, trust.reason) == ("amber", "a pin contradicts the trail")
-    state.pin_verdicts["p"] = PinVerdict("used", 0.1, 0.1)
+    state.site.pin_verdicts["p"] = PinVerdict("used", 0.1, 0.1)
     assert trust_of(known(), conflicts_of(state)["FF-01"]).level == "green"
-    state.pin_verdicts["removed"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
+    state.site.pin_verdicts["removed"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
     assert trust_of(known(), conflicts_of(state)["FF-01"]).level == "green"
 
 
@@ -159,7 +159,7 @@ def test_a_pin_that_contradicts_the_trail_is_amber() -> None:
 def test_a_pin_contradicts_the_trails_of_whom_it_is_about(kind: PinKind, both: bool) -> None:
     """And not that of a unit after which somebody has named a beacon."""
     state = StationState()
-    state.pins["p"] = Pin("p", kind, "FF-01", 1, 1.0, 1, "FF-01", other_id="FF-02")
-    state.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
+    state.site.pins["p"] = Pin("p", kind, "FF-01", 1, 1.0, 1, "FF-01", other_id="FF-02")
+    state.site.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
     conflicts = conflicts_of(state)
     assert (conflicts["FF-01"], conflicts["FF-02"]) == (1, int(both))

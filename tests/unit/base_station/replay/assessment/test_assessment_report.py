@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from base_station.core.state import StationState, UnitState
+from base_station.core.state import OWN_SITE_ID, SiteState, StationState, UnitState
 from base_station.core.state.pin import Pin
 from base_station.fusion.odometry.path_history import PathHistory
 from base_station.fusion.smoothing.interface import Verdict
@@ -30,7 +30,7 @@ def assessed(
     live: Sequence[TrackSample], smoothed: Sequence[TrackSample] = (), *pins: Pin
 ) -> UnitReport:
     state = StationState()
-    state.pins.update({pin.pin_id: pin for pin in pins})
+    state.site.pins.update({pin.pin_id: pin for pin in pins})
     verdicts = {pin.pin_id: Verdict(True, 0.5, 0.4) for pin in pins}
     raw = {"FF-01": smoothed}
     (unit,) = assess(
@@ -81,7 +81,7 @@ def test_a_pin_of_another_tells_nothing_of_a_unit() -> None:
 
 def test_the_nearest_two_storeys_say_how_sure_a_floor_was() -> None:
     storeys = (Storey(0, 0.0), Storey(1, -3.0), Storey(2, -9.0))
-    state = StationState(plan=Plan(b"", storeys, ()))
+    state = StationState(sites={OWN_SITE_ID: SiteState(plan=Plan(b"", storeys, ()))})
     live = {"FF-01": [shown(1.0)]}
     (unit,) = assess("i1", "path-graph", 0, state, {}, live, {}, {}).units
     assert unit.floor_probability == pytest.approx(0.8664, abs=1e-3)  # 1.5 standard deviations
