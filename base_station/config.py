@@ -82,6 +82,13 @@ class AccountabilityConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class PositioningConfig:
+    """How the station works out where people are."""
+
+    fuser: str = "gps-inertial"  # gps-switching: the documents' rule, a baseline
+
+
+@dataclass(frozen=True, slots=True)
 class StandbyConfig:
     """This station is one of two (docs/standby.md).  Without a name it is the only one."""
 
@@ -116,6 +123,7 @@ class StationConfig:
     database_password_file: Path | None = None  # its first line; else PGPASSWORD or PGPASSFILE
     standby: StandbyConfig = field(default_factory=StandbyConfig)
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
+    positioning: PositioningConfig = field(default_factory=PositioningConfig)
     alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
     tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
 

@@ -14,7 +14,7 @@ from base_station.security.pki.enrolled_units import EnrolledUnits
 from base_station.storage.segment_index import SegmentIndex
 from base_station.unit_sync.log_gap_detector import Lost
 from shared.messages import STATION_ID
-from shared.messages.station import SetThresholds
+from shared.messages.station import SetFuser, SetThresholds
 
 
 class Housekeeping:
@@ -59,6 +59,8 @@ class Housekeeping:
         self._older.look()
         if live.thresholds != live.configured_thresholds:
             parts.gate.submit(STATION_ID, SetThresholds(live.configured_thresholds))
+        if live.fuser != live.configured_fuser:
+            parts.gate.submit(STATION_ID, SetFuser(live.configured_fuser))
         monitors = (parts.limiter, parts.reports.backfill.share, parts.bans, parts.forwarders)
         for monitor in monitors:
             for report in monitor.changes(live.problems):

@@ -19,6 +19,7 @@ from base_station.app.live_console import new_server, new_services
 from base_station.app.live_fan_out import LiveFanOut
 from base_station.app.live_parts import LiveParts
 from base_station.app.live_state import LiveState
+from base_station.app.pipeline_factory import require_fuser
 from base_station.app.resources import Resources, open_station
 from base_station.app.restart_control import Restart, RestartControl
 from base_station.app.start_engine import start_drive
@@ -62,8 +63,10 @@ def run_station(
     """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know;
     ``loading_router`` becomes the bus's first router.
 
-    Raises ConfigError where no alarm rule can have the thresholds of the settings.
+    Raises ConfigError where no alarm rule can have the thresholds of the settings, or there is no
+    such fuser.
     """
+    require_fuser(config.positioning.fuser)
     thresholds = thresholds_of(ALARMS, config.alarms)
     gc_tuning.configure()
     allow_many_files()
@@ -116,7 +119,7 @@ class _Station:
         self._resources, self._disk = resources, resources.disk
         self._announce, self._manager, self._end = announce, manager, end
         bus, clock = resources.bus, self._disk.clock
-        self._live = LiveState(thresholds)
+        self._live = LiveState(thresholds, resources.config.positioning.fuser)
         self._restarts = RestartControl(
             self._stop_server,
             is_leader=self._is_leader,

@@ -6,14 +6,16 @@ from collections.abc import Mapping
 
 from base_station.core.alarms.thresholds import Thresholds
 from base_station.core.state import StationState
+from base_station.fusion import FUSERS
 
 
 class LiveState:
     """From any thread."""
 
-    def __init__(self, configured: Thresholds) -> None:
-        """``configured``: thresholds of the alarm rules, by the settings."""
-        self.configured_thresholds = configured
+    def __init__(self, thresholds: Thresholds, fuser: str) -> None:
+        """Thresholds of the alarm rules and name of the fuser, by the settings."""
+        self.configured_thresholds = thresholds
+        self.configured_fuser = fuser
         self._state: StationState | None = None
 
     def begin(self, state: StationState) -> None:
@@ -34,3 +36,8 @@ class LiveState:
     def thresholds(self) -> Thresholds:
         """Thresholds of the alarm rules in use, by the log."""
         return self.configured_thresholds if self._state is None else self._state.thresholds
+
+    @property
+    def fuser(self) -> str:
+        """Name of the fuser in use, by the log."""
+        return self.configured_fuser if self._state is None else self._state.fuser or FUSERS[0].name

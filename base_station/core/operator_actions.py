@@ -45,6 +45,7 @@ from shared.messages.station import (
     ResolveAlarm,
     SendCommand,
     SetAnchor,
+    SetFuser,
     SetPlan,
     SetReference,
     SetStart,
@@ -86,7 +87,7 @@ class ActionHandler:
         match action:
             case AcknowledgeAlarm() | ResolveAlarm():
                 changes = self._alarm(state, by, action)
-            case ReportProblem() | SetThresholds() | DoneApart():
+            case ReportProblem() | SetThresholds() | SetFuser() | DoneApart():
                 changes = self._station_action(state, action)
             case RegisterUnit():
                 changes = self._register(state, action)
@@ -162,7 +163,7 @@ class ActionHandler:
             yield command
 
     def _station_action(
-        self, state: StationState, action: ReportProblem | SetThresholds | DoneApart
+        self, state: StationState, action: ReportProblem | SetThresholds | SetFuser | DoneApart
     ) -> Iterator[StateChange]:
         """Apply an action of the station itself."""
         if isinstance(action, ReportProblem):
@@ -171,6 +172,8 @@ class ActionHandler:
             state.thresholds = action.thresholds
             self._alarms.use_thresholds(action.thresholds)
             yield from self._with_alarms(state, state.units.values())
+        elif isinstance(action, SetFuser):
+            yield PinsChanged(tuple(sorted(self._positioning.use_fuser(state, action.name))))
 
     def _register(self, state: StationState, action: RegisterUnit) -> Iterator[StateChange]:
         unit = state.units.get(action.unit_id)

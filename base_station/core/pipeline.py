@@ -35,6 +35,7 @@ from base_station.core.state.command import SentCommand
 from base_station.core.state.resolve_queue import pop_due
 from base_station.core.trust.trust import update_trust_tallies
 from base_station.core.unit_messages import UnitMessages
+from base_station.fusion import fuser_named
 from base_station.fusion.interface import FuserKind
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.fusion.smoothing.interface import Smoother
@@ -48,7 +49,7 @@ from shared.messages import (
     OperatorAction,
     Tick,
 )
-from shared.messages.station import SetAnchor, SetPlan
+from shared.messages.station import SetAnchor, SetFuser, SetPlan
 
 
 class StationPipeline:
@@ -63,12 +64,12 @@ class StationPipeline:
         plans: PlanReader | None = None,
         make_alarms: Callable[[Sequence[AlarmRule]], AlarmManager] = AlarmManager,
     ) -> None:
-        """``plans``: for who has them read beforehand; ``make_alarms``: for who judges by other
-        thresholds beside.
+        """``fuser_kind``: until the log names another; ``plans``: for who has them read beforehand;
+        ``make_alarms``: for who judges by other thresholds beside.
         """
-        self._fuser_kind = fuser_kind
-        usable = checkpoint is not None and checkpoint.fuser == fuser_kind.name
         self.state = checkpoint.state if checkpoint is not None else StationState()
+        fuser_kind = fuser_named(self.state.fuser) or fuser_kind
+        usable = checkpoint is not None and checkpoint.fuser == fuser_kind.name
         plans = plans or PlanReader()
         for site in self.state.sites.values():
             plan = site.plan
@@ -91,7 +92,7 @@ class StationPipeline:
     def checkpoint(self) -> bytes:
         """To start again from here; ``read_checkpoint`` reads it."""
         saved, pinned = self._positioning.save()
-        return Checkpoint(self.state, self._fuser_kind.name, saved, pinned).to_bytes()
+        return Checkpoint(self.state, self._positioning.fuser, saved, pinned).to_bytes()
 
     def step(self, event: StationEvent) -> list[Output]:
         """Apply an event and return its outputs.  Never raises for what a sender or person does."""
@@ -180,7 +181,7 @@ class StationPipeline:
                 outputs.append(effect)
             else:
                 outputs.append(UnitChanged(effect.unit_id))
-        if isinstance(message.action, SetAnchor | SetPlan):  # who is silent was seen there too
+        if isinstance(message.action, SetAnchor | SetPlan | SetFuser):  # who is silent, too
             shown = [unit for unit in self.state.units.values() if unit.place.fused is not None]
             for unit in shown:
                 outputs.extend(self._positioning.locate(self.state, unit))

@@ -31,6 +31,7 @@ from base_station.fusion.interface import (
 from base_station.fusion.kernels import HorizontalEstimate, OdometryIncrement
 from base_station.fusion.odometry.odometry_increments import OdometryIncrements
 from base_station.fusion.odometry.recent_path import RecentPath
+from base_station.fusion.odometry.run_changes import jump_m, set_back_ns, strayed_m
 from base_station.fusion.parameters import Parameters
 from base_station.fusion.position_quality import quality_of
 from base_station.fusion.vertical.height import HeightFilter, climb_var_m2
@@ -123,11 +124,8 @@ class GpsInertialFuser:
                 return "older than the last position"
             if duration_s < 0.0:
                 self._on_clock_set_back(t_ns)
-            north_m, east_m = position.north_m - last.north_m, position.east_m - last.east_m
-            jumped_m = math.hypot(north_m, east_m)
-            if jumped_m > self._kind.fastest_mps * max(duration_s, 0.2) + 1.0:
-                strayed_m = max(self._kind.unguided_mps * duration_s, self._kind.restart_m)
-                self._horizontal.inflate_place(min(strayed_m, jumped_m) ** 2)
+            if jumped_m := jump_m(self._kind, last, position, duration_s):
+                self._horizontal.inflate_place(strayed_m(self._kind, jumped_m, duration_s) ** 2)
                 memory.last, memory.path = position, RecentPath()
                 memory.path.append(position)
                 memory.receiver.forget_path()
@@ -262,12 +260,10 @@ class GpsInertialFuser:
     def _restart(self, last_ns: int, t_ns: int, outage_s: float) -> None:
         """Begin a new run of the unit's program: its frame starts within the distance that the
         wearer can have walked in ``outage_s``, with unknown heading. Ages of fixes are kept
-        whatever the unit's clock did; with an unknown outage the clock went on or went back.
+        whatever the unit's clock did.
         """
         self._previous_run = self._ended_run()
-        memory = self._memory
-        known = 0.0 < outage_s < math.inf
-        back_ns = last_ns + round(outage_s * NS_PER_S) - t_ns if known else max(0, last_ns - t_ns)
+        memory, back_ns = self._memory, set_back_ns(last_ns, t_ns, outage_s)
         travel_std_m = max_travel_m(outage_s) / RADII_95
         self._horizontal.inflate_place(self._kind.restart_m**2 + travel_std_m**2)
         self._height.on_outage(self._kind.climb_part * travel_std_m, outage_s)

@@ -246,6 +246,7 @@ _ACTIONS: Mapping[str, Callable[[Said, NameOf], tuple[str, str]]] = {
         SITE,
         f"Pin for {name_of(said['unit_id'])}{': ' if said['note'] else ''}{said['note']}",
     ),
+    "SetFuser": lambda said, _: (STATION, f"Fuser of all units: {said['name']}"),
     "TakeOver": lambda said, _: (STATION, f"Station {said['station']} took over"),
     "DoneApart": lambda said, _: (
         STATION,

@@ -176,6 +176,12 @@ class SetThresholds(msgspec.Struct, frozen=True):
     thresholds: dict[str, float]
 
 
+class SetFuser(msgspec.Struct, frozen=True):
+    """Fuser of all units from here on, by its name."""
+
+    name: str
+
+
 class SetRest(msgspec.Struct, frozen=True):
     unit_id: str
     resting: bool
@@ -256,6 +262,7 @@ Action = (
     | UndoConfirmation
     | SetAccountability
     | SetThresholds
+    | SetFuser
     | SetRest
     | ForgetWearers
     | TakeOver
@@ -289,6 +296,7 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     UndoConfirmation: "undo_confirmation",
     SetAccountability: "set_accountability",
     SetThresholds: "set_thresholds",
+    SetFuser: "set_fuser",
     SetRest: "set_rest",
     ForgetWearers: "forget_wearers",
     TakeOver: "take_over",

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from tests.rig import message_factory
 from tests.rig.served_station import MakePosition, greet, prepare, snapshot
 from tests.rig.station_command import Browser, Command, Unit
@@ -20,6 +22,13 @@ def set_in(browser: Browser) -> list[dict[str, Any]]:
     return said[::-1]
 
 
+def fusers_set_in(browser: Browser) -> list[str]:
+    """Names of fusers in the audit, oldest first."""
+    entries = browser.call("GET", "/audit")
+    set_ = [json.loads(one["detail"])["name"] for one in entries if one["action"] == "SetFuser"]
+    return set_[::-1]
+
+
 def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
     serve: Callable[..., Command],
     tmp_path: Path,
@@ -28,11 +37,12 @@ def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
     make_position: MakePosition,
 ) -> None:
     settings = tmp_path / "station.toml"
-    settings.write_text("[alarms.battery]\nlow = 0.6\n")
+    settings.write_text('[positioning]\nfuser = "gps-switching"\n[alarms.battery]\nlow = 0.6\n')
     ours: dict[str, Any] = {"thresholds": {"battery.low": 0.6}}
     station = serve("--config", str(settings))
     with Browser(station.wait_ready(), data) as browser:
         until(lambda: set_in(browser) == [ours], "the thresholds are in the audit")
+        until(lambda: fusers_set_in(browser) == ["gps-switching"], "so is the fuser")
         prepare(browser)
         greet(browser, unit, make_position)
         unit.say(message_factory.status(unit.stamper.header(), battery=0.5))
@@ -44,22 +54,38 @@ def test_a_station_goes_by_its_settings_and_says_once_that_they_changed(
     again = serve("--config", str(settings))
     with Browser(again.wait_ready(), data) as browser:
         assert set_in(browser) == [ours]
+        assert fusers_set_in(browser) == ["gps-switching"]
     assert again.stop() == 0
 
     settings.write_text("")
     default = serve("--config", str(settings))
     with Browser(default.wait_ready(), data) as browser:
         until(lambda: set_in(browser) == [ours, {"thresholds": {}}], "the usual ones hold again")
+        both = ["gps-switching", "gps-inertial"]
+        until(lambda: fusers_set_in(browser) == both, "and the usual fuser")
     assert default.stop() == 0
 
 
-def test_a_threshold_that_makes_no_sense_starts_no_station(
-    serve: Callable[..., Command], tmp_path: Path, data: Path
+@pytest.mark.parametrize(
+    ("toml", "problem"),
+    [
+        (
+            "[alarms.no-motion]\nalarm_s = 0.5\n",
+            "alarms.no-motion.alarm_s: Expected `float` >= 5.0",
+        ),
+        (
+            '[positioning]\nfuser = "gps-inertia"\n',
+            "positioning.fuser: there is no 'gps-inertia'; did you mean gps-inertial?",
+        ),
+    ],
+)
+def test_a_setting_that_makes_no_sense_starts_no_station(
+    serve: Callable[..., Command], tmp_path: Path, data: Path, toml: str, problem: str
 ) -> None:
     settings = tmp_path / "station.toml"
-    settings.write_text("[alarms.no-motion]\nalarm_s = 0.5\n")
+    settings.write_text(toml)
     refused = serve("--config", str(settings))
     assert refused.wait() == 2
-    assert "alarms.no-motion.alarm_s: Expected `float` >= 5.0" in refused.said()
+    assert problem in refused.said()
     assert "Traceback" not in refused.said()
     assert not data.exists()

@@ -12,6 +12,7 @@ from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import limits_of
 from base_station.core.checkpoint import read_checkpoint
 from base_station.core.state.duty import ParConfirmation
+from base_station.fusion import FUSERS
 from shared.messages import (
     AlarmChange,
     AlarmState,
@@ -37,6 +38,7 @@ from shared.messages.station import (
     SendCommand,
     SetAccountability,
     SetAnchor,
+    SetFuser,
     SetPlan,
     SetRest,
     SetStart,
@@ -172,6 +174,10 @@ DEEDS: st.SearchStrategy[Deed] = st.one_of(
     st.builds(
         lambda v: lambda s: s.act(SetThresholds(v)),
         st.dictionaries(st.sampled_from(THRESHOLDS) | st.text(max_size=5), ANY),
+    ),
+    st.builds(
+        lambda n: lambda s: s.act(SetFuser(n)),
+        st.sampled_from([kind.name for kind in FUSERS]) | st.just("none"),
     ),
     st.builds(lambda u, r: lambda s: s.act(SetRest(u, r)), UNITS, st.booleans()),
     st.builds(lambda u: lambda s: s.act(ForgetWearers(u)), UNITS),

@@ -24,6 +24,10 @@ class PinnedUnits:
         self._smoother = smoother
         self._fusers = {unit_id: kind.restore(state) for unit_id, state in saved.items()}
 
+    def use_kind(self, kind: FuserKind) -> None:
+        """Another kind of fuser; the past of the units is to be solved again."""
+        self._kind, self._fusers = kind, {}
+
     def save(self) -> dict[str, bytes]:
         return {unit_id: fuser.save() for unit_id, fuser in self._fusers.items()}
 

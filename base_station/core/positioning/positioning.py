@@ -40,6 +40,7 @@ from base_station.core.positioning.start_position import begin, drop_learnt, rep
 from base_station.core.positioning.unit_fusers import UnitFusers
 from base_station.core.state import StationState, UnitState
 from base_station.core.state.boot_state import BootState
+from base_station.fusion import fuser_named
 from base_station.fusion.building_model.building import LearntBuilding
 from base_station.fusion.gnss.common_mode_error import CommonModeError
 from base_station.fusion.interface import MAX_FIX_DISTANCE_M, Fuser, FuserKind, Start
@@ -47,6 +48,7 @@ from base_station.fusion.smoothing.interface import Smoother
 from base_station.site.plan import Ring
 from base_station.site.plan_reader import PlanReader
 from shared.clock import NS_PER_S
+from shared.errors import UserError
 from shared.geo import Anchor
 from shared.messages import GpsFix, Position
 
@@ -83,6 +85,11 @@ class Positioning:
         self._plans = plans
         self._fusers = UnitFusers(kind, smoother, saved, saved_pinned)
         self._lost_contact: dict[str, LostContact] = {}  # by site
+
+    @property
+    def fuser(self) -> str:
+        """Name of the fuser of all units."""
+        return self._fusers.kind.name
 
     def save(self) -> tuple[dict[str, bytes], dict[str, bytes]]:
         """Saved states of the fusers: of those that ignore pins, and of those that follow them."""
@@ -194,6 +201,22 @@ class Positioning:
         """Use another plan; its floors may have other numbers."""
         self.set_map(state, site_id)
         renumber(state, site_id)
+
+    def use_fuser(self, state: StationState, name: str) -> set[str]:
+        """Use another fuser for all units, which go on where they are; returns those whose past is
+        to be solved again.  UserError where there is no such fuser.
+        """
+        kind = fuser_named(name)
+        if kind is None:
+            raise UserError(f"this version of Muster has no fuser {name!r}")
+        state.fuser = name
+        self._fusers.use_kind(kind, state)
+        return {
+            one
+            for site in state.sites.values()
+            for pin in site.pins.values()
+            for one in units_of(pin)
+        }
 
     def begin_incident(self, state: StationState, site_id: str, before_ns: int) -> set[str]:
         """Drop paths and pins of a site before that time; returns the units whose paths change by

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from base_station.core.pins.pinned_units import PinnedUnits
-from base_station.core.state import UnitState
+from base_station.core.positioning.fuser_change import succeed
+from base_station.core.state import StationState, UnitState
 from base_station.fusion.interface import Fuser, FuserKind
 from base_station.fusion.smoothing.interface import Smoother
 from base_station.site.floor_grid import FloorGrid
@@ -38,6 +39,16 @@ class UnitFusers:
         self.grids[site_id] = grid
         for fuser in self.existing(units):
             fuser.set_map(grid)
+
+    def use_kind(self, kind: FuserKind, state: StationState) -> None:
+        """Replace all fusers by those of another kind, which go on where the units are."""
+        if kind == self.kind:
+            return
+        self.kind, before = kind, self._plain
+        self.pinned.use_kind(kind)
+        self._plain = {}
+        for unit_id, fuser in before.items():
+            succeed(fuser, self.plain(state.units[unit_id]), state.units[unit_id].position)
 
     def plain(self, unit: UnitState) -> Fuser:
         """Fuser of a unit that ignores pins."""

@@ -55,6 +55,7 @@ class StationState(msgspec.Struct):
         default_factory=dict
     )  # pinned units: to be solved again
     thresholds: dict[str, float] = msgspec.field(default_factory=dict)  # of alarm rules
+    fuser: str = ""  # name of the fuser of all units; empty: the usual one
     problems: dict[str, str] = msgspec.field(default_factory=dict)  # by part of the station
     idempotency_records: dict[str, IdempotencyRecord] = msgspec.field(
         default_factory=dict

@@ -3,7 +3,8 @@
 Simulated incidents, each with a seed of its own: a building, six people, twenty minutes
 (``tests.rig.incident``).  All begin at the engine, whose place the commander has said and
 whose receiver the station hears; once nobody says so.  The peers are given a heading that is right
-to some five degrees; the fuser has to find it.
+to some five degrees; the fuser has to find it.  One of them is the rule of the documents, as the
+station has it beside its own fuser (``base_station.fusion.gps_switching``).
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from rich.console import Console
 from rich.table import Table
 
 from base_station.fusion import FUSERS
-from base_station.fusion.interface import FuserKind
+from base_station.fusion.gps_switching import GpsSwitching
+from base_station.fusion.interface import CompassHeading, FuserKind
 from base_station.fusion.smoothing import SMOOTHERS
 from shared.bench_figures import FiguresFile, write_figures
 from shared.errors import UserError
@@ -38,6 +40,7 @@ from tests.rig.incident.scores import (
     HELD_STAGES,
     FloorScores,
     Scores,
+    normalised2,
 )
 from tests.rig.incident.tracked import tracked_walks
 from tests.rig.incident.walking import Walkers, drawn_walks
@@ -50,6 +53,7 @@ WITH_PLAN, WITHOUT = "with the plan", "without a plan"
 UNTOLD = "without a plan, nor where the engine is"
 KNOWN = {WITH_PLAN: Known(plan=True), WITHOUT: Known(plan=False), UNTOLD: Known(False, False)}
 BOUND = "best by path and fixes, without a plan"
+FIXES, PATH, SWITCHING = "fixes alone", "path alone", "switching"
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +127,7 @@ class _Tally:
 
     def __init__(self, kind: FuserKind) -> None:
         self._kind = kind
-        names = (*KNOWN, BOUND, "fixes alone", "path alone", "switching")
+        names = (*KNOWN, BOUND, FIXES, PATH, SWITCHING)
         self._ways = {name: Scores() for name in names}
         self._timing, self._right = Timing(), FloorScores()
         self._afterwards = smoothing.SmoothingScores(SMOOTHERS[0])
@@ -138,8 +142,10 @@ class _Tally:
             live_m, then_m = (draw_errors_m(rng, one_m2) for one_m2 in best_m2)
             self._ways[BOUND].note(person.truth, person.truth.place_m[:, :2] + live_m, None)
             self._afterwards.note_bound(person.truth, live_m, then_m)
-            for name, places_m in _peers(person, rng).items():
+            turn_rad = person.turn_rad + rng.normal(0.0, PEER_HEADING_STD_RAD)
+            for name, places_m in _alone(person, turn_rad).items():
                 self._ways[name].note(person.truth, places_m, None)
+            self._ways[SWITCHING].note(person.truth, *_switching(person, turn_rad))
 
     def add(self, other: _Tally) -> None:
         """The incidents that another one has taken, behind one's own."""
@@ -171,7 +177,8 @@ class _Tally:
             ce95_m={name: _percentiles(way, 95.0) for name, way in ways.items()},
             seam_95_m={name: float(np.percentile(way.seams_m, 95.0)) for name, way in ways.items()},
             held_95={
-                name: {stage: ways[name].held_95(stage) for stage in HELD_STAGES} for name in KNOWN
+                name: {stage: ways[name].held_95(stage) for stage in HELD_STAGES}
+                for name in (*KNOWN, SWITCHING)
             },
             astray={name: {how: ways[name].part_astray(how) for how in ASTRAY} for name in KNOWN},
             floor_right=self._right.part_right(),
@@ -189,28 +196,37 @@ class _Tally:
         )
 
 
-def _peers(person: Person, rng: np.random.Generator) -> dict[str, Floats]:
-    """Where simpler ways put the wearer, row by row."""
-    truth = person.truth
-    turn_rad = person.turn_rad + rng.normal(0.0, PEER_HEADING_STD_RAD)
+def _alone(person: Person, turn_rad: float) -> dict[str, Floats]:
+    """Where fixes alone and the path alone put the wearer, row by row."""
     cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
     own_m = np.array([(position.north_m, position.east_m) for position in person.positions])
     path_m = own_m @ np.array([[cosine, sine], [-sine, cosine]])
-    alone = np.zeros_like(path_m)
-    switching = np.zeros_like(path_m)
-    last, last_path_m = np.zeros(2), path_m[0]
+    fixes_m, last_m = np.zeros_like(path_m), np.zeros(2)
     for row in range(len(path_m)):
         fix = person.fixes.get(row)
         if fix is not None:
-            last, last_path_m = np.array([fix.north_m, fix.east_m]), path_m[row]
-        alone[row] = last
-        switching[row] = last + path_m[row] - last_path_m
-    begin = truth.place_m[0, :2] - path_m[0]
-    return {
-        "fixes alone": alone,
-        "path alone": path_m + begin,
-        "switching": switching,
-    }
+            last_m = np.array([fix.north_m, fix.east_m])
+        fixes_m[row] = last_m
+    return {FIXES: fixes_m, PATH: path_m + person.truth.place_m[0, :2] - path_m[0]}
+
+
+def _switching(person: Person, turn_rad: float) -> tuple[Floats, Floats]:
+    """Where the documents' rule puts the wearer, (n, 2), and normalised squared errors, (n,).  It
+    has the raw fixes, and a compass once, at the beginning.
+    """
+    fuser, truth_m = GpsSwitching().new(), person.truth.place_m[:, :2]
+    fuser.update_heading(CompassHeading(turn_rad, PEER_HEADING_STD_RAD))
+    places_m, normalised = np.zeros_like(truth_m), np.zeros(len(truth_m))
+    for row, position in enumerate(person.positions):
+        fuser.predict(position)
+        fix = person.fixes.get(row)
+        if fix is not None:
+            fuser.update_gnss(fix)
+        estimate = fuser.estimate()
+        assert estimate is not None
+        places_m[row] = estimate.north_m, estimate.east_m
+        normalised[row] = normalised2(estimate, places_m[row] - truth_m[row])
+    return places_m, normalised
 
 
 def _percentiles(scores: Scores, percent: float) -> dict[str, float]:
@@ -226,7 +242,7 @@ def _errors_table(report: FusionReport) -> Table:
         cells = [
             f"{ce50_m[stage]:.1f} / {report.ce95_m[name][stage]:.1f}" for stage in ERROR_STAGES
         ]
-        title = f"{report.fuser}, {name}" if name in report.held_95 else name
+        title = f"{report.fuser}, {name}" if name in KNOWN else name
         seam = "" if name == BOUND else f"{report.seam_95_m[name]:.1f}"
         table.add_row(title, *cells, seam)
     table.add_row("to reach", "2.0", "3.0", "", "")

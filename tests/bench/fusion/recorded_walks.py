@@ -18,7 +18,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from base_station.fusion.interface import FuserKind
+from base_station.fusion.gps_switching import GpsSwitching
+from base_station.fusion.interface import CompassHeading, FuserKind
 from shared.errors import UserError
 from tests.bench.fusion.simulated_walks import RATE_HZ, Errors, Floats, Receiver, Walk, run
 from tests.rig.incident.scores import CHI2_95_2DOF
@@ -26,6 +27,7 @@ from tests.rig.incident.scores import CHI2_95_2DOF
 WITH_GPS = 0.6  # of a walk
 DRAWS = 24  # what all receivers share hardly changes during a walk: each draw has one
 SETTLED_S = 20.0
+PEER_HEADING_STD_RAD = math.radians(5.0)
 ERRORS = Errors(common_m=1.5)  # orbits, clocks and the air, where nobody takes them off
 
 
@@ -80,11 +82,14 @@ def fuse_recorded(kind: FuserKind, tracked: list[Tracked], draws: int = DRAWS) -
             held = np.array(fused.normalised2) < CHI2_95_2DOF
             scores.held_with += held[begin:cut].tolist()
             scores.held_after += held[cut:].tolist()
-            again = np.random.default_rng(100 * number + draw)
-            turned(recorded, again)  # so that the receiver errs for the peers as for the fuser
-            alone_m, switching_m = _peers(walk, Receiver(again, ERRORS), cut, rng)
-            scores.note("fixes alone", alone_m[begin:cut], alone_m[cut:])
+            turn_rad = _best_turn_rad(walk) + rng.normal(0.0, PEER_HEADING_STD_RAD)
+            switching = GpsSwitching().new()
+            switching.update_heading(CompassHeading(turn_rad, PEER_HEADING_STD_RAD))
+            peer = run(switching, walk, _again(recorded, number, draw), (-math.inf, until_s))
+            switching_m = np.array(peer.error_m)
             scores.note("switching", switching_m[begin:cut], switching_m[cut:])
+            alone_m = _fixes_alone_m(walk, _again(recorded, number, draw), cut)
+            scores.note("fixes alone", alone_m[begin:cut], alone_m[cut:])
     return scores
 
 
@@ -117,25 +122,22 @@ def turned(recorded: Tracked, rng: np.random.Generator) -> Walk:
     )
 
 
-def _peers(
-    walk: Walk, receiver: Receiver, cut: int, rng: np.random.Generator
-) -> tuple[Floats, Floats]:
-    """Errors of fixes alone, and of the last fix carried on by the path with a heading that is
-    right to five degrees.
-    """
-    turn_rad = _best_turn_rad(walk) + rng.normal(0.0, math.radians(5.0))
-    cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
-    path_m = walk.own_m @ np.array([[cosine, sine], [-sine, cosine]])
-    alone_m, switching_m = np.zeros(len(walk)), np.zeros(len(walk))
-    last_m, at = np.zeros(2), 0
+def _again(recorded: Tracked, number: int, draw: int) -> Receiver:
+    """A receiver that errs for a peer as it does for the fuser."""
+    rng = np.random.default_rng(100 * number + draw)
+    turned(recorded, rng)
+    return Receiver(rng, ERRORS)
+
+
+def _fixes_alone_m(walk: Walk, receiver: Receiver, cut: int) -> Floats:
+    """Errors of the last fix."""
+    alone_m, last_m = np.zeros(len(walk)), np.zeros(2)
     for index in range(len(walk)):
         if index % RATE_HZ == 0 and index < cut:
             fix = receiver.fix(float(walk.t_s[index]), walk.truth_m[index])
-            last_m, at = np.array([fix.north_m, fix.east_m]), index
+            last_m = np.array([fix.north_m, fix.east_m])
         alone_m[index] = np.linalg.norm(last_m - walk.truth_m[index])
-        carried_m = last_m + path_m[index] - path_m[at]
-        switching_m[index] = np.linalg.norm(carried_m - walk.truth_m[index])
-    return alone_m, switching_m
+    return alone_m
 
 
 def _best_turn_rad(walk: Walk) -> float:

@@ -9,14 +9,18 @@ CONFIGURED = {"heat.caution_degc": 90.0}
 
 
 def test_live_state_before_the_log_is_read_is_of_the_settings() -> None:
-    live = LiveState(CONFIGURED)
+    live = LiveState(CONFIGURED, "gps-switching")
+    assert live.fuser == "gps-switching"
     assert not live.is_in_incident()
     assert (live.problems, live.thresholds) == ({}, CONFIGURED)
 
 
 def test_live_state_follows_the_log() -> None:
-    live, state = LiveState(CONFIGURED), StationState()
+    live, state = LiveState(CONFIGURED, "gps-switching"), StationState()
     live.begin(state)
+    assert live.fuser == "gps-inertial"
+    state.fuser = "gps-switching"
+    assert live.fuser == "gps-switching"
     assert not live.is_in_incident()
     state.incident = Incident("i1", "Fire", 1, closed_ns=None)
     assert live.is_in_incident()

@@ -1,0 +1,325 @@
+"""Fuser by the rule of Li et al. 2014: GPS while there is any, else dead reckoning from the last.
+
+The place is that of the newest fix; until the next one the own path goes on from there.  The
+heading of the own frame is what GPS shows of the course, or the compass, or the start, whichever is
+surest.  Height is as in the other fuser, from barometer, own path and fixes, without storeys.
+
+No fix is held against the path or the fixes before, so that an outlier, or a wrong fix indoors,
+moves the wearer there, and the stated error is what the receiver states; a fix without an accuracy
+has the one that the screening gives it.  No plan and no learnt building is used.  It is a baseline:
+what more the default fuser gives is the difference between the two.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import msgspec
+
+from base_station.fusion.building_model.building import LearntBuilding
+from base_station.fusion.dead_reckoning import DeadReckoning
+from base_station.fusion.interface import (
+    BarometricHeight,
+    CompassHeading,
+    Estimate,
+    FixVerdict,
+    PlaceFix,
+    Posterior,
+    Start,
+)
+from base_station.fusion.kernels import HorizontalEstimate
+from base_station.fusion.odometry.odometry_increments import OdometryIncrements
+from base_station.fusion.odometry.recent_path import PathPoint, RecentPath
+from base_station.fusion.odometry.run_changes import jump_m, set_back_ns, strayed_m
+from base_station.fusion.parameters import Parameters
+from base_station.fusion.position_quality import quality_of
+from base_station.fusion.vertical.height import HeightFilter, SavedHeight, climb_var_m2
+from base_station.site.floor_grid import FloorGrid
+from base_station.site.max_travel import RADII_95, max_travel_m
+from base_station.site.storeys import Storey
+from shared.clock import NS_PER_S
+from shared.messages import Position
+
+
+@dataclass(frozen=True, slots=True)
+class GpsSwitching(Parameters):
+    """The kind that makes these fusers."""
+
+    name: str = "gps-switching"
+    course_m: float = 20.0  # of own path between two fixes that show a course
+    course_most_m: float = 50.0  # then the course is measured from the next fix
+
+    def new(self) -> GpsSwitchingFuser:
+        return GpsSwitchingFuser(self, _Memory(DeadReckoning(self.scale_std)))
+
+    def restore(self, saved: bytes) -> GpsSwitchingFuser:
+        return GpsSwitchingFuser(self, msgspec.msgpack.decode(saved, type=_Memory))
+
+
+class _CourseFix(msgspec.Struct, frozen=True):
+    """Fix from which a course is measured, with the own path's place then."""
+
+    fix: PlaceFix
+    own: PathPoint
+
+
+class _Memory(msgspec.Struct):
+    """State of a fuser, and its serialised form."""
+
+    reckoning: DeadReckoning
+    height: SavedHeight | None = None
+    odometry: bytes = b""
+    previous_run: bytes = b""  # of the run before this one, as it ended
+    assumed: bool = True  # nothing ties the own frame to the incident frame
+    height_assumed: bool = True
+    last: Position | None = None
+    path: RecentPath = msgspec.field(default_factory=RecentPath)
+    fix_t_mono_ns: int | None = None  # the newest fix
+    course_from: _CourseFix | None = None
+
+
+class GpsSwitchingFuser:
+    """One unit's place by the newest fix and the own path since; see the module's text."""
+
+    def __init__(self, kind: GpsSwitching, memory: _Memory) -> None:
+        self._kind = kind
+        self._memory = memory
+        self._height = HeightFilter(kind)
+        if memory.height is not None:
+            self._height.load(memory.height)
+        self._odometry = OdometryIncrements(kind, memory.odometry)
+        self._previous_run = kind.restore(memory.previous_run) if memory.previous_run else None
+
+    def save(self) -> bytes:
+        memory = self._memory
+        memory.height, memory.odometry = self._height.save(), self._odometry.save()
+        memory.previous_run = b"" if self._previous_run is None else self._previous_run.save()
+        return msgspec.msgpack.encode(memory)
+
+    def start(self, start: Start) -> None:
+        memory, reckoning = self._memory, self._memory.reckoning
+        reckoning.set_turn(start.heading_rad, start.heading_std_rad)
+        place_var_m2 = (start.std_m**2, start.std_m**2, 0.0)
+        reckoning.set_place((start.north_m, start.east_m), place_var_m2, (0.0, 0.0))
+        self._height.reset(start.down_m, start.std_m)
+        memory.assumed = memory.height_assumed = False
+        memory.course_from = None
+        if memory.last is not None:
+            self._predict(OdometryIncrements(self._kind), memory.last, 0.0)
+
+    def set_posterior(self, posterior: Posterior) -> None:
+        north_m, east_m, cosine, sine, _ = posterior.mean
+        (var_n, cov_ne, *_), (_, var_e, *_), (_, _, var_c, cov_cs, _), (_, _, _, var_s, _), _ = (
+            posterior.covariance
+        )
+        size = math.hypot(cosine, sine)
+        across = sine**2 * var_c - 2.0 * sine * cosine * cov_cs + cosine**2 * var_s
+        reckoning = self._memory.reckoning
+        reckoning.set_turn(math.atan2(sine, cosine), math.sqrt(max(across, 0.0)) / size**2)
+        reckoning.set_place((north_m, east_m), (var_n, var_e, cov_ne), self._own_m())
+        self._memory.assumed = False
+        if posterior.down_std_m is not None:
+            self._height.reset(self._height.down_m + posterior.down_shift_m, posterior.down_std_m)
+
+    def set_map(self, grid: FloorGrid | None) -> None:
+        """Walls are not part of the rule."""
+
+    def predict(self, position: Position, outage_s: float = 0.0) -> str:
+        kind, memory, last = self._kind, self._memory, self._memory.last
+        t_ns, duration_s = position.header.t_mono_ns, 0.0
+        if last is not None and last.header.boot_id != position.header.boot_id:
+            self._restart(last.header.t_mono_ns, t_ns, outage_s)
+            last = None
+        if last is not None:
+            duration_s = (t_ns - last.header.t_mono_ns) / NS_PER_S
+            if duration_s < 0.0 and position.header.seq < last.header.seq:
+                return "older than the last position"
+            if duration_s < 0.0:
+                self._on_clock_set_back(t_ns)
+            if jumped_m := jump_m(kind, last, position, duration_s):
+                self._hold_place(strayed_m(kind, jumped_m, duration_s) ** 2, position)
+                self._odometry.reset_to(position)
+                memory.last, memory.path = position, RecentPath()
+                memory.path.append(position)
+                return "the unit's own path jumped"
+        self._predict(self._odometry, position, max(duration_s, 0.0))
+        memory.last = position
+        memory.path.append(position)
+        return ""
+
+    def update_barometer(self, air: BarometricHeight) -> None:
+        self._height.update_barometer(air)
+
+    def update_heading(self, heading: CompassHeading) -> None:
+        self._set_turn(heading.turn_rad, heading.std_rad)
+
+    def constrain_to_floors(self, storeys: Sequence[Storey]) -> None:
+        """Storeys are not part of the rule."""
+
+    def match_building(self, learnt: LearntBuilding) -> LearntBuilding:
+        """Nothing of a building is learnt or used."""
+        return learnt
+
+    def update_gnss(self, fix: PlaceFix) -> FixVerdict:
+        memory, kind = self._memory, self._kind
+        then = memory.path.at(fix.t_mono_ns)
+        if isinstance(then, str):
+            return FixVerdict(False, then)
+        if memory.fix_t_mono_ns is not None and fix.t_mono_ns < memory.fix_t_mono_ns:
+            return FixVerdict(False, "older than the fix in use")
+        self._update_course(fix, then)
+        var_m2 = fix.horizontal_std_m**2
+        memory.reckoning.set_place(
+            (fix.north_m, fix.east_m), (var_m2, var_m2, 0.0), (then.north_m, then.east_m)
+        )
+        if fix.vertical_std_m is not None:
+            self._height.update_gnss(fix.down_m, max(fix.vertical_std_m, kind.height_std_floor_m))
+        if fix.horizontal_std_m < kind.open_sky_m:
+            memory.height_assumed = False
+        memory.assumed, memory.fix_t_mono_ns = False, fix.t_mono_ns
+        return FixVerdict(True)
+
+    def reframe(self, turn_rad: float, north_m: float, east_m: float, down_m: float) -> None:
+        self._memory.reckoning.reframe(turn_rad, north_m, east_m)
+        self._memory.course_from = None
+        self._height.shift(down_m)
+        if self._previous_run is not None:
+            self._previous_run.reframe(turn_rad, north_m, east_m, down_m)
+
+    def estimate(self) -> Estimate | None:
+        memory = self._memory
+        if memory.last is None and memory.fix_t_mono_ns is None:
+            return None
+        last = memory.last
+        t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
+        heading_rad = last.heading_rad if last else 0.0
+        height = self._height.down_m, self._height.variance_m2
+        placed = memory.reckoning.estimate_at(self._own_m())
+        return self._to_estimate(t_mono_ns, heading_rad, placed, height)
+
+    def insert_late_position(self, position: Position) -> None:
+        last = self._memory.last
+        if last is not None and last.header.boot_id == position.header.boot_id:
+            self._memory.path.insert_late(position)
+
+    def estimate_at(self, position: Position) -> Estimate | None:
+        last, kind = self._memory.last, self._kind
+        if last is None or last.header.boot_id != position.header.boot_id:
+            return None if self._previous_run is None else self._previous_run.estimate_at(position)
+        back_m = last.north_m - position.north_m, last.east_m - position.east_m
+        own_m = position.north_m, position.east_m
+        placed = self._memory.reckoning.estimate_at(own_m, back_m)
+        walked_m = abs(last.distance_m - position.distance_m)
+        climbed_m = last.down_m - position.down_m
+        height_var_m2 = self._height.variance_m2 + climb_var_m2(kind, climbed_m, walked_m)
+        return self._to_estimate(
+            position.header.t_mono_ns,
+            position.heading_rad,
+            placed.inflated(kind.walk_m_per_sqrt_m**2 * walked_m),
+            (self._height.down_m - climbed_m, height_var_m2),
+        )
+
+    def _to_estimate(
+        self,
+        t_mono_ns: int,
+        own_heading_rad: float,
+        placed: HorizontalEstimate,
+        height: tuple[float, float],
+    ) -> Estimate:
+        """``height`` with its variance."""
+        memory, fix_ns = self._memory, self._memory.fix_t_mono_ns
+        quality, reason = quality_of(
+            self._kind, placed, memory.last, assumed=memory.assumed, split=False
+        )
+        return Estimate(
+            t_mono_ns=t_mono_ns,
+            north_m=placed.north_m,
+            east_m=placed.east_m,
+            down_m=height[0],
+            std_north_m=placed.std_north_m,
+            std_east_m=placed.std_east_m,
+            std_down_m=math.sqrt(height[1]),
+            correlation_ne=placed.correlation_ne,
+            heading_rad=(placed.turn_rad + own_heading_rad) % (2.0 * math.pi),
+            heading_std_rad=placed.turn_std_rad,
+            quality=quality,
+            quality_reason=reason,
+            since_gps_s=None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
+            height_assumed=memory.height_assumed,
+            assumed=memory.assumed,
+        )
+
+    def _own_m(self) -> tuple[float, float]:
+        last = self._memory.last
+        return (0.0, 0.0) if last is None else (last.north_m, last.east_m)
+
+    def _predict(self, odometry: OdometryIncrements, position: Position, duration_s: float) -> None:
+        increment = odometry.increment(position, duration_s)
+        self._memory.reckoning.predict(increment)
+        moves = increment.moving_s > 0.0
+        self._height.predict(increment.down_m, increment.length_m, position.std_down_m, moves=moves)
+
+    def _set_turn(self, turn_rad: float, std_rad: float) -> None:
+        """Use a heading of the own north that is no less sure than the present one."""
+        if std_rad <= self._memory.reckoning.turn_std_rad:
+            self._memory.reckoning.set_turn(turn_rad, std_rad)
+
+    def _update_course(self, fix: PlaceFix, then: PathPoint) -> None:
+        """Measure the turn of the own frame by the course between two fixes."""
+        memory, kind = self._memory, self._kind
+        before = memory.course_from
+        if before is None:
+            memory.course_from = _CourseFix(fix, then)
+            return
+        own = complex(then.north_m - before.own.north_m, then.east_m - before.own.east_m)
+        seen = complex(fix.north_m - before.fix.north_m, fix.east_m - before.fix.east_m)
+        apart_m = abs(own)
+        if apart_m >= kind.course_m and seen:
+            std_m = math.hypot(fix.horizontal_std_m, before.fix.horizontal_std_m)
+            turn = seen / own
+            self._set_turn(math.atan2(turn.imag, turn.real), std_m / apart_m)
+        if apart_m >= kind.course_most_m:
+            memory.course_from = _CourseFix(fix, then)
+
+    def _hold_place(self, var_m2: float, at: Position | None) -> None:
+        """The wearer is still about where the estimate is, though the own path broke off; it goes
+        on at ``at``, or at the origin of another own frame.
+        """
+        placed = self._memory.reckoning.estimate_at(self._own_m()).inflated(var_m2)
+        between_m2 = placed.correlation_ne * placed.std_north_m * placed.std_east_m
+        self._memory.reckoning.set_place(
+            (placed.north_m, placed.east_m),
+            (placed.std_north_m**2, placed.std_east_m**2, between_m2),
+            (0.0, 0.0) if at is None else (at.north_m, at.east_m),
+        )
+        self._memory.course_from = None
+
+    def _on_clock_set_back(self, t_mono_ns: int) -> None:
+        """Drop times of a unit's clock that had been ahead and was set back."""
+        memory = self._memory
+        memory.path, memory.course_from = RecentPath(), None
+        if memory.fix_t_mono_ns is not None:
+            memory.fix_t_mono_ns = min(memory.fix_t_mono_ns, t_mono_ns)
+
+    def _restart(self, last_ns: int, t_ns: int, outage_s: float) -> None:
+        """Begin a new run of the unit's program: its frame starts within the distance that the
+        wearer can have walked in ``outage_s``, with unknown heading.
+        """
+        self._previous_run = self._ended_run()
+        memory, kind = self._memory, self._kind
+        travel_std_m = max_travel_m(outage_s) / RADII_95
+        self._hold_place(kind.restart_m**2 + travel_std_m**2, None)
+        memory.reckoning.set_turn(0.0, math.pi)
+        self._height.on_outage(kind.climb_part * travel_std_m, outage_s)
+        memory.path = RecentPath()
+        if memory.fix_t_mono_ns is not None:
+            memory.fix_t_mono_ns -= set_back_ns(last_ns, t_ns, outage_s)
+        self._odometry = OdometryIncrements(kind)
+
+    def _ended_run(self) -> GpsSwitchingFuser:
+        """Copy of this fuser for positions of the ended run that come late."""
+        memory = msgspec.msgpack.decode(self.save(), type=_Memory)
+        memory.previous_run, memory.path = b"", RecentPath()
+        return GpsSwitchingFuser(self._kind, memory)
