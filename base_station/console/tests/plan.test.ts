@@ -4,7 +4,6 @@ import { firstFloor, floorRemark, floorsOf, floorsUp } from "../src/plan/floors"
 import type { Colours } from "../src/plan/colours";
 import {
   colourOf,
-  filling,
   floorArrow,
   isHollow,
   isStrong,
@@ -31,12 +30,6 @@ const PLAN: Plan = {
 };
 
 describe("the region of a position", () => {
-  it("is the fainter the larger it is, so that it does not hide the plan", () => {
-    expect(filling({ old: false }, 1)).toBe(filling({ old: false }, 3));
-    expect(filling({ old: true }, 36)).toBeGreaterThan(0.15); // all of a house, by its walls
-    expect(filling({ old: true }, 250)).toBeLessThan(0.03);
-  });
-
   it("is as the station stated while the station can be heard", () => {
     expect(regionAt(position(), 0).major_m).toBe(2);
   });

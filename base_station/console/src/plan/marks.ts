@@ -1,4 +1,4 @@
-/** How a person is drawn on the plan: trail, region, mark with heading, label. */
+/** How a person is drawn on the plan: trail, mark with heading, label. */
 import { Fill, Stroke, Style, Text } from "ol/style";
 import type { State as RenderState } from "ol/render";
 import type { Urgency } from "../live/urgency";
@@ -28,11 +28,6 @@ const CORNERS: Partial<Record<Urgency, readonly [count: number, first: number]>>
 const RADIUS_PX = 13;
 const DANGER_RADIUS_PX = 17; // has room for the initials beside "!"
 const ARROW_PX = 10;
-const HATCH_PX = 12;
-const MOST_FILLING = 0.18;
-const FULL_RADIUS_M = 3; // up to here a region has all of its filling
-const MOST_HATCHING = 0.3;
-const FULL_HATCHING_M = 20; // the same of an old one's hatching
 
 export function trailStyle(mark: Mark, colours: Colours): Style {
   const colour = mark.chosen ? colours.chosen : colours[mark.urgency];
@@ -66,25 +61,6 @@ export function floorArrow({ floorsUp }: Pick<Mark, "floorsUp">): string {
 /** Only what is on the floor shown, and new, is filled. */
 export function isHollow({ old, floorsUp }: Pick<Mark, "old" | "floorsUp">): boolean {
   return old || floorsUp !== 0;
-}
-
-/** The larger a region, the fainter its filling: many large ones must not hide the plan. */
-export function filling({ old }: Pick<Mark, "old">, radiusM: number): number {
-  const [most, fullM] = old ? [MOST_HATCHING, FULL_HATCHING_M] : [MOST_FILLING, FULL_RADIUS_M];
-  return (most * fullM) / Math.max(radiusM, fullM);
-}
-
-export function regionStyle(mark: Mark, radiusM: number, colours: Colours): Style {
-  const colour = colourOf(mark, colours);
-  const opacity = filling(mark, radiusM);
-  return new Style({
-    fill: new Fill({ color: mark.old ? hatching(colour, opacity) : faint(colour, opacity) }),
-    stroke: new Stroke({
-      color: faint(colour, mark.chosen ? 1 : 0.75),
-      width: mark.chosen ? 2.5 : 1.5,
-      ...(mark.old ? { lineDash: [6, 5] } : {}),
-    }),
-  });
 }
 
 export function labelOf(mark: Mark): string {
@@ -206,20 +182,4 @@ function drawArrow(
   context.fillStyle = colour;
   context.fill();
   context.restore();
-}
-
-function hatching(colour: string, opacity: number): CanvasPattern | string {
-  const tile = document.createElement("canvas");
-  tile.width = tile.height = HATCH_PX;
-  const context = tile.getContext("2d");
-  if (context === null) return faint(colour, opacity);
-  context.strokeStyle = faint(colour, opacity);
-  context.lineWidth = 1.2;
-  context.beginPath();
-  for (const x of [-HATCH_PX, 0, HATCH_PX]) {
-    context.moveTo(x, HATCH_PX);
-    context.lineTo(x + HATCH_PX, 0);
-  }
-  context.stroke();
-  return context.createPattern(tile, "repeat") ?? faint(colour, opacity);
 }

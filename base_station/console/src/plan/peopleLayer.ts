@@ -1,10 +1,8 @@
 /** Everybody on the plan: layers whose features follow the picture. */
-import type { Coordinate } from "ol/coordinate";
-import { boundingExtent, type Extent } from "ol/extent";
+import type { Extent } from "ol/extent";
 import Feature from "ol/Feature";
 import MultiLineString from "ol/geom/MultiLineString";
 import Point from "ol/geom/Point";
-import Polygon from "ol/geom/Polygon";
 import VectorLayer from "ol/layer/Vector";
 import { measureTextWidth } from "ol/render/canvas";
 import VectorSource from "ol/source/Vector";
@@ -22,7 +20,6 @@ import {
   labelOf,
   labelStyle,
   markStyle,
-  regionStyle,
   trailStyle,
   type Mark,
 } from "./marks";
@@ -36,6 +33,7 @@ import {
   type Screen,
   type Side,
 } from "./names";
+import { RegionLayer } from "./regionLayer";
 import { siteCoordinate } from "./site";
 import { spanMs, trailLines } from "./trail";
 
@@ -57,9 +55,9 @@ const LABEL_LIMIT = 12;
 /** Somebody who is to be drawn. */
 interface Shown {
   unit: UnitView;
-  position: PositionView;
   looks: Mark;
   centre: [number, number];
+  border: [number, number][];
   figure: Figure;
 }
 
@@ -67,7 +65,6 @@ interface Shown {
 interface Figure {
   named: Side | null;
   trail: Feature<MultiLineString>;
-  region: Feature<Polygon>;
   mark: Feature<Point>;
   label: Feature<Point>;
 }
@@ -85,11 +82,11 @@ export class PeopleLayer {
   endangered: readonly Endangered[] = [];
   private readonly figures = new Map<string, Figure>();
   private readonly trails = new VectorSource<Feature<MultiLineString>>();
-  private readonly regions = new VectorSource<Feature<Polygon>>();
+  private readonly regions = new RegionLayer();
   private readonly marks = new VectorSource<Feature<Point>>();
   private readonly labels = new VectorSource<Feature<Point>>();
   readonly layers = [
-    new VectorLayer({ source: this.regions }),
+    this.regions.layer,
     new VectorLayer({ source: this.trails }),
     new VectorLayer({ source: this.marks }),
     new VectorLayer({ source: this.labels, declutter: true }),
@@ -104,7 +101,8 @@ export class PeopleLayer {
         if (position === null || !isShown(unit, position, scene)) return;
         const looks = markOf(unit, position, scene);
         const centre = siteCoordinate(position);
-        shown.set(unit.unit_id, { unit, position, looks, centre, figure: this.figure(unit.unit_id) });
+        const border = isMissed(unit, looks) ? outline(centre, position, scene.silentMs) : [];
+        shown.set(unit.unit_id, { unit, looks, centre, border, figure: this.figure(unit.unit_id) });
       });
     }
     for (const unitId of this.figures.keys()) {
@@ -121,6 +119,7 @@ export class PeopleLayer {
       }));
     const named = namedOf(all, scene.screen);
     const places = placeNames(named, scene.screen);
+    this.regions.show(all, scene.colours);
     all.forEach((one, i) =>
       guarded(`${one.unit.unit_id} on the plan`, () => draw(one, places[i] ?? null, scene)),
     );
@@ -145,15 +144,11 @@ export class PeopleLayer {
     const figure = {
       named: null,
       trail: new Feature(new MultiLineString([])),
-      region: new Feature(new Polygon([])),
       mark: new Feature(new Point([0, 0])),
       label: new Feature(new Point([0, 0])),
     };
-    for (const feature of [figure.trail, figure.region, figure.mark, figure.label]) {
-      feature.setId(unitId);
-    }
+    for (const feature of [figure.trail, figure.mark, figure.label]) feature.setId(unitId);
     this.trails.addFeature(figure.trail);
-    this.regions.addFeature(figure.region);
     this.marks.addFeature(figure.mark);
     this.labels.addFeature(figure.label);
     this.figures.set(unitId, figure);
@@ -165,7 +160,6 @@ export class PeopleLayer {
     if (figure === undefined) return;
     this.figures.delete(unitId);
     this.trails.removeFeature(figure.trail);
-    this.regions.removeFeature(figure.region);
     this.marks.removeFeature(figure.mark);
     this.labels.removeFeature(figure.label);
   }
@@ -180,26 +174,18 @@ function namedOf(all: readonly Shown[], screen: Screen): Named[] {
   }));
 }
 
-function draw({ unit, position, looks, centre, figure }: Shown, name: Place | null, scene: Scene): void {
-  const { trail, region, mark, label } = figure;
+function draw({ unit, looks, centre, figure }: Shown, name: Place | null, scene: Scene): void {
+  const { trail, mark, label } = figure;
   const { colours } = scene;
   const walked = hasTrail(looks, scene) ? (scene.trails.get(unit.unit_id) ?? []) : [];
   const drawnMs = spanMs(looks.chosen, looks.urgency);
   trail.getGeometry()?.setCoordinates(trailLines(walked, scene.nowMs, scene.floor, drawnMs));
-  const border = isMissed(unit, looks) ? outline(centre, position, scene.silentMs) : [];
-  region.getGeometry()?.setCoordinates([border]);
   mark.getGeometry()?.setCoordinates(centre);
   label.getGeometry()?.setCoordinates(centre);
   trail.setStyle(trailStyle(looks, colours));
-  region.setStyle(regionStyle(looks, radiusOf(border), colours));
   mark.setStyle(markStyle(looks, colours));
   figure.named = name?.side ?? null;
   label.setStyle(name === null ? [] : labelStyle(looks, colours, name.offset));
-}
-
-function radiusOf(border: readonly Coordinate[]): number {
-  const [west = 0, south = 0, east = 0, north = 0] = boundingExtent([...border]);
-  return Math.max(east - west, north - south) / 2;
 }
 
 /** On the chosen floor or on a floor that nobody knows; and wherever they are, who is chosen and who

@@ -1,0 +1,160 @@
+/** Draws where people are with 95 % probability: an ellipse, or what the walls leave to them. */
+import type { Coordinate } from "ol/coordinate";
+import { boundingExtent } from "ol/extent";
+import Feature from "ol/Feature";
+import MultiPolygon from "ol/geom/MultiPolygon";
+import Polygon from "ol/geom/Polygon";
+import VectorLayer from "ol/layer/Vector";
+import VectorSource from "ol/source/Vector";
+import { Fill, Stroke, Style } from "ol/style";
+import { faint, type Colours } from "./colours";
+import { colourOf, type Mark } from "./marks";
+
+export interface DrawnRegion {
+  looks: Mark;
+  border: readonly Coordinate[]; // closed; empty where none is to be drawn
+}
+
+/** Old regions of more people than this, in one colour, are drawn as one: each alone takes as long as
+ * a screen that is filled, and together they would hide the plan. */
+export const MOST_ALONE = 12;
+const HATCH_PX = 12;
+const MOST_FILLING = 0.18;
+const FULL_RADIUS_M = 3; // up to here a region has all of its filling
+const MOST_HATCHING = 0.3;
+const FULL_HATCHING_M = 20; // the same of an old one's hatching
+const CROWD_HATCHING = 0.15;
+const CROWD_BORDER = 0.35;
+
+export class RegionLayer {
+  private readonly source = new VectorSource<Feature<Polygon | MultiPolygon>>();
+  readonly layer = new VectorLayer({ source: this.source });
+  private readonly patterns = new Map<string, CanvasPattern | string>();
+
+  show(regions: readonly DrawnRegion[], colours: Colours): void {
+    const { alone, crowds } = parted(regions, colours);
+    this.source.clear(true);
+    this.source.addFeatures([
+      ...alone.map(({ looks, border }) => {
+        const feature = new Feature<Polygon | MultiPolygon>(new Polygon([[...border]]));
+        feature.setStyle(this.styleOf(looks, radiusOf(border), colours));
+        return feature;
+      }),
+      ...[...crowds].map(([colour, borders]) => {
+        const rings = borders.map((border) => [[...border]]);
+        const feature = new Feature<Polygon | MultiPolygon>(new MultiPolygon(rings));
+        const fill = this.hatching(colour, CROWD_HATCHING);
+        feature.setStyle(crowdStyle(fill, faint(colour, CROWD_BORDER)));
+        return feature;
+      }),
+    ]);
+  }
+
+  private styleOf(looks: Mark, radiusM: number, colours: Colours): Style {
+    const colour = colourOf(looks, colours);
+    const opacity = filling(looks, radiusM);
+    return new Style({
+      fill: new Fill({ color: looks.old ? this.hatching(colour, opacity) : faint(colour, opacity) }),
+      stroke: new Stroke({
+        color: faint(colour, looks.chosen ? 1 : 0.75),
+        width: looks.chosen ? 2.5 : 1.5,
+        ...(looks.old ? { lineDash: [6, 5] } : {}),
+      }),
+    });
+  }
+
+  private hatching(colour: string, opacity: number): CanvasPattern | string {
+    const painted = faint(colour, opacity);
+    const known = this.patterns.get(painted);
+    if (known !== undefined) return known;
+    const pattern = hatched(painted);
+    this.patterns.set(painted, pattern);
+    return pattern;
+  }
+}
+
+/** Whose region is drawn alone, and the borders of the others by colour. */
+export function parted(
+  regions: readonly DrawnRegion[],
+  colours: Colours,
+): { alone: DrawnRegion[]; crowds: Map<string, (readonly Coordinate[])[]> } {
+  const drawn = regions.filter(({ border }) => border.length > 0);
+  const byColour = new Map<string, DrawnRegion[]>();
+  for (const one of drawn) {
+    if (!one.looks.old || one.looks.chosen) continue;
+    const colour = colourOf(one.looks, colours);
+    byColour.set(colour, [...(byColour.get(colour) ?? []), one]);
+  }
+  const crowds = [...byColour].filter(([, members]) => members.length > MOST_ALONE);
+  const inCrowd = new Set(crowds.flatMap(([, members]) => members));
+  return {
+    alone: drawn.filter((one) => !inCrowd.has(one)),
+    crowds: new Map(crowds.map(([colour, members]) => [colour, members.map((one) => one.border)])),
+  };
+}
+
+/** The larger a region, the fainter its filling: many large ones must not hide the plan. */
+export function filling({ old }: Pick<Mark, "old">, radiusM: number): number {
+  const [most, fullM] = old ? [MOST_HATCHING, FULL_HATCHING_M] : [MOST_FILLING, FULL_RADIUS_M];
+  return (most * fullM) / Math.max(radiusM, fullM);
+}
+
+function radiusOf(border: readonly Coordinate[]): number {
+  const [west = 0, south = 0, east = 0, north = 0] = boundingExtent([...border]);
+  return Math.max(east - west, north - south) / 2;
+}
+
+/** One filling for all, that is no darker where regions overlap; and no dashes: those of a hundred wide
+ * borders take seconds. */
+function crowdStyle(fill: CanvasPattern | string, stroke: string): Style {
+  return new Style({
+    renderer: (rings, { context, pixelRatio }) => {
+      context.save();
+      context.beginPath();
+      for (const [border] of rings as Coordinate[][][]) traceRing(context, border ?? []);
+      context.fillStyle = fill;
+      context.fill();
+      context.strokeStyle = stroke;
+      context.lineWidth = pixelRatio;
+      context.stroke();
+      context.restore();
+    },
+  });
+}
+
+/** Always in the same direction, so that no overlap of two is a hole. */
+function traceRing(context: Context, border: readonly Coordinate[]): void {
+  const ring = turnsLeft(border) ? border : [...border].reverse();
+  for (const [i, [x = 0, y = 0]] of ring.entries()) {
+    if (i === 0) context.moveTo(x, y);
+    else context.lineTo(x, y);
+  }
+  context.closePath();
+}
+
+type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
+
+export function turnsLeft(border: readonly Coordinate[]): boolean {
+  let doubleArea = 0;
+  for (let i = 1; i < border.length; i++) {
+    const [[x0 = 0, y0 = 0] = [], [x1 = 0, y1 = 0] = []] = [border[i - 1], border[i]];
+    doubleArea += x0 * y1 - x1 * y0;
+  }
+  return doubleArea > 0;
+}
+
+function hatched(colour: string): CanvasPattern | string {
+  const tile = document.createElement("canvas");
+  tile.width = tile.height = HATCH_PX;
+  const context = tile.getContext("2d");
+  if (context === null) return colour;
+  context.strokeStyle = colour;
+  context.lineWidth = 1.2;
+  context.beginPath();
+  for (const x of [-HATCH_PX, 0, HATCH_PX]) {
+    context.moveTo(x, HATCH_PX);
+    context.lineTo(x + HATCH_PX, 0);
+  }
+  context.stroke();
+  return context.createPattern(tile, "repeat") ?? colour;
+}
