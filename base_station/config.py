@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from base_station.forwarders.department.config import DepartmentConfig
 from base_station.forwarders.tak.config import TakConfig
 from base_station.storage.db.server_address import ServerAddress
 from shared.channels import validate_unit_id
@@ -110,22 +112,18 @@ class StandbyConfig:
 
 
 @dataclass(frozen=True, slots=True)
-class StationConfig:
+class ServerConfig:
+    """Settings of a program that has a bus, a console and a database."""
+
     data: Path = Path("muster-data")  # log, database and first login; one station a folder
     insecure: bool = False  # accept plain connections from other machines
     log_level: LogLevel = "INFO"
     log_format: LogFormat = "text"
     bus: BusConfig = field(default_factory=BusConfig)
     http: HttpConfig = field(default_factory=HttpConfig)
-    log: LogConfig = field(default_factory=LogConfig)
     # Of tables on a PostgreSQL server, as postgresql+psycopg://USER@HOST/NAME; "": a file in data.
     database: str = ""
     database_password_file: Path | None = None  # its first line; else PGPASSWORD or PGPASSFILE
-    standby: StandbyConfig = field(default_factory=StandbyConfig)
-    accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
-    positioning: PositioningConfig = field(default_factory=PositioningConfig)
-    alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
-    tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
 
     def __post_init__(self) -> None:
         if self.database_password_file is not None and not self.database:
@@ -165,6 +163,22 @@ class StationConfig:
             f"{', '.join(plain)} would be open to the network without encryption; listen on "
             "127.0.0.1, give certificates, or accept it with --insecure"
         )
+
+
+@dataclass(frozen=True, slots=True)
+class StationConfig(ServerConfig):
+    log: LogConfig = field(default_factory=LogConfig)
+    standby: StandbyConfig = field(default_factory=StandbyConfig)
+    accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
+    positioning: PositioningConfig = field(default_factory=PositioningConfig)
+    alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
+    tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
+    department: DepartmentConfig | None = None  # to which this station reports; None: to none
+
+    def forwarders(self) -> Mapping[str, Mapping[str, Any]]:
+        """Settings of live connections with other systems, by kind and name."""
+        department = {} if self.department is None else {"department": self.department}
+        return {"tak": self.tak, "department": department}
 
 
 def host_and_port(address: str) -> tuple[str, int]:

@@ -38,6 +38,7 @@ from shared.messages import (
 
 ROOT = "muster/v1"
 STATIONS_ROOT = "muster/stations/v1"  # what two stations say to each other; units neither
+DEPARTMENT_ROOT = "muster/department/v1"  # what stations report to their department
 EVERY_UNIT = "all"
 NO_TRACKER = "none"  # in a description: the unit's tracking agent computes its positions
 _KEYS_KNOWN = 16_384  # a thousand units' keys are parsed once
@@ -182,6 +183,25 @@ def raw_journal_key(unit_id: str) -> str:
 def clock_key(unit_id: str) -> str:
     """The key under which a unit asks for the station's time."""
     return f"{ROOT}/{unit_id}/clock"
+
+
+def department_summary_key(station: str) -> str:
+    """The key of a station's summaries for its department."""
+    return f"{DEPARTMENT_ROOT}/{station}/summary"
+
+
+def department_events_key(station: str) -> str:
+    """The key under which a station hands its events to its department, as queries."""
+    return f"{DEPARTMENT_ROOT}/{station}/events"
+
+
+def reporting_station(key: str) -> str:
+    """The station that a key of a department is of; raises UnknownChannelError."""
+    root, _, rest = key.partition(f"{DEPARTMENT_ROOT}/")
+    station, _, what = rest.partition("/")
+    if root or not station or what not in ("summary", "events"):
+        raise UnknownChannelError(f"{key!r} is no key of a department")
+    return station
 
 
 def tracker_id(unit_id: str) -> str:

@@ -39,6 +39,7 @@ class Holder(Enum):
     TRACKER = "tracking agent"  # of the unit of its name
     OPERATOR = "operator"
     STATION = "station"
+    DEPARTMENT_STATION = "department station"  # reports to its department
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +92,11 @@ class Enrolment:
     @property
     def made_again(self) -> str:
         """The command, for a person."""
-        of_kind = {Holder.TRACKER: "--tracker ", Holder.OPERATOR: "--operator "}
+        of_kind = {
+            Holder.TRACKER: "--tracker ",
+            Holder.OPERATOR: "--operator ",
+            Holder.DEPARTMENT_STATION: "--department-station ",
+        }
         return f"`muster pki renew {of_kind.get(self.holder, '')}{self.name}`"
 
 

@@ -27,7 +27,7 @@ from base_station.api.problems import (
 )
 from base_station.api.route_table import DOCUMENT_PATH, PREFIX, allowed_methods, check_query
 from base_station.api.routes import ROUTERS
-from base_station.api.services import Services
+from base_station.api.services import LoginServices, Services
 from base_station.api.uploads import UploadTurns
 from shared.errors import MusterError
 
@@ -63,12 +63,26 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
         dependencies=[Depends(check_query), Depends(check_origin), Depends(check_leads)],
         telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
     )
-    app.state.services = services
-    throttle = app.state.login_throttle = LoginThrottle()
-    queue = app.state.login_queue = LoginQueue()
-    app.state.known_networks = KnownNetworks()
+    queue = add_request_handling(app, services)
     guidance = app.state.guidance = Guidance()
     app.state.upload_turns = UploadTurns()
+    handle_problems(app, allowed_methods)
+    for router in ROUTERS:
+        app.include_router(router, prefix=PREFIX)
+    complete_document(app)
+    serve_console(app)
+    return app
+
+
+def add_request_handling(app: FastAPI, services: LoginServices) -> LoginQueue:
+    """Add what stands before every route, of a station and of a department.  Gives the queue of
+    log-ins, to be closed at the end.
+    """
+    app.state.services = services
+    throttle = app.state.login_throttle = LoginThrottle()
+    queue = LoginQueue()
+    app.state.login_queue = queue
+    app.state.known_networks = KnownNetworks()
     ha_status = services.ha_status
     app.add_middleware(UnhandledErrorMiddleware)
     # The framework's own limit stands outside of what answers like a problem, with its headers.
@@ -81,12 +95,7 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
         secure=services.secure,
         other_console=lambda: "" if ha_status is None else ha_status.view().other_url,
     )
-    handle_problems(app, allowed_methods)
-    for router in ROUTERS:
-        app.include_router(router, prefix=PREFIX)
-    complete_document(app)
-    serve_console(app)
-    return app
+    return queue
 
 
 async def _close_unwatched_replays(services: Services) -> None:

@@ -18,7 +18,7 @@ from starlette.requests import HTTPConnection
 
 from base_station.accounts.principals import Principal, Role
 from base_station.api.problems import Problem
-from base_station.api.services import Services, Station, services_of
+from base_station.api.services import Logins, LoginServices, login_services_of
 
 COOKIE = "muster_session"
 CHANGE_FIRST = "Change your password first: this one was generated, and is written in a file."
@@ -31,7 +31,7 @@ _cookie_scheme = APIKeyCookie(name=COOKIE, auto_error=False)
 _token_scheme = HTTPBearer(auto_error=False)
 
 
-def principal_of(connection: HTTPConnection, services: Services) -> Principal | None:
+def principal_of(connection: HTTPConnection, services: LoginServices) -> Principal | None:
     """Gives the principal of the cookie or the token; from then on its network is known."""
     token = _token_of(connection)
     if token is not None:
@@ -59,7 +59,9 @@ def is_own_origin(connection: HTTPConnection) -> bool:
     if origin is None:
         return True
     host, page = connection.headers.get("host", ""), urlsplit(origin)
-    schemes = {"https"} if services_of(connection).secure else {"http", "https"}  # behind a proxy
+    schemes = (
+        {"https"} if login_services_of(connection).secure else {"http", "https"}
+    )  # behind a proxy
     return page.scheme in schemes and page.netloc == host and host != ""
 
 
@@ -81,7 +83,7 @@ def check_leads(connection: HTTPConnection) -> None:
     """Dependency of every route: of two stations, things are changed at the one that leads, and at
     one that only replays nothing is.
     """
-    services = services_of(connection)
+    services = login_services_of(connection)
     if connection.scope.get("method", "GET") in _SAFE_METHODS:
         return
     resource = connection.scope["path"].removeprefix("/api/v1/").partition("/")[0]
@@ -96,7 +98,7 @@ def check_leads(connection: HTTPConnection) -> None:
 
 def _authenticated(
     request: Request,
-    services: Station,
+    services: Logins,
     _cookie: Annotated[object, Depends(_cookie_scheme)],
     _token: Annotated[object, Depends(_token_scheme)],
 ) -> Principal:
@@ -113,7 +115,7 @@ def _authenticated(
     return principal
 
 
-def must_change_password(principal: Principal, services: Services) -> bool:
+def must_change_password(principal: Principal, services: LoginServices) -> bool:
     """True for a generated password; a station that only replays cannot keep another."""
     return principal.must_change_password and not services.is_replay_only
 

@@ -43,11 +43,20 @@ from shared.messages.station import Action
 ACTION_TIMEOUT_S = 10.0
 
 
-@dataclass(frozen=True)
-class Services:
+@dataclass(frozen=True, kw_only=True)
+class LoginServices:
+    """What logging in and the accounts need, at a station and at a department."""
+
     accounts: Accounts
+    records: Records  # of which the audit
+    secure: bool  # the console is served over TLS
+    ha_status: HaStatus | None = None  # None: this is the only station
+    is_replay_only: bool = False  # what is changed would be lost with its copy of the database
+
+
+@dataclass(frozen=True, kw_only=True)
+class Services(LoginServices):
     roster: Roster
-    records: Records
     base_maps: BaseMaps
     hub: Hub
     gate: OperatorGate
@@ -55,9 +64,6 @@ class Services:
     replays: Replays
     forgettings: ErasureQueue | None  # None: a station that only replays
     clock: Clock
-    secure: bool  # the console is served over TLS
-    ha_status: HaStatus | None = None  # None: this is the only station
-    is_replay_only: bool = False  # what is changed would be lost with its copy of the database
     recordings: TransferQueue | None = None  # None: a station that only replays
     post_processor: PostProcessor | None = None  # None: a station without a log
     reports: ReportProcess | None = None  # None: a station that only replays
@@ -138,4 +144,10 @@ def services_of(connection: HTTPConnection) -> Services:
     return services
 
 
+def login_services_of(connection: HTTPConnection) -> LoginServices:
+    services: LoginServices = connection.app.state.services
+    return services
+
+
+Logins = Annotated[LoginServices, Depends(login_services_of)]
 Station = Annotated[Services, Depends(services_of)]

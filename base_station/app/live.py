@@ -16,7 +16,7 @@ from base_station.app.folder_commands import cut_log
 from base_station.app.health_facts import health_facts
 from base_station.app.housekeeping import Housekeeping
 from base_station.app.live_console import new_server, new_services
-from base_station.app.live_fan_out import LiveFanOut
+from base_station.app.live_fan_out import LiveFanOut, ProjectionFanOut
 from base_station.app.live_parts import LiveParts
 from base_station.app.live_state import LiveState
 from base_station.app.pipeline_factory import require_fuser
@@ -138,8 +138,15 @@ class _Station:
         closing.callback(bus.serve(clock_key("*"), clock_server.replies).close)
         self._reports = UnitReports(resources, self._side)
         self._forwarders = make_forwarders(
-            {"tak": resources.config.tak},
-            Surroundings(clock, self._is_leader, self._note_external),
+            resources.config.forwarders(),
+            Surroundings(
+                clock=clock,
+                leads=self._is_leader,
+                data=self._disk.folder.path,
+                people=self._disk.roster.known,
+                read_log=self._disk.log.records,
+                note_external=self._note_external,
+            ),
         )
         self._shown = LiveFanOut(resources.hub, self._forwarders)
         stamper = Stamper(STATION_ID, secrets.randbits(63), clock)
@@ -243,7 +250,7 @@ class _Station:
             feed=self._side.feed,
             log=self._side.log,
             live=self._shown,
-            projection=self._disk.projection,
+            projection=ProjectionFanOut(self._disk.projection, self._forwarders),
             checkpoints=self._disk.checkpoints,
             people=self._disk.roster.known,
             facts=self._facts,

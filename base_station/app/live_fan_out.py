@@ -1,9 +1,10 @@
-"""Gives what consoles are shown to forwarders too."""
+"""Gives what consoles are shown, and what is projected, to forwarders too."""
 
 from __future__ import annotations
 
 from base_station.engine.ports import LiveSink, LiveSource, Trails
 from base_station.forwarders.running import Forwarders
+from base_station.storage.projection import Projection, ProjectionSink
 from base_station.views.wire import Delta, Snapshot
 
 
@@ -27,3 +28,18 @@ class LiveFanOut:
         if not self._forwarders.is_empty:  # a picture of everybody costs the engine something
             source.request_snapshot(lambda snapshot, _: self._forwarders.reset(snapshot))
         self._forwarders.start()
+
+
+class ProjectionFanOut:
+    """A ``ProjectionSink``: the tables first, then the forwarders."""
+
+    def __init__(self, tables: ProjectionSink, forwarders: Forwarders) -> None:
+        self._tables = tables
+        self._forwarders = forwarders
+
+    def project(self, projection: Projection) -> None:
+        self._tables.project(projection)
+        self._forwarders.project(projection)
+
+    def problem(self) -> str:
+        return self._tables.problem()

@@ -31,6 +31,10 @@ Operator = Annotated[
 Tracker = Annotated[
     bool, typer.Option("--tracker", help="The agent that tracks for the unit of this name.")
 ]
+DepartmentStation = Annotated[
+    bool,
+    typer.Option("--department-station", help="A station that reports to this department."),
+]
 Connect = Annotated[
     list[str] | None,
     typer.Option(help="tls/HOST:PORT to write into the enrolment, if not the station's own."),
@@ -80,6 +84,7 @@ def _issuing(
         data: Data = _DATA,
         operator: Operator = False,
         tracker: Tracker = False,
+        department_station: DepartmentStation = False,
         days: Days = 365,
         connect: Connect = None,
         out: Out = None,
@@ -89,7 +94,7 @@ def _issuing(
         from base_station.security.pki.folder import PkiFolder  # noqa: PLC0415
         from base_station.security.pki.hosts import require_endpoint  # noqa: PLC0415
 
-        holder = _holder(operator=operator, tracker=tracker)
+        holder = _holder(operator, tracker, department_station)
         endpoints = [require_endpoint(one) for one in connect or ()]
         target = _free_target(name, holder, out, png, qr=qr)
         valid = timedelta(days=days)
@@ -177,11 +182,12 @@ def revoke(
     data: Data = _DATA,
     operator: Operator = False,
     tracker: Tracker = False,
+    department_station: DepartmentStation = False,
 ) -> None:
     """Shut a lost unit out: within seconds where a router runs."""
     from base_station.security.pki.folder import PkiFolder  # noqa: PLC0415
 
-    holder = _holder(operator=operator, tracker=tracker)
+    holder = _holder(operator, tracker, department_station)
     PkiFolder(data).revoke(name, holder)
     typer.echo(f"{holder.value} {name} is shut out; a running router takes it up within seconds")
 
@@ -210,12 +216,14 @@ def _station_hosts(given: list[str] | None, port: int) -> tuple[list[str], str]:
     return hosts, tls_endpoint(hosts[0] if hosts else "127.0.0.1", port)
 
 
-def _holder(*, operator: bool, tracker: bool) -> Holder:
-    if operator and tracker:
-        raise typer.BadParameter("choose --operator or --tracker, nobody is both")
-    if tracker:
-        return Holder.TRACKER
-    return Holder.OPERATOR if operator else Holder.UNIT
+def _holder(*chosen: bool) -> Holder:
+    """``chosen``: the options --operator, --tracker and --department-station, in this order."""
+    if sum(chosen) > 1:
+        raise typer.BadParameter(
+            "choose --operator, --tracker or --department-station, nobody is two of them"
+        )
+    kinds = (Holder.OPERATOR, Holder.TRACKER, Holder.DEPARTMENT_STATION)
+    return next((kind for kind, one in zip(kinds, chosen, strict=True) if one), Holder.UNIT)
 
 
 def _free_target(
@@ -258,6 +266,8 @@ def _hand_over(enrolment: Enrolment, target: Path | None, png: Path | None, *, q
         elif enrolment.holder is Holder.TRACKER:
             source = f"--source bus:{enrolment.name}"
             typer.echo(f"start it with `muster edge run --enrolment {target.name} {source}`")
+        elif enrolment.holder is Holder.DEPARTMENT_STATION:
+            typer.echo("there: put it into the settings, [department] enrolment = ...")
     if png is not None:
         save_png(qr_code(enrolment), png, enrolment.made_again)
         typer.echo(f"{png}: the enrolment as a QR code")

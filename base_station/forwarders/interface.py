@@ -6,10 +6,13 @@ of its own does the rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
+from base_station.storage.db.known_people import PersonLookup
+from base_station.storage.projection import Projection
 from base_station.views.wire import Delta, ForwarderView, Snapshot
 from shared.clock import Clock
 from shared.messages import ExternalMarker
@@ -24,6 +27,12 @@ class Forwarder(Protocol):
 
     def reset(self, snapshot: Snapshot) -> None:
         """Take the whole picture: what was before is void; in the engine's thread."""
+        ...
+
+    def project(self, projection: Projection) -> None:
+        """Take what was decided, which is in the log; in the engine's thread.  After a kill what
+        came since the last checkpoint comes again.
+        """
         ...
 
     def start(self) -> None: ...
@@ -45,6 +54,9 @@ class Surroundings:
 
     clock: Clock
     leads: Callable[[], bool]  # False: the other one of two stations forwards
+    data: Path  # folder of the station
+    people: PersonLookup  # who the person ids stand for
+    read_log: Callable[[int], Iterable[tuple[int, str, bytes]]]  # from that station time on
     # Takes people and markers of other teams that changed, and ids of those that are gone.
     note_external: Callable[[tuple[ExternalMarker, ...], tuple[str, ...]], None]
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from base_station.forwarders.interface import Forwarder, Surroundings
 from base_station.forwarders.registry import FORWARDERS
+from base_station.storage.projection import Projection
 from base_station.views.wire import Delta, ForwarderView, Snapshot
 from shared.messages.station import ReportProblem
 
@@ -30,6 +31,10 @@ class Forwarders:
     def reset(self, snapshot: Snapshot) -> None:
         for forwarder in self._forwarders:
             forwarder.reset(snapshot)
+
+    def project(self, projection: Projection) -> None:
+        for forwarder in self._forwarders:
+            forwarder.project(projection)
 
     def start(self) -> None:
         for forwarder in self._forwarders:

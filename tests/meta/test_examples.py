@@ -12,6 +12,8 @@ import pytest
 from base_station.config import StationConfig
 from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import limits_of
+from base_station.department.config import DepartmentServerConfig
+from base_station.forwarders.department.config import DepartmentConfig
 from base_station.forwarders.tak.config import TakConfig
 from edge.config import EdgeConfig
 from shared.config import load_config
@@ -22,6 +24,7 @@ EXAMPLES = PROJECT_ROOT / "deploy" / "examples"
 LEFT_OUT = {
     "calibration",
     "database_password_file",
+    "department",  # the last test
     "enrolment",
     "gain_std",
     "http.certificate",
@@ -33,7 +36,7 @@ LEFT_OUT = {
     "wearer.height_m",
     "wearer.leg_length_m",
 }
-_COMMENTED = re.compile(r"^# (\[tak\.\w+\]|\w+ = .*)$", re.MULTILINE)
+_COMMENTED = re.compile(r"^# (\[[\w.]+\]|\w+ = .*)$", re.MULTILINE)
 
 
 def keys_of(config_class: type, prefix: str = "") -> set[str]:
@@ -59,8 +62,12 @@ def keys_in(table: dict[str, object], prefix: str = "") -> set[str]:
 
 @pytest.mark.parametrize(
     ("path", "config_class"),
-    [(EXAMPLES / "station.toml", StationConfig), (EXAMPLES / "unit.toml", EdgeConfig)],
-    ids=["station", "unit"],
+    [
+        (EXAMPLES / "station.toml", StationConfig),
+        (EXAMPLES / "unit.toml", EdgeConfig),
+        (EXAMPLES / "department.toml", DepartmentServerConfig),
+    ],
+    ids=["station", "unit", "department"],
 )
 def test_an_example_loads_and_names_every_setting(path: Path, config_class: type):
     load_config(path, config_class)
@@ -79,14 +86,18 @@ def test_the_example_names_every_threshold_with_its_default():
     }
 
 
-def test_the_example_of_tak_names_every_setting_with_its_default(tmp_path: Path):
-    """It is a comment: what it connects to is elsewhere."""
+def test_examples_of_connections_name_every_setting_with_its_default(tmp_path: Path):
+    """They are comments: what they connect to is elsewhere."""
     text = (EXAMPLES / "station.toml").read_text()
-    file = tmp_path / "tak.toml"
+    file = tmp_path / "connections.toml"
     file.write_text("\n".join(_COMMENTED.findall(text[text.index("# [tak.") :])))
-    county = load_config(file, StationConfig).tak["county"]
-    named = tomllib.loads(file.read_text())["tak"]["county"]
-    assert named.keys() == {each.name for each in dataclasses.fields(TakConfig)}
-    for each in dataclasses.fields(TakConfig):
-        if each.default not in (None, dataclasses.MISSING):
-            assert getattr(county, each.name) == each.default
+    settings, named = load_config(file, StationConfig), tomllib.loads(file.read_text())
+    assert_names_defaults(settings.tak["county"], TakConfig, named["tak"]["county"])
+    assert_names_defaults(settings.department, DepartmentConfig, named["department"])
+
+
+def assert_names_defaults(loaded: object, config_class: type, named: dict[str, object]) -> None:
+    assert named.keys() == {each.name for each in dataclasses.fields(config_class)}
+    for each in dataclasses.fields(config_class):
+        if each.default not in (None, "", dataclasses.MISSING):
+            assert getattr(loaded, each.name) == each.default

@@ -14,7 +14,7 @@ from base_station.api.authentication import COOKIE, Viewer, must_change_password
 from base_station.api.forms import Form, Name
 from base_station.api.login_throttle import Throttle
 from base_station.api.problems import Problem
-from base_station.api.services import Services, Station
+from base_station.api.services import Logins, LoginServices
 from base_station.storage.db.accounts import HAND_OVER_S, SESSION_S
 
 router = APIRouter(tags=["login"])
@@ -31,7 +31,7 @@ class Me(BaseModel):
     must_change_password: bool
 
 
-def _me(principal: Principal, station: Services) -> Me:
+def _me(principal: Principal, station: LoginServices) -> Me:
     return Me(
         username=principal.username,
         role=principal.role.word,
@@ -55,7 +55,7 @@ async def log_in(
     credentials: Credentials,
     request: Request,
     response: Response,
-    station: Station,
+    station: Logins,
     throttle: Throttle,
     queue: Queue,
 ) -> Me:
@@ -69,7 +69,11 @@ async def log_in(
 
 
 def _log_in(
-    credentials: Credentials, address: str, request: Request, response: Response, station: Services
+    credentials: Credentials,
+    address: str,
+    request: Request,
+    response: Response,
+    station: LoginServices,
 ) -> Me:
     secret = station.accounts.log_in(credentials.username, credentials.password)
     principal = None if secret is None else station.accounts.of_session(secret)
@@ -83,7 +87,7 @@ def _log_in(
 
 @router.post("/login/hand-over")
 def go_on(
-    shown: ShownTicket, request: Request, response: Response, station: Station, throttle: Throttle
+    shown: ShownTicket, request: Request, response: Response, station: Logins, throttle: Throttle
 ) -> Me:
     """Log in with a ticket of the other station, once."""
     address = request.client.host if request.client else ""
@@ -98,7 +102,7 @@ def go_on(
     return _me(principal, station)
 
 
-def give_cookie(request: Request, response: Response, station: Services, secret: str) -> None:
+def give_cookie(request: Request, response: Response, station: LoginServices, secret: str) -> None:
     """In the place of the session that the browser had, which is over."""
     before = request.cookies.get(COOKIE)
     if before is not None:
@@ -109,7 +113,7 @@ def give_cookie(request: Request, response: Response, station: Services, secret:
 
 
 @router.post("/logout", status_code=204)
-def log_out(request: Request, response: Response, station: Station) -> None:
+def log_out(request: Request, response: Response, station: Logins) -> None:
     secret = request.cookies.get(COOKIE)
     principal = None if secret is None else station.accounts.of_session(secret)
     if secret is not None and principal is not None:
@@ -119,7 +123,7 @@ def log_out(request: Request, response: Response, station: Station) -> None:
 
 
 @router.post("/hand-over")
-def hand_over(request: Request, station: Station, _: Viewer) -> Ticket:
+def hand_over(request: Request, station: Logins, _: Viewer) -> Ticket:
     """Consoles ask now and then, so that nobody need log in again when this station dies."""
     ticket = station.accounts.hand_over(request.cookies.get(COOKIE, ""))
     if ticket is None:
@@ -128,5 +132,5 @@ def hand_over(request: Request, station: Station, _: Viewer) -> Ticket:
 
 
 @router.get("/me")
-def me(principal: Viewer, station: Station) -> Me:
+def me(principal: Viewer, station: Logins) -> Me:
     return _me(principal, station)

@@ -14,7 +14,7 @@ from base_station.api.forms import Form, Name
 from base_station.api.login_throttle import Throttle
 from base_station.api.problems import Problem
 from base_station.api.routes.login import give_cookie
-from base_station.api.services import Station
+from base_station.api.services import Logins
 from base_station.views.answer import to_ms
 
 router = APIRouter(tags=["users"])
@@ -48,7 +48,7 @@ class PasswordChange(Form):
 
 
 @router.get("/users")
-def list_users(station: Station, _: Administrator) -> list[UserAnswer]:
+def list_users(station: Logins, _: Administrator) -> list[UserAnswer]:
     sessions = station.accounts.open_sessions()
     return [
         UserAnswer(
@@ -62,14 +62,14 @@ def list_users(station: Station, _: Administrator) -> list[UserAnswer]:
 
 
 @router.post("/users", status_code=204)
-def add_user(new: NewUser, station: Station, who: Administrator) -> None:
+def add_user(new: NewUser, station: Logins, who: Administrator) -> None:
     station.accounts.add_user(new.username, new.password, Role.of(new.role))
     station.records.audit(who.username, "AddedUser", f"{new.username} as {new.role}")
 
 
 @router.put("/users/{username}", status_code=204)
 def change_user(
-    username: Username, change: UserChange, station: Station, who: Administrator
+    username: Username, change: UserChange, station: Logins, who: Administrator
 ) -> None:
     role = None if change.role is None else Role.of(change.role)
     station.accounts.change_user(username, change.password, role)
@@ -78,13 +78,13 @@ def change_user(
 
 
 @router.delete("/users/{username}", status_code=204)
-def remove_user(username: Username, station: Station, who: Administrator) -> None:
+def remove_user(username: Username, station: Logins, who: Administrator) -> None:
     station.accounts.remove_user(username)
     station.records.audit(who.username, "RemovedUser", username)
 
 
 @router.delete("/users/{username}/sessions", status_code=204)
-def end_sessions(username: Username, station: Station, who: Administrator) -> None:
+def end_sessions(username: Username, station: Logins, who: Administrator) -> None:
     """Everybody who is logged in as this user has to log in again; tokens stay."""
     station.accounts.end_sessions(username)
     station.records.audit(who.username, "EndedSessions", username)
@@ -93,7 +93,7 @@ def end_sessions(username: Username, station: Station, who: Administrator) -> No
 @router.post("/me/password", status_code=204)
 def change_own_password(
     change: PasswordChange,
-    station: Station,
+    station: Logins,
     who: Viewer,
     throttle: Throttle,
     request: Request,

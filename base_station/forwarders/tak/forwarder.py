@@ -7,6 +7,7 @@ import logging
 from dataclasses import dataclass
 
 from base_station.forwarders.interface import Surroundings
+from base_station.forwarders.mailbox import Mailbox
 from base_station.forwarders.tak.config import TakConfig
 from base_station.forwarders.tak.connection import (
     ConnectionLostError,
@@ -16,8 +17,8 @@ from base_station.forwarders.tak.connection import (
 )
 from base_station.forwarders.tak.cot import CotEvents
 from base_station.forwarders.tak.inbox import ExternalInbox
-from base_station.forwarders.tak.mailbox import Mailbox
 from base_station.forwarders.tak.outbox import TakOutbox
+from base_station.storage.projection import Projection
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.wire import Delta, ForwarderView, Snapshot
 from shared.clock import NS_PER_S
@@ -75,6 +76,9 @@ class TakForwarder:
     def reset(self, snapshot: Snapshot) -> None:
         self._mailbox.put_picture(snapshot)
         self._wake()
+
+    def project(self, projection: Projection) -> None:
+        """Nothing: emergencies are made of the alarms that consoles are shown."""
 
     def start(self) -> None:
         self._worker.start()

@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from base_station.forwarders.mailbox import Changes
 from base_station.forwarders.tak.cot import (
     CotEvents,
     GeodeticPlace,
@@ -18,7 +19,6 @@ from base_station.forwarders.tak.cot import (
     place_of,
 )
 from base_station.forwarders.tak.emergencies import Emergencies, EmergencyAlert
-from base_station.forwarders.tak.mailbox import Changes
 from base_station.views.wire import AnchorView, PositionView, UnitView
 from shared.clock import NS_PER_S
 

@@ -12,6 +12,7 @@ from typing import Any
 from base_station.security.pki.registry import Entry, Registry
 from shared.channels import (
     CHANNELS,
+    DEPARTMENT_ROOT,
     DESCRIPTION,
     EVERY_UNIT,
     IMU,
@@ -20,6 +21,8 @@ from shared.channels import (
     Direction,
     alive_key,
     clock_key,
+    department_events_key,
+    department_summary_key,
     journal_keys,
     raw_journal_key,
     tracker_id,
@@ -28,6 +31,7 @@ from shared.enrolment import Holder
 
 _EVERYTHING = [f"{ROOT}/**"]
 _STATION_KEYS = [f"{STATIONS_ROOT}/**"]  # nobody else may say or hear anything there
+_DEPARTMENT_KEYS = [f"{DEPARTMENT_ROOT}/**"]
 _ALL_MESSAGES = [
     "put",
     "delete",
@@ -62,13 +66,27 @@ _CLOCK_RULES = {
 }
 _RULES_OF_KIND = {
     Holder.STATION: (
-        _rule("station", ["ingress", "egress"], _ALL_MESSAGES, [*_EVERYTHING, *_STATION_KEYS]),
+        _rule(
+            "station",
+            ["ingress", "egress"],
+            _ALL_MESSAGES,
+            [*_EVERYTHING, *_STATION_KEYS, *_DEPARTMENT_KEYS],
+        ),
     ),
     # A unit learns what the station listens to, so that it sends that and nothing else.
     Holder.UNIT: (_rule("unit", ["egress"], _INTERESTS, _EVERYTHING), _CLOCK_RULES[Holder.UNIT]),
     Holder.TRACKER: (
         _rule("tracker", ["egress"], _INTERESTS, _EVERYTHING),
         _CLOCK_RULES[Holder.TRACKER],
+    ),
+    # A station learns that its department is there, and nothing of other stations.
+    Holder.DEPARTMENT_STATION: (
+        _rule(
+            "department-station",
+            ["egress"],
+            ["declare_subscriber", "declare_queryable"],
+            [department_summary_key("*"), department_events_key("*")],
+        ),
     ),
     # An operator's program looks on: it hears everything and says nothing.
     Holder.OPERATOR: (
@@ -124,6 +142,8 @@ def _own_rules(entry: Entry) -> list[dict[str, Any]]:
         return _unit_rules(entry, entry.name)
     if entry.holder is Holder.TRACKER:
         return [*_unit_rules(entry, tracker_id(entry.name)), *_tracking_rules(entry)]
+    if entry.holder is Holder.DEPARTMENT_STATION:
+        return _department_station_rules(entry)
     return []
 
 
@@ -139,6 +159,20 @@ def _tracking_rules(entry: Entry) -> list[dict[str, Any]]:
         _rule(f"{name}-knows", ["egress"], ["declare_queryable"], [journal_keys(entry.name)]),
         _rule(f"{name}-follows", ["ingress"], ["declare_subscriber"], raw),
         _rule(f"{name}-hears", ["egress"], ["put"], raw),
+    ]
+
+
+def _department_station_rules(entry: Entry) -> list[dict[str, Any]]:
+    """It reports under its own key, and gets the receipts for its own events."""
+    name, summary, events = (
+        entry.common_name,
+        department_summary_key(entry.name),
+        department_events_key(entry.name),
+    )
+    return [
+        _rule(f"{name}-reports", ["ingress"], ["put"], [summary]),
+        _rule(f"{name}-hands-over", ["ingress"], ["query"], [events]),
+        _rule(f"{name}-is-answered", ["egress"], ["reply"], [events]),
     ]
 
 

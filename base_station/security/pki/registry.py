@@ -102,6 +102,8 @@ class Registry(msgspec.Struct, frozen=True):
         match holder:
             case Holder.TRACKER:
                 plain = tracker_id(name)
+            case Holder.DEPARTMENT_STATION:
+                plain = f"department-station:{name}"
             case Holder.OPERATOR | Holder.STATION:
                 plain = f"{holder.value}:{name}"
             case _:

@@ -11,7 +11,13 @@ from shared.tls import TlsIdentity
 
 # A unit has one link, two while the one before has not been noticed as gone, and a clone of it as
 # many.  Stations and operators run several programs with one certificate.
-_MAX_LINKS = {Holder.UNIT: 4, Holder.TRACKER: 4, Holder.OPERATOR: 16, Holder.STATION: 16}
+_MAX_LINKS = {
+    Holder.UNIT: 4,
+    Holder.TRACKER: 4,
+    Holder.OPERATOR: 16,
+    Holder.STATION: 16,
+    Holder.DEPARTMENT_STATION: 8,  # two stations that are one of two, as a unit
+}
 _NEW_LINKS_BURST = 16
 _NEW_LINKS_PER_S = 2.0  # a unit tries every second at most
 

@@ -6,14 +6,12 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, func
 from sqlalchemy.dialects import postgresql, sqlite
-from sqlalchemy.orm import Session
-
-from base_station.storage.db.models import Base
+from sqlalchemy.orm import DeclarativeBase, Session
 
 Insert = sqlite.Insert | postgresql.Insert
 
 
-def insert_into(session: Session, table: type[Base]) -> Insert:
+def insert_into(session: Session, table: type[DeclarativeBase]) -> Insert:
     """An insert with ``on_conflict_do_nothing`` and ``on_conflict_do_update``."""
     return postgresql.insert(table) if is_on_server(session) else sqlite.insert(table)
 

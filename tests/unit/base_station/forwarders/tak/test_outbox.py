@@ -7,8 +7,8 @@ from xml.etree import ElementTree as ET
 
 import msgspec
 
+from base_station.forwarders.mailbox import Mailbox
 from base_station.forwarders.tak.cot import CotEvents
-from base_station.forwarders.tak.mailbox import Mailbox
 from base_station.forwarders.tak.outbox import TakOutbox
 from base_station.views.wire import AlarmView, Snapshot, UnitView
 from shared.clock import NS_PER_S

@@ -9,13 +9,13 @@ from threading import Event, Thread
 
 import pytest
 
-from base_station.forwarders.interface import Surroundings
 from base_station.forwarders.registry import FORWARDERS
 from base_station.forwarders.running import Forwarders, make_forwarders
 from base_station.forwarders.tak.config import TakConfig
 from base_station.forwarders.tak.forwarder import TakForwarder
 from shared.clock import ManualClock, SystemClock
 from tests.rig.cot_schema import check_event
+from tests.rig.forwarder_surroundings import surroundings
 from tests.rig.station_process import free_port
 from tests.rig.tak_scene import Scene, alarm, delta
 from tests.rig.waiting import until
@@ -84,7 +84,7 @@ def forwarder_to(
     port: int, closing: ExitStack, leads: Callable[[], bool] = lambda: True, **settings: float
 ) -> TakForwarder:
     config = TakConfig(f"tcp://127.0.0.1:{port}", **settings)  # type: ignore[arg-type]  # floats
-    forwarder = TakForwarder("county", config, Surroundings(SystemClock(), leads, lambda *_: None))
+    forwarder = TakForwarder("county", config, surroundings(SystemClock(), leads))
     closing.callback(forwarder.close)
     return forwarder
 
@@ -175,7 +175,7 @@ def test_a_server_that_takes_nothing_costs_no_memory_and_is_left(
 def test_a_connection_that_is_long_away_is_a_problem_until_it_is_back(closing: ExitStack) -> None:
     clock = ManualClock()
     config = TakConfig("tcp://127.0.0.1:9", alarm_after_s=60.0)
-    forwarder = TakForwarder("county", config, Surroundings(clock, lambda: True, lambda *_: None))
+    forwarder = TakForwarder("county", config, surroundings(clock))
     forwarders = Forwarders([forwarder])
     assert list(forwarders.changes({})) == []
     clock.advance(61.0)
@@ -204,9 +204,10 @@ def test_the_one_that_does_not_lead_sends_nothing(closing: ExitStack) -> None:
 
 
 def test_each_table_of_the_settings_has_a_kind() -> None:
-    around = Surroundings(SystemClock(), lambda: True, lambda *_: None)
+    around = surroundings(SystemClock())
     tables: dict[str, dict[str, TakConfig]] = {kind.table: {} for kind in FORWARDERS}
     assert make_forwarders(tables, around).views() == ()
-    made = make_forwarders({"tak": {"county": TakConfig("tcp://127.0.0.1:9")}}, around)
+    county = {"county": TakConfig("tcp://127.0.0.1:9")}
+    made = make_forwarders({**tables, "tak": county}, around)
     (view,) = made.views()
     assert (view.name, view.kind, view.state) == ("county", "tak", "connecting")

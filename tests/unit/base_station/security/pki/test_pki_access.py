@@ -141,7 +141,7 @@ def test_an_operator_only_listens(rules: dict[str, Any]) -> None:
 def test_the_station_may_do_everything_below_the_roots_and_nobody_else(
     rules: dict[str, Any],
 ) -> None:
-    everything = {"muster/v1/**", "muster/stations/v1/**"}
+    everything = {"muster/v1/**", "muster/stations/v1/**", "muster/department/v1/**"}
     messages = ("put", "delete", "query", "reply", "declare_queryable", "liveliness_token")
     assert rights(rules, "station") == {
         (flow, message): everything
@@ -152,3 +152,22 @@ def test_the_station_may_do_everything_below_the_roots_and_nobody_else(
 
 def test_each_asks_for_the_time_under_a_key_of_its_own(registry: Registry) -> None:
     assert rate_limited_queries(registry) == tuple(map(clock_key, ("anna", "bert", "bert@tracker")))
+
+
+def test_a_station_of_a_department_may_report_under_its_own_key_and_nothing_else() -> None:
+    name = "department-station:engine-7"
+    registry = Registry("City", (), (), (entry(Holder.DEPARTMENT_STATION, "engine-7", name),))
+    own = "muster/department/v1/engine-7"
+    assert rights(access_control(registry), name) == {
+        ("ingress", "put"): {f"{own}/summary"},
+        ("ingress", "query"): {f"{own}/events"},
+        ("egress", "reply"): {f"{own}/events"},
+        ("egress", "declare_subscriber"): {
+            "muster/department/v1/*/summary",
+            "muster/department/v1/*/events",
+        },
+        ("egress", "declare_queryable"): {
+            "muster/department/v1/*/summary",
+            "muster/department/v1/*/events",
+        },
+    }

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from threading import Lock
 
-from base_station.views.wire import AlarmView, Delta, Snapshot, UnitView
+from base_station.views.wire import AlarmView, Delta, HealthView, Snapshot, UnitView
 
 
 @dataclass(slots=True)
@@ -19,6 +19,7 @@ class Changes:
     picture: Snapshot | None = None  # everything before it is void
     units: dict[str, UnitView] = field(default_factory=dict)
     alarms: dict[str, AlarmView] = field(default_factory=dict)
+    health: HealthView | None = None
 
 
 class Mailbox:
@@ -34,6 +35,7 @@ class Mailbox:
                 self._changes.units[unit.unit_id] = unit
             for alarm in delta.alarms:
                 self._changes.alarms[alarm.alarm_id] = alarm
+            self._changes.health = delta.health or self._changes.health
 
     def put_picture(self, picture: Snapshot) -> None:
         with self._lock:

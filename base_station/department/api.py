@@ -1,0 +1,104 @@
+"""API of a department, and its page; accounts are those of a station."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, FastAPI, Query
+from starlette.requests import HTTPConnection
+
+from base_station.api.app import add_request_handling
+from base_station.api.authentication import Viewer, check_leads, check_origin
+from base_station.api.console_files import serve_built
+from base_station.api.document import operation_id
+from base_station.api.forms import Limit
+from base_station.api.problems import handle_problems
+from base_station.api.route_table import DOCUMENT_PATH, PREFIX
+from base_station.api.routes import login, users
+from base_station.api.services import LoginServices
+from base_station.department.answers import (
+    DepartmentEventView,
+    DepartmentPeopleView,
+    DepartmentView,
+)
+from base_station.department.views import DepartmentViews, PeopleQuery
+
+_SEARCH_MAX = 80
+
+router = APIRouter(prefix="/department", tags=["live"])
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepartmentServices(LoginServices):
+    views: DepartmentViews
+
+
+def _views_of(connection: HTTPConnection) -> DepartmentViews:
+    services: DepartmentServices = connection.app.state.services
+    return services.views
+
+
+Views = Annotated[DepartmentViews, Depends(_views_of)]
+Filter = Annotated[str, Query(max_length=_SEARCH_MAX)]
+
+
+@router.get("")
+def get_department(views: Views, _: Viewer) -> DepartmentView:
+    """All stations, incidents and open alarms of the department."""
+    return views.overview()
+
+
+@router.get("/people")
+def list_department_people(
+    views: Views,
+    _: Viewer,
+    station: Filter = "",
+    incident_id: Filter = "",
+    search: Filter = "",
+    skip: Annotated[int, Query(ge=0)] = 0,
+    limit: Limit = 100,
+) -> DepartmentPeopleView:
+    """People of the department, who need help first."""
+    return views.people(PeopleQuery(station, incident_id, search, skip, limit))
+
+
+@router.get("/events")
+def list_department_events(
+    views: Views,
+    _: Viewer,
+    before: Annotated[int | None, Query(ge=1)] = None,
+    limit: Limit = 100,
+) -> list[DepartmentEventView]:
+    """What stations have reported, in the order of arrival, the newest first."""
+    return list(views.events(before, limit))
+
+
+def create_department_app(services: DepartmentServices) -> FastAPI:
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        queue.close()
+
+    app = FastAPI(
+        title="Muster department",
+        version="1",
+        lifespan=lifespan,
+        openapi_url=DOCUMENT_PATH,
+        docs_url=None,  # its pages would load from elsewhere
+        redoc_url=None,
+        generate_unique_id_function=operation_id,
+        dependencies=[Depends(check_origin), Depends(check_leads)],
+        telemetry={"tracing": False, "metrics": False, "logs": False, "auto_configure": False},
+    )
+    queue = add_request_handling(app, services)
+    handle_problems(app, lambda _: "")
+    for one in (login.router, users.router, router):
+        app.include_router(one, prefix=PREFIX)
+    with as_file(files("base_station.department") / "page") as page:
+        serve_built(app, Path(page))
+    return app

@@ -1,0 +1,25 @@
+"""The department's settings; every default stands here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from base_station.config import BusConfig, HttpConfig, ServerConfig
+
+
+def _bus() -> BusConfig:
+    return BusConfig(listen=("tls/0.0.0.0:7448",))
+
+
+def _http() -> HttpConfig:
+    return HttpConfig(listen="127.0.0.1:8090")
+
+
+@dataclass(frozen=True, slots=True)
+class DepartmentServerConfig(ServerConfig):
+    """Other ports than a station's, as both may be on one machine."""
+
+    data: Path = Path("muster-department")  # database, certificates and first login
+    bus: BusConfig = field(default_factory=_bus)  # where stations connect
+    http: HttpConfig = field(default_factory=_http)

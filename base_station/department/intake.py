@@ -1,0 +1,120 @@
+"""Takes what stations report from the bus: summaries into the picture, events into the tables."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable, Iterator
+from contextlib import ExitStack
+from threading import Lock
+
+from base_station.department.live_picture import LivePicture, StationPicture
+from base_station.department_wire import EventBatch, EventReceipt, Summary, pack, unpack
+from base_station.storage.db.department_models import LastSummary
+from base_station.storage.db.department_tables import DepartmentTables
+from base_station.storage.db.known_people import FORGOTTEN, KnownPerson
+from shared.bus import Bus
+from shared.channels import department_events_key, department_summary_key, reporting_station
+from shared.clock import NS_PER_MS, Clock
+from shared.errors import MusterError, StoreError, WireError
+from shared.log_on_change import LogOnChange
+
+logger = logging.getLogger(__name__)
+
+
+class ReportIntake:
+    """``open`` it with the bus; ``keep_summaries`` now and then, from any thread."""
+
+    def __init__(self, tables: DepartmentTables, picture: LivePicture, clock: Clock) -> None:
+        self._tables, self._picture, self._clock = tables, picture, clock
+        self._fault_log = LogOnChange(logger, "what stations report is not stored")
+        self._lock = Lock()  # guards what follows
+        self._people: dict[tuple[str, str], KnownPerson] = {}
+        self._kept_ns: dict[str, int] = {}  # receipt of the summary that is in the tables
+        self._unreadable = 0
+        self._read_people()
+        for row in tables.last_summaries():
+            self._kept_ns[row.station] = row.received_ns
+            summary = unpack(row.summary, Summary)
+            picture.take(StationPicture.of(row.station, summary, row.received_ns, None))
+
+    def open(self, bus: Bus, closing: ExitStack) -> None:
+        closing.callback(bus.subscribe(department_summary_key("*"), self.take_summary).close)
+        closing.callback(bus.serve(department_events_key("*"), self.take_events).close)
+
+    @property
+    def problem(self) -> str:
+        """Sentence for a person; empty: all is stored."""
+        unreadable = self._unreadable and (
+            f"{self._unreadable} reports of stations could not be read: is this Muster older?"
+        )
+        return "; ".join(filter(None, (self._fault_log.fault, unreadable or "")))
+
+    def person(self, station: str, person_id: str) -> KnownPerson:
+        """Name of a station's person; who was never named is shown by the id."""
+        with self._lock:
+            known = self._people.get((station, person_id))
+        return known or KnownPerson(f"person {person_id[:8]}" if person_id else "")
+
+    def take_summary(self, key: str, payload: bytes) -> None:
+        now_ns, monotonic_ns = self._clock.utc_ns(), self._clock.monotonic_ns()
+        try:
+            station, summary = reporting_station(key), unpack(payload, Summary)
+        except MusterError as error:
+            self._note_unreadable(key, error)
+            return
+        self._picture.take(StationPicture.of(station, summary, now_ns, monotonic_ns))
+
+    def take_events(self, key: str, _: str, payload: bytes) -> Iterable[bytes]:
+        """Answer a batch with a receipt, once it is on the disk."""
+        return self._receipts(key, payload)
+
+    def _receipts(self, key: str, payload: bytes) -> Iterator[bytes]:
+        now_ns = self._clock.utc_ns()
+        try:
+            station, batch = reporting_station(key), unpack(payload, EventBatch)
+        except MusterError as error:
+            self._note_unreadable(key, error)
+            return
+        offset_ms = batch.t_ms - now_ns // NS_PER_MS
+        try:
+            reported = self._tables.take(station, batch, offset_ms, now_ns)
+            if reported.names_changed:
+                self._read_people()
+        except WireError as error:
+            self._note_unreadable(key, error)
+            yield pack(EventReceipt(batch.epoch, 0, f"the department cannot read it: {error}"))
+        except StoreError as error:
+            self._fault_log.note_failure(error)
+            yield pack(EventReceipt(batch.epoch, 0, f"the department does not store it: {error}"))
+        else:
+            self._fault_log.note_success()
+            yield pack(EventReceipt(batch.epoch, reported.last_seq))
+
+    def keep_summaries(self) -> None:
+        """Write those that are newer than what is in the tables.  Raises StoreError."""
+        rows = []
+        for station, pictures in self._picture.all().items():
+            newest = max(pictures, key=lambda one: one.received_ns)
+            if newest.received_ns > self._kept_ns.get(station, 0):
+                rows.append(
+                    LastSummary(
+                        station=station,
+                        received_ns=newest.received_ns,
+                        summary=pack(newest.summary),
+                    )
+                )
+        if rows:
+            self._tables.keep_summaries(rows)
+        self._kept_ns |= {row.station: row.received_ns for row in rows}
+
+    def _read_people(self) -> None:
+        people = {
+            key: KnownPerson(row.name, row.crew, row.role) if row.name else FORGOTTEN
+            for key, row in self._tables.people().items()
+        }
+        with self._lock:
+            self._people = people
+
+    def _note_unreadable(self, key: str, error: MusterError) -> None:
+        self._unreadable += 1
+        logger.warning("%s: %s", key, error)

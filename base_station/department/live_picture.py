@@ -1,0 +1,90 @@
+"""Live picture of a department: the newest summary of each station, in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from threading import Lock
+
+from base_station.department_wire import PersonSummary, Summary
+from shared.clock import NS_PER_MS, NS_PER_S
+
+AWAY_AFTER_NS = 5 * NS_PER_S  # without a summary, of which there is one a second
+CLOCK_LIMIT_MS = 5_000  # a clock that is further off is reported
+
+
+@dataclass(slots=True)
+class IncidentCounts:
+    """People of one incident, and how many of them need something."""
+
+    people: int = 0
+    maydays: int = 0
+    alarms: int = 0
+    overdue: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class StationPicture:
+    """A station as it reported itself last."""
+
+    station: str
+    summary: Summary
+    received_ns: int  # UTC of the department
+    received_monotonic_ns: int | None  # None: before this program began
+    counts: Mapping[str, IncidentCounts]  # by incident id; empty: people who are in none
+
+    @staticmethod
+    def of(
+        station: str, summary: Summary, received_ns: int, received_monotonic_ns: int | None
+    ) -> StationPicture:
+        """Counted once, however often it is shown."""
+        counts: dict[str, IncidentCounts] = {}
+        for person in summary.people:
+            count = counts.setdefault(person.incident_id, IncidentCounts())
+            count.people += 1
+            count.maydays += person.mayday
+            count.alarms += len(person.alarms)
+            count.overdue += is_overdue(person, summary.t_ms)
+        return StationPicture(station, summary, received_ns, received_monotonic_ns, counts)
+
+    @property
+    def offset_ms(self) -> int:
+        """What the station's clock is ahead of the department's."""
+        return self.summary.t_ms - self.received_ns // NS_PER_MS
+
+    def silent_ns(self, now_ns: int, now_monotonic_ns: int) -> int:
+        """Time since it was received; the department's clock may be set meanwhile."""
+        if self.received_monotonic_ns is None:
+            return max(now_ns - self.received_ns, AWAY_AFTER_NS)
+        return now_monotonic_ns - self.received_monotonic_ns
+
+
+def is_overdue(person: PersonSummary, t_ms: int) -> bool:
+    """True if the member's PAR was due before ``t_ms``, station time."""
+    return person.par_due_ms is not None and person.par_due_ms < t_ms
+
+
+class LivePicture:
+    """Thread-safe."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        # By station and epoch: two epochs at once are two machines with one name.
+        self._pictures: dict[str, dict[int, StationPicture]] = {}
+
+    def take(self, picture: StationPicture) -> None:
+        """Take a newer summary; those of machines that are silent are void with it."""
+        with self._lock:
+            before = self._pictures.get(picture.station, {})
+            received_ns = picture.received_monotonic_ns or 0
+            others = {
+                epoch: one
+                for epoch, one in before.items()
+                if one.silent_ns(picture.received_ns, received_ns) < AWAY_AFTER_NS
+            }
+            self._pictures[picture.station] = others | {picture.summary.epoch: picture}
+
+    def all(self) -> dict[str, Sequence[StationPicture]]:
+        """Pictures by station; more than one where several machines have its name."""
+        with self._lock:
+            return {name: tuple(ones.values()) for name, ones in self._pictures.items()}

@@ -1,0 +1,267 @@
+"""Makes the answers of the department's API from the live picture and the tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from functools import partial
+from typing import NamedTuple
+
+from base_station.department.answers import (
+    DepartmentAlarmView,
+    DepartmentEventView,
+    DepartmentIncidentView,
+    DepartmentPeopleView,
+    DepartmentPersonView,
+    DepartmentView,
+    ReportingStationView,
+)
+from base_station.department.event_texts import event_text
+from base_station.department.intake import ReportIntake
+from base_station.department.live_picture import (
+    AWAY_AFTER_NS,
+    CLOCK_LIMIT_MS,
+    IncidentCounts,
+    LivePicture,
+    StationPicture,
+    is_overdue,
+)
+from base_station.department_wire import PersonSummary
+from base_station.storage.db.department_models import ReportedAlarm, ReportedIncident
+from base_station.storage.db.department_tables import DepartmentTables
+from base_station.storage.db.known_people import shown_text
+from base_station.views.answer import to_ms
+from shared.clock import NS_PER_MS, Clock
+
+_INCIDENTS_SHOWN = 200
+_ALARMS_SHOWN = 200
+_MS_PER_S = 1000.0
+_NO_COUNTS = IncidentCounts()
+
+
+class PeopleQuery(NamedTuple):
+    station: str  # empty: of all
+    incident_id: str  # empty: in any, or in none
+    search: str  # part of a name, label, crew or unit; empty: everybody
+    skip: int
+    limit: int
+
+
+class DepartmentViews:
+    """Thread-safe.  Raises StoreError where the tables cannot be read."""
+
+    def __init__(
+        self,
+        picture: LivePicture,
+        tables: DepartmentTables,
+        intake: ReportIntake,
+        clock: Clock,
+        enrolled: Callable[[], Collection[str]],
+        problems: Callable[[], Iterable[str]],
+    ) -> None:
+        """``enrolled``: stations with a certificate; ``problems``: of the department itself."""
+        self._picture, self._tables, self._intake = picture, tables, intake
+        self._clock, self._enrolled, self._problems = clock, enrolled, problems
+
+    def overview(self) -> DepartmentView:
+        pictures = self._picture.all()
+        alarms, open_alarms = self._tables.open_alarms(_ALARMS_SHOWN)
+        incidents = self._tables.incidents(_INCIDENTS_SHOWN)
+        stations = tuple(self._stations(pictures))
+        return DepartmentView(
+            now_ms=to_ms(self._clock.utc_ns()),
+            stations=stations,
+            incidents=tuple(
+                _incident_view(one, pictures.get(one.station, ())) for one in incidents
+            ),
+            alarms=tuple(self._alarm_view(one, pictures) for one in alarms),
+            open_alarms=open_alarms,
+            people=sum(one.people for one in stations),
+            problems=(*self._problems(), *self._problems_of(pictures)),
+        )
+
+    def people(self, wanted: PeopleQuery) -> DepartmentPeopleView:
+        """Who needs help first."""
+        search = wanted.search.casefold()
+        found = []
+        for picture in self._of(wanted.station):
+            station, t_ms = picture.station, picture.summary.t_ms
+            for person in picture.summary.people:
+                if wanted.incident_id and person.incident_id != wanted.incident_id:
+                    continue
+                if search and not self._matches(station, person, search):
+                    continue
+                need = (not person.mayday, -len(person.alarms), not is_overdue(person, t_ms))
+                found.append((need, station, person.unit_id, picture, person))
+        found.sort(key=lambda one: one[:3])
+        part = found[wanted.skip : wanted.skip + wanted.limit]
+        return DepartmentPeopleView(
+            now_ms=to_ms(self._clock.utc_ns()),
+            total=len(found),
+            people=tuple(self._person_view(picture, person) for *_, picture, person in part),
+        )
+
+    def events(self, before: int | None, limit: int) -> tuple[DepartmentEventView, ...]:
+        """In the order of arrival, the newest first."""
+        return tuple(
+            DepartmentEventView(
+                number=row.number,
+                station=row.station,
+                kind=row.kind,
+                t_ms=row.t_ms - row.offset_ms,
+                received_ms=to_ms(row.received_ns),
+                text=event_text(row, partial(self._intake.person, row.station)),
+            )
+            for row in self._tables.events(before, limit)
+        )
+
+    # ---- stations
+
+    def _of(self, station: str) -> Iterator[StationPicture]:
+        for name, pictures in self._picture.all().items():
+            if station in ("", name):
+                yield from pictures
+
+    def _stations(
+        self, pictures: dict[str, Sequence[StationPicture]]
+    ) -> Iterator[ReportingStationView]:
+        missing = self._tables.missing()
+        for name in sorted({*self._enrolled(), *pictures}):
+            shown = pictures.get(name, ())
+            newest = max(shown, key=lambda one: one.received_ns, default=None)
+            yield ReportingStationView(
+                station=name,
+                state=self._state(newest),
+                last_ms=None if newest is None else to_ms(newest.received_ns),
+                console_url="" if newest is None else newest.summary.console_url,
+                host="" if newest is None else newest.summary.host,
+                people=sum(len(one.summary.people) for one in shown),
+                in_incident=sum(
+                    count.people for one in shown for key, count in one.counts.items() if key
+                ),
+                waiting=sum(one.summary.waiting for one in shown),
+                missing=missing.get(name, 0),
+                clock_ahead_ms=0 if newest is None else newest.offset_ms,
+                problems=() if newest is None else newest.summary.problems,
+            )
+
+    def _state(self, picture: StationPicture | None) -> str:
+        if picture is None:
+            return "never"
+        return "away" if self._silent_ns(picture) >= AWAY_AFTER_NS else "live"
+
+    def _silent_ns(self, picture: StationPicture) -> int:
+        return picture.silent_ns(self._clock.utc_ns(), self._clock.monotonic_ns())
+
+    def _problems_of(self, pictures: dict[str, Sequence[StationPicture]]) -> Iterator[str]:
+        if problem := self._intake.problem:
+            yield problem
+        for name, ones in sorted(pictures.items()):
+            if len(ones) > 1:
+                hosts = ", ".join(f"{one.summary.host} {one.summary.console_url}" for one in ones)
+                yield (
+                    f"Several machines report as {name}: {hosts}. The people of all are "
+                    "shown; give each station an enrolment of its own, and revoke this one"
+                )
+            newest = max(ones, key=lambda one: one.received_ns)
+            if abs(newest.offset_ms) > CLOCK_LIMIT_MS:
+                yield _clock_problem(name, newest.offset_ms)
+        for name, count in sorted(self._tables.missing().items()):
+            yield (
+                f"{count} events of {name} are not here: this department's database is older than "
+                "what it has acknowledged. The station's own log has them"
+            )
+
+    # ---- people and alarms
+
+    def _matches(self, station: str, person: PersonSummary, search: str) -> bool:
+        known = self._intake.person(station, person.person_id)
+        texts = (known.name, known.crew, person.label, person.unit_id)
+        return any(search in text.casefold() for text in texts)
+
+    def _person_view(self, picture: StationPicture, person: PersonSummary) -> DepartmentPersonView:
+        known = self._intake.person(picture.station, person.person_id)
+        place, summary = person.place, picture.summary
+        silent_ns = self._silent_ns(picture)
+        age_s = None
+        if place is not None:  # by the station's clock until it was sent, then by the department's
+            age_s = (summary.t_ms - place.t_ms + silent_ns / NS_PER_MS) / _MS_PER_S
+        due_ms = person.par_due_ms
+        return DepartmentPersonView(
+            station=picture.station,
+            unit_id=person.unit_id,
+            label=person.label,
+            person_id=person.person_id,
+            name=known.name,
+            crew=known.crew,
+            role=known.role,
+            incident_id=person.incident_id,
+            link="station_away" if silent_ns >= AWAY_AFTER_NS else person.link,
+            position_age_s=age_s,
+            north_m=None if place is None else place.north_m,
+            east_m=None if place is None else place.east_m,
+            floor=None if place is None else place.floor,
+            lat_deg=None if place is None else place.lat_deg,
+            lon_deg=None if place is None else place.lon_deg,
+            radius_m=None if place is None else place.radius_m,
+            quality="" if place is None else place.quality,
+            activity=person.activity,
+            mayday=person.mayday,
+            alarms=len(person.alarms),
+            par=person.par,
+            par_due_ms=None if due_ms is None else due_ms - picture.offset_ms,
+            par_overdue=is_overdue(person, summary.t_ms + silent_ns // NS_PER_MS),
+        )
+
+    def _alarm_view(
+        self, alarm: ReportedAlarm, pictures: dict[str, Sequence[StationPicture]]
+    ) -> DepartmentAlarmView:
+        people = partial(self._intake.person, alarm.station)
+        wearers = (
+            person.person_id
+            for picture in pictures.get(alarm.station, ())
+            for person in picture.summary.people
+            if person.unit_id == alarm.unit_id
+        )
+        return DepartmentAlarmView(
+            station=alarm.station,
+            alarm_id=alarm.alarm_id,
+            rule=alarm.rule,
+            unit_id=alarm.unit_id,
+            person=people(next(wearers, "")).name,
+            priority=alarm.priority,
+            state=alarm.state,
+            level=alarm.level,
+            text=shown_text(alarm.text, people),
+            by=shown_text(alarm.by, people),
+            raised_ms=alarm.raised_ms - alarm.offset_ms,
+            changed_ms=alarm.changed_ms - alarm.offset_ms,
+        )
+
+
+def _incident_view(
+    incident: ReportedIncident, pictures: Sequence[StationPicture]
+) -> DepartmentIncidentView:
+    counts = [one.counts.get(incident.incident_id, _NO_COUNTS) for one in pictures]
+    closed_ms = incident.closed_ms
+    return DepartmentIncidentView(
+        station=incident.station,
+        incident_id=incident.incident_id,
+        name=incident.name,
+        opened_ms=incident.opened_ms - incident.offset_ms,
+        closed_ms=None if closed_ms is None else closed_ms - incident.offset_ms,
+        people=sum(one.people for one in counts),
+        maydays=sum(one.maydays for one in counts),
+        alarms=sum(one.alarms for one in counts),
+        overdue=sum(one.overdue for one in counts),
+    )
+
+
+def _clock_problem(station: str, ahead_ms: int) -> str:
+    minutes, seconds = divmod(abs(ahead_ms) // 1000, 60)
+    hours, minutes = divmod(minutes, 60)
+    apart = f"{hours} h {minutes} min" if hours else f"{minutes} min {seconds} s"
+    side = "ahead of" if ahead_ms > 0 else "behind"
+    return (
+        f"The clock of {station} is {apart} {side} the department's: times are shown by the "
+        "department's clock; set the one that is wrong"
+    )

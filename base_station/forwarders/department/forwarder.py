@@ -1,0 +1,223 @@
+"""Forwarder to the department: publishes summaries, and hands events over until they are stored."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import msgspec
+
+from base_station.department_wire import Event, EventBatch, EventReceipt, pack, unpack
+from base_station.forwarders.department.collector import ReportCollector
+from base_station.forwarders.department.config import DepartmentConfig
+from base_station.forwarders.department.outbox import DepartmentOutbox, StoredEvent
+from base_station.forwarders.interface import Surroundings
+from base_station.storage.projection import Projection
+from base_station.views.answer import to_ms, to_ms_or_none
+from base_station.views.wire import Delta, ForwarderView, Snapshot
+from shared.bus import Bus
+from shared.bus_zenoh import UnitEndpoint, ZenohBus
+from shared.channels import Qos, department_events_key, department_summary_key
+from shared.clock import NS_PER_S
+from shared.enrolment import Enrolment, Holder, read_enrolment
+from shared.errors import ConfigError, WireError
+from shared.tls import validity_problem
+from shared.worker import Worker
+
+OUTBOX = "department-outbox.sqlite"
+
+_COLLECT_S = 0.2
+_SUMMARY_NS = NS_PER_S
+_RETRY_S = 1.0
+_RECEIPT_TIMEOUT_S = 5.0
+_MAX_EVENTS, _MAX_BYTES = 500, 32_000  # of a batch: some seconds on a link of 100 kbit/s
+_KEPT_BY_STANDBY = 20_000  # events that the other one of two stations sends
+_CLOSE_S = 5.0
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass(slots=True)
+class _LinkStatus:
+    """State of the connection; written by the sender's thread alone."""
+
+    state: str = "connecting"
+    since_ns: int | None = None  # station time of the last change
+    away_since_ns: int | None = None  # monotonic; None: connected, or not to be
+    reason: str = ""
+    stored: int = 0  # events that the department has stored since the start
+
+
+class DepartmentForwarder:
+    """A ``Forwarder`` for ``[department]``."""
+
+    def __init__(self, name: str, config: DepartmentConfig, surroundings: Surroundings) -> None:
+        """Raises ConfigError where the enrolment cannot be used."""
+        self._name, self._config = name, config
+        self._clock, self._leads = surroundings.clock, surroundings.leads
+        self._enrolment = _station_enrolment(config.enrolment)
+        self._outbox = DepartmentOutbox(surroundings.data / OUTBOX)
+        self._collector = ReportCollector(self._outbox, surroundings.people, surroundings.read_log)
+        self._summary_due_ns = 0
+        self._status = _LinkStatus(away_since_ns=self._clock.monotonic_ns())
+        self._collecting = Worker(
+            "department-collector", self._collect, "nothing is collected for the department"
+        )
+        self._sending = Worker(
+            "department-sender", self._send, "the department gets no events of this station"
+        )
+        self._bus: Bus | None = None  # until it is started
+
+    # ---- from other threads
+
+    def delta(self, delta: Delta) -> None:
+        self._collector.delta(delta)
+
+    def reset(self, snapshot: Snapshot) -> None:
+        self._collector.reset(snapshot)
+        self._collecting.wake()
+
+    def project(self, projection: Projection) -> None:
+        self._collector.project(projection)
+        if projection.alarms:
+            self._collecting.wake()
+
+    def start(self) -> None:
+        self._bus = ZenohBus(UnitEndpoint(self._enrolment.connect, self._enrolment.identity))
+        self._collecting.start()
+        self._sending.start()
+
+    def close(self) -> None:
+        for worker in (self._collecting, self._sending):
+            worker.stop()
+        for worker in (self._collecting, self._sending):
+            worker.join(_CLOSE_S)
+        if self._bus is not None:
+            self._bus.close()
+        self._outbox.close()
+
+    def view(self) -> ForwarderView:
+        status = self._status
+        return ForwarderView(
+            name=self._name,
+            kind="department",
+            address=", ".join(self._enrolment.connect),
+            state=status.state,
+            since_ms=to_ms_or_none(status.since_ns),
+            sent=status.stored,
+            received=0,
+            refused=0,
+            text=status.reason or self._collecting.fault,
+        )
+
+    def problem(self) -> str:
+        since_ns = self._status.away_since_ns
+        if since_ns is None:
+            return ""
+        away_s = (self._clock.monotonic_ns() - since_ns) / NS_PER_S
+        if away_s < self._config.alarm_after_s:
+            return ""
+        return (
+            f"The department ({', '.join(self._enrolment.connect)}) has been away for "
+            f"{away_s:.0f} s: {self._status.reason}. What it misses is kept and sent later"
+        )
+
+    # ---- in the collecting thread
+
+    def _collect(self) -> float:
+        now_ms = to_ms(self._clock.utc_ns())
+        if self._collector.collect(now_ms):
+            self._sending.wake()
+        now_ns = self._clock.monotonic_ns()
+        if now_ns >= self._summary_due_ns and self._leads():
+            self._summary_due_ns = max(self._summary_due_ns + _SUMMARY_NS, now_ns)
+            self._publish_summary(now_ms)
+        return _COLLECT_S
+
+    def _publish_summary(self, now_ms: int) -> None:
+        assert self._bus is not None
+        key = department_summary_key(self._enrolment.name)
+        summary = self._collector.summary(now_ms, self._config.console_url)
+        if summary is not None and self._bus.is_heard(key):
+            self._bus.publish(key, pack(summary), Qos.LIVE)
+
+    # ---- in the sending thread
+
+    def _send(self) -> float:
+        """Hand over a batch; gives the pause until the next one."""
+        assert self._bus is not None
+        if not self._leads():
+            self._set_state("standby")
+            self._outbox.keep_newest(_KEPT_BY_STANDBY)
+            return _RETRY_S
+        if not self._bus.is_heard(department_summary_key(self._enrolment.name)):
+            self._set_state("connecting", self._why_away())
+            return _RETRY_S
+        batch = self._outbox.next_batch(_MAX_EVENTS, _MAX_BYTES)
+        if not batch:
+            self._set_state("connected")
+            return _RETRY_S
+        receipt = self._hand_over(self._bus, batch)
+        if receipt is None:
+            self._set_state("connecting", "it does not acknowledge events")
+            return _RETRY_S
+        if receipt.refusal or receipt.epoch != self._outbox.epoch:
+            self._set_state("connected", receipt.refusal or "it answers another station")
+            return _RETRY_S
+        self._outbox.acknowledge(receipt.stored_seq)
+        self._status.stored += sum(one.seq <= receipt.stored_seq for one in batch)
+        self._set_state("connected")
+        return 0.0
+
+    def _hand_over(self, bus: Bus, batch: tuple[StoredEvent, ...]) -> EventReceipt | None:
+        """None: no receipt came in time; the department may have stored the events all the same,
+        and stores none twice.
+        """
+        message = EventBatch(
+            epoch=self._outbox.epoch,
+            t_ms=to_ms(self._clock.utc_ns()),
+            after_seq=self._outbox.acknowledged_seq,
+            dropped_seq=self._outbox.dropped_seq,
+            events=tuple(
+                Event(one.seq, one.event_id, one.t_ms, msgspec.Raw(one.body)) for one in batch
+            ),
+        )
+        key = department_events_key(self._enrolment.name)
+        for reply in bus.query(key, pack(message), _RECEIPT_TIMEOUT_S):
+            try:
+                return unpack(reply, EventReceipt)
+            except WireError as error:
+                logger.warning("a receipt of the department cannot be read: %s", error)
+        return None
+
+    def _why_away(self) -> str:
+        now = datetime.fromtimestamp(self._clock.utc_ns() / NS_PER_S, UTC)
+        renewal = f"renew it there with {self._enrolment.made_again}"
+        return validity_problem(self._enrolment.identity, now, renewal) or (
+            "it does not answer; is it switched on, does the network lead there, and has it "
+            f"enrolled {self._enrolment.name}, which is not revoked?"
+        )
+
+    def _set_state(self, state: str, reason: str = "") -> None:
+        status = self._status
+        if state != status.state:
+            status.state, status.since_ns = state, self._clock.utc_ns()
+            logger.info("department %s: %s %s", self._enrolment.connect[0], state, reason)
+        if state == "connecting" and status.away_since_ns is None:
+            status.away_since_ns = self._clock.monotonic_ns()
+        elif state != "connecting":
+            status.away_since_ns = None
+        status.reason = reason
+
+
+def _station_enrolment(path: Path) -> Enrolment:
+    """Raises ConfigError where it cannot be read, or is of something else."""
+    enrolment = read_enrolment(path)
+    if enrolment.holder is not Holder.DEPARTMENT_STATION:
+        raise ConfigError(
+            f"{path} enrols the {enrolment.holder.value} {enrolment.name}, not a station: make one "
+            "at the department with `muster pki enroll STATION --department-station`"
+        )
+    return enrolment

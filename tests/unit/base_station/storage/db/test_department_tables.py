@@ -1,0 +1,115 @@
+"""Events of stations are stored once, in whichever order and however often they come."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from base_station.department_wire import (
+    AlarmEvent,
+    Event,
+    EventBatch,
+    EventBody,
+    IncidentEvent,
+    PersonEvent,
+    pack,
+)
+from base_station.storage.db.department_models import DepartmentSchema
+from base_station.storage.db.department_tables import DepartmentTables, Reported
+from base_station.storage.db.store import Store
+from shared.errors import StoreError, WireError
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    with Store(tmp_path / "station.sqlite") as store:
+        yield store
+
+
+@pytest.fixture
+def tables(store: Store) -> DepartmentTables:
+    return DepartmentTables(store)
+
+
+def alarm(state: str, changed_ms: int) -> AlarmEvent:
+    return AlarmEvent("a1", "fall", "FF-01", 1, state, "", "{person p1} fell", "", 1, changed_ms)
+
+
+def event(seq: int, event_id: str, body: EventBody) -> Event:
+    return Event(seq, event_id, 1000 + seq, msgspec.Raw(pack(body)))
+
+
+def take(
+    tables: DepartmentTables,
+    *events: Event,
+    epoch: int = 7,
+    after_seq: int = 0,
+    dropped_seq: int = 0,
+) -> Reported:
+    return tables.take("engine-7", EventBatch(epoch, 0, after_seq, events, dropped_seq), 5, 9)
+
+
+def test_a_batch_that_comes_again_changes_nothing(tables: DepartmentTables) -> None:
+    first = event(1, "a", alarm("raised", 10)), event(2, "b", alarm("resolved", 20))
+    assert take(tables, *first) == Reported(2, 2, False)
+    assert take(tables, *first) == Reported(2, 0, False)
+    later = event(3, "c", PersonEvent("p1", "Anna Berg", "", ""))
+    assert take(tables, *first, later, after_seq=2) == Reported(3, 1, True)
+    assert [one.event_id for one in tables.events(None, 10)] == ["c", "b", "a"]
+    assert tables.missing() == {}
+    assert tables.open_alarms(10) == ([], 0)
+    names = {key: one.name for key, one in tables.people().items()}
+    assert names == {("engine-7", "p1"): "Anna Berg"}
+    (person, *_) = tables.events(None, 1)
+    assert person.body == b""  # a name stands in its own table alone
+
+
+def test_the_other_machine_of_a_station_reports_the_same_events_under_other_numbers(
+    tables: DepartmentTables,
+) -> None:
+    take(tables, event(1, "a", alarm("raised", 10)), event(2, "b", alarm("acknowledged", 20)))
+    again = event(41, "a", alarm("raised", 10)), event(42, "d", alarm("raised", 15))
+    assert take(tables, *again, epoch=8, dropped_seq=40).new == 1
+    ((shown,), count) = tables.open_alarms(10)
+    assert (shown.state, count) == ("acknowledged", 1)  # an older transition that came later
+    assert tables.missing() == {}  # what it has dropped as a standby had come from the other one
+
+
+def test_numbers_that_are_left_out_are_counted(tables: DepartmentTables) -> None:
+    take(tables, event(1, "a", alarm("raised", 10)))
+    take(tables, event(4, "d", alarm("raised", 40)), after_seq=1)
+    assert tables.missing() == {"engine-7": 2}
+    take(tables, event(31, "e", alarm("raised", 50)), epoch=9, after_seq=30)
+    assert tables.missing() == {"engine-7": 32}  # this database is older than its receipts
+
+
+def test_a_closed_incident_stays_closed_and_open_ones_come_first(tables: DepartmentTables) -> None:
+    take(
+        tables,
+        event(1, "a", IncidentEvent("i1", "Mill street", 10, 20)),
+        event(2, "b", IncidentEvent("i1", "Mill street 4", 10, None)),
+        event(3, "c", IncidentEvent("i2", "Harbour", 5, None)),
+    )
+    shown = [(one.incident_id, one.name, one.closed_ms) for one in tables.incidents(10)]
+    assert shown == [("i2", "Harbour", None), ("i1", "Mill street 4", 20)]
+
+
+def test_an_event_of_a_newer_station_is_kept_and_a_damaged_one_stores_nothing(
+    tables: DepartmentTables,
+) -> None:
+    newer = Event(1, "a", 1, msgspec.Raw(msgspec.msgpack.encode({"type": "drone", "x": 1})))
+    assert take(tables, newer).new == 1
+    damaged = Event(3, "c", 1, msgspec.Raw(msgspec.msgpack.encode({"type": "par", "x": 1})))
+    with pytest.raises(WireError):
+        take(tables, event(2, "b", alarm("raised", 10)), damaged)
+    assert [one.event_id for one in tables.events(None, 10)] == ["a"]
+
+
+def test_tables_of_a_newer_program_are_refused(store: Store, tables: DepartmentTables) -> None:
+    with store.write() as session:
+        session.merge(DepartmentSchema(version=1)).version = 2
+    with pytest.raises(StoreError, match="a newer Muster made them"):
+        DepartmentTables(store)
