@@ -1,87 +1,26 @@
-"""Broadcasts live snapshots and deltas to the consoles that watch.
+"""Broadcasts live snapshots and what changes to the consoles that watch.
 
-A delta is encoded once and the same bytes go to everyone.  A client that cannot keep up loses
-its queue, not the station its memory: once it takes something again it gets a snapshot.  Trails,
-nearly all of a picture, go out when nothing else does: over a slow link too a console shows at
-once where everybody is, and stays up to date.
+Whatever it is, it is encoded once and the same bytes go to everyone.  A client that cannot keep up
+loses its queue, not the station its memory: once it takes something again it gets a snapshot.  One
+that confirms what it has shown (``PacedClient``) gets what it missed as one message instead.
+Trails, nearly all of a picture, go out when nothing else does: over a slow link too a console
+shows at once where everybody is, and stays up to date.
 """
 
 from __future__ import annotations
 
 import asyncio
-from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from concurrent.futures import Future
 
 import msgspec
 
+from base_station.api.hub_client import Client, PacedClient
 from base_station.api.position_ages import PositionAges
 from base_station.engine.ports import LiveSource, Trails
+from base_station.views.changes import UnitChanges
 from base_station.views.wire import Delta, HealthView, Snapshot, Trail
 from shared.errors import StoreError
-
-MAX_QUEUED = 64  # messages a client may be behind, some three seconds
-
-
-class Client:
-    """One console's place in the hub."""
-
-    def __init__(self, hub: Hub) -> None:
-        self._hub = hub
-        self._queue: deque[bytes] = deque()
-        self._trails: dict[str, bytes] = {}  # by unit: behind the snapshot, and not yet sent
-        self._has_message = asyncio.Event()
-        self._behind = False  # lost its queue and needs a snapshot
-        self._waiting = False  # a snapshot is under way
-        self.lapses = 0  # how often it was too slow
-
-    async def next_message(self) -> bytes:
-        """The next message in order, waiting for it."""
-        while not (self._queue or self._trails):
-            self._has_message.clear()
-            if self._behind:
-                self.request_snapshot()
-            await self._has_message.wait()
-        return self._queue.popleft() if self._queue else self._trails.pop(next(iter(self._trails)))
-
-    def request_snapshot(self) -> None:
-        """Drops the queue; the next message will be a snapshot."""
-        self._clear()
-        self._behind = False
-        if not self._waiting:
-            self._waiting = True
-            self._hub.request_snapshot()
-
-    def enqueue_delta(self, message: bytes, redrawn: Iterable[str]) -> None:
-        """``redrawn``: the units whose whole trail it has."""
-        if self._waiting or self._behind:
-            return
-        if len(self._queue) >= MAX_QUEUED:
-            self._clear()
-            self._behind = True
-            self.lapses += 1
-            return
-        for unit_id in redrawn:
-            self._trails.pop(unit_id, None)
-        self._enqueue(message)
-
-    def enqueue_snapshot(
-        self, message: bytes, trails: Mapping[str, bytes], *, requested_only: bool
-    ) -> None:
-        if requested_only and not self._waiting:
-            return
-        self._waiting = self._behind = False
-        self._clear()
-        self._trails.update(trails)
-        self._enqueue(message)
-
-    def _clear(self) -> None:
-        self._queue.clear()
-        self._trails.clear()
-
-    def _enqueue(self, message: bytes) -> None:
-        self._queue.append(message)
-        self._has_message.set()
 
 
 class Hub:
@@ -89,11 +28,13 @@ class Hub:
 
     def __init__(self) -> None:
         self._encoder = msgspec.json.Encoder()
+        self._changes = UnitChanges()  # of the source's thread
         self._clients: set[Client] = set()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._source: LiveSource | None = None
         self._requested = False
-        self._watched = False  # read in the source's thread: without clients nothing is encoded
+        # Of clients of each kind; read in the source's thread: for nobody nothing is encoded.
+        self._has_plain = self._has_paced = False
         self.health: HealthView | None = None  # as last said
         self.position_ages = PositionAges()
 
@@ -125,26 +66,32 @@ class Hub:
         if delta.health is not None:
             self.health = delta.health
         self.position_ages.observe(delta)
-        if self._watched:
-            self.broadcast_delta(self._encoder.encode(delta), tuple(delta.trails))
+        if self._has_plain or self._has_paced:
+            whole = self._encoder.encode(delta) if self._has_plain else b""
+            changes = self._encoder.encode(self._changes.of(delta)) if self._has_paced else b""
+            self.broadcast_delta(whole, changes, tuple(delta.trails))
 
     def reset(self, snapshot: Snapshot, trails: Trails) -> None:
         self.health = snapshot.health
-        if self._watched:
+        self._changes.note_snapshot(snapshot)
+        if self._has_plain or self._has_paced:
             self.broadcast_reset(self._encoder.encode(snapshot), trails)
 
-    def broadcast_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None:
-        """A delta that is encoded already; ``redrawn``: the units whose whole trail it has."""
-        if self._watched:
-            self._in_loop(self._broadcast_delta, message, redrawn)
+    def broadcast_delta(self, whole: bytes, changes: bytes, redrawn: tuple[str, ...]) -> None:
+        """A delta that is encoded already, as ``Delta`` and as ``FieldDelta``; ``redrawn``: the
+        units whose whole trail it has.
+        """
+        if self._has_plain or self._has_paced:
+            self._in_loop(self._broadcast_delta, whole, changes, redrawn)
 
     def broadcast_reset(self, message: bytes, trails: Trails) -> None:
         """A snapshot that is encoded already, for everybody."""
-        if self._watched:
+        if self._has_plain or self._has_paced:
             self._in_loop(self._broadcast_snapshot, message, trails, False)
 
     def _deliver(self, snapshot: Snapshot, trails: Trails) -> None:
         self.health = snapshot.health
+        self._changes.note_snapshot(snapshot)
         self._in_loop(self._broadcast_snapshot, self._encoder.encode(snapshot), trails, True)
 
     def _in_loop(self, function: Callable[..., None], *arguments: object) -> None:
@@ -162,20 +109,33 @@ class Hub:
         return len(self._clients)
 
     def join(self) -> Client:
-        """Raises StoreError where there is no picture now."""
-        client = Client(self)
+        """One that gets whole units.  Raises StoreError where there is no picture now."""
+        client = Client(self.request_snapshot)
+        self._add(client)
+        return client
+
+    def join_paced(self) -> PacedClient:
+        """One that gets changed fields.  Raises StoreError where there is no picture now."""
+        client = PacedClient(self.request_snapshot)
+        self._add(client)
+        return client
+
+    def leave(self, client: Client) -> None:
+        self._clients.discard(client)
+        self._note_kinds()
+
+    def _add(self, client: Client) -> None:
         self._clients.add(client)
-        self._watched = True
+        self._note_kinds()
         try:
             client.request_snapshot()
         except StoreError:
             self.leave(client)
             raise
-        return client
 
-    def leave(self, client: Client) -> None:
-        self._clients.discard(client)
-        self._watched = bool(self._clients)
+    def _note_kinds(self) -> None:
+        self._has_paced = any(isinstance(one, PacedClient) for one in self._clients)
+        self._has_plain = any(not isinstance(one, PacedClient) for one in self._clients)
 
     def request_snapshot(self) -> None:
         """Many clients that ask at once share one snapshot."""
@@ -183,9 +143,10 @@ class Hub:
             self._source.request_snapshot(self._deliver)  # if that fails, the next one asks again
             self._requested = True
 
-    def _broadcast_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None:
+    def _broadcast_delta(self, whole: bytes, changes: bytes, redrawn: tuple[str, ...]) -> None:
+        """One that joined since this was encoded waits for its snapshot."""
         for client in self._clients:
-            client.enqueue_delta(message, redrawn)
+            client.enqueue_delta(changes if isinstance(client, PacedClient) else whole, redrawn)
 
     def _broadcast_snapshot(self, message: bytes, trails: Trails, requested_only: bool) -> None:
         if requested_only:

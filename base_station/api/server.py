@@ -17,6 +17,7 @@ from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from base_station.api.connections import ConnectionLimitedSocket
+from base_station.api.shared_deflate import WebSocketProtocol
 from base_station.process import gc_tuning
 from base_station.process.log_rate_limit import RateLimitFilter
 from shared.clock import SystemClock
@@ -161,7 +162,7 @@ class ConsoleServer:
             access_log=False,
             server_header=False,
             proxy_headers=False,  # who asks is who connected: logins are counted by it
-            ws_per_message_deflate=False,  # one encoding for all consoles
+            ws=WebSocketProtocol,
             ws_max_size=_MAX_MESSAGE_BYTES,
             timeout_graceful_shutdown=_SHUTDOWN_GRACE_S,
         )

@@ -15,7 +15,7 @@ from base_station.core.state.trail import TrailStep
 from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.ports import Log, Trails
 from base_station.engine.trail_encoder import trail_point
-from base_station.views.recorded import RecordedDelta, reference_person, rounded_unit
+from base_station.views.recorded import RecordedDelta, reference_person
 from base_station.views.wire import Delta, Snapshot, Trail, TrailPoint
 from shared.clock import NS_PER_S
 from shared.mcap_log import DELTA_TOPIC, SNAPSHOT_TOPIC, TRAIL_TOPIC
@@ -67,7 +67,6 @@ class ConsoleRecorder:
         self._delta_due_ns = state.t_ns + DELTA_NS
         changed = {unit.unit_id: self._new_points(unit.unit_id) for unit in delta.units}
         values = msgspec.structs.asdict(delta)
-        values["units"] = tuple(map(rounded_unit, delta.units))
         points = {unit_id: new for unit_id, new in changed.items() if new}
         self._points_ns |= {unit_id: self._last_point_ns(unit_id) for unit_id in delta.trails}
         self._write(DELTA_TOPIC, RecordedDelta(**values, points=points))
@@ -78,8 +77,7 @@ class ConsoleRecorder:
         self._keyframe_due_ns = state.t_ns + KEYFRAME_NS
         incident = state.incident
         self._is_recorded = incident is not None and incident.closed_ns is not None
-        units = tuple(map(rounded_unit, snapshot.units))
-        self._write(SNAPSHOT_TOPIC, msgspec.structs.replace(snapshot, units=units))
+        self._write(SNAPSHOT_TOPIC, snapshot)
         self._points_ns = {unit_id: self._last_point_ns(unit_id) for unit_id in trails}
         for unit_id, points in trails.items():
             self._write(TRAIL_TOPIC, Trail(unit_id, points))

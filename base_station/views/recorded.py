@@ -1,5 +1,5 @@
 """Console messages as the log keeps them: those of ``wire``, with references in the place of names,
-numbers no finer than a console shows, and the points that were added to trails.
+and the points that were added to trails.
 """
 
 from __future__ import annotations
@@ -25,23 +25,6 @@ from base_station.views.wire import (
     UnitView,
 )
 
-# Decimals of a position: a millimetre, a twentieth of a degree, a millimetre on the Earth.
-_DECIMALS = {
-    "north_m": 3,
-    "east_m": 3,
-    "down_m": 3,
-    "ellipse_major_m": 3,
-    "ellipse_minor_m": 3,
-    "ellipse_heading_rad": 3,
-    "std_down_m": 3,
-    "heading_rad": 3,
-    "heading_std_rad": 3,
-    "since_gps_s": 3,
-    "lat_deg": 8,
-    "lon_deg": 8,
-    "floor_probability": 3,
-}
-
 
 class RecordedDelta(Delta, frozen=True, tag="delta", omit_defaults=True):
     points: Mapping[str, tuple[TrailPoint, ...]] = {}  # by unit, behind what its trail had before
@@ -64,15 +47,6 @@ def read_snapshot(encoded: bytes) -> Snapshot:
 def reference_person(person_id: str) -> KnownPerson:
     """The ``PersonLookup`` of what is recorded: the log has no names."""
     return KnownPerson(reference_to(person_id))
-
-
-def rounded_unit(unit: UnitView) -> UnitView:
-    position = unit.position
-    if position is None:
-        return unit
-    values = {name: (getattr(position, name), digits) for name, digits in _DECIMALS.items()}
-    rounded = {name: round(one, digits) for name, (one, digits) in values.items() if one}
-    return msgspec.structs.replace(unit, position=msgspec.structs.replace(position, **rounded))
 
 
 def named_unit(unit: UnitView, people: PersonLookup) -> UnitView:

@@ -45,6 +45,10 @@ _POSTURE_WORDS = tuple(posture.name.lower() for posture in BodyPosture)
 _MOBILITY_WORDS = tuple(mobility.name.lower() for mobility in Mobility)
 _QUALITY_WORDS = tuple(quality.name.lower() for quality in Quality)
 _GREEN = TrustView("green", "")
+# No finer than a console shows, as digits are most of a message: a millimetre, a twentieth of a
+# degree, a millimetre on the Earth.
+_DECIMALS = 3
+_DEGREE_DECIMALS = 8
 _READY = PreflightView("ok", "")
 
 
@@ -187,24 +191,25 @@ def _position_view(state: StationState, fused: FusedPosition, reach: Ring) -> Po
         lat_deg, lon_deg, _ = anchor.to_geodetic(fused.north_m, fused.east_m, fused.down_m)
     silent_m = max_travel_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
     major_m, minor_m, heading_rad = _ellipse(fused)
+    since_gps_s, probability = fused.since_gps_s, fused.floor_probability
     return PositionView(  # by place: there are thousands a second
         fused.t_meas_ns // NS_PER_MS,
-        fused.north_m,
-        fused.east_m,
-        fused.down_m,
+        round(fused.north_m, _DECIMALS),
+        round(fused.east_m, _DECIMALS),
+        round(fused.down_m, _DECIMALS),
         fused.floor,
-        major_m + silent_m,
-        minor_m + silent_m,
-        heading_rad,
-        fused.std_down_m,
-        fused.heading_rad,
-        fused.heading_std_rad,
+        round(major_m + silent_m, _DECIMALS),
+        round(minor_m + silent_m, _DECIMALS),
+        round(heading_rad, _DECIMALS),
+        round(fused.std_down_m, _DECIMALS),
+        round(fused.heading_rad, _DECIMALS),
+        round(fused.heading_std_rad, _DECIMALS),
         _QUALITY_WORDS[fused.quality],
         fused.quality_reason,
-        fused.since_gps_s,
-        lat_deg,
-        lon_deg,
-        fused.floor_probability,
+        None if since_gps_s is None else round(since_gps_s, _DECIMALS),
+        None if lat_deg is None else round(lat_deg, _DEGREE_DECIMALS),
+        None if lon_deg is None else round(lon_deg, _DEGREE_DECIMALS),
+        None if probability is None else round(probability, _DECIMALS),
         tuple([(round(east_m, 1), round(north_m, 1)) for east_m, north_m in reach]),
     )
 

@@ -1,8 +1,17 @@
-"""Messages to the console over the WebSocket ``/api/v1/live``: a snapshot, then deltas.
+"""Messages to the console over the WebSocket ``/api/v1/live``: a snapshot, then what changes.
 
 Both carry ``seq``; a delta whose ``seq`` is not the last one plus one means that the console
 missed something and must ask for a snapshot (send ``{"type": "snapshot"}``).  The trails that
 were behind the units at the snapshot come one by one, whenever no delta has to go out.
+
+``/api/v1/live`` gives ``Delta`` messages, with each changed unit whole.  With ``?deltas=fields``
+it gives ``FieldDelta`` instead, with the fields that changed.  Who asks for these also confirms
+what was shown: it sends ``{"type": "shown", "count": N}``, where N is the number of messages that
+it got over this connection, of any type, and is done with.  Until the last snapshot or delta is
+confirmed, what changes is merged; the next ``FieldDelta`` has all of it, and says with
+``after_seq`` what it follows.  Messages are compressed where the console offers it
+(permessage-deflate).
+
 Times are milliseconds since 1970 (station time; in a replay, the time of the incident).
 Positions are metres north, east and down in the incident frame.  The console's
 ``src/wire.ts`` is generated from these types (``python -m tests.rig.console_types``).
@@ -418,10 +427,9 @@ class Trail(msgspec.Struct, frozen=True, tag="trail"):
     points: Annotated[msgspec.Raw, _POINTS]
 
 
-class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
-    seq: int
-    now_ms: int
-    units: tuple[UnitView, ...] = ()
+class _WhatChanges(msgspec.Struct, frozen=True, omit_defaults=True, kw_only=True):
+    """What ``Delta`` and ``FieldDelta`` have in common."""
+
     alarms: tuple[AlarmView, ...] = ()
     commands: tuple[CommandView, ...] = ()
     trails: Mapping[str, Annotated[msgspec.Raw, _POINTS]] = {}  # whole, of units whose past changed
@@ -431,3 +439,26 @@ class Delta(msgspec.Struct, frozen=True, tag="delta", omit_defaults=True):
     health: HealthView | None = None
     incident: IncidentView | None = None
     replay: ReplayView | None = None
+
+
+class Delta(_WhatChanges, frozen=True, tag="delta", omit_defaults=True):
+    seq: int
+    now_ms: int
+    units: tuple[UnitView, ...] = ()
+
+
+# The fields of a ``UnitView`` that changed, all of them for a unit that is new.  Where such a field
+# is an object and was one before, it has the fields of that which changed: as in a merge patch of
+# JSON (RFC 7396), but null is a value.  Of a position, time and place always come together.
+UnitChange = dict[str, object]
+
+
+class FieldDelta(_WhatChanges, frozen=True, tag="field_delta", omit_defaults=True):
+    """What changed since the message with ``after_seq``."""
+
+    seq: int
+    after_seq: int
+    now_ms: int
+    units: dict[str, Annotated[UnitChange, shown_as("UnitChange")]] = {}  # by unit
+    passed: Mapping[str, tuple[TrailPoint, ...]] = {}  # by unit: where it was between the two, at
+    # most once a second; only where several messages were merged

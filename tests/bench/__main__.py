@@ -11,6 +11,7 @@ BENCHES = {
     "aids": "tests.bench.tracker.aiding_sensors:bench_aids",
     "backfill": "tests.bench.backfill:bench_backfill",
     "bus": "tests.bench.bus.command:bench_bus",
+    "console": "tests.bench.console.command:bench_console",
     "faults": "tests.bench.faults.command:bench_faults",
     "floors": "tests.bench.floors:bench_floors",
     "fusion": "tests.bench.fusion.command:bench_fusion",

@@ -15,6 +15,7 @@ import msgspec
 from playwright.sync_api import Page, Route, WebSocketRoute
 
 from base_station.api.routes.live import NOT_LOGGED_IN
+from base_station.views.changes import UnitChanges
 from base_station.views.wire import Delta, Snapshot, Trail
 from tests.e2e import scenes
 from tests.e2e.console_files import DIST
@@ -35,6 +36,7 @@ class PlayedStation:
     def __init__(self, page: Page, picture: Snapshot, answers: Answers) -> None:
         self._changes: list[str] = []
         self._picture = picture
+        self._unit_changes = UnitChanges()
         self._answers = answers
         self._sockets: list[WebSocketRoute] = []
         self._replays: list[WebSocketRoute] = []
@@ -66,11 +68,11 @@ class PlayedStation:
     def change(self, **what: object) -> None:
         """Something happens: a delta goes out."""
         said = {"seq": self._picture.seq + 1, "now_ms": self._picture.now_ms, **what}
-        delta = Delta(**said)  # type: ignore[arg-type]
+        changes = self._unit_changes.of(Delta(**said))  # type: ignore[arg-type]
         whole = {name: self._whole(name, said[name]) for name in _ID_OF.keys() & said.keys()}
         self._picture = msgspec.structs.replace(self._picture, **said | whole)
         for socket in self._sockets:
-            socket.send(msgspec.json.encode(delta).decode())
+            socket.send(msgspec.json.encode(changes).decode())
 
     def _whole(self, name: str, changed: object) -> tuple[object, ...]:
         """A list of the picture with what has changed in it: a page may ask for all again."""
@@ -120,22 +122,27 @@ class PlayedStation:
             self._replay(socket)
             return
         self._sockets.append(socket)
-        socket.on_message(lambda _: self._show(socket))
+        socket.on_message(lambda message: self._answer_page(socket, message))
         self._show(socket)
 
     def _replay(self, socket: WebSocketRoute) -> None:
         """Beside what is live: a bad minute, again and again."""
         self._replays.append(socket)
 
-        def show(_: object = None) -> None:
+        def show() -> None:
             socket.send(msgspec.json.encode(scenes.past()).decode())
 
-        socket.on_message(show)
+        socket.on_message(lambda message: _is_request(message) and show())
         show()
+
+    def _answer_page(self, socket: WebSocketRoute, message: str | bytes) -> None:
+        if _is_request(message):
+            self._show(socket)
 
     def _show(self, socket: WebSocketRoute) -> None:
         if self._hangs:
             return
+        self._unit_changes.note_snapshot(self._picture)
         trails = [self._trails.get(one.unit_id) or scenes.trail(one) for one in self._picture.units]
         for message in (self._picture, *trails):
             socket.send(msgspec.json.encode(message).decode())
@@ -163,6 +170,11 @@ class PlayedStation:
         file = DIST / (path.removeprefix("/") or "index.html")
         kind = mimetypes.guess_type(file.name)[0] or "application/octet-stream"
         route.fulfill(path=file, content_type=kind)
+
+
+def _is_request(message: str | bytes) -> bool:
+    """Of the picture; what a page confirms is of no use here."""
+    return json.loads(message)["type"] == "snapshot"
 
 
 def answers(role: str, more: Answers, people: Sequence[object] = ()) -> dict[str, object]:

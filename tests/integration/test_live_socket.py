@@ -20,7 +20,7 @@ from base_station.api.authentication import COOKIE, Scope
 from base_station.api.routes import live
 from base_station.api.server import ConsoleServer, bind
 from shared.errors import StoreError
-from shared.messages.station import OpenIncident
+from shared.messages.station import OpenIncident, RegisterUnit
 from tests.rig.desk_station import PASSWORD, DeskStation
 
 
@@ -63,6 +63,10 @@ async def act(station: DeskStation, name: str) -> None:
     await asyncio.to_thread(station.services.gate.submit, "mia", OpenIncident(name, name))
 
 
+async def act_unit(station: DeskStation, unit_id: str) -> None:
+    await asyncio.to_thread(station.services.gate.submit, "mia", RegisterUnit(unit_id, unit_id))
+
+
 async def test_a_snapshot_and_then_deltas_and_a_snapshot_when_asked(
     station: DeskStation, address: str
 ) -> None:
@@ -77,6 +81,50 @@ async def test_a_snapshot_and_then_deltas_and_a_snapshot_when_asked(
         again = await heard(console)
         assert (again["type"], again["seq"]) == ("snapshot", delta["seq"])
         assert again["incident"]["name"] == "kitchen"
+
+
+async def test_a_console_that_confirms_gets_what_came_meanwhile_as_one(
+    station: DeskStation, address: str
+) -> None:
+    url, headers = f"ws://{address}/api/v1/live?deltas=fields", token_of(station)
+    async with connect(url, additional_headers=headers) as slow:
+        first = await heard(slow)
+        for unit in range(4):
+            await act_unit(station, f"FF-0{unit}")
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(slow.recv(), 0.3)
+        await slow.send('{"type": "shown", "count": 1}')
+        merged = await heard(slow)
+        assert (merged["type"], merged["after_seq"]) == ("field_delta", first["seq"])
+        assert merged["seq"] == first["seq"] + 4
+        assert {unit["label"] for unit in merged["units"].values()} == set(merged["units"])
+        await slow.send('{"type": "shown", "count": 2}')
+        await act_unit(station, "FF-04")
+        assert list((await heard(slow))["units"]) == ["FF-04"]
+    # Torn off, it begins with a picture that has everything, and its count anew.
+    async with connect(url, additional_headers=headers) as again:
+        picture = await heard(again)
+        assert (picture["type"], picture["seq"]) == ("snapshot", merged["seq"] + 1)
+        assert len(picture["units"]) == 5
+        await again.send('{"type": "shown", "count": 1}')
+        await act_unit(station, "FF-05")
+        assert (await heard(again))["after_seq"] == picture["seq"]
+
+
+async def test_what_is_sent_is_compressed_for_whoever_offers_it(
+    station: DeskStation, address: str
+) -> None:
+    url, headers = f"ws://{address}/api/v1/live", token_of(station)
+    async with (
+        connect(url, additional_headers=headers) as offering,
+        connect(url, additional_headers=headers, compression=None) as plain,
+    ):
+        assert offering.response is not None
+        assert plain.response is not None
+        agreed = offering.response.headers["Sec-WebSocket-Extensions"]
+        assert "server_no_context_takeover" in agreed
+        assert "Sec-WebSocket-Extensions" not in plain.response.headers
+        assert await heard(offering) == await heard(plain)
 
 
 async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: str) -> None:
@@ -145,7 +193,9 @@ async def test_a_replay_that_is_not_there(station: DeskStation, address: str) ->
         assert await close_code(console) == live.NOT_FOUND
 
 
-@pytest.mark.parametrize("message", ["hello", '{"type": "delta"}', "[]", "{", b"\x00\x01"])
+@pytest.mark.parametrize(
+    "message", ["hello", '{"type": "delta"}', '{"type": "shown"}', "[]", "{", b"\x00\x01"]
+)
 async def test_what_is_no_request_ends_the_connection(
     station: DeskStation, address: str, message: str | bytes
 ) -> None:

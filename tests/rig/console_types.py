@@ -33,7 +33,12 @@ export type { Plan };
 """
 _TAIL: Final = """export type Link = UnitView["link"];
 export type DeliveryState = DeliveryView["state"];
-export type Message = Snapshot | Trail | Delta;
+export type Message = Snapshot | Trail | FieldDelta;
+
+/** The fields of a unit that changed: all of them for a unit that is new. */
+export type UnitChange = Changed<UnitView>;
+type Changed<T> = { [K in keyof T]?: T[K] extends readonly unknown[] ? T[K] : ChangedValue<T[K]> };
+type ChangedValue<V> = V extends object ? (V extends readonly unknown[] ? V : Changed<V>) : V;
 """
 _ANSWERS_HEAD: Final = """\
 /** Requests and answers of the station's API.
@@ -66,6 +71,7 @@ def wire_types() -> str:
         for item in vars(wire).values()
         if isinstance(item, type)
         if issubclass(item, msgspec.Struct) and item.__module__ == wire.__name__
+        if not item.__name__.startswith("_")
     ]
     declared = map(_declaration, inspect.multi_type_info(structs))
     return "\n".join([_HEAD, *declared, _TAIL])

@@ -24,7 +24,14 @@ from base_station.api.replays import ReplayPlayer, Replays
 from base_station.api.services import Services
 from base_station.core import idempotency
 from base_station.core.alarms import ALARMS
-from base_station.core.events import ClosedIncidentChanged, Output, Received, Refused, event_of
+from base_station.core.events import (
+    ClosedIncidentChanged,
+    Output,
+    Received,
+    Refused,
+    UnitChanged,
+    event_of,
+)
 from base_station.core.pipeline import StationPipeline
 from base_station.engine.admission import Admission, classify
 from base_station.engine.ports import ActionResult, DeliveryResult, Trails
@@ -101,7 +108,9 @@ class DeskDrive:
                 )
             )
             self._seq += 1
-            self._hub.delta(Delta(self._seq, t_ns // 1_000_000))
+            changed = {one.unit_id for one in outputs if isinstance(one, UnitChanged)}
+            units = tuple(one for one in self.picture().units if one.unit_id in changed)
+            self._hub.delta(Delta(self._seq, t_ns // 1_000_000, units=units))
             return outputs
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:

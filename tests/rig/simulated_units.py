@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import random
 import secrets
 import time
 from collections.abc import Callable, Sequence
@@ -27,7 +29,7 @@ from tests.rig.pacing import paced
 
 _MESSAGES_A_TURN = 7  # one is a status and one a temperature: 1 Hz each beside positions at 5 Hz
 _STATUS_AT, _TEMPERATURE_AT = 2, 5
-_CORRIDOR_M = 60.0
+_RADII_M = 5.0, 30.0
 
 
 @dataclass(slots=True)
@@ -39,12 +41,13 @@ class Sent:
 
 
 class Wearer:
-    """Walks up and down a corridor at 1 m/s, and says so: of seven messages five are positions."""
+    """Walks round a circle at 1 m/s, and says so: of seven messages five are positions."""
 
     def __init__(self, unit_id: str, clock: Clock) -> None:
         self.unit_id = unit_id
         self._stamper = Stamper(unit_id, secrets.randbits(63), clock)
         self._first_ns = clock.monotonic_ns()
+        self._radius_m = random.uniform(*_RADII_M)
 
     def introduction(self) -> Message:
         return message_factory.description(self._stamper.header())
@@ -73,19 +76,20 @@ class Wearer:
 
     def _position(self, header: Header) -> Position:
         walked_m = (header.t_mono_ns - self._first_ns) / NS_PER_S
+        turned_rad = walked_m / self._radius_m
         return Position(
             header=header,
-            north_m=abs((walked_m + _CORRIDOR_M) % (2.0 * _CORRIDOR_M) - _CORRIDOR_M),
-            east_m=0.0,
+            north_m=self._radius_m * math.sin(turned_rad),
+            east_m=-self._radius_m * math.cos(turned_rad),
             down_m=0.0,
-            velocity_north_mps=1.0,
-            velocity_east_mps=0.0,
+            velocity_north_mps=math.cos(turned_rad),
+            velocity_east_mps=math.sin(turned_rad),
             velocity_down_mps=0.0,
             std_north_m=0.5,
             std_east_m=0.5,
             std_down_m=0.2,
             correlation_ne=0.0,
-            heading_rad=0.0,
+            heading_rad=math.remainder(turned_rad, math.tau),
             heading_std_rad=0.1,
             distance_m=walked_m,
             pressure_pa=101_325.0,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from concurrent.futures import ThreadPoolExecutor
+from typing import Literal
 
 import msgspec
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
@@ -18,7 +19,8 @@ from base_station.api.authentication import (
     principal_of,
     scope_covers,
 )
-from base_station.api.hub import Client, Hub
+from base_station.api.hub import Hub
+from base_station.api.hub_client import Client, PacedClient
 from base_station.api.services import Services, services_of
 from shared.errors import StoreError
 from shared.log_on_change import LogOnChange
@@ -49,22 +51,31 @@ class WebSocketClosing(Exception):  # noqa: N818  # it is no error
         self.reason = reason
 
 
-class Request(msgspec.Struct, forbid_unknown_fields=True, tag="snapshot"):
-    """All that a console may ask: the picture anew."""
+Deltas = Literal["units", "fields"]  # what they have of a unit that changed: all, or what changed
+
+
+class PictureRequest(msgspec.Struct, forbid_unknown_fields=True, tag="snapshot"):
+    """The picture anew, please."""
+
+
+class ShownCount(msgspec.Struct, forbid_unknown_fields=True, tag="shown"):
+    """So many messages of this connection, of any type, were shown."""
+
+    count: int
 
 
 @router.websocket("/live")
-async def live(socket: WebSocket) -> None:
-    await _serve(socket, services_of(socket).hub)
+async def live(socket: WebSocket, deltas: Deltas = "units") -> None:
+    await _serve(socket, services_of(socket).hub, deltas)
 
 
 @router.websocket("/replays/{replay_id}/live")
-async def replay_live(socket: WebSocket, replay_id: str) -> None:
+async def replay_live(socket: WebSocket, replay_id: str, deltas: Deltas = "units") -> None:
     replay = await run_in_threadpool(services_of(socket).replays.get, replay_id)
-    await _serve(socket, None if replay is None else replay.hub)
+    await _serve(socket, None if replay is None else replay.hub, deltas)
 
 
-async def _serve(socket: WebSocket, hub: Hub | None) -> None:
+async def _serve(socket: WebSocket, hub: Hub | None, deltas: Deltas) -> None:
     if not is_own_origin(socket):
         await socket.close()  # before it was accepted: the browser gets a 403
         return
@@ -74,7 +85,7 @@ async def _serve(socket: WebSocket, hub: Hub | None) -> None:
         await _check_login(socket, services)
         if hub is None:
             raise WebSocketClosing(NOT_FOUND, "there is no such replay; it may have ended")
-        await _watch(socket, services, hub)
+        await _watch(socket, services, hub, deltas)
     except WebSocketClosing as closing:
         await _close(socket, closing)
     except StoreError as error:
@@ -83,9 +94,9 @@ async def _serve(socket: WebSocket, hub: Hub | None) -> None:
         pass
 
 
-async def _watch(socket: WebSocket, services: Services, hub: Hub) -> None:
+async def _watch(socket: WebSocket, services: Services, hub: Hub, deltas: Deltas) -> None:
     """Until one of the three is over."""
-    client = hub.join()
+    client = hub.join_paced() if deltas == "fields" else hub.join()
     tasks = {
         asyncio.create_task(_send(socket, client)),
         asyncio.create_task(_listen(socket, client)),
@@ -117,12 +128,18 @@ async def _send(socket: WebSocket, client: Client) -> None:
 async def _listen(socket: WebSocket, client: Client) -> None:
     while True:
         try:
-            msgspec.json.decode(await socket.receive_text(), type=Request)
+            message = msgspec.json.decode(
+                await socket.receive_text(), type=PictureRequest | ShownCount
+            )
         except (msgspec.DecodeError, KeyError):
             raise WebSocketClosing(
-                NOT_UNDERSTOOD, 'all that can be asked is {"type": "snapshot"}'
+                NOT_UNDERSTOOD,
+                'a console sends {"type": "snapshot"} or {"type": "shown", "count": N}',
             ) from None
-        client.request_snapshot()
+        if isinstance(message, PictureRequest):
+            client.request_snapshot()
+        elif isinstance(client, PacedClient):
+            client.note_shown(message.count)
 
 
 async def _keep_checking(socket: WebSocket, services: Services) -> None:

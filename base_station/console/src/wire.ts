@@ -351,6 +351,29 @@ export interface Delta {
   replay?: ReplayView;
 }
 
+export interface FieldDelta {
+  type: "field_delta";
+  seq: number;
+  after_seq: number;
+  now_ms: number;
+  units?: Record<string, UnitChange>;
+  passed?: Record<string, TrailPoint[]>;
+  alarms?: AlarmView[];
+  commands?: CommandView[];
+  trails?: Record<string, TrailPoint[]>;
+  pins?: PinView[];
+  beacons?: BeaconView[];
+  external?: ExternalMarkerView[];
+  health?: HealthView;
+  incident?: IncidentView;
+  replay?: ReplayView;
+}
+
 export type Link = UnitView["link"];
 export type DeliveryState = DeliveryView["state"];
-export type Message = Snapshot | Trail | Delta;
+export type Message = Snapshot | Trail | FieldDelta;
+
+/** The fields of a unit that changed: all of them for a unit that is new. */
+export type UnitChange = Changed<UnitView>;
+type Changed<T> = { [K in keyof T]?: T[K] extends readonly unknown[] ? T[K] : ChangedValue<T[K]> };
+type ChangedValue<V> = V extends object ? (V extends readonly unknown[] ? V : Changed<V>) : V;

@@ -30,6 +30,8 @@ interface Timer {
 let sockets: FakeSocket[];
 let timers: Set<Timer>;
 let heard: string[];
+let frames: (() => void)[];
+let nowMs: number;
 let connection: Connection;
 
 function fire(delayMs: number): void {
@@ -40,10 +42,18 @@ function fire(delayMs: number): void {
   }
 }
 
+/** What was shown comes on the screen. */
+function draw(busyMs: number): void {
+  nowMs += busyMs;
+  for (const frame of frames.splice(0)) frame();
+}
+
 beforeEach(() => {
   sockets = [];
   timers = new Set();
   heard = [];
+  frames = [];
+  nowMs = 0;
   const around: Surroundings = {
     open: () => {
       const socket = new FakeSocket();
@@ -57,6 +67,8 @@ beforeEach(() => {
     },
     cancel: (timer) => void timers.delete(timer as Timer),
     random: () => 1,
+    nowMs: () => nowMs,
+    afterFrame: (action) => void frames.push(action),
   };
   connection = new Connection(
     "ws://station",
@@ -110,6 +122,8 @@ describe("Connection", () => {
   it("takes silence for a lost link, though the socket has not noticed", () => {
     sockets[0]?.onopen?.();
     sockets[0]?.onmessage?.({ data: "{}" });
+    draw(0);
+    fire(0);
     fire(SILENCE_MS);
     fire(SILENCE_MS);
     expect(heard).toEqual(["up", "{}", "down 300"]);
@@ -142,5 +156,43 @@ describe("retryDelayMs", () => {
     expect(retryDelayMs(0, 0)).toBe(150);
     expect(retryDelayMs(0, 1)).toBe(300);
     expect(retryDelayMs(20, 1)).toBe(5000);
+  });
+});
+
+describe("what was shown", () => {
+  const hear = (text: string) => sockets[0]?.onmessage?.({ data: text });
+
+  it("is confirmed once it is on the screen, and the page has rested as long as it was busy", () => {
+    hear("one");
+    expect(timers).not.toContainEqual(expect.objectContaining({ delayMs: 120 }));
+    draw(120);
+    expect(sockets[0]?.sent).toEqual([]);
+    fire(120);
+    expect(sockets[0]?.sent).toEqual(['{"type":"shown","count":1}']);
+  });
+
+  it("is confirmed together, and what came since then after its own frame", () => {
+    hear("one");
+    hear("two");
+    draw(30);
+    hear("three");
+    fire(30);
+    draw(20);
+    fire(20);
+    expect(sockets[0]?.sent).toEqual(['{"type":"shown","count":2}', '{"type":"shown","count":3}']);
+  });
+
+  it("rests for less than the silence that a station would be asked about", () => {
+    hear("one");
+    draw(9_000);
+    expect([...timers].some((timer) => timer.delayMs < SILENCE_MS / 2)).toBe(true);
+  });
+
+  it("is not confirmed over a connection that has ended", () => {
+    hear("one");
+    draw(40);
+    sockets[0]?.onclose?.({ code: 1006 });
+    fire(40);
+    expect(sockets[0]?.sent).toEqual([]);
   });
 });

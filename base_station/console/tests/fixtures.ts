@@ -1,8 +1,8 @@
 /** Things as the station sends them, with what a test cares about changed. */
 import type {
   AlarmView,
+  FieldDelta,
   CommandView,
-  Delta,
   DeliveryState,
   ExternalMarkerView,
   HealthView,
@@ -171,8 +171,13 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
   };
 }
 
-export function delta(seq: number, change: Partial<Delta> = {}): Delta {
-  return { type: "delta", seq, now_ms: 2_000, ...change };
+/** What changed since the message before; units are whole. */
+export function delta(
+  seq: number,
+  { units = [], ...change }: Partial<Omit<FieldDelta, "units">> & { units?: UnitView[] } = {},
+): FieldDelta {
+  const byId = Object.fromEntries(units.map((one) => [one.unit_id, one]));
+  return { type: "field_delta", seq, after_seq: seq - 1, now_ms: 2_000, units: byId, ...change };
 }
 
 export function externalMarker(change: Partial<ExternalMarkerView> = {}): ExternalMarkerView {

@@ -48,7 +48,7 @@ _log = logging.getLogger(__name__)
 class EncodedSink(LiveSink, Protocol):
     """A ``LiveSink`` that also takes what is encoded already (``base_station.api.hub.Hub``)."""
 
-    def broadcast_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None: ...
+    def broadcast_delta(self, whole: bytes, changes: bytes, redrawn: tuple[str, ...]) -> None: ...
 
     def broadcast_reset(self, message: bytes, trails: Trails) -> None: ...
 
@@ -239,8 +239,8 @@ class ReplayProcess:
                 with self._lock:
                     if commands >= self._commands:
                         self._view = view
-            case DeltaFrame(encoded, redrawn):
-                self._sink.broadcast_delta(encoded, redrawn)
+            case DeltaFrame(whole, changes, redrawn):
+                self._sink.broadcast_delta(whole, changes, redrawn)
             case SnapshotFrame(encoded, trails, requested):
                 points = {unit_id: msgspec.Raw(raw) for unit_id, raw in trails.items()}
                 self._show(encoded, points, requested=requested)

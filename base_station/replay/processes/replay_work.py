@@ -25,6 +25,7 @@ from base_station.replay.processes.wire import (
 )
 from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.storage.db.known_people import KnownPerson, person_lookup
+from base_station.views.changes import UnitChanges
 from base_station.views.wire import Delta, Snapshot
 from shared.clock import Clock
 from shared.errors import StoreError
@@ -47,6 +48,7 @@ class _ReplayWork:
     def __init__(self, line: FrameChannel) -> None:
         self._line = line
         self._encoder = msgspec.json.Encoder()
+        self._changes = UnitChanges()
         self._known: dict[str, KnownPerson] = {}
         self._commands = 0
         self._begun = threading.Event()
@@ -81,7 +83,8 @@ class _ReplayWork:
 
     def delta(self, delta: Delta) -> None:
         self._send_view()
-        self._send(DeltaFrame(self._encoder.encode(delta), tuple(delta.trails)))
+        whole, changes = map(self._encoder.encode, (delta, self._changes.of(delta)))
+        self._send(DeltaFrame(whole, changes, tuple(delta.trails)))
 
     def reset(self, snapshot: Snapshot, trails: Trails) -> None:
         self._show(snapshot, trails, requested=False)
@@ -91,6 +94,7 @@ class _ReplayWork:
 
     def _show(self, snapshot: Snapshot, trails: Trails, *, requested: bool) -> None:
         self._send_view()
+        self._changes.note_snapshot(snapshot)
         points = {unit_id: bytes(raw) for unit_id, raw in trails.items()}
         self._send(SnapshotFrame(self._encoder.encode(snapshot), points, requested))
 

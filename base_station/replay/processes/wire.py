@@ -107,7 +107,8 @@ class SnapshotRequest(msgspec.Struct, frozen=True, tag="snapshot"):
 
 
 class DeltaFrame(msgspec.Struct, frozen=True, tag="delta"):
-    encoded: bytes  # as consoles get it
+    whole: bytes  # as consoles get it that ask for whole units
+    changes: bytes  # as those get it that ask for changed fields
     redrawn: tuple[str, ...]  # the units whose whole trail it has
 
 

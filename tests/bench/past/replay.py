@@ -63,7 +63,7 @@ class Watcher:
             self._pictures += 1
             self._came.notify_all()
 
-    def broadcast_delta(self, _: bytes, __: tuple[str, ...]) -> None:
+    def broadcast_delta(self, _: bytes, __: bytes, ___: tuple[str, ...]) -> None:
         self.deltas += 1
 
     def broadcast_reset(self, _: bytes, __: Trails) -> None:

@@ -1,4 +1,6 @@
-/** A WebSocket that comes back by itself.  It says what arrived and whether it is up. */
+/** A WebSocket that comes back by itself.  It says what arrived and whether it is up, and confirms to the
+ * station what was shown. */
+import { Pacing, SCREEN, type Screen } from "./pacing";
 
 export interface ConnectionEvents {
   message(text: string): void;
@@ -8,16 +10,15 @@ export interface ConnectionEvents {
 }
 
 /** What of the browser is used; tests put their own in. */
-export interface Surroundings {
+export interface Surroundings extends Screen {
   open(url: string): WebSocket;
-  later(action: () => void, delayMs: number): unknown;
   cancel(timer: unknown): void;
   random(): number;
 }
 
 export const BROWSER: Surroundings = {
+  ...SCREEN,
   open: (url) => new WebSocket(url),
-  later: (action, delayMs) => setTimeout(action, delayMs),
   cancel: (timer) => clearTimeout(timer as number),
   random: () => Math.random(),
 };
@@ -43,6 +44,7 @@ export function retryDelayMs(attempt: number, random: number): number {
 }
 
 export class Connection {
+  private pacing: Pacing | null = null;
   private socket: WebSocket | null = null;
   private retry: unknown = null;
   private watchdog: unknown = null;
@@ -71,6 +73,11 @@ export class Connection {
   private connect(): void {
     const socket = this.around.open(this.url);
     this.socket = socket;
+    const pacing = new Pacing((count) => {
+      socket.send(JSON.stringify({ type: "shown", count }));
+      this.listenForSilence();
+    }, this.around);
+    this.pacing = pacing;
     this.listenForSilence();
     socket.onopen = () => {
       this.watch(PICTURE_MS, () => this.lost());
@@ -78,8 +85,8 @@ export class Connection {
     };
     socket.onmessage = (event: MessageEvent<string>) => {
       this.attempt = 0;
-      this.listenForSilence();
-      this.events.message(event.data);
+      this.around.cancel(this.watchdog); // the station waits for this page now
+      pacing.take(() => this.events.message(event.data));
     };
     socket.onclose = (event) => this.ended(event.code);
   }
@@ -115,6 +122,7 @@ export class Connection {
 
   private drop(): void {
     this.around.cancel(this.watchdog);
+    this.pacing?.close();
     const socket = this.socket;
     this.socket = null;
     if (socket === null) return;

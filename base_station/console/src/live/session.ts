@@ -94,5 +94,5 @@ export class Session {
 
 function socketUrl(path: string): string {
   const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-  return `${scheme}//${location.host}${path}`;
+  return `${scheme}//${location.host}${path}?deltas=fields`;
 }

@@ -3,8 +3,8 @@ import type {
   AlarmView,
   AnchorView,
   BeaconView,
+  FieldDelta,
   CommandView,
-  Delta,
   ExternalMarkerView,
   HealthView,
   IncidentView,
@@ -15,6 +15,7 @@ import type {
   Snapshot,
   Trail,
   TrailPoint,
+  UnitChange,
   UnitView,
 } from "../wire";
 import { bounded } from "./thinning";
@@ -49,13 +50,13 @@ const TRAIL_GAP_MS = 20_000;
 const RESOLVED_KEPT = 50;
 const CLOSED_KEPT = 10;
 
-/** The state after a message.  A delta that does not follow leaves the state as it was. */
+/** The state after a message.  FieldDelta that do not follow leave the state as it was. */
 export function apply(state: State | null, message: Message): Applied {
   if (message.type === "snapshot") return { state: fromSnapshot(message, state), missed: false };
   if (state === null) return { state, missed: true };
   if (message.type === "trail") return { state: withPast(state, message), missed: false };
-  if (message.seq !== state.seq + 1) return { state, missed: true };
-  return { state: withDelta(state, message), missed: false };
+  if (message.after_seq !== state.seq) return { state, missed: true };
+  return { state: withChanges(state, message), missed: false };
 }
 
 function fromSnapshot(message: Snapshot, before: State | null): State {
@@ -83,21 +84,45 @@ function planOf({ plan }: Snapshot, before: State | null): Plan | null {
   return JSON.stringify(plan) === JSON.stringify(shown) ? shown : plan;
 }
 
-function withDelta(state: State, delta: Delta): State {
+/** The changed units, whole. */
+function unitsOf(state: State, { units }: FieldDelta): UnitView[] {
+  return Object.entries(units ?? {}).map(([unitId, change]) =>
+    changedUnit(state.units.get(unitId), change),
+  );
+}
+
+/** Of an object those fields change that the change has, and so on in objects in it; a list is replaced. */
+function changedUnit(unit: UnitView | undefined, change: UnitChange): UnitView {
+  return merged(unit, change) as UnitView;
+}
+
+function merged(before: unknown, change: unknown): unknown {
+  if (!isRecord(change) || !isRecord(before)) return change;
+  const next: Record<string, unknown> = { ...before };
+  for (const name in change) next[name] = merged(before[name], change[name]);
+  return next;
+}
+
+function isRecord(value: unknown): value is Record<string, unknown> {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+
+function withChanges(state: State, changes: FieldDelta): State {
+  const units = unitsOf(state, changes);
   return {
     ...state,
-    seq: delta.seq,
-    now_ms: delta.now_ms,
-    incident: delta.incident ?? state.incident,
-    health: delta.health ?? state.health,
-    replay: delta.replay ?? state.replay,
-    units: delta.units ? withUnits(state.units, delta.units) : state.units,
-    trails: withTrails(state.trails, delta),
-    pins: delta.pins ?? state.pins,
-    beacons: delta.beacons ?? state.beacons,
-    external: delta.external ?? state.external,
-    alarms: delta.alarms ? withAlarms(state.alarms, delta.alarms) : state.alarms,
-    commands: delta.commands ? withCommands(state.commands, delta.commands) : state.commands,
+    seq: changes.seq,
+    now_ms: changes.now_ms,
+    incident: changes.incident ?? state.incident,
+    health: changes.health ?? state.health,
+    replay: changes.replay ?? state.replay,
+    units: units.length > 0 ? withUnits(state.units, units) : state.units,
+    trails: withTrails(state.trails, changes, units),
+    pins: changes.pins ?? state.pins,
+    beacons: changes.beacons ?? state.beacons,
+    external: changes.external ?? state.external,
+    alarms: changes.alarms ? withAlarms(state.alarms, changes.alarms) : state.alarms,
+    commands: changes.commands ? withCommands(state.commands, changes.commands) : state.commands,
   };
 }
 
@@ -116,25 +141,42 @@ function withUnits(units: State["units"], changed: readonly UnitView[]): State["
   return next;
 }
 
-/** Trails whose past was filled in come whole; the others go on to where the unit now is. */
-function withTrails(trails: State["trails"], delta: Delta): State["trails"] {
-  const goneOn = delta.units ? withPositions(trails, delta.units) : trails;
-  return delta.trails ? new Map([...goneOn, ...Object.entries(delta.trails)]) : goneOn;
+/** Trails whose past was filled in come whole; all go on to where the unit now is. */
+function withTrails(
+  trails: State["trails"],
+  changes: FieldDelta,
+  units: readonly UnitView[],
+): State["trails"] {
+  const filled = changes.trails ? new Map([...trails, ...Object.entries(changes.trails)]) : trails;
+  return withPositions(filled, units, changes.passed ?? {});
 }
 
-function withPositions(trails: State["trails"], changed: readonly UnitView[]): State["trails"] {
+function withPositions(
+  trails: State["trails"],
+  changed: readonly UnitView[],
+  passed: Record<string, TrailPoint[]>,
+): State["trails"] {
   let next: Map<string, readonly TrailPoint[]> | null = null;
   for (const { unit_id, position } of changed) {
     if (position === null) continue;
-    const trail = trails.get(unit_id) ?? [];
-    const last = trail.at(-1);
-    const point: TrailPoint = [position.t_ms, position.north_m, position.east_m, position.floor];
-    if (!isStep(last, point)) continue;
-    if (last !== undefined && point[0] - last[0] > TRAIL_GAP_MS) point[4] = 1;
+    const now: TrailPoint = [position.t_ms, position.north_m, position.east_m, position.floor];
+    const before = trails.get(unit_id) ?? [];
+    let trail = before;
+    for (const point of [...(passed[unit_id] ?? []), now]) trail = goneOn(trail, point);
+    if (trail === before) continue;
     next ??= new Map(trails);
-    next.set(unit_id, bounded([...trail, point]));
+    next.set(unit_id, bounded(trail));
   }
   return next ?? trails;
+}
+
+/** The same trail where this point is none of it. */
+function goneOn(trail: readonly TrailPoint[], point: TrailPoint): readonly TrailPoint[] {
+  const last = trail.at(-1);
+  if (!isStep(last, point)) return trail;
+  const isAfterGap = last !== undefined && point[0] - last[0] > TRAIL_GAP_MS;
+  const [t_ms, north_m, east_m, floor] = point;
+  return [...trail, isAfterGap ? [t_ms, north_m, east_m, floor, 1] : point];
 }
 
 /** Whether a trail goes on to this point: somebody walked, came to another floor, or rested for long. */

@@ -10,10 +10,12 @@ from typing import Any
 import msgspec
 import pytest
 
-from base_station.api.hub import MAX_QUEUED, Client, Hub
+from base_station.api.hub import Hub
+from base_station.api.hub_client import MAX_QUEUED, Client, PacedClient
 from base_station.engine.ports import Trails
-from base_station.views.wire import Delta, HealthView, Snapshot
+from base_station.views.wire import Delta, HealthView, Snapshot, UnitView
 from shared.errors import StoreError
+from tests.e2e import scenes
 
 HEALTH = HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False)
 
@@ -26,6 +28,7 @@ class Source:
         self.seq = 0
         self.asked: list[Callable[[Snapshot, Trails], None]] = []
         self.trails: dict[str, msgspec.Raw] = {}
+        self.units: tuple[UnitView, ...] = ()
 
     def request_snapshot(self, deliver: Callable[[Snapshot, Trails], None]) -> None:
         self.asked.append(deliver)
@@ -35,9 +38,16 @@ class Source:
             self.seq += 1
             self._hub.delta(Delta(self.seq, self.seq))
 
+    def show(self, *units: UnitView) -> None:
+        """They are as this from now on."""
+        shown = {unit.unit_id: unit for unit in (*self.units, *units)}
+        self.units = tuple(shown.values())
+        self.seq += 1
+        self._hub.delta(Delta(self.seq, self.seq, units=units))
+
     def snapshot(self) -> Snapshot:
         seq = self.seq
-        return Snapshot(seq, seq, None, (), (), (), (), (), (), None, None, HEALTH, None)
+        return Snapshot(seq, seq, None, self.units, (), (), (), (), (), None, None, HEALTH, None)
 
     def answer(self) -> None:
         for deliver in self.asked:
@@ -54,6 +64,52 @@ async def next_one(client: Client) -> dict[str, Any]:
     message = await asyncio.wait_for(client.next_message(), 1.0)
     decoded: dict[str, Any] = msgspec.json.decode(message)
     return decoded
+
+
+UNITS = (scenes.unit(0), scenes.unit(1))
+T_MS = UNITS[0].position.t_ms if UNITS[0].position else 0
+
+
+def at(unit: UnitView, **place: float) -> UnitView:
+    assert unit.position is not None
+    place = {"t_ms": T_MS, "floor": 0, **place}
+    position = msgspec.structs.replace(unit.position, **place)
+    return msgspec.structs.replace(unit, position=position)
+
+
+def shown(source: Source) -> dict[str, Any]:
+    return {unit.unit_id: msgspec.json.decode(msgspec.json.encode(unit)) for unit in source.units}
+
+
+class ShownPage:
+    """Shows units as the page does (``console/src/live/state.ts``), and confirms it."""
+
+    def __init__(self) -> None:
+        self.units: dict[str, Any] = {}
+        self._count = self._seq = 0
+
+    async def follow(self, client: PacedClient, *, confirm: bool = True) -> dict[str, Any]:
+        message = await next_one(client)
+        self._count += 1
+        if message["type"] == "snapshot":
+            self.units = {unit["unit_id"]: unit for unit in message["units"]}
+        elif message["type"] == "field_delta":
+            assert message["after_seq"] == self._seq
+            for unit_id, change in message.get("units", {}).items():
+                self.units[unit_id] = patched(self.units.get(unit_id), change)
+        self._seq = message.get("seq", self._seq)
+        if confirm:
+            self.confirm(client)
+        return message
+
+    def confirm(self, client: PacedClient) -> None:
+        client.note_shown(self._count)
+
+
+def patched(before: Any, change: Any) -> Any:
+    if not isinstance(before, dict) or not isinstance(change, dict):
+        return change
+    return {**before, **{name: patched(before[name], value) for name, value in change.items()}}
 
 
 @pytest.fixture
@@ -262,3 +318,128 @@ async def test_many_trails_push_nobody_out(hub: Hub, source: Source) -> None:
     seen = [(await next_one(client))["type"] for _ in range(1 + MAX_QUEUED // 2 + 3 * MAX_QUEUED)]
     assert seen == ["snapshot", *["delta"] * (MAX_QUEUED // 2), *["trail"] * (3 * MAX_QUEUED)]
     assert client.lapses == 0
+
+
+# ---- consoles that confirm what they have shown
+
+
+async def join_paced(hub: Hub, source: Source) -> tuple[PacedClient, ShownPage]:
+    """One that has shown its first picture."""
+    client, page = hub.join_paced(), ShownPage()
+    source.answer()
+    await settle()
+    await page.follow(client)
+    return client, page
+
+
+async def test_changed_fields_alone_go_to_who_asks_for_them(hub: Hub, source: Source) -> None:
+    source.show(*UNITS)
+    plain = hub.join()
+    client, page = await join_paced(hub, source)
+    assert page.units == shown(source)
+    walked = at(UNITS[0], north_m=4.5)
+    source.show(walked)  # all of it: nobody knows what the console was told before
+    await settle()
+    await page.follow(client)
+    source.show(at(walked, east_m=9.0))
+    await settle()
+    message = await page.follow(client)
+    place = {name: message["units"]["FF-01"]["position"][name] for name in ("north_m", "east_m")}
+    assert message["units"] == {"FF-01": {"position": {**place, "t_ms": T_MS, "floor": 0}}}
+    assert place == {"north_m": 4.5, "east_m": 9.0}
+    assert page.units == shown(source)
+    assert [(await next_one(plain))["type"] for _ in range(3)] == ["snapshot", "delta", "delta"]
+
+
+async def test_who_has_not_shown_the_last_gets_the_newest_as_one(hub: Hub, source: Source) -> None:
+    source.show(*UNITS)
+    client, page = await join_paced(hub, source)
+    source.show(UNITS[0])
+    await settle()
+    await page.follow(client, confirm=False)
+    for number in range(30):
+        moved = at(UNITS[number % 2], t_ms=T_MS + 100 * number, north_m=float(number))
+        source.show(msgspec.structs.replace(moved, person=None) if number == 28 else moved)
+    await settle()
+    with pytest.raises(TimeoutError):
+        await asyncio.wait_for(client.next_message(), 0.01)
+    page.confirm(client)
+    message = await page.follow(client)
+    assert (message["after_seq"], message["seq"]) == (2, 32)
+    assert page.units == shown(source)
+    times = [point[0] for point in message["passed"]["FF-01"]]
+    assert times == [T_MS, T_MS + 1000, T_MS + 2000]
+    assert client.lapses == 0
+
+
+async def test_a_picture_for_one_does_not_mislead_the_others(hub: Hub, source: Source) -> None:
+    """What a picture shows that no delta has told yet, goes to all with the next one."""
+    source.show(*UNITS)
+    one, page = await join_paced(hub, source)
+    source.show(*UNITS)
+    await settle()
+    await page.follow(one)
+    quiet = msgspec.structs.replace(UNITS[1], heat_used=0.5)
+    source.units = (UNITS[0], quiet)  # without a delta
+    other, other_page = await join_paced(hub, source)
+    source.show(msgspec.structs.replace(quiet, heat_used=UNITS[1].heat_used, cloned=True))
+    await settle()
+    await page.follow(one)
+    await other_page.follow(other)
+    assert page.units == other_page.units == shown(source)
+
+
+async def test_a_paced_console_gets_its_trails_though_it_is_always_behind(
+    hub: Hub, source: Source
+) -> None:
+    source.trails = {f"FF-{i}": msgspec.Raw(b"[[%d,1.0,2.0,null]]" % i) for i in range(3)}
+    client, page = hub.join_paced(), ShownPage()
+    source.answer()
+    source.show(*UNITS)
+    await settle()
+    seen = []
+    for _ in range(7):
+        source.say(2)
+        await settle()
+        seen.append((await page.follow(client))["type"])
+    assert seen == [
+        "snapshot",
+        "trail",
+        "field_delta",
+        "trail",
+        "field_delta",
+        "trail",
+        "field_delta",
+    ]
+
+
+async def test_a_paced_console_that_hangs_is_given_a_picture_once_it_is_back(
+    hub: Hub, source: Source
+) -> None:
+    client, page = await join_paced(hub, source)
+    source.say()
+    await settle()
+    await page.follow(client, confirm=False)
+    source.say(2 * MAX_QUEUED)
+    await settle()
+    waiting = asyncio.create_task(page.follow(client))
+    await settle()
+    assert not source.asked  # nothing is made for a client that takes nothing
+    page.confirm(client)
+    await settle()
+    source.answer()
+    assert (await waiting)["seq"] == source.seq
+    assert client.lapses == 1
+
+
+async def test_who_asks_for_a_picture_gets_it_whatever_it_has_shown(
+    hub: Hub, source: Source
+) -> None:
+    client, page = await join_paced(hub, source)
+    source.say()
+    await settle()
+    await page.follow(client, confirm=False)
+    client.request_snapshot()
+    source.answer()
+    await settle()
+    assert (await page.follow(client))["type"] == "snapshot"

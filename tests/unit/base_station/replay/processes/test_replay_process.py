@@ -48,8 +48,8 @@ class EncodedScreen(Screen):
         super().__init__()
         self.messages: list[bytes] = []
 
-    def broadcast_delta(self, message: bytes, redrawn: tuple[str, ...]) -> None:
-        self.messages.append(message)
+    def broadcast_delta(self, whole: bytes, changes: bytes, redrawn: tuple[str, ...]) -> None:
+        self.messages.append(whole)
 
     def broadcast_reset(self, message: bytes, trails: Trails) -> None:
         self.resets.append(msgspec.json.decode(message, type=Snapshot))

@@ -1,0 +1,76 @@
+/** How soon the station may send more: it is told what was shown, and sends what changed since then as one
+ * message.  A page that is slow shows less often, never something old, and keeps time for whoever presses. */
+
+/** What of the browser is used; tests put their own in. */
+export interface Screen {
+  nowMs(): number;
+  /** Once what is drawn now is on the screen. */
+  afterFrame(action: () => void): void;
+  later(action: () => void, delayMs: number): unknown;
+}
+
+/** A page that is not seen has no frames, and goes on sounding alarms. */
+const LONGEST_FRAME_MS = 500;
+const LONGEST_REST_MS = 400;
+
+export const SCREEN: Screen = {
+  nowMs: () => performance.now(),
+  afterFrame: (action) => {
+    if (document.visibilityState === "hidden") {
+      action();
+      return;
+    }
+    let waits = true;
+    const once = () => {
+      if (waits) action();
+      waits = false;
+    };
+    requestAnimationFrame(() => setTimeout(once, 0));
+    setTimeout(once, LONGEST_FRAME_MS);
+  },
+  later: (action, delayMs) => setTimeout(action, delayMs),
+};
+
+/** Of one connection. */
+export class Pacing {
+  private count = 0;
+  private confirmed = 0;
+  private isBusy = false;
+  private isOver = false;
+
+  constructor(
+    private readonly confirm: (count: number) => void,
+    private readonly screen: Screen,
+  ) {}
+
+  /** A message has come; `show` shows it. */
+  take(show: () => void): void {
+    const beganMs = this.screen.nowMs();
+    show();
+    this.count += 1;
+    this.follow(beganMs);
+  }
+
+  close(): void {
+    this.isOver = true;
+  }
+
+  /** It rests as long as it was busy: half of the time is for presses. */
+  private follow(beganMs: number): void {
+    if (this.isBusy) return;
+    this.isBusy = true;
+    this.screen.afterFrame(() => {
+      const shown = this.count;
+      const busyMs = this.screen.nowMs() - beganMs;
+      this.screen.later(() => this.rested(shown), Math.min(busyMs, LONGEST_REST_MS));
+    });
+  }
+
+  private rested(shown: number): void {
+    this.isBusy = false;
+    if (this.isOver) return;
+    this.confirmed = shown;
+    this.confirm(shown);
+    if (this.count > this.confirmed) this.follow(this.screen.nowMs());
+  }
+}

@@ -1,0 +1,1 @@
+"""``muster bench console``: what the station sends to consoles, and what a browser shows of it."""
