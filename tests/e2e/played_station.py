@@ -132,7 +132,7 @@ class PlayedStation:
         def show() -> None:
             socket.send(msgspec.json.encode(scenes.past()).decode())
 
-        socket.on_message(lambda message: _is_request(message) and show())
+        socket.on_message(lambda message: show() if _is_request(message) else None)
         show()
 
     def _answer_page(self, socket: WebSocketRoute, message: str | bytes) -> None:
@@ -174,7 +174,7 @@ class PlayedStation:
 
 def _is_request(message: str | bytes) -> bool:
     """Of the picture; what a page confirms is of no use here."""
-    return json.loads(message)["type"] == "snapshot"
+    return bool(json.loads(message)["type"] == "snapshot")
 
 
 def answers(role: str, more: Answers, people: Sequence[object] = ()) -> dict[str, object]:

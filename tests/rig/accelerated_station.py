@@ -14,7 +14,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from base_station.api.hub import Client, Hub
+from base_station.api.hub import Hub
+from base_station.api.hub_client import Client
 from base_station.core.alarms import ALARMS
 from base_station.core.pipeline import StationPipeline
 from base_station.engine.engine import StationEngine

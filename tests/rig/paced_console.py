@@ -9,7 +9,10 @@ from threading import Thread
 
 from websockets.exceptions import ConnectionClosed
 from websockets.extensions.base import Extension
-from websockets.extensions.permessage_deflate import ClientPerMessageDeflateFactory
+from websockets.extensions.permessage_deflate import (
+    ClientPerMessageDeflateFactory,
+    PerMessageDeflate,
+)
 from websockets.frames import Frame
 from websockets.sync.client import connect
 from websockets.typing import ExtensionParameter
@@ -63,7 +66,7 @@ class _CountingFactory(ClientPerMessageDeflateFactory):
 
     def process_response_params(
         self, params: Sequence[ExtensionParameter], accepted_extensions: Sequence[Extension]
-    ) -> Extension:
+    ) -> PerMessageDeflate:
         extension = super().process_response_params(params, accepted_extensions)
         decode = extension.decode
 

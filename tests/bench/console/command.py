@@ -168,7 +168,8 @@ def _measure_load(
         time.sleep(seconds)
         share = station.cpu_share()
         latency = _latency(watcher, units, sent)
-        for one in (watcher, *others):
+        watcher.close()
+        for one in others:
             one.close()
     return LoadReport(count, latency, share)
 
