@@ -13,6 +13,7 @@ from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.feed import LogFeed
 from base_station.engine.sample_intake import SampleIntake
+from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.processes.replay_process import ReplayContext
 from base_station.replay.processes.timeline_process import TimelineProcess
 from base_station.report.alarm_explanation import AlarmExplainer
@@ -23,6 +24,7 @@ from base_station.storage.db.base_maps import BaseMaps
 def new_services(parts: LiveParts) -> Services:
     """Services of the API."""
     resources, disk = parts.resources, parts.resources.disk
+    log_process = _log_process(parts)
     return Services(
         accounts=disk.accounts,
         roster=disk.roster,
@@ -38,8 +40,8 @@ def new_services(parts: LiveParts) -> Services:
         ha_status=parts.side.ha_status,
         recordings=resources.recordings,
         post_processor=parts.post_processor,
-        reports=_reports(parts),
-        read_timeline=_timelines(parts).read,
+        reports=ReportProcess(log_process),
+        read_timeline=TimelineProcess(log_process).read,
         alarm_explainer=AlarmExplainer(disk.records, _log_feed(parts).records),
         plans=parts.plans,
         pki=resources.pki,
@@ -62,21 +64,9 @@ def new_server(parts: LiveParts, services: Services, on_stop: Callable[[], None]
     )
 
 
-def _reports(parts: LiveParts) -> ReportProcess:
+def _log_process(parts: LiveParts) -> LogProcess:
     disk = parts.resources.disk
-    return ReportProcess(
-        processes=parts.replays,
-        log=str(disk.folder.log),
-        database=str(disk.folder.database),
-        prepare=disk.recorder.flush,
-        note_damage=disk.check.recheck,
-        known_segments=disk.known_segments,
-    )
-
-
-def _timelines(parts: LiveParts) -> TimelineProcess:
-    disk = parts.resources.disk
-    return TimelineProcess(
+    return LogProcess(
         processes=parts.replays,
         log=str(disk.folder.log),
         database=str(disk.folder.database),

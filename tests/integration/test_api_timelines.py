@@ -15,6 +15,7 @@ import pytest_asyncio
 from base_station.accounts.principals import Role
 from base_station.app import folder_commands
 from base_station.engine.feed import LogFeed
+from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.replay.processes.timeline_process import TimelineProcess
 from base_station.replay.timelines.unit_timeline import TimelineRequest, read_timeline
@@ -146,9 +147,10 @@ def test_a_station_reads_the_same_in_a_process_of_its_own(
     here = read_timeline(Records(store, SystemClock()), LogFeed(folder.log), request)
     damage: list[str] = []
     with ReplayProcesses() as processes:
-        reader = TimelineProcess(
+        log_process = LogProcess(
             processes, str(folder.log), str(folder.database), lambda: None, damage.append, tuple
         )
+        reader = TimelineProcess(log_process)
         assert reader.read(request) == here
         hasty = replace(reader, timeout_s=0.0)
         with pytest.raises(StoreError, match="shorter span"):
@@ -158,6 +160,6 @@ def test_a_station_reads_the_same_in_a_process_of_its_own(
         content = bytearray(damaged.read_bytes())
         content[len(content) // 3 : len(content) // 3 + 64] = bytes(64)
         damaged.write_bytes(content)
-        told = replace(reader, log=str(tmp_path / "log")).read(request)
+        told = TimelineProcess(replace(log_process, log=str(tmp_path / "log"))).read(request)
     assert any(damaged.name in one for one in told.defects)
     assert any(damaged.name in one for one in damage)

@@ -13,6 +13,7 @@ from typer.testing import CliRunner, Result
 
 from base_station.app import folder_commands as station_app
 from base_station.cli import app
+from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.report.floor_pictures import COLOURS
 from base_station.report.process import ReportProcess
@@ -257,7 +258,7 @@ def test_a_station_makes_the_same_report_in_a_process_of_its_own(
     folder, prepared, damage = DataFolder(tmp_path), list[bool](), list[str]()
     with Store(folder.database) as store, ReplayProcesses() as processes:
         incident = Records(store, SystemClock()).require_incident("i1")
-        reports = ReportProcess(
+        log_process = LogProcess(
             processes=processes,
             log=str(folder.log),
             database=str(folder.database),
@@ -265,6 +266,7 @@ def test_a_station_makes_the_same_report_in_a_process_of_its_own(
             note_damage=damage.append,
             known_segments=tuple,
         )
+        reports = ReportProcess(log_process)
         assert reports.make(incident, as_pdf=False) == written
         assert reports.make(incident, as_pdf=True).startswith(b"%PDF")
         missing = IncidentRow(incident_id="i9", name="", opened_ns=1, closed_ns=2)

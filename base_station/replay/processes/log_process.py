@@ -1,0 +1,62 @@
+"""One question about the log, answered by a process of its own: what is live does not wait."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TypeVar
+
+from base_station.replay.processes import wire
+from base_station.replay.processes.server import ReplayProcesses
+from base_station.storage.missing_segments import KnownSegment
+from shared.errors import StoreError
+
+Answer = TypeVar("Answer")
+
+
+@dataclass(frozen=True)
+class LogProcess:
+    """The log of a station, and how a process is started on it.  From any thread."""
+
+    processes: ReplayProcesses
+    log: str
+    database: str
+    prepare: Callable[[], object]  # what was recorded is on the disk then
+    note_damage: Callable[[str], None]  # of the log
+    known_segments: Callable[[], Iterable[KnownSegment]]  # of the log, by the database
+
+    def ask(
+        self,
+        job: wire.Job,
+        read: Callable[[bytes], Answer | wire.Damage | wire.Failure],
+        timeout_s: float | None = None,
+    ) -> Answer:
+        """The last message of the process, which ``read`` decodes.
+
+        Raises StoreError with the reason where there is none, or none within ``timeout_s``.
+        """
+        self.prepare()
+        line = self.processes.start(job)
+        try:
+            return self._last_message(line, read, timeout_s)
+        finally:
+            line.hang_up()
+            line.close()
+
+    def _last_message(
+        self,
+        line: wire.FrameChannel,
+        read: Callable[[bytes], Answer | wire.Damage | wire.Failure],
+        timeout_s: float | None,
+    ) -> Answer:
+        while timeout_s is None or line.has_message(timeout_s):
+            encoded = line.receive()
+            if encoded is None:
+                raise StoreError("the process that read the log has ended; ask again")
+            message = read(encoded)
+            if isinstance(message, wire.Failure):
+                raise StoreError(message.reason)
+            if not isinstance(message, wire.Damage):
+                return message
+            self.note_damage(message.what)
+        raise StoreError(f"the log was not read within {timeout_s:.0f} s; ask for a shorter span")
