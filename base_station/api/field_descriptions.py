@@ -41,6 +41,13 @@ FIELDS: Mapping[str, str] = {
     "PersonForm.role": "The person's function, for example officer.",
     "PersonView.role": "The person's function, for example officer.",
     "StandbyView.role": "What this station is now: active, standby or waiting.",
+    "ListedPersonAnswer.role": "The person's function as it is afterwards.",
+    "line": "Number of the line in the file, from 1.",
+    "change": "What becomes of the person: add, change, or same where nothing changes.",
+    "fault": "What is wrong with the line, and what to do.",
+    "faulty_lines": "Lines that cannot be used: nobody is added or changed while there is one.",
+    "PeopleImport.people": "Everybody whose line can be used.",
+    "preview": "True: say what would be done, and do nothing.",
     "photo_url": "Where the photo is fetched; null: there is none.",
     "username": "The name that a user logs in with.",
     "registered": "Whether messages of the unit count; else it is only listed.",
@@ -91,6 +98,19 @@ FIELDS: Mapping[str, str] = {
     "pressure_pa": "Air pressure of each sample in Pa; null: the node has no barometer.",
     "imu_temperature_degc": "Temperature inside the sensor at each sample in degrees Celsius; "
     "null: it is not measured.",
+    # ---- drawings
+    "webp": "The picture as WebP, in base64.",
+    "width_px": "The picture's width in pixels.",
+    "height_px": "The picture's height in pixels.",
+    "PlanDraft.picture": "A picture of a floor without scale; null: the file is a plan.",
+    "PlanDraft.plan": "The plan as the station takes it (GeoJSON in site metres); null: the file "
+    "is a picture.",
+    "PlanDraft.lat_deg": "Latitude (WGS-84) of the plan's origin; null: the file does not say it.",
+    "PlanDraft.lon_deg": "Longitude (WGS-84) of the plan's origin; null: the file does not say it.",
+    "pages": "How many pages the file has.",
+    "page": "The page of a PDF, from 1.",
+    "unit": "Unit of length of a DXF; left out: as the file says.",
+    "notes": "What of the file is not in the draft, for a person.",
     # ---- enrolments
     "NewEnrolment.days": "For how many days the certificate is valid.",
     "renew": "Whether the unit is enrolled already and gets a new certificate; the old one works "

@@ -9,7 +9,8 @@ and the member ``muster`` says so and lists the storeys::
      "features": [{"type": "Feature", "properties": {"kind": "outline", "floor": 0}, ...}]}
 
 A feature of kind ``wall`` is a line that nobody walks through (doors are its gaps), one of kind
-``stairs`` the ring within which people change floor.  Of several parts, each is one.
+``stairs`` the ring within which people change floor.  Of several parts, each is one.  The member
+``pictures`` of ``muster`` has pictures of floors (``plan_pictures``).
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from typing import Any
 import msgspec
 
 from base_station.site.plan_features import Floor, Metres, read_feature, require_strict
+from base_station.site.plan_pictures import require_pictures
 from base_station.site.storeys import Storey, floor_at, floor_probability
 from shared.errors import UserError
 
@@ -150,6 +152,7 @@ def check_plan(geojson: bytes) -> Plan:
         require_strict(read_feature(number, encoded))
     if not isinstance(document.muster.get("name", ""), str):
         raise UserError('the plan\'s name must be a string: "name" of its member "muster"')
+    require_pictures(document.muster.get("pictures", []))
     listed = {storey.floor for storey in plan.storeys}
     drawn = {wall.floor for wall in plan.walls} | {one.floor for one in plan.stairs}
     if missing := sorted(drawn - listed):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from base_station.security.pki.folder import PkiFolder
 from tests.rig.first_login import first_login
 from tests.rig.station_command import Command
 from tests.rig.station_process import free_port
@@ -15,9 +16,13 @@ class StationProcess:
     With the id of an incident it is ``muster base replay`` on a folder of another station.
     """
 
-    def __init__(self, data: Path, replayed: str | None = None) -> None:
+    def __init__(self, data: Path, replayed: str | None = None, *, enrols: bool = False) -> None:
+        """``enrols``: it has an authority of its own, and its bus listens to enrolled units."""
         self.data = data
-        self.bus = f"tcp/127.0.0.1:{free_port()}"
+        self.bus = f"{'tls' if enrols else 'tcp'}/127.0.0.1:{free_port()}"
+        if enrols:
+            data.mkdir()
+            PkiFolder(data).create("Test", hosts=[], connect=[self.bus])
         self.http = f"127.0.0.1:{free_port()}"
         self.address = f"http://{self.http}"
         what = ("replay", replayed) if replayed else ("serve", "--listen", self.bus)

@@ -39,6 +39,7 @@ LEAST: dict[str, dict[str, Role | None]] = {
     "tokens": {"GET /tokens": V, "POST /tokens": V, "DELETE /tokens/{token_id}": V},
     "people": {"GET /people": V, "POST /people": C, "GET /people/{person_id}": V,
                "PUT /people/{person_id}": C, "DELETE /people/{person_id}": C,
+               "POST /people/import": C,
                "GET /people/{person_id}/photo": V, "PUT /people/{person_id}/photo": C},
     "units": {"GET /units": V, "POST /units": C, "PUT /units/{unit_id}": C,
               "PUT /units/{unit_id}/start": C, "PUT /reference-barometer": C},
@@ -67,7 +68,8 @@ LEAST: dict[str, dict[str, Role | None]] = {
                        "PUT /incidents/{incident_id}/accountability": C,
                        "PUT /units/{unit_id}/rest": C},
     "site": {"GET /site/anchor": V, "PUT /site/anchor": C, "GET /site/plan": V,
-             "PUT /site/plan": C, "GET /site/base-map": V, "PUT /site/base-map": A,
+             "PUT /site/plan": C, "POST /site/drafts": C,
+             "GET /site/base-map": V, "PUT /site/base-map": A,
              "DELETE /site/base-map": A, "GET /site/base-map/{image_hash}": V},
     "pins": {"GET /pins": V, "POST /pins": C, "POST /pins/start": C, "POST /pins/meeting": C,
              "PUT /pins/{pin_id}": C, "DELETE /pins/{pin_id}": C, "GET /beacons": V,
@@ -94,7 +96,7 @@ WITHOUT_CHANGES = {"POST /login", "POST /login/hand-over", "POST /logout", "POST
                 "POST /standby/take-over"}  # fmt: skip
 # What leaves no entry: it changes nothing but what one looks at oneself, or is a unit's message.
 LOOKING_ON = {"POST /hand-over", "POST /replays/{replay_id}", "DELETE /replays/{replay_id}",
-              "POST /units/{unit_id}/samples"}  # fmt: skip
+              "POST /units/{unit_id}/samples", "POST /site/drafts"}  # fmt: skip
 PLAN = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": []}
 Do = Callable[..., Awaitable[Any]]
 
@@ -296,6 +298,7 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     await act_on_samples(do)
     person = (await do("POST /people", {"name": "Ada"}))["person_id"]
     await do("PUT /people/{person_id}", {"name": "Bea"}, person_id=person)
+    await do("POST /people/import", b"Name;Crew\nBea;Engine 1\nDan;Engine 1\n")
     await do("PUT /people/{person_id}/photo", picture(64), person_id=person)
     await act_on_the_site(do)
     incident = (await do("POST /incidents", {"name": "Fire"}))["incident_id"]
@@ -343,6 +346,7 @@ async def act_on_samples(do: Do) -> None:
 async def act_on_the_site(do: Do) -> None:
     await do("PUT /site/anchor", {"lat_deg": 48.0, "lon_deg": 11.0})
     await do("PUT /site/plan", PLAN)
+    await do("POST /site/drafts", picture(64))
     world = "?world=1e-5&world=0&world=0&world=-1e-5&world=11&world=48"
     await do("PUT /site/base-map", picture(64), world)
     await do("DELETE /site/base-map")

@@ -37,6 +37,8 @@ MORE_THAN_TYPES = (
     "PUT /api/v1/site/plan",
     "PUT /api/v1/site/base-map",
     "PUT /api/v1/people/{person_id}/photo",
+    "POST /api/v1/people/import",
+    "POST /api/v1/site/drafts",
 )
 
 

@@ -26,7 +26,7 @@ from tests.rig.waiting import PATIENCE_S
 PACKAGE = "generated_muster_client"
 # It skips media types that it does not know; pictures and exports are files.
 FILES = (
-    *("image/jpeg", "image/png", "image/webp", "*/*"),
+    *("image/jpeg", "image/png", "image/webp", "text/csv", "*/*"),
     *("application/pdf", "application/x-protobuf"),
 )
 SETTINGS = {

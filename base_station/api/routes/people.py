@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import secrets
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Body, Query, Response
+from pydantic import BaseModel
 
 from base_station.api.authentication import Commander, Viewer
 from base_station.api.current_tables import CurrentStation
@@ -12,11 +14,14 @@ from base_station.api.document import file_response
 from base_station.api.forms import MAX_UPLOAD_BYTES, Form, Id, Name, ShortText
 from base_station.api.idempotent_request import Perform
 from base_station.api.images import normalize_photo
+from base_station.api.people_csv import MOST_CSV_BYTES, CsvFault, CsvPerson, read_people
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station
 from base_station.api.uploads import UploadRoute
 from base_station.storage.db import models
+from base_station.storage.db.people_import import ImportStep, ListedPerson
 from base_station.views.wire import PersonView
+from shared.errors import UserError
 from shared.messages.station import Assign
 
 router = APIRouter(tags=["people"], route_class=UploadRoute)
@@ -28,6 +33,24 @@ class PersonForm(Form):
     name: Name
     crew: ShortText = ""
     role: ShortText = ""
+
+
+class ListedPersonAnswer(BaseModel):
+    line: int
+    name: str
+    crew: str
+    role: str
+    change: Literal["add", "change", "same"]
+
+
+class FaultyLine(BaseModel):
+    line: int
+    fault: str
+
+
+class PeopleImport(BaseModel):
+    people: list[ListedPersonAnswer]
+    faulty_lines: list[FaultyLine]
 
 
 def _person(person: models.PersonRow, station: Services) -> PersonView:
@@ -52,6 +75,71 @@ def add_person(form: PersonForm, station: Station, perform: Perform) -> PersonVi
     added = {f"added-{person.person_id}": ("AddedPerson", person.person_id)}
     station.records.audit_once(perform.by, added)
     return _person(person, station)
+
+
+@router.post("/people/import", max_body_size=MOST_CSV_BYTES)
+def import_people(
+    csv: Annotated[bytes, Body(media_type="text/csv")],
+    station: Station,
+    who: Commander,
+    preview: bool = False,
+) -> PeopleImport:
+    """People of a CSV file with the columns Name, Crew and Role: who is known by name is changed,
+    all others are added.  With a fault in any line nobody is (422).  It may be sent again.
+    """
+    try:
+        listed, faults = read_people(csv)
+    except UserError as error:
+        raise Problem(422, str(error)) from error
+    wanted = [ListedPerson(one.name, one.crew, one.role) for one in listed]
+    steps = station.roster.preview_import(wanted)
+    faults = sorted(faults + _ambiguous(listed, steps))
+    if not preview:
+        if faults:
+            raise Problem(422, _refusal(faults))
+        steps = station.roster.import_people(wanted)
+        _announce(steps, station, who.username)
+    return PeopleImport(
+        people=[
+            ListedPersonAnswer(
+                line=one.line, name=step.name, crew=step.crew, role=step.role, change=step.kind
+            )
+            for one, step in zip(listed, steps, strict=True)
+            if step.kind != "ambiguous"
+        ],
+        faulty_lines=[FaultyLine(line=fault.line, fault=fault.text) for fault in faults],
+    )
+
+
+def _ambiguous(listed: list[CsvPerson], steps: list[ImportStep]) -> list[CsvFault]:
+    return [
+        CsvFault(one.line, f"{step.name} is the name of two people here; rename one of them first")
+        for one, step in zip(listed, steps, strict=True)
+        if step.kind == "ambiguous"
+    ]
+
+
+def _refusal(faults: list[CsvFault]) -> str:
+    more = f" (the first of {len(faults)} faults)" if len(faults) > 1 else ""
+    return f"nobody was added: line {faults[0].line}: {faults[0].text}{more}"
+
+
+def _announce(steps: list[ImportStep], station: Services, by: str) -> None:
+    """Whoever wears a unit is shown with the new crew at once; the audit names everybody."""
+    done = {
+        f"imported-{secrets.token_hex(8)}": (
+            "AddedPerson" if step.kind == "add" else "ChangedPerson",
+            step.person_id,
+        )
+        for step in steps
+        if step.kind != "same"
+    }
+    if done:
+        station.records.audit_once(by, done)
+    changed = {step.person_id for step in steps if step.kind == "change"}
+    for unit in station.picture().units if changed else ():
+        if unit.person is not None and unit.person.person_id in changed:
+            station.perform(by, Assign(unit.unit_id, unit.person.person_id))
 
 
 @router.get("/people/{person_id}")

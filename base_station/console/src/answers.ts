@@ -169,6 +169,12 @@ export interface DeliveryView {
   can_be_notified: boolean | null;
 }
 
+export interface DrawnPictureAnswer {
+  webp: string;
+  width_px: number;
+  height_px: number;
+}
+
 export interface EnrolledUnit {
   unit_id: string;
   valid_to_ms: number;
@@ -176,6 +182,11 @@ export interface EnrolledUnit {
 
 export interface EveryoneTarget {
   everyone: true;
+}
+
+export interface FaultyLine {
+  line: number;
+  fault: string;
 }
 
 export interface Figures {
@@ -274,6 +285,14 @@ export interface Label {
 
 export interface Leads {
   leads: boolean;
+}
+
+export interface ListedPersonAnswer {
+  line: number;
+  name: string;
+  crew: string;
+  role: string;
+  change: "add" | "change" | "same";
 }
 
 export interface LogSegmentAnswer {
@@ -405,6 +424,11 @@ export interface PastAlarm {
   raisings: Raising[];
 }
 
+export interface PeopleImport {
+  people: ListedPersonAnswer[];
+  faulty_lines: FaultyLine[];
+}
+
 export interface PersonConfirmation {
   name: string;
   unassign?: boolean;
@@ -465,6 +489,15 @@ export interface PinView {
   residual_m: number | null;
   sigmas: number | null;
   text: string;
+}
+
+export interface PlanDraft {
+  picture: DrawnPictureAnswer | null;
+  plan: object | null;
+  lat_deg: number | null;
+  lon_deg: number | null;
+  pages: number;
+  notes: string[];
 }
 
 export interface PostedSamples {

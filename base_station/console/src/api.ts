@@ -17,6 +17,9 @@ export type Token = WithRole<answers.Token>;
 export type NewToken = Required<answers.NewToken>;
 export type AuditEntry = answers.AuditEntryAnswer;
 export type Person = answers.PersonView;
+export type PlanDraft = answers.PlanDraft;
+export type DrawnPicture = answers.DrawnPictureAnswer;
+export type PeopleImport = answers.PeopleImport;
 export type UnitDetails = answers.UnitAnswer;
 export type EnrolledUnit = answers.EnrolledUnit;
 export type ShownEnrolment = answers.ShownEnrolment;
@@ -82,6 +85,10 @@ export const changePerson = (personId: string, person: Omit<Person, "person_id" 
   call<Person>("PUT", `/people/${id(personId)}`, person);
 export const setPhoto = (personId: string, photo: Blob) =>
   call<void>("PUT", `/people/${id(personId)}/photo`, photo);
+
+/** All of them, or nobody; a preview does nothing. */
+export const importPeople = (csv: Blob, preview: boolean) =>
+  call<PeopleImport>("POST", `/people/import?preview=${preview}`, new Blob([csv], { type: "text/csv" }));
 
 export const units = () => call<UnitDetails[]>("GET", "/units");
 export const forgettings = () => call<Forgetting[]>("GET", "/forgettings");
@@ -229,6 +236,13 @@ export const carriedOut = (key: string) => call<CarriedOut>("GET", `/idempotency
 
 export const takeOver = () => call<void>("POST", "/standby/take-over");
 
+/** Nothing of it is kept. */
+export const draftPlan = (file: File, page: number) =>
+  call<PlanDraft>(
+    "POST",
+    `/site/drafts?page=${page}&name=${id(file.name.slice(0, 80))}`,
+    new Blob([file], { type: "application/octet-stream" }),
+  );
 export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);
 export const baseMap = () => call<BaseMap | null>("GET", "/site/base-map");
 export const setBaseMap = (image: Blob, world: readonly number[], crs: string) =>

@@ -22,6 +22,7 @@ from base_station.storage.db.known_people import (
 )
 from base_station.storage.db.models import Assignment, PersonRow, Unit
 from base_station.storage.db.pages import newest
+from base_station.storage.db.people_import import ImportStep, ListedPerson, import_steps
 from shared.clock import Clock
 from shared.errors import UserError
 
@@ -79,16 +80,7 @@ class Roster:
         """``row_id`` (``core.idempotency.row_id``): whoever was added with that key before is
         the one.
         """
-        person = PersonRow(
-            person_id=row_id or secrets.token_hex(8),
-            name=name,
-            crew=crew,
-            role=role,
-            created_ns=self._clock.utc_ns(),
-            photo=None,
-            photo_hash=None,
-            removed_ns=None,
-        )
+        person = self._new_row(row_id or secrets.token_hex(8), name, crew, role)
         with self._store.write() as session:
             if row_id:
                 same_key = PersonRow.person_id.startswith(row_id[:KEY_DIGITS])
@@ -99,6 +91,18 @@ class Roster:
         self._known[person.person_id] = known_person(person)
         return person
 
+    def _new_row(self, person_id: str, name: str, crew: str, role: str) -> PersonRow:
+        return PersonRow(
+            person_id=person_id,
+            name=name,
+            crew=crew,
+            role=role,
+            created_ns=self._clock.utc_ns(),
+            photo=None,
+            photo_hash=None,
+            removed_ns=None,
+        )
+
     def change_person(self, person_id: str, name: str, crew: str, role: str) -> PersonRow | None:
         with self._store.write() as session:
             person = _on_roster(session, person_id)
@@ -107,6 +111,30 @@ class Roster:
         if person is not None:
             self._known[person_id] = known_person(person)
         return person
+
+    def preview_import(self, listed: Sequence[ListedPerson]) -> list[ImportStep]:
+        """What ``import_people`` would do now."""
+        with self._store.read() as session:
+            return import_steps(_all_on_roster(session), listed)
+
+    def import_people(self, listed: Sequence[ListedPerson]) -> list[ImportStep]:
+        """Add or change all of them, or nobody: UserError where a name stands for two people."""
+        written: list[PersonRow] = []
+        with self._store.write() as session:
+            on_roster = _all_on_roster(session)
+            by_id = {person.person_id: person for person in on_roster}
+            steps = import_steps(on_roster, listed)
+            for step in steps:
+                if step.kind == "ambiguous":
+                    raise UserError(f"{step.name} is the name of two people here")
+                person = by_id.get(step.person_id)
+                if person is None:
+                    person = self._new_row(step.person_id, step.name, step.crew, step.role)
+                    session.add(person)
+                person.crew, person.role = step.crew, step.role
+                written.append(person)
+        self._known |= {person.person_id: known_person(person) for person in written}
+        return steps
 
     def remove_person(self, person_id: str) -> bool:
         """The name stays for what was before.  UserError while the person wears a unit."""
@@ -202,6 +230,10 @@ class Roster:
     def _load_people(self) -> dict[str, KnownPerson]:
         with self._store.read() as session:
             return load_people(session)
+
+
+def _all_on_roster(session: Session) -> Sequence[PersonRow]:
+    return session.scalars(select(PersonRow).where(PersonRow.removed_ns.is_(None))).all()
 
 
 def _on_roster(session: Session, person_id: str) -> PersonRow | None:

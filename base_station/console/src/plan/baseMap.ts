@@ -1,11 +1,10 @@
 /** The picture of the ground about the site: where its corners are, on the Earth and on the plan. */
 import { effect, signal } from "@preact/signals";
-import Layer from "ol/layer/Layer";
-import type { FrameState } from "ol/Map";
 import * as api from "../api";
 import type { BaseMap, LatLon } from "../api";
 import type { AnchorView } from "../wire";
 import { siteOf } from "./anchor";
+import { PictureLayer } from "./pictureLayer";
 import type { Place } from "./tools";
 
 export const baseMap = signal<BaseMap | null>(null);
@@ -57,55 +56,16 @@ export function cornersOf(map: BaseMap, anchor: AnchorView): [Place, Place, Plac
 }
 
 /** Drawn behind the plan, once it is known where the plan lies. */
-export class BaseMapLayer extends Layer {
-  private readonly canvas = document.createElement("canvas");
-  private readonly image = new Image();
-  private corners: [Place, Place, Place] | null = null;
-
+export class BaseMapLayer extends PictureLayer {
   constructor() {
-    super({ opacity: 0.55 });
-    this.canvas.className = "base-map";
-    this.image.addEventListener("load", () => this.changed());
+    super("base-map", 0.55);
   }
 
   show(map: BaseMap | null, anchor: AnchorView | null): void {
-    this.corners = map === null || anchor === null ? null : cornersOf(map, anchor);
-    if (map !== null && !this.image.src.endsWith(map.image_url)) this.image.src = map.image_url;
-    this.changed();
-  }
-
-  override render(frame: FrameState | null): HTMLElement {
-    if (frame === null) return this.canvas;
-    const [width = 0, height = 0] = frame.size;
-    this.canvas.width = width * frame.pixelRatio;
-    this.canvas.height = height * frame.pixelRatio;
-    const context = this.canvas.getContext("2d");
-    if (context === null || this.corners === null || this.image.naturalWidth === 0) {
-      return this.canvas;
-    }
-    const { resolution, center } = frame.viewState;
-    const pixel = ({ north_m, east_m }: Place): [number, number] => [
-      width / 2 + (east_m - (center[0] ?? 0)) / resolution,
-      height / 2 - (north_m - (center[1] ?? 0)) / resolution,
-    ];
-    const [upperLeft, upperRight, lowerLeft] = this.corners.map(pixel) as [Pixel, Pixel, Pixel];
-    const [columns, rows] = [this.image.naturalWidth, this.image.naturalHeight];
-    context.scale(frame.pixelRatio, frame.pixelRatio);
-    context.globalAlpha = frame.layerStatesArray[frame.layerIndex]?.opacity ?? 1;
-    context.transform(
-      (upperRight[0] - upperLeft[0]) / columns,
-      (upperRight[1] - upperLeft[1]) / columns,
-      (lowerLeft[0] - upperLeft[0]) / rows,
-      (lowerLeft[1] - upperLeft[1]) / rows,
-      upperLeft[0],
-      upperLeft[1],
-    );
-    context.drawImage(this.image, 0, 0);
-    return this.canvas;
+    const corners = map === null || anchor === null ? null : cornersOf(map, anchor);
+    this.place(map?.image_url ?? null, corners);
   }
 }
-
-type Pixel = [number, number];
 
 /** Keeps the layer at what is known. */
 export function followBaseMap(layer: BaseMapLayer, anchor: () => AnchorView | null): () => void {

@@ -15,6 +15,7 @@ import { Building } from "./building";
 import { readColours, type Colours } from "./colours";
 import { edgeMarks, type EdgeMark, type Outside } from "./edges";
 import { ExternalLayer, type ExternalScene } from "./externalLayer";
+import { FloorPictureLayer } from "./floorPicture";
 import { PeopleLayer, type Scene } from "./peopleLayer";
 import { Grid } from "./grid";
 import { fitMargins, leastMargins } from "./margins";
@@ -48,6 +49,7 @@ export class PlanMap {
   private colours: Colours = readColours();
   private readonly grid = new Grid(this.colours);
   readonly ground = new BaseMapLayer();
+  private readonly floorPicture = new FloorPictureLayer();
   private readonly building = new Building(this.colours);
   private readonly peopleLayer = new PeopleLayer();
   private readonly pins = new PinLayer();
@@ -79,6 +81,7 @@ export class PlanMap {
       layers: [
         this.grid,
         this.ground,
+        this.floorPicture,
         this.building.layer,
         this.past.layer,
         this.route.layer,
@@ -166,11 +169,13 @@ export class PlanMap {
 
   showPlan(plan: Plan | null): void {
     this.building.show(plan);
+    this.floorPicture.showPlan(plan);
     this.fitted = false;
   }
 
   showPeople(people: Omit<Scene, "colours" | "screen">): void {
     this.building.choose(people.floor, this.colours);
+    this.floorPicture.choose(people.floor);
     this.people = people;
     this.drawPeople();
     if (!this.isSeen()) return;
@@ -246,7 +251,7 @@ export class PlanMap {
   /** Show everything there is; false where there is nothing yet. */
   fit(smoothly = true): boolean {
     const all = createEmpty();
-    for (const part of [this.building.extent(), this.peopleLayer.extent()]) {
+    for (const part of [this.building.extent(), this.floorPicture.extent(), this.peopleLayer.extent()]) {
       if (part !== null) extend(all, part);
     }
     if (!all.every(Number.isFinite)) return false;

@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import { attempt, live } from "../sessions";
 import * as api from "../api";
 import { dateAndTime } from "../format";
+import { saveAs } from "../saving";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -87,6 +88,7 @@ function EnrolForm({
 /** The private key is in it: it is nowhere else, and gone with this view. */
 function Shown({ enrolment, onDone }: { enrolment: api.ShownEnrolment; onDone: () => void }) {
   const { unit_id: unitId, valid_to_ms: validToMs, text } = enrolment;
+  const file = `${unitId}.enrolment.toml`;
   return (
     <section class="enrolment" aria-label={`Enrolment of ${unitId}`}>
       <div>
@@ -95,7 +97,13 @@ function Shown({ enrolment, onDone }: { enrolment: api.ShownEnrolment; onDone: (
           whoever has it is {unitId}: photograph it for that unit alone, and keep no copy.
         </p>
         <p>
-          On the unit: <code>muster edge enrol PHOTO</code>
+          <button type="button" class="primary" onClick={() => saveAs(file, new Blob([text]))}>
+            Save as file
+          </button>{" "}
+          Carry it to the unit and delete it here. There: <code>muster edge run --enrolment {file}</code>
+        </p>
+        <p>
+          With a photo of the code, on the unit: <code>muster edge enrol PHOTO</code>
         </p>
         <details class="made">
           <summary>As text, to be saved as a file on the unit</summary>

@@ -6,6 +6,7 @@ import { KINDS, type TrailKind } from "../plan/pastTrails";
 import { assess } from "../uiState";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes, zone } from "../format";
+import { saveAs } from "../saving";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -200,15 +201,9 @@ function MinutesField({ name, label, valueS }: { name: string; label: string; va
   );
 }
 
-const TAKEN_MS = 60_000; // by then the browser has the file
-
-/** The console stays: the browser would leave it for an answer that is a refusal. */
+/** The browser would leave the console for an answer that is a refusal. */
 async function save(content: Promise<Blob>, name: string): Promise<void> {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(await content);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), TAKEN_MS);
+  saveAs(name, await content);
 }
 
 interface DownloadsProps {

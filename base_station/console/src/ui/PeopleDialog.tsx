@@ -5,27 +5,70 @@ import { Columns } from "./Columns";
 import { useFirstField, useFocusBack } from "./Confirm";
 import { Dialog } from "./Dialog";
 import { EraseForm } from "./EraseForm";
+import { onDemand } from "./onDemand";
 import { useSinglePress } from "./useGuardedPress";
 import { Photo } from "./Photo";
 import { fields, useLoaded } from "./useLoaded";
 import { Waiting } from "./Waiting";
 
+const PeopleImport = onDemand(() => import("./PeopleImport").then((part) => part.PeopleImport));
+const CrewBoard = onDemand(() => import("./CrewBoard").then((part) => part.CrewBoard));
+
 export function PeopleDialog() {
   const [people, again] = useLoaded(api.people);
+  const csv = useSignal<File | null>(null);
+  const showsCrews = useSignal(false);
+  const ended = () => {
+    csv.value = null;
+    again();
+  };
   return (
     <Dialog title="People" wide>
+      <p class="row">
+        <label>
+          People from a CSV file
+          <input
+            type="file"
+            accept=".csv,.txt,text/csv"
+            onChange={(event) => {
+              csv.value = event.currentTarget.files?.[0] ?? null;
+              event.currentTarget.value = ""; // the same file, corrected, can be chosen again
+            }}
+          />
+        </label>
+        <button
+          type="button"
+          aria-pressed={showsCrews.value}
+          onClick={() => (showsCrews.value = !showsCrews.value)}
+        >
+          Crews
+        </button>
+      </p>
+      {csv.value !== null && <PeopleImport file={csv.value} done={ended} />}
+      {showsCrews.value && people.value !== null ? (
+        <CrewBoard people={people.value} done={again} />
+      ) : (
+        <PeopleList people={people.value} again={again} />
+      )}
+    </Dialog>
+  );
+}
+
+function PeopleList({ people, again }: { people: readonly api.Person[] | null; again: () => void }) {
+  return (
+    <>
       <PersonForm done={again} />
       <table class="stacked">
         <Columns names={["Name", "Crew", "Role", "Photo"]} spoken="Change" />
         <tbody>
-          {(people.value ?? []).map((person) => (
+          {(people ?? []).map((person) => (
             <PersonRow key={person.person_id} person={person} done={again} />
           ))}
         </tbody>
       </table>
-      {people.value === null && <Waiting />}
-      {people.value?.length === 0 && <p class="quiet">Nobody yet. Add whoever may wear a unit.</p>}
-    </Dialog>
+      {people === null && <Waiting />}
+      {people?.length === 0 && <p class="quiet">Nobody yet. Add whoever may wear a unit.</p>}
+    </>
   );
 }
 

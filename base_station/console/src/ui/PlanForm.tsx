@@ -1,18 +1,25 @@
 import { useSignal } from "@preact/signals";
-import { setPlan } from "../api";
 import { ApiError } from "../http";
 import { contents } from "../plan/contents";
 import { attempt } from "../sessions";
-import { dialog } from "../uiState";
 import type { Plan } from "../wire";
-import { ConfirmButton } from "./ConfirmButton";
+import { onDemand } from "./onDemand";
+import { SendPlan } from "./SendPlan";
+
+const DraftPlan = onDemand(() => import("./DraftPlan").then((part) => part.DraftPlan));
+const PlanDrawing = onDemand(() => import("./PlanDrawing").then((part) => part.PlanDrawing));
 
 /** The plan that is shown, and another in its place: a file is only looked at until it is sent. */
 export function PlanForm({ shown }: { shown: Plan | null }) {
   const chosen = useSignal<Partial<Plan> | null>(null);
+  const drawing = useSignal<File | null>(null); // from elsewhere
+  const byHand = useSignal(false);
   const choose = async (file: File | undefined) => {
-    chosen.value = null;
-    if (file) chosen.value = parsed(await file.text());
+    chosen.value = drawing.value = null;
+    byHand.value = false;
+    if (!file) return;
+    if (isJson(file)) chosen.value = parsed(await file.text());
+    else drawing.value = file;
   };
   return (
     <>
@@ -22,36 +29,41 @@ export function PlanForm({ shown }: { shown: Plan | null }) {
           : `Shown is ${contents(shown)}.`}
       </p>
       <label class="row">
-        New plan (GeoJSON in site metres)
+        New plan: image, PDF, or GeoJSON in site metres
         <input
           type="file"
-          accept=".geojson,.json,application/geo+json"
+          accept=".geojson,.json,application/geo+json,.pdf,.png,.jpg,.jpeg,.webp"
           onChange={(event) => void attempt(choose(event.currentTarget.files?.[0]))}
         />
       </label>
-      {chosen.value !== null && <Send chosen={chosen.value} replaces={shown !== null} />}
+      <p>
+        <button
+          type="button"
+          aria-pressed={byHand.value}
+          onClick={() => {
+            chosen.value = drawing.value = null;
+            byHand.value = !byHand.value;
+          }}
+        >
+          Draw walls
+        </button>
+      </p>
+      {chosen.value !== null && (
+        <div class="row">
+          <span>The file has {contents(chosen.value)}.</span>
+          <SendPlan plan={chosen.value} replaces={shown !== null} />
+        </div>
+      )}
+      {drawing.value !== null && (
+        <DraftPlan file={drawing.value} shown={shown} done={() => (drawing.value = null)} />
+      )}
+      {byHand.value && <PlanDrawing picture={null} shown={shown} name="Drawn by hand" />}
     </>
   );
 }
 
-function Send({ chosen, replaces }: { chosen: Partial<Plan>; replaces: boolean }) {
-  const send = () => void attempt(setPlan(chosen).then(() => (dialog.value = null)));
-  return (
-    <div class="row">
-      <span>The file has {contents(chosen)}.</span>
-      {replaces ? (
-        <ConfirmButton
-          label="Replace plan"
-          question="Replace the plan for everybody?"
-          onConfirm={send}
-        />
-      ) : (
-        <button type="button" class="primary" onClick={send}>
-          Set plan
-        </button>
-      )}
-    </div>
-  );
+function isJson(file: File): boolean {
+  return /\.(geo)?json$/i.test(file.name);
 }
 
 function parsed(text: string): Partial<Plan> {

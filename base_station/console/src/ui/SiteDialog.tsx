@@ -17,7 +17,7 @@ const DEGREES = 180 / Math.PI;
 export function SiteDialog() {
   const picture = live.value?.picture;
   return (
-    <Dialog title="Site">
+    <Dialog title="Site" wide>
       <h3>Plan</h3>
       <PlanForm shown={picture?.plan.value ?? null} />
       <h3>Base map</h3>

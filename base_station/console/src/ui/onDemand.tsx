@@ -1,0 +1,25 @@
+import { useSignal } from "@preact/signals";
+import type { FunctionComponent } from "preact";
+import { useEffect } from "preact/hooks";
+import { ApiError } from "../http";
+import { attempt } from "../sessions";
+import { Waiting } from "./Waiting";
+
+/** A part of the page that is fetched when it is opened first: what is needed in a hurry loads without it. */
+export function onDemand<Props extends object>(
+  load: () => Promise<FunctionComponent<Props>>,
+): FunctionComponent<Props> {
+  return (props) => {
+    const loaded = useSignal<{ part: FunctionComponent<Props> } | null>(null);
+    useEffect(() => {
+      const fetched = load().catch(() => {
+        throw new ApiError("This part of the page did not load. Reload the page.", 0);
+      });
+      void attempt(fetched).then((part) => {
+        if (part !== null) loaded.value = { part };
+      });
+    }, []);
+    const Part = loaded.value?.part;
+    return Part === undefined ? <Waiting /> : <Part {...props} />;
+  };
+}

@@ -1,0 +1,1 @@
+"""Drawings of buildings from elsewhere, read as plans in a process of their own."""

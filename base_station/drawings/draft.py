@@ -1,0 +1,50 @@
+"""Draft of a plan: what a file from elsewhere holds, to be looked at before it is set."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import msgspec
+
+
+class DrawnPicture(msgspec.Struct, frozen=True):
+    """Picture without scale: a scan, a photo or a page of a PDF."""
+
+    webp: bytes  # base64 in JSON
+    width_px: int
+    height_px: int
+
+
+class Draft(msgspec.Struct, frozen=True, tag="draft"):
+    """Either a picture, or a plan whose scale is known."""
+
+    picture: DrawnPicture | None = None
+    plan: dict[str, Any] | None = None  # GeoJSON in site metres, as ``site/plan`` takes it
+    lat_deg: float | None = None  # of the plan's origin, where the file says where it lies
+    lon_deg: float | None = None
+    pages: int = 1  # of the file
+    notes: tuple[str, ...] = ()  # for a person: what of the file is not in the draft
+
+
+class DrawingRefusal(msgspec.Struct, frozen=True, tag="refused"):
+    """Reason for a person."""
+
+    reason: str
+
+
+LengthUnit = Literal["mm", "cm", "m", "in", "ft"]
+METRES_PER_UNIT: dict[LengthUnit, float] = {
+    "mm": 0.001,
+    "cm": 0.01,
+    "m": 1.0,
+    "in": 0.0254,
+    "ft": 0.3048,
+}
+
+
+class Options(msgspec.Struct, frozen=True):
+    """What a person says of the file."""
+
+    name: str = ""
+    page: int = 1
+    unit: LengthUnit | None = None  # of a DXF; None: as the file says

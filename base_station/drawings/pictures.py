@@ -1,0 +1,66 @@
+"""Pictures of floors: whatever came is decoded, made smaller and written anew, so that nothing but
+the picture is left.
+"""
+
+from __future__ import annotations
+
+import io
+import warnings
+
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+from base_station.drawings.draft import DrawnPicture
+from shared.errors import UserError
+
+MOST_PIXELS = 52_000_000  # of a file: a camera's 50 million are a few more
+# A plan is in every snapshot that a console gets, and its pictures with it.
+_SIDES_PX = (2048, 1448, 1024, 724)
+_MOST_BYTES = 300_000
+_FORMATS = ("JPEG", "PNG", "WEBP")
+_TOO_LARGE = f"the picture has more than {MOST_PIXELS // 1_000_000} million pixels; make it smaller"
+
+
+def read_picture(content: bytes) -> DrawnPicture:
+    """Raises UserError with what is wrong with it."""
+    try:
+        with (
+            warnings.catch_warnings(action="error", category=Image.DecompressionBombWarning),
+            Image.open(io.BytesIO(content), formats=_FORMATS) as opened,
+        ):
+            if opened.width * opened.height > MOST_PIXELS:
+                raise UserError(_TOO_LARGE)
+            opened.draft("RGB", (_SIDES_PX[0], _SIDES_PX[0]))
+            return encoded(_upright(opened))
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
+        raise UserError(_TOO_LARGE) from None
+    except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
+        raise UserError("the picture cannot be read; save it as PNG, JPEG or WebP") from error
+
+
+def _upright(opened: Image.Image) -> Image.Image:
+    """On white where it is transparent, as drawings that are exported often are."""
+    opened.load()
+    try:
+        turned = ImageOps.exif_transpose(opened)
+    except (OSError, SyntaxError, ValueError, TypeError):  # odd metadata
+        turned = opened
+    if not turned.has_transparency_data:
+        return turned.convert("RGB")
+    drawn = turned.convert("RGBA")
+    paper = Image.new("RGB", drawn.size, "white")
+    paper.paste(drawn, mask=drawn.getchannel("A"))
+    return paper
+
+
+def encoded(picture: Image.Image) -> DrawnPicture:
+    """As large as goes into ``_MOST_BYTES``, and never larger than it was."""
+    if min(picture.size) < 2:
+        raise UserError("the picture has no more than a line of pixels")
+    for side_px in _SIDES_PX:
+        smaller = picture.copy()
+        smaller.thumbnail((side_px, side_px), Image.Resampling.LANCZOS)
+        written = io.BytesIO()
+        smaller.save(written, "WEBP", quality=60)
+        if written.tell() <= _MOST_BYTES:
+            return DrawnPicture(written.getvalue(), *smaller.size)
+    raise UserError("the picture has too much detail for a plan; send one with fewer colours")

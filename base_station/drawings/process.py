@@ -1,0 +1,40 @@
+"""Drawings are read in a process of their own: libraries that read what anybody sends may end, hang
+or fill the memory, and the station does not with them.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import msgspec
+
+from base_station.drawings.draft import Draft, DrawingRefusal, Options
+from shared.errors import UserError
+
+MOST_WAIT_S = 60.0
+
+
+def command_of(options: Options) -> tuple[str, ...]:
+    """What is run."""
+    return (sys.executable, "-m", "base_station.drawings", msgspec.json.encode(options).decode())
+
+
+def draft_of(content: bytes, options: Options) -> Draft:
+    """Read it.  Raises UserError with what is wrong with the file, and what to do."""
+    try:
+        done = subprocess.run(
+            command_of(options),
+            input=content,
+            stdout=subprocess.PIPE,
+            timeout=MOST_WAIT_S,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise UserError("the drawing took too long to be read; send a part of it") from None
+    if done.returncode != 0:
+        raise UserError("the drawing cannot be read; save it anew, or as a PNG, and send that")
+    answer = msgspec.json.decode(done.stdout, type=Draft | DrawingRefusal)
+    if isinstance(answer, DrawingRefusal):
+        raise UserError(answer.reason)
+    return answer

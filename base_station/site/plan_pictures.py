@@ -1,0 +1,51 @@
+"""Pictures of floors in a plan: consoles draw them under the walls, the station checks them."""
+
+from __future__ import annotations
+
+import binascii
+from base64 import b64decode
+from collections import Counter
+from typing import Annotated, Any
+
+import msgspec
+
+from base_station.site.plan_features import Floor, Metres
+from shared.errors import UserError
+
+MOST_BASE64 = 2_000_000  # of all pictures: a plan is in every snapshot that a console gets
+_Corner = tuple[Metres, Metres]  # east_m, north_m
+
+
+class FloorPicture(msgspec.Struct, forbid_unknown_fields=True):
+    floor: Floor
+    webp: Annotated[str, msgspec.Meta(max_length=MOST_BASE64)]  # base64
+    upper_left_m: _Corner
+    upper_right_m: _Corner
+    lower_left_m: _Corner
+
+
+def require_pictures(member: Any) -> None:
+    """Raises UserError where ``pictures`` of the plan's member ``muster`` cannot be drawn."""
+    try:
+        pictures = msgspec.convert(member, list[FloorPicture])
+    except msgspec.ValidationError as error:
+        raise UserError(f"the plan has pictures that cannot be read: {error}") from error
+    twice = [floor for floor, n in Counter(one.floor for one in pictures).items() if n > 1]
+    if twice:
+        raise UserError(f"the plan has more than one picture of floor {twice[0]}")
+    if sum(len(one.webp) for one in pictures) > MOST_BASE64:
+        raise UserError(
+            f"the plan's pictures have more than {MOST_BASE64 // 1_000_000} MB together; send "
+            "smaller ones, or fewer floors"
+        )
+    for one in pictures:
+        if not _is_webp(one.webp):
+            raise UserError(f"the plan's picture of floor {one.floor} is no WebP in base64")
+
+
+def _is_webp(text: str) -> bool:
+    try:
+        content = b64decode(text, validate=True)
+    except (binascii.Error, ValueError):
+        return False
+    return content[:4] == b"RIFF" and content[8:12] == b"WEBP"

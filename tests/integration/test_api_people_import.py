@@ -1,0 +1,64 @@
+"""People of a CSV file over the API: all of them or nobody, and again without harm."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import httpx
+
+from base_station.accounts.principals import Role
+from tests.rig.desk_station import DeskStation
+
+_CREWS = "Name;Crew\nAda;Engine 1\nJürgen Groß;Engine 1\n"
+
+
+async def import_crews(client: httpx.AsyncClient, csv: str, **query: Any) -> httpx.Response:
+    return await client.post("/people/import", content=csv.encode(), params=query)
+
+
+async def crews(client: httpx.AsyncClient) -> dict[str, tuple[str, str]]:
+    people = (await client.get("/people")).json()
+    return {one["name"]: (one["crew"], one["role"]) for one in people}
+
+
+async def test_a_preview_does_nothing_and_a_second_import_changes_nothing(
+    station: DeskStation,
+) -> None:
+    async with station.client(Role.COMMANDER) as client:
+        await client.post("/people", json={"name": "ada", "crew": "Old", "role": "Officer"})
+        preview = (await import_crews(client, _CREWS, preview=True)).json()
+        assert [one["change"] for one in preview["people"]] == ["change", "add"]
+        assert await crews(client) == {"ada": ("Old", "Officer")}
+        assert (await import_crews(client, _CREWS)).status_code == 200
+        after = {"ada": ("Engine 1", "Officer"), "Jürgen Groß": ("Engine 1", "")}
+        assert await crews(client) == after
+        again = (await import_crews(client, _CREWS)).json()
+        assert [one["change"] for one in again["people"]] == ["same", "same"]
+        assert await crews(client) == after
+
+
+async def test_nobody_of_a_file_with_a_fault_is_added(station: DeskStation) -> None:
+    async with station.client(Role.COMMANDER) as client:
+        for _ in range(2):
+            await client.post("/people", json={"name": "Ada"})
+        refused = await import_crews(client, f"{_CREWS};Engine 2\n")
+        assert refused.status_code == 422
+        assert refused.json()["detail"] == (
+            "nobody was added: line 2: Ada is the name of two people here; rename one of them "
+            "first (the first of 2 faults)"
+        )
+        assert await crews(client) == {"Ada": ("", "")}
+        many = await import_crews(client, "Name\n" + "".join(f"P {n}\n" for n in range(10_000)))
+        assert "more than 2000 people" in many.json()["detail"]
+
+
+async def test_whoever_wears_a_unit_is_shown_with_the_new_crew(station: DeskStation) -> None:
+    async with station.client(Role.COMMANDER) as client:
+        person = (await client.post("/people", json={"name": "Ada"})).json()
+        await client.post("/units", json={"unit_id": "FF-01"})
+        worn = {"unit_id": "FF-01", "person_id": person["person_id"]}
+        await client.post("/assignments", json=worn)
+        await import_crews(client, _CREWS)
+        (unit,) = station.services.picture().units
+        assert unit.person is not None
+        assert unit.person.crew == "Engine 1"
