@@ -214,6 +214,12 @@ FIELDS: Mapping[str, str] = {
     "sensor_name": "What the sensor calls itself.",
     "tracker": "Name of the tracker that the unit runs.",
     "calibration": "Which calibration the unit uses; empty: none.",
+    "sensors": "Inertial sensors of the unit; empty: not known yet.",
+    "WornSensorView.name": "Name of the sensor in the unit; empty: it is the only one.",
+    "place": "Part of the body where the sensor is worn, such as left_foot; empty: unknown.",
+    "place_recognised": "Whether the unit recognised that place by the motion.",
+    "mount": "How the sensor is fastened, in words.",
+    "model": "What the sensor calls itself.",
     "has_gps": "Whether the unit has a satellite receiver.",
     # ---- places
     "north_m": "Metres north.",

@@ -23,6 +23,7 @@ from base_station.storage.db.records import FOREVER_NS, Records, TrackSample, Wi
 from base_station.storage.db.roster import Roster
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.station import alarm_view, anchor_view
+from base_station.views.stored_units import stored_sensors
 from base_station.views.wire import (
     HealthView,
     IncidentView,
@@ -176,6 +177,8 @@ class StoredSnapshotSource:
             ambient_sensors=(),
             can_be_notified=None,
             preflight=None,
+            tracker=unit.tracker,
+            sensors=stored_sensors(unit),
         )
 
     def _person(self, worn: models.Assignment) -> PersonView:

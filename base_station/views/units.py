@@ -6,9 +6,12 @@ import math
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
+import msgspec
+
 from base_station.core.state import Alarm, Person, StationState, UnitState
 from base_station.core.state.duty import Duty
 from base_station.core.trust.trust import conflicts_of, trust_of
+from base_station.core.units.worn_sensors import WornSensor, worn_sensors
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.plan import Ring
 from base_station.storage.db.known_people import KnownPerson, PersonLookup, shown_text
@@ -23,6 +26,7 @@ from base_station.views.wire import (
     StatusView,
     TrustView,
     UnitView,
+    WornSensorView,
 )
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import (
@@ -109,6 +113,8 @@ def _unit_view(
         _sensors_view(heat.temperature.sensors) if heat.temperature else (),
         unit.can_be_notified,
         preflight_view(unit.description.preflight) if unit.description else None,
+        unit.description.tracker if unit.description else "",
+        worn_sensor_views(worn_sensors(unit.description)) if unit.description else (),
     )
 
 
@@ -122,6 +128,12 @@ def preflight_view(findings: tuple[PreflightFinding, ...] | None) -> PreflightVi
     failed = any(one.level is PreflightLevel.FAILED for one in findings)
     text = "; ".join(f"{one.subject}: {one.text}" for one in findings)
     return PreflightView("failed" if failed else "warning", text)
+
+
+@lru_cache(maxsize=1000)
+def worn_sensor_views(sensors: tuple[WornSensor, ...]) -> tuple[WornSensorView, ...]:
+    """Sensors of a unit as a console shows them."""
+    return tuple(WornSensorView(*msgspec.structs.astuple(one)) for one in sensors)
 
 
 def _clock_view(heartbeat: Heartbeat | None) -> ClockView | None:

@@ -138,6 +138,16 @@ class PreflightView(Answer, frozen=True):
     text: str  # for a person, the gravest first; empty: ok
 
 
+class WornSensorView(Answer, frozen=True):
+    """Inertial sensor of a unit, and where its wearer has it."""
+
+    name: str  # in the unit; empty: its only one
+    place: str  # part of the body, such as left_foot; empty: unknown
+    place_recognised: bool  # by its motion; else the place is that of the unit's settings
+    mount: str  # how it is fastened, in words
+    model: str
+
+
 class ClockView(Answer, frozen=True):
     """What a unit knows of the station's time."""
 
@@ -223,6 +233,8 @@ class UnitView(Answer, frozen=True):
     ambient_sensors: tuple[SensorTemperatureView, ...]  # its readings by name; empty: one sensor
     can_be_notified: bool | None  # it has an output for its wearer; None: not known yet
     preflight: PreflightView | None  # None: it has not checked itself yet
+    tracker: str = ""  # that makes its positions of the samples; empty: not known yet
+    sensors: tuple[WornSensorView, ...] = ()  # inertial ones; empty: not known yet
 
 
 class DeliveryView(Answer, frozen=True):

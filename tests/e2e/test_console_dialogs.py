@@ -18,8 +18,10 @@ from tests.e2e.console_page import (
     confirm,
     menu,
     metres_north,
+    press,
 )
 from tests.e2e.enlisting import INCIDENT, NAME
+from tests.e2e.wearable import Wearable
 
 
 def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Locator) -> None:
@@ -39,9 +41,17 @@ def test_users_are_made_and_the_audit_log_names_who_did_it(page: Page, card: Loc
     close(audit)
 
 
-def test_the_units_are_looked_after_in_their_dialog(page: Page, card: Locator) -> None:
+def test_the_units_are_looked_after_in_their_dialog(
+    page: Page, card: Locator, wearable: Wearable
+) -> None:
+    wearable.describe("led")
+    press(card.get_by_role("button").first)
+    sensors = card.locator(".fact", has_text="Sensors")
+    expect(sensors).to_contain_text("left foot (laces), lower back (recognised)")
+    expect(sensors).to_contain_text("foot_and_trunk")
     dialog = menu(page, "Units")
     row = dialog.get_by_role("row", name=UNIT)
+    expect(row.get_by_role("list")).to_contain_text("lower back (recognised)foot_and_trunk")
     expect(row).to_contain_text("1 min 15 s behind ± 3 ms")
     row.get_by_role("button", name=f"Fetch the recording of {UNIT}").click()
     expect(row).to_contain_text("waiting")

@@ -25,12 +25,17 @@ from shared.messages import (
     Status,
     Temperature,
     UnitEvent,
+    UnitSensor,
 )
 from tests.rig import message_factory
 
 STEP_S = 0.2
 SPEED_MPS = 1.0
 CLOCK_AHEAD_S = -75.0
+SENSORS = (
+    UnitSensor("foot", "left_foot", "x-IMU3", 400.0, None, None, False, False, mount="laces"),
+    UnitSensor("back", "lower_back", "BMI270", 100.0, None, None, True, True, True),
+)
 
 
 class Wearable:
@@ -69,8 +74,13 @@ class Wearable:
             self._say(reply)
 
     def describe(self, *outputs: str) -> None:
-        """Say which outputs it has to notify its wearer with."""
-        self._say(message_factory.description(self._stamper.header(), outputs=outputs))
+        """Say what sensors it has, and which outputs to notify its wearer with."""
+        header = self._stamper.header()
+        self._say(
+            message_factory.description(
+                header, outputs=outputs, tracker="foot_and_trunk", sensors=SENSORS
+            )
+        )
 
     def notify(self) -> None:
         """An output has run for the command that came last."""

@@ -18,6 +18,7 @@ from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.store import Store
 from base_station.views.station import StationFacts, snapshot
+from base_station.views.stored_units import stored_sensors
 from shared.clock import SystemClock
 from shared.mcap_log import read_log
 from tests.rig.erasure_scenario import names_in, stored_in
@@ -39,6 +40,7 @@ def test_database_of_older_version_is_queried(tmp_path: Path) -> None:
         archive.extractall(tmp_path, filter="data")
     with Store(tmp_path / "station.sqlite") as store:
         records, roster = Records(store, SystemClock()), Roster(store, SystemClock())
+        assert [stored_sensors(unit) for unit, _ in roster.units()] == [(), ()]
         incident = records.require_incident("i1")
         assert (incident.name, incident.late_data_ns) == ("Mill Lane", 0)
         assert {person.name for person in roster.people()} == {"Ana Horn", "Bo Lind"}

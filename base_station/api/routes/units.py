@@ -19,7 +19,8 @@ from base_station.api.services import Services, Station
 from base_station.storage.db import models
 from base_station.storage.db.roster import Roster
 from base_station.views.answer import to_ms_or_none
-from base_station.views.wire import UnitView
+from base_station.views.stored_units import stored_sensors
+from base_station.views.wire import UnitView, WornSensorView
 from shared.channels import validate_unit_id
 from shared.errors import StoreError
 from shared.messages.station import RegisterUnit, SetReference, SetStart
@@ -39,6 +40,7 @@ class UnitAnswer(BaseModel):
     tracker: str
     calibration: str
     has_gps: bool
+    sensors: list[WornSensorView]
 
 
 class NewUnit(Form):
@@ -138,6 +140,7 @@ def _unit_as_decided(station: Services, unit_id: str) -> UnitAnswer:
         tracker=stored.tracker if stored else "",
         calibration=stored.calibration if stored else "",
         has_gps=stored is not None and stored.has_gps,
+        sensors=list(stored_sensors(stored)) if stored else [],
     )
 
 
@@ -154,4 +157,5 @@ def _unit(unit: models.Unit, worn: models.Assignment | None, roster: Roster) -> 
         tracker=unit.tracker,
         calibration=unit.calibration,
         has_gps=unit.has_gps,
+        sensors=list(stored_sensors(unit)),
     )

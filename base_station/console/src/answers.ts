@@ -774,6 +774,7 @@ export interface UnitAnswer {
   tracker: string;
   calibration: string;
   has_gps: boolean;
+  sensors: WornSensorView[];
 }
 
 export interface UnitReport {
@@ -828,4 +829,12 @@ export interface UserAnswer {
 export interface UserChange {
   password?: string | null;
   role?: "viewer" | "commander" | "administrator" | null;
+}
+
+export interface WornSensorView {
+  name: string;
+  place: string;
+  place_recognised: boolean;
+  mount: string;
+  model: string;
 }

@@ -10,6 +10,7 @@ import type {
   SensorTemperatureView,
   StatusView,
   UnitView,
+  WornSensorView,
 } from "./wire";
 
 /** A time that passed: "0.4 s", "42 s", "3 min 05 s", "1 h 12 min". */
@@ -49,6 +50,13 @@ const CLOCK_WRONG_MS = 10_000;
 /** What a unit has found wrong when it checked itself at its start. */
 export function preflightText({ level, text }: PreflightView): string {
   return `${level === "failed" ? "not ready" : "with warnings"}: ${text}`;
+}
+
+/** Where a sensor is worn, and how: "left foot", "lower back (belt)". */
+export function wornAt({ place, place_recognised, mount }: WornSensorView): string {
+  const where = place === "" ? "place not known" : place.replaceAll("_", " ");
+  const how = [mount, place_recognised ? "recognised" : ""].filter((word) => word !== "");
+  return how.length === 0 ? where : `${where} (${how.join(", ")})`;
 }
 
 /** How far a unit's own clock is from the station's: "40 ms ahead ± 3 ms", "1 min 15 s behind". */

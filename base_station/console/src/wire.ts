@@ -94,6 +94,14 @@ export interface PreflightView {
   text: string;
 }
 
+export interface WornSensorView {
+  name: string;
+  place: string;
+  place_recognised: boolean;
+  mount: string;
+  model: string;
+}
+
 export interface ClockView {
   ahead_ms: number;
   std_ms: number;
@@ -169,6 +177,8 @@ export interface UnitView {
   ambient_sensors: SensorTemperatureView[];
   can_be_notified: boolean | null;
   preflight: PreflightView | null;
+  tracker: string;
+  sensors: WornSensorView[];
 }
 
 export interface DeliveryView {

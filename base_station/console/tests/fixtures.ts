@@ -95,6 +95,8 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     ambient_sensors: [],
     can_be_notified: true,
     preflight: { level: "ok", text: "" },
+    tracker: "eskf",
+    sensors: [{ name: "", place: "foot", place_recognised: false, mount: "", model: "" }],
     ...change,
   };
 }

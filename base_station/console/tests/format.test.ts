@@ -236,6 +236,18 @@ describe("words", () => {
   });
 });
 
+describe("where a sensor is worn", () => {
+  const worn = { name: "", place: "left_foot", place_recognised: false, mount: "", model: "m" };
+  it.each([
+    [worn, "left foot"],
+    [{ ...worn, mount: "laces" }, "left foot (laces)"],
+    [{ ...worn, mount: "belt", place_recognised: true }, "left foot (belt, recognised)"],
+    [{ ...worn, place: "" }, "place not known"],
+  ])("says how, where that is known", (sensor, text) => {
+    expect(format.wornAt(sensor)).toBe(text);
+  });
+});
+
 describe("a connection with another system", () => {
   const county = {
     name: "county",

@@ -150,6 +150,8 @@ class Unit(Base):
     tracker: Mapped[str]
     calibration: Mapped[str]
     has_gps: Mapped[bool]
+    # JSON of ``base_station.core.units.worn_sensors.WornSensor``, a list
+    sensors: Mapped[str] = mapped_column(server_default="[]")
 
 
 class IncidentRow(Base):

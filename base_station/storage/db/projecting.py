@@ -11,6 +11,7 @@ from sqlalchemy import ColumnElement, func, select, update
 from sqlalchemy.orm import Session
 
 from base_station.core.person_references import reference_to
+from base_station.core.units.worn_sensors import worn_sensors
 from base_station.storage.db.models import (
     AlarmRow,
     AlarmTransition,
@@ -56,6 +57,7 @@ _NEW_UNIT = {
     "tracker": "",
     "calibration": "",
     "has_gps": False,
+    "sensors": "[]",
 }
 
 
@@ -254,7 +256,8 @@ def _execute_many(session: Session, statement: Insert, rows: Sequence[Mapping[st
 
 def _described(description: UnitDescription) -> dict[str, object]:
     names = ("software_version", "source", "sensor_name", "tracker", "calibration", "has_gps")
-    return {name: getattr(description, name) for name in names}
+    sensors = msgspec.json.encode(worn_sensors(description)).decode()
+    return {name: getattr(description, name) for name in names} | {"sensors": sensors}
 
 
 def _unit(session: Session, unit_id: str, **columns: object) -> None:

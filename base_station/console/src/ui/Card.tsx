@@ -12,7 +12,7 @@ import type { AlarmView, UnitView } from "../wire";
 import * as format from "../format";
 import { CardActions } from "./CardActions";
 import { OpenCommands } from "./CommandState";
-import { BriefFacts, Facts } from "./Facts";
+import { BriefFacts, Facts, Sensors } from "./Facts";
 import { Line } from "./Line";
 import { activityIcon, Icon, type IconName } from "./Icon";
 import { isOverdue, ParMark } from "./ParClock";
@@ -102,6 +102,7 @@ function Whole({ unit, chosen, short, picture }: WholeProps) {
         <Facts unit={unit} picture={picture} />
       )}
       <Trust unit={unit} />
+      {chosen && <Sensors unit={unit} />}
       {chosen && <ToRecords unit={unit} />}
       {chosen && mayAct.value && unit.registered && <CardActions unit={unit} />}
       {!unit.registered && <UnknownUnit unitId={unitId} />}

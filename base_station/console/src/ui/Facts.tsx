@@ -66,14 +66,14 @@ function Where({ unit, picture }: Props) {
   const now = picture.nowMs.value;
   if (position === null) {
     return (
-      <Fact icon="floor" label="Position" wide>
+      <Fact icon="floor" label="Position" width="wide">
         {unit.duty !== null && !unit.duty.located ? "not located" : "no position yet"}
       </Fact>
     );
   }
   const old = isOld(position, now);
   return (
-    <Fact icon="floor" label="Position" level={old ? "old" : ""} wide>
+    <Fact icon="floor" label="Position" level={old ? "old" : ""} width="wide">
       {placeWords(position, picture, old)}
       <span class="spoken">, {format.place(position)}</span>
       {old && <small class="old-mark">{format.age(now - position.t_ms)} old</small>}
@@ -139,6 +139,19 @@ function Battery({ status, low }: { status: StatusView | null; low: boolean }) {
   );
 }
 
+/** Where they are worn, and what makes positions of their samples. */
+export function Sensors({ unit: { sensors, tracker } }: { unit: UnitView }) {
+  if (tracker === "") return null;
+  return (
+    <dl class="facts">
+      <Fact icon="walking" label="Sensors" width="whole">
+        {sensors.map(format.wornAt).join(", ")}
+        <Remark>{tracker}</Remark>
+      </Fact>
+    </dl>
+  );
+}
+
 function Inside({ unit, now }: { unit: UnitView; now: number }) {
   const restSinceMs = unit.duty?.rest_since_ms ?? null;
   if (restSinceMs !== null) {
@@ -170,13 +183,13 @@ interface FactProps {
   icon: IconName;
   label: string;
   level?: string;
-  wide?: boolean;
+  width?: "" | "wide" | "whole";
   children: ComponentChildren;
 }
 
-function Fact({ icon, label, level = "", wide = false, children }: FactProps) {
+function Fact({ icon, label, level = "", width = "", children }: FactProps) {
   return (
-    <div class={`fact ${level} ${wide ? "wide" : ""}`}>
+    <div class={`fact ${level} ${width}`}>
       <dt>
         <Icon name={icon} />
         {label}

@@ -2,8 +2,8 @@ import { useSignal } from "@preact/signals";
 import { attempt, live, user } from "../sessions";
 import * as api from "../api";
 import { openDialog } from "../uiState";
-import type { ClockView, PreflightView, UnitView } from "../wire";
-import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, preflightText, DUPLICATE_DEVICE } from "../format";
+import type { ClockView, PreflightView, UnitView, WornSensorView } from "../wire";
+import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, preflightText, wornAt, DUPLICATE_DEVICE } from "../format";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useDone } from "./Done";
@@ -37,6 +37,7 @@ export function UnitsDialog() {
             "Clock",
             "GPS",
             "Worn by",
+            "Sensors",
             "Calibration",
             "Positions a second",
             "Raw recording",
@@ -91,6 +92,9 @@ function UnitRow({ unit, people, calibration }: RowProps) {
       <td data-label="Worn by">
         {unit.registered ? <Wearer unit={unit} people={people} /> : <Register unit={unit} />}
       </td>
+      <td data-label="Sensors">
+        <Sensors sensors={unit.sensors} tracker={unit.tracker} />
+      </td>
       <td data-label="Calibration">
         <Calibration unit={unit} calibration={calibration} />
       </td>
@@ -104,6 +108,21 @@ function UnitRow({ unit, people, calibration }: RowProps) {
 function UnitClock({ clock }: { clock: ClockView | null }) {
   if (clock === null) return <>not known</>;
   return <span class={isClockWrong(clock) ? "warned" : ""}>{clockOffset(clock)}</span>;
+}
+
+/** Where its wearer has each, and what makes positions of their samples. */
+function Sensors({ sensors, tracker }: { sensors: readonly WornSensorView[]; tracker: string }) {
+  if (tracker === "") return <>not known</>;
+  return (
+    <ul class="worn-sensors">
+      {sensors.map((one) => (
+        <li key={one.name} title={one.model}>
+          {wornAt(one)}
+        </li>
+      ))}
+      <li class="quiet">{tracker}</li>
+    </ul>
+  );
 }
 
 /** Its name, and what the station has to say against it. */

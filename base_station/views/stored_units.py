@@ -1,0 +1,15 @@
+"""Views of what the tables have of units."""
+
+from __future__ import annotations
+
+import msgspec
+
+from base_station.core.units.worn_sensors import WornSensor
+from base_station.storage.db.models import Unit
+from base_station.views.units import worn_sensor_views
+from base_station.views.wire import WornSensorView
+
+
+def stored_sensors(unit: Unit) -> tuple[WornSensorView, ...]:
+    """Sensors of a unit as it has described itself last; none: of an earlier version's table."""
+    return worn_sensor_views(msgspec.json.decode(unit.sensors, type=tuple[WornSensor, ...]))
