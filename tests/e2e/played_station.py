@@ -37,6 +37,7 @@ class PlayedStation:
         self._changes: list[str] = []
         self._picture = picture
         self._unit_changes = UnitChanges()
+        self.confirmed = 0  # messages that the page has shown
         self._answers = answers
         self._sockets: list[WebSocketRoute] = []
         self._replays: list[WebSocketRoute] = []
@@ -138,6 +139,8 @@ class PlayedStation:
     def _answer_page(self, socket: WebSocketRoute, message: str | bytes) -> None:
         if _is_request(message):
             self._show(socket)
+        else:
+            self.confirmed = json.loads(message)["count"]
 
     def _show(self, socket: WebSocketRoute) -> None:
         if self._hangs:

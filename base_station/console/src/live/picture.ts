@@ -56,6 +56,9 @@ export class Picture {
   );
 
   private readonly units = new Map<string, Signal<UnitView>>();
+  private latest: State["units"] = new Map();
+  /** What cards show with the next step of the clock. */
+  private readonly waiting = new Map<string, UnitView>();
 
   /** The signal of one unit; it exists for every id in `unitIds`. */
   unit(unitId: string): Signal<UnitView> | undefined {
@@ -64,7 +67,7 @@ export class Picture {
 
   /** All units as they are, without listening to them. */
   allUnits(): UnitView[] {
-    return [...this.units.values()].map((unit) => unit.peek());
+    return [...this.latest.values()];
   }
 
   show(state: State): void {
@@ -86,17 +89,35 @@ export class Picture {
     });
   }
 
+  /** Cards show where everybody is now; call it with the steps of the clock, which draw them anyway. */
+  catchUp(): void {
+    batch(() => {
+      for (const [unitId, unit] of this.waiting) {
+        const shown = this.units.get(unitId);
+        if (shown !== undefined) shown.value = unit;
+      }
+    });
+    this.waiting.clear();
+  }
+
   private showUnits(units: State["units"]): void {
     let changed = false;
     for (const [unitId, unit] of units) {
+      if (this.latest.get(unitId) === unit) continue;
+      changed = true;
       const shown = this.units.get(unitId);
       if (shown === undefined) this.units.set(unitId, signal(unit));
-      else if (shown.peek() === unit) continue;
-      else shown.value = unit;
-      changed = true;
+      else if (isSteady(shown.peek(), unit)) this.waiting.set(unitId, unit);
+      else {
+        this.waiting.delete(unitId);
+        shown.value = unit;
+      }
     }
+    this.latest = units;
     for (const unitId of [...this.units.keys()]) {
-      if (!units.has(unitId)) changed = this.units.delete(unitId);
+      if (units.has(unitId)) continue;
+      this.waiting.delete(unitId);
+      changed = this.units.delete(unitId);
     }
     if (!changed) return;
     this.unitsChanged.value += 1;
@@ -106,4 +127,26 @@ export class Picture {
       this.unitIds.value = ids;
     }
   }
+}
+
+/** Whoever walks changes in these with every message, and a card shows them to a metre and a second. */
+const FLOWING: ReadonlySet<string> = new Set<keyof UnitView>([
+  "position",
+  "status",
+  "last_heard_ms",
+  "status_ms",
+  "ambient_ms",
+  "clock",
+]);
+
+/** Whether nothing changed but where somebody is and how far they walked. */
+function isSteady(before: UnitView, now: UnitView): boolean {
+  const names = Object.keys(now) as (keyof UnitView)[];
+  return (
+    names.every((name) => FLOWING.has(name) || before[name] === now[name]) &&
+    (before.position === null) === (now.position === null) &&
+    before.status?.mayday === now.status?.mayday &&
+    before.status?.activity === now.status?.activity &&
+    before.status?.posture === now.status?.posture
+  );
 }

@@ -88,7 +88,12 @@ export class Session {
   }
 
   private tick(): void {
-    if (this.state !== null) this.picture.nowMs.value = this.clock.now(this.local.now());
+    if (this.state === null) return;
+    const nowMs = this.clock.now(this.local.now());
+    batch(() => {
+      this.picture.nowMs.value = nowMs;
+      this.picture.catchUp();
+    });
   }
 }
 
