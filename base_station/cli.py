@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from base_station.app.dispatch_command import dispatch
 from base_station.app.export_command import export
 from base_station.app.foxglove_cli import foxglove
 from base_station.app.progress_bar import progress_bar
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
+app.command()(dispatch)
 app.command()(export)
 app.command()(report)
 app.command()(rehearse)

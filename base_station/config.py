@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from base_station.dispatch.config import DispatchConfig
 from base_station.forwarders.department.config import DepartmentConfig
 from base_station.forwarders.tak.config import TakConfig
 from base_station.storage.db.server_address import ServerAddress
@@ -171,6 +172,7 @@ class StationConfig(ServerConfig):
     standby: StandbyConfig = field(default_factory=StandbyConfig)
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     positioning: PositioningConfig = field(default_factory=PositioningConfig)
+    dispatch: DispatchConfig = field(default_factory=DispatchConfig)
     alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
     tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
     department: DepartmentConfig | None = None  # to which this station reports; None: to none

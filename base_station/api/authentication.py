@@ -156,6 +156,7 @@ class Scope(StrEnum):
     ASSIGNMENTS = "assignments"
     AUDIT = "audit"
     COMMANDS = "commands"
+    DISPATCH = "dispatch"
     ENROLMENTS = "enrolments"
     EXPORTS = "exports"
     FORGETTING = "forgetting"

@@ -18,6 +18,7 @@ from shared.clock import NS_PER_MS
 MAX_BYTES = 65_536  # of a form
 MAX_UPLOAD_BYTES = 12_000_000  # a picture or a plan
 MAX_SAMPLES_BYTES = 1_000_000  # of a post of samples
+MAX_DISPATCH_BYTES = 1_000_000  # of a report of the dispatch centre, or an alert
 MAX_TIME_MS = FOREVER_NS // NS_PER_MS
 
 _PRINTABLE = rf"^[^{BARRED}]*$"
@@ -41,6 +42,8 @@ PATTERN_DESCRIPTIONS = {  # what each pattern asks for, in words
 
 Name = Annotated[str, StringConstraints(min_length=1, max_length=80, pattern=_NAME)]
 ShortText = Annotated[str, StringConstraints(max_length=80, pattern=_PRINTABLE)]
+DispatchNumber = Annotated[str, StringConstraints(max_length=128, pattern=_NAME)]
+DispatchNumberOrNone = Annotated[str, StringConstraints(max_length=128, pattern=_PRINTABLE)]
 Note = Annotated[str, StringConstraints(max_length=500, pattern=_PRINTABLE)]
 Id = Annotated[str, Path(pattern=ID)]
 AlarmIdText = Annotated[str, StringConstraints(pattern=_ALARM_ID)]

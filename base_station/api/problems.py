@@ -14,7 +14,12 @@ from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from base_station.api.field_errors import error_sentence
-from base_station.api.forms import MAX_BYTES, MAX_SAMPLES_BYTES, MAX_UPLOAD_BYTES
+from base_station.api.forms import (
+    MAX_BYTES,
+    MAX_DISPATCH_BYTES,
+    MAX_SAMPLES_BYTES,
+    MAX_UPLOAD_BYTES,
+)
 from shared.errors import ConfigError, LogError, MusterError, StoreError, UserError
 
 PROBLEM_MEDIA_TYPE = "application/problem+json"
@@ -22,7 +27,8 @@ PROBLEM_MEDIA_TYPE = "application/problem+json"
 _log = logging.getLogger(__name__)
 _TOO_LARGE = (
     f"This is too large: a picture, a plan or a map may have {MAX_UPLOAD_BYTES // 10**6} MB, "
-    f"samples {MAX_SAMPLES_BYTES // 10**6} MB, anything else {MAX_BYTES // 10**3} kB."
+    f"samples {MAX_SAMPLES_BYTES // 10**6} MB, a dispatch or an alert "
+    f"{MAX_DISPATCH_BYTES // 10**6} MB, anything else {MAX_BYTES // 10**3} kB."
 )
 
 

@@ -20,6 +20,8 @@ from base_station.api.route_finder import RouteFinder
 from base_station.config import AccountabilityConfig
 from base_station.core.idempotency import is_same_request
 from base_station.core.person_references import with_references
+from base_station.dispatch.alert_intake import AlertIntake
+from base_station.dispatch.config import DispatchConfig
 from base_station.engine.ports import ActionResult, OperatorGate, Trails
 from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
@@ -72,6 +74,8 @@ class Services(LoginServices):
     alarm_explainer: AlarmExplainer | None = None  # None: a station without a log
     pki: PkiFolder | None = None  # None: a station that enrols nobody
     intake: SampleIntake | None = None  # None: a station that only replays
+    alerts: AlertIntake | None = None  # None: a station that only replays
+    dispatch: DispatchConfig = field(default_factory=DispatchConfig)
     accountability: AccountabilityConfig = field(default_factory=AccountabilityConfig)
     plans: PlanReader = field(default_factory=PlanReader)  # of the drive that acts
     route_finder: RouteFinder = field(default_factory=RouteFinder)

@@ -11,6 +11,7 @@ from base_station.api.services import Services
 from base_station.app.factories import replay_process_starter
 from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
+from base_station.dispatch.alert_intake import AlertIntake
 from base_station.engine.feed import LogFeed
 from base_station.engine.sample_intake import SampleIntake
 from base_station.replay.processes.log_process import LogProcess
@@ -46,6 +47,8 @@ def new_services(parts: LiveParts) -> Services:
         plans=parts.plans,
         pki=resources.pki,
         intake=SampleIntake(parts.gate.deliver, resources.bus, disk.clock),
+        alerts=AlertIntake(parts.engine.note_external),
+        dispatch=resources.config.dispatch,
         accountability=resources.config.accountability,
     )
 

@@ -10,7 +10,7 @@ from base_station.core.state import StationState
 from shared.clock import NS_PER_S
 from shared.messages import ExternalMarkers
 
-MARKERS_KEPT = 300
+MARKERS_KEPT = 300  # of each source: a flood of one leaves those of the others
 OLD_FOR_NS = 600 * NS_PER_S  # so long one is shown as old; then it is not shown any more
 
 
@@ -23,15 +23,17 @@ def apply(state: StationState, message: ExternalMarkers) -> bool:
         if state.external.get(marker.marker_id) != marker:
             state.external[marker.marker_id] = marker
             changed = True
-    _drop_oldest(state)
+    for source in sorted({marker.source for marker in message.markers}):
+        _drop_oldest(state, source)
     return changed
 
 
-def _drop_oldest(state: StationState) -> None:
-    excess = len(state.external) - MARKERS_KEPT
+def _drop_oldest(state: StationState, source: str) -> None:
+    of_source = [one for one in state.external.values() if one.source == source]
+    excess = len(of_source) - MARKERS_KEPT
     if excess > 0:
-        by_age = sorted(state.external.values(), key=lambda one: (one.stale_ns, one.marker_id))
-        for marker in by_age[:excess]:
+        of_source.sort(key=lambda one: (one.stale_ns, one.marker_id))
+        for marker in of_source[:excess]:
             del state.external[marker.marker_id]
 
 

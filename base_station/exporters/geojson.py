@@ -20,7 +20,10 @@ def export_geojson(incident: IncidentTracks) -> Iterator[bytes]:
 
 
 def _collection(incident: IncidentTracks, anchor: Anchor) -> Iterator[bytes]:
-    before = b'{"type":"FeatureCollection","features":['
+    head: dict[str, Any] = {"type": "FeatureCollection"}
+    if incident.description:
+        head["description"] = incident.description
+    before = msgspec.json.encode(head)[:-1] + b',"features":['
     for track in incident.tracks:
         for piece in track.pieces:
             yield before + msgspec.json.encode(_feature(track, piece, anchor))

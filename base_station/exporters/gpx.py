@@ -25,7 +25,9 @@ def export_gpx(incident: IncidentTracks) -> Iterator[bytes]:
 
 
 def _document(incident: IncidentTracks, anchor: Anchor) -> Iterator[str]:
-    yield f"{XML_DECLARATION}{_BEGIN}<metadata><name>{escaped(incident.name)}</name></metadata>"
+    about = f"<desc>{escaped(incident.description)}</desc>" if incident.description else ""
+    name = f"<name>{escaped(incident.name)}</name>"
+    yield f"{XML_DECLARATION}{_BEGIN}<metadata>{name}{about}</metadata>"
     for track in incident.tracks:
         yield from _track(track, anchor)
     yield "</gpx>\n"

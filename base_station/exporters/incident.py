@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from base_station.dispatch.in_words import description
 from base_station.exporters.interface import IncidentTracks, LazyTracks, WornTrack
 from base_station.site.plan import salvage_plan
 from base_station.site.storeys import storey_of
@@ -24,6 +25,8 @@ def incident_tracks(
     place of what was shown at the time.
     """
     window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
+    number = incident.dispatch_number
+    dispatch = records.dispatch(number) if number else None
     by_unit = records.tracks_of(incident) if trails is None else trails
     assignments: dict[str, list[Assignment]] = {unit_id: [] for unit_id in by_unit}
     for one in roster.assignments(window.from_ns, window.until_ns):
@@ -39,6 +42,7 @@ def incident_tracks(
         anchor=records.anchor(window.until_ns),
         tracks=LazyTracks(tracks),
         ground_down_m=_ground_down_m(records.plan(window.until_ns)),
+        description="" if dispatch is None else roster.shown(description(dispatch)),
     )
 
 

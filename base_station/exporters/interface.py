@@ -74,6 +74,7 @@ class IncidentTracks:
     anchor: Anchor | None
     tracks: Iterable[WornTrack]  # may be gone through more than once
     ground_down_m: float | None = None  # down of the ground floor; None: no plan lists it
+    description: str = ""  # of the dispatch; empty: there was none
 
     def named_as(self, description: str) -> IncidentTracks:
         """With what its trails are in its name."""

@@ -28,7 +28,9 @@ def export_kml(incident: IncidentTracks) -> Iterator[bytes]:
 
 
 def _document(incident: IncidentTracks, anchor: Anchor) -> Iterator[str]:
-    yield f"{XML_DECLARATION}{_BEGIN}<Document><name>{escaped(incident.name)}</name>"
+    text = escaped(incident.description)
+    about = f"<description>{text}</description>" if text else ""
+    yield f"{XML_DECLARATION}{_BEGIN}<Document><name>{escaped(incident.name)}</name>{about}"
     for track in incident.tracks:
         yield from _placemark(track, anchor, incident.ground_down_m)
     yield "</Document></kml>\n"

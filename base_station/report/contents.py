@@ -116,6 +116,7 @@ class ReportContents(msgspec.Struct, frozen=True):
     is_open: bool
     opened_by: str
     closed_by: str
+    dispatch: str  # from which it was opened, in words; empty: from none
     timeline: tuple[TimelineEntry, ...]
     orders: tuple[OrderEntry, ...]
     people: tuple[PersonEntry, ...]

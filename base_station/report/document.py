@@ -78,6 +78,8 @@ def _facts(report: ReportContents) -> Iterable[tuple[str, str]]:
     urgent = sum(one.is_urgent and one.kind == texts.ALARM for one in report.timeline)
     during = report.during
     yield texts.INCIDENT, f"{report.name} ({report.incident_id})"
+    if report.dispatch:
+        yield texts.DISPATCH, report.dispatch
     yield texts.OPENED, texts.when_and_by(during.from_ns, report.opened_by)
     if report.is_open:
         yield texts.CLOSED, texts.STILL_OPEN

@@ -14,6 +14,7 @@ import msgspec
 from base_station.core.alarms import ALARMS
 from base_station.core.alarms.thresholds import limits_of, with_thresholds
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
+from base_station.dispatch.in_words import description
 from base_station.engine.feed import LogFeed
 from base_station.replay.assessment.report import with_people
 from base_station.replay.assessment.wearers import wearers
@@ -103,6 +104,7 @@ class _Gathering:
             is_open=incident.closed_ns is None,
             opened_by=incident.opened_by,
             closed_by=incident.closed_by,
+            dispatch=self._dispatch(),
             timeline=tuple(self._timeline()),
             orders=self._named_orders(facts),
             people=people,
@@ -119,6 +121,11 @@ class _Gathering:
             units=tuple(self._units()),
             version=version("muster"),
         )
+
+    def _dispatch(self) -> str:
+        number = self._incident.dispatch_number
+        report = self._sources.records.dispatch(number) if number else None
+        return "" if report is None else self._shown(description(report))
 
     # ---- people
 

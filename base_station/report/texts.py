@@ -21,6 +21,7 @@ UNKNOWN, NONE = "unknown", "none"
 NOBODY = "not assigned"
 EVERYONE = "everyone"
 
+DISPATCH = "Dispatch"
 OPENED, CLOSED, STILL_OPEN, LASTED = "Opened", "Closed", "still open", "Lasted"
 ALARMS, RADIO_GAPS = "Alarms", "Radio gaps"
 TIMELINE, PAR, ORDERS = "Timeline", "Roll calls (PAR)", "Orders"

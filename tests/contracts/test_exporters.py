@@ -54,7 +54,7 @@ def worn_tracks(points: int = 3) -> tuple[WornTrack, ...]:
 
 
 def incident(anchor: Anchor | None = None, points: int = 3) -> IncidentTracks:
-    return IncidentTracks("i-1", HOSTILE, anchor, worn_tracks(points))
+    return IncidentTracks("i-1", HOSTILE, anchor, worn_tracks(points), description=HOSTILE)
 
 
 class Held(WornTrack, frozen=True, weakref=True):

@@ -36,7 +36,7 @@ BOUNDED = {  # lists that do not grow with what happens, by what bounds them
         "/guides",  # one for each rescuer
         "/units/{unit_id}/routes",  # the nearest three
     },
-    "what is shown now": {"/pins", "/beacons", "/commands", "/replays", "/recordings"},
+    "what is shown now": {"/pins", "/beacons", "/commands", "/replays", "/recordings", "/dispatch"},
     "one incident": {"/incidents/{incident_id}/tracks"},
     "the program": {"/export-formats"},
     "the last wishes": {"/forgettings"},

@@ -52,7 +52,10 @@ LEAST: dict[str, dict[str, Role | None]] = {
     "incidents": {"GET /incidents": V, "POST /incidents": C, "GET /incidents/{incident_id}": V,
                   "POST /incidents/{incident_id}/close": C,
                   "GET /incidents/{incident_id}/alarms": V,
+                  "GET /incidents/{incident_id}/dispatch": V,
                   "GET /incidents/{incident_id}/assessment": V},
+    "dispatch": {"GET /dispatch": V, "POST /dispatch": C, "POST /dispatch/dismissals": C,
+                 "POST /dispatch/alerts": C},
     "tracks": {"GET /units/{unit_id}/track": V, "GET /incidents/{incident_id}/tracks": V,
                "GET /incidents/{incident_id}/trails": V, "GET /units/{unit_id}/timeline": V},
     "alarms": {"GET /alarms": V, "GET /alarms/{alarm_id}": V,
@@ -240,6 +243,8 @@ class Story:
         for name, value in names.items():
             path = path.replace(f"{{{name}}}", value)
         content: Any = {"content": body} if isinstance(body, bytes) else {"json": body}
+        if isinstance(body, bytes) and body.startswith(b"<alert>"):
+            content["headers"] = {"content-type": "application/cap+xml"}
         answer = await self._client.request(method, path + query, **content)
         assert answer.status_code < 300, (route, answer.text)
         self.done.add(route)
@@ -290,6 +295,13 @@ async def act_on_accounts(do: Do) -> None:
     await do("DELETE /tokens/{token_id}", token_id=token["token_id"])
 
 
+async def act_on_dispatches(do: Do) -> None:
+    await do("POST /dispatch", {"number": "2026-7"})
+    await do("POST /dispatch/dismissals", {"number": "2026-7"})
+    names = "<sender>s</sender><identifier>i</identifier>"
+    await do("POST /dispatch/alerts", f"<alert>{names}<status>Test</status></alert>".encode())
+
+
 async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     unit, other = {"unit_id": "FF-01"}, {"unit_id": "FF-02"}
     await do("POST /units", unit)
@@ -301,6 +313,7 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     await do("POST /people/import", b"Name;Crew\nBea;Engine 1\nDan;Engine 1\n")
     await do("PUT /people/{person_id}/photo", picture(64), person_id=person)
     await act_on_the_site(do)
+    await act_on_dispatches(do)
     incident = (await do("POST /incidents", {"name": "Fire"}))["incident_id"]
     await do("POST /assignments", unit | {"person_id": person})
     await do("PUT /units/{unit_id}/start", {"north_m": 1.0, "east_m": 2.0}, **unit)

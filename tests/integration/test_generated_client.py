@@ -28,6 +28,7 @@ PACKAGE = "generated_muster_client"
 FILES = (
     *("image/jpeg", "image/png", "image/webp", "text/csv", "*/*"),
     *("application/pdf", "application/x-protobuf"),
+    *("application/cap+xml", "application/xml", "text/xml"),
 )
 SETTINGS = {
     "post_hooks": [],

@@ -87,9 +87,10 @@ def test_it_tells_what_happened_and_who_did_it(written: bytes) -> None:
     summary = _Page(written.decode()).text
     assert "Incident report: Mill Lane 4" in summary
     assert "2023-11-14 22:18:20 by chief" in summary
+    assert "Dispatch 2026-7: Kitchen fire; units E12; call" in summary
     timeline = section(written, "Timeline")
     for words in (
-        "22:13:20 Incident Incident opened: Mill Lane 4 chief",
+        "22:13:20 Incident Incident opened: Mill Lane 4, from dispatch 2026-7 chief",
         "22:14:01 Order Roll call (PAR) to everyone chief",
         "Alarm Mayday from Carl Berg (mayday)",
         "22:16:56 Order Evacuate to everyone: North exit chief",

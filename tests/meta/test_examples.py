@@ -25,6 +25,8 @@ LEFT_OUT = {
     "calibration",
     "database_password_file",
     "department",  # the last test
+    "dispatch.types",
+    "dispatch.units",
     "enrolment",
     "gain_std",
     "http.certificate",

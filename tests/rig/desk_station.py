@@ -33,6 +33,7 @@ from base_station.core.events import (
     event_of,
 )
 from base_station.core.pipeline import StationPipeline
+from base_station.dispatch.alert_intake import AlertIntake
 from base_station.engine.admission import Admission, classify
 from base_station.engine.ports import ActionResult, DeliveryResult, Trails
 from base_station.engine.sample_intake import SampleIntake
@@ -59,6 +60,8 @@ from shared.errors import UserError
 from shared.messages import (
     STATION_ID,
     AlarmChange,
+    ExternalMarker,
+    ExternalMarkers,
     FusedPosition,
     Message,
     OperatorAction,
@@ -130,6 +133,9 @@ class DeskDrive:
         done: Future[DeliveryResult] = Future()
         done.set_result(DeliveryResult(tuple(admissions)))
         return done
+
+    def note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
+        self.hear(ExternalMarkers(self._stamper.header(), markers, removed))
 
     def _do(self, by: str, action: Action, action_id: str) -> ActionResult:
         header = self._stamper.header()
@@ -206,6 +212,7 @@ class DeskStation:
             forgettings=self.forgettings,
             clock=clock,
             secure=False,
+            alerts=AlertIntake(self.drive.note_external),
             intake=SampleIntake(self.drive.deliver, self.router.attach_station(), clock),
         )
         self.app = create_app(

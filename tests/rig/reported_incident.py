@@ -18,6 +18,7 @@ from shared.messages.station import (
     CheckIn,
     CloseIncident,
     ConfirmCommand,
+    NoteDispatch,
     OpenIncident,
     ResolveAlarm,
     SendCommand,
@@ -70,7 +71,10 @@ def incident_records(*, is_closed: bool = True) -> list[Record]:
     script.act(Assign("FF-03", "p3", "Carl Berg", "blue", ""))
     script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
     script.act(SetPlan(plan()))
-    script.act(OpenIncident("i1", "Mill Lane 4"))
+    script.act(
+        NoteDispatch("2026-7", "json", "Kitchen fire", units=("E12",), remarks="call {person p1}")
+    )
+    script.act(OpenIncident("i1", "Mill Lane 4", dispatch_number="2026-7"))
     for number, unit_id in enumerate(_UNITS):
         script.act(SetStart(unit_id, -2.0, 5.0 + 2.0 * number, 0.0, 0.0, 0.5, 0.05))
     for second in range(300):

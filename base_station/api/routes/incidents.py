@@ -14,7 +14,16 @@ from pydantic import BaseModel, Field
 
 from base_station.api.authentication import Viewer
 from base_station.api.current_tables import CurrentStation
-from base_station.api.forms import AlarmIdText, Form, Id, Limit, Name, UnitIdText, window
+from base_station.api.forms import (
+    AlarmIdText,
+    DispatchNumberOrNone,
+    Form,
+    Id,
+    Limit,
+    Name,
+    UnitIdText,
+    window,
+)
 from base_station.api.idempotent_request import Perform
 from base_station.api.incident_closing import closing_obstacles
 from base_station.api.problems import Problem
@@ -26,8 +35,8 @@ from base_station.storage.db import models
 from base_station.storage.db.records import FOREVER_NS, Window
 from base_station.storage.db.roster import Roster
 from base_station.views.answer import Answer, to_ms, to_ms_or_none
-from base_station.views.station import alarm_view
-from base_station.views.wire import AlarmView
+from base_station.views.station import alarm_view, dispatch_view
+from base_station.views.wire import AlarmView, DispatchView
 from shared.clock import NS_PER_S
 from shared.messages.station import CloseIncident, OpenIncident
 
@@ -45,6 +54,7 @@ class IncidentAnswer(BaseModel):
     opened_by: str
     closed_ms: int | None
     closed_by: str
+    dispatch_number: str  # empty: opened from none
 
 
 class Raising(Answer, frozen=True):
@@ -62,6 +72,7 @@ class NewIncident(Form):
     name: Name
     par_interval_s: Seconds | None = None  # None: as the station is configured
     work_limit_s: Seconds | None = None
+    dispatch_number: DispatchNumberOrNone = ""  # of the dispatch from which it is opened
 
 
 class ClosingForm(Form):
@@ -76,6 +87,11 @@ def incident_or_404(station: Services, incident_id: str) -> models.IncidentRow:
     if incident is None:
         raise Problem(404, _no_incident(incident_id))
     return incident
+
+
+def new_incident_id(station: Services) -> str:
+    opened = datetime.fromtimestamp(station.clock.utc_ns() / NS_PER_S, UTC)
+    return f"{opened:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
 
 
 def _no_incident(incident_id: str) -> str:
@@ -96,14 +112,14 @@ def list_incidents(
 
 @router.post("/incidents", status_code=201)
 def open_incident(new: NewIncident, station: Station, perform: Perform) -> IncidentAnswer:
-    opened = datetime.fromtimestamp(station.clock.utc_ns() / NS_PER_S, UTC)
-    incident_id = f"{opened:%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"
+    incident_id = new_incident_id(station)
     usual = station.accountability
     opening = OpenIncident(
         incident_id,
         new.name,
         new.par_interval_s or usual.par_interval_s,
         new.work_limit_s or usual.work_limit_s,
+        new.dispatch_number,
     )
     opened_id = perform(opening).created_id
     running = station.picture().incident
@@ -116,12 +132,21 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
         opened_by=perform.by,
         closed_ms=None,
         closed_by="",
+        dispatch_number=new.dispatch_number,
     )
 
 
 @router.get("/incidents/{incident_id}")
 def get_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> IncidentAnswer:
     return _incident(incident_or_404(station, incident_id), station.roster)
+
+
+@router.get("/incidents/{incident_id}/dispatch")
+def incident_dispatch(incident_id: Id, station: CurrentStation, _: Viewer) -> DispatchView | None:
+    """Newest report of the dispatch from which the incident was opened; null: from none."""
+    number = incident_or_404(station, incident_id).dispatch_number
+    report = station.records.dispatch(number) if number else None
+    return None if report is None else dispatch_view(report, station.roster.known)
 
 
 @router.post("/incidents/{incident_id}/close", status_code=204)
@@ -206,4 +231,5 @@ def _incident(incident: models.IncidentRow, roster: Roster) -> IncidentAnswer:
         opened_by=incident.opened_by,
         closed_ms=to_ms_or_none(incident.closed_ns),
         closed_by=incident.closed_by,
+        dispatch_number=incident.dispatch_number,
     )

@@ -60,6 +60,14 @@ export interface AlarmWithLife {
   changes: AlarmHistoryEntry[];
 }
 
+export interface AlertReceipt {
+  alert_id: string;
+  outcome: string;
+  markers: number;
+  replaced: string[];
+  warnings: string[];
+}
+
 export interface AnchorForm {
   lat_deg: number;
   lon_deg: number;
@@ -119,6 +127,13 @@ export interface BeaconView {
   seen_ms: number | null;
 }
 
+export interface CallSignAnswer {
+  call_sign: string;
+  words: string;
+  crew: string;
+  unit_ids: string[];
+}
+
 export interface CarriedOut {
   action: string;
   t_ms: number;
@@ -167,6 +182,38 @@ export interface DeliveryView {
   reason: string;
   acknowledged_via: string;
   can_be_notified: boolean | null;
+}
+
+export interface Dismissal {
+  number: string;
+}
+
+export interface DispatchReceipt {
+  number: string;
+  outcome: "offered" | "updated" | "unchanged" | "outdated" | "opened";
+  incident_id: string | null;
+  units: CallSignAnswer[];
+  warnings: string[];
+}
+
+export interface DispatchView {
+  number: string;
+  source: string;
+  type: string;
+  type_code: string;
+  priority: string;
+  address: string;
+  lat_deg: number | null;
+  lon_deg: number | null;
+  units: string[];
+  called_ms: number | null;
+  dispatched_ms: number | null;
+  updated_ms: number | null;
+  remarks: string;
+  has_ended: boolean;
+  warnings: string[];
+  received_ms: number | null;
+  is_dismissed: boolean;
 }
 
 export interface DrawnPictureAnswer {
@@ -264,6 +311,7 @@ export interface IncidentAnswer {
   opened_by: string;
   closed_ms: number | null;
   closed_by: string;
+  dispatch_number: string;
 }
 
 export interface IncidentReport {
@@ -350,6 +398,7 @@ export interface NewIncident {
   name: string;
   par_interval_s?: number | null;
   work_limit_s?: number | null;
+  dispatch_number?: string;
 }
 
 export interface NewPull {
@@ -384,6 +433,11 @@ export interface NewUser {
   username: string;
   password: string;
   role: "viewer" | "commander" | "administrator";
+}
+
+export interface OfferedDispatch {
+  dispatch: DispatchView;
+  call_signs: CallSignAnswer[];
 }
 
 export interface OnDuty {
@@ -625,7 +679,7 @@ export interface SamplesReceipt {
   samples: number;
 }
 
-export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "enrolments" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "samples" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
+export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "dispatch" | "enrolments" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "samples" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
 
 export interface ShownEnrolment {
   unit_id: string;

@@ -24,6 +24,7 @@ export type UnitDetails = answers.UnitAnswer;
 export type EnrolledUnit = answers.EnrolledUnit;
 export type ShownEnrolment = answers.ShownEnrolment;
 export type Incident = answers.IncidentAnswer;
+export type OfferedDispatch = answers.OfferedDispatch;
 export type PastAlarm = answers.PastAlarm;
 /** What an incident is closed over knowingly. */
 export type Despite = Required<answers.ClosingForm>;
@@ -51,6 +52,7 @@ export const SCOPES = [
   "assignments",
   "audit",
   "commands",
+  "dispatch",
   "enrolments",
   "exports",
   "forgetting",
@@ -122,8 +124,13 @@ export const incidents = (untilMs?: number) =>
   call<Incident[]>("GET", `/incidents${page(untilMs)}`);
 export const incident = (incidentId: string) =>
   call<Incident>("GET", `/incidents/${id(incidentId)}`);
-export const openIncident = (name: string, times: Partial<Times>) =>
-  act<Incident>("POST", "/incidents", { name, ...times });
+export const openIncident = (name: string, times: Partial<Times>, dispatchNumber?: string) => {
+  const from = dispatchNumber === undefined ? {} : { dispatch_number: dispatchNumber };
+  return act<Incident>("POST", "/incidents", { name, ...times, ...from });
+};
+export const dispatches = () => call<OfferedDispatch[]>("GET", "/dispatch");
+export const dismissDispatch = (number: string) =>
+  act<void>("POST", "/dispatch/dismissals", { number });
 /** As this station is configured. */
 export const usualTimes = () => call<Times>("GET", "/accountability/usual");
 export const setTimes = (incidentId: string, times: Times) =>

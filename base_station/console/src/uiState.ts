@@ -28,10 +28,14 @@ export type DialogName =
   | "locate"
   | "text"
   | "timeline"
-  | "alarm_reason";
+  | "alarm_reason"
+  | "dispatch";
 export const dialog = signal<DialogName | null>(null);
 /** The unit that the dialog is about, where it is about one. */
 export const dialogUnit = signal<string | null>(null);
+
+/** Number of the dispatch that the dialog is about. */
+export const dialogDispatch = signal<string | null>(null);
 
 interface AssessedIncident {
   incident_id: string;
@@ -62,6 +66,11 @@ export function find(unitId: string, on: number | null): void {
 export function openDialog(name: DialogName, unitId: string | null = null): void {
   dialogUnit.value = unitId;
   dialog.value = name;
+}
+
+export function openDispatch(number: string): void {
+  dialogDispatch.value = number;
+  openDialog("dispatch");
 }
 
 export function assess(incident: AssessedIncident): void {

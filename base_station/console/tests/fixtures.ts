@@ -3,6 +3,7 @@ import type {
   AlarmView,
   FieldDelta,
   CommandView,
+  DispatchView,
   DeliveryState,
   ExternalMarkerView,
   HealthView,
@@ -147,6 +148,29 @@ export function command(
       can_be_notified: true,
     })),
     incident_id: "",
+    ...change,
+  };
+}
+
+export function dispatch(number: string, change: Partial<DispatchView> = {}): DispatchView {
+  return {
+    number,
+    source: "json",
+    type: "Structure fire",
+    type_code: "69D6",
+    priority: "",
+    address: "Main St 5",
+    lat_deg: 52.5,
+    lon_deg: 13.4,
+    units: ["E12", "L4"],
+    called_ms: null,
+    dispatched_ms: null,
+    updated_ms: null,
+    remarks: "",
+    has_ended: false,
+    warnings: [],
+    received_ms: 0,
+    is_dismissed: false,
     ...change,
   };
 }

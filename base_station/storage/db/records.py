@@ -18,6 +18,7 @@ from base_station.storage.db.models import (
     AlarmRow,
     AlarmTransition,
     AuditEntry,
+    DispatchRow,
     IncidentRow,
     LogSegment,
     PlanRow,
@@ -29,8 +30,10 @@ from base_station.storage.db.upserts import insert_into, is_on_server
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
 from shared.geo import Anchor
+from shared.messages.station import NoteDispatch
 
 FOREVER_NS = 2**63 - 1
+_REPORTS = msgspec.json.Decoder(NoteDispatch)
 
 
 class Window(msgspec.Struct, frozen=True):
@@ -113,6 +116,12 @@ class Records:
             )
             raise UserError(f"there is no incident {incident_id}; known are: {known or 'none'}")
         return incident
+
+    def dispatch(self, number: str) -> NoteDispatch | None:
+        """Newest report of a dispatch."""
+        with self._store.read() as session:
+            row = session.get(DispatchRow, number)
+            return None if row is None else _REPORTS.decode(row.report)
 
     # ---- tracks and alarms
 

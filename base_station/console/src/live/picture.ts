@@ -5,6 +5,7 @@ import type {
   AnchorView,
   BeaconView,
   CommandView,
+  DispatchView,
   ExternalMarkerView,
   HealthView,
   IncidentView,
@@ -44,6 +45,7 @@ export class Picture {
   readonly pins = signal<readonly PinView[]>([]);
   readonly beacons = signal<readonly BeaconView[]>([]);
   readonly external = signal<readonly ExternalMarkerView[]>([]);
+  readonly dispatches = signal<readonly DispatchView[]>([]);
   readonly health = signal<HealthView | null>(null);
   readonly replay = signal<ReplayView | null>(null);
   readonly unitIds = signal<readonly string[]>([]);
@@ -81,6 +83,7 @@ export class Picture {
       this.pins.value = state.pins;
       this.beacons.value = state.beacons;
       this.external.value = state.external;
+      this.dispatches.value = state.dispatches;
       this.health.value = state.health;
       this.replay.value = state.replay;
       this.trails.value = state.trails;

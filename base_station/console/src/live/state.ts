@@ -5,6 +5,7 @@ import type {
   BeaconView,
   FieldDelta,
   CommandView,
+  DispatchView,
   ExternalMarkerView,
   HealthView,
   IncidentView,
@@ -31,6 +32,7 @@ export interface State {
   pins: readonly PinView[];
   beacons: readonly BeaconView[];
   external: readonly ExternalMarkerView[]; // of other teams
+  dispatches: readonly DispatchView[]; // from which no incident was opened
   plan: Plan | null;
   anchor: AnchorView | null;
   health: HealthView;
@@ -71,6 +73,7 @@ function fromSnapshot(message: Snapshot, before: State | null): State {
     pins: message.pins,
     beacons: message.beacons,
     external: message.external,
+    dispatches: message.dispatches,
     plan: planOf(message, before),
     anchor: message.anchor,
     health: message.health,

@@ -7,6 +7,7 @@ import { entitle } from "../title";
 import { dialog, pane } from "../uiState";
 import { AlarmStrip } from "./AlarmStrip";
 import { Dialogs } from "./Dialogs";
+import { DispatchBar } from "./DispatchBar";
 import { PaneSwitch } from "./PaneSwitch";
 import { Faults } from "./Faults";
 import { ErrorBoundary } from "./ErrorBoundary";
@@ -59,6 +60,9 @@ function Console({ shown }: { shown: Picture }) {
       </ErrorBoundary>
       <ErrorBoundary what="The state of the two stations">
         <StandbyBar picture={shown} />
+      </ErrorBoundary>
+      <ErrorBoundary what="The offer of a dispatch">
+        <DispatchBar picture={shown} />
       </ErrorBoundary>
       {replay.value && live.value && (
         <ErrorBoundary what="The replay">

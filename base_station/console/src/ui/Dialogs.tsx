@@ -7,6 +7,7 @@ import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
 import { BoardDialog } from "./BoardDialog";
 import { CommandDialog } from "./CommandDialog";
+import { DispatchDialog } from "./DispatchDialog";
 import { DisplayDialog } from "./DisplayDialog";
 import { EnrolmentsDialog } from "./EnrolmentsDialog";
 import { FlawsDialog } from "./FlawsDialog";
@@ -70,6 +71,8 @@ function Opened() {
       return <TimelineDialog />;
     case "alarm_reason":
       return <AlarmReasonDialog />;
+    case "dispatch":
+      return <DispatchDialog />;
     case "evacuate":
     case "par_request":
     case "locate":

@@ -1,5 +1,5 @@
 import { isPast } from "../sessions";
-import { openDialog } from "../uiState";
+import { openDialog, openDispatch } from "../uiState";
 import type { Picture } from "../live/picture";
 import { clockTime, minutes, problemsOf, timeSince, zone } from "../format";
 import { Icon } from "./Icon";
@@ -36,8 +36,21 @@ function IncidentTitle({ picture }: { picture: Picture }) {
       <span class="quiet">
         {incident.closed_ms === null ? "open for " : "closed after "}
         {minutes(until - incident.opened_ms)}
+        {incident.dispatch !== null && <DispatchNumber number={incident.dispatch.number} />}
       </span>
     </div>
+  );
+}
+
+/** The number of the dispatch, which opens what was reported. */
+function DispatchNumber({ number }: { number: string }) {
+  return (
+    <>
+      {", "}
+      <button type="button" class="as-text" onClick={() => openDispatch(number)}>
+        dispatch {number}
+      </button>
+    </>
   );
 }
 

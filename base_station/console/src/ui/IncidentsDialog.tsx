@@ -2,8 +2,9 @@ import { useSignal } from "@preact/signals";
 import { attempt, live, liveIsPast, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
 import { unfinished } from "../live/closing";
+import { summary } from "../live/dispatch";
 import { KINDS, type TrailKind } from "../plan/pastTrails";
-import { assess } from "../uiState";
+import { assess, openDispatch } from "../uiState";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes, zone } from "../format";
 import { saveAs } from "../saving";
@@ -12,6 +13,7 @@ import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { useDone } from "./Done";
 import { EraseForm } from "./EraseForm";
+import { TimesFields, timesOf } from "./TimesFields";
 import { useSinglePress } from "./useGuardedPress";
 import { OpenReplays } from "./OpenReplays";
 import { useChosen } from "./useChosen";
@@ -39,6 +41,7 @@ export function IncidentsDialog() {
         </p>
       )}
       {mayAct.value && running !== null && <TimesForm incident={running} />}
+      {mayAct.value && <Dispatches />}
       {entries.value.length > 0 && (
         <p class="quiet">
           Times are of this browser: {zone(Date.now())} now. Saved files, the log and the terminal have
@@ -51,7 +54,12 @@ export function IncidentsDialog() {
         <tbody>
           {entries.value.map((incident) => (
             <tr key={incident.incident_id}>
-              <th scope="row">{incident.name}</th>
+              <th scope="row">
+                {incident.name}
+                {incident.dispatch_number !== "" && (
+                  <span class="quiet"> Dispatch {incident.dispatch_number}</span>
+                )}
+              </th>
               <td data-label="Opened">{dateAndTime(incident.opened_ms)}</td>
               <td data-label="Lasted">
                 {incident.closed_ms === null
@@ -113,6 +121,35 @@ export function IncidentsDialog() {
   );
 }
 
+/** From which no incident was opened: offered, dismissed, or over. */
+function Dispatches() {
+  const dispatches = live.value?.picture.dispatches.value ?? [];
+  if (dispatches.length === 0) return null;
+  return (
+    <section aria-label="Dispatches">
+      <h3>From dispatch</h3>
+      <ul class="dispatches">
+        {dispatches.toReversed().map((one) => (
+          <li class="row" key={one.number}>
+            <span>
+              <strong>{one.number}</strong> {summary(one)}
+              {one.has_ended && <span class="quiet"> (ended)</span>}
+              {one.is_dismissed && <span class="quiet"> (dismissed)</span>}
+            </span>
+            <button
+              type="button"
+              aria-label={`Look at dispatch ${one.number}`}
+              onClick={() => openDispatch(one.number)}
+            >
+              Look…
+            </button>
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
 /** Over open alarms or people inside, only by their names. */
 function CloseButton({ incident, done }: { incident: IncidentView; done: () => void }) {
   const picture = live.value?.picture;
@@ -167,37 +204,6 @@ function TimesForm({ incident }: { incident: IncidentView }) {
       <button>Change times</button>
       {done.words}
     </form>
-  );
-}
-
-function TimesFields({ times }: { times: api.Times }) {
-  return (
-    <>
-      <MinutesField name="par" label="Roll call every, min" valueS={times.par_interval_s} />
-      <MinutesField name="work" label="Rest after, min" valueS={times.work_limit_s} />
-    </>
-  );
-}
-
-function timesOf(given: Record<string, string>): api.Times {
-  return { par_interval_s: 60 * Number(given["par"]), work_limit_s: 60 * Number(given["work"]) };
-}
-
-/** A time that nobody changes is sent as it was, seconds and all. */
-function MinutesField({ name, label, valueS }: { name: string; label: string; valueS: number }) {
-  return (
-    <label class="short">
-      {label}
-      <input
-        name={name}
-        type="number"
-        min={0.5}
-        max={720}
-        step="any"
-        required
-        defaultValue={valueS / 60}
-      />
-    </label>
   );
 }
 

@@ -65,6 +65,7 @@ WITHOUT_FOLDER = {
     # They look at what somebody gave, and write none of it.
     *("replay", "assess", "smooth", "report", "export", "rehearse", "rerun", "foxglove replay"),
     "foxglove layout",  # it reads the log alone, and writes where it is told to
+    "dispatch",  # it hands it to a running station
     "compile",  # into the program's own
 }
 PKI_COMMANDS: dict[str, tuple[str, ...]] = {

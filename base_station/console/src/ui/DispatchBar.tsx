@@ -1,0 +1,55 @@
+import { useEffect } from "preact/hooks";
+import { attempt, isPast, mayAct } from "../sessions";
+import * as api from "../api";
+import { offered, summary } from "../live/dispatch";
+import type { Picture } from "../live/picture";
+import { notice, openDispatch } from "../uiState";
+import type { DispatchView } from "../wire";
+import { ConfirmButton } from "./ConfirmButton";
+
+/** Numbers that were announced over an open incident; the dialog *Incidents* has them on. */
+const announced = new Set<string>();
+
+/** Offers to open an incident from a dispatch.  While one is open nothing on the screen may move for
+ * another: that one is announced where messages stand, once. */
+export function DispatchBar({ picture }: { picture: Picture }) {
+  const offers = isPast.value || !mayAct.value ? [] : offered(picture.dispatches.value);
+  const incident = picture.incident.value;
+  const isOpen = incident !== null && incident.closed_ms === null;
+  useEffect(() => {
+    const fresh = offers.filter((one) => !announced.has(one.number));
+    offers.forEach((one) => announced.add(one.number));
+    if (isOpen && fresh.length > 0) notice.value = announcement(fresh);
+  }, [offers.map((one) => one.number).join("\n"), isOpen]);
+  const [first, ...more] = offers;
+  if (first === undefined || isOpen) return null;
+  return (
+    <section class="standby-bar dispatch-bar" aria-label="Dispatch" role="status">
+      <strong>Dispatch {first.number}</strong>
+      <span class="report">{summary(first)}</span>
+      {more.length > 0 && <span>and {more.length} more, in Incidents</span>}
+      <button type="button" class="primary" onClick={() => openDispatch(first.number)}>
+        Open incident from dispatch…
+      </button>
+      <DismissButton dispatch={first} />
+    </section>
+  );
+}
+
+export function DismissButton({ dispatch }: { dispatch: DispatchView }) {
+  return (
+    <ConfirmButton
+      label="Dismiss"
+      about={`dispatch ${dispatch.number}`}
+      question={`Dispatch ${dispatch.number} is offered no longer. It stays in Incidents.`}
+      yes="Yes, dismiss"
+      onConfirm={() => void attempt(api.dismissDispatch(dispatch.number))}
+    />
+  );
+}
+
+function announcement([first, ...more]: readonly DispatchView[]): string {
+  if (first === undefined) return "";
+  const others = more.length === 0 ? "" : ` And ${more.length} more.`;
+  return `Dispatch ${first.number}: ${summary(first)}.${others} It is in Incidents.`;
+}

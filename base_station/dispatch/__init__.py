@@ -1,0 +1,1 @@
+"""In from dispatch: incidents (EIDO or plain JSON) and alerts (CAP) of other systems.  Pure."""

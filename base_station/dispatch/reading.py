@@ -1,0 +1,44 @@
+"""Reads a report of the dispatch centre, in whichever of the formats it comes."""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+
+from base_station.dispatch.config import DispatchConfig
+from base_station.dispatch.eido import is_eido, read_eido
+from base_station.dispatch.plain_report import read_plain
+from base_station.dispatch.report_parts import ReportParts
+from shared.errors import WireError
+from shared.messages.station import NoteDispatch
+
+_CAMEL_CASE = re.compile(r"(?<=[a-z])(?=[A-Z])|_")
+
+
+def read_report(body: bytes, config: DispatchConfig, now_ns: int) -> NoteDispatch:
+    """A report as it is logged: its type in words; a report that does not tell when it was changed
+    was changed now (``now_ns``: station time, UTC).
+
+    Raises WireError with a sentence where it is no JSON object or has no number.
+    """
+    try:
+        content = msgspec.json.decode(body)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise WireError(f"the body is no JSON that can be read: {error}") from error
+    if not isinstance(content, dict):
+        raise WireError("the body is no JSON object: send an EIDO, or an object with a number")
+    parts = ReportParts(now_ns)
+    report = read_eido(content, parts) if is_eido(content) else read_plain(content, parts)
+    return msgspec.structs.replace(
+        report,
+        type=type_in_words(report, config),
+        updated_ns=report.updated_ns or now_ns,
+        warnings=parts.warnings,
+    )
+
+
+def type_in_words(report: NoteDispatch, config: DispatchConfig) -> str:
+    """By the settings, else as the report has it, else what its code says by itself."""
+    words = config.types.get(report.type_code) or report.type
+    return words or _CAMEL_CASE.sub(" ", report.type_code).capitalize()
