@@ -93,7 +93,9 @@ def serve(
 
 @app.command()
 def replay(
-    incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
+    incident: Annotated[
+        str, typer.Argument(help="Its id, as in the console, or a file that has it all (MCAP).")
+    ],
     config: ConfigOption = None,
     data: DataOption = None,
     http: HttpOption = None,

@@ -22,6 +22,7 @@ from base_station.core.idempotency import is_same_request
 from base_station.core.person_references import with_references
 from base_station.dispatch.alert_intake import AlertIntake
 from base_station.dispatch.config import DispatchConfig
+from base_station.engine.feed import LogFeed
 from base_station.engine.ports import ActionResult, OperatorGate, Trails
 from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
@@ -71,6 +72,7 @@ class Services(LoginServices):
     reports: ReportProcess | None = None  # None: a station that only replays
     # None: a station without a log.
     read_timeline: Callable[[TimelineRequest], UnitTimeline] | None = None
+    log: LogFeed | None = None  # None: a station without a log
     alarm_explainer: AlarmExplainer | None = None  # None: a station without a log
     pki: PkiFolder | None = None  # None: a station that enrols nobody
     intake: SampleIntake | None = None  # None: a station that only replays

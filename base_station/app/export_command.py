@@ -1,25 +1,35 @@
-"""``muster base export``: an incident's tracks as a file, with or without a running station."""
+"""``muster base export``: an incident as a file, with or without a running station."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from base_station.app.progress_bar import progress_bar
 from base_station.replay.trail_kind import TrailKind
 from shared.clock import NS_PER_S
 from shared.end_signals import sigterm_as_ctrl_c
+from shared.errors import UserError
 from shared.options import End, Start
 from shared.out_file import whole, writable
 
+if TYPE_CHECKING:
+    from base_station.app.folder_commands import IncidentCommandContext
+
+_STANDS_ALONE = "mcap"
+
 
 def export(
-    incident: Annotated[str, typer.Argument(help="Its id, as in the console.")],
-    out: Annotated[Path, typer.Argument(help="File to write, such as tracks.gpx.")],
+    incident: Annotated[
+        str, typer.Argument(help="Its id, as in the console, or a file that has it all (MCAP).")
+    ],
+    out: Annotated[Path, typer.Argument(help="File to write: tracks.gpx, incident.mcap ...")],
     data: Annotated[Path, typer.Option(help="Folder of the station, or what was given.")] = Path(
         "muster-data"
     ),
@@ -35,7 +45,8 @@ def export(
     start: Start = None,
     end: End = None,
 ) -> None:
-    """Write an incident's tracks for other programs: GPX, KML, GeoJSON, CSV or Parquet.
+    """Write an incident for other programs: tracks as GPX, KML, GeoJSON, CSV or Parquet, or all of
+    it as one file that stands alone (mcap).
 
     A file whose name ends in .gz, such as tracks.gpx.gz, is compressed.
     """
@@ -49,8 +60,17 @@ def export(
 
     is_gzip = out.suffix == SUFFIX
     named = out.with_suffix("") if is_gzip else out
-    exporter = exporter_of(file_format or named.suffix.removeprefix("."))
+    name = file_format or named.suffix.removeprefix(".")
     writable(out)
+    if name == _STANDS_ALONE:
+        if is_gzip or only or start or end or kind is not TrailKind.FUSED:
+            raise UserError(
+                "an incident that stands alone is whole, with every kind of trail, and compressed: "
+                "leave out --kind, --only, --start, --end and .gz, or cut it with muster log cut"
+            )
+        _export_whole(incident, out, data)
+        return
+    exporter = exporter_of(name)
     selection = TrackSelection(only or (), _ns(start, 0), _ns(end, FOREVER_NS))
     with sigterm_as_ctrl_c(), ExitStack() as closing:
         context = open_post_processing(data, incident, closing, _warn, lambda _: None)
@@ -59,13 +79,46 @@ def export(
         chosen = selection.of(tracks).named_as(kind.in_words)
         count = TrackCount(chosen.tracks)
         content = exporter.export(replace(chosen, tracks=count))
-        with whole(out) as part, part.open("wb") as file:
-            file.writelines(gzipped(content) if is_gzip else content)
-        if context.keeps_result:
-            context.records.audit(
-                "muster base export", "Exported", f"{incident} ({kind.value}) as {exporter.name}"
-            )
+        _write(out, gzipped(content) if is_gzip else content)
+        _audit(context, f"({kind.value}) as {exporter.name}")
     typer.echo(f"{out}: {count.tracks} tracks, {count.points} points")
+
+
+def _export_whole(incident: str, out: Path, data: Path) -> None:
+    from base_station.app.folder_commands import open_post_processing  # noqa: PLC0415
+    from base_station.replay.incident_file import (  # noqa: PLC0415
+        IncidentFileSource,
+        incident_file,
+    )
+
+    with sigterm_as_ctrl_c(), ExitStack() as closing, progress_bar("writing") as on_progress:
+        context = open_post_processing(data, incident, closing, _warn, lambda _: None)
+        until_ns = context.recorded_until_ns()
+        source = IncidentFileSource(
+            log=context.log,
+            incident=context.incident,
+            name=context.roster.shown(context.incident.name),
+            people=context.roster.known_people(),
+            plan=context.records.plan(context.incident.closed_ns or until_ns),
+            until_ns=until_ns,
+            report=_warn,
+            on_progress=on_progress,
+        )
+        _write(out, incident_file(source))
+        _audit(context, "as a file that stands alone")
+    size_mb = out.stat().st_size / 1e6
+    typer.echo(f"{out}: {size_mb:.1f} MB, all of it; muster base replay {out}")
+
+
+def _write(out: Path, content: Iterable[bytes]) -> None:
+    with whole(out) as part, part.open("wb") as file:
+        file.writelines(content)
+
+
+def _audit(context: IncidentCommandContext, what: str) -> None:
+    if context.keeps_result:
+        incident_id = context.incident.incident_id
+        context.records.audit("muster base export", "Exported", f"{incident_id} {what}")
 
 
 def _ns(time: datetime | None, default_ns: int) -> int:

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from base_station.app.factories import project_whole_log
 from base_station.app.logged_action import log_action
-from base_station.app.offline_log import open_offline_log
+from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.core.log_position import LogPosition
+from base_station.engine.feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.privacy.erasure_queue import erase_now
 from base_station.privacy.erasure_service import ClosedLog, ErasureResult, ErasureService
@@ -56,6 +57,8 @@ class IncidentCommandContext:
     incident: IncidentRow
     people: Mapping[str, Sequence[str]]  # who wore each unit
     keeps_result: bool  # what is worked out; else it is gone with the command
+    log: LogFeed
+    recorded_until_ns: Callable[[], int]  # where an open incident ends
 
     def tracks(self, kind: TrailKind) -> Tracks:
         if kind is TrailKind.SMOOTHED:
@@ -212,11 +215,13 @@ def open_post_processing(
     report: Callable[[str], None],
     on_progress: Callable[[float], None],
 ) -> IncidentCommandContext:
-    """A past incident, beside a running station or without one; also of what somebody gave.
+    """A past incident, beside a running station or without one; also of what somebody gave, such
+    as a file that has one incident, in the place of the id.
 
     ``report`` hears in words of what of it cannot be read, ``on_progress`` the fraction done where
     the log must be read first.
     """
+    incident_id, data = named_incident(incident_id, data)
     offline_log = open_offline_log(data, incident_id, closing, report, on_progress, in_place=True)
     clock = SystemClock()
     records = Records(offline_log.store, clock)
@@ -227,7 +232,14 @@ def open_post_processing(
     roster = Roster(offline_log.store, clock)
     people = wearers(roster, incident)
     return IncidentCommandContext(
-        post_processor, records, roster, incident, people, offline_log.keeps_result
+        post_processor,
+        records,
+        roster,
+        incident,
+        people,
+        offline_log.keeps_result,
+        offline_log.log,
+        offline_log.folder.recorded_until_ns,
     )
 
 

@@ -43,6 +43,7 @@ def new_services(parts: LiveParts) -> Services:
         post_processor=parts.post_processor,
         reports=ReportProcess(log_process),
         read_timeline=TimelineProcess(log_process).read,
+        log=_log_feed(parts),
         alarm_explainer=AlarmExplainer(disk.records, _log_feed(parts).records),
         plans=parts.plans,
         pki=resources.pki,

@@ -16,6 +16,7 @@ from tempfile import TemporaryDirectory
 from base_station.app.factories import project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.feed import LogFeed
+from base_station.replay.incident_file import read_incident_file
 from base_station.replay.playback import Archive
 from base_station.replay.version_check import DIFFERS, decisions_differ
 from base_station.storage.checkpoints import Checkpoints
@@ -24,13 +25,14 @@ from base_station.storage.db.copying import copy_database
 from base_station.storage.db.database import Database
 from base_station.storage.db.opening import open_database
 from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
 from base_station.storage.db.salvage import damage_of
 from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.store import Store
 from base_station.storage.log_defects import LogDefects
 from base_station.storage.segment_index import known_segments_of
 from shared.clock import SystemClock
-from shared.errors import DatabaseAwayError, LogError
+from shared.errors import DatabaseAwayError, LogError, UserError
 from shared.folder_lock import FolderLock
 from shared.mcap_log import (
     SegmentInfo,
@@ -125,6 +127,8 @@ def open_offline_log(
     if _lacks_incident(store, folder, incident_id):
         report("the database does not have this incident; the log is read instead")
         project_whole_log(store, folder.log, on_progress)
+    if path.is_file() and (incident := read_incident_file(path)) is not None:
+        Roster(store, SystemClock()).bring_people(incident.people)
     return OfflineLog(
         folder, store, keeps_result=False, scratch=scratch, log=log, defects=defects, report=report
     )
@@ -217,3 +221,21 @@ def _lacks_incident(store: Database, folder: DataFolder, incident_id: str) -> bo
         return False
     known = {segment.name for segment in records.segments()}
     return any(path.name not in known for path in own_segments(folder.log)[0])
+
+
+def named_incident(incident: str, data: Path) -> tuple[str, Path]:
+    """The incident's id and where it is, of what somebody names on a command line: an id in
+    ``data``, or a file that has one incident (``muster base export``, MCAP).
+
+    Raises UserError where a file is no such one.
+    """
+    path = Path(incident)
+    if not path.is_file():
+        return incident, data
+    found = read_incident_file(path)
+    if found is None:
+        raise UserError(
+            f"{path} is no incident that stands alone, or is not complete; of a part of a log give "
+            f"the incident's id: muster base replay ? --data {path}"
+        )
+    return found.incident_id, path

@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from base_station.app.offline_log import open_offline_log
+from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.post_processing import PostProcessor
 from base_station.report.gathering import Progress, ReportSources
@@ -39,6 +39,7 @@ def open_report_sources(
     on_progress: Progress,
 ) -> OpenedReport:
     """As ``folder_commands.open_post_processing``."""
+    incident_id, data = named_incident(incident_id, data)
     offline_log = open_offline_log(data, incident_id, closing, report, on_progress, in_place=True)
     clock, store = SystemClock(), offline_log.store
     records, kept = Records(store, clock), SmoothedTracks(store)

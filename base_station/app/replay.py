@@ -17,7 +17,7 @@ from base_station.app.factories import (
     replay_starter,
 )
 from base_station.app.first_login import add_own_login
-from base_station.app.offline_log import open_offline_log
+from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.post_processing import PostProcessor
@@ -47,14 +47,16 @@ def run_replay_station(
     It plays what consoles were shown; with ``recompute``, and where the log has nothing of that,
     everything is decided again.
 
-    A live station may be running on it: the database is copied first.  ``on_progress`` hears the
-    fraction done of reading the log, where that must be.
+    ``incident_id`` may be a file that has one incident.  A live station may be running on the
+    folder: the database is copied first.  ``on_progress`` hears the fraction done of reading the
+    log, where that must be.
     """
     clock = SystemClock()
     with ExitStack() as closing:
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
+        incident_id, data = named_incident(incident_id, config.data)
         offline_log = open_offline_log(
-            config.data,
+            data,
             incident_id,
             closing,
             announce,
@@ -86,6 +88,7 @@ def run_replay_station(
             is_replay_only=True,
             post_processor=PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
             read_timeline=partial(read_timeline, records, offline_log.log),
+            log=offline_log.log,
             alarm_explainer=AlarmExplainer(records, offline_log.log.records),
         )
         app = create_app(

@@ -7,14 +7,14 @@ the event of it.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Container, Iterator
 from pathlib import Path
 from threading import Condition
 
 from shared.channels import Qos, parse_key
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UnknownChannelError
-from shared.mcap_log import LogRecord, read_log, segment_paths
+from shared.mcap_log import LogRecord, log_id_of, read_log, segment_paths
 
 _GATHER_S = 0.004  # waking a thread for every single message costs more than the messages
 _OVERFLOW_REPORTED_NS = 60 * NS_PER_S
@@ -169,11 +169,20 @@ class LogFeed:
         self._flush = flush
         self._on_damage = on_damage
 
+    @property
+    def log_id(self) -> str:
+        """Of its segments; empty: of an earlier version."""
+        return log_id_of(segment_paths(self._folder))
+
+    def noting(self, on_damage: Callable[[str], object]) -> LogFeed:
+        """The same log, of whose damage somebody else hears."""
+        return LogFeed(self._folder, self._flush, on_damage)
+
     def records(
         self,
         start_ns: int | None = None,
         end_ns: int | None = None,
-        keys: Collection[str] | None = None,
+        keys: Container[str] | None = None,
     ) -> Iterator[LogRecord]:
         """From station time ``start_ns`` until before ``end_ns``, as it stands at the first step.
 
@@ -183,7 +192,7 @@ class LogFeed:
         return read_log(self._folder, start_ns, end_ns, keys, self._on_damage)
 
     def everything(
-        self, start_ns: int, end_ns: int | None, topics: Collection[str] | None
+        self, start_ns: int, end_ns: int | None, topics: Container[str] | None
     ) -> Iterator[LogRecord]:
         """Records of these topics, of those that follow from others too; None: all that happened
         and was decided.

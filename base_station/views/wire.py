@@ -14,13 +14,14 @@ confirmed, what changes is merged; the next ``FieldDelta`` has all of it, and sa
 
 Times are milliseconds since 1970 (station time; in a replay, the time of the incident).
 Positions are metres north, east and down in the incident frame.  The console's
-``src/wire.ts`` is generated from these types (``python -m tests.rig.console_types``).
+``src/wire.ts`` and the page ``docs/live.md`` are generated from these types (``python -m
+tests.rig.console_types``).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
 import msgspec
 
@@ -29,17 +30,19 @@ from base_station.views.answer import Answer
 Link = Literal["live", "stale", "lost", "never"]
 
 
-def shown_as(typescript: str) -> msgspec.Meta:
-    """Type in the console of what has no exact type here."""
-    return msgspec.Meta(extra={"typescript": typescript})
+def shown_as(typescript: str, schema: dict[str, Any]) -> msgspec.Meta:
+    """Type in the console, and as JSON schema, of what has no exact type here."""
+    return msgspec.Meta(extra={"typescript": typescript}, extra_json_schema=schema)
 
 
 def one_of(*values: str) -> msgspec.Meta:
     """Values that a string may have."""
-    return shown_as(" | ".join(f'"{value}"' for value in values))
+    return shown_as(" | ".join(f'"{value}"' for value in values), {"enum": values})
 
 
-_POINTS: Final = shown_as("TrailPoint[]")
+_POINTS: Final = shown_as(
+    "TrailPoint[]", {"type": "array", "items": {"$ref": "#/$defs/TrailPoint"}}
+)
 
 
 class PersonView(Answer, frozen=True):
@@ -393,7 +396,7 @@ class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
     north_m: float
     east_m: float
     floor: int | None
-    after_gap: Annotated[int, shown_as("0 | 1")] = (
+    after_gap: Annotated[int, shown_as("0 | 1", {"enum": [0, 1]})] = (
         0  # 1: nothing tells the way from the point before
     )
 
@@ -424,7 +427,8 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     pins: tuple[PinView, ...]  # in the order of setting
     beacons: tuple[BeaconView, ...]
     external: tuple[ExternalMarkerView, ...]  # of other teams, where the site has an anchor
-    plan: Annotated[msgspec.Raw, shown_as("Plan")] | None  # GeoJSON as stored: see docs/messages
+    # GeoJSON as stored: see docs/messages
+    plan: Annotated[msgspec.Raw, shown_as("Plan", {"type": "object"})] | None
     anchor: AnchorView | None
     health: HealthView
     replay: ReplayView | None
@@ -471,6 +475,8 @@ class FieldDelta(_WhatChanges, frozen=True, tag="field_delta", omit_defaults=Tru
     seq: int
     after_seq: int
     now_ms: int
-    units: dict[str, Annotated[UnitChange, shown_as("UnitChange")]] = {}  # by unit
+    units: dict[
+        str, Annotated[UnitChange, shown_as("UnitChange", {"type": "object"})]
+    ] = {}  # by unit
     passed: Mapping[str, tuple[TrailPoint, ...]] = {}  # by unit: where it was between the two, at
     # most once a second; only where several messages were merged

@@ -4,6 +4,7 @@ read as they are, complete, growing, torn or damaged.  The only package that imp
 
 from __future__ import annotations
 
+from shared.mcap_log.enclosures import Enclosures, enclosures_of
 from shared.mcap_log.folder import (
     missing_segments,
     segment_began_ns,
@@ -13,8 +14,8 @@ from shared.mcap_log.folder import (
     segments_within,
 )
 from shared.mcap_log.foreign import LEFT_OUT, foreign_in_words, identity_in_log, own_segments
-from shared.mcap_log.identity import identity_of
-from shared.mcap_log.one_log import segments_of_one_log
+from shared.mcap_log.identity import SegmentIdentity, identity_of
+from shared.mcap_log.one_log import log_id_of, segments_of_one_log
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.rebuilding import RebuiltSegment
 from shared.mcap_log.recovery import Recovery, recover_log
@@ -46,23 +47,27 @@ __all__ = [
     "PLAN_TOPIC",
     "SNAPSHOT_TOPIC",
     "TRAIL_TOPIC",
+    "Enclosures",
     "LogRecord",
     "LogTail",
     "RebuiltSegment",
     "Recovery",
     "Segment",
+    "SegmentIdentity",
     "SegmentInfo",
     "SegmentPolicy",
     "SegmentReader",
     "SegmentState",
     "SegmentWriter",
     "descriptor_set",
+    "enclosures_of",
     "foreign_in_words",
     "identity_in_log",
     "identity_of",
     "is_console",
     "is_derived",
     "location_topic",
+    "log_id_of",
     "log_topic",
     "missing_segments",
     "own_segments",

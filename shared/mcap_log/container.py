@@ -28,7 +28,7 @@ CHUNK_BYTES_MAX = 1 << 30
 COMPRESSION = b"zstd"
 CHUNK_MARK = struct.pack("<I", len(COMPRESSION)) + COMPRESSION
 NONSENSE = (ValueError, struct.error, OverflowError)  # what reading damaged bytes may raise
-BETWEEN_CHUNKS = (Opcode.HEADER, Opcode.METADATA, Opcode.MESSAGE_INDEX)
+BETWEEN_CHUNKS = (Opcode.HEADER, Opcode.METADATA, Opcode.ATTACHMENT, Opcode.MESSAGE_INDEX)
 
 
 def unpacked(chunk: bytes) -> bytes:

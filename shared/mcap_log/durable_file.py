@@ -42,6 +42,13 @@ class DurableFile:
             self._size += len(data)
         return len(data)
 
+    def take(self) -> bytes:
+        """What waits, instead of bringing it to the disk: for a file that is sent elsewhere."""
+        content = b"".join(self._waiting)
+        self._waiting.clear()
+        self._given_bytes = self._safe_bytes = self._size
+        return content
+
     def flush(self) -> None:
         """Asked for by stream writers after each chunk; ``sync`` is what reaches the disk."""
 

@@ -19,6 +19,8 @@ import zstandard
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import (
+    Attachment,
+    AttachmentIndex,
     DataEnd,
     Footer,
     Header,
@@ -147,6 +149,7 @@ class McapFile:
         self.file.write(MCAP0_MAGIC)
         self.file.write(bytes_of(Header(PROFILE, LIBRARY_IDENTIFIER)))
         self._metadata_indexes: list[bytes] = []
+        self._attachment_indexes: list[bytes] = []
         if identity.log_id:  # none of a segment of an earlier version
             self.add_metadata(identity.metadata())
 
@@ -167,13 +170,28 @@ class McapFile:
         self.file.write(record)
         self._metadata_indexes.append(bytes_of(MetadataIndex(offset, len(record), metadata.name)))
 
+    def add_attachment(self, attachment: Attachment) -> None:
+        """A file of its own between the chunks, and in the index."""
+        offset, record = self.file.tell(), bytes_of(attachment)
+        self.file.write(record)
+        index = AttachmentIndex(
+            offset=offset,
+            length=len(record),
+            create_time=attachment.create_time,
+            log_time=attachment.log_time,
+            data_size=len(attachment.data),
+            name=attachment.name,
+            media_type=attachment.media_type,
+        )
+        self._attachment_indexes.append(bytes_of(index))
+
     def finish(self) -> None:
         """Write what makes the file complete."""
         self.file.write(bytes_of(DataEnd(0)))
         start = self.file.tell()
         summary = b"".join((*self.schemas.values(), *self.topics.values()))
-        parts = (bytes_of(self._statistics()), *self._chunks, *self._metadata_indexes)
-        summary += b"".join(parts)
+        indexes = (*self._attachment_indexes, *self._metadata_indexes)
+        summary += b"".join((bytes_of(self._statistics()), *self._chunks, *indexes))
         checked = summary + RECORD.pack(Opcode.FOOTER, 20) + struct.pack("<QQ", start, 0)
         self.file.write(summary)
         self.file.write(bytes_of(Footer(start, 0, zlib.crc32(checked))))
@@ -181,7 +199,7 @@ class McapFile:
 
     def _statistics(self) -> Statistics:
         return Statistics(
-            attachment_count=0,
+            attachment_count=len(self._attachment_indexes),
             channel_count=len(self.topics),
             channel_message_counts=dict(self.counts),
             chunk_count=len(self._chunks),

@@ -10,7 +10,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from mcap.records import Channel, Metadata, Schema
+from mcap.records import Attachment, Channel, Metadata, Schema
 
 from shared.clock import NS_PER_S
 from shared.errors import LogError
@@ -100,6 +100,11 @@ class Segment:
         """A metadata record behind what was added so far, for any reader of MCAP."""
         self.end_chunk()
         self._mcap.add_metadata(Metadata(name, contents))
+
+    def add_attachment(self, name: str, media_type: str, content: bytes, t_ns: int) -> None:
+        """A file of its own behind what was added so far, for any reader of MCAP."""
+        self.end_chunk()
+        self._mcap.add_attachment(Attachment(t_ns, t_ns, name, media_type, content))
 
     def end_chunk(self) -> None:
         """Everything added so far is in the file, which may still have to reach the disk."""

@@ -12,6 +12,7 @@ BENCHES = {
     "backfill": "tests.bench.backfill:bench_backfill",
     "bus": "tests.bench.bus.command:bench_bus",
     "console": "tests.bench.console.command:bench_console",
+    "exports": "tests.bench.past.exports:bench_exports",
     "faults": "tests.bench.faults.command:bench_faults",
     "floors": "tests.bench.floors:bench_floors",
     "fusion": "tests.bench.fusion.command:bench_fusion",

@@ -18,6 +18,7 @@ def test_an_incident_is_saved_or_it_is_said_why_not_and_the_console_stays(stage:
     saved = {
         f"{PAST}/export/csv?fused": "unit_id,person",
         f"{PAST}/export/csv?smoothed": "known since",
+        f"{PAST}/incident.mcap": "all of it",
     }
     formats = [
         {"name": name, "suffix": name, "needs_anchor": name == "gpx"} for name in ("csv", "gpx")
@@ -34,6 +35,10 @@ def test_an_incident_is_saved_or_it_is_said_why_not_and_the_console_stays(stage:
         save_as.select_option("csv smoothed")
     assert download.value.suggested_filename == f"{scenes.INCIDENT.incident_id}-smoothed.csv"
     assert "known since" in download.value.path().read_text()
+    with page.expect_download() as download:
+        save_as.select_option("mcap")
+    assert download.value.suggested_filename == f"{scenes.INCIDENT.incident_id}.mcap"
+    assert "all of it" in download.value.path().read_text()
     save_as.select_option("gpx fused")
     expect(dialog.get_by_text("The station answered 404")).to_be_visible()
     expect(save_as).to_be_enabled()

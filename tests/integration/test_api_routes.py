@@ -83,6 +83,7 @@ LEAST: dict[str, dict[str, Role | None]] = {
                    "DELETE /recordings/{fetch_id}": C},
     "exports": {"GET /export-formats": V,
                 "GET /incidents/{incident_id}/export/{format_name}": V,
+                "GET /incidents/{incident_id}/incident.mcap": V,
                 "GET /incidents/{incident_id}/report.html": V,
                 "GET /incidents/{incident_id}/report.pdf": V},
     "forgetting": {"GET /forgettings": A, "POST /people/{person_id}/forget": A,

@@ -10,6 +10,7 @@ from collections.abc import AsyncIterator
 from typing import Any
 
 import httpx
+import jsonschema_rs
 import pytest
 import pytest_asyncio
 from websockets.asyncio.client import ClientConnection, connect
@@ -22,6 +23,9 @@ from base_station.api.server import ConsoleServer, bind
 from shared.errors import StoreError
 from shared.messages.station import OpenIncident, RegisterUnit
 from tests.rig.desk_station import PASSWORD, DeskStation
+from tests.rig.live_page import LIVE_SCHEMA
+
+SCHEMA = jsonschema_rs.validator_for(LIVE_SCHEMA.read_text())
 
 
 @pytest_asyncio.fixture
@@ -44,6 +48,7 @@ def token_of(station: DeskStation, role: Role = Role.VIEWER) -> dict[str, str]:
 
 async def heard(console: ClientConnection) -> dict[str, Any]:
     message: dict[str, Any] = json.loads(await asyncio.wait_for(console.recv(), 5.0))
+    SCHEMA.validate(message)
     return message
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import time
 from collections.abc import Callable
@@ -10,16 +11,20 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import jsonschema_rs
 import psutil
+from typer.testing import CliRunner
 from websockets.sync.client import ClientConnection
 
 from base_station.accounts.principals import Role
+from base_station.cli import app
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.store import Store
 from shared.clock import NS_PER_MS, SystemClock
 from shared.mcap_log import SegmentWriter
 from shared.messages import EventKind, UnitEvent
 from shared.messages.station import OpenIncident
+from tests.rig.live_page import LIVE_SCHEMA
 from tests.rig.served_station import (
     MakePosition,
     greet,
@@ -133,8 +138,10 @@ def _wait_for(
     console: ClientConnection, condition: Callable[[dict[str, Any]], bool]
 ) -> dict[str, Any]:
     end_s = time.monotonic() + PATIENCE_S
+    schema = jsonschema_rs.validator_for(LIVE_SCHEMA.read_text())
     while time.monotonic() < end_s:
         message: dict[str, Any] = json.loads(console.recv(10.0))
+        schema.validate(message)
         if condition(message):
             return message
     raise AssertionError("it was never shown")
@@ -177,6 +184,21 @@ def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
         assert "login for this replay" in replaying.said()
         assert replaying.stop() == 0
     assert [path.name for path in copy.iterdir()] == ["log"]
+    alone = tmp_path / "elsewhere" / "incident.mcap"
+    alone.parent.mkdir()
+    exported = CliRunner().invoke(app, ["export", incident_id, str(alone), "--data", str(data)])
+    assert exported.exit_code == 0, exported.output
+    with Command(tmp_path / "alone.txt", "replay", str(alone), *flags) as replaying:
+        address = replaying.wait_ready()
+        login = re.search(r"this replay: (\S+)\s+password: (\S+)", replaying.said())
+        assert login is not None
+        (alone.parent / "first-login.txt").write_text(
+            "username: {}\npassword: {}".format(*login.groups())
+        )
+        with Browser(address, alone.parent) as onlooker, watch(onlooker) as console:
+            shown = _wait_for(console, lambda one: bool(one.get("alarms")))
+            assert shown["alarms"][0]["alarm_id"] == alarms[0]["alarm_id"]
+        assert replaying.stop() == 0
     with Command(
         tmp_path / "none.txt", "replay", "no-such", "--data", str(copy), *flags
     ) as replaying:

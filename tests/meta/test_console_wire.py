@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.rig.console_types import ANSWERS_TS, WIRE_TS, answer_types, wire_types
+from tests.rig.live_page import LIVE_MD, LIVE_SCHEMA, page, schema_file
 
 
 def test_types_of_the_console_are_those_of_the_station() -> None:
@@ -15,6 +16,12 @@ def test_types_of_the_console_are_those_of_the_station() -> None:
 def test_types_of_requests_and_answers_are_those_of_the_api() -> None:
     written = ANSWERS_TS.read_text(encoding="utf-8")
     assert written == answer_types(), "run: python -m tests.rig.console_types"
+
+
+def test_the_page_about_the_websocket_is_that_of_the_messages() -> None:
+    """It describes every member, or cannot be made."""
+    assert LIVE_MD.read_text(encoding="utf-8") == page(), "run: python -m tests.rig.console_types"
+    assert LIVE_SCHEMA.read_text(encoding="utf-8") == schema_file(), "the same command"
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,5 @@
 """Generator of the console's types: ``wire.ts`` from the structs of the live picture, and
-``answers.ts`` from the OpenAPI document.
+``answers.ts`` from the OpenAPI document; with the page about the WebSocket, ``docs/live.md``.
 
 ``python -m tests.rig.console_types`` writes the files; a test fails while they are not current.
 """
@@ -17,6 +17,7 @@ from msgspec import inspect
 from base_station.views import wire
 from shared.clock import ManualClock
 from tests.rig.desk_station import DeskStation
+from tests.rig.live_page import LIVE_MD, LIVE_SCHEMA, page, schema_file
 
 _SOURCES: Final = Path(__file__).resolve().parents[2] / "base_station/console/src"
 WIRE_TS: Final = _SOURCES / "wire.ts"
@@ -183,6 +184,8 @@ def main() -> None:
     """Write the files."""
     WIRE_TS.write_text(wire_types(), encoding="utf-8")
     ANSWERS_TS.write_text(answer_types(), encoding="utf-8")
+    LIVE_MD.write_text(page(), encoding="utf-8")
+    LIVE_SCHEMA.write_text(schema_file(), encoding="utf-8")
 
 
 if __name__ == "__main__":

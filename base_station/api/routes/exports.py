@@ -1,9 +1,10 @@
-"""An incident's tracks as a file for other programs."""
+"""An incident as a file for other programs: its tracks, or all of it."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Iterator
+from itertools import chain
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
@@ -25,6 +26,7 @@ from base_station.exporters.compression import SUFFIX, gzipped
 from base_station.exporters.incident import incident_tracks
 from base_station.exporters.interface import Exporter
 from base_station.exporters.selection import TrackSelection
+from base_station.replay.incident_file import IncidentFileSource, incident_file
 from base_station.replay.trail_kind import TrailKind
 from base_station.storage.db.records import Window
 from shared.errors import StoreError, UserError
@@ -84,6 +86,48 @@ async def export_incident(
     return StreamingResponse(in_turn, media_type=media_type, headers=headers)
 
 
+@router.get(
+    "/incidents/{incident_id}/incident.mcap",
+    response_class=Response,
+    responses=file_response("application/octet-stream"),
+)
+async def export_whole_incident(incident_id: Id, station: CurrentStation, who: Viewer) -> Response:
+    """All of the incident as one MCAP file that stands alone: what was recorded, shown and decided,
+    plan, pins, thresholds and the people in it.  ``muster base replay FILE`` shows it.
+    """
+    async with station.export_lock:
+        content = await run_in_threadpool(_whole, incident_id, station, who)
+    headers = {"Content-Disposition": f'attachment; filename="{incident_id}.mcap"'}
+    in_turn = _in_turn(content, station.export_lock)
+    return StreamingResponse(in_turn, media_type="application/octet-stream", headers=headers)
+
+
+def _whole(incident_id: str, station: Services, who: Principal) -> Iterator[bytes]:
+    incident = incident_or_404(station, incident_id)
+    if station.log is None:
+        raise Problem(503, "This station has no log to make it from.")
+    until_ns = station.clock.utc_ns()
+    source = IncidentFileSource(
+        log=station.log,
+        incident=incident,
+        name=station.roster.shown(incident.name),
+        people=station.roster.known_people(),
+        plan=station.records.plan(incident.closed_ns or until_ns),
+        until_ns=until_ns,
+    )
+    content = incident_file(source)
+    first = next(content)
+    _audit(station, who, f"{incident_id} as a file that stands alone")
+    return chain((first,), content)
+
+
+def _audit(station: Services, who: Principal, what: str) -> None:
+    try:
+        station.records.audit(who.username, "Exported", what)
+    except StoreError as error:
+        raise Problem(503, f"Nothing is given out that the audit cannot say: {error}.") from error
+
+
 def _begun(
     incident_id: str,
     format_name: str,
@@ -101,12 +145,7 @@ def _begun(
     _, trails = trails_of(station, incident, kind)
     tracks = incident_tracks(station.records, station.roster, incident, trails)
     content = exporter.begun(selection.of(tracks).named_as(kind.in_words))
-    try:
-        station.records.audit(
-            who.username, "Exported", f"{incident_id} ({kind.value}) as {format_name}"
-        )
-    except StoreError as error:
-        raise Problem(503, f"Nothing is given out that the audit cannot say: {error}.") from error
+    _audit(station, who, f"{incident_id} ({kind.value}) as {format_name}")
     return exporter, content
 
 

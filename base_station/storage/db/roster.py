@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session
@@ -102,6 +102,14 @@ class Roster:
             photo_hash=None,
             removed_ns=None,
         )
+
+    def bring_people(self, people: Mapping[str, KnownPerson]) -> None:
+        """Names of people by their ids, for a log of another station; who is known stays."""
+        with self._store.write() as session:
+            for person_id, one in people.items():
+                if session.get(PersonRow, person_id) is None:
+                    session.add(self._new_row(person_id, one.name, one.crew, one.role))
+        self._known = self._load_people()
 
     def change_person(self, person_id: str, name: str, crew: str, role: str) -> PersonRow | None:
         with self._store.write() as session:

@@ -217,18 +217,24 @@ interface DownloadsProps {
   formats: readonly api.ExportFormat[];
 }
 
-/** The tracks of an incident for other programs. */
+const WHOLE = "mcap";
+
+/** An incident for other programs: its tracks, or all of it. */
 function Downloads({ incident, formats }: DownloadsProps) {
   const writing = useSignal(false);
   const files = KINDS.flatMap(([kind]) => formats.map((format) => ({ kind, format })));
+  const write = async (content: Promise<Blob>, ending: string) => {
+    writing.value = true;
+    await attempt(save(content, `${incident.incident_id}${ending}`));
+    writing.value = false;
+  };
   const chosen = useChosen("", async (key) => {
+    if (key === WHOLE) return write(api.wholeIncident(incident.incident_id), `.${WHOLE}`);
     const file = files.find((one) => keyOf(one.kind, one.format) === key);
     if (file === undefined) return;
-    writing.value = true;
     const which = file.kind === "fused" ? "" : `-${file.kind}`; // as the station names it
     const content = api.exported(incident.incident_id, file.format.name, file.kind);
-    await attempt(save(content, `${incident.incident_id}${which}.${file.format.suffix}`));
-    writing.value = false;
+    await write(content, `${which}.${file.format.suffix}`);
   });
   return (
     <select
@@ -246,6 +252,9 @@ function Downloads({ incident, formats }: DownloadsProps) {
           ))}
         </optgroup>
       ))}
+      <optgroup label="All of it, to replay elsewhere">
+        <option value={WHOLE}>{WHOLE}</option>
+      </optgroup>
     </select>
   );
 }
