@@ -165,6 +165,8 @@ class StationEngine:
 
     def note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
         """Take people and markers of other teams; of a flood the newest stay."""
+        if len(self._external) == _EXTERNAL_WAITING:
+            log.warning("other systems send markers faster than they are taken: some are left out")
         self._external.append((markers, removed))
         self._ports.feed.wake()
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from base_station.core import external_markers
 from base_station.core.checkpoint import read_checkpoint
 from base_station.core.events import ExternalMarkersChanged, Output
@@ -93,6 +95,19 @@ def test_an_old_one_stays_as_old_and_then_is_not_shown_any_more() -> None:
     script.wait(20.0)
     assert not script.pipeline.state.external
     assert ExternalMarkersChanged() in script.outputs[-20:]
+
+
+def test_a_flood_of_one_source_leaves_those_of_the_others() -> None:
+    script = anchored()
+    take(script, marker(script, "p", stale_s=1.0))
+    alerts = [
+        msgspec.structs.replace(marker(script, "a"), source="CAP", marker_id=f"CAP/{number}")
+        for number in range(MARKERS_KEPT + 5)
+    ]
+    take(script, *alerts)
+    kept = list(script.pipeline.state.external)
+    assert len(kept) == MARKERS_KEPT + 1
+    assert "county/p" in kept
 
 
 def test_a_replay_and_a_checkpoint_have_them_too() -> None:
