@@ -12,7 +12,7 @@ from fastapi import Path, Query
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 from base_station.accounts.principals import BARRED
-from base_station.storage.db.records import FOREVER_NS, Window
+from base_station.storage.db.window import FOREVER_NS, Window
 from shared.clock import NS_PER_MS
 
 MAX_BYTES = 65_536  # of a form

@@ -42,15 +42,17 @@ class ClosingObstacles(msgspec.Struct, frozen=True):
         raise Problem(409, detail, members=members)
 
 
-def closing_obstacles(picture: Snapshot) -> ClosingObstacles:
-    """An alarm about the station itself is no matter of the incident.  Who was inside when the unit
-    was switched off, or fell silent, is inside as far as is known.
+def closing_obstacles(picture: Snapshot, incident_id: str) -> ClosingObstacles:
+    """Of the members of an incident; an alarm about the station itself is no matter of it.  Who
+    was inside when the unit was switched off, or fell silent, is inside as far as is known.
     """
+    members = [one for one in picture.units if one.incident_id == incident_id]
+    unit_ids = {one.unit_id for one in members}
     return ClosingObstacles(
-        alarms=tuple(one for one in picture.alarms if one.unit_id and one.state != "resolved"),
-        inside=tuple(
-            one for one in picture.units if one.person and one.inside_since_ms is not None
+        alarms=tuple(
+            one for one in picture.alarms if one.unit_id in unit_ids and one.state != "resolved"
         ),
+        inside=tuple(one for one in members if one.person and one.inside_since_ms is not None),
     )
 
 

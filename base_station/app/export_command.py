@@ -56,7 +56,7 @@ def export(
     from base_station.exporters.incident import incident_tracks  # noqa: PLC0415
     from base_station.exporters.interface import TrackCount  # noqa: PLC0415
     from base_station.exporters.selection import TrackSelection  # noqa: PLC0415
-    from base_station.storage.db.records import FOREVER_NS  # noqa: PLC0415
+    from base_station.storage.db.window import FOREVER_NS  # noqa: PLC0415
 
     is_gzip = out.suffix == SUFFIX
     named = out.with_suffix("") if is_gzip else out

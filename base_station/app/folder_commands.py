@@ -230,7 +230,7 @@ def open_post_processing(
         offline_log.archive(), SMOOTHERS[0], SmoothedTracks(offline_log.store), clock
     )
     roster = Roster(offline_log.store, clock)
-    people = wearers(roster, incident)
+    people = wearers(roster, incident, records.members_of(incident))
     return IncidentCommandContext(
         post_processor,
         records,

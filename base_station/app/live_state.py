@@ -24,8 +24,7 @@ class LiveState:
 
     def is_in_incident(self) -> bool:
         """True while an incident is open."""
-        incident = None if self._state is None else self._state.incident
-        return incident is not None and incident.closed_ns is None
+        return self._state is not None and bool(self._state.open_incidents)
 
     @property
     def problems(self) -> Mapping[str, str]:

@@ -22,8 +22,9 @@ from base_station.replay.rerun.rerun import RerunResult, fuse_again
 from base_station.replay.rerun.retracked_run import RetrackedRun
 from base_station.site.plan import Plan, salvage_plan
 from base_station.storage.db.models import IncidentRow
-from base_station.storage.db.records import Records, TrackSample, Window
+from base_station.storage.db.records import Records, TrackSample
 from base_station.storage.db.roster import Roster
+from base_station.storage.db.window import Window
 from shared.channels import POSITION, STATUS
 from shared.clock import SystemClock
 from shared.errors import RecordingError, UserError
@@ -45,7 +46,7 @@ class OpenedRerun(NamedTuple):
 
     @property
     def plan(self) -> Plan | None:
-        geojson = self.records.plan(self.until_ns + 1)
+        geojson = self.records.plan(self.until_ns + 1, self.incident.site_id)
         return None if geojson is None else salvage_plan(geojson)
 
 

@@ -42,9 +42,10 @@ from base_station.report.pdf import pdf_document
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.opening import open_database
-from base_station.storage.db.records import Records, Window
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.db.window import Window
 from base_station.storage.log_defects import LogDefects
 from shared.clock import SystemClock
 from shared.errors import MusterError

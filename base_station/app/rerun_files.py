@@ -17,7 +17,7 @@ from shared.out_file import whole
 
 def write_rerun(opened: OpenedRerun, result: Rerun, folder: Path) -> list[str]:
     """Names of the files, each of which is whole or not there.  Raises UserError."""
-    worn = wearers(opened.roster, opened.incident)
+    worn = wearers(opened.roster, opened.incident, opened.records.members_of(opened.incident))
     names = {unit_id: ", ".join(people) for unit_id, people in worn.items()}
     tracks = incident_tracks(opened.records, opened.roster, opened.incident, result.rerun)
     formats = ["csv", "gpx"] if tracks.anchor is not None else ["csv"]

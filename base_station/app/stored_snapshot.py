@@ -19,8 +19,9 @@ from base_station.engine.ports import ActionResult, LiveSink, Trails
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.plan import salvage_plan
 from base_station.storage.db import models
-from base_station.storage.db.records import FOREVER_NS, Records, TrackSample, Window
+from base_station.storage.db.records import Records, TrackSample
 from base_station.storage.db.roster import Roster
+from base_station.storage.db.window import FOREVER_NS, Window
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.station import alarm_view, anchor_view
 from base_station.views.stored_units import stored_sensors

@@ -33,34 +33,34 @@ PAR_REQUESTS = frozenset({CommandKind.PAR_REQUEST, CommandKind.EVACUATE})  # to 
 
 
 def new_incident(
-    state: StationState, action: OpenIncident, dispatch: NoteDispatch | None
+    state: StationState, action: OpenIncident, site_id: str, dispatch: NoteDispatch | None
 ) -> Incident:
-    """New incident, with the usual intervals where none are given."""
+    """New incident on a site, with the usual intervals where none are given."""
     par_s = action.par_interval_s or PAR_INTERVAL_S
     work_s = action.work_limit_s or WORK_LIMIT_S
     _check(par_s, work_s)
-    return Incident(action.incident_id, action.name, state.t_ns, None, par_s, work_s, dispatch)
+    opened = action.incident_id, action.name, state.t_ns
+    return Incident(*opened, None, par_s, work_s, site_id, dispatch)
 
 
 def change_intervals(state: StationState, action: SetAccountability) -> Iterator[UnitState]:
-    """Set other intervals for the open incident, from now on and for all members."""
-    incident = _open_incident(state)
+    """Set other intervals for an open incident, from now on and for all its members."""
+    incident = state.named_incident(action.incident_id)
     _check(action.par_interval_s, action.work_limit_s)
-    state.incident = msgspec.structs.replace(
+    state.incidents[incident.incident_id] = msgspec.structs.replace(
         incident, par_interval_s=action.par_interval_s, work_limit_s=action.work_limit_s
     )
     for unit in state.units.values():
-        if unit.duty is not None:
-            _update_due(state, unit.duty)
+        if unit.duty is not None and unit.incident_id == incident.incident_id:
+            _update_due(state, unit, unit.duty)
             yield unit
 
 
 def begin(state: StationState, unit: UnitState) -> None:
-    """Put the wearer of this unit on duty, where an incident is open."""
-    incident = state.incident
-    if incident is not None and incident.closed_ns is None and unit.wearer.person is not None:
+    """Put the wearer of this unit on duty, where the unit is in an open incident."""
+    if state.open_incident_of(unit) is not None and unit.wearer.person is not None:
         unit.duty = Duty(state.t_ns, ready_ns=state.t_ns)
-        _update_due(state, unit.duty)
+        _update_due(state, unit, unit.duty)
 
 
 def end(state: StationState, unit: UnitState) -> None:
@@ -69,13 +69,27 @@ def end(state: StationState, unit: UnitState) -> None:
         unit.duty, unit.off_duty_ns = None, state.t_ns
 
 
+def go_on(state: StationState, unit: UnitState, duty: Duty, before: Duty) -> None:
+    """Work and rest of a duty go on in the next one, which another incident has begun."""
+    duty.ready_ns, duty.rest_since_ns = before.ready_ns, before.rest_since_ns
+    duty.work_since_ns = before.work_since_ns
+    _update_due(state, unit, duty)
+
+
 def check_in(state: StationState, by: str, action: CheckIn) -> list[UnitState]:
     """PARs confirmed by radio.  UserError where nobody is on duty."""
     if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
         raise UserError("say one of: a unit, a crew or floor that has members, everyone")
     if action.check_in_id and _is_taken(state, action.check_in_id):
         raise UserError(f"a check-in needs an id of its own, not {action.check_in_id!r}")
-    found = [unit for unit in state.units.values() if _is_addressed(unit, action)]
+    incident_id = action.incident_id
+    if action.everyone and state.open_incidents:
+        incident_id = state.named_incident(incident_id).incident_id
+    found = [
+        unit
+        for unit in state.units.values()
+        if incident_id in ("", unit.incident_id) and _is_addressed(unit, action)
+    ]
     if not found:
         recipients = (
             action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
@@ -99,7 +113,7 @@ def ask(state: StationState, command: SentCommand) -> Iterator[UnitState]:
         unit = state.units[unit_id]
         if unit.duty is not None:
             unit.duty.requests_ns.append(state.t_ns)
-            _update_due(state, unit.duty)
+            _update_due(state, unit, unit.duty)
             yield unit
 
 
@@ -132,7 +146,7 @@ def set_rest(state: StationState, unit: UnitState, resting: bool) -> None:
     duty.rest_since_ns = state.t_ns if resting else None
     duty.ready_ns = state.t_ns
     duty.work_since_ns = None
-    _update_due(state, duty)
+    _update_due(state, unit, duty)
 
 
 def update_work(state: StationState, unit: UnitState) -> bool:
@@ -143,7 +157,7 @@ def update_work(state: StationState, unit: UnitState) -> bool:
     if unit.place.inside_since_ns is None:
         return False
     duty.work_since_ns = max(unit.place.inside_since_ns, duty.ready_ns)
-    _update_due(state, duty)
+    _update_due(state, unit, duty)
     return True
 
 
@@ -157,7 +171,7 @@ def _confirm(state: StationState, unit: UnitState, confirmation: ParConfirmation
     duty = unit.duty
     if duty is not None and confirmation.t_ns >= duty.since_ns:
         duty.confirm(confirmation)
-        _update_due(state, duty)
+        _update_due(state, unit, duty)
 
 
 def _is_undone(state: StationState, unit: UnitState, action: UndoConfirmation) -> bool:
@@ -166,7 +180,7 @@ def _is_undone(state: StationState, unit: UnitState, action: UndoConfirmation) -
         return False
     if not duty.undo(action.entry_id):
         return False
-    _update_due(state, duty)
+    _update_due(state, unit, duty)
     return True
 
 
@@ -176,9 +190,10 @@ def _is_taken(state: StationState, entry_id: str) -> bool:
     return entry_id in state.commands or entry_id in entered
 
 
-def _update_due(state: StationState, duty: Duty) -> None:
+def _update_due(state: StationState, unit: UnitState, duty: Duty) -> None:
     """Set when the next PAR and the next rest are due, for the alarm rules."""
-    incident = _open_incident(state)
+    incident = state.open_incident_of(unit)
+    assert incident is not None  # duty ends with it
     duty.due_ns = duty.counts_from_ns + round(incident.par_interval_s * NS_PER_S)
     if duty.open_request_ns is not None:
         duty.due_ns = min(duty.due_ns, duty.open_request_ns + ANSWER_NS)
@@ -195,12 +210,6 @@ def _is_addressed(unit: UnitState, action: CheckIn) -> bool:
     if action.person_ids:
         return unit.wearer.person.person_id in action.person_ids
     return action.everyone or action.crew == unit.wearer.person.crew
-
-
-def _open_incident(state: StationState) -> Incident:
-    if state.incident is None or state.incident.closed_ns is not None:
-        raise UserError("no incident is open")
-    return state.incident
 
 
 def _check(par_interval_s: float, work_limit_s: float) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from base_station.core.state import Incident, StationState
+from base_station.core.state import Incident, StationState, UnitState
 
 KEPT = 50  # closed ones, newest last; of what comes later of older ones only the log tells
 
@@ -11,19 +11,23 @@ def add_closed_incident(state: StationState, incident: Incident) -> None:
     state.closed_incidents = [*state.closed_incidents[1 - KEPT :], incident]
 
 
-def closed_incident_at(state: StationState, t_ns: int) -> Incident | None:
-    """The closed incident at this station time."""
-    for incident in reversed(state.closed_incidents):
-        if incident.closed_ns is not None and t_ns > incident.closed_ns:
-            return None
-        if t_ns >= incident.opened_ns:
-            return incident
-    return None
+def closed_incidents_at(state: StationState, t_ns: int) -> list[Incident]:
+    """The closed incidents at this station time, newest first."""
+    past = reversed(state.closed_incidents)
+    return [one for one in past if one.opened_ns <= t_ns <= (one.closed_ns or 0)]
 
 
-def is_before_incident(state: StationState, t_ns: int) -> bool:
-    """True for a time before the last closing, where another incident is open by now."""
-    running, past = state.incident, state.closed_incidents
-    if running is None or running.closed_ns is not None or not past:
-        return False
-    return t_ns <= (past[-1].closed_ns or 0)
+def last_closed_ns(state: StationState, site_id: str) -> int:
+    """When the last incident on this site was closed; 0: none was."""
+    past = [one for one in state.closed_incidents if one.site_id == site_id]
+    return max((one.closed_ns or 0 for one in past), default=0)
+
+
+def is_before_incident(state: StationState, unit: UnitState, t_ns: int) -> bool:
+    """True for a time before the unit came to its site, or before the last closing there, where
+    another incident is open by now.
+    """
+    if t_ns < unit.site_ns:
+        return True
+    running = state.open_incident_of(unit)
+    return running is not None and t_ns <= last_closed_ns(state, running.site_id)

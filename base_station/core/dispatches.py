@@ -17,8 +17,8 @@ KEPT = 50  # offered or dismissed ones, newest last; of more the log and the tab
 
 def note(state: StationState, report: NoteDispatch) -> None:
     """Take a report; one that is older than what is known changes nothing."""
-    if state.incident is not None:
-        state.incident = _with_report(state.incident, report)
+    for incident_id, incident in state.incidents.items():
+        state.incidents[incident_id] = _with_report(incident, report)
     state.closed_incidents = [_with_report(one, report) for one in state.closed_incidents]
     if incident_of(state, report.number) is not None:
         return
@@ -56,7 +56,7 @@ def find(state: StationState, number: str) -> Dispatch | None:
 
 def incident_of(state: StationState, number: str) -> Incident | None:
     """The incident that this dispatch has opened, open or closed."""
-    incidents = [*state.closed_incidents, *([state.incident] if state.incident else [])]
+    incidents = [*state.closed_incidents, *state.incidents.values()]
     return next((one for one in incidents if _is_of(one, number)), None)
 
 

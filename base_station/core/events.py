@@ -73,6 +73,21 @@ class ClosedIncidentChanged(msgspec.Struct, frozen=True):
     incident_id: str
 
 
+class IncidentOpened(msgspec.Struct, frozen=True):
+    """An incident was opened on a site."""
+
+    incident_id: str
+    site_id: str
+
+
+class MembershipChanged(msgspec.Struct, frozen=True):
+    """A unit came to an open incident, or left it."""
+
+    unit_id: str
+    incident_id: str  # empty: it is in none
+    t_ns: int
+
+
 class ExternalMarkersChanged(msgspec.Struct, frozen=True):
     """People or markers of other teams changed."""
 
@@ -109,6 +124,8 @@ Output = (
     | TrailBackfilled
     | PinsChanged
     | ClosedIncidentChanged
+    | IncidentOpened
+    | MembershipChanged
     | CommandChanged
     | ExternalMarkersChanged
     | NamesErased

@@ -8,6 +8,7 @@ from typing import assert_never
 
 from base_station.core import accountability, idempotency
 from base_station.core.alarms.alarm_manager import AlarmManager
+from base_station.core.closed_incidents import last_closed_ns
 from base_station.core.commands import command_tracker, mayday_acknowledgements
 from base_station.core.events import (
     ClosedIncidentChanged,
@@ -23,7 +24,7 @@ from base_station.core.pins import pin_registry
 from base_station.core.pins.incident_scope import concerns_closed_incident
 from base_station.core.pins.pin_registry import PinAction, change_pins, units_of
 from base_station.core.positioning.positioning import Positioning
-from base_station.core.state import OWN_SITE_ID, Alarm, SiteState, StationState, UnitState
+from base_station.core.state import Alarm, SiteState, StationState, UnitState
 from base_station.core.state.command import SentCommand
 from base_station.core.state.resolve_queue import request_resolve
 from base_station.fusion.gnss.common_mode_error import CommonModeError
@@ -116,10 +117,12 @@ class ActionHandler:
             case CloseIncident():
                 return self._close(state, by, action)
             case _:
-                return self._with_alarms(state, apply_people_action(state, by, action))
+                units = list(apply_people_action(state, by, action))
+                moved = list(self._follow_incidents(state, units))
+                return [*moved, *self._with_alarms(state, units)]
 
     def _site(self, state: StationState, action: SetAnchor | SetPlan | SetReference) -> None:
-        site_id = OWN_SITE_ID
+        site_id = state.site_id_of(action.incident_id)
         site = state.sites[site_id]
         if isinstance(action, SetAnchor):
             self._positioning.set_anchor(state, site_id, _anchor(action))
@@ -137,12 +140,14 @@ class ActionHandler:
     def _pin(self, state: StationState, by: str, action: PinAction) -> Iterator[StateChange]:
         site_id = _site_of_place(state, action)
         is_first = site_id is not None and _is_first_known_place(state.sites[site_id])
-        running = state.incident
-        closed_ns = None if running is None else running.closed_ns
-        is_of_past = closed_ns is not None and concerns_closed_incident(state, action, closed_ns)
+        debriefed = [
+            one.incident_id
+            for one in state.incidents.values()
+            if one.closed_ns is not None
+            and concerns_closed_incident(state, one.site_id, action, one.closed_ns)
+        ]
         changed = change_pins(state, by, action)
-        if is_of_past and running is not None:
-            yield ClosedIncidentChanged(running.incident_id)
+        yield from map(ClosedIncidentChanged, debriefed)
         if site_id is not None and is_first:
             moved = self._positioning.switch_to_plan_frame(state, site_id)
             yield from map(TrailBackfilled, sorted(moved))
@@ -157,7 +162,8 @@ class ActionHandler:
             return
         alarm = _or_raise(self._alarms.acknowledge(state, by, action))
         yield alarm
-        incident_id = command_tracker.open_incident_id(state)
+        incident = state.open_incident_of(state.units[alarm.unit_id]) if alarm.unit_id else None
+        incident_id = "" if incident is None else incident.incident_id
         command = mayday_acknowledgements.acknowledge(state, by, alarm, incident_id)
         if command is not None:
             yield command
@@ -178,7 +184,7 @@ class ActionHandler:
     def _register(self, state: StationState, action: RegisterUnit) -> Iterator[StateChange]:
         unit = state.units.get(action.unit_id)
         if unit is None:
-            unit = state.units[action.unit_id] = UnitState(action.unit_id)
+            unit = state.add_unit(action.unit_id)
         unit.registered, unit.label = True, action.label
         yield from self._with_alarms(state, [unit])
 
@@ -219,15 +225,29 @@ class ActionHandler:
         yield from self._with_alarms(state, units)
 
     def _open(self, state: StationState, by: str, action: OpenIncident) -> Iterator[StateChange]:
-        before = state.incident
         units = list(apply_people_action(state, by, action))
-        before_ns = 0 if before is None else before.closed_ns or 0
-        yield _pins_changed(self._positioning.begin_incident(state, OWN_SITE_ID, before_ns))
+        site_id = state.incidents[action.incident_id].site_id
+        yield from self._follow_incidents(state, units)
+        self._positioning.keep_sites(state)
+        self._positioning.set_map(state, site_id)
+        before_ns = last_closed_ns(state, site_id)
+        yield _pins_changed(self._positioning.begin_incident(state, site_id, before_ns))
         yield from self._with_alarms(state, units)
+
+    def _follow_incidents(
+        self, state: StationState, units: Iterable[UnitState]
+    ) -> Iterator[StateChange]:
+        """Bring units to the sites of their incidents: their paths begin there."""
+        for unit in units:
+            site_id = state.site_id_of(unit.incident_id)
+            if site_id != unit.site_id:
+                partners = self._positioning.move(state, unit, site_id)
+                yield TrailBackfilled(unit.unit_id)
+                yield _pins_changed(partners)
 
     def _forget(self, state: StationState, action: ForgetWearers) -> list[StateChange]:
         unit = state.registered_unit(action.unit_id)
-        if state.incident is not None and state.incident.closed_ns is None:
+        if state.open_incidents:
             raise UserError("an incident is open; close it first")
         self._positioning.forget(state, unit)
         pinned = pin_registry.forget(state, unit.unit_id)
@@ -273,7 +293,7 @@ def _site_of_place(state: StationState, action: PinAction) -> str | None:
         case StartTogether():
             unit_ids = action.unit_ids[:1]
         case PlaceBeacon():
-            return OWN_SITE_ID
+            return state.site_id_of(action.incident_id)
         case _:
             return None
     return next((state.units[one].site_id for one in unit_ids if one in state.units), None)

@@ -7,14 +7,13 @@ from typing import assert_never
 
 import msgspec
 
-from base_station.core import accountability, dispatches
+from base_station.core import accountability, dispatches, incident_membership
 from base_station.core.closed_incidents import add_closed_incident
-from base_station.core.state import Person, StationState, UnitState
-from base_station.core.state.trust_tally import TrustTally
-from base_station.core.units import thermal_dose
+from base_station.core.state import OWN_SITE_ID, Person, SiteState, StationState, UnitState
 from shared.errors import UserError
 from shared.messages.station import (
     Assign,
+    AssignIncident,
     CheckIn,
     CloseIncident,
     DismissDispatch,
@@ -30,6 +29,7 @@ PeopleAction = (
     | CloseIncident
     | NoteDispatch
     | DismissDispatch
+    | AssignIncident
     | Assign
     | Unassign
     | CheckIn
@@ -52,6 +52,8 @@ def apply_people_action(state: StationState, by: str, action: PeopleAction) -> I
         case DismissDispatch():
             dispatches.dismiss(state, action.number)
             changed = []
+        case AssignIncident():
+            changed = incident_membership.assign(state, action)
         case Assign():
             changed = _assign(state, action)
         case Unassign():
@@ -70,49 +72,59 @@ def apply_people_action(state: StationState, by: str, action: PeopleAction) -> I
 
 
 def _open(state: StationState, action: OpenIncident) -> Iterable[UnitState]:
-    running = state.incident
-    if running is not None and running.closed_ns is None:
-        raise UserError(f"the incident {running.name!r} is open; close it first")
+    """Open an incident: all units are in it, unless others are open."""
+    opened = state.open_incidents
+    if opened and not action.beside_others:
+        raise UserError(f"the incident {opened[-1].name!r} is open; close it first")
+    if action.incident_id in state.incidents:
+        raise UserError(f"an incident needs an id of its own, not {action.incident_id!r}")
+    is_used = any(one.site_id == OWN_SITE_ID for one in opened)
+    site_id = action.incident_id if is_used else OWN_SITE_ID
     number = action.dispatch_number
     report = dispatches.take(state, number) if number else None
-    state.incident = accountability.new_incident(state, action, report)
-    for unit in state.units.values():
-        _restart(unit)
-        accountability.begin(state, unit)
-    return state.units.values()
+    incident = accountability.new_incident(state, action, site_id, report)
+    left = _end_before(state, site_id, is_only=not opened)
+    state.incidents[incident.incident_id] = incident
+    state.sites.setdefault(site_id, SiteState())
+    if opened:
+        return left
+    units = list(state.units.values())
+    incident_membership.enter(state, units, incident)
+    return units
 
 
-def _restart(unit: UnitState) -> None:
-    """Forget what counts from the opening of an incident on."""
-    unit.trails.shown.clear()
-    unit.trust = TrustTally()
-    unit.place.inside_since_ns = None
-    unit.heat.dose = unit.heat.late_dose = 0.0
-    thermal_dose.restart_intervals(unit.heat.exposures)
-    unit.rejected_counts.clear()
+def _end_before(state: StationState, site_id: str, *, is_only: bool) -> list[UnitState]:
+    """Let go of the incidents that were closed on this site, or of all; gives who was in them."""
+    incidents = state.incidents.values()
+    closed = [one for one in incidents if one.closed_ns is not None]
+    over = {one.incident_id for one in closed if is_only or one.site_id == site_id}
+    for incident_id in over:
+        del state.incidents[incident_id]
+    left = [unit for unit in state.units.values() if unit.incident_id in over]
+    for unit in left:
+        incident_membership.leave(state, unit)
+    return left
 
 
 def _close(state: StationState, action: CloseIncident) -> Iterable[UnitState]:
-    running = state.incident
-    if (
-        running is None
-        or running.incident_id != action.incident_id
-        or running.closed_ns is not None
-    ):
-        raise UserError(f"no open incident {action.incident_id}")
-    state.incident = msgspec.structs.replace(running, closed_ns=state.t_ns)
-    add_closed_incident(state, state.incident)
-    for unit in state.units.values():
+    if not action.incident_id:
+        raise UserError("no open incident without an id")
+    running = state.named_incident(action.incident_id)
+    closed = msgspec.structs.replace(running, closed_ns=state.t_ns)
+    state.incidents[closed.incident_id] = closed
+    add_closed_incident(state, closed)
+    members = [unit for unit in state.units.values() if unit.incident_id == closed.incident_id]
+    for unit in members:
         accountability.end(state, unit)
-    return state.units.values()
+    return members
 
 
 def _assign(state: StationState, action: Assign) -> Iterator[UnitState]:
     unit = state.registered_unit(action.unit_id)
-    wearer, duty = unit.wearer, None
+    wearer, duty, came_from = unit.wearer, None, None
     for other in state.units.values():
         if other is not unit and other.wearer.person_id == action.person_id:
-            duty = other.duty
+            duty, came_from = other.duty, state.open_incident_of(other)
             yield _unassign(state, other)
     same = wearer.person_id == action.person_id
     if wearer.person is not None and not same:
@@ -120,10 +132,7 @@ def _assign(state: StationState, action: Assign) -> Iterator[UnitState]:
     wearer.person = Person(action.person_id, action.person_name, action.crew, action.role)
     if not same:
         wearer.since_ns = state.t_ns
-        if duty is None:
-            accountability.begin(state, unit)
-        else:  # with another unit, which is no word of theirs, and no rest
-            unit.duty = duty
+        incident_membership.follow_person(state, unit, came_from, duty)
     yield unit
 
 

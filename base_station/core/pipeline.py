@@ -6,10 +6,15 @@ nobody anything, and numbers its own outputs, so that the same events give the s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import assert_never
 
-from base_station.core import accountability, external_markers, idempotency
+from base_station.core import (
+    accountability,
+    external_markers,
+    idempotency,
+    incident_membership,
+)
 from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.alarms.interface import AlarmRule
 from base_station.core.checkpoint import Checkpoint
@@ -18,6 +23,8 @@ from base_station.core.events import (
     ClosedIncidentChanged,
     CommandChanged,
     ExternalMarkersChanged,
+    IncidentOpened,
+    MembershipChanged,
     NamesErased,
     Output,
     PinsChanged,
@@ -49,7 +56,7 @@ from shared.messages import (
     OperatorAction,
     Tick,
 )
-from shared.messages.station import SetAnchor, SetFuser, SetPlan
+from shared.messages.station import Action, OpenIncident, SetAnchor, SetFuser, SetPlan
 
 
 class StationPipeline:
@@ -163,13 +170,14 @@ class StationPipeline:
         return [UnitChanged(unit.unit_id)]
 
     def _apply_action(self, message: OperatorAction) -> list[Output]:
+        before = incident_membership.open_memberships(self.state)
         try:
             effects = self._actions.apply(self.state, message.by, message.action)
         except UserError as error:
             idempotency.record_result(self.state, message, str(error))
             return [Refused(message.action_id, str(error))]
         idempotency.record_result(self.state, message, refused="")
-        outputs: list[Output] = []
+        outputs: list[Output] = [*self._incidents_changed(before, message.action)]
         for effect in effects:
             if isinstance(effect, Alarm):
                 outputs.append(effect.change(self.state.next_header()))
@@ -185,6 +193,19 @@ class StationPipeline:
             shown = [unit for unit in self.state.units.values() if unit.place.fused is not None]
             for unit in shown:
                 outputs.extend(self._positioning.locate(self.state, unit))
+        return outputs
+
+    def _incidents_changed(self, before: Mapping[str, str], action: Action) -> list[Output]:
+        """The incident that an action has opened, and which units it has brought where."""
+        state, outputs = self.state, list[Output]()
+        if isinstance(action, OpenIncident):
+            site_id = state.incidents[action.incident_id].site_id
+            outputs.append(IncidentOpened(action.incident_id, site_id))
+        now = incident_membership.open_memberships(state)
+        for unit_id in dict.fromkeys((*before, *now)):
+            incident_id = now.get(unit_id, "")
+            if incident_id != before.get(unit_id, ""):
+                outputs.append(MembershipChanged(unit_id, incident_id, state.t_ns))
         return outputs
 
 

@@ -12,7 +12,7 @@ import msgspec
 
 from base_station.core import accountability
 from base_station.core.alarms.alarm_manager import AlarmManager
-from base_station.core.closed_incidents import closed_incident_at
+from base_station.core.closed_incidents import closed_incidents_at
 from base_station.core.commands import command_tracker
 from base_station.core.events import (
     ClosedIncidentChanged,
@@ -110,7 +110,8 @@ class UnitMessages:
         elif isinstance(message, Position) and unit.registered:
             update.outputs = self._positioning.fuse_late(state, unit, message)
         elif isinstance(message, Temperature):
-            opened_ns = 0 if state.incident is None else state.incident.opened_ns
+            incident = state.incident_of(unit)
+            opened_ns = 0 if incident is None else incident.opened_ns
             apply_late_temperature(unit, message, opened_ns, state.t_ns)
         return True
 
@@ -221,9 +222,8 @@ def note_closed_incident(update: MessageUpdate) -> bool:
         return True
     if isinstance(message, LOCATION_MESSAGES):
         t_ns = captured_ns(update.sender.boots, message.header, state.t_ns)
-        past = None if t_ns is None else closed_incident_at(state, t_ns)
-        if past is not None:
-            update.outputs.append(ClosedIncidentChanged(past.incident_id))
+        past = [] if t_ns is None else closed_incidents_at(state, t_ns)
+        update.outputs += [ClosedIncidentChanged(one.incident_id) for one in past]
     return True
 
 
@@ -240,8 +240,7 @@ def _unregistered_unit(state: StationState, unit_id: str) -> UnitState | None:
     """A unit that nobody registered: shown, and not used; None where there are too many."""
     if sum(not unit.registered for unit in state.units.values()) >= MAX_UNREGISTERED:
         return None
-    unit = state.units[unit_id] = UnitState(unit_id)
-    return unit
+    return state.add_unit(unit_id)
 
 
 def _note_reply(state: StationState, unit: UnitState, reply: CommandReply) -> list[Output]:

@@ -6,6 +6,7 @@ Live and replay both use it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from operator import is_not
 
 import msgspec
 
@@ -90,8 +91,7 @@ class ConsolePublisher:
 
     def publish_delta(self, health: bool = False, replay: ReplayView | None = None) -> None:
         """Publish what changed, and on request the station's health."""
-        frames = zip(self._frame_now(), self._frame, strict=True)
-        if self._names_erased or any(now is not before for now, before in frames):
+        if self._names_erased or self._is_new_frame:
             self.reset(replay)
             return
         if health or replay:
@@ -172,4 +172,11 @@ class ConsolePublisher:
     def _frame_now(self) -> tuple[object, ...]:
         """Parts that deltas do not carry; the pipeline replaces them whole when they change."""
         state = self._pipeline.state
-        return state.incident, state.site.plan, state.site.anchor, state.dispatches
+        sites = state.sites.values()
+        grounds = [part for site in sites for part in (site.plan, site.anchor)]
+        return (*state.incidents.values(), *grounds, state.dispatches)
+
+    @property
+    def _is_new_frame(self) -> bool:
+        now = self._frame_now()
+        return len(now) != len(self._frame) or any(map(is_not, now, self._frame))

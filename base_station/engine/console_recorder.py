@@ -52,13 +52,11 @@ class ConsoleRecorder:
     @property
     def _is_wanted(self) -> bool:
         """While an incident is open, and once when it is closed."""
-        incident = self._pipeline.state.incident
-        if incident is None:
-            return False
-        if incident.closed_ns is None:
+        state = self._pipeline.state
+        if state.open_incidents:
             self._is_recorded = False
             return True
-        return not self._is_recorded
+        return bool(state.incidents) and not self._is_recorded
 
     # ---- of the publisher
 
@@ -75,8 +73,7 @@ class ConsoleRecorder:
         state = self._pipeline.state
         self._delta_due_ns = state.t_ns + DELTA_NS
         self._keyframe_due_ns = state.t_ns + KEYFRAME_NS
-        incident = state.incident
-        self._is_recorded = incident is not None and incident.closed_ns is not None
+        self._is_recorded = bool(state.incidents) and not state.open_incidents
         self._write(SNAPSHOT_TOPIC, snapshot)
         self._points_ns = {unit_id: self._last_point_ns(unit_id) for unit_id in trails}
         for unit_id, points in trails.items():

@@ -7,7 +7,15 @@ from typing import Any
 
 import msgspec
 
-from base_station.core.events import ClosedIncidentChanged, Output, Received, Refused, StationEvent
+from base_station.core.events import (
+    ClosedIncidentChanged,
+    IncidentOpened,
+    MembershipChanged,
+    Output,
+    Received,
+    Refused,
+    StationEvent,
+)
 from base_station.storage.projection import Projection
 from shared.channels import tracked_unit
 from shared.clock import NS_PER_S
@@ -26,12 +34,16 @@ class Projector:
         self._descriptions: list[UnitDescription] = []
         self._last_messages: dict[str, int] = {}
         self._news: dict[str, None] = {}  # incidents; an ordered set
+        self._opened: list[tuple[str, str]] = []
+        self._memberships: list[tuple[str, str, int]] = []
         self._projected: dict[str, int] = {}
         self._track_second: dict[str, int] = {}  # by unit, of its newest track point
         self._collectors: dict[type[Output], Callable[[Any], None]] = {
             AlarmChange: self._alarms.append,
             FusedPosition: self._note_track,
             ClosedIncidentChanged: self._note_news,
+            IncidentOpened: lambda one: self._opened.append(msgspec.structs.astuple(one)),
+            MembershipChanged: lambda one: self._memberships.append(msgspec.structs.astuple(one)),
         }
 
     def note(self, event: StationEvent, outputs: Sequence[Output]) -> None:
@@ -64,6 +76,8 @@ class Projector:
             self._descriptions,
             self._last_messages,
             self._news,
+            self._opened,
+            self._memberships,
         )
         if not any(parts):
             return None
@@ -75,6 +89,8 @@ class Projector:
             descriptions=tuple(self._descriptions),
             heard=tuple(self._last_messages.items()),
             news=tuple(self._news),
+            opened=tuple(self._opened),
+            memberships=tuple(self._memberships),
         )
         for part in parts:
             part.clear()

@@ -138,7 +138,7 @@ class WriteAhead:
         self._urgent = self._urgent or type(output) is AlarmChange
         t_ns = output.header.t_utc_ns
         self._log.write(t_ns, _KEYS[type(output)], encode(output))
-        shown = self._foxglove.of(output, self._pipeline.state.site.anchor)
+        shown = self._foxglove.of(output, self._pipeline.state.site_of(output.unit_id).anchor)
         if shown is not None:
             self._log.write(t_ns, *shown)
 

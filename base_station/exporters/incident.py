@@ -11,8 +11,9 @@ from base_station.site.plan import salvage_plan
 from base_station.site.storeys import storey_of
 from base_station.storage.db.known_people import PersonLookup, shown_wearer
 from base_station.storage.db.models import Assignment, IncidentRow
-from base_station.storage.db.records import FOREVER_NS, Records, TrackSample, Window
+from base_station.storage.db.records import Records, TrackSample
 from base_station.storage.db.roster import Roster
+from base_station.storage.db.window import FOREVER_NS, Window
 
 
 def incident_tracks(
@@ -39,9 +40,9 @@ def incident_tracks(
     return IncidentTracks(
         incident_id=incident.incident_id,
         name=roster.shown(incident.name),
-        anchor=records.anchor(window.until_ns),
+        anchor=records.anchor(window.until_ns, incident.site_id),
         tracks=LazyTracks(tracks),
-        ground_down_m=_ground_down_m(records.plan(window.until_ns)),
+        ground_down_m=_ground_down_m(records.plan(window.until_ns, incident.site_id)),
         description="" if dispatch is None else roster.shown(description(dispatch)),
     )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from base_station.exporters.interface import IncidentTracks, LazyTracks, WornTrack
-from base_station.storage.db.records import FOREVER_NS
+from base_station.storage.db.window import FOREVER_NS
 from shared.errors import UserError
 
 

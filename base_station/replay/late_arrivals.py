@@ -15,6 +15,7 @@ from base_station.core.events import Received, event_of
 from base_station.core.pins.incident_scope import concerns_closed_incident
 from base_station.core.pins.pin_registry import PinAction
 from base_station.core.pipeline import StationPipeline
+from base_station.core.state import OWN_SITE_ID
 from base_station.core.state.boot_state import captured_ns
 from shared.channels import (
     DESCRIPTION,
@@ -42,9 +43,14 @@ _LIVE = frozenset({STATUS, HEARTBEAT, DESCRIPTION})  # what says nothing of wher
 
 
 def apply_late_arrivals(
-    pipeline: StationPipeline, records: Callable[[], Iterable[Record]], closed_ns: int
+    pipeline: StationPipeline,
+    records: Callable[[], Iterable[Record]],
+    closed_ns: int,
+    site_id: str = OWN_SITE_ID,
 ) -> None:
-    """``pipeline`` stands where the incident was closed; ``records`` gives what came since."""
+    """``pipeline`` stands where the incident on this site was closed; ``records`` gives what came
+    since.
+    """
     late = _late(records())
     recorded = [run for run in late if _is_recorded(pipeline, run)]
     for run in recorded:
@@ -57,7 +63,7 @@ def apply_late_arrivals(
         message = event.message
         assert isinstance(message, OperatorAction)
         assert isinstance(message.action, PinAction)
-        if concerns_closed_incident(pipeline.state, message.action, closed_ns):
+        if concerns_closed_incident(pipeline.state, site_id, message.action, closed_ns):
             pipeline.step(event)
 
 
@@ -133,7 +139,8 @@ def _debriefed(records: Iterable[Record]) -> Iterator[Received]:
         event = event_of(*record) if record[1] == key else None
         if not isinstance(event, Received) or not isinstance(event.message, OperatorAction):
             continue
-        if isinstance(event.message.action, OpenIncident):
+        action = event.message.action
+        if isinstance(action, OpenIncident) and not action.beside_others:
             return
         if isinstance(event.message.action, PinAction):
             yield event

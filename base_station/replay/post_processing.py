@@ -260,16 +260,21 @@ class PostProcessor:
         with self._working:
             until_ns = incident.closed_ns or _EVER_NS
             is_outdated = self._archive.watch()
-            state = self._state_at(until_ns, _late_data_ns(incident), on_progress)
-            site = state.site
-            evidence = evidence_of_site(state, OWN_SITE_ID, FloorGrid.of(site.placed_plan))
+            state = self._state_at(
+                incident.incident_id, until_ns, _late_data_ns(incident), on_progress
+            )
+            site_id = _site_id(state, incident.incident_id)
+            site = state.sites[site_id]
+            evidence = evidence_of_site(state, site_id, FloorGrid.of(site.placed_plan))
             solution = Solution({}, {})  # nobody has been heard of yet
             if evidence:
                 solution = self._smoother.smooth(evidence, encounters_of(state, site))
             on_progress(1.0)
             return SolvedIncident(state, solution, is_outdated)
 
-    def _state_at(self, until_ns: int, late_data_ns: int, on_progress: Progress) -> StationState:
+    def _state_at(
+        self, incident_id: str, until_ns: int, late_data_ns: int, on_progress: Progress
+    ) -> StationState:
         """As everything was then, and with what came of that time until ``late_data_ns``."""
         playback = Playback(self._archive)
         begin_ns, end_ns = None, min(until_ns, self._clock.utc_ns())
@@ -279,7 +284,10 @@ class PostProcessor:
             on_progress(0.9 * min((playback.at_ns - begin_ns) / span_ns, 1.0))
         if late_data_ns > until_ns:
             apply_late_arrivals(
-                playback.pipeline, lambda: self._between(until_ns, late_data_ns), until_ns
+                playback.pipeline,
+                lambda: self._between(until_ns, late_data_ns),
+                until_ns,
+                _site_id(playback.pipeline.state, incident_id),
             )
         return playback.pipeline.state
 
@@ -290,6 +298,12 @@ class PostProcessor:
 def _late_data_ns(incident: IncidentRow) -> int:
     """When more came to be known of it, since it was closed; 0: nothing has."""
     return incident.late_data_ns or 0  # a row that was not read from the table has none
+
+
+def _site_id(state: StationState, incident_id: str) -> str:
+    """Site of an incident; of one that the log does not have the station's own."""
+    incident = state.incidents.get(incident_id)
+    return OWN_SITE_ID if incident is None else incident.site_id
 
 
 def read_report(kept: bytes) -> IncidentReport | None:
@@ -313,9 +327,13 @@ def _raw_tracks(incident: IncidentRow, known: SolvedIncident) -> Tracks:
 
 
 def _within(incident: IncidentRow, known: SolvedIncident) -> list[str]:
-    """Units of which anything is known while it was open."""
-    paths = known.solution.paths
-    return [unit_id for unit_id, path in paths.items() if _rows_within(incident, path)]
+    """Units that were in it at its end and of which anything is known while it was open."""
+    units, paths = known.state.units, known.solution.paths.items()
+    return [
+        unit_id
+        for unit_id, path in paths
+        if units[unit_id].incident_id == incident.incident_id and _rows_within(incident, path)
+    ]
 
 
 def _samples(incident: IncidentRow, known: SolvedIncident, unit_id: str) -> list[TrackSample]:

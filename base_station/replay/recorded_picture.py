@@ -122,6 +122,7 @@ class RecordedPicture:
             seq=seq,
             now_ms=now_ms,
             incident=None if apart.incident is None else named_incident(apart.incident, people),
+            incidents=tuple(named_incident(one, people) for one in apart.incidents),
             units=tuple(self._shown(one, now_ms, people) for one in self._units.values()),
             alarms=tuple(
                 named_alarm(one, people) for one in (*still_open, *resolved[-RESOLVED_SHOWN:])
@@ -142,7 +143,7 @@ class RecordedPicture:
 
     def _take_snapshot(self, snapshot: Snapshot, trails: Trails) -> None:
         was = self._apart
-        names = ("incident", "plan", "anchor", "dispatches")
+        names = ("incident", "incidents", "plan", "anchor", "sites", "dispatches")
         is_other = any(getattr(was, name) != getattr(snapshot, name) for name in names)
         self.is_new = self.is_new or is_other
         changed = [one for one in snapshot.units if self._units.get(one.unit_id) != one]

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from base_station.engine.ports import LiveSink, Trails
+from base_station.replay.incident_sink import IncidentSink
 from base_station.replay.playback import Archive
 from base_station.replay.player import Player
 from base_station.replay.recomputed_player import RecomputedPlayer
@@ -71,7 +72,7 @@ class ReplaySession:
         self._was_changed: Callable[[], bool]
         self._looking = LogOnChange(_log, "what the log lacks cannot be seen")
         self._trouble = LogOnChange(_log, "whether the past was changed cannot be seen")
-        self._sink, self._people = sink, people
+        self._sink, self._people = IncidentSink(sink, window.incident_id), people
         self._player: Player  # that is shown
         self._recorded: RecordedPlayer | None  # of what the log has of consoles
         self._recomputed: RecomputedPlayer | None  # once it is needed
@@ -286,7 +287,8 @@ class ReplaySession:
 
     def _answer(self) -> None:
         while self._asked:
-            self._asked.popleft()(*self._player.snapshot(self.view()))
+            shown = self._player.snapshot(self.view())
+            self._asked.popleft()(*self._sink.of_incident(*shown))
 
     def _move(self) -> None:
         """Let as much of the past go by as the clock and the speed say."""

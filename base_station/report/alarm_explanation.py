@@ -16,7 +16,8 @@ from base_station.report.contents import Interval, Series
 from base_station.report.log_facts import UnitFacts, read_facts, wanted_keys
 from base_station.report.orders import details_of
 from base_station.storage.db.models import AlarmRow
-from base_station.storage.db.records import Records, Window
+from base_station.storage.db.records import Records
+from base_station.storage.db.window import Window
 from shared.clock import NS_PER_S
 from shared.mcap_log import LogRecord
 from shared.messages import EventKind

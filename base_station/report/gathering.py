@@ -30,14 +30,16 @@ from base_station.report.contents import (
     UnitEntry,
     WornTime,
 )
+from base_station.report.incident_entries import entries_of_incident
 from base_station.report.log_facts import LogFacts, read_facts, series_within, wanted_keys
 from base_station.report.orders import details_of, kind_name, orders_of
 from base_station.report.trail import measure
 from base_station.site.plan import Plan, salvage_plan
 from base_station.storage.db.models import AlarmRow, AlarmTransition, AuditEntry, IncidentRow
-from base_station.storage.db.records import Records, TrackSample, Window
+from base_station.storage.db.records import Records, TrackSample
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.db.window import Window
 from base_station.storage.log_defects import LogDefects
 from shared.clock import NS_PER_S
 from shared.messages.station import (
@@ -80,16 +82,20 @@ class _Gathering:
         until_ns = incident.closed_ns or max(sources.recorded_until_ns(), incident.opened_ns)
         self._during = Interval(incident.opened_ns, until_ns)
         self._window = Window(incident.opened_ns, until_ns + 1)  # the closing is of it
-        self._wearings = self._all_wearings()
         self._alarms = sorted(
-            records.alarms(self._window), key=lambda one: (one.raised_ns, one.alarm_id)
+            records.alarms(self._window, None, incident),
+            key=lambda one: (one.raised_ns, one.alarm_id),
         )
-        entries = [one for one in records.audit_entries(self._window) if one.action in _ACTIONS]
+        self._members = records.members_of(incident)
+        self._assignments = sources.roster.assignments(incident.opened_ns, until_ns)
+        done = [one for one in records.audit_entries(self._window) if one.action in _ACTIONS]
+        entries = entries_of_incident(done, incident.incident_id, self._members, self._assignments)
+        self._wearings = self._all_wearings()
         self._entries = sorted(entries, key=lambda one: (one.t_ns, one.number))
 
     def contents(self, on_progress: Progress) -> ReportContents:
         sources, incident = self._sources, self._incident
-        geojson = sources.records.plan(self._window.until_ns)
+        geojson = sources.records.plan(self._window.until_ns, incident.site_id)
         plan = None if geojson is None else salvage_plan(geojson)
         facts = self._facts(lambda done: on_progress(0.8 * done))
         people = self._people(plan, facts, lambda done: on_progress(0.8 + 0.2 * done))
@@ -97,6 +103,8 @@ class _Gathering:
         report = None if kept is None else read_report(kept)
         traces = tuple(self._traces(facts))
         times = self._times()
+        anchor = sources.records.anchor(self._window.until_ns, incident.site_id)
+        worn = wearers(sources.roster, incident, self._members)
         return ReportContents(
             incident_id=incident.incident_id,
             name=sources.roster.shown(incident.name),
@@ -112,8 +120,8 @@ class _Gathering:
             traces=traces,
             traces_left_out=len(self._explained_alarms()) - len(traces),
             plan=plan,
-            has_anchor=sources.records.anchor(self._window.until_ns) is not None,
-            assessment=report and with_people(report, wearers(sources.roster, incident)),
+            has_anchor=anchor is not None,
+            assessment=report and with_people(report, worn),
             defects=tuple(sources.defects()),
             thresholds=tuple(self._thresholds()),
             par_interval_s=times[0],
@@ -134,20 +142,26 @@ class _Gathering:
         roster = self._sources.roster
         found: dict[str, list[WornTime]] = {}
         last_person: dict[str, str] = {}
-        for one in roster.assignments(self._during.from_ns, self._during.until_ns):
+        for one in self._assignments:
             until_ns = self._during.until_ns if one.until_ns is None else one.until_ns
-            during = Interval(one.from_ns, until_ns).within(self._during)
-            if during is None:
-                continue
-            known, of_unit = roster.wearer(one), found.setdefault(one.unit_id, [])
-            is_same = last_person.get(one.unit_id) == one.person_id
-            if of_unit and is_same and of_unit[-1].during.until_ns == during.from_ns:
-                during = Interval(of_unit.pop().during.from_ns, during.until_ns)
-            last_person[one.unit_id] = one.person_id
-            of_unit.append(WornTime(one.unit_id, known.name, known.crew, known.role, during))
+            for during in self._present(one.unit_id, Interval(one.from_ns, until_ns)):
+                known, of_unit = roster.wearer(one), found.setdefault(one.unit_id, [])
+                is_same = last_person.get(one.unit_id) == one.person_id
+                if of_unit and is_same and of_unit[-1].during.until_ns == during.from_ns:
+                    during = Interval(of_unit.pop().during.from_ns, during.until_ns)  # noqa: PLW2901
+                last_person[one.unit_id] = one.person_id
+                of_unit.append(WornTime(one.unit_id, known.name, known.crew, known.role, during))
         for unit_id in self._sources.records.track_units(self._window):
-            found.setdefault(unit_id, [WornTime(unit_id, "", "", "", self._during)])
-        return dict(sorted(found.items()))
+            if unit_id not in found:
+                present = self._present(unit_id, self._during)
+                found[unit_id] = [WornTime(unit_id, "", "", "", during) for during in present]
+        return {unit_id: worn for unit_id, worn in sorted(found.items()) if worn}
+
+    def _present(self, unit_id: str, worn: Interval) -> list[Interval]:
+        """Parts of a time in which the unit was in the incident."""
+        windows = self._members.of(unit_id)
+        parts = [Interval(one.from_ns, one.until_ns).within(worn) for one in windows]
+        return [part for one in parts if one and (part := one.within(self._during))]
 
     def _name_at(self, unit_id: str, t_ns: int) -> str:
         for one in self._wearings.get(unit_id, ()):

@@ -208,6 +208,12 @@ def _from(said: Said) -> str:
     return f", from dispatch {number}" if number else ""
 
 
+def _to_incident(said: Said, name_of: NameOf) -> str:
+    names = ", ".join(map(name_of, said["unit_ids"]))
+    incident_id = said["incident_id"]
+    return f"{names}: {f'to incident {incident_id}' if incident_id else 'unassigned'}"
+
+
 def _dispatch(said: Said) -> str:
     words = said["type"] or said["type_code"], said["address"], " ".join(said["units"])
     ended = "; ended by the dispatch centre" if said["has_ended"] else ""
@@ -230,6 +236,7 @@ _ACTIONS: Mapping[str, Callable[[Said, NameOf], tuple[str, str]]] = {
     "DismissDispatch": lambda said, _: (INCIDENT, f"Dispatch {said['number']} dismissed"),
     "CloseIncident": lambda said, _: (INCIDENT, f"Incident closed{_despite(said)}"),
     "Assign": lambda said, _: (PERSON, f"{said['person_name']} wears {said['unit_id']}"),
+    "AssignIncident": lambda said, name_of: (PERSON, _to_incident(said, name_of)),
     "Unassign": lambda said, _: (PERSON, f"{said['unit_id']} is worn by nobody"),
     "SetRest": lambda said, name_of: (
         PERSON,

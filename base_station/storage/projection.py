@@ -22,6 +22,9 @@ class Projection(msgspec.Struct, frozen=True):
     descriptions: tuple[UnitDescription, ...] = ()
     heard: tuple[tuple[str, int], ...] = ()  # (unit id, station time), every five seconds or so
     news: tuple[str, ...] = ()  # closed incidents of whose time more is known
+    opened: tuple[tuple[str, str], ...] = ()  # (incident id, id of its site)
+    # (unit id, incident id, station time) of coming to an incident; empty: of leaving it
+    memberships: tuple[tuple[str, str, int], ...] = ()
 
     @property
     def is_urgent(self) -> bool:

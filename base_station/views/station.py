@@ -6,7 +6,7 @@ import msgspec
 
 from base_station.core.accountability import warning_s
 from base_station.core.pins.evidence import location_of
-from base_station.core.state import Alarm, Dispatch, Incident, StationState
+from base_station.core.state import OWN_SITE_ID, Alarm, Dispatch, Incident, SiteState, StationState
 from base_station.core.state.command import Delivery, SentCommand
 from base_station.core.state.pin import WAITING, Pin
 from base_station.core.units.unkept_messages import unkept_problem
@@ -28,6 +28,7 @@ from base_station.views.wire import (
     PinView,
     RecordingView,
     ReplayView,
+    SiteView,
     Snapshot,
     StandbyView,
 )
@@ -113,6 +114,7 @@ def incident_view(incident: Incident, people: PersonLookup) -> IncidentView:
         par_warning_s=warning_s(incident),
         work_limit_s=incident.work_limit_s,
         dispatch=dispatch_view(incident.dispatch, people) if incident.dispatch else None,
+        site_id=incident.site_id,
     )
 
 
@@ -147,13 +149,15 @@ def _offered_view(dispatch: Dispatch, people: PersonLookup) -> DispatchView:
 
 
 def pin_views(state: StationState, people: PersonLookup) -> tuple[PinView, ...]:
-    """All pins, in the order of setting."""
-    return tuple(_pin_view(state, pin, people) for pin in state.site.pins.values())
+    """All pins, of each site in the order of setting."""
+    return tuple(
+        _pin_view(site, pin, people) for site in state.sites.values() for pin in site.pins.values()
+    )
 
 
-def _pin_view(state: StationState, pin: Pin, people: PersonLookup) -> PinView:
-    verdict = state.site.pin_verdicts.get(pin.pin_id, WAITING)
-    at = location_of(state.site, pin)
+def _pin_view(site: SiteState, pin: Pin, people: PersonLookup) -> PinView:
+    verdict = site.pin_verdicts.get(pin.pin_id, WAITING)
+    at = location_of(site, pin)
     return PinView(
         pin_id=pin.pin_id,
         kind=pin.kind,
@@ -187,20 +191,25 @@ def beacon_views(state: StationState, people: PersonLookup) -> tuple[BeaconView,
             std_m=beacon.std_m,
             reach_m=beacon.reach_m,
             seen_ms=to_ms_or_none(beacon.seen_ns),
+            site_id=site_id,
         )
-        for beacon in state.site.beacons.values()
+        for site_id, site in state.sites.items()
+        for beacon in site.beacons.values()
     )
 
 
 def external_views(state: StationState) -> tuple[ExternalMarkerView, ...]:
-    """On the plan; without an anchor nobody knows where that is."""
-    anchor = state.site.anchor
-    if anchor is None:
-        return ()
-    return tuple(_external_view(anchor, marker) for marker in state.external.values())
+    """On the plan of each site; without an anchor nobody knows where that is."""
+    anchors = ((site_id, site.anchor) for site_id, site in state.sites.items())
+    return tuple(
+        _external_view(site_id, anchor, marker)
+        for site_id, anchor in anchors
+        if anchor is not None
+        for marker in state.external.values()
+    )
 
 
-def _external_view(anchor: Anchor, marker: ExternalMarker) -> ExternalMarkerView:
+def _external_view(site_id: str, anchor: Anchor, marker: ExternalMarker) -> ExternalMarkerView:
     north_m, east_m, _ = anchor.to_incident_m(marker.lat_deg, marker.lon_deg, anchor.height_m)
     return ExternalMarkerView(
         marker_id=marker.marker_id,
@@ -213,14 +222,15 @@ def _external_view(anchor: Anchor, marker: ExternalMarker) -> ExternalMarkerView
         radius_m=marker.radius_m or None,
         t_ms=to_ms(marker.t_ns),
         stale_ms=to_ms(marker.stale_ns),
+        site_id=site_id,
     )
 
 
 def health_view(state: StationState, facts: StationFacts) -> HealthView:
     counts = state.counts
     problems = [*state.problems.values(), *facts.problems]
-    if state.site.plan is not None and state.site.plan.damage:
-        problems.append(state.site.plan.damage)
+    plans = [site.plan for site in state.sites.values() if site.plan is not None]
+    problems += [plan.damage for plan in plans if plan.damage]
     if unkept := unkept_problem(state):
         problems.append(unkept)
     if counts.undecodable:
@@ -259,22 +269,36 @@ def snapshot(
     """Everything that a console shows but trails."""
     still_open = [alarm for alarm in state.alarms.values() if alarm.is_open]
     shown = [*still_open, *state.history[-RESOLVED_SHOWN:]]
+    incident = state.shown_incident
+    site_id = OWN_SITE_ID if incident is None else incident.site_id
+    site = state.sites[site_id]
     return Snapshot(
         seq=seq,
         now_ms=to_ms(state.t_ns),
-        incident=incident_view(state.incident, people) if state.incident else None,
+        incident=incident_view(incident, people) if incident else None,
         units=unit_views(state, state.units.values(), people),
         alarms=tuple(alarm_view(alarm, people) for alarm in shown),
         commands=tuple(command_view(command, people) for command in state.commands.values()),
         pins=pin_views(state, people),
         beacons=beacon_views(state, people),
         external=external_views(state),
-        plan=msgspec.Raw(state.site.plan.geojson) if state.site.plan else None,
-        anchor=anchor_view(state.site.anchor) if state.site.anchor else None,
+        plan=msgspec.Raw(site.plan.geojson) if site.plan else None,
+        anchor=anchor_view(site.anchor) if site.anchor else None,
         health=health_view(state, facts),
         replay=replay,
-        plan_placed=state.site.plan is state.site.placed_plan,
+        plan_placed=site.plan is site.placed_plan,
+        incidents=tuple(incident_view(one, people) for one in state.incidents.values()),
+        sites=tuple(_site_view(one, it) for one, it in state.sites.items() if one != site_id),
         dispatches=tuple(_offered_view(one, people) for one in state.dispatches),
+    )
+
+
+def _site_view(site_id: str, site: SiteState) -> SiteView:
+    return SiteView(
+        site_id=site_id,
+        plan=msgspec.Raw(site.plan.geojson if site.plan else b"null"),
+        anchor=anchor_view(site.anchor) if site.anchor else None,
+        plan_placed=site.plan is site.placed_plan,
     )
 
 

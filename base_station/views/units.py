@@ -115,6 +115,7 @@ def _unit_view(
         preflight_view(unit.description.preflight) if unit.description else None,
         unit.description.tracker if unit.description else "",
         worn_sensor_views(worn_sensors(unit.description)) if unit.description else (),
+        unit.incident_id,
     )
 
 
@@ -157,7 +158,8 @@ def person_view(person: Person, people: PersonLookup) -> PersonView:
 
 def _duty_view(state: StationState, unit: UnitState, duty: Duty, people: PersonLookup) -> DutyView:
     last = duty.confirmation
-    opened_ns = 0 if state.incident is None else state.incident.opened_ns
+    incident = state.incident_of(unit)
+    opened_ns = 0 if incident is None else incident.opened_ns
     return DutyView(
         checked_in_ms=None if last is None else to_ms(last.t_ns),
         checked_in_by="" if last is None else shown_text(last.by, people),

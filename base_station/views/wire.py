@@ -192,6 +192,7 @@ class BeaconView(Answer, frozen=True):
     std_m: float
     reach_m: float
     seen_ms: int | None  # when a unit last saw it
+    site_id: str = ""  # on which site it hangs
 
 
 class ExternalMarkerView(Answer, frozen=True):
@@ -207,6 +208,7 @@ class ExternalMarkerView(Answer, frozen=True):
     radius_m: float | None  # of the region in which it is; None: unknown
     t_ms: int  # the time to which the place belongs
     stale_ms: int  # from then on it is old
+    site_id: str = ""  # in whose frame its place is: a marker is shown on each site
 
 
 class UnitView(Answer, frozen=True):
@@ -238,6 +240,9 @@ class UnitView(Answer, frozen=True):
     preflight: PreflightView | None  # None: it has not checked itself yet
     tracker: str = ""  # that makes its positions of the samples; empty: not known yet
     sensors: tuple[WornSensorView, ...] = ()  # inertial ones; empty: not known yet
+    # In which it is, or was when that was closed; empty: unassigned; None: in a recording of an
+    # earlier version, where there was one incident.
+    incident_id: str | None = None
 
 
 class DeliveryView(Answer, frozen=True):
@@ -306,6 +311,7 @@ class IncidentView(Answer, frozen=True):
     par_warning_s: float  # how long before it is due a check-in is announced
     work_limit_s: float
     dispatch: DispatchView | None = None  # from which it was opened
+    site_id: str = ""  # its ground: empty, the station's own
 
 
 class StandbyView(Answer, frozen=True):
@@ -417,6 +423,15 @@ class AnchorView(Answer, frozen=True):
     plan_rotation_rad: float
 
 
+class SiteView(Answer, frozen=True):
+    """Ground of an incident beside the one of ``Snapshot.incident``."""
+
+    site_id: str
+    plan: Annotated[msgspec.Raw, shown_as("Plan | null")]
+    anchor: AnchorView | None
+    plan_placed: bool
+
+
 class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     seq: int
     now_ms: int
@@ -432,6 +447,9 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     anchor: AnchorView | None
     health: HealthView
     replay: ReplayView | None
+    # All that are open, and closed ones until the next is opened on their site.
+    incidents: tuple[IncidentView, ...] = ()
+    sites: tuple[SiteView, ...] = ()  # beside the one of ``incident``
     plan_placed: bool = True  # False: nobody knows yet where on the plan people are
     dispatches: tuple[DispatchView, ...] = ()  # from which no incident was opened, oldest first
 

@@ -66,6 +66,7 @@ class PlaceBeacon(msgspec.Struct, frozen=True):
     floor: int | None
     std_m: float  # of its place, each axis
     reach_m: float  # from how far away it can be seen
+    incident_id: str = ""  # on whose site; empty: on the station's own
 
 
 class RemoveBeacon(msgspec.Struct, frozen=True):

@@ -53,6 +53,7 @@ class OpenIncident(msgspec.Struct, frozen=True):
     par_interval_s: float = 0.0  # 0: the usual
     work_limit_s: float = 0.0
     dispatch_number: str = ""  # of the dispatch from which it is opened; empty: of none
+    beside_others: bool = False  # although others are open; else it is refused then
 
 
 class CloseIncident(msgspec.Struct, frozen=True):
@@ -61,6 +62,13 @@ class CloseIncident(msgspec.Struct, frozen=True):
     incident_id: str
     despite_alarm_ids: tuple[str, ...] = ()
     despite_unit_ids: tuple[str, ...] = ()
+
+
+class AssignIncident(msgspec.Struct, frozen=True):
+    """These units and their wearers work in this open incident, and in no other; empty: in none."""
+
+    incident_id: str
+    unit_ids: tuple[str, ...]
 
 
 class Assign(msgspec.Struct, frozen=True):
@@ -91,6 +99,7 @@ class SetAnchor(msgspec.Struct, frozen=True):
     lon_deg: float
     height_m: float
     plan_rotation_rad: float
+    incident_id: str = ""  # of whose site; empty: of the station's own
 
 
 class SetStart(msgspec.Struct, frozen=True):
@@ -110,12 +119,14 @@ class SetReference(msgspec.Struct, frozen=True):
 
     unit_id: str
     down_m: float
+    incident_id: str = ""  # as above
 
 
 class SetPlan(msgspec.Struct, frozen=True):
     """The building's plan, metre-based site GeoJSON."""
 
     geojson: bytes
+    incident_id: str = ""  # as above
 
 
 class ReportProblem(msgspec.Struct, frozen=True):
@@ -137,6 +148,7 @@ class SendCommand(msgspec.Struct, frozen=True):
     position_rate_hz: float  # for SET_POSITION_RATE
     lasts_s: float  # until it expires
     person_ids: tuple[str, ...] = ()
+    incident_id: str = ""  # only to who is in this incident; empty: to all
 
 
 class ConfirmCommand(msgspec.Struct, frozen=True):
@@ -154,6 +166,7 @@ class CheckIn(msgspec.Struct, frozen=True):
     everyone: bool
     check_in_id: str = ""  # by which it can be undone; empty: of an old log
     person_ids: tuple[str, ...] = ()
+    incident_id: str = ""  # of who is in this incident; empty, of everyone: in the only open one
 
 
 class UndoConfirmation(msgspec.Struct, frozen=True):
@@ -168,6 +181,7 @@ class SetAccountability(msgspec.Struct, frozen=True):
 
     par_interval_s: float
     work_limit_s: float
+    incident_id: str = ""  # empty: the only open one
 
 
 class SetThresholds(msgspec.Struct, frozen=True):
@@ -242,6 +256,7 @@ Action = (
     | ResolveAlarm
     | OpenIncident
     | CloseIncident
+    | AssignIncident
     | Assign
     | Unassign
     | RegisterUnit
@@ -276,6 +291,7 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     ResolveAlarm: "resolve_alarm",
     OpenIncident: "open_incident",
     CloseIncident: "close_incident",
+    AssignIncident: "assign_incident",
     Assign: "assign",
     Unassign: "unassign",
     RegisterUnit: "register_unit",

@@ -21,13 +21,14 @@ from base_station.storage.db.erasure import forget_in
 from base_station.storage.db.models import Base
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.projection import SqlProjection
-from base_station.storage.db.records import EVER, FOREVER_NS, Records, TrackSample, Window
+from base_station.storage.db.records import Records, TrackSample
 from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.server_store import ServerStore
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.store import Store
 from base_station.storage.db.table_copy import copy_tables_of
+from base_station.storage.db.window import EVER, FOREVER_NS, Window
 from base_station.storage.projection import Projection
 from shared.clock import NS_PER_S, ManualClock
 from shared.errors import UserError

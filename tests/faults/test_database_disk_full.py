@@ -18,9 +18,10 @@ from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.models import User
 from base_station.storage.db.projecting import project_into
 from base_station.storage.db.projection import SqlProjection
-from base_station.storage.db.records import FOREVER_NS, Records, Window
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import FOREVER_NS, Window
 from base_station.storage.projection import Projection
 from shared.clock import NS_PER_S, ManualClock
 from shared.errors import DiskFullError, StoreError, UserError

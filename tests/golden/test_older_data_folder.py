@@ -13,10 +13,11 @@ from base_station.core.state import ERASED_TEXT
 from base_station.replay.playback import compare
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.known_people import person_lookup
-from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import EVER
 from base_station.views.station import StationFacts, snapshot
 from base_station.views.stored_units import stored_sensors
 from shared.clock import SystemClock

@@ -12,7 +12,7 @@ from PIL import Image
 
 from base_station.accounts.principals import Role
 from base_station.security.pki.folder import PkiFolder
-from base_station.storage.db.records import EVER
+from base_station.storage.db.window import EVER
 from shared.enrolment import Holder, parse_enrolment
 from shared.errors import StoreError
 from tests.rig.desk_station import ORIGIN, DeskStation

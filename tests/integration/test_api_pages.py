@@ -32,6 +32,8 @@ BOUNDED = {  # lists that do not grow with what happens, by what bounds them
         "/users",
         "/tokens",
         "/accountability",
+        "/incidents/{incident_id}/members",
+        "/unassigned",
         "/units/{unit_id}/sample-tokens",  # five of a unit at most
         "/guides",  # one for each rescuer
         "/units/{unit_id}/routes",  # the nearest three

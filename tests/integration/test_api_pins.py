@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from base_station.accounts.principals import Role
-from base_station.storage.db.records import EVER
+from base_station.storage.db.window import EVER
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import Header, Position
 from tests.rig.desk_station import DeskStation

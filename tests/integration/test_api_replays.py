@@ -11,7 +11,7 @@ from base_station.accounts.principals import Role
 from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.storage.db.models import IncidentRow
-from base_station.storage.db.records import Window
+from base_station.storage.db.window import Window
 from tests.rig.desk_station import DeskStation
 from tests.rig.recording_replay import NotedReplay
 

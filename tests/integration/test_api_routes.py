@@ -19,7 +19,7 @@ from base_station.accounts.principals import Role
 from base_station.api.authentication import Scope
 from base_station.api.routes import ROUTERS
 from base_station.security.pki.folder import PkiFolder
-from base_station.storage.db.records import EVER, Window
+from base_station.storage.db.window import EVER, Window
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import StandbyView
 from shared.clock import NS_PER_MS, ManualClock
@@ -51,6 +51,10 @@ LEAST: dict[str, dict[str, Role | None]] = {
                     "DELETE /assignments/{unit_id}": C},
     "incidents": {"GET /incidents": V, "POST /incidents": C, "GET /incidents/{incident_id}": V,
                   "POST /incidents/{incident_id}/close": C,
+                  "GET /incidents/{incident_id}/members": V,
+                  "POST /incidents/{incident_id}/members": C,
+                  "DELETE /incidents/{incident_id}/members/{unit_id}": C,
+                  "GET /unassigned": V,
                   "GET /incidents/{incident_id}/alarms": V,
                   "GET /incidents/{incident_id}/dispatch": V,
                   "GET /incidents/{incident_id}/assessment": V},
@@ -341,6 +345,8 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     pull = await do("POST /recordings", unit | {"from_ms": 1_000, "to_ms": 2_000})
     await do("DELETE /recordings/{fetch_id}", fetch_id=pull["fetch_id"])
     await do("DELETE /assignments/{unit_id}", **unit)
+    await do("DELETE /incidents/{incident_id}/members/{unit_id}", incident_id=incident, **unit)
+    await do("POST /incidents/{incident_id}/members", {"target": unit}, incident_id=incident)
     await do("POST /incidents/{incident_id}/close", incident_id=incident)
     await do("POST /people/{person_id}/forget", {"name": "Bea"}, person_id=person)
     gone = (await do("POST /people", {"name": "Cy"}))["person_id"]

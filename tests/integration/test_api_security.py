@@ -13,7 +13,7 @@ from base_station.accounts.principals import Role
 from base_station.api.app import create_app
 from base_station.api.authentication import COOKIE
 from base_station.storage.db.accounts import SESSION_S
-from base_station.storage.db.records import EVER
+from base_station.storage.db.window import EVER
 from shared.clock import ManualClock
 from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 

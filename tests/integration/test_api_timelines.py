@@ -20,9 +20,10 @@ from base_station.replay.processes.server import ReplayProcesses
 from base_station.replay.processes.timeline_process import TimelineProcess
 from base_station.replay.timelines.unit_timeline import TimelineRequest, read_timeline
 from base_station.storage.data_folder import DataFolder
-from base_station.storage.db.records import Records, Window
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import Window
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
 from shared.errors import StoreError
 from shared.mcap_log import segment_paths

@@ -8,7 +8,7 @@ import httpx
 import pytest
 
 from base_station.accounts.principals import Role
-from base_station.storage.db.records import EVER
+from base_station.storage.db.window import EVER
 from shared.errors import UserError
 from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
 

@@ -23,9 +23,10 @@ from base_station.storage.db.copying import copy_database, known_segments
 from base_station.storage.db.migrate import newest_revision
 from base_station.storage.db.models import Base, PersonRow
 from base_station.storage.db.projection import SqlProjection
-from base_station.storage.db.records import FOREVER_NS, Records, Window
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import FOREVER_NS, Window
 from shared.clock import NS_PER_S, ManualClock
 from shared.errors import StoreError
 from shared.messages.station import (

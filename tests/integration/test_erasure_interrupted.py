@@ -14,9 +14,10 @@ from base_station.privacy import erasure_service as forgetter_module
 from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.privacy.erasure_service import ErasureProgress
 from base_station.storage.data_folder import DataFolder
-from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import EVER
 from shared.clock import SystemClock
 from shared.errors import StoreError, UserError
 from shared.mcap_log import (

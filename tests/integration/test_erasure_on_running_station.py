@@ -18,8 +18,9 @@ from base_station.privacy.erasure_service import ClosedLog, ErasureService
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.models import IncidentRow
-from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.records import Records
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import EVER
 from base_station.storage.recorder import Recorder
 from base_station.unit_sync.recordings.transfer import TransferRequest, TransferState
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue

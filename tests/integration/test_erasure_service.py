@@ -12,9 +12,10 @@ from base_station.app import folder_commands as station_app
 from base_station.core.events import event_of
 from base_station.core.state import ERASED_TEXT
 from base_station.privacy.erasure_queue import ErasureJob, ErasureState
-from base_station.storage.db.records import EVER, FOREVER_NS, Records, Window
+from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import EVER, FOREVER_NS, Window
 from base_station.storage.job_queue import JobList
 from shared.channels import STATUS, Direction, backfilled_key, channel_of
 from shared.clock import SystemClock
@@ -88,7 +89,7 @@ def test_the_others_stay_and_replay_the_same(story: Story) -> None:
         if isinstance(output, FusedPosition)
     ]
     assert [_bare(one) for one in replayed if one.unit_id == "FF-02"] == list(map(_bare, logged))
-    assert pipeline.state.incident is not None
+    assert pipeline.state.shown_incident is not None
 
 
 def _bare(fused: FusedPosition) -> bytes:
@@ -153,7 +154,10 @@ def test_an_incident_is_forgotten_with_everybody_in_it(story: Story) -> None:
     worn = []
     for record in read_log(story.folder / "log"):
         pipeline.step(event_of(*record))
-        if pipeline.state.incident is not None and pipeline.state.incident.closed_ns is None:
+        if (
+            pipeline.state.shown_incident is not None
+            and pipeline.state.shown_incident.closed_ns is None
+        ):
             worn += [
                 unit.wearer.person for unit in pipeline.state.units.values() if unit.wearer.person
             ]

@@ -162,8 +162,8 @@ def test_nobody_speaks_as_the_station(tmp_path: Path) -> None:
         station.act(OpenIncident("i1", "Mill Lane"))
         station.bus.publish(OPERATOR.key(STATION_ID), encode(forged), Qos.LIVE)
         until(lambda: any(a.text for d in station.screen.deltas for a in d.alarms))
-        assert station.pipeline.state.incident is not None
-        assert station.pipeline.state.incident.closed_ns is None
+        assert station.pipeline.state.shown_incident is not None
+        assert station.pipeline.state.shown_incident.closed_ns is None
         assert not any(payload == encode(forged) for _, _, payload in station.log.records())
 
 

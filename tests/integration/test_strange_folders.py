@@ -17,8 +17,9 @@ from base_station.app.offline_log import open_offline_log
 from base_station.app.station_storage import StationStorage, open_storage
 from base_station.core.log_position import LogPosition
 from base_station.storage.data_folder import DataFolder
-from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.records import Records
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import EVER
 from base_station.storage.recorder import Recorder
 from shared.clock import ManualClock
 from shared.errors import LogError, StoreError

@@ -16,10 +16,11 @@ from base_station.site.base_map import Corners
 from base_station.standby.table_replication import TableReplication, TableServer
 from base_station.storage.db.accounts import HAND_OVER_S, SESSION_S, Accounts
 from base_station.storage.db.base_maps import BaseMaps
-from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.records import Records
 from base_station.storage.db.replicated_tables import ReplicatedTables
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import EVER
 from shared.bus_memory import MemoryRouter
 from shared.clock import ManualClock
 from shared.errors import StoreError

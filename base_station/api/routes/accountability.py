@@ -9,9 +9,9 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field, StringConstraints
 
 from base_station.api.authentication import Viewer
-from base_station.api.forms import ID, Form, Id, UnitId, UnitIdOrNone
+from base_station.api.forms import ID, Form, Id, PersonIdText, UnitId, UnitIdOrNone
 from base_station.api.idempotent_request import Perform
-from base_station.api.problems import Problem
+from base_station.api.named_incident import open_or_404
 from base_station.api.routes.commands import EveryoneTarget, Target, UnitTarget, members_of
 from base_station.api.services import Station
 from base_station.core.accountability import LONGEST_S, SHORTEST_S
@@ -30,6 +30,7 @@ class OnDuty(BaseModel):
     """A member whose PAR is to be confirmed."""
 
     unit_id: str
+    incident_id: str
     person_id: str
     name: str
     crew: str
@@ -50,6 +51,7 @@ class NewCheckIn(Form):
     """PAR confirmed by radio."""
 
     target: Target
+    incident_id: PersonIdText | None = None  # only of who is in it
     check_in_id: CheckInId | None = None  # of the client's choice, to undo it by; None: any
 
 
@@ -67,16 +69,15 @@ class Rest(Form):
 
 
 @router.get("/accountability")
-def list_on_duty(station: Station, _: Viewer) -> list[OnDuty]:
-    """Whose PAR is to be confirmed, the most urgent first."""
+def list_on_duty(station: Station, _: Viewer, incident_id: Id | None = None) -> list[OnDuty]:
+    """Whose PAR is to be confirmed, the most urgent first; of one incident, or of all."""
     picture = station.picture()
-    incident = picture.incident
-    if incident is None or incident.closed_ms is not None:
-        return []
+    incidents = {one.incident_id: one for one in picture.incidents}
     found = [
-        _on_duty(unit.unit_id, unit.person, unit.duty, incident, picture.now_ms)
+        _on_duty(unit.unit_id, unit.person, unit.duty, incidents[unit.incident_id], picture.now_ms)
         for unit in picture.units
-        if unit.person is not None and unit.duty is not None
+        if unit.person is not None and unit.duty is not None and unit.incident_id in incidents
+        if incident_id in (None, unit.incident_id)
     ]
     return sorted(found, key=lambda one: one.left_s)
 
@@ -94,7 +95,9 @@ def check_in(new: NewCheckIn, station: Station, perform: Perform) -> None:
     unit_id = new.target.unit_id if isinstance(new.target, UnitTarget) else ""
     everyone = isinstance(new.target, EveryoneTarget)
     check_in_id = new.check_in_id or uuid.uuid4().hex
-    perform(CheckIn(unit_id, "", everyone, check_in_id, members_of(new.target, station)))
+    incident_id = open_or_404(station, new.incident_id).incident_id if new.incident_id else ""
+    people = members_of(new.target, station)
+    perform(CheckIn(unit_id, "", everyone, check_in_id, people, incident_id))
 
 
 @router.post("/check-ins/{check_in_id}/undo", status_code=204)
@@ -107,10 +110,8 @@ def undo_check_in(check_in_id: Id, perform: Perform, undo: UndoCheckIn | None = 
 
 @router.put("/incidents/{incident_id}/accountability", status_code=204)
 def set_times(incident_id: Id, times: Times, station: Station, perform: Perform) -> None:
-    incident = station.picture().incident
-    if incident is None or incident.incident_id != incident_id or incident.closed_ms is not None:
-        raise Problem(404, f"There is no open incident {incident_id}.")
-    perform(SetAccountability(times.par_interval_s, times.work_limit_s))
+    open_or_404(station, incident_id)
+    perform(SetAccountability(times.par_interval_s, times.work_limit_s, incident_id))
 
 
 @router.put("/units/{unit_id}/rest", status_code=204)
@@ -125,6 +126,7 @@ def _on_duty(
     left_s = (duty.due_ms - now_ms) / 1000.0
     return OnDuty(
         unit_id=unit_id,
+        incident_id=incident.incident_id,
         person_id=person.person_id,
         name=person.name,
         crew=person.crew,

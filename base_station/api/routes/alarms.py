@@ -18,7 +18,7 @@ from base_station.api.refusals import not_found_if_unknown
 from base_station.api.services import Services, Station
 from base_station.report.alarm_explanation import Crossing
 from base_station.report.contents import Series
-from base_station.storage.db.records import Window
+from base_station.storage.db.window import Window
 from base_station.views.answer import Answer, to_ms
 from base_station.views.station import alarm_view
 from base_station.views.wire import AlarmView

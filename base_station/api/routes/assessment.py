@@ -23,5 +23,7 @@ def assess_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> Inci
     live = station.records.tracks_of(incident)
     post_processor = hindsight_of(station)
     report = post_processor.assess(incident, live)
-    named = with_people(report, wearers(station.roster, incident))
+    named = with_people(
+        report, wearers(station.roster, incident, station.records.members_of(incident))
+    )
     return msgspec.structs.replace(named, is_newest=post_processor.is_newest(incident))

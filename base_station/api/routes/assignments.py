@@ -13,7 +13,7 @@ from base_station.api.forms import Form, Limit, PersonIdText, UnitId, UnitIdText
 from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
 from base_station.api.services import Station
-from base_station.storage.db.records import Window
+from base_station.storage.db.window import Window
 from base_station.views.answer import to_ms, to_ms_or_none
 from shared.messages.station import Assign, Unassign
 

@@ -12,7 +12,7 @@ from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import IdempotencyKey, Limit, window
 from base_station.api.problems import Problem
 from base_station.core.idempotency import audit_entry_prefixes
-from base_station.storage.db.records import Window
+from base_station.storage.db.window import Window
 from base_station.views.answer import to_ms
 
 router = APIRouter(tags=["audit"])

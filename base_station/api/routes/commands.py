@@ -10,8 +10,9 @@ from fastapi import APIRouter
 from pydantic import Discriminator, Field, Tag
 
 from base_station.api.authentication import Viewer
-from base_station.api.forms import Form, Id, Note, ShortText, UnitIdText
+from base_station.api.forms import Form, Id, Note, PersonIdText, ShortText, UnitIdText
 from base_station.api.idempotent_request import Perform
+from base_station.api.named_incident import open_or_404
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station
 from base_station.views.wire import CommandView
@@ -85,6 +86,7 @@ class NewCommand(Form):
     target: Target
     text: Note = ""
     position_rate_hz: Annotated[float, Field(ge=0.1, le=50.0)] = 5.0  # for set_position_rate
+    incident_id: PersonIdText | None = None  # only to who is in it; None: to all of the target
     expires_s: Annotated[float, Field(ge=1.0, le=86_400.0)] = 600.0
 
 
@@ -116,6 +118,7 @@ def send(new: NewCommand, station: Station, perform: Perform) -> CommandView:
         position_rate_hz=new.position_rate_hz if new.kind is Kind.SET_POSITION_RATE else 0.0,
         lasts_s=new.expires_s,
         person_ids=members_of(new.target, station),
+        incident_id=_named(station, new.incident_id),
     )
     return _command_or_404(station, perform(action).created_id)
 
@@ -136,6 +139,10 @@ def undo_confirm(
     """
     _command_or_404(station, command_id)
     perform(UndoConfirmation(command_id, by_radio.unit_id))
+
+
+def _named(station: Services, incident_id: str | None) -> str:
+    return "" if incident_id is None else open_or_404(station, incident_id).incident_id
 
 
 def _command_or_404(station: Services, command_id: str) -> CommandView:

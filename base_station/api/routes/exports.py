@@ -28,7 +28,7 @@ from base_station.exporters.interface import Exporter
 from base_station.exporters.selection import TrackSelection
 from base_station.replay.incident_file import IncidentFileSource, incident_file
 from base_station.replay.trail_kind import TrailKind
-from base_station.storage.db.records import Window
+from base_station.storage.db.window import Window
 from shared.errors import StoreError, UserError
 
 router = APIRouter(tags=["exports"])

@@ -26,14 +26,15 @@ from base_station.api.forms import (
 )
 from base_station.api.idempotent_request import Perform
 from base_station.api.incident_closing import closing_obstacles
+from base_station.api.named_incident import open_incident as open_incident_of
 from base_station.api.problems import Problem
 from base_station.api.refusals import not_found_if_unknown
 from base_station.api.routes.accountability import Seconds
 from base_station.api.services import Services, Station
 from base_station.core.alarms import ALARMS
 from base_station.storage.db import models
-from base_station.storage.db.records import FOREVER_NS, Window
 from base_station.storage.db.roster import Roster
+from base_station.storage.db.window import FOREVER_NS, Window
 from base_station.views.answer import Answer, to_ms, to_ms_or_none
 from base_station.views.station import alarm_view, dispatch_view
 from base_station.views.wire import AlarmView, DispatchView
@@ -73,6 +74,7 @@ class NewIncident(Form):
     par_interval_s: Seconds | None = None  # None: as the station is configured
     work_limit_s: Seconds | None = None
     dispatch_number: DispatchNumberOrNone = ""  # of the dispatch from which it is opened
+    beside_others: bool = False  # although others are open; nobody is in it then at first
 
 
 class ClosingForm(Form):
@@ -120,10 +122,11 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
         new.par_interval_s or usual.par_interval_s,
         new.work_limit_s or usual.work_limit_s,
         new.dispatch_number,
+        beside_others=new.beside_others,
     )
     opened_id = perform(opening).created_id
-    running = station.picture().incident
-    if running is None or running.incident_id != opened_id or running.closed_ms is not None:
+    running = open_incident_of(station, opened_id)
+    if running is None:
         return _closed_since(station, opened_id)
     return IncidentAnswer(
         incident_id=running.incident_id,
@@ -159,10 +162,9 @@ def close_incident(
     """
     despite = closing or ClosingForm()
     alarm_ids, unit_ids = despite.despite_alarm_ids, despite.despite_unit_ids
-    picture = station.picture()
-    running = picture.incident
-    if running is not None and running.incident_id == incident_id and running.closed_ms is None:
-        closing_obstacles(picture).require_known(alarm_ids, unit_ids)
+    if open_incident_of(station, incident_id) is not None:
+        obstacles = closing_obstacles(station.picture(), incident_id)
+        obstacles.require_known(alarm_ids, unit_ids)
     with not_found_if_unknown(
         station,
         _no_incident(incident_id),
@@ -183,8 +185,9 @@ def incident_alarms(
     limit: Limit = 100,
 ) -> list[PastAlarm]:
     """What was raised in the window while the incident was open, newest first."""
-    was_open = window_of(incident_or_404(station, incident_id))
-    alarms = station.records.alarms(when.within(was_open), limit)
+    incident = incident_or_404(station, incident_id)
+    was_open = window_of(incident)
+    alarms = station.records.alarms(when.within(was_open), limit, incident)
     lives = station.records.alarm_lives([alarm.alarm_id for alarm in alarms])
     return [_past_alarm(alarm, lives[alarm.alarm_id], was_open, station.roster) for alarm in alarms]
 

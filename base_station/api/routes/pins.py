@@ -10,8 +10,18 @@ from fastapi import APIRouter
 from pydantic import Field
 
 from base_station.api.authentication import Viewer
-from base_station.api.forms import MAX_TIME_MS, Form, Id, Metres, Note, ShortText, UnitIdText
+from base_station.api.forms import (
+    MAX_TIME_MS,
+    Form,
+    Id,
+    Metres,
+    Note,
+    PersonIdText,
+    ShortText,
+    UnitIdText,
+)
 from base_station.api.idempotent_request import Perform
+from base_station.api.named_incident import site_incident_id
 from base_station.api.problems import Problem
 from base_station.api.services import Services, Station
 from base_station.views.wire import BeaconView, PinView
@@ -73,6 +83,7 @@ class BeaconForm(Form):
     floor: Floor | None = None
     std_m: Std = 0.5
     reach_m: Annotated[float, Field(ge=0.0, le=100.0)] = 3.0
+    incident_id: PersonIdText | None = None  # on whose site; None: of the only open one
 
 
 # What one that is moved may keep; its view calls them the same.
@@ -146,7 +157,8 @@ def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, perform: Per
     if before is not None:
         left_out = _BEACON_MAY_KEEP - form.model_fields_set
         form = form.model_copy(update={name: getattr(before, name) for name in left_out})
-    perform(PlaceBeacon(beacon_id, **form.model_dump()))
+    named = site_incident_id(station, form.incident_id)
+    perform(PlaceBeacon(beacon_id, **form.model_dump() | {"incident_id": named}))
     placed = _beacon(station, beacon_id)
     if placed is None:  # somebody else has just removed it
         raise Problem(404, _NO_BEACON)

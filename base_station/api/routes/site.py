@@ -12,10 +12,12 @@ from pydantic import Field
 from base_station.api.authentication import Viewer
 from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
-from base_station.api.forms import MAX_UPLOAD_BYTES, Form
+from base_station.api.forms import MAX_UPLOAD_BYTES, Form, Id
 from base_station.api.idempotent_request import Perform
+from base_station.api.named_incident import site_incident_id
 from base_station.api.problems import Problem
-from base_station.api.services import Station
+from base_station.api.routes.incidents import incident_or_404
+from base_station.api.services import Services, Station
 from base_station.api.uploads import UploadRoute
 from base_station.views.station import anchor_view
 from base_station.views.wire import AnchorView
@@ -52,19 +54,27 @@ _PLAN_CONTENT = {
 
 
 @router.get("/site/anchor")
-def get_anchor(station: CurrentStation, _: Viewer) -> AnchorView | None:
-    anchor = station.records.anchor()
+def get_anchor(
+    station: CurrentStation, _: Viewer, incident_id: Id | None = None
+) -> AnchorView | None:
+    """Of an incident's site, or of the station's own."""
+    anchor = station.records.anchor(site_id=_site_id(station, incident_id))
     return None if anchor is None else anchor_view(anchor)
 
 
 @router.put("/site/anchor", status_code=204)
-def set_anchor(form: AnchorForm, perform: Perform) -> None:
-    perform(SetAnchor(**form.model_dump()))
+def set_anchor(
+    form: AnchorForm, station: Station, perform: Perform, incident_id: Id | None = None
+) -> None:
+    """``incident_id``: on whose site; it may be left out where one incident is open, or none."""
+    named = site_incident_id(station, incident_id)
+    perform(SetAnchor(**form.model_dump(), incident_id=named))
 
 
 @router.get("/site/plan", response_class=Response, responses=file_response("application/geo+json"))
-def get_plan(station: CurrentStation, _: Viewer) -> Response:
-    geojson = station.records.plan()
+def get_plan(station: CurrentStation, _: Viewer, incident_id: Id | None = None) -> Response:
+    """Of an incident's site, or of the station's own."""
+    geojson = station.records.plan(site_id=_site_id(station, incident_id))
     if geojson is None:
         raise Problem(404, "There is no plan.")
     return Response(geojson, media_type="application/geo+json")
@@ -76,17 +86,25 @@ def get_plan(station: CurrentStation, _: Viewer) -> Response:
     max_body_size=MAX_UPLOAD_BYTES,
     openapi_extra={"requestBody": {"required": True, "content": _PLAN_CONTENT}},
 )
-def set_plan(perform: Perform, station: Station, plan: _PlanBody) -> None:
+def set_plan(
+    perform: Perform, station: Station, plan: _PlanBody, incident_id: Id | None = None
+) -> None:
     """GeoJSON (RFC 7946) in site metres; the documentation of messages shows one.  It is checked
-    whole, and refused with the feature that cannot be used (422).
+    whole, and refused with the feature that cannot be used (422).  ``incident_id``: on whose site;
+    it may be left out where one incident is open, or none.
     """
+    named = site_incident_id(station, incident_id)
     if not _is_object(plan):
         raise Problem(400, _SEND_JSON)
     try:
         station.plans.check(plan)
     except UserError as error:
         raise Problem(422, str(error)) from error
-    perform(SetPlan(plan))
+    perform(SetPlan(plan, named))
+
+
+def _site_id(station: Services, incident_id: str | None) -> str:
+    return "" if incident_id is None else incident_or_404(station, incident_id).site_id
 
 
 def _is_object(body: bytes) -> bool:

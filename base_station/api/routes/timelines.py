@@ -15,7 +15,7 @@ from base_station.api.problems import Problem
 from base_station.api.services import Services
 from base_station.replay.timelines.downsampling import Column
 from base_station.replay.timelines.unit_timeline import MAX_SPAN_NS, TimelineRequest
-from base_station.storage.db.records import Window
+from base_station.storage.db.window import Window
 from base_station.views.answer import Answer, to_ms
 from shared.clock import NS_PER_MS
 from shared.errors import LogError, StoreError

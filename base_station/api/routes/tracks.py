@@ -11,9 +11,10 @@ from starlette.concurrency import run_in_threadpool
 from base_station.api.authentication import Viewer
 from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import Id, UnitId, window
-from base_station.api.routes.incidents import incident_or_404, window_of
+from base_station.api.routes.incidents import incident_or_404
 from base_station.api.services import Services
-from base_station.storage.db.records import TrackSample, Window
+from base_station.storage.db.records import TrackSample
+from base_station.storage.db.window import Window
 from base_station.views.answer import Answer, to_ms
 
 router = APIRouter(tags=["tracks"])
@@ -56,15 +57,14 @@ def unit_track(
 async def incident_tracks(
     incident_id: Id, station: CurrentStation, _: Viewer, every_s: EverySeconds = 1
 ) -> Response:
-    """Of every unit that moved while the incident was open."""
+    """Of every unit that moved while it was in the open incident."""
     async with station.export_lock:
         return await run_in_threadpool(_incident_tracks, incident_id, station, every_s)
 
 
 def _incident_tracks(incident_id: str, station: Services, every_s: int) -> Response:
-    when = window_of(incident_or_404(station, incident_id))
-    units = station.records.track_units(when)
-    return _json([_track(station, unit_id, when, every_s) for unit_id in units])
+    tracks = station.records.tracks_of(incident_or_404(station, incident_id), every_s)
+    return _json([Track(one, tuple(map(_point, points))) for one, points in tracks.items()])
 
 
 def _track(station: Services, unit_id: str, when: Window, every_s: int) -> Track:

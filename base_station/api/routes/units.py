@@ -11,8 +11,17 @@ from pydantic import BaseModel, Field
 
 from base_station.api.authentication import Viewer
 from base_station.api.current_tables import CurrentStation
-from base_station.api.forms import Form, Metres, ShortText, UnitId, UnitIdOrNone, UnitIdText
+from base_station.api.forms import (
+    Form,
+    Metres,
+    PersonIdText,
+    ShortText,
+    UnitId,
+    UnitIdOrNone,
+    UnitIdText,
+)
 from base_station.api.idempotent_request import Perform
+from base_station.api.named_incident import site_incident_id
 from base_station.api.problems import Problem
 from base_station.api.refusals import not_found_if_unknown
 from base_station.api.services import Services, Station
@@ -65,6 +74,7 @@ class UnitStartForm(Form):
 
 class Reference(Form):
     unit_id: UnitIdOrNone
+    incident_id: PersonIdText | None = None  # on whose site; None: of the only open one
     down_m: Metres = 0.0
 
 
@@ -101,7 +111,8 @@ def set_reference(reference: Reference, station: Station, perform: Perform) -> N
     the site err by.
     """
     with _not_found_if_unknown(station, reference.unit_id):
-        perform(SetReference(reference.unit_id, reference.down_m))
+        named = site_incident_id(station, reference.incident_id)
+        perform(SetReference(reference.unit_id, reference.down_m, named))
 
 
 def _not_found_if_unknown(station: Services, unit_id: str) -> AbstractContextManager[None]:

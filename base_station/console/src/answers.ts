@@ -114,6 +114,7 @@ export interface BeaconForm {
   floor?: number | null;
   std_m?: number;
   reach_m?: number;
+  incident_id?: string | null;
 }
 
 export interface BeaconView {
@@ -125,6 +126,7 @@ export interface BeaconView {
   std_m: number;
   reach_m: number;
   seen_ms: number | null;
+  site_id: string;
 }
 
 export interface CallSignAnswer {
@@ -366,6 +368,13 @@ export interface MeetingForm {
   note?: string;
 }
 
+export interface Member {
+  unit_id: string;
+  person_id: string | null;
+  name: string;
+  crew: string;
+}
+
 export interface NameConfirmation {
   name: string;
 }
@@ -377,6 +386,7 @@ export interface NewAssignment {
 
 export interface NewCheckIn {
   target: UnitTarget | CrewTarget | FloorTarget | EveryoneTarget;
+  incident_id?: string | null;
   check_in_id?: string | null;
 }
 
@@ -385,6 +395,7 @@ export interface NewCommand {
   target: UnitTarget | CrewTarget | FloorTarget | EveryoneTarget;
   text?: string;
   position_rate_hz?: number;
+  incident_id?: string | null;
   expires_s?: number;
 }
 
@@ -399,6 +410,11 @@ export interface NewIncident {
   par_interval_s?: number | null;
   work_limit_s?: number | null;
   dispatch_number?: string;
+  beside_others?: boolean;
+}
+
+export interface NewMembers {
+  target: UnitTarget | CrewTarget | FloorTarget | EveryoneTarget;
 }
 
 export interface NewPull {
@@ -442,6 +458,7 @@ export interface OfferedDispatch {
 
 export interface OnDuty {
   unit_id: string;
+  incident_id: string;
   person_id: string;
   name: string;
   crew: string;
@@ -606,6 +623,7 @@ export interface RecordingView {
 
 export interface Reference {
   unit_id: string;
+  incident_id?: string | null;
   down_m?: number;
 }
 

@@ -137,6 +137,7 @@ export interface BeaconView {
   std_m: number;
   reach_m: number;
   seen_ms: number | null;
+  site_id: string;
 }
 
 export interface ExternalMarkerView {
@@ -150,6 +151,7 @@ export interface ExternalMarkerView {
   radius_m: number | null;
   t_ms: number;
   stale_ms: number;
+  site_id: string;
 }
 
 export interface UnitView {
@@ -179,6 +181,7 @@ export interface UnitView {
   preflight: PreflightView | null;
   tracker: string;
   sensors: WornSensorView[];
+  incident_id: string | null;
 }
 
 export interface DeliveryView {
@@ -237,6 +240,7 @@ export interface IncidentView {
   par_warning_s: number;
   work_limit_s: number;
   dispatch: DispatchView | null;
+  site_id: string;
 }
 
 export interface StandbyView {
@@ -320,6 +324,13 @@ export interface AnchorView {
   plan_rotation_rad: number;
 }
 
+export interface SiteView {
+  site_id: string;
+  plan: Plan | null;
+  anchor: AnchorView | null;
+  plan_placed: boolean;
+}
+
 export interface Snapshot {
   type: "snapshot";
   seq: number;
@@ -335,6 +346,8 @@ export interface Snapshot {
   anchor: AnchorView | null;
   health: HealthView;
   replay: ReplayView | null;
+  incidents: IncidentView[];
+  sites: SiteView[];
   plan_placed: boolean;
   dispatches: DispatchView[];
 }

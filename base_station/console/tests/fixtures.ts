@@ -98,6 +98,7 @@ export function unit(unitId: string, change: Partial<UnitView> = {}): UnitView {
     preflight: { level: "ok", text: "" },
     tracker: "eskf",
     sensors: [{ name: "", place: "foot", place_recognised: false, mount: "", model: "" }],
+    incident_id: "i1",
     ...change,
   };
 }
@@ -191,6 +192,8 @@ export function snapshot(change: Partial<Snapshot> = {}): Snapshot {
     anchor: null,
     health: HEALTH,
     replay: null,
+    incidents: [],
+    sites: [],
     plan_placed: true,
     dispatches: [],
     ...change,
@@ -218,6 +221,7 @@ export function externalMarker(change: Partial<ExternalMarkerView> = {}): Extern
     radius_m: null,
     t_ms: 1_000,
     stale_ms: 60_000,
+    site_id: "",
     ...change,
   };
 }

@@ -8,7 +8,7 @@ person at the console, acknowledges a command.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from base_station.core.commands import order_ends
 from base_station.core.commands.order_ends import WITHDRAWN
@@ -34,6 +34,7 @@ _NOT_RECEIVED: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
     """Create a command.  Raises UserError where it makes no sense or reaches nobody."""
     _check(state, action)
+    recipients = _recipients(state, action)
     command = SentCommand(
         command_id=action.command_id,
         kind=action.kind,
@@ -44,9 +45,9 @@ def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
         expires_ns=state.t_ns + round(action.lasts_s * NS_PER_S),
         deliveries={
             unit.unit_id: Delivery(unit.unit_id, can_be_notified=unit.can_be_notified)
-            for unit in _recipients(state, action)
+            for unit in recipients
         },
-        incident_id=open_incident_id(state),
+        incident_id=_incident_of(state, recipients),
     )
     _drop_oldest_closed(state)
     state.commands[action.command_id] = command
@@ -97,7 +98,7 @@ def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
         for delivery in command.deliveries.values()
         if delivery.acknowledged_via == "radio" and action.unit_id in ("", delivery.unit_id)
     ]
-    if entered and command.incident_id != open_incident_id(state):
+    if entered and command.incident_id and not _is_open(state, command.incident_id):
         raise UserError("its incident is closed: what was entered in it stays as it is")
     for delivery in entered:
         delivery.acknowledged_ns, delivery.acknowledged_by = None, ""
@@ -110,10 +111,18 @@ def withdraw(state: StationState, incident_id: str) -> Iterator[SentCommand]:
     """The orders of an incident end with it: the unit of a member who comes to the next one is not
     told of them.  How often a unit sends its position is no order to a member, and stays.
     """
+    incident = state.incidents[incident_id]
     for command in state.commands.values():
-        if command.incident_id != incident_id or command.kind is CommandKind.SET_POSITION_RATE:
+        is_of_it = command.incident_id == incident_id
+        is_of_several = not command.incident_id and command.issued_ns > incident.opened_ns
+        if not (is_of_it or is_of_several) or command.kind is CommandKind.SET_POSITION_RATE:
             continue
-        open_ones = [one for one in command.deliveries.values() if command.awaits(one)]
+        open_ones = [
+            one
+            for one in command.deliveries.values()
+            if command.awaits(one)
+            and (is_of_it or state.units[one.unit_id].incident_id == incident_id)
+        ]
         for delivery in open_ones:
             delivery.expired_ns, delivery.reason = state.t_ns, WITHDRAWN
         if open_ones:
@@ -222,10 +231,14 @@ def _acknowledge(delivery: Delivery, t_ns: int, via: AnsweredBy, by: str) -> Non
     delivery.acknowledged_ns, delivery.acknowledged_via, delivery.acknowledged_by = t_ns, via, by
 
 
-def open_incident_id(state: StationState) -> str:
-    """Return the id of the incident that is open; empty: none is."""
-    incident = state.incident
-    return "" if incident is None or incident.closed_ns is not None else incident.incident_id
+def _incident_of(state: StationState, units: Iterable[UnitState]) -> str:
+    """Id of the open incident of all these units; empty: they are in none, or not in the same."""
+    opened = {one.incident_id if (one := state.open_incident_of(unit)) else "" for unit in units}
+    return opened.pop() if len(opened) == 1 else ""
+
+
+def _is_open(state: StationState, incident_id: str) -> bool:
+    return incident_id in {one.incident_id for one in state.open_incidents}
 
 
 def _check(state: StationState, action: SendCommand) -> None:
@@ -254,9 +267,13 @@ def _is_open_order(command: SentCommand) -> bool:
 
 def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
     """Everyone is whoever wears a unit, and every unit of ours that was heard and not switched off
-    since.
+    since; of the named incident, or of none and all.
     """
-    ours = [unit for unit in state.units.values() if unit.registered]
+    ours = [
+        unit
+        for unit in state.units.values()
+        if unit.registered and action.incident_id in ("", unit.incident_id)
+    ]
     if action.unit_id:
         found = [unit for unit in ours if unit.unit_id == action.unit_id]
     elif action.person_ids:

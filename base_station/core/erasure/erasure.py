@@ -191,9 +191,19 @@ def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
     people: dict[str, str] = {}  # names by person id, or none
     opened_ns = closed_ns = None
     opening_id = closing_id = ""
+    others: set[str] = set()  # incidents that are open
     actions = iter(actions_of(records))
     for t_ns, action in actions:
         done = action.action
+        if isinstance(done, OpenIncident):
+            others.add(done.incident_id)
+        elif isinstance(done, CloseIncident):
+            others.discard(done.incident_id)
+        if opened_ns is not None and others - {incident_id}:
+            raise UserError(
+                f"the incident {incident_id} was open together with another one; "
+                "erase the people of it one by one"
+            )
         if isinstance(done, OpenIncident) and done.incident_id == incident_id:
             opened_ns, opening_id = t_ns, action.action_id
             before = {  # that it was forgotten: the log tells of its units no other way

@@ -22,30 +22,39 @@ def is_about(pin: Pin, closed_ns: int) -> bool:
     return pin.set_ns <= closed_ns or _is_then(pin.t_ns, closed_ns)
 
 
-def concerns_closed_incident(state: StationState, action: PinAction, closed_ns: int) -> bool:
-    """True of an action that changes the paths of the closed incident; called before the action is
-    applied.
+def concerns_closed_incident(
+    state: StationState, site_id: str, action: PinAction, closed_ns: int
+) -> bool:
+    """True of an action that changes the paths of the closed incident of a site; called before the
+    action is applied.
 
     Beacons are taken down after an incident and put up for the next one. So a placed beacon counts
     if it was passed while it had no place, and a removed one never does.
     """
-    pins = {pin_id: pin for site in state.sites.values() for pin_id, pin in site.pins.items()}
+    pins, beacons = state.sites[site_id].pins, state.sites[site_id].beacons
     match action:
         case SetPin() | SetMeeting():
             earlier = pins.get(action.pin_id)
             is_moved = earlier is not None and is_about(earlier, closed_ns)
-            return is_moved or _is_then(action.t_ns, closed_ns)
+            is_here = _is_on(state, site_id, action.unit_id)
+            return is_moved or (is_here and _is_then(action.t_ns, closed_ns))
         case StartTogether():
-            return _is_then(action.t_ns, closed_ns)
+            is_here = any(_is_on(state, site_id, unit_id) for unit_id in action.unit_ids)
+            return is_here and _is_then(action.t_ns, closed_ns)
         case RemovePin(pin_id=pin_id):
             removed = (one for one in pins.values() if _goes_with(one, pin_id))
             return any(is_about(one, closed_ns) for one in removed)
         case PlaceBeacon(beacon_id=beacon_id):
             passed = (one for one in pins.values() if one.other_id == beacon_id)
-            is_new = beacon_id not in state.site.beacons
+            is_new = site_id == state.site_id_of(action.incident_id) and beacon_id not in beacons
             return is_new and any(is_about(one, closed_ns) for one in passed)
         case RemoveBeacon():
             return False
+
+
+def _is_on(state: StationState, site_id: str, unit_id: str) -> bool:
+    unit = state.units.get(unit_id)
+    return unit is not None and unit.site_id == site_id
 
 
 def _is_then(t_ns: int, closed_ns: int) -> bool:

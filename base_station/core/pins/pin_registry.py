@@ -177,7 +177,7 @@ def _remove(state: StationState, pin_id: str) -> set[str]:
 
 
 def _place_beacon(state: StationState, by: str, action: PlaceBeacon) -> set[str]:
-    site = state.site
+    site = state.sites[state.site_id_of(action.incident_id)]
     _check_place(site, action)
     if not (math.isfinite(action.reach_m) and action.reach_m >= 0.0):
         raise UserError("how far a beacon reaches is a number of metres, 0 or more")
@@ -187,12 +187,15 @@ def _place_beacon(state: StationState, by: str, action: PlaceBeacon) -> set[str]
             std_m = reach_std_m(action.reach_m)
             site.pins[pin.pin_id] = msgspec.structs.replace(pin, std_m=std_m)
     site.beacons[action.beacon_id] = Beacon(
-        **msgspec.structs.asdict(action),
+        **{name: getattr(action, name) for name in _BEACON_FIELDS},
         placed_ns=state.t_ns,
         by=by,
         seen_ns=earlier.seen_ns if earlier is not None else None,
     )
     return {pin.unit_id for pin in _sightings_of(site, action.beacon_id)}
+
+
+_BEACON_FIELDS = ("beacon_id", "label", "north_m", "east_m", "floor", "std_m", "reach_m")
 
 
 def _remove_beacon(state: StationState, beacon_id: str) -> set[str]:

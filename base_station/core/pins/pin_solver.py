@@ -146,7 +146,8 @@ def trail_of(
     state: StationState, unit_id: str, points: PathArrays, places_m: Floats
 ) -> list[TrailStep]:
     """A path (n, 3) as the consoles draw it: thinned evenly, since the incident began."""
-    since_ns = state.incident.opened_ns if state.incident is not None else 0
+    incident = state.incident_of(state.units[unit_id]) if unit_id in state.units else None
+    since_ns = 0 if incident is None else incident.opened_ns
     rows = np.flatnonzero(points.t_ns >= since_ns)
     gaps_before = np.cumsum(np.diff(points.t_ns, prepend=points.t_ns[:1]) > TRAIL_GAP_NS)
     if len(rows) > TRAIL_POINTS:

@@ -75,7 +75,7 @@ def _rejection_reason(
         (sighting.kind not in _KINDS or not sighting.seen_id, "a sighting of nothing"),
         (t_ns is None, "a sighting of an unknown time"),
         (
-            t_ns is not None and is_before_incident(state, t_ns),
+            t_ns is not None and is_before_incident(state, unit, t_ns),
             "a sighting of before this incident",
         ),
         (range_m > FURTHEST_M, "a sighting from too far away"),

@@ -35,7 +35,7 @@ def note_inside(state: StationState, unit: UnitState) -> None:
         was_inside = place.inside_since_ns is not None
         is_inside = plan.is_inside(fused.north_m, fused.east_m, was_inside)
     else:
-        at_work = state.incident is not None and state.incident.closed_ns is None
+        at_work = state.open_incident_of(unit) is not None
         walked_m = unit.position.distance_m if unit.position else 0.0
         is_inside = at_work and (place.inside_since_ns is not None or walked_m > WORK_BEGINS_M)
     if not is_inside:

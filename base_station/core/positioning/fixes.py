@@ -17,6 +17,7 @@ from shared.messages import GpsFix
 
 FUTURE_NS = NS_PER_S  # a fix may be this much ahead of the station's idea of the unit's clock
 FAR_FIXES = 10  # in a row that nobody's contradicts: it was the first one that was wrong
+BEFORE_SITE = "of before it came to this incident"
 STAYS_M = 5.0  # walked by what stays where it is: nobody carries it about
 
 
@@ -53,8 +54,10 @@ def place_fix(
         return FixVerdict(False, "from an earlier run of the unit")
     if not boot.is_placed:
         return FixVerdict(False, "of a time that nothing else has told yet")
-    if boot.station_ns(fix.header.t_mono_ns) > state.t_ns + FUTURE_NS:
-        return FixVerdict(False, "from the future", faulty=True)
+    t_ns = boot.station_ns(fix.header.t_mono_ns)
+    if not unit.site_ns <= t_ns <= state.t_ns + FUTURE_NS:
+        is_early = t_ns < unit.site_ns
+        return FixVerdict(False, BEFORE_SITE if is_early else "from the future", not is_early)
     site = state.sites[unit.site_id]
     if site.anchor is None and not site.start_set and site.plan is None and may_anchor(fix):
         _set_anchor_by(site, fix, estimate())

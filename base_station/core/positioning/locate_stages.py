@@ -94,5 +94,5 @@ def _make_messages(update: LocationUpdate, held_without_pins: int | None, held: 
 
 
 def _is_drawn(update: LocationUpdate) -> bool:
-    incident = update.state.incident
+    incident = update.state.incident_of(update.unit)
     return incident is None or update.plain.t_meas_ns >= incident.opened_ns

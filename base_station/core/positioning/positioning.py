@@ -12,7 +12,7 @@ from base_station.core.events import Output, PinsChanged, TrailBackfilled, UnitC
 from base_station.core.pins.incident_scope import is_about
 from base_station.core.pins.pin_registry import drop, has_pins, resolve_later, units_of
 from base_station.core.positioning.anchor_correction import move_fixes
-from base_station.core.positioning.fixes import apply_fix
+from base_station.core.positioning.fixes import BEFORE_SITE, apply_fix
 from base_station.core.positioning.frame import moved_by, reframe
 from base_station.core.positioning.fuse_stages import (
     PositionUpdate,
@@ -38,8 +38,9 @@ from base_station.core.positioning.lost_contact import LostContact
 from base_station.core.positioning.solved_paths import renumber, renumber_next_trail, solve_pins
 from base_station.core.positioning.start_position import begin, drop_learnt, replay_from_start
 from base_station.core.positioning.unit_fusers import UnitFusers
-from base_station.core.state import StationState, UnitState
+from base_station.core.state import OWN_SITE_ID, StationState, UnitState
 from base_station.core.state.boot_state import BootState
+from base_station.core.state.unit_place import UnitPlace
 from base_station.fusion import fuser_named
 from base_station.fusion.building_model.building import LearntBuilding
 from base_station.fusion.gnss.common_mode_error import CommonModeError
@@ -142,6 +143,9 @@ class Positioning:
         if boot is None or not boot.is_placed:
             return []
         t_ns = boot.station_ns(position.header.t_mono_ns)
+        if t_ns < unit.site_ns:
+            unit.count_rejected(BEFORE_SITE)
+            return []
         if boot is not running and t_ns >= running.first_live_ns:
             return []  # another machine under the same name
         for fuser in self._fusers.of(unit):
@@ -267,6 +271,29 @@ class Positioning:
             was = None if before is None else before.estimate()
             replay_from_start(state, unit, self._fusers.plain(unit), history, was)
         return set(paths)
+
+    def move(self, state: StationState, unit: UnitState, site_id: str) -> set[str]:
+        """Bring a unit to another site, in whose frame nothing of its path is known yet; returns
+        the units whose pins had to do with its path.
+        """
+        partners = drop(state.sites[unit.site_id], lambda pin: unit.unit_id in units_of(pin))
+        self._fusers.forget(unit)
+        state.paths.pop(unit.unit_id, None)
+        drop_learnt(state, unit.unit_id)
+        state.late.pop(unit.unit_id, None)
+        unit.place = UnitPlace()
+        unit.trails.replace_plain(0, [])
+        unit.site_id, unit.site_ns = site_id, state.t_ns
+        return partners - {unit.unit_id}
+
+    def keep_sites(self, state: StationState) -> None:
+        """Let go of sites on which nobody is, and no incident."""
+        used = {OWN_SITE_ID, *(unit.site_id for unit in state.units.values())}
+        used |= {incident.site_id for incident in state.incidents.values()}
+        for site_id in state.sites.keys() - used:
+            del state.sites[site_id]
+            self._fusers.grids.pop(site_id, None)
+            self._lost_contact.pop(site_id, None)
 
     def forget(self, state: StationState, unit: UnitState) -> None:
         """Delete a unit's paths and all that was learnt from them."""

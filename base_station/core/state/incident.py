@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from base_station.core.state.site import OWN_SITE_ID
 from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from shared.messages.station import NoteDispatch
 
@@ -15,7 +16,12 @@ class Incident(msgspec.Struct, frozen=True):
     closed_ns: int | None = None
     par_interval_s: float = PAR_INTERVAL_S  # everybody is to be heard from this often
     work_limit_s: float = WORK_LIMIT_S  # of work, after which somebody should rest
+    site_id: str = OWN_SITE_ID  # its ground
     dispatch: NoteDispatch | None = None  # newest report of the dispatch from which it was opened
+
+    @property
+    def is_open(self) -> bool:
+        return self.closed_ns is None
 
 
 class Dispatch(msgspec.Struct, frozen=True):

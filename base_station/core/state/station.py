@@ -44,7 +44,8 @@ class StationState(msgspec.Struct):
     alarms: dict[str, Alarm] = msgspec.field(default_factory=dict)
     history: list[Alarm] = msgspec.field(default_factory=list)  # resolved lately
     commands: dict[str, SentCommand] = msgspec.field(default_factory=dict)  # oldest first
-    incident: Incident | None = None
+    # Open ones, and closed ones until the next is opened on their site; in the order of opening.
+    incidents: dict[str, Incident] = msgspec.field(default_factory=dict)
     closed_incidents: list[Incident] = msgspec.field(default_factory=list)  # closed, oldest first
     sites: dict[str, SiteState] = msgspec.field(
         default_factory=lambda: {OWN_SITE_ID: SiteState()}
@@ -81,6 +82,50 @@ class StationState(msgspec.Struct):
         return unit
 
     @property
+    def open_incidents(self) -> list[Incident]:
+        """Open incidents, in the order of opening."""
+        return [incident for incident in self.incidents.values() if incident.is_open]
+
+    @property
+    def shown_incident(self) -> Incident | None:
+        """Incident of consoles that show one: the one opened last, or else the one closed last."""
+        opened = self.open_incidents
+        if opened:
+            return opened[-1]
+        return max(self.incidents.values(), key=lambda one: one.closed_ns or 0, default=None)
+
+    def incident_of(self, unit: UnitState) -> Incident | None:
+        """Incident of a unit, which may be closed since; None: it is unassigned."""
+        return self.incidents.get(unit.incident_id)
+
+    def open_incident_of(self, unit: UnitState) -> Incident | None:
+        """Open incident of a unit; None: it is in none."""
+        incident = self.incidents.get(unit.incident_id)
+        return incident if incident is not None and incident.is_open else None
+
+    def named_incident(self, incident_id: str) -> Incident:
+        """The open incident of that id; empty: the only open one.  UserError where there is none,
+        or where several are.
+        """
+        opened = self.open_incidents
+        if not incident_id and len(opened) > 1:
+            names = ", ".join(repr(one.name) for one in opened)
+            raise UserError(f"several incidents are open ({names}); name one of them")
+        found = [one for one in opened if incident_id in ("", one.incident_id)]
+        if not found:
+            wanted = f"no open incident {incident_id}"
+            raise UserError(wanted if incident_id else "no incident is open")
+        return found[0]
+
+    def site_id_of(self, incident_id: str) -> str:
+        """Site of an incident; of no incident the station's own.  UserError where it is unknown."""
+        if not incident_id:
+            return OWN_SITE_ID
+        if incident_id not in self.incidents:
+            raise UserError(f"no incident {incident_id} is open, nor was closed last")
+        return self.incidents[incident_id].site_id
+
+    @property
     def site(self) -> SiteState:
         """The station's own site."""
         return self.sites[OWN_SITE_ID]
@@ -98,6 +143,14 @@ class StationState(msgspec.Struct):
         """Paths in the frame of that site, by unit."""
         paths = self.paths.items()
         return {one: path for one, path in paths if self.units[one].site_id == site_id}
+
+    def add_unit(self, unit_id: str) -> UnitState:
+        """A unit that comes while one incident is open is in that."""
+        unit = self.units[unit_id] = UnitState(unit_id)
+        opened = self.open_incidents
+        if len(opened) == 1:
+            unit.incident_id, unit.site_id = opened[0].incident_id, opened[0].site_id
+        return unit
 
     def path_of(self, unit_id: str) -> PathHistory:
         """Path of a unit, which begins here where there is none."""

@@ -46,7 +46,9 @@ class UnitState(MessageStream):
 
     label: str = ""
     registered: bool = False
+    incident_id: str = ""  # in which its wearer works; empty: unassigned
     site_id: str = OWN_SITE_ID  # in whose frame its path and position are
+    site_ns: int = 0  # since when they are; 0: always
     wearer: UnitWearer = msgspec.field(default_factory=UnitWearer)
     link: Link = "never"
     status: Status | None = None

@@ -41,16 +41,16 @@ def trust_of(unit: UnitState, conflicts: int) -> Trust:
 
 
 def update_trust_tallies(state: StationState) -> None:
-    """Time went by for the lights of all that an open incident has heard of; one that was switched
-    off in order has none.
+    """Time went by for the lights of all that are in an open incident and were heard; one that was
+    switched off in order has none.
     """
     lasted_s = (state.t_ns - state.trust_ns) / NS_PER_S
     state.trust_ns = state.t_ns
-    if state.incident is None or state.incident.closed_ns is not None or lasted_s > LONGEST_S:
+    if not state.open_incidents or lasted_s > LONGEST_S:
         return
     conflicts = conflicts_of(state)
     for unit in state.units.values():
-        if not unit.registered or unit.stopped_ns is not None:
+        if not unit.registered or unit.stopped_ns is not None or not state.open_incident_of(unit):
             continue
         if unit.place.fused is not None or unit.wearer.person is not None:
             trust = trust_of(unit, conflicts.get(unit.unit_id, 0))

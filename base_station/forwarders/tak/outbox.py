@@ -19,7 +19,7 @@ from base_station.forwarders.tak.cot import (
     place_of,
 )
 from base_station.forwarders.tak.emergencies import Emergencies, EmergencyAlert
-from base_station.views.wire import AnchorView, PositionView, UnitView
+from base_station.views.wire import AnchorView, PositionView, Snapshot, UnitView
 from shared.clock import NS_PER_S
 
 _LIVE = "live"
@@ -60,12 +60,13 @@ class TakOutbox:
         self._people: dict[str, _Person] = {}
         self._emergencies = Emergencies()
         self._incident_is_open = False
-        self.anchor: AnchorView | None = None
+        self.anchor: AnchorView | None = None  # of the site that is shown first
+        self._anchors: dict[str, AnchorView | None] = {}  # of other open incidents, by id
 
     def apply(self, changes: Changes, now_ms: int) -> None:
         picture = changes.picture
         if picture is not None:
-            self.anchor = picture.anchor
+            self.anchor, self._anchors = picture.anchor, _anchors_by_incident(picture)
             incident = picture.incident
             self._incident_is_open = incident is not None and incident.closed_ms is None
             present = {unit.unit_id for unit in picture.units}
@@ -143,8 +144,11 @@ class TakOutbox:
         person = self._people.get(unit_id)
         if person is None or person.unit.position is None:
             return None
-        place = place_of(person.unit.position, self.anchor)
+        place = place_of(person.unit.position, self._anchor_of(person.unit))
         return None if place is None else (person.unit, person.unit.position, place)
+
+    def _anchor_of(self, unit: UnitView) -> AnchorView | None:
+        return self._anchors.get(unit.incident_id or "", self.anchor)
 
     def _position(self, person: _Person, now_ns: int) -> bytes | None:
         """None: of a unit that is not ours, was switched off or has no place nothing is sent."""
@@ -156,8 +160,9 @@ class TakOutbox:
         person.sent_ns, person.sent_link = now_ns, unit.link
         person.free_ns = max(person.free_ns, now_ns) + self._every_ns
         motion = GroundMotion(0.0, 0.0)
-        if self.anchor is not None and unit.link == _LIVE:
-            rotation_rad = self.anchor.plan_rotation_rad
+        anchor = self._anchor_of(unit)
+        if anchor is not None and unit.link == _LIVE:
+            rotation_rad = anchor.plan_rotation_rad
             motion = motion_between(person.sent_place, position, place, rotation_rad)
         if person.sent_place is None or position.t_ms > person.sent_place[0]:
             person.sent_place = position.t_ms, place
@@ -185,12 +190,21 @@ class TakOutbox:
     @property
     def hint(self) -> str:
         """Why less is sent than somebody may expect; empty: there is no reason."""
-        if self.anchor is None:
+        if self.anchor is None and not any(self._anchors.values()):
             return _NO_PLACE
         unplaced = [one for one in self._emergencies.open_units if self._placed(one) is None]
         if unplaced:
             return f"the emergency of {', '.join(unplaced)} cannot be shown: nobody knows where"
         return "" if self._incident_is_open else _NO_INCIDENT
+
+
+def _anchors_by_incident(picture: Snapshot) -> dict[str, AnchorView | None]:
+    """Anchors of open incidents on other sites than the one that is shown first; of no incident,
+    that of the station's own site where another is shown first.
+    """
+    sites = {site.site_id: site.anchor for site in picture.sites}
+    incidents = {one.incident_id: one.site_id for one in picture.incidents} | {"": ""}
+    return {one: sites[site_id] for one, site_id in incidents.items() if site_id in sites}
 
 
 def _apart_m(one: GeodeticPlace, other: GeodeticPlace) -> float:

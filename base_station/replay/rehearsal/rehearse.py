@@ -30,7 +30,8 @@ from base_station.replay.rehearsal.report import (
     figures_of,
 )
 from base_station.storage.db.models import IncidentRow
-from base_station.storage.db.records import Records, Window
+from base_station.storage.db.records import Records
+from base_station.storage.db.window import Window
 from shared.clock import NS_PER_S
 from shared.errors import UserError
 

@@ -15,7 +15,8 @@ from base_station.core.events import Received, event_of
 from base_station.engine.feed import LogFeed
 from base_station.replay.radio_contact import GAP_NS, HEARD, SentTimes
 from base_station.replay.timelines.downsampling import Column, MinMaxBuckets
-from base_station.storage.db.records import Records, Window
+from base_station.storage.db.records import Records
+from base_station.storage.db.window import Window
 from shared.channels import STATUS, TEMPERATURE, backfilled_key, is_backfilled
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.mcap_log import LogRecord

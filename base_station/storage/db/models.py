@@ -6,7 +6,7 @@ A table is either a *projection*, which ``muster base rebuild`` makes again from
 
 from __future__ import annotations
 
-from sqlalchemy import BigInteger, ForeignKey, Index, Integer, LargeBinary, MetaData
+from sqlalchemy import BigInteger, ForeignKey, Index, Integer, LargeBinary, MetaData, false
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 
@@ -166,6 +166,20 @@ class IncidentRow(Base):
     # station time of the newest data that came after the end
     late_data_ns: Mapped[int] = mapped_column("news_ns", server_default="0")
     dispatch_number: Mapped[str] = mapped_column(server_default="")  # empty: opened from none
+    site_id: Mapped[str] = mapped_column(server_default="")  # empty: on the station's own site
+    # Its members are known; else it is of an earlier version, and everybody was in it.
+    has_members: Mapped[bool] = mapped_column(server_default=false())
+
+
+class IncidentMember(Base):
+    """A unit in an incident, from when until when; in one at a time."""
+
+    __tablename__ = "incident_members"
+
+    unit_id: Mapped[str] = mapped_column(primary_key=True)
+    from_ns: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    incident_id: Mapped[str] = mapped_column(index=True)
+    until_ns: Mapped[int | None]  # None: still
 
 
 class DispatchRow(Base):
@@ -258,6 +272,7 @@ class AnchorRow(Base):
     lon_deg: Mapped[float]
     height_m: Mapped[float]
     plan_rotation_rad: Mapped[float]
+    incident_id: Mapped[str] = mapped_column(server_default="")  # empty: of the station's own site
 
 
 class PlanRow(Base):
@@ -268,6 +283,7 @@ class PlanRow(Base):
     action_id: Mapped[str] = mapped_column(primary_key=True)
     t_ns: Mapped[int] = mapped_column(index=True)
     geojson: Mapped[bytes] = mapped_column(LargeBinary, deferred=True)
+    incident_id: Mapped[str] = mapped_column(server_default="")  # as above
 
 
 class UnitStart(Base):
@@ -334,6 +350,7 @@ class LogSegment(Base):
 PROJECTIONS: tuple[type[Base], ...] = (
     Unit,
     IncidentRow,
+    IncidentMember,
     DispatchRow,
     Assignment,
     AlarmRow,

@@ -19,6 +19,7 @@ from base_station.storage.db.models import (
     Assignment,
     AuditEntry,
     DispatchRow,
+    IncidentMember,
     IncidentRow,
     PlanRow,
     TrackPoint,
@@ -74,6 +75,7 @@ def project_into(session: Session, projections: Sequence[Projection]) -> int:
             if not isinstance(action.action, ReportProblem):  # that is no person's doing
                 _audit(session, action.header.t_utc_ns, action)
             _action(session, action.header.t_utc_ns, action)
+        _memberships(session, projection)
         for change in projection.alarms:
             _alarm(session, change)
         for description in projection.descriptions:
@@ -117,8 +119,8 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
             _unit(session, unit_id, label=label, registered_ns=t_ns)
         case SetAnchor() as anchor:
             _add(session, AnchorRow, **key, **msgspec.structs.asdict(anchor))
-        case SetPlan(geojson=geojson):
-            _add(session, PlanRow, **key, geojson=geojson)
+        case SetPlan(geojson=geojson, incident_id=incident_id):
+            _add(session, PlanRow, **key, geojson=geojson, incident_id=incident_id)
         case SetStart() as start:
             columns = {name: getattr(start, name) for name in _START_COLUMNS}
             _add(session, UnitStart, **key, **columns)
@@ -146,6 +148,28 @@ def _dispatch(session: Session, report: NoteDispatch) -> None:
     )
 
 
+def _memberships(session: Session, projection: Projection) -> None:
+    """In the order of time: a unit leaves the incident that it was in as it comes to the next."""
+    for incident_id, site_id in projection.opened:
+        row = update(IncidentRow).where(IncidentRow.incident_id == incident_id)
+        session.execute(row.values(site_id=site_id, has_members=True))
+    for unit_id, incident_id, t_ns in projection.memberships:
+        session.execute(
+            update(IncidentMember)
+            .where(
+                IncidentMember.unit_id == unit_id,
+                IncidentMember.until_ns.is_(None),
+                IncidentMember.from_ns < t_ns,
+            )
+            .values(until_ns=t_ns)
+        )
+        if incident_id:
+            _add(
+                session, IncidentMember, unit_id=unit_id, from_ns=t_ns, incident_id=incident_id,
+                until_ns=None,
+            )  # fmt: skip
+
+
 _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
 
 
@@ -153,7 +177,7 @@ def _audit(session: Session, t_ns: int, done: OperatorAction) -> None:
     said = msgspec.structs.asdict(done.action)
     match done.action:
         case SetPlan(geojson=geojson):
-            said = {"bytes": len(geojson)}
+            said = {"bytes": len(geojson), "incident_id": said["incident_id"]}
         case Assign(person_id=person_id, person_name=""):
             said["person_name"] = reference_to(person_id)
         case RemovePin(pin_id=pin_id):

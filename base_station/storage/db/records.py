@@ -13,6 +13,7 @@ from base_station.fusion.lazy_mapping import LastValueMapping
 from base_station.storage.db import models
 from base_station.storage.db.database import Database
 from base_station.storage.db.known_people import load_people, person_lookup, shown_text
+from base_station.storage.db.members import Members, members_of, was_member
 from base_station.storage.db.models import (
     PROJECTIONS,
     AlarmRow,
@@ -27,26 +28,13 @@ from base_station.storage.db.models import (
 )
 from base_station.storage.db.pages import newest
 from base_station.storage.db.upserts import insert_into, is_on_server
+from base_station.storage.db.window import EVER, FOREVER_NS, Window
 from shared.clock import NS_PER_S, Clock
 from shared.errors import UserError
 from shared.geo import Anchor
 from shared.messages.station import NoteDispatch
 
-FOREVER_NS = 2**63 - 1
 _REPORTS = msgspec.json.Decoder(NoteDispatch)
-
-
-class Window(msgspec.Struct, frozen=True):
-    """From (included) until (left out), station time."""
-
-    from_ns: int
-    until_ns: int
-
-    def within(self, other: Window) -> Window:
-        return Window(max(self.from_ns, other.from_ns), min(self.until_ns, other.until_ns))
-
-
-EVER = Window(0, FOREVER_NS)
 
 
 class TrackSample(msgspec.Struct, frozen=True):
@@ -84,6 +72,13 @@ def _in(
     window: Window, t_ns: InstrumentedAttribute[int]
 ) -> tuple[ColumnElement[bool], ColumnElement[bool]]:
     return t_ns >= window.from_ns, t_ns < window.until_ns
+
+
+def _is_on(incident_id: InstrumentedAttribute[str], site_id: str) -> ColumnElement[bool]:
+    """Set for this site: by the name of an incident there, or of none for the station's own."""
+    there = select(IncidentRow.incident_id).where(IncidentRow.site_id == site_id)
+    is_there = incident_id.in_(there)
+    return is_there if site_id else or_(incident_id == "", is_there)
 
 
 class Records:
@@ -142,18 +137,39 @@ class Records:
         with self._store.read() as session:
             return [TrackSample(*row) for row in session.execute(wanted)]
 
-    def tracks_of(self, incident: IncidentRow) -> Mapping[str, Sequence[TrackSample]]:
-        """What was shown of every unit while the incident was open; each is read when it is asked
-        for.
-        """
-        window = Window(incident.opened_ns, incident.closed_ns or FOREVER_NS)
-        return LastValueMapping(
-            self.track_units(window), lambda unit_id: self.track(unit_id, window)
-        )
+    def members_of(self, incident: IncidentRow) -> Members:
+        """Which units were in the incident, and when."""
+        with self._store.read() as session:
+            return members_of(session, incident)
 
-    def alarms(self, raised: Window, limit: int | None = None) -> Sequence[AlarmRow]:
-        """Those raised in the window, newest first (``pages.newest``)."""
+    def tracks_of(
+        self, incident: IncidentRow, every_s: int = 1
+    ) -> Mapping[str, Sequence[TrackSample]]:
+        """What was shown of every unit while it was in the open incident; each is read when it is
+        asked for.
+        """
+        members = self.members_of(incident)
+        units = [
+            unit_id
+            for unit_id in self.track_units(members.window)
+            if members.windows is None or unit_id in members.windows
+        ]
+
+        def track(unit_id: str) -> list[TrackSample]:
+            windows = members.of(unit_id)
+            return [point for one in windows for point in self.track(unit_id, one, every_s)]
+
+        return LastValueMapping(units, track)
+
+    def alarms(
+        self, raised: Window, limit: int | None = None, incident: IncidentRow | None = None
+    ) -> Sequence[AlarmRow]:
+        """Those raised in the window, newest first (``pages.newest``); with an incident, those of
+        its members and of the station itself.
+        """
         wanted = select(AlarmRow).where(*_in(raised, AlarmRow.raised_ns))
+        if incident is not None and incident.has_members:
+            wanted = wanted.where(was_member(incident, AlarmRow.unit_id, AlarmRow.raised_ns))
         with self._store.read() as session:
             return newest(session, wanted, AlarmRow.raised_ns, AlarmRow.alarm_id, limit)
 
@@ -179,23 +195,24 @@ class Records:
 
     # ---- site
 
-    def anchor(self, until_ns: int = FOREVER_NS) -> Anchor | None:
-        """The last one set before ``until_ns``; without one, the first set later."""
+    def anchor(self, until_ns: int = FOREVER_NS, site_id: str = "") -> Anchor | None:
+        """The last one of a site set before ``until_ns``; without one, the first set later."""
         with self._store.read() as session:
-            t_ns = models.AnchorRow.t_ns
-            before = select(models.AnchorRow).where(t_ns < until_ns).order_by(t_ns.desc()).limit(1)
-            first = select(models.AnchorRow).order_by(t_ns).limit(1)
+            t_ns, is_there = models.AnchorRow.t_ns, _is_on(models.AnchorRow.incident_id, site_id)
+            of_site = select(models.AnchorRow).where(is_there)
+            before = of_site.where(t_ns < until_ns).order_by(t_ns.desc()).limit(1)
+            first = of_site.order_by(t_ns).limit(1)
             row = session.scalars(before).first() or session.scalars(first).first()
         if row is None:
             return None
         return Anchor(row.lat_deg, row.lon_deg, row.height_m, row.plan_rotation_rad)
 
-    def plan(self, until_ns: int = FOREVER_NS) -> bytes | None:
-        """The last one set before ``until_ns``, as site GeoJSON."""
+    def plan(self, until_ns: int = FOREVER_NS, site_id: str = "") -> bytes | None:
+        """The last one of a site set before ``until_ns``, as site GeoJSON."""
         with self._store.read() as session:
             return session.scalars(
                 select(PlanRow.geojson)
-                .where(PlanRow.t_ns < until_ns)
+                .where(PlanRow.t_ns < until_ns, _is_on(PlanRow.incident_id, site_id))
                 .order_by(PlanRow.t_ns.desc())
                 .limit(1)
             ).first()

@@ -22,9 +22,9 @@ def test_live_state_follows_the_log() -> None:
     state.fuser = "gps-switching"
     assert live.fuser == "gps-switching"
     assert not live.is_in_incident()
-    state.incident = Incident("i1", "Fire", 1, closed_ns=None)
+    state.incidents["i1"] = Incident("i1", "Fire", 1, closed_ns=None)
     assert live.is_in_incident()
-    state.incident = Incident("i1", "Fire", 1, closed_ns=2)
+    state.incidents["i1"] = Incident("i1", "Fire", 1, closed_ns=2)
     assert not live.is_in_incident()
     state.problems["log"] = "the disk is full"
     state.thresholds = {"heat.caution_degc": 95.0}

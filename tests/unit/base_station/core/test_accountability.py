@@ -282,13 +282,13 @@ def test_what_makes_no_sense_is_refused_with_a_sentence(
 def test_an_incident_has_times_that_can_be_kept(par_s: float, work_s: float, opens: bool) -> None:
     script = Script()
     script.act(OpenIncident("i1", "Mill Lane", par_s, work_s))
-    assert (script.pipeline.state.incident is not None) is opens
+    assert (script.pipeline.state.shown_incident is not None) is opens
     assert len(refusals(script)) == (not opens)
 
 
 def test_an_old_log_has_the_usual_times() -> None:
     script = Script()
     script.act(OpenIncident("i1", "Mill Lane"))
-    incident = script.pipeline.state.incident
+    incident = script.pipeline.state.shown_incident
     assert incident is not None
     assert (incident.par_interval_s, incident.work_limit_s) == (1200.0, 2400.0)

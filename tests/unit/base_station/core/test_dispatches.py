@@ -32,7 +32,7 @@ def offered(script: Script) -> list[str]:
 
 def test_a_report_is_offered_and_opens_nothing_by_itself(script: Script) -> None:
     script.act(FIRE)
-    assert state(script).incident is None
+    assert state(script).shown_incident is None
     (view,) = snapshot(state(script), 1, StationFacts(), person_lookup({})).dispatches
     assert (view.number, view.type, view.units) == ("2024-7", "Structure fire", ("E12",))
     assert view.received_ms is not None
@@ -55,12 +55,12 @@ def test_a_later_report_replaces_the_earlier_one_and_an_older_one_changes_nothin
 def test_an_incident_is_opened_from_a_dispatch_and_takes_its_later_reports(script: Script) -> None:
     script.act(FIRE)
     script.act(OpenIncident("i1", "Mill Lane", dispatch_number="2024-7"))
-    incident = state(script).incident
+    incident = state(script).shown_incident
     assert incident is not None
     assert incident.dispatch == FIRE
     assert offered(script) == []
     script.act(msgspec.structs.replace(FIRE, address="Mill Lane 4", updated_ns=9, has_ended=True))
-    incident = state(script).incident
+    incident = state(script).shown_incident
     assert incident is not None
     assert (incident.name, incident.closed_ns) == ("Mill Lane", None)  # it is the officer's
     assert incident.dispatch is not None
@@ -78,7 +78,7 @@ def test_a_dispatch_meanwhile_is_only_offered(script: Script) -> None:
     script.act(OpenIncident("i1", "Mill Lane"))
     script.act(FIRE)
     assert offered(script) == ["2024-7"]
-    incident = state(script).incident
+    incident = state(script).shown_incident
     assert incident is not None
     assert (incident.name, incident.dispatch) == ("Mill Lane", None)
     (refused,) = script.act(OpenIncident("i2", "Fire", dispatch_number="2024-7"))
@@ -125,13 +125,13 @@ def test_they_survive_a_checkpoint(script: Script) -> None:
     assert saved is not None
     again = saved.state
     assert again.dispatches == state(script).dispatches
-    assert again.incident == state(script).incident
+    assert again.shown_incident == state(script).shown_incident
 
 
 def test_remarks_show_names_in_the_place_of_references(script: Script) -> None:
     script.act(msgspec.structs.replace(FIRE, remarks="call {person p1}"))
     script.act(OpenIncident("i1", "Mill Lane", dispatch_number="2024-7"))
-    incident = state(script).incident
+    incident = state(script).shown_incident
     assert incident is not None
     view = incident_view(incident, person_lookup({"p1": KnownPerson("Ada")}))
     assert view.dispatch is not None

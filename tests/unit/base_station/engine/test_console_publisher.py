@@ -122,7 +122,7 @@ def test_erasure_resets_all_consoles_whatever_was_pending() -> None:
 def test_another_incident_resets_all_consoles_with_what_was_pending() -> None:
     screen, pipeline = Screen(), make_pipeline()
     publisher = walked_in(pipeline, screen)
-    pipeline.state.incident = Incident("i1", "Mill Lane", NS_PER_S)
+    pipeline.state.incidents["i1"] = Incident("i1", "Mill Lane", NS_PER_S)
     later, touched = UnitChanged("FF-01", soon=False), UnitChanged("FF-02")
     publisher.mark_changed(
         [later, touched, alarm_of("FF-03"), CommandChanged("c1"), PinsChanged(())]

@@ -10,7 +10,7 @@ import pytest
 from base_station.app.offline_report import OpenedReport, open_report_sources
 from base_station.report.alarm_explanation import ABOUT_NS, AlarmExplainer, AlarmExplanation
 from base_station.storage.db.models import AlarmRow
-from base_station.storage.db.records import EVER
+from base_station.storage.db.window import EVER
 from shared.clock import NS_PER_S
 from tests.rig.reported_incident import HOT_DEGC, incident_records, write_log
 

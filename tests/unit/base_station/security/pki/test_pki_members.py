@@ -9,8 +9,9 @@ import pytest
 from base_station.engine.ports import ActionResult
 from base_station.security.pki.enrolled_units import EnrolledUnits
 from base_station.security.pki.folder import PkiFolder
-from base_station.storage.db.records import EVER, Records
+from base_station.storage.db.records import Records
 from base_station.storage.db.store import Store
+from base_station.storage.db.window import EVER
 from shared.clock import ManualClock
 from shared.enrolment import Holder
 from shared.messages.station import Action, RegisterUnit

@@ -1,0 +1,38 @@
+"""The incident that a request is about: the one it names, or else the only open one."""
+
+from __future__ import annotations
+
+from base_station.api.problems import Problem
+from base_station.api.services import Services
+from base_station.views.wire import IncidentView
+
+
+def open_incidents(station: Services) -> list[IncidentView]:
+    """Incidents that are open now, in the order of opening."""
+    return [one for one in station.picture().incidents if one.closed_ms is None]
+
+
+def open_incident(station: Services, incident_id: str) -> IncidentView | None:
+    """An incident that is open now; None: there is no such one."""
+    opened = open_incidents(station)
+    return next((one for one in opened if one.incident_id == incident_id), None)
+
+
+def open_or_404(station: Services, incident_id: str) -> IncidentView:
+    found = open_incident(station, incident_id)
+    if found is None:
+        raise Problem(404, f"There is no open incident {incident_id}.")
+    return found
+
+
+def site_incident_id(station: Services, incident_id: str | None) -> str:
+    """Id of the incident on whose site something is set; empty: on the station's own, as none is
+    open.  Problem 409 where several are open and none is named.
+    """
+    if incident_id is not None:
+        return open_or_404(station, incident_id).incident_id
+    opened = open_incidents(station)
+    if len(opened) > 1:
+        names = ", ".join(f"{one.name} ({one.incident_id})" for one in opened)
+        raise Problem(409, f"Several incidents are open; name one in incident_id: {names}.")
+    return opened[0].incident_id if opened else ""

@@ -1,0 +1,49 @@
+"""Entries of the audit that are of one incident, where several were open at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from base_station.report.orders import details_of
+from base_station.storage.db.members import Members
+from base_station.storage.db.models import Assignment, AuditEntry
+from shared.messages.station import AssignIncident
+
+
+def entries_of_incident(
+    entries: Iterable[AuditEntry],
+    incident_id: str,
+    members: Members,
+    assignments: Sequence[Assignment],
+) -> list[AuditEntry]:
+    """Entries that name the incident or its members, or that are of the whole station;
+    ``assignments``: who wore which unit at that time.
+    """
+    if members.windows is None:
+        return list(entries)
+    return [one for one in entries if _is_of(one, incident_id, members, assignments)]
+
+
+def _is_of(
+    entry: AuditEntry, incident_id: str, members: Members, assignments: Sequence[Assignment]
+) -> bool:
+    said = details_of(entry)
+    is_coming_or_leaving = entry.action == AssignIncident.__name__
+    named = said.get("incident_id")
+    if named and not is_coming_or_leaving:
+        return bool(named == incident_id)
+    units = _units_of(said, entry.t_ns, assignments)
+    return not units or any(members.has(unit_id, entry.t_ns) for unit_id in units)
+
+
+def _units_of(said: Mapping[str, Any], t_ns: int, assignments: Sequence[Assignment]) -> set[str]:
+    """Units that an action is about; empty: it is about none."""
+    units = {*said.get("unit_ids", ()), said.get("unit_id"), said.get("other_unit_id")}
+    people = set(said.get("person_ids", ()))
+    units |= {one.unit_id for one in assignments if one.person_id in people and _held(one, t_ns)}
+    return units - {None, ""}
+
+
+def _held(one: Assignment, t_ns: int) -> bool:
+    return one.from_ns <= t_ns and (one.until_ns is None or t_ns <= one.until_ns)
