@@ -122,21 +122,19 @@ FIELDS: Mapping[str, str] = {
     "one.",
     # ---- incidents
     "incident_id": "The incident's id.",
-    "UnitView.incident_id": "The incident in which the unit and its wearer are, which may be closed "
-    "since; empty: unassigned; null: in a recording of an earlier version.",
     "NewCommand.incident_id": "Only to who is in this open incident; null: to all of the target.",
-    "NewCheckIn.incident_id": "Only of who is in this open incident; null: of all of the target, and "
-    "of everyone only where one incident is open.",
-    "BeaconForm.incident_id": "The open incident on whose site it hangs; null: the only open one, or "
-    "the station's own site where none is open.",
+    "NewCheckIn.incident_id": "Only of who is in this open incident; null: of all of the target, "
+    "and of everyone only where one incident is open.",
+    "BeaconForm.incident_id": "The open incident on whose site it hangs; null: the only open one, "
+    "or the station's own site where none is open.",
     "Reference.incident_id": "The open incident of whose site it is; null: as for a beacon.",
     "beside_others": "True: it is opened although others are open, and nobody is in it at first; "
     "else it is refused then.",
     "site_id": "The ground that it belongs to; empty: the station's own site.",
     "Member.name": "The wearer's name; of a unit that nobody wears its label.",
     "Member.person_id": "Id of the person who wears it; null: nobody does.",
-    "NewMembers.target": "Who comes to the incident: one unit with its wearer, one crew, one floor, "
-    "or everyone who wears a unit.",
+    "NewMembers.target": "Who comes to the incident: one unit with its wearer, one crew, one "
+    "floor, or everyone who wears a unit.",
     "opened_ms": "When the incident was opened.",
     "opened_by": "The user who opened it.",
     "closed_ms": "When the incident was closed; null: it is open.",

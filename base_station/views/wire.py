@@ -427,7 +427,7 @@ class SiteView(Answer, frozen=True):
     """Ground of an incident beside the one of ``Snapshot.incident``."""
 
     site_id: str
-    plan: Annotated[msgspec.Raw, shown_as("Plan | null")]
+    plan: Annotated[msgspec.Raw, shown_as("Plan | null", {"type": ["object", "null"]})]
     anchor: AnchorView | None
     plan_placed: bool
 

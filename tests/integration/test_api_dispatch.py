@@ -11,7 +11,7 @@ from httpx import AsyncClient
 from base_station.accounts.principals import Role
 from base_station.api.forms import MAX_DISPATCH_BYTES
 from base_station.dispatch.config import DispatchConfig, Opening
-from base_station.storage.db.records import EVER
+from base_station.storage.db.window import EVER
 from shared.clock import ManualClock
 from tests.rig.desk_station import DeskStation
 

@@ -64,6 +64,7 @@ describe("commands", () => {
       par_warning_s: 300,
       work_limit_s: 2400,
       dispatch: null,
+      site_id: "",
     });
     const done = { open: false };
     const commands = [

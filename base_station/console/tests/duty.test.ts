@@ -13,6 +13,7 @@ const INCIDENT: IncidentView = {
   par_warning_s: 300,
   work_limit_s: 2400,
   dispatch: null,
+  site_id: "",
 };
 
 function duty(dueMs: number, change: Partial<DutyView> = {}): DutyView {

@@ -1,0 +1,147 @@
+"""Two incidents at once on a station that is killed in the middle."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from shared.messages import EventKind, UnitEvent
+from tests.rig.reported_incident import plan
+from tests.rig.served_station import MakePosition, greet, snapshot
+from tests.rig.station_command import Browser, Command, Unit
+from tests.rig.waiting import PATIENCE_S, until
+
+PEOPLE = {"FF-01": ("Anna Vos", "Engine 1"), "FF-02": ("Carl Berg", "Engine 2")}
+
+
+@pytest.fixture
+def units(port: int) -> Iterator[list[Unit]]:
+    units = [Unit(port, unit_id) for unit_id in PEOPLE]
+    yield units
+    for unit in units:
+        unit.close()
+
+
+def open_incident(browser: Browser, name: str, **options: object) -> str:
+    opened = browser.call("POST", "/incidents", json={"name": name, **options})
+    return str(opened["incident_id"])
+
+
+def members(browser: Browser, incident_id: str) -> list[str]:
+    return [one["name"] for one in browser.call("GET", f"/incidents/{incident_id}/members")]
+
+
+def par(browser: Browser, incident_id: str) -> dict[str, str]:
+    on_duty = browser.call("GET", f"/accountability?incident_id={incident_id}")
+    return {one["name"]: one["confirmed"] for one in on_duty}
+
+
+def walk(units: list[Unit], make_position: MakePosition, begin: int, end: int) -> None:
+    for step in range(begin, end):
+        for unit in units:
+            unit.say(make_position(header=unit.stamper.header(), north_m=float(step)))
+
+
+def report(browser: Browser, incident_id: str) -> str:
+    address = f"{browser.address}/api/v1/incidents/{incident_id}/report.html"
+    answer = httpx.get(address, headers={"Cookie": browser.cookie()}, timeout=PATIENCE_S)
+    assert answer.status_code == 200, answer.text
+    return answer.text
+
+
+def replayed(browser: Browser, incident_id: str) -> dict[str, Any]:
+    """What the replay of an incident shows at its end."""
+    replay = browser.call("POST", "/replays", json={"incident_id": incident_id})
+    path = f"/replays/{replay['replay_id']}"
+    end_ms = replay["end_ms"] - 1
+    browser.call("POST", path, json={"playing": False, "at_ms": end_ms})
+
+    def at_end() -> dict[str, Any] | None:
+        shown = snapshot(browser, f"{path}/live")
+        stands = shown["replay"]
+        return shown if stands["at_ms"] >= end_ms and not stands["seeking"] else None
+
+    until(at_end, "the replay stands at its end")
+    shown = snapshot(browser, f"{path}/live")
+    browser.call("DELETE", path)
+    people = {one["person"]["name"] for one in shown["units"] if one["person"]}
+    return {
+        "incident": shown["incident"]["name"],
+        "people": people,
+        "alarms": {one["unit_id"] for one in shown["alarms"]},
+        "has_plan": shown["plan"] is not None,
+    }
+
+
+def test_two_incidents_at_once(
+    serve: Callable[..., Command], data: Path, units: list[Unit], make_position: MakePosition
+) -> None:
+    station = serve()
+    with Browser(station.wait_ready(), data) as browser:
+        for unit_id, (name, crew) in PEOPLE.items():
+            browser.call("POST", "/units", json={"unit_id": unit_id})
+            person = browser.call("POST", "/people", json={"name": name, "crew": crew})
+            worn = {"unit_id": unit_id, "person_id": person["person_id"]}
+            browser.call("POST", "/assignments", json=worn)
+        lane = open_incident(browser, "Mill Lane")
+        assert browser.status("POST", "/incidents", json={"name": "Harbour"}) == 409
+        harbour = open_incident(browser, "Harbour", beside_others=True)
+        assert members(browser, lane) == ["Anna Vos", "Carl Berg"]
+        assert members(browser, harbour) == []
+        assert browser.status("PUT", "/site/plan", json=json.loads(plan())) == 409, "of which?"
+        placed = f"/site/plan?incident_id={harbour}"
+        assert browser.status("PUT", placed, json=json.loads(plan())) == 204
+        engine_2 = {"target": {"crew": "Engine 2"}}
+        browser.call("POST", f"/incidents/{harbour}/members", json=engine_2)
+        assert (members(browser, lane), members(browser, harbour)) == (["Anna Vos"], ["Carl Berg"])
+        for unit in units:
+            greet(browser, unit, make_position)
+        walk(units, make_position, 0, 15)
+        everyone = {"target": {"everyone": True}}
+        assert browser.status("POST", "/check-ins", json=everyone) == 409
+        assert browser.status("POST", "/check-ins", json=everyone | {"incident_id": lane}) == 204
+    station.kill()
+
+    station = serve()
+    with Browser(station.wait_ready(), data) as browser:
+        assert par(browser, lane) == {"Anna Vos": "radio"}
+        assert par(browser, harbour) == {"Carl Berg": "not_yet"}
+        greet(browser, units[0], make_position)
+        walk(units, make_position, 15, 25)
+        units[1].say(UnitEvent(units[1].stamper.header(), EventKind.MAYDAY))
+        until(lambda: browser.call("GET", "/alarms"), "the mayday is raised")
+        order = {"kind": "evacuate", "target": {"everyone": True}, "incident_id": lane}
+        sent = browser.call("POST", "/commands", json=order)
+        assert [one["unit_id"] for one in sent["units"]] == ["FF-01"]
+        inside = {"despite_unit_ids": ["FF-01"]}
+        closed = browser.status("POST", f"/incidents/{lane}/close", json=inside)
+        assert closed == 204, "the mayday is of the other one"
+        assert browser.call("GET", "/unassigned")[0]["name"] == "Anna Vos"
+        assert par(browser, harbour) == {"Carl Berg": "not_yet"}
+        assert browser.call("GET", f"/incidents/{lane}/alarms") == []
+        ours = browser.call("GET", f"/incidents/{harbour}/tracks")
+        assert [one["unit_id"] for one in ours] == ["FF-02"]
+        assert browser.close_incident(harbour) == 204
+
+        page = report(browser, lane)
+        assert ("Anna Vos" in page, "Mayday from" in page) == (True, False)
+        page = report(browser, harbour)
+        assert ("Anna Vos" in page, "Mayday from" in page) == (False, True)
+        assert replayed(browser, lane) == {
+            "incident": "Mill Lane",
+            "people": {"Anna Vos"},
+            "alarms": set(),
+            "has_plan": False,
+        }
+        assert replayed(browser, harbour) == {
+            "incident": "Harbour",
+            "people": {"Carl Berg"},
+            "alarms": {"FF-02"},
+            "has_plan": True,
+        }
+    assert station.stop() == 0
