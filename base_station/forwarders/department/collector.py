@@ -89,7 +89,6 @@ class ReportCollector:
         if not self._has_picture:
             return None
         open_incidents = [one for one in self._incidents if one.closed_ms is None]
-        in_incident = next((one.incident_id for one in open_incidents), "")
         return Summary(
             epoch=self._outbox.epoch,
             t_ms=now_ms,
@@ -97,7 +96,7 @@ class ReportCollector:
             console_url=console_url,
             incidents=tuple(incident_summary(one) for one in open_incidents),
             people=tuple(
-                person_summary(unit, "" if unit.duty is None else in_incident)
+                person_summary(unit, "" if unit.duty is None else unit.incident_id or "")
                 for unit in self._units.values()
                 if unit.registered
             ),
@@ -111,7 +110,7 @@ class ReportCollector:
         if picture is not None:
             self._has_picture = True
             self._units = {unit.unit_id: unit for unit in picture.units}
-            self._incidents = () if picture.incident is None else (picture.incident,)
+            self._incidents = picture.incidents
             self._problems = picture.health.problems
         self._units.update(changes.units)
         if changes.health is not None:
