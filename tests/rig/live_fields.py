@@ -103,4 +103,12 @@ LIVE_FIELDS: Mapping[str, str] = {
     "remarks": "Free text of the other team.",
     "radius_m": "Radius of the region in which it is; null: not known.",
     "stale_ms": "From then on the place is old.",
+    "UnitView.incident_id": "The incident in which the unit and its wearer are; it may be closed "
+    "since; empty: unassigned; null: in a recording of an earlier version.",
+    "Snapshot.incidents": "All that are open, and closed ones until the next is opened on their "
+    "site, in the order of opening.",
+    "Snapshot.sites": "Grounds beside the one of the incident that is shown.",
+    "SiteView.plan": "The plan of that ground as GeoJSON; null: there is none.",
+    "SiteView.anchor": "Where it lies on the Earth; null: nobody has said.",
+    "SiteView.plan_placed": "Whether it is known where on the plan people are.",
 }
