@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Event, Thread
 from typing import Annotated
 
-import msgspec
 import typer
 from rich.console import Console as Terminal
 from rich.table import Table
@@ -30,7 +30,8 @@ _SETTLE_S = 5.0
 _KINDS = ((False, False), (False, True), (True, False), (True, True))  # fields, compressed
 
 
-class WireReport(msgspec.Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class WireReport:
     """What one console gets."""
 
     fields: bool  # changed fields, else whole units
@@ -39,7 +40,8 @@ class WireReport(msgspec.Struct, frozen=True):
     mbit_s: float
 
 
-class LoadReport(msgspec.Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class LoadReport:
     """A station with so many consoles."""
 
     consoles: int
@@ -47,7 +49,8 @@ class LoadReport(msgspec.Struct, frozen=True):
     cpu_share: float  # of one core
 
 
-class ConsoleReport(msgspec.Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class ConsoleReport:
     """Figures of one run."""
 
     units: int
