@@ -7,12 +7,14 @@ choose a file counts as one, to write does not.
 from __future__ import annotations
 
 import io
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from ezdxf.filemanagement import new
 from PIL import Image, ImageDraw
 from playwright.sync_api import Browser, FilePayload, Locator, Page, expect
 
@@ -33,6 +35,11 @@ def station(
     station.start()
     yield station
     station.stop()
+
+
+def pictures_to(folder: Path) -> Path:
+    """Where pictures go: those of docs/howto are taken with ``MUSTER_PICTURES=docs/howto``."""
+    return Path(os.environ.get("MUSTER_PICTURES", folder))
 
 
 class Presses:
@@ -117,7 +124,7 @@ def test_people_are_moved_without_drawing(board: Locator, page: Page, tmp_path: 
         board.get_by_role("button", name=name).focus()
         page.keyboard.press("Enter")
     assert barriers(page) == []
-    page.screenshot(path=tmp_path / "crews.png")
+    page.screenshot(path=pictures_to(tmp_path) / "crews.png")
     board.get_by_role("button", name="Move here: Ladder 1").click()
     expect(crew(board, "Ladder 1").get_by_role("listitem")).to_have_count(2)
     expect(crew(board, "Engine 2")).to_have_count(0)
@@ -264,7 +271,7 @@ def test_walls_are_drawn_on_the_picture_of_another_floor_by_mouse_and_keys(
     for key in ("ArrowRight", "Enter"):
         page.keyboard.press(key)
     site.get_by_role("button", name="Undo").click()
-    page.screenshot(path=tmp_path / "walls.png")
+    page.screenshot(path=pictures_to(tmp_path) / "walls.png")
     confirm(site, "Replace plan")
     expect(site).to_have_count(0)
     plan = plan_of(page)
@@ -287,6 +294,36 @@ def test_walls_are_drawn_without_a_picture(page: Page, complaints: list[str]) ->
     plan = plan_of(page)
     assert len(plan["muster"]["pictures"]) == 2
     assert [one["properties"]["kind"] for one in plan["features"]] == ["wall", "stairs", "wall"]
+
+
+def test_ordinary_geojson_and_dxf_become_plans(page: Page, complaints: list[str]) -> None:
+    site = menu(page, "Site")
+    wall = b'{"type": "LineString", "coordinates": [[11.97, 57.7], [11.9704, 57.7]]}'
+    features = b'[{"type": "Feature", "properties": {}, "geometry": %s}]' % wall
+    geojson = b'{"type": "FeatureCollection", "features": %s}' % features
+    file = FilePayload(name="osm.geojson", mimeType="application/geo+json", buffer=geojson)
+    site.get_by_label("New plan").set_input_files(file)
+    confirm(site, "Replace plan")
+    expect(site).to_have_count(0)
+    (east_m, _), (end_m, _) = plan_of(page)["features"][0]["geometry"]["coordinates"]
+    assert end_m - east_m == pytest.approx(23.9, abs=0.1)
+    site = menu(page, "Site")
+    expect(site).to_contain_text("origin lies at 57.70000°, 11.97020°")
+    document: Any = new(units=0)
+    document.modelspace().add_line((0, 0), (1000, 0), dxfattribs={"layer": "Wall"})
+    written = io.StringIO()
+    document.write(written)
+    dxf = written.getvalue().encode()
+    file = FilePayload(name="house.dxf", mimeType="application/dxf", buffer=dxf)
+    site.get_by_label("New plan").set_input_files(file)
+    notice = site.get_by_role("alert").filter(has_text="does not say in which unit of length")
+    notice.get_by_role("button", name="OK").click()
+    complaints[:] = [one for one in complaints if "/site/drafts" not in one]
+    site.get_by_label("Unit of length").select_option("cm")
+    confirm(site, "Replace plan")
+    expect(site).to_have_count(0)
+    (wall_line,) = (one["geometry"]["coordinates"] for one in plan_of(page)["features"])
+    assert wall_line == [[0, 0], [10, 0]]
 
 
 def test_a_drawing_that_cannot_be_read_is_refused_with_the_reason(

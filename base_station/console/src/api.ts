@@ -245,10 +245,10 @@ export const carriedOut = (key: string) => call<CarriedOut>("GET", `/idempotency
 export const takeOver = () => call<void>("POST", "/standby/take-over");
 
 /** Nothing of it is kept. */
-export const draftPlan = (file: File, page: number) =>
+export const draftPlan = (file: File, page: number, unit: string) =>
   call<PlanDraft>(
     "POST",
-    `/site/drafts?page=${page}&name=${id(file.name.slice(0, 80))}`,
+    `/site/drafts?page=${page}&name=${id(file.name.slice(0, 80))}${unit === "" ? "" : `&unit=${unit}`}`,
     new Blob([file], { type: "application/octet-stream" }),
   );
 export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);

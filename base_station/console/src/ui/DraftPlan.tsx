@@ -8,6 +8,10 @@ import { PlanDrawing } from "./PlanDrawing";
 import { SendPlan } from "./SendPlan";
 import { Waiting } from "./Waiting";
 
+const UNITS = ["mm", "cm", "m", "in", "ft"];
+/** Refused: with another unit it may be read. */
+const NOTHING: api.PlanDraft = { picture: null, plan: null, lat_deg: null, lon_deg: null, pages: 1, notes: [] };
+
 interface Props {
   file: File;
   shown: Plan | null;
@@ -18,23 +22,36 @@ interface Props {
 export function DraftPlan({ file, shown, done }: Props) {
   const draft = useSignal<api.PlanDraft | null>(null);
   const page = useSignal(1);
+  const unit = useSignal("");
+  const isDxf = /\.dxf$/i.test(file.name);
   useEffect(() => {
     let isWanted = true;
     draft.value = null;
-    void attempt(api.draftPlan(file, page.value)).then((read) => {
+    void attempt(api.draftPlan(file, page.value, unit.value)).then((read) => {
       if (!isWanted) return;
-      if (read === null) done();
-      else draft.value = read;
+      if (read === null && !isDxf) done();
+      else draft.value = read ?? NOTHING;
     });
     return () => {
       isWanted = false;
     };
-  }, [file, page.value]);
+  }, [file, page.value, unit.value]);
   const read = draft.value;
   if (read === null) return <Waiting />;
   const name = file.name.replace(/\.[^.]*$/, "").slice(0, 80);
   return (
     <>
+      {isDxf && (
+        <label class="row">
+          Unit of length
+          <select value={unit.value} onChange={(event) => (unit.value = event.currentTarget.value)}>
+            <option value="">as the file says</option>
+            {UNITS.map((one) => (
+              <option key={one}>{one}</option>
+            ))}
+          </select>
+        </label>
+      )}
       {read.pages > 1 && (
         <label class="row">
           Page

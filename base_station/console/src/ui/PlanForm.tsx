@@ -18,8 +18,9 @@ export function PlanForm({ shown }: { shown: Plan | null }) {
     chosen.value = drawing.value = null;
     byHand.value = false;
     if (!file) return;
-    if (isJson(file)) chosen.value = parsed(await file.text());
-    else drawing.value = file;
+    const plan = isJson(file) ? parsed(await file.text()) : null;
+    if (plan?.muster === undefined) drawing.value = file;
+    else chosen.value = plan;
   };
   return (
     <>
@@ -29,10 +30,10 @@ export function PlanForm({ shown }: { shown: Plan | null }) {
           : `Shown is ${contents(shown)}.`}
       </p>
       <label class="row">
-        New plan: image, PDF, or GeoJSON in site metres
+        New plan: image, PDF, DXF, IMDF or GeoJSON
         <input
           type="file"
-          accept=".geojson,.json,application/geo+json,.pdf,.png,.jpg,.jpeg,.webp"
+          accept=".geojson,.json,application/geo+json,.zip,.imdf,.dxf,.pdf,.png,.jpg,.jpeg,.webp"
           onChange={(event) => void attempt(choose(event.currentTarget.files?.[0]))}
         />
       </label>

@@ -1,0 +1,74 @@
+"""Shapes that a drawing gives, and the plan made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+from shared.errors import UserError
+
+STOREY_M = 3.2  # where the file does not say how high a floor is
+MOST_POINTS = 200_000
+MOST_SIZE_M = 5_000.0  # of a site
+_LEAST_SIZE_M = 1.0
+
+Point = tuple[float, float]
+
+
+class DrawnShape(NamedTuple):
+    kind: str  # of a plan: wall, outline, stairs, room or door
+    floor: int
+    points: Sequence[Point]  # east_m, north_m; a closed one ends where it begins
+    name: str = ""
+
+
+def plan_of(name: str, shapes: Sequence[DrawnShape]) -> dict[str, Any]:
+    """GeoJSON in site metres, as ``site/plan`` takes it.  UserError where it is no building."""
+    if not shapes:
+        raise UserError("the drawing has no line that could be a wall")
+    require_size([point for shape in shapes for point in shape.points])
+    floors = sorted({shape.floor for shape in shapes})
+    return {
+        "type": "FeatureCollection",
+        "muster": {
+            "frame": "site-m",
+            "name": name,
+            "floors": [{"floor": floor, "down_m": 0.0 - floor * STOREY_M} for floor in floors],
+        },
+        "features": [_feature(shape) for shape in shapes],
+    }
+
+
+def box_of(points: Iterable[Point]) -> tuple[float, float, float, float]:
+    """West, south, east, north."""
+    xs, ys = zip(*points, strict=True)
+    return min(xs), min(ys), max(xs), max(ys)
+
+
+def require_size(points: Sequence[Point]) -> None:
+    """UserError where nobody could walk in it, or no site is so large."""
+    if len(points) > MOST_POINTS:
+        raise UserError(
+            f"the drawing has more than {MOST_POINTS} points; leave out furniture and hatching"
+        )
+    west, south, east, north = box_of(points)
+    size_m = max(east - west, north - south)
+    if not _LEAST_SIZE_M <= size_m <= MOST_SIZE_M:
+        raise UserError(
+            f"the drawing is {size_m:.4g} m wide: choose another unit of length, or send one "
+            "building"
+        )
+
+
+def _feature(shape: DrawnShape) -> dict[str, Any]:
+    line = [[round(x, 3), round(y, 3)] for x, y in shape.points]
+    is_area = shape.kind in {"outline", "stairs", "room"} and line[0] == line[-1] and len(line) > 3
+    geometry = (
+        {"type": "Polygon", "coordinates": [line]}
+        if is_area
+        else {"type": "LineString", "coordinates": line}
+    )
+    properties: dict[str, Any] = {"kind": shape.kind, "floor": shape.floor}
+    if shape.name:
+        properties["name"] = shape.name
+    return {"type": "Feature", "properties": properties, "geometry": geometry}
