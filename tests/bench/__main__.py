@@ -13,6 +13,7 @@ BENCHES = {
     "bus": "tests.bench.bus.command:bench_bus",
     "console": "tests.bench.console.command:bench_console",
     "exports": "tests.bench.past.exports:bench_exports",
+    "department": "tests.bench.department:bench_department",
     "faults": "tests.bench.faults.command:bench_faults",
     "floors": "tests.bench.floors:bench_floors",
     "fusion": "tests.bench.fusion.command:bench_fusion",

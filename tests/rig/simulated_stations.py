@@ -1,0 +1,163 @@
+"""Many stations that report to one department, in one program.
+
+``python -m tests.rig.simulated_stations FOLDER UNITS SECONDS``: one station for each enrolment in
+FOLDER, each over a link of its own; a summary a second and an alarm every ten.  What was sent is
+printed at the end as JSON, when there is a receipt for every event.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+import msgspec
+
+from base_station.department_wire import (
+    AlarmEvent,
+    Event,
+    EventBatch,
+    EventReceipt,
+    IncidentEvent,
+    IncidentSummary,
+    PersonEvent,
+    PersonSummary,
+    PlaceSummary,
+    Summary,
+    pack,
+    unpack,
+)
+from shared.bus_zenoh import UnitEndpoint, ZenohBus
+from shared.channels import Qos, department_events_key, department_summary_key
+from shared.enrolment import read_enrolment
+from tests.rig.waiting import until
+
+_ALARM_EVERY_S = 10
+_TIMEOUT_S = 10.0
+_LINKED_S = 60.0
+
+
+class StationsReport(msgspec.Struct):
+    """What was sent by all of them."""
+
+    seconds: float
+    summaries: int
+    events: int  # alarms
+
+
+def station_name(number: int) -> str:
+    return f"station-{number:03}"
+
+
+class SimulatedStation:
+    def __init__(self, enrolment: Path, units: int, closing: ExitStack) -> None:
+        made = read_enrolment(enrolment)
+        self.name, self._units = made.name, units
+        self._bus = ZenohBus(UnitEndpoint(made.connect, made.identity))
+        closing.callback(self._bus.close)
+        self._seq = 0
+        self.alarms = 0
+        self._opened_ms = _now_ms()
+
+    def is_heard(self) -> bool:
+        return self._bus.is_heard(department_summary_key(self.name))
+
+    def begin(self) -> None:
+        """Open an incident and name everybody."""
+        incident = IncidentEvent(self._incident_id, "Bench", self._opened_ms, None)
+        people = [PersonEvent(f"p{n}", f"Person {n}", "Crew", "") for n in range(self._units)]
+        self._hand_over([incident, *people])
+
+    def publish_summary(self) -> None:
+        now_ms = _now_ms()
+        summary = Summary(
+            epoch=1,
+            t_ms=now_ms,
+            host="bench",
+            console_url="",
+            incidents=(IncidentSummary(self._incident_id, "Bench", self._opened_ms),),
+            people=tuple(self._person(number, now_ms) for number in range(self._units)),
+            problems=(),
+            waiting=0,
+        )
+        self._bus.publish(department_summary_key(self.name), pack(summary), Qos.LIVE)
+
+    def raise_alarm(self) -> None:
+        self.alarms += 1
+        now_ms = _now_ms()
+        alarm_id, unit_id = f"fall|{self.alarms}", f"FF-{self.alarms % self._units:03}"
+        self._hand_over(
+            [AlarmEvent(alarm_id, "fall", unit_id, 1, "raised", "", "fell", "", now_ms, now_ms)]
+        )
+
+    @property
+    def _incident_id(self) -> str:
+        return f"i-{self.name}"
+
+    def _person(self, number: int, now_ms: int) -> PersonSummary:
+        north_m = 50.0 * math.sin(now_ms / 20_000.0 + number)
+        place = PlaceSummary(now_ms, north_m, 5.0, 1, 52.5, 13.4, 2.5, "good")
+        return PersonSummary(
+            unit_id=f"FF-{number:03}",
+            label=f"Unit {number}",
+            person_id=f"p{number}",
+            link="live",
+            incident_id=self._incident_id,
+            place=place,
+            activity="walking",
+            mayday=False,
+            alarms=(),
+            par="self",
+            par_due_ms=now_ms + 600_000,
+        )
+
+    def _hand_over(self, bodies: list[AlarmEvent | IncidentEvent | PersonEvent]) -> None:
+        """Until there is a receipt, as a station does."""
+        after_seq = self._seq
+        events = []
+        for body in bodies:
+            self._seq += 1
+            event_id = f"{self.name}/{self._seq}"
+            events.append(Event(self._seq, event_id, _now_ms(), msgspec.Raw(pack(body))))
+        batch = pack(EventBatch(1, _now_ms(), after_seq, tuple(events)))
+        until(lambda: self._stored_seq(batch) >= self._seq, "a receipt")
+
+    def _stored_seq(self, batch: bytes) -> int:
+        replies = self._bus.query(department_events_key(self.name), batch, _TIMEOUT_S)
+        return max((unpack(one, EventReceipt).stored_seq for one in replies), default=0)
+
+
+def main(folder: Path, units: int, seconds: float) -> None:
+    with ExitStack() as closing:
+        stations = [
+            SimulatedStation(path, units, closing) for path in sorted(folder.glob("*.toml"))
+        ]
+        for station in stations:
+            until(station.is_heard, f"the department hears {station.name}")
+            station.begin()
+            station.publish_summary()
+        began_s, turn, summaries = time.monotonic(), 0, 0
+        while time.monotonic() < began_s + seconds:
+            for number, station in enumerate(stations):
+                # Evenly over the second, as stations that do not know of each other.
+                due_s = began_s + turn + number / len(stations)
+                time.sleep(max(due_s - time.monotonic(), 0.0))
+                station.publish_summary()
+                summaries += 1
+                if (turn + number) % _ALARM_EVERY_S == 0:
+                    station.raise_alarm()
+            turn += 1
+        took_s = time.monotonic() - began_s
+        alarms = sum(station.alarms for station in stations)
+        print(msgspec.json.encode(StationsReport(took_s, summaries, alarms)).decode(), flush=True)
+        time.sleep(_LINKED_S)  # whoever measures ends it before
+
+
+def _now_ms() -> int:
+    return time.time_ns() // 1_000_000
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3]))
