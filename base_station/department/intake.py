@@ -8,8 +8,15 @@ from contextlib import ExitStack
 from threading import Lock
 
 from base_station.department.live_picture import LivePicture, StationPicture
-from base_station.department_wire import EventBatch, EventReceipt, Summary, pack, unpack
-from base_station.storage.db.department_models import LastSummary
+from base_station.department_wire import (
+    EventBatch,
+    EventReceipt,
+    PersonEvent,
+    Summary,
+    pack,
+    unpack,
+)
+from base_station.storage.db.department_models import LastSummary, ReportedPerson
 from base_station.storage.db.department_tables import DepartmentTables
 from base_station.storage.db.known_people import FORGOTTEN, KnownPerson
 from shared.bus import Bus
@@ -31,7 +38,8 @@ class ReportIntake:
         self._people: dict[tuple[str, str], KnownPerson] = {}
         self._kept_ns: dict[str, int] = {}  # receipt of the summary that is in the tables
         self._unreadable = 0
-        self._read_people()
+        for (station, _), person in tables.people().items():
+            self._name(station, person)
         for row in tables.last_summaries():
             self._kept_ns[row.station] = row.received_ns
             summary = unpack(row.summary, Summary)
@@ -78,8 +86,8 @@ class ReportIntake:
         offset_ms = batch.t_ms - now_ns // NS_PER_MS
         try:
             reported = self._tables.take(station, batch, offset_ms, now_ns)
-            if reported.names_changed:
-                self._read_people()
+            for person in reported.people:
+                self._name(station, person)
         except WireError as error:
             self._note_unreadable(key, error)
             yield pack(EventReceipt(batch.epoch, 0, f"the department cannot read it: {error}"))
@@ -107,13 +115,10 @@ class ReportIntake:
             self._tables.keep_summaries(rows)
         self._kept_ns |= {row.station: row.received_ns for row in rows}
 
-    def _read_people(self) -> None:
-        people = {
-            key: KnownPerson(row.name, row.crew, row.role) if row.name else FORGOTTEN
-            for key, row in self._tables.people().items()
-        }
+    def _name(self, station: str, person: ReportedPerson | PersonEvent) -> None:
+        known = KnownPerson(person.name, person.crew, person.role) if person.name else FORGOTTEN
         with self._lock:
-            self._people = people
+            self._people[station, person.person_id] = known
 
     def _note_unreadable(self, key: str, error: MusterError) -> None:
         self._unreadable += 1

@@ -25,10 +25,11 @@ from tests.rig.department_process import DepartmentProcess
 from tests.rig.latency import Latency, latency_of
 from tests.rig.pacing import wait_until
 from tests.rig.program import launch_installed
-from tests.rig.simulated_stations import StationsReport, station_name
+from tests.rig.simulated_stations import StationsReport, clock_ms, station_name
 from tests.rig.station_process import free_port
 
-_POLL_S = 0.25
+_POLL_S = 0.02
+_PAGES_EVERY_S = 0.5
 _PEOPLE_PAGE = 100
 
 
@@ -77,18 +78,19 @@ def measure(stations: int, units: int, seconds: float) -> DepartmentReport:
         )
         department.start()
         try:
-            with _simulated(enrolments, units, seconds) as simulation:
+            department.get("/department")  # a first login takes its time
+            with _simulated(enrolments, units) as simulation:
                 return _observe(department, simulation, stations, units, seconds)
         finally:
             department.kill()
 
 
 @contextmanager
-def _simulated(enrolments: Path, units: int, seconds: float) -> Iterator[subprocess.Popen[bytes]]:
+def _simulated(enrolments: Path, units: int) -> Iterator[subprocess.Popen[bytes]]:
     """All stations in a program of their own, which prints what it sent at its end."""
     module = [sys.executable, "-m", "tests.rig.simulated_stations"]
-    command = [*module, str(enrolments), str(units), str(seconds)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
+    command = [*module, str(enrolments), str(units)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         try:
             yield process
         finally:
@@ -110,26 +112,26 @@ def _observe(
     shown_ms: list[float] = []
     overview_ms: list[float] = []
     people_ms: list[float] = []
-    last_ms: dict[str, float] = {}
+    last_sent_ms = 0.0
     began_s, began_cpu_s = time.monotonic(), department.cpu_s()
-    number = 0
-    while time.monotonic() < began_s + seconds and simulation.poll() is None:
-        overview_ms.append(_duration_ms(department, "/department"))
-        people_ms.append(_duration_ms(department, f"/department/people?limit={_PEOPLE_PAGE}"))
-        name = station_name(number % min(stations, 4))  # each often enough to see every summary
-        number += 1
-        page = department.get(f"/department/people?station={name}&limit=1")
-        now_ms = time.time() * 1000.0
-        # Its simulated position belongs to the moment at which the summary is sent.
-        sent_ms = page["now_ms"] - page["people"][0]["position_age_s"] * 1000.0
-        if sent_ms - last_ms.get(name, sent_ms) > 500.0:  # another one than before
-            shown_ms.append(now_ms - sent_ms)
-        last_ms[name] = sent_ms
-        time.sleep(_POLL_S / min(stations, 4))
+    pages_due_s = began_s
+    while (now_s := time.monotonic()) < began_s + seconds and simulation.poll() is None:
+        if now_s >= pages_due_s:  # as a page that is open does
+            pages_due_s = now_s + _PAGES_EVERY_S
+            overview_ms.append(_duration_ms(department, "/department"))
+            people_ms.append(_duration_ms(department, f"/department/people?limit={_PEOPLE_PAGE}"))
+        sent_ms = _newest_position_ms(department)
+        if sent_ms > last_sent_ms:
+            if last_sent_ms:
+                shown_ms.append(clock_ms() - sent_ms)
+            last_sent_ms = sent_ms
+        time.sleep(_POLL_S)
     took_s = time.monotonic() - began_s
     cpu_share = (department.cpu_s() - began_cpu_s) / took_s
     memory_mb = department.memory_mb()
+    assert simulation.stdin is not None
     assert simulation.stdout is not None
+    simulation.stdin.close()
     printed = simulation.stdout.readline()
     if not printed:
         raise BusError("the simulated stations ended before their time")
@@ -148,6 +150,12 @@ def _observe(
         cpu_share=cpu_share,
         memory_mb=memory_mb,
     )
+
+
+def _newest_position_ms(department: DepartmentProcess) -> float:
+    """Clock of ``clock_ms`` when one station sent what the API shows of it now."""
+    page = department.get(f"/department/people?station={station_name(0)}&limit=1")
+    return float(page["people"][0]["north_m"])
 
 
 def _duration_ms(department: DepartmentProcess, path: str) -> float:

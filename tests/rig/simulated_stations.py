@@ -1,17 +1,19 @@
 """Many stations that report to one department, in one program.
 
-``python -m tests.rig.simulated_stations FOLDER UNITS SECONDS``: one station for each enrolment in
+``python -m tests.rig.simulated_stations FOLDER UNITS``: one station for each enrolment in
 FOLDER, each over a link of its own; a summary a second and an alarm every ten.  What was sent is
 printed at the end as JSON, when there is a receipt for every event.
 """
 
 from __future__ import annotations
 
-import math
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
+from threading import Event as ThreadEvent
+from threading import Thread
 
 import msgspec
 
@@ -36,7 +38,8 @@ from tests.rig.waiting import until
 
 _ALARM_EVERY_S = 10
 _TIMEOUT_S = 10.0
-_LINKED_S = 60.0
+_OPENED_AT_ONCE = 16
+_CLOCK_PERIOD_MS = 10_000_000  # so that it is exact as a position
 
 
 class StationsReport(msgspec.Struct):
@@ -49,6 +52,11 @@ class StationsReport(msgspec.Struct):
 
 def station_name(number: int) -> str:
     return f"station-{number:03}"
+
+
+def clock_ms() -> float:
+    """UTC within a period of some hours."""
+    return float(_now_ms() % _CLOCK_PERIOD_MS)
 
 
 class SimulatedStation:
@@ -97,8 +105,8 @@ class SimulatedStation:
         return f"i-{self.name}"
 
     def _person(self, number: int, now_ms: int) -> PersonSummary:
-        north_m = 50.0 * math.sin(now_ms / 20_000.0 + number)
-        place = PlaceSummary(now_ms, north_m, 5.0, 1, 52.5, 13.4, 2.5, "good")
+        # Where somebody is tells when it was sent.
+        place = PlaceSummary(now_ms, clock_ms(), 5.0, 1, 52.5, 13.4, 2.5, "good")
         return PersonSummary(
             unit_id=f"FF-{number:03}",
             label=f"Unit {number}",
@@ -129,17 +137,27 @@ class SimulatedStation:
         return max((unpack(one, EventReceipt).stored_seq for one in replies), default=0)
 
 
-def main(folder: Path, units: int, seconds: float) -> None:
+def main(folder: Path, units: int) -> None:
+    """Until its standard input ends."""
+    ended = ThreadEvent()
+
+    def wait_for_end() -> None:
+        sys.stdin.read()
+        ended.set()
+
+    Thread(target=wait_for_end, daemon=True).start()
     with ExitStack() as closing:
-        stations = [
-            SimulatedStation(path, units, closing) for path in sorted(folder.glob("*.toml"))
-        ]
+        opening = closing.enter_context(ThreadPoolExecutor(_OPENED_AT_ONCE))
+        stations = list(
+            opening.map(
+                lambda path: SimulatedStation(path, units, closing), sorted(folder.glob("*.toml"))
+            )
+        )
         for station in stations:
             until(station.is_heard, f"the department hears {station.name}")
             station.begin()
-            station.publish_summary()
         began_s, turn, summaries = time.monotonic(), 0, 0
-        while time.monotonic() < began_s + seconds:
+        while not ended.is_set():
             for number, station in enumerate(stations):
                 # Evenly over the second, as stations that do not know of each other.
                 due_s = began_s + turn + number / len(stations)
@@ -152,7 +170,6 @@ def main(folder: Path, units: int, seconds: float) -> None:
         took_s = time.monotonic() - began_s
         alarms = sum(station.alarms for station in stations)
         print(msgspec.json.encode(StationsReport(took_s, summaries, alarms)).decode(), flush=True)
-        time.sleep(_LINKED_S)  # whoever measures ends it before
 
 
 def _now_ms() -> int:
@@ -160,4 +177,4 @@ def _now_ms() -> int:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3]))
+    main(Path(sys.argv[1]), int(sys.argv[2]))

@@ -43,7 +43,7 @@ class Reported(NamedTuple):
 
     last_seq: int
     new: int  # of the batch, events that were not there
-    names_changed: bool
+    people: tuple[PersonEvent, ...]  # who was named, renamed or forgotten
 
 
 class DepartmentTables:
@@ -70,7 +70,7 @@ class DepartmentTables:
         """
         bodies = [unpack_body(event.body) for event in batch.events]
         new = 0
-        names_changed = False
+        people: list[PersonEvent] = []
         with self._store.write() as session:
             stream = session.get(ReportedStream, (station, batch.epoch))
             if stream is None:
@@ -87,10 +87,10 @@ class DepartmentTables:
                 stream.last_seq = event.seq
                 if _insert_event(session, station, event, body, offset_ms, received_ns):
                     new += 1
-                    names_changed |= isinstance(body, PersonEvent)
+                    people += [body] if isinstance(body, PersonEvent) else []
                     _apply(session, station, body, offset_ms)
             last_seq = stream.last_seq
-        return Reported(last_seq, new, names_changed)
+        return Reported(last_seq, new, tuple(people))
 
     def keep_summaries(self, summaries: Sequence[LastSummary]) -> None:
         with self._store.write() as session:
