@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from base_station.core.units.worn_sensors import WornSensor
+from base_station.core.units.worn_sensors import DescribedSensor
 from base_station.storage.db.models import Unit
 from base_station.views.units import worn_sensor_views
 from base_station.views.wire import WornSensorView
@@ -12,4 +12,4 @@ from base_station.views.wire import WornSensorView
 
 def stored_sensors(unit: Unit) -> tuple[WornSensorView, ...]:
     """Sensors of a unit as it has described itself last; none: of an earlier version's table."""
-    return worn_sensor_views(msgspec.json.decode(unit.sensors, type=tuple[WornSensor, ...]))
+    return worn_sensor_views(msgspec.json.decode(unit.sensors, type=tuple[DescribedSensor, ...]))

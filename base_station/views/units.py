@@ -11,7 +11,7 @@ import msgspec
 from base_station.core.state import Alarm, Person, StationState, UnitState
 from base_station.core.state.duty import Duty
 from base_station.core.trust.trust import conflicts_of, trust_of
-from base_station.core.units.worn_sensors import WornSensor, worn_sensors
+from base_station.core.units.worn_sensors import DescribedSensor, worn_sensors
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.plan import Ring
 from base_station.storage.db.known_people import KnownPerson, PersonLookup, shown_text
@@ -132,7 +132,7 @@ def preflight_view(findings: tuple[PreflightFinding, ...] | None) -> PreflightVi
 
 
 @lru_cache(maxsize=1000)
-def worn_sensor_views(sensors: tuple[WornSensor, ...]) -> tuple[WornSensorView, ...]:
+def worn_sensor_views(sensors: tuple[DescribedSensor, ...]) -> tuple[WornSensorView, ...]:
     """Sensors of a unit as a console shows them."""
     return tuple(WornSensorView(*msgspec.structs.astuple(one)) for one in sensors)
 

@@ -7,7 +7,7 @@ import msgspec
 from shared.messages import UnitDescription
 
 
-class WornSensor(msgspec.Struct, frozen=True):
+class DescribedSensor(msgspec.Struct, frozen=True):
     """What tables and consoles have of a sensor."""
 
     name: str  # in the unit; empty: its only one
@@ -17,11 +17,11 @@ class WornSensor(msgspec.Struct, frozen=True):
     model: str
 
 
-def worn_sensors(description: UnitDescription) -> tuple[WornSensor, ...]:
+def worn_sensors(description: UnitDescription) -> tuple[DescribedSensor, ...]:
     """Sensors of a unit; of a unit of an earlier version the only one, whose place is unknown."""
     if not description.sensors:
-        return (WornSensor("", "", False, "", description.sensor_name),)
+        return (DescribedSensor("", "", False, "", description.sensor_name),)
     return tuple(
-        WornSensor(one.name, one.place, one.place_recognised, one.mount, one.model)
+        DescribedSensor(one.name, one.place, one.place_recognised, one.mount, one.model)
         for one in description.sensors
     )

@@ -82,13 +82,12 @@ def differences(
         if subject not in shown and event.closed_ms is None:
             closed = msgspec.structs.replace(event, closed_ms=now_ms)
             _compare(found, subject, closed, reported, now_ms)
-    open_ids = [one.incident_id for one in shown.values() if one.closed_ms is None]
     for unit in units:
         if unit.person is not None and not is_forgotten(unit.person.person_id):
             subject = f"{_PERSON}{unit.person.person_id}"
             _compare(found, subject, _person_event(unit.person), reported, now_ms)
         if unit.person is not None and unit.duty is not None:
-            _compare(found, f"{_PAR}{unit.unit_id}", _par_event(unit, open_ids), reported, now_ms)
+            _compare(found, f"{_PAR}{unit.unit_id}", _par_event(unit), reported, now_ms)
     for subject in _subjects(reported, _PERSON):
         if is_forgotten(subject.removeprefix(_PERSON)):
             _note_forgotten(found, subject, now_ms)
@@ -135,13 +134,13 @@ def _person_event(person: PersonView) -> PersonEvent:
     return PersonEvent(person.person_id, person.name, person.crew, person.role)
 
 
-def _par_event(unit: UnitView, open_ids: Iterable[str]) -> ParEvent:
+def _par_event(unit: UnitView) -> ParEvent:
     assert unit.person is not None
     assert unit.duty is not None
     return ParEvent(
         unit_id=unit.unit_id,
         person_id=unit.person.person_id,
-        incident_id=next(iter(open_ids), ""),
+        incident_id=unit.incident_id or "",
         confirmed=unit.duty.confirmed,
         confirmed_ms=unit.duty.checked_in_ms,
         requested_ms=unit.duty.asked_ms,
