@@ -130,14 +130,16 @@ def test_a_station_reports_its_incident_its_people_and_every_transition_once(
 
 
 def test_a_confirmation_that_is_undone_is_reported_as_another_change(station: Station) -> None:
-    station.show(duty=NOT_CONFIRMED)
+    mine: dict[str, Any] = {"person": ANNA, "incident_id": "i2"}  # one of several
+    station.show(duty=NOT_CONFIRMED, incident_id="i2")
     station.collector.collect(T_MS)
     confirmed = msgspec.structs.replace(NOT_CONFIRMED, confirmed="radio", checked_in_ms=T_MS)
     for shown in (confirmed, NOT_CONFIRMED, confirmed):
-        station.collector.delta(delta(station.scene.unit(person=ANNA, duty=shown)))
+        station.collector.delta(delta(station.scene.unit(**mine, duty=shown)))
         station.collector.collect(T_MS)
-    par = [one.confirmed for one in station.events() if isinstance(one, ParEvent)]
-    assert par == ["not_yet", "radio", "not_yet", "radio"]
+    par = [one for one in station.events() if isinstance(one, ParEvent)]
+    assert [one.confirmed for one in par] == ["not_yet", "radio", "not_yet", "radio"]
+    assert {one.incident_id for one in par} == {"i2"}
 
 
 def test_after_a_kill_what_was_decided_is_read_from_the_log(station: Station) -> None:
