@@ -71,6 +71,7 @@ class ZuptConfig(NamedTuple):
     stance_velocity_per_motion: float = 0.001  # m/s/sqrt(Hz) for each m/s^2 of motion
     stance_excess_power: float = 3.0
     stance_excess_floor_m2ps4: float = 0.3  # a smaller stride minimum is sensor noise
+    glide_fastest_mps: float = 15.0  # no foot glides or lands faster: then the filter is wrong
     glide_gate: float = 4.0  # deviations of the velocity at which a foot does not stand
     landing_gate: float = 2.0  # ... by which it falls, where it lands soon
     landing_ahead_s: float = 0.15  # a swing is as still as a stance so long before it ends
@@ -213,9 +214,12 @@ class ClippingConfig(NamedTuple):
     """Motion that clipping hides (``preprocessing/saturation_recovery.py``)."""
 
     hidden_rate_limit_radps: float = 6.0
-    hidden_rate_floor_radps: float = 0.5
-    hidden_rate_std_ratio: float = 1.0  # of the bridged peak
-    hidden_turn_share: float = 0.3  # of what a swing may hide of its turn: the same in all
+    hidden_rate_floor_radps: float = 0.2
+    hidden_rate_std_ratio: float = 0.5  # of the bridged peak, scaled
+    bridge_scale_std: float = 0.4  # of the scale of bridged peaks, before any landing
+    bridge_scale_walk: float = 0.05  # ... by which it changes from one run to the next
+    bridge_scale_min: float = 0.1  # more is hidden than nothing
+    hidden_turn_share: float = 0.2  # of what a swing may hide of its turn: the same in all
     hidden_force_limit_mps2: float = 300.0
     hidden_force_floor_mps2: float = 5.0
     hidden_force_std_ratio: float = 1.0  # of the bridged peak

@@ -23,6 +23,7 @@ from edge.tracker.foot.error_state import (
     VELOCITY,
 )
 from edge.tracker.foot.filter.alignment import level
+from edge.tracker.foot.filter.bridge_scale import propagate_bridge, start_bridges
 from edge.tracker.foot.filter.correction_tracking import accept_heading, propagate_clone
 from edge.tracker.foot.filter.error_model import propagate
 from edge.tracker.foot.filter.gap_filling import inflate_for_gap, propagate_through_gap
@@ -74,7 +75,7 @@ def filter_sample(
     step.updates = 0
     if ring[slot].flags & GYRO_SATURATED:
         stop = min(progress.measured, reach(ring, k))
-        recover_rates(ring, k, stop, config)
+        recover_rates(ring, state.bridge, k, stop, config)
     if ring[slot].flags & ACCEL_SATURATED:
         recover_forces(ring, k, min(progress.measured, reach(ring, k)), config)
     good = ring[slot].flags & BAD_SAMPLES == 0
@@ -151,6 +152,7 @@ def _start(ring: Ring, progress: Progress, state: FilterState, config: EskfConfi
     state.mean_scale_residual = config.residuals.mean_zupt_residual
     state.gain_residual = config.residuals.mean_zupt_residual
     state.mean_strike_residual = config.residuals.mean_strike_residual
+    start_bridges(state, config)
     progress.last_stance_s = ring[0].t_s
 
 
@@ -226,6 +228,7 @@ def _add_noise(
     if ring[slot].flags & GYRO_SATURATED:
         for axis in range(3):
             variance = dt_s * ring[slot].hidden_noise[axis]
+            propagate_bridge(state, axis, dt_s * ring[slot].bridge_radps[axis])
             _inflate_axis(state, ATTITUDE, axis, variance)
             state.swing_hidden_rad2 += state.rotation_nb[2, axis] ** 2 * variance
     temperature_known = math.isfinite(progress.temperature_degc)

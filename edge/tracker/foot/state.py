@@ -22,9 +22,12 @@ COMPASS_SIZE = 13  # states of magnetic_field
 SCALE_ERRORS = 18  # see scale_misalignment
 FIELD_HYPOTHESES = 5
 SIMILAR_STRIDES = 3  # of which the mean is taken
+CLONES = 3  # rows of the clone: north, east and heading of a moment ago; see correction_tracking
+BRIDGES = 6  # scales: an axis of the gyroscope and a side each; see bridge_scale
 
 Trail: TypeAlias = NDArray[Any]  # (slots,) of STEP, for an eighth of the ring's samples
 Step: TypeAlias = Any  # one record of STEP
+Bridge: TypeAlias = Any  # one record of BRIDGE
 Progress: TypeAlias = Any  # one record of PROGRESS
 FilterState: TypeAlias = Any  # one record of FILTER
 Aid: TypeAlias = Any  # one record of COMPASS, BELIEF or BAROMETER
@@ -142,9 +145,21 @@ CLONE = np.dtype(
         ("shift_n_m", np.float64, 2),  # by which the position was put right since the start
         ("turn_rad", np.float64),  # ... and the heading, but for what the walk has taken over
         ("stance_turn_rad", np.float64),  # of that, in this stance
-        ("covariance", np.float64, (3, SIZE)),  # of its position and heading with the error state
+        ("rows", np.int64),  # in use: those of bridge_scale too once a rate has clipped
+        # Of its position and heading, then of the scales of bridges, with the error state.
+        ("covariance", np.float64, (CLONES + BRIDGES, SIZE)),
         # Scratch.
-        ("error", np.float64, 3),  # correction gathered at one instant
+        ("error", np.float64, CLONES + BRIDGES),  # correction gathered at one instant
+        ("column", np.float64, CLONES + BRIDGES),  # covariance with what is measured, or widened
+    ],
+    align=True,
+)
+
+# By which the bridged part of a rate is multiplied, by axis and side; see bridge_scale.
+BRIDGE = np.dtype(
+    [
+        ("scale", np.float64, BRIDGES),
+        ("covariance", np.float64, (BRIDGES, BRIDGES)),
     ],
     align=True,
 )
@@ -198,6 +213,7 @@ FILTER = np.dtype(
         ("rest_rate_radps", np.float64, 3),  # mean rate around the last still sample
         ("rest_rate_var_rad2ps2", np.float64),  # the rate's scatter about it
         ("clone", CLONE),  # see correction_tracking
+        ("bridge", BRIDGE),  # see bridge_scale
         ("ramp_var_m2", np.float64),  # in case the floor is a ramp; see level_walking
         ("hidden_rise_m", np.float64),  # that clipping may have hidden, alike in every stride
         # How an ordinary stride's noise is stated; see zupt_residuals.
@@ -324,6 +340,7 @@ def new_filter_state() -> NDArray[Any]:
     state["rotation_nb"][0] = np.eye(3)
     state["scale_errors"]["covariance"][0] = np.eye(SCALE_ERRORS)
     state["faulty_stride"] = True
+    state["clone"]["rows"] = CLONES
     state["compass"]["north_var_rad2"] = np.inf
     return state
 

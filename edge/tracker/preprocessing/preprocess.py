@@ -218,6 +218,7 @@ def _write_good(sample: Any, input_state: Any, flags: int) -> None:
         force_saturated = force_saturated or sample.force_saturated[j]
         sample.accel_mps2[j] = input_state.accel_mps2[j]
         sample.gyro_radps[j] = input_state.gyro_radps[j]
+        sample.bridge_radps[j] = 0.0
         sample.hidden_noise[j] = 0.0
         sample.hidden_force_noise[j] = 0.0
     if flags & BAD_SAMPLES == 0:

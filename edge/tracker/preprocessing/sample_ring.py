@@ -27,6 +27,7 @@ RING = np.dtype(
         ("mag_ut", np.float64, 3),  # NaN where there is none
         ("rate_saturated", np.uint8, 3),  # 1 where the rate of an axis is saturated
         ("force_saturated", np.uint8, 3),  # the same of the force, until it is recovered
+        ("bridge_radps", np.float64, 3),  # bridged part of the rate, before it is scaled
         ("hidden_noise", np.float64, 3),  # rad^2/s about each axis after saturation
         ("hidden_force_noise", np.float64, 3),  # m^2/s^3 along each axis, likewise
         ("pressure_pa", np.float64),

@@ -14,6 +14,9 @@ A small correction of the heading is right for the steps to come too, so the wal
 the foot leaves the ground: rests and a compass hold it for hours.  A larger one at once corrects a
 heading that had drifted fast, as before the bias is observed; consumers with GNSS fixes never
 followed the wrong heading, and the correction would turn them.
+
+The rows after these three belong to ``bridge_scale``, whose scales are tied to the error state in
+the same way; they are in use once a rate has clipped.
 """
 
 from __future__ import annotations
@@ -54,7 +57,7 @@ def propagate_clone(state: FilterState, dt_s: float) -> None:
     """Propagate the clone's covariance with the error state over an interval: times ``F'``."""
     rotation_nb, force_n_mps2 = state.rotation_nb, state.force_n_mps2
     fx, fy, fz = dt_s * force_n_mps2[0], dt_s * force_n_mps2[1], dt_s * force_n_mps2[2]
-    for i in range(3):
+    for i in range(state.clone.rows):
         row = state.clone.covariance[i]
         ax, ay, az = row[ATTITUDE], row[ATTITUDE + 1], row[ATTITUDE + 2]
         for axis in range(3):
@@ -76,13 +79,14 @@ def update_clone(state: FilterState, step: Step, index: int, pull: float) -> Non
     ``pull`` is its innovation by its variance.
     """
     gain = step.update_gain[step.updates]
-    for i in range(3):
+    for i in range(state.clone.rows):
         row = state.clone.covariance[i]
         column = row[YAW] + row[TURN] if index == HEADING else row[index]
         if VELOCITY <= index < VELOCITY + 3:
             for j in range(3):
                 column -= step.lever_row[index - VELOCITY, j] * row[LEVER + j]
         state.clone.error[i] += column * pull
+        state.clone.column[i] = column
         for j in range(SIZE):
             row[j] -= column * gain[j]
 
@@ -115,11 +119,12 @@ def widen_clone(state: FilterState, direction: Floats, by: float) -> None:
 
     ``by`` over a covariance with it; ``state.column`` is that of the error state.
     """
-    for i in range(3):
+    for i in range(state.clone.rows):
         row = state.clone.covariance[i]
         with_bias = 0.0
         for j in range(3):
             with_bias += row[GYRO_BIAS + j] * direction[j]
+        state.clone.column[i] = by * with_bias
         for j in range(SIZE):
             row[j] += by * with_bias * state.column[j]
 
@@ -127,7 +132,7 @@ def widen_clone(state: FilterState, direction: Floats, by: float) -> None:
 @njit()
 def warm_clone(state: FilterState, step_k: float) -> None:
     """Propagate a change of temperature, as ``error_model.propagate_temperature``."""
-    for i in range(3):
+    for i in range(state.clone.rows):
         row = state.clone.covariance[i]
         for j in range(3):
             row[GYRO_BIAS + j] += step_k * row[GYRO_BIAS_PER_K + j]
@@ -136,5 +141,5 @@ def warm_clone(state: FilterState, step_k: float) -> None:
 @njit()
 def decorrelate_clone(state: FilterState, index: int, kept: float) -> None:
     """Reduce the correlation of an error with the clone to the share ``kept``."""
-    for i in range(3):
+    for i in range(state.clone.rows):
         state.clone.covariance[i, index] *= kept

@@ -18,6 +18,7 @@ from numba import njit
 from edge.samples import Floats
 from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import ATTITUDE, GYRO_BIAS, POSITION, SIZE
+from edge.tracker.foot.filter.bridge_scale import update_bridges
 from edge.tracker.foot.filter.correction_tracking import widen_clone
 from edge.tracker.foot.state import FilterState
 
@@ -110,6 +111,7 @@ def update_from_rest(state: FilterState, config: EskfConfig) -> None:
     for i in range(SIZE):
         state.column[i] = _with_bias(state, i, off) / variance
     widen_clone(state, off, 1.0 / variance)
+    update_bridges(state, -1.0)
     for i in range(SIZE):
         for j in range(SIZE):
             state.covariance[i, j] += state.column[i] * state.column[j]

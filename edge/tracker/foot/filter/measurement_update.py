@@ -21,6 +21,7 @@ from edge.tracker.foot.error_state import (
     TURN,
     VELOCITY,
 )
+from edge.tracker.foot.filter.bridge_scale import correct_bridges, update_bridges
 from edge.tracker.foot.filter.correction_tracking import apply_clone_correction, update_clone
 from edge.tracker.foot.filter.error_model import update_heading, update_one, update_with_lever
 from edge.tracker.foot.filter.scale_misalignment import update_scale_errors
@@ -46,7 +47,7 @@ def measure(step: Step, state: FilterState, index: int, residual: float, varianc
         state.column,
         step.update_gain[step.updates],
     )
-    _note(step, state, index, innovation * weight)
+    _note(step, state, index, innovation, weight)
 
 
 @njit()
@@ -60,7 +61,7 @@ def measure_heading(step: Step, state: FilterState, residual_rad: float, varianc
         state.column,
         step.update_gain[step.updates],
     )
-    _note(step, state, HEADING, innovation * weight)
+    _note(step, state, HEADING, innovation, weight)
 
 
 @njit()
@@ -86,13 +87,15 @@ def measure_with_lever(
         state.column,
         step.update_gain[step.updates],
     )
-    _note(step, state, VELOCITY + axis, innovation * weight)
+    _note(step, state, VELOCITY + axis, innovation, weight)
     return float(innovation * innovation * weight)
 
 
 @njit()
-def _note(step: Step, state: FilterState, index: int, pull: float) -> None:
+def _note(step: Step, state: FilterState, index: int, innovation: float, weight: float) -> None:
+    pull = innovation * weight
     update_clone(state, step, index, pull)
+    update_bridges(state, weight)
     remember(step, index, pull)
 
 
@@ -109,6 +112,7 @@ def remember(step: Step, index: int, pull: float) -> None:
 def end_updates(state: FilterState) -> None:
     """Move the gathered error into the state."""
     error = state.error
+    correct_bridges(state)
     apply_clone_correction(state)
     for i in range(3):
         state.position_n_m[i] += error[POSITION + i]

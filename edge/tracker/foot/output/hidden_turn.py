@@ -1,8 +1,8 @@
 """Turn that clipped rates hide in every swing alike: reported, not filtered.
 
-What a parabola misses of the hidden peak of a rate (see saturation_recovery) is noise to the
-filter, new in every swing.  But a foot swings alike in every stride, and so does what is missed:
-its turns add up one to one and not by their squares, and turn the walk.
+What a scaled parabola misses of the hidden peak of a rate (see saturation_recovery) is noise to the
+filter, new in every swing.  But a foot swings alike in every stride, and so does a part of what is
+missed: its turns add up one to one and not by their squares, and turn the walk.
 """
 
 from __future__ import annotations

@@ -3,8 +3,9 @@ uncertainty.
 
 A swinging foot turns past the full scale of many gyroscopes for some tens of milliseconds.  The
 hidden part of a run of duration T between slopes s1 and s2 is the parabola ``4 u (1 - u) p`` with
-``u`` from 0 to 1 and peak ``p = T (s1 + s2) / 8``.  Its error becomes noise about the saturated
-axis only (``hidden_noise``, rad^2/s).
+``u`` from 0 to 1 and peak ``p = T (s1 + s2) / 8``, times a scale that the landings of this wearer
+show (see bridge_scale).  What is left of its error becomes noise about the saturated axis only
+(``hidden_noise``, rad^2/s).
 
 A saturated force is recovered likewise, along its axis (``hidden_force_noise``, m^2/s^3): what is
 cut off a sprinter's swing would make the distance too short by a sixth, and the next stance shows,
@@ -19,6 +20,7 @@ from __future__ import annotations
 from numba import njit
 
 from edge.tracker.foot.config import EskfConfig
+from edge.tracker.foot.state import Bridge
 from edge.tracker.preprocessing.sample_ring import Ring
 
 SLOPE_SAMPLES = 3
@@ -27,11 +29,18 @@ RUN_MAX_SHARE = 0.75  # of the look-ahead, so that it holds the slope that follo
 
 
 @njit()
-def recover_rates(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
+def bridge_index(axis: int, rate_radps: float) -> int:
+    """Return the number of the scale that bridged rates about an axis of the sensor have."""
+    return 2 * axis if rate_radps > 0.0 else 2 * axis + 1
+
+
+@njit()
+def recover_rates(ring: Ring, bridge: Bridge, k: int, stop: int, config: EskfConfig) -> None:
     """At the first clipped sample ``k`` of an axis put the whole run right, in the ring.
 
-    Looks at samples before ``stop`` and within the look-ahead.  ``hidden_noise`` of the run
-    becomes the density (rad^2/s) of what may still be wrong.
+    Looks at samples before ``stop`` and within the look-ahead.  ``bridge_radps`` of the run becomes
+    what is put in before it is scaled, ``hidden_noise`` the density (rad^2/s) of what may still be
+    wrong.  The scale in ``bridge`` is less certain with every run.
     """
     mask = len(ring) - 1
     slot = k & mask
@@ -45,12 +54,12 @@ def recover_rates(ring: Ring, k: int, stop: int, config: EskfConfig) -> None:
             and ring[end & mask].t_s - ring[slot].t_s <= RUN_MAX_SHARE * config.timing.lookahead_s
         ):
             end += 1
-        _recover_rate_run(ring, k, end, stop, axis, config)
+        _recover_rate_run(ring, bridge, k, end, stop, axis, config)
 
 
 @njit()
 def _recover_rate_run(
-    ring: Ring, first: int, end: int, stop: int, axis: int, config: EskfConfig
+    ring: Ring, bridge: Bridge, first: int, end: int, stop: int, axis: int, config: EskfConfig
 ) -> None:
     mask = len(ring) - 1
     begin_s = ring[first & mask].t_s
@@ -64,12 +73,17 @@ def _recover_rate_run(
         fall = -side * _slope(ring, end - 1, end - 1 + SLOPE_SAMPLES, axis)
     slope_radps2 = 0.5 * (max(rise, 0.0) + max(fall, 0.0))
     peak_radps = min(0.25 * slope_radps2 * duration_s, config.clipping.hidden_rate_limit_radps)
+    index = bridge_index(axis, side)
+    scale = max(bridge.scale[index], config.clipping.bridge_scale_min)
+    bridge.covariance[index, index] += config.clipping.bridge_scale_walk**2
     std_radps = (
-        config.clipping.hidden_rate_floor_radps + config.clipping.hidden_rate_std_ratio * peak_radps
+        config.clipping.hidden_rate_floor_radps
+        + config.clipping.hidden_rate_std_ratio * scale * peak_radps
     )
     for k in range(first, end):
         u = (ring[k & mask].t_s - begin_s + 0.5 * ring[first & mask].period_s) / duration_s
-        ring[k & mask].gyro_radps[axis] += side * 4.0 * u * (1.0 - u) * peak_radps
+        ring[k & mask].bridge_radps[axis] = side * 4.0 * u * (1.0 - u) * peak_radps
+        ring[k & mask].gyro_radps[axis] += scale * ring[k & mask].bridge_radps[axis]
         ring[k & mask].hidden_noise[axis] = std_radps**2 * duration_s
 
 

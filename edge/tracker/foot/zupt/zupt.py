@@ -63,9 +63,12 @@ def is_gliding(
 
     That shows by a velocity that the filter is sure of.  The stillest sample of all around is used
     in any case, or a filter that is wrong would never be corrected: but for a foot that falls and
-    lands soon, for the end of a sprinter's swing is as still as his stance.
+    lands soon, for the end of a sprinter's swing is as still as his stance.  A velocity that no
+    foot has there is an error of the filter.
     """
     slot = k & (len(ring) - 1)
+    if dot(state.velocity_n_mps, state.velocity_n_mps) > config.zupt.glide_fastest_mps**2:
+        return False
     down_mps = state.velocity_n_mps[2]
     std_mps = math.sqrt(state.covariance[VELOCITY + 2, VELOCITY + 2])
     if down_mps > config.zupt.landing_gate * std_mps and _lands_soon(ring, progress, k, config):

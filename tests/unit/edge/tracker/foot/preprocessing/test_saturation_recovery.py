@@ -1,4 +1,4 @@
-"""What is put in the place of a force that has clipped."""
+"""What is put in the place of forces and rates that have clipped."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from edge.tracker.foot.config import EskfConfig, config_record
-from edge.tracker.foot.preprocessing.saturation_recovery import recover_forces
+from edge.tracker.foot.preprocessing.saturation_recovery import recover_forces, recover_rates
+from edge.tracker.foot.state import BRIDGE
 from edge.tracker.preprocessing.sample_ring import RING
 
 PERIOD_S = 0.004
@@ -74,3 +75,33 @@ def test_a_force_that_swings_from_limit_to_limit_is_bridged_on_either_side():
     force_mps2 = np.concatenate([force_mps2, np.zeros(10)])
     bridged_mps, _ = hidden_mps(force_mps2)
     assert abs(bridged_mps) < 0.05  # what is hidden below is worth what is hidden above
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_bridged_rate_and_its_doubt_are_as_large_as_landings_have_shown(side):
+    rate_radps = side * swing_mps2(12.0)
+    n, full_scale = len(rate_radps), 8.0
+    clipped_radps = np.clip(rate_radps, -full_scale, full_scale)
+    bridge = np.zeros(1, BRIDGE)
+    bridge["scale"] = 1.0
+    bridge["scale"][0, 2 if side > 0.0 else 3] = 0.5
+    clipping = EskfConfig().clipping
+    ring = np.zeros(256, RING)
+    ring["t_s"][:n] = PERIOD_S * np.arange(n)
+    ring["period_s"] = PERIOD_S
+    ring["gyro_radps"][:n, 1] = clipped_radps
+    ring["rate_saturated"][:n, 1] = np.abs(clipped_radps) >= full_scale
+    for k in np.flatnonzero(ring["rate_saturated"][:n, 1]):
+        recover_rates(ring, bridge[0], int(k), n, config_record(EskfConfig())[0])
+    hidden_rad = PERIOD_S * (rate_radps - clipped_radps).sum()
+    bridged_rad = PERIOD_S * ring["bridge_radps"][:n, 1].sum()
+    added_rad = PERIOD_S * (ring["gyro_radps"][:n, 1] - clipped_radps).sum()
+    assert bridged_rad == pytest.approx(hidden_rad, rel=0.15)  # a parabola it was
+    assert added_rad == pytest.approx(0.5 * bridged_rad)
+    duration_s = PERIOD_S * ring["rate_saturated"][:n, 1].sum()
+    doubt_rad = np.sqrt(PERIOD_S * ring["hidden_noise"][:n, 1].sum())
+    floor_rad = clipping.hidden_rate_floor_radps * duration_s
+    peak_rad = 1.5 * abs(bridged_rad)  # of the parabola, all the time
+    assert doubt_rad == pytest.approx(
+        floor_rad + clipping.hidden_rate_std_ratio * 0.5 * peak_rad, rel=0.02
+    )
