@@ -7,8 +7,10 @@ any sensor, are made by ``tests.rig.published_path``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from itertools import takewhile
 
 import msgspec
 import numpy as np
@@ -49,19 +51,20 @@ def inertial_walk(
     worn_on: Segment | None = None,
     sensors: SensorErrors = CONSUMER_SENSORS,
     number: int = 0,
+    lasts_s: float = math.inf,
     **changes: object,
 ) -> InertialWalk:
     """Return the walk of a scenario, or of the built-in one of that name.
 
     ``changes`` replace fields of the scenario, such as ``duration_s`` or ``rate_hz``; ``number``
-    tells sensors apart that one person wears.
+    tells sensors apart that one person wears; ``lasts_s``: the walk is cut there.
     """
     if isinstance(scenario, str):
         scenario = find_scenario(scenario)
     if worn_on is not None:
         changes["worn_on"] = worn_on
     simulation = Simulation(msgspec.structs.replace(scenario, **changes), seed, sensors, number)
-    imu = samples(simulation)
+    imu = samples(simulation, lasts_s=lasts_s)
     truth = simulation.truth(np.asarray(imu.t_ns * 1e-9, np.float64))
     return InertialWalk(simulation, simulation.description, imu, truth, LEG_LENGTH_M)
 
@@ -87,12 +90,15 @@ def only(imu: ImuBatch, *aids: str) -> ImuBatch:
     return ImuBatch(imu.t_ns, imu.accel_mps2, imu.gyro_radps, **kept)
 
 
-def samples(simulation: Simulation, block_s: float = _BLOCK_S) -> ImuBatch:
-    """Return all that the simulated unit samples with its inertial sensors.
+def samples(
+    simulation: Simulation, block_s: float = _BLOCK_S, lasts_s: float = math.inf
+) -> ImuBatch:
+    """Return all that the simulated unit samples with its inertial sensors, until ``lasts_s``.
 
     The noise is drawn block by block.
     """
-    parts = [batch.imu for batch in simulation.batches(block_s)]
+    blocks = simulation.batches(block_s)
+    parts = [batch.imu for batch in takewhile(lambda one: one.imu.t_ns[0] < lasts_s * 1e9, blocks)]
     return ImuBatch(
         *(
             np.concatenate([getattr(part, field.name) for part in parts])

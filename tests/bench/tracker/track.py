@@ -33,6 +33,11 @@ from tests.bench.tracker.several_sensors import (
     measure_returns,
     returns_table,
 )
+from tests.bench.tracker.simulated_elsewhere import (
+    measure_simulated_elsewhere,
+    scenarios_table,
+    simulated_elsewhere_table,
+)
 from tests.bench.tracker.simulated_walks import score_simulated, simulated_walks
 from tests.bench.tracker.speed import measure_speed, print_speed
 from tests.bench.tracker.wearers import measure_wearers, wearers_table
@@ -104,6 +109,14 @@ ElsewhereOption = Annotated[
         "or for several sensors.",
     ),
 ]
+SimulatedElsewhereOption = Annotated[
+    bool,
+    typer.Option(
+        "--simulated-elsewhere",
+        help="Also compare the trackers that are not for a foot on half a simulated minute of "
+        "every scenario (minutes).",
+    ),
+]
 LeftOutOption = Annotated[
     bool, typer.Option("--cross-validate", help="Also leave each dataset out once (a minute).")
 ]
@@ -128,6 +141,7 @@ def bench_track(
     wearers: WearersOption = False,
     cross_validation: LeftOutOption = False,
     elsewhere: ElsewhereOption = None,
+    simulated_elsewhere: SimulatedElsewhereOption = False,
 ) -> None:
     """Score every trial below DATA: closure, ATE, ARMSE, heights, honesty of the uncertainty."""
     console = Console(width=max(Console().width, WIDTH))
@@ -171,6 +185,11 @@ def bench_track(
         footfalls = measure_footfalls(elsewhere)
         console.print(footfalls_line(footfalls))
         report["footfalls"] = asdict(footfalls)
+    if simulated_elsewhere:
+        places = measure_simulated_elsewhere()
+        console.print(simulated_elsewhere_table(places))
+        console.print(scenarios_table(places))
+        report["simulated_elsewhere"] = [asdict(one) for one in places]
     write_figures(json_file, report)
 
 
