@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Annotated
 
 import msgspec
@@ -31,7 +32,8 @@ WALK_MPS = 1.2
 _RUNS = 5
 
 
-class RouteReport(msgspec.Struct, frozen=True):
+@dataclass(frozen=True)
+class RouteReport:
     """Figures of one run, medians."""
 
     people: int
