@@ -11,12 +11,14 @@ import math
 from numba import njit
 
 from edge.tracker.body.config import BodyConfig
-from edge.tracker.body.state import BIAS, HEADING, TICK_S, BodyState, Sample
+from edge.tracker.body.path_filter import take_still
+from edge.tracker.body.state import HEADING, TICK_S, BodyState, Sample
 from edge.tracker.mechanization.quasi_static import turn_upright
 from edge.tracker.mechanization.strapdown import rotate_attitude, rotate_navigation, rotation_matrix
 from edge.tracker.preprocessing.sample_ring import Ring
 
 _LOST_TURN_RAD = 0.35  # of a gap as long as a turn takes
+_REFERENCE_COSINE = 0.5  # tilted farther from it than by 60 degrees, a new one is taken
 
 
 @njit()
@@ -27,6 +29,7 @@ def step_attitude(ring: Ring, state: BodyState, k: int, config: BodyConfig) -> f
     if k == 0:
         turn_upright(state.quaternion_nb, here.accel_mps2)
         rotation_matrix(state.quaternion_nb, state.rotation_nb)
+        state.reference_nb[:] = state.rotation_nb
         _turn_force(here, state)
         return 0.0
     dt_s = here.t_s - before.t_s
@@ -36,19 +39,35 @@ def step_attitude(ring: Ring, state: BodyState, k: int, config: BodyConfig) -> f
         for i in range(3):
             rate = 0.5 * (here.gyro_radps[i] + before.gyro_radps[i]) - state.gyro_bias_radps[i]
             state.angle_b_rad[i] = rate * dt_s
-        down = state.rotation_nb[2]
-        angle = state.angle_b_rad
-        turn_rad = down[0] * angle[0] + down[1] * angle[1] + down[2] * angle[2]
-        state.heading_rad += turn_rad
-        state.since_rad += abs(turn_rad)
         rotate_attitude(state.quaternion_nb, state.angle_b_rad)
         rotation_matrix(state.quaternion_nb, state.rotation_nb)
+        _follow_heading(state)
         _turn_force(here, state)
         _level(state, dt_s, config)
         state.settled_s += dt_s
     else:
         _turn_force(here, state)
     return float(max(dt_s, 0.0))
+
+
+@njit()
+def _follow_heading(state: BodyState) -> None:
+    """Bring the heading to the attitude's turn about the vertical since a reference.
+
+    The rate about the vertical does not add up to it: a thigh that swings and leans describes a
+    cone, and each stride adds the angle that this cone encloses.
+    """
+    here, there = state.rotation_nb, state.reference_nb
+    sine = cosine = upright = 0.0
+    for j in range(3):
+        sine += here[1, j] * there[0, j] - here[0, j] * there[1, j]
+        cosine += here[0, j] * there[0, j] + here[1, j] * there[1, j]
+        upright += here[2, j] * there[2, j]
+    change_rad = math.atan2(sine, cosine) + state.reference_rad - state.heading_rad
+    state.heading_rad += math.atan2(math.sin(change_rad), math.cos(change_rad))
+    if upright < _REFERENCE_COSINE:
+        state.reference_nb[:] = here
+        state.reference_rad = state.heading_rad
 
 
 @njit()
@@ -98,16 +117,10 @@ def learn_bias(ring: Ring, state: BodyState, k: int, config: BodyConfig) -> None
     if state.quiet_s < config.rest_s:
         return
     gain = state.bias_variance / (state.bias_variance + config.sway_radps**2)
+    down, turned_radps = state.rotation_nb[2], 0.0
     for i in range(3):
-        state.gyro_bias_radps[i] += gain * (rate[i] - state.gyro_bias_radps[i])
+        off_radps = rate[i] - state.gyro_bias_radps[i]
+        state.gyro_bias_radps[i] += gain * off_radps
+        turned_radps += down[i] * off_radps
     state.bias_variance *= 1.0 - gain
-    _settle_bias(state)
-
-
-@njit()
-def _settle_bias(state: BodyState) -> None:
-    """What the path filter knew of the bias is now in the bias itself."""
-    state.estimate[BIAS] = 0.0
-    for i in range(len(state.estimate)):
-        state.covariance[i, BIAS] = state.covariance[BIAS, i] = 0.0
-    state.covariance[BIAS, BIAS] = state.bias_variance
+    take_still(state, turned_radps, gain * turned_radps, config)

@@ -53,14 +53,16 @@ class BodyConfig(NamedTuple):
     direction_steps: float = 12.0  # memory
 
     # Path: what it may be off by.
-    gain_std: float = 0.01  # of a turn
+    gain_std: float = 0.01  # of a turn, where the description has none
     heading_walk_rad: float = 0.015  # in a root second
-    bend_std_rad: float = 0.4  # of the magnetic field's direction in a building
+    iron_std_ut: float = 25.0  # an axis, of what is worn with a sensor that nobody calibrated
+    iron_least_ut: float = 2.0  # ... and after a calibration
+    iron_walk_ut: float = 0.2  # in a root second
+    bend_std_ut: float = 8.0  # an axis, of the level magnetic field in a building
     bend_m: float = 6.0  # along which a bend is the same
-    bend_turn_rad: float = 2.0  # iron on the person turns along
     bend_s: float = 60.0
     compass_s: float = 0.5
-    compass_std_rad: float = 0.05
+    compass_std_ut: float = 1.0
     outlier_sigmas: float = 3.0
     unseen_mps: float = 0.4  # movement without steps
 

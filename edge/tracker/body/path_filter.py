@@ -1,9 +1,10 @@
-"""Path filter: an error-state Kalman filter of the walked path, seven errors.
+"""Path filter: an error-state Kalman filter of the walked path, thirteen errors.
 
-Steps carry position, heading and scale on; the compass measures heading plus the direction of
-magnetic north plus the bend of the field here, which lasts for some metres and for as long as iron
-on the person is not turned.  Measurements leave the position as it was walked (Schmidt's consider
-filter): the covariance knows what that costs, and nothing jumps.
+Steps carry position, heading and scale on.  A compass measures the earth's field as the heading is
+off, plus the field of iron on the person, which turns along and stays, plus the bend of the field
+here, which lasts for some metres.  Iron forgotten between two turns would pull the heading the same
+way each time, and be taken for chance.  Measurements leave the position as it was walked (Schmidt's
+consider filter): the covariance knows what that costs, and nothing jumps.
 """
 
 from __future__ import annotations
@@ -19,38 +20,58 @@ from edge.tracker.body.state import (
     BIAS,
     EAST,
     ERRORS,
+    FIELD,
+    GAIN,
     HEADING,
-    MAGNETIC_NORTH,
+    IRON,
     NORTH,
     SCALE,
     TICK_S,
     BodyState,
 )
 
-_UNKNOWN_RAD2 = 10.0  # of a direction of which nothing is known
+_UNKNOWN_UT = 60.0  # an axis, of a field of which nothing is known
 
 
 @njit()
-def start_path(state: BodyState, config: BodyConfig) -> None:
+def start_path(state: BodyState, iron_std_ut: float, gain_std: float, config: BodyConfig) -> None:
     """Begin at the origin with a heading that is the frame's."""
     covariance = state.covariance
     covariance[BIAS, BIAS] = state.bias_variance = config.first_bias_std_radps**2
-    covariance[MAGNETIC_NORTH, MAGNETIC_NORTH] = _UNKNOWN_RAD2
-    covariance[BEND, BEND] = config.bend_std_rad**2
+    covariance[GAIN, GAIN] = gain_std**2
     covariance[SCALE, SCALE] = config.scale_std**2
+    for i in range(2):
+        covariance[FIELD + i, FIELD + i] = _UNKNOWN_UT**2
+        covariance[BEND + i, BEND + i] = config.bend_std_ut**2
+    for i in range(3):
+        covariance[IRON + i, IRON + i] = iron_std_ut**2
 
 
 @njit()
 def pass_tick(state: BodyState, config: BodyConfig) -> None:
-    """Let the heading run off by its bias for one tick, and the bias wander."""
+    """Let the heading run off by bias and gain for one tick, and the bias wander."""
     estimate, covariance = state.estimate, state.covariance
-    estimate[HEADING] += TICK_S * estimate[BIAS]
+    turn_rad = state.heading_rad - state.passed_rad
+    state.passed_rad = state.heading_rad
+    estimate[HEADING] += TICK_S * estimate[BIAS] + turn_rad * estimate[GAIN]
     for i in range(ERRORS):
-        covariance[HEADING, i] += TICK_S * covariance[BIAS, i]
+        covariance[HEADING, i] += TICK_S * covariance[BIAS, i] + turn_rad * covariance[GAIN, i]
     for i in range(ERRORS):
-        covariance[i, HEADING] += TICK_S * covariance[i, BIAS]
+        covariance[i, HEADING] += TICK_S * covariance[i, BIAS] + turn_rad * covariance[i, GAIN]
     covariance[HEADING, HEADING] += config.heading_walk_rad**2 * TICK_S
     covariance[BIAS, BIAS] += config.bias_walk_radps**2 * TICK_S
+
+
+@njit()
+def take_still(
+    state: BodyState, turned_radps: float, moved_radps: float, config: BodyConfig
+) -> None:
+    """Measure the bias of who stands, by which the gyroscope's own has then been moved."""
+    row = state.row
+    row[:] = 0.0
+    row[BIAS] = 1.0
+    _update(state, turned_radps - state.estimate[BIAS], config.sway_radps**2, math.inf)
+    state.estimate[BIAS] -= moved_radps
 
 
 @njit()
@@ -81,56 +102,82 @@ def take_unseen_motion(state: BodyState, config: BodyConfig) -> None:
 
 @njit()
 def take_compass(state: BodyState, now_s: float, config: BodyConfig) -> None:
-    """Measure the direction of the field, a few times a second at most."""
+    """Measure the level field, a few times a second at most."""
     passed_s = now_s - state.filtered_s
     if not state.field_seen or passed_s < config.compass_s:
         return
     state.filtered_s = now_s
-    _fade_bend(state, passed_s, config)
-    estimate, covariance, gain = state.estimate, state.covariance, state.gain
-    seen_rad = math.atan2(state.field_n_ut[1], state.field_n_ut[0])
-    expected_rad = estimate[HEADING] + estimate[MAGNETIC_NORTH] + estimate[BEND]
-    difference_rad = seen_rad - expected_rad
-    innovation_rad = math.atan2(math.sin(difference_rad), math.cos(difference_rad))
-    for i in range(ERRORS):
-        gain[i] = covariance[i, HEADING] + covariance[i, MAGNETIC_NORTH] + covariance[i, BEND]
-    variance = gain[HEADING] + gain[MAGNETIC_NORTH] + gain[BEND] + config.compass_std_rad**2
-    if innovation_rad**2 > config.outlier_sigmas**2 * variance:
-        # Either the field or the heading is worse than believed, and which is not known.
-        covariance[HEADING, HEADING] += 0.01 * innovation_rad**2
-        covariance[BEND, BEND] += 0.01 * innovation_rad**2
-        return
-    _update(covariance, gain, variance)
-    for i in range(2, ERRORS):
-        estimate[i] += gain[i] / variance * innovation_rad
+    _pass_field(state, passed_s, config)
+    estimate, covariance = state.estimate, state.covariance
+    for i in range(2):
+        cosine, sine = math.cos(estimate[HEADING]), math.sin(estimate[HEADING])
+        turned = (cosine, -sine) if i == 0 else (sine, cosine)
+        _measure_field(state, i, turned)
+        earth_ut = turned[0] * estimate[FIELD] + turned[1] * estimate[FIELD + 1]
+        expected_ut = earth_ut + estimate[BEND + i]
+        for j in range(3):
+            expected_ut += state.level_nb[i, j] * estimate[IRON + j]
+        # What is lost where heading and field are taken as linear: the terms of second order.
+        heading_rad2 = covariance[HEADING, HEADING]
+        field_ut2 = 0.5 * (covariance[FIELD, FIELD] + covariance[FIELD + 1, FIELD + 1])
+        noise_ut2 = heading_rad2 * field_ut2 + 0.5 * (heading_rad2 * earth_ut) ** 2
+        _update(
+            state,
+            state.field_n_ut[i] - expected_ut,
+            noise_ut2 + config.compass_std_ut**2,
+            config.outlier_sigmas,
+        )
 
 
 @njit()
-def _update(covariance: Floats, product: Floats, variance: float) -> None:
+def _measure_field(state: BodyState, i: int, turned: tuple[float, float]) -> None:
+    """Write how one axis of the measured field depends on the errors."""
+    row, estimate = state.row, state.estimate
+    row[:] = 0.0
+    row[HEADING] = turned[1] * estimate[FIELD] - turned[0] * estimate[FIELD + 1]
+    for j in range(2):
+        row[FIELD + j] = turned[j]
+    for j in range(3):
+        row[IRON + j] = state.level_nb[i, j]
+    row[BEND + i] = 1.0
+
+
+@njit()
+def _update(state: BodyState, innovation: float, noise: float, sigmas: float) -> None:
     """P - K H P - (K H P)^T + K S K^T, with the gain of the position left at zero.
 
-    ``product``: P H^T.
+    An innovation beyond ``sigmas`` counts as if its noise made it as likely as that (Huber).
     """
+    covariance, row, product = state.covariance, state.row, state.gain
+    variance = noise
+    for i in range(ERRORS):
+        product[i] = 0.0
+        for j in range(ERRORS):
+            product[i] += covariance[i, j] * row[j]
+        variance += row[i] * product[i]
+    variance = max(variance, (innovation / sigmas) ** 2)
     for i in range(ERRORS):
         for j in range(ERRORS):
             if i >= 2 or j >= 2:
                 covariance[i, j] -= product[i] * product[j] / variance
+    for i in range(2, ERRORS):
+        state.estimate[i] += product[i] / variance * innovation
 
 
 @njit()
-def _fade_bend(state: BodyState, passed_s: float, config: BodyConfig) -> None:
-    """Let the bend be forgotten over way, turns and time."""
-    way = state.since_m / config.bend_m
-    kept = math.exp(-way - state.since_rad / config.bend_turn_rad - passed_s / config.bend_s)
-    # What a turn adds to the heading's error by the gyroscope's scale.
-    state.covariance[HEADING, HEADING] += (config.gain_std * state.since_rad) ** 2 * 0.1
-    state.since_m = state.since_rad = 0.0
-    state.estimate[BEND] *= kept
-    for i in range(ERRORS):
-        state.covariance[BEND, i] *= kept
-    for i in range(ERRORS):
-        state.covariance[i, BEND] *= kept
-    state.covariance[BEND, BEND] += config.bend_std_rad**2 * (1.0 - kept * kept)
+def _pass_field(state: BodyState, passed_s: float, config: BodyConfig) -> None:
+    """Let the bend be forgotten over way and time, and iron be moved about."""
+    kept = math.exp(-state.since_m / config.bend_m - passed_s / config.bend_s)
+    state.since_m = 0.0
+    for k in range(BEND, BEND + 2):
+        state.estimate[k] *= kept
+        for i in range(ERRORS):
+            state.covariance[k, i] *= kept
+        for i in range(ERRORS):
+            state.covariance[i, k] *= kept
+        state.covariance[k, k] += config.bend_std_ut**2 * (1.0 - kept * kept)
+    for k in range(IRON, IRON + 3):
+        state.covariance[k, k] += config.iron_walk_ut**2 * passed_s
 
 
 @njit()
@@ -144,6 +191,8 @@ def low_pass_field(state: BodyState, mag_ut: Floats, dt_s: float, config: BodyCo
         row = state.rotation_nb[i]
         value = row[0] * mag_ut[0] + row[1] * mag_ut[1] + row[2] * mag_ut[2]
         state.field_n_ut[i] += share * (value - state.field_n_ut[i])
+        for j in range(3):
+            state.level_nb[i, j] += share * (row[j] - state.level_nb[i, j])
     state.field_seen = True
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from edge.tracker.body.config import BodyConfig
-from edge.tracker.body.state import EAST, HEADING, MAGNETIC_NORTH, NORTH, BodyState, Sample, Trail
+from edge.tracker.body.state import EAST, FIELD, HEADING, NORTH, BodyState, Sample, Trail
 from edge.tracker.body.walking_direction import direction_rad
 from edge.tracker.interface import Quality, Reason
 from edge.tracker.mechanization.quasi_static import turn_heading
@@ -100,11 +100,21 @@ def _write_errors(row: Sample, state: BodyState) -> None:
 @njit()
 def _write_north(row: Sample, state: BodyState, direction: float) -> None:
     """Magnetic north in the path's frame: the field's direction less that of the walk."""
-    row.magnetic_north_rad = state.estimate[MAGNETIC_NORTH] - direction
+    covariance, north_ut, east_ut = (
+        state.covariance,
+        state.estimate[FIELD],
+        state.estimate[FIELD + 1],
+    )
+    row.magnetic_north_rad = math.atan2(east_ut, north_ut) - direction
     row.magnetic_north_std_rad = np.inf
     if state.field_seen and state.direction_weight >= 4.0:
-        variance = state.covariance[MAGNETIC_NORTH, MAGNETIC_NORTH]
-        row.magnetic_north_std_rad = math.sqrt(variance + _DIRECTION_STD_RAD**2)
+        across = (
+            east_ut**2 * covariance[FIELD, FIELD]
+            - 2.0 * east_ut * north_ut * covariance[FIELD, FIELD + 1]
+            + north_ut**2 * covariance[FIELD + 1, FIELD + 1]
+        )
+        variance = across / max(north_ut**2 + east_ut**2, 1.0) ** 2
+        row.magnetic_north_std_rad = math.sqrt(max(variance, 0.0) + _DIRECTION_STD_RAD**2)
 
 
 @njit()

@@ -18,9 +18,11 @@ TICK_S = 0.02
 TICKS = 256  # a power of two: 2.56 s, longer than any step and its delay
 
 # Errors of the path filter: position north and east, heading, gyroscope bias about the vertical,
-# direction of magnetic north in the gyroscope's frame, bend of the field here, scale of the steps.
-NORTH, EAST, HEADING, BIAS, MAGNETIC_NORTH, BEND, SCALE = range(7)
-ERRORS = 7
+# gain of turns, scale of the steps; then the field in uT: the earth's north and east in the path's
+# frame, that of iron on the person in the sensor's axes, the bend here north and east.
+NORTH, EAST, HEADING, BIAS, GAIN, SCALE = range(6)
+FIELD, IRON, BEND = 6, 8, 11  # the first of two, three and two
+ERRORS = 13
 
 BODY = np.dtype(
     [
@@ -35,12 +37,15 @@ BODY = np.dtype(
         ("bias_variance", np.float64),  # about each axis
         ("settled_s", np.float64),  # since attitude began, or began again
         ("heading_rad", np.float64),  # turned about the vertical, never wrapped
+        ("reference_nb", np.float64, (3, 3)),  # an attitude from which the heading is counted
+        ("reference_rad", np.float64),  # the heading there
         ("angle_b_rad", np.float64, 3),  # scratch
         ("force_n_mps2", np.float64, 3),  # of the sample; scratch
         # motion at the ticks
         ("low_pass_n_mps2", np.float64, (3, 3)),  # (stage, axis): north, east, up
         ("before_n_mps2", np.float64, 3),  # the last stage, at the sample before
         ("before_rad", np.float64),  # the heading there
+        ("passed_rad", np.float64),  # the heading at the last tick
         ("ticks", np.int64),
         ("leaked_mps", np.float64),
         ("mean_mps", np.float64),
@@ -66,11 +71,12 @@ BODY = np.dtype(
         # path filter
         ("estimate", np.float64, ERRORS),
         ("covariance", np.float64, (ERRORS, ERRORS)),
+        ("row", np.float64, ERRORS),  # of a measurement; scratch
         ("gain", np.float64, ERRORS),  # scratch
         ("filtered_s", np.float64),  # the last compass measurement
         ("since_m", np.float64),  # walked since
-        ("since_rad", np.float64),  # turned since
         ("field_n_ut", np.float64, 2),  # low-passed
+        ("level_nb", np.float64, (2, 3)),  # first rows of the attitude, low-passed alike
         ("field_seen", np.bool_),
         ("earth_ut", np.float64),  # as known here; 0 while unknown
         ("learned_ut", np.float64),  # the same, to be used from a sample's time on

@@ -1,8 +1,8 @@
 """Tracker of a sensor on lower back, hip, chest, in a pocket or a hand (body).
 
 Steps come from the vertical motion, their length from duration and vertical swing, their direction
-from the gyroscope, which an optional compass keeps; a covariance of seven errors says how far off
-all that may be.  See ``steps``, ``step_length``, ``walking_direction`` and ``path_filter``.
+from the gyroscope, which an optional compass keeps; a covariance of thirteen errors says how far
+off all that may be.  See ``steps``, ``step_length``, ``walking_direction`` and ``path_filter``.
 """
 
 from __future__ import annotations
@@ -66,7 +66,10 @@ class BodyTracker:
         self._state["quaternion_nb"][0, 0] = 1.0
         self._state["event_s"] = self._state["fault_s"] = -np.inf
         self._state["in_hand"] = self.config.place == HAND
-        start_path(self._state[0], self.config)
+        iron_std_ut, gain_std = _iron_std_ut(description, self.config), description.gain_std
+        if gain_std is None:
+            gain_std = self.config.gain_std
+        start_path(self._state[0], iron_std_ut, gain_std, self.config)
 
     def push(self, batch: ImuBatch) -> TrackBatch:
         """Take samples; return the rows that have become final."""
@@ -88,6 +91,12 @@ class BodyTracker:
         first = int(self._state["released"][0])
         stop = walk(self._ring, self._trail, self._ticks, self._state, self.config, final)
         return rows_of(self._ring, first, stop)
+
+
+def _iron_std_ut(description: SensorDescription, config: BodyConfig) -> float:
+    """Iron on the person, an axis: by the calibration, or by what is usual without one."""
+    left_ut = description.mag_iron_std_ut
+    return config.iron_std_ut if left_ut is None else max(left_ut, config.iron_least_ut)
 
 
 @njit(cache=True)

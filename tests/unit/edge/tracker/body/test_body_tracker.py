@@ -7,6 +7,7 @@ from math import degrees, radians
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from edge.samples import ImuBatch, SensorDescription
 from edge.tracker.body.tracker import BodyTracker
@@ -15,8 +16,9 @@ from edge.tracker.track_rows import join_rows
 from tests.rig.exact_steps import RATE_HZ, imu, steps, still
 
 
-def tracked(batch: ImuBatch):
-    tracker = BodyTracker(SensorDescription("trunk", RATE_HZ))
+def tracked(batch: ImuBatch, *, iron_std_ut: float | None = None):
+    """``iron_std_ut``: of a calibrated compass."""
+    tracker = BodyTracker(SensorDescription("trunk", RATE_HZ, mag_iron_std_ut=iron_std_ut))
     return join_rows([tracker.push(batch), tracker.finish()])
 
 
@@ -77,18 +79,35 @@ def test_a_compass_holds_the_heading_that_a_bias_turns():
     bias = radians(1.0)
     walk = (still(0.1, bias), steps(120, rate_z_radps=bias))
     # The sensor does not turn, so the field stays where it is.
-    without, aided = tracked(imu(*walk)), tracked(imu(*walk, mag_n_ut=(20.0, 0.0, 40.0)))
-    assert abs(heading_deg(aided)) < 0.5 * abs(heading_deg(without))
+    without = tracked(imu(*walk))
+    aided = tracked(imu(*walk, mag_n_ut=(20.0, 0.0, 40.0)), iron_std_ut=2.0)
+    assert abs(heading_deg(aided)) < 0.6 * abs(heading_deg(without))
     assert aided.heading_std_rad[-1] < without.heading_std_rad[-1]
+
+
+def test_who_swings_in_a_cone_does_not_turn():
+    """Its rate about the vertical has a mean, which is the angle that the cone encloses."""
+    t_s = np.arange(round(60.0 * RATE_HZ)) / RATE_HZ
+    angles_rad = np.column_stack([0.5 * np.cos(7.0 * t_s), 0.1 * np.sin(7.0 * t_s)])
+    swung = Rotation.from_euler("YX", angles_rad)
+    samples = still(60.0)
+    samples[:, :3] = swung.inv().apply(samples[:, :3])
+    samples[1:, 3:] = (swung[:-1].inv() * swung[1:]).as_rotvec() * RATE_HZ
+    tracker = BodyTracker(SensorDescription("thigh", RATE_HZ))
+    tracker.push(imu(samples))
+    assert abs(degrees(tracker._state["heading_rad"][0])) < 12.0
 
 
 @pytest.mark.parametrize("forward_deg", [-100.0, 0.0, 60.0])
 def test_magnetic_north_is_stated_from_the_walk_and_not_from_the_sensor(forward_deg):
     walk = steps(40, forward_rad=radians(forward_deg))
-    rows = tracked(imu(still(5.0), walk, mag_n_ut=(20.0, 0.0, 40.0)))
+    batch = imu(still(5.0), walk, mag_n_ut=(20.0, 0.0, 40.0))
+    rows = tracked(batch, iron_std_ut=2.0)
     # The sensor's own axis points to magnetic north; the walk goes along the frame's north.
     assert degrees(rows.magnetic_north_rad[-1]) == pytest.approx(-forward_deg, abs=6.0)
     assert rows.magnetic_north_std_rad[-1] < 0.6
+    # Iron on a wearer who never turned could be all that the compass shows.
+    assert tracked(batch).magnetic_north_std_rad[-1] > 0.9
     assert np.isinf(rows.magnetic_north_std_rad[300])
 
 
