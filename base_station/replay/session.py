@@ -287,7 +287,10 @@ class ReplaySession:
 
     def _answer(self) -> None:
         while self._asked:
-            shown = self._player.snapshot(self.view())
+            view = self.view()
+            if self._seek_ns is not None:
+                return  # the view is of the time asked for, the picture is not yet
+            shown = self._player.snapshot(view)
             self._asked.popleft()(*self._sink.of_incident(*shown))
 
     def _move(self) -> None:

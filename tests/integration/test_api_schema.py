@@ -31,7 +31,8 @@ from tests.rig.desk_station import DeskStation
 
 EXAMPLES = 15  # of each operation
 FRAMEWORK = re.compile("Input should|Field required|Value error|not permitted")  # its own words
-# What makes a plan or a photo cannot be said in a schema, nor that columns have one length.
+# What makes a plan, a photo or a dispatch cannot be said in a schema, nor that columns have one
+# length.
 MORE_THAN_TYPES = (
     "POST /api/v1/units/{unit_id}/samples",
     "PUT /api/v1/site/plan",
@@ -39,6 +40,8 @@ MORE_THAN_TYPES = (
     "PUT /api/v1/people/{person_id}/photo",
     "POST /api/v1/people/import",
     "POST /api/v1/site/drafts",
+    "POST /api/v1/dispatch",
+    "POST /api/v1/dispatch/alerts",
 )
 
 

@@ -159,7 +159,8 @@ def test_a_station_reads_the_same_in_a_process_of_its_own(
         write_log(tmp_path, incident_records())
         damaged = segment_paths(tmp_path / "log")[2]
         content = bytearray(damaged.read_bytes())
-        content[len(content) // 3 : len(content) // 3 + 64] = bytes(64)
+        third = len(content) // 3
+        content[third : third + 1000] = bytes(1000)  # more than lies between two chunks
         damaged.write_bytes(content)
         told = TimelineProcess(replace(log_process, log=str(tmp_path / "log"))).read(request)
     assert any(damaged.name in one for one in told.defects)

@@ -266,7 +266,12 @@ async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(
     narrow.connect((host, int(port)))
     async with (
         connect(
-            url, additional_headers=headers, max_queue=1, sock=narrow, close_timeout=0.5
+            url,
+            additional_headers=headers,
+            max_queue=1,
+            sock=narrow,
+            close_timeout=0.5,
+            compression=None,
         ) as stuck,
         connect(url, additional_headers=headers, max_queue=100_000) as reading,
     ):

@@ -16,6 +16,7 @@ from shared.messages import CommandKind
 from shared.messages.pins import PlaceBeacon, SetMeeting, SetPin, StartTogether
 from shared.messages.station import (
     Action,
+    NoteDispatch,
     OpenIncident,
     RegisterUnit,
     ResolveAlarm,
@@ -54,6 +55,7 @@ EVERY_FREE_TEXT: tuple[Action, ...] = (
     StartTogether("s2", ("u1",), 0, 0.0, 0.0, 1.0, None, None, 0.3, "to Ada"),
     SetMeeting("s3", "u1", "u2", 0, 1.0, "to Ada"),
     PlaceBeacon("b1", "to Ada", 0.0, 0.0, None, 1.0, 1.0),
+    NoteDispatch("2024-1", "json", remarks="to Ada"),
 )
 
 
