@@ -13,7 +13,6 @@ import type {
   PinView,
   Plan,
   ReplayView,
-  SiteView,
   Snapshot,
   Trail,
   TrailPoint,
@@ -34,10 +33,8 @@ export interface State {
   beacons: readonly BeaconView[];
   external: readonly ExternalMarkerView[]; // of other teams
   dispatches: readonly DispatchView[]; // from which no incident was opened
-  plan: Plan | null; // of `incident`, as the anchor is
+  plan: Plan | null;
   anchor: AnchorView | null;
-  incidents: readonly IncidentView[]; // open, and closed ones whose people are still on their ground
-  sites: readonly SiteView[]; // other grounds than that of `incident`
   health: HealthView;
   replay: ReplayView | null;
 }
@@ -77,21 +74,17 @@ function fromSnapshot(message: Snapshot, before: State | null): State {
     beacons: message.beacons,
     external: message.external,
     dispatches: message.dispatches,
-    plan: knownPlan(message.plan, before),
+    plan: planOf(message, before),
     anchor: message.anchor,
-    incidents: message.incidents,
-    sites: message.sites.map((site) => ({ ...site, plan: knownPlan(site.plan, before) })),
     health: message.health,
     replay: message.replay,
   };
 }
 
 /** The same object while it is the same plan: whoever looks at a part of it goes on looking there. */
-function knownPlan(plan: Plan | null, before: State | null): Plan | null {
-  if (plan === null || before === null) return plan;
-  const text = JSON.stringify(plan);
-  const known = [before.plan, ...before.sites.map((site) => site.plan)];
-  return known.find((one) => JSON.stringify(one) === text) ?? plan;
+function planOf({ plan }: Snapshot, before: State | null): Plan | null {
+  const shown = before?.plan ?? null;
+  return JSON.stringify(plan) === JSON.stringify(shown) ? shown : plan;
 }
 
 /** The changed units, whole. */

@@ -1,5 +1,5 @@
 /** Keeps the plan as the picture is, a few times a second at most. */
-import { computed, effect } from "@preact/signals";
+import { effect } from "@preact/signals";
 import { shownTheme } from "../appearance";
 import { guarded } from "../live/faults";
 import { floor, selectedUnit } from "../uiState";
@@ -31,7 +31,6 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       }),
     ),
   );
-  const siteId = computed(() => picture.incident.value?.site_id ?? "");
   const drawPins = () => {
     void shownTheme.value;
     map.showPins({
@@ -49,10 +48,7 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       void shownTheme.value; // what is drawn below with these colours looks at it too, and later
       map.recolour();
     }),
-    following("The building", () => {
-      void siteId.value; // another ground without a plan is another place all the same
-      map.showPlan(picture.plan.value);
-    }),
+    following("The building", () => map.showPlan(picture.plan.value)),
     followBaseMap(map.ground, () => picture.anchor.value),
     effect(() => {
       void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value];

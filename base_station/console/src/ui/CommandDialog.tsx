@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import { attempt, live, mayAct, namedIncident } from "../sessions";
+import { attempt, live, mayAct } from "../sessions";
 import { dialogUnit } from "../uiState";
 import * as api from "../api";
 import {
@@ -74,29 +74,27 @@ function CommandForm({ kind, picture, sent }: FormProps) {
   const about = dialogUnit.peek();
   const to = useSignal(about === null ? EVERYONE : `unit:${about}`);
   const once = useSinglePress();
-  void picture.unitsChanged.value;
-  const members = picture.allUnits().filter((unit) => unit.registered);
-  const units = [...members, ...picture.unassignedUnits().filter((unit) => unit.registered)];
+  const units = picture.unitIds.value
+    .map((unitId) => picture.unit(unitId)?.value)
+    .filter((unit) => unit !== undefined)
+    .filter((unit) => unit.registered);
   const targets = new Map([
-    [EVERYONE, everyoneWord(picture)],
-    ...crewsOf(members).map((crew) => [`crew:${crew}`, crew] as const),
-    ...floorsOf(members).map((floor) => [`floor:${floor}`, floorWord(floor)] as const),
+    [EVERYONE, "Everyone"],
+    ...crewsOf(units).map((crew) => [`crew:${crew}`, crew] as const),
+    ...floorsOf(units).map((floor) => [`floor:${floor}`, floorWord(floor)] as const),
     ...units.map((unit) => [`unit:${unit.unit_id}`, nameAmong(unit, units)] as const),
   ]);
   // Else the list would turn to its first entry, which is everyone.
   if (!targets.has(to.value)) targets.set(to.value, `${nameIn(to.value)} (nobody now)`);
-  const target = targetOf(to.value);
-  const unreachable = notNotifiable(target, "unit_id" in target ? units : members);
+  const unreachable = notNotifiable(targetOf(to.value), units);
   return (
     <form
       class="row command-form"
       onSubmit={(event) => {
         const form = event.currentTarget;
         const { text = "" } = fields(event);
-        const wanted = targetOf(to.peek());
-        const incidentId = "unit_id" in wanted ? undefined : namedIncident();
         once(() =>
-          attempt(api.sendCommand(kind, wanted, text, incidentId)).then(
+          attempt(api.sendCommand(kind, targetOf(to.peek()), text)).then(
             (command) => {
               if (!command) return;
               sent(command);
@@ -137,11 +135,6 @@ function CommandForm({ kind, picture, sent }: FormProps) {
       </p>
     </form>
   );
-}
-
-function everyoneWord(picture: Picture): string {
-  const several = picture.choices.value.length > 0;
-  return several ? `Everyone in ${picture.incident.value?.name}` : "Everyone";
 }
 
 function floorWord(floor: number): string {

@@ -1,5 +1,5 @@
 import { setAnchor, setPlan } from "../api";
-import { attempt, namedIncident } from "../sessions";
+import { attempt } from "../sessions";
 import { dialog } from "../uiState";
 import { ConfirmButton } from "./ConfirmButton";
 
@@ -23,9 +23,7 @@ export function SendPlan({ plan, replaces, place }: Props) {
 }
 
 async function sent(plan: object, place: Props["place"]): Promise<void> {
-  const incidentId = namedIncident();
-  await setPlan(plan, incidentId);
+  await setPlan(plan);
   if (!place || place.lat_deg === null || place.lon_deg === null) return;
-  const anchor = { lat_deg: place.lat_deg, lon_deg: place.lon_deg, height_m: 0, plan_rotation_rad: 0 };
-  await setAnchor(anchor, incidentId);
+  await setAnchor({ lat_deg: place.lat_deg, lon_deg: place.lon_deg, height_m: 0, plan_rotation_rad: 0 });
 }

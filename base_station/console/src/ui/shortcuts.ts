@@ -3,9 +3,8 @@ import { useEffect } from "preact/hooks";
 import { shortcutsOn } from "../appearance";
 import type { Picture } from "../live/picture";
 import { mayAct, picture, waiting } from "../sessions";
-import { dialog, openDialog, pane } from "../uiState";
+import { dialog, find, openDialog, pane } from "../uiState";
 import { finding, seeking } from "./listState";
-import { showUnit } from "./showIncident";
 
 interface Shortcut {
   key: string; // as `KeyboardEvent.key`, in lower case
@@ -67,5 +66,5 @@ function showNextAlarm(): void {
   const next = alarms[(before + 1) % alarms.length];
   if (shown === null || next === undefined) return;
   lastShown = next.alarm_id;
-  showUnit(shown, next.unit_id);
+  find(next.unit_id, shown.unit(next.unit_id)?.peek().position?.floor ?? null);
 }
