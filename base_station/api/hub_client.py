@@ -72,7 +72,7 @@ class Client:
         return True
 
     def _take(self) -> bytes | None:
-        """What is to be sent now."""
+        """Messages that are to be sent now."""
         return self._queue.popleft() if self._queue else self._take_trail()
 
     def _take_trail(self) -> bytes | None:

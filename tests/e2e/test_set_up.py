@@ -77,7 +77,7 @@ def test_crews_of_a_file_are_looked_at_and_then_added(page: Page, complaints: li
     expect(dialog.get_by_role("row", name="Jürgen Groß")).to_contain_text("Officer")
 
 
-def test_a_faulty_line_is_named_and_nobody_is_added(
+def test_a_faulty_line_is_named_and_no_person_is_added(
     page: Page, complaints: list[str], tmp_path: Path
 ) -> None:
     dialog = page.get_by_role("dialog", name="People")

@@ -37,7 +37,7 @@ async def test_a_preview_does_nothing_and_a_second_import_changes_nothing(
         assert await crews(client) == after
 
 
-async def test_nobody_of_a_file_with_a_fault_is_added(station: DeskStation) -> None:
+async def test_a_file_with_a_fault_adds_no_person(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         for _ in range(2):
             await client.post("/people", json={"name": "Ada"})

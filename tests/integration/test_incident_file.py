@@ -176,7 +176,7 @@ def test_what_is_no_such_file_or_cannot_be_written_is_reported(
         assert not out.exists()
 
 
-def test_a_log_that_is_damaged_gives_what_can_be_read_and_the_file_says_what_not(
+def test_a_damaged_log_is_exported_as_far_as_it_is_readable_and_names_the_damage(
     data: Path, tmp_path: Path
 ) -> None:
     copy, out = tmp_path / "copy", tmp_path / "out.mcap"

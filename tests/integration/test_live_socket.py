@@ -116,7 +116,7 @@ async def test_a_console_that_confirms_gets_what_came_meanwhile_as_one(
         assert (await heard(again))["after_seq"] == picture["seq"]
 
 
-async def test_what_is_sent_is_compressed_for_whoever_offers_it(
+async def test_messages_are_compressed_for_consoles_that_offer_it(
     station: DeskStation, address: str
 ) -> None:
     url, headers = f"ws://{address}/api/v1/live", token_of(station)

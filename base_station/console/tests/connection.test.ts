@@ -160,10 +160,10 @@ describe("retryDelayMs", () => {
 });
 
 describe("what was shown", () => {
-  const hear = (text: string) => sockets[0]?.onmessage?.({ data: text });
+  const receive = (text: string) => sockets[0]?.onmessage?.({ data: text });
 
   it("is confirmed once it is on the screen, and the page has rested as long as it was busy", () => {
-    hear("one");
+    receive("one");
     expect(timers).not.toContainEqual(expect.objectContaining({ delayMs: 120 }));
     draw(120);
     expect(sockets[0]?.sent).toEqual([]);
@@ -172,10 +172,10 @@ describe("what was shown", () => {
   });
 
   it("is confirmed together, and what came since then after its own frame", () => {
-    hear("one");
-    hear("two");
+    receive("one");
+    receive("two");
     draw(30);
-    hear("three");
+    receive("three");
     fire(30);
     draw(20);
     fire(20);
@@ -183,13 +183,13 @@ describe("what was shown", () => {
   });
 
   it("rests for less than the silence that a station would be asked about", () => {
-    hear("one");
+    receive("one");
     draw(9_000);
     expect([...timers].some((timer) => timer.delayMs < SILENCE_MS / 2)).toBe(true);
   });
 
   it("is not confirmed over a connection that has ended", () => {
-    hear("one");
+    receive("one");
     draw(40);
     sockets[0]?.onclose?.({ code: 1006 });
     fire(40);

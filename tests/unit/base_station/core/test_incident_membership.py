@@ -67,7 +67,7 @@ def refusal(script: Script, *actions: object) -> str:
     return refused.reason
 
 
-def test_the_first_has_everybody_and_one_beside_it_nobody() -> None:
+def test_all_units_are_in_the_first_incident_and_none_in_the_second() -> None:
     script = Script()
     script.register("FF-01")
     outputs = script.act(OpenIncident("a", "Mill Lane"))

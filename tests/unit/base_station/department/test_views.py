@@ -130,7 +130,7 @@ def test_a_silent_station_is_away_and_shown_as_last_reported_also_after_a_restar
         department.start()
 
 
-def test_a_clock_apart_by_hours_is_said_and_ages_and_times_are_right(
+def test_a_clock_offset_of_hours_is_reported_and_ages_and_times_are_right(
     department: Department,
 ) -> None:
     ahead_ms = 3 * HOUR_MS
@@ -145,7 +145,9 @@ def test_a_clock_apart_by_hours_is_said_and_ages_and_times_are_right(
     assert view.problems[0].startswith("The clock of engine-7 is 3 h 0 min ahead of the department")
 
 
-def test_two_machines_with_one_name_are_said_until_one_is_silent(department: Department) -> None:
+def test_two_machines_with_one_name_are_reported_until_one_is_silent(
+    department: Department,
+) -> None:
     department.show(department.person("FF-01"), epoch=1)
     department.clock.advance(1.0)
     department.show(department.person("FF-02"), epoch=2)

@@ -37,7 +37,7 @@ def script() -> Script:
     return script
 
 
-def test_people_stay_where_they_are_and_the_log_says_by_which_fuser(script: Script) -> None:
+def test_a_change_of_fuser_keeps_positions_and_is_logged(script: Script) -> None:
     walk(script, 1)
     script.act(SetStart(UNIT, 30.0, -10.0, -3.0, 1.0, 0.5, 0.05))
     walk(script, 60)

@@ -79,7 +79,7 @@ def test_a_damaged_file_is_set_aside_and_another_epoch_begins(tmp_path: Path) ->
     assert path.with_name("outbox.sqlite.damaged").exists()
 
 
-def test_a_folder_that_is_not_there_is_said_and_tried_again(tmp_path: Path) -> None:
+def test_a_missing_folder_is_reported_and_tried_again(tmp_path: Path) -> None:
     outbox = DepartmentOutbox(tmp_path / "later" / "outbox.sqlite")
     with pytest.raises(StoreError, match=r"outbox\.sqlite cannot be used"):
         outbox.add([event("a")], {}, None)

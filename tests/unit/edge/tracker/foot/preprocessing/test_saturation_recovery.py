@@ -78,7 +78,7 @@ def test_a_force_that_swings_from_limit_to_limit_is_bridged_on_either_side():
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_bridged_rate_and_its_doubt_are_as_large_as_landings_have_shown(side):
+def test_a_bridged_rate_and_its_noise_follow_the_scale_estimated_at_landings(side):
     rate_radps = side * swing_mps2(12.0)
     n, full_scale = len(rate_radps), 8.0
     clipped_radps = np.clip(rate_radps, -full_scale, full_scale)
