@@ -11,6 +11,8 @@ from importlib.util import find_spec
 from types import ModuleType
 from typing import Any, NoReturn
 
+from PIL import ImageFile
+
 from shared.errors import UserError
 
 # Its remarks are about printing styles that it does not know; there is nothing to do about them.
@@ -40,10 +42,14 @@ def pdf_document(html: bytes) -> bytes:
 
 def _library() -> ModuleType:
     require_library()
+    truncated_images = ImageFile.LOAD_TRUNCATED_IMAGES
     try:
         return import_module("weasyprint")
     except OSError as error:
         raise UserError(_NO_PANGO.format(error)) from error
+    finally:
+        # Its import lets Pillow take pictures that are cut short, everywhere in the process.
+        ImageFile.LOAD_TRUNCATED_IMAGES = truncated_images
 
 
 def _no_address(address: str, *_: object, **__: object) -> NoReturn:

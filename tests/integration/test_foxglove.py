@@ -93,7 +93,7 @@ def test_a_client_sees_what_is_recorded_and_first_what_is_newest(
     client = closing.enter_context(foxglove_client(server.port))
     received = client.received
     until(lambda: {PLAN_TOPIC, ALARMS, EVERY_ALARM} <= client.receive().topics())
-    until(lambda: client.receive().on(EVERY_ALARM))
+    until(lambda: all(map(client.receive().on, (PLAN_TOPIC, EVERY_ALARM))))
     assert {payload for _, payload in received.on(PLAN_TOPIC)} == {b"the plan"}
     assert Log.FromString(received.on(EVERY_ALARM)[0][1]).message == "a mayday"
 

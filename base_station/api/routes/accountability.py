@@ -70,7 +70,7 @@ class Rest(Form):
 
 @router.get("/accountability")
 def list_on_duty(station: Station, _: Viewer, incident_id: Id | None = None) -> list[OnDuty]:
-    """Whose PAR is to be confirmed, the most urgent first; of one incident, or of all."""
+    """The members with a PAR to be confirmed, the most urgent first; of one incident, or of all."""
     picture = station.picture()
     incidents = {one.incident_id: one for one in picture.incidents}
     found = [

@@ -50,7 +50,7 @@ def draft_plan(
     _: Commander,
     options: Annotated[Options, Depends(_options)],
 ) -> PlanDraft:
-    """What a file from elsewhere holds: a picture to be scaled, or a plan to be set."""
+    """The draft of a plan from a drawing: a picture to be scaled, or a plan to be set."""
     try:
         with station.image_lock:
             draft = draft_of(drawing, options)

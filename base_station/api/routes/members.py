@@ -33,7 +33,7 @@ class NewMembers(Form):
 
 @router.get("/incidents/{incident_id}/members")
 def list_members(incident_id: Id, station: Station, _: Viewer) -> list[Member]:
-    """Who is in an open incident now; people first, by crew and name."""
+    """The members of an open incident now; people first, by crew and name."""
     open_or_404(station, incident_id)
     return _members(station, incident_id)
 

@@ -57,7 +57,7 @@ _PLAN_CONTENT = {
 def get_anchor(
     station: CurrentStation, _: Viewer, incident_id: Id | None = None
 ) -> AnchorView | None:
-    """Of an incident's site, or of the station's own."""
+    """The anchor of an incident's site, or of the station's own."""
     anchor = station.records.anchor(site_id=_site_id(station, incident_id))
     return None if anchor is None else anchor_view(anchor)
 
@@ -73,7 +73,7 @@ def set_anchor(
 
 @router.get("/site/plan", response_class=Response, responses=file_response("application/geo+json"))
 def get_plan(station: CurrentStation, _: Viewer, incident_id: Id | None = None) -> Response:
-    """Of an incident's site, or of the station's own."""
+    """The plan of an incident's site, or of the station's own."""
     geojson = station.records.plan(site_id=_site_id(station, incident_id))
     if geojson is None:
         raise Problem(404, "There is no plan.")

@@ -57,7 +57,7 @@ def unit_track(
 async def incident_tracks(
     incident_id: Id, station: CurrentStation, _: Viewer, every_s: EverySeconds = 1
 ) -> Response:
-    """Of every unit that moved while it was in the open incident."""
+    """The tracks of every unit that moved while it was in the open incident."""
     async with station.export_lock:
         return await run_in_threadpool(_incident_tracks, incident_id, station, every_s)
 

@@ -50,7 +50,7 @@ def incident_trails(
     kind: TrailKind = TrailKind.FUSED,
     every_s: EverySeconds = 1,
 ) -> Response:
-    """Of every unit that moved.  The smoothed ones of an open incident are as of now."""
+    """The trails of every unit that moved.  The smoothed ones of an open incident are as of now."""
     incident = incident_or_404(station, incident_id)
     made_ns, tracks = trails_of(station, incident, kind)
     body = Trails(
