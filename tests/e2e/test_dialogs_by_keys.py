@@ -135,7 +135,7 @@ def test_a_dialog_says_that_the_station_is_not_heard(stage: Stage) -> None:
     expect(dialog).not_to_contain_text("Connection to the station lost")
     station.fall_silent()
     lost = dialog.get_by_role("alert").filter(has_text="Connection to the station lost")
-    expect(lost).to_contain_text(re.compile(r"\d s ago"))
+    expect(lost).to_contain_text(re.compile(r"\d\ss ago"))
 
 
 def test_times_that_were_changed_are_said_to_be(stage: Stage) -> None:

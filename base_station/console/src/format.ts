@@ -1,10 +1,11 @@
 /** Numbers as a tired person reads them.  Pure. */
+import { floorNames, clock, date, degrees, length, listed, number, quantity, share } from "./language/measures";
+import { knownLabel, label, t } from "./language/translate";
 import type {
   AlarmView,
   ClockView,
   ForwarderView,
   HealthView,
-  Link,
   PositionView,
   PreflightView,
   SensorTemperatureView,
@@ -13,14 +14,28 @@ import type {
   WornSensorView,
 } from "./wire";
 
-/** A time that passed: "0.4 s", "42 s", "3 min 05 s", "1 h 12 min". */
+/** A time that passed: "0.4 s", "42 s", "3 min 05 s", "1 h 12 min".  By the symbols of SI, which all languages
+ * share: the short names of `Intl` are "3m" in one and "3 Min." in another. */
 export function duration(ms: number): string {
   const seconds = Math.max(0, ms) / 1000;
-  if (seconds < 10) return `${(Math.floor(seconds * 10) / 10).toFixed(1)} s`;
-  if (seconds < 60) return `${Math.floor(seconds)} s`;
+  if (seconds < 10) return secondsText(number(Math.floor(seconds * 10) / 10, 1));
+  if (seconds < 60) return secondsText(number(Math.floor(seconds)));
   const minutes = Math.floor(seconds / 60);
-  if (minutes < 60) return `${minutes} min ${pad(Math.floor(seconds % 60))} s`;
-  return `${Math.floor(minutes / 60)} h ${pad(minutes % 60)} min`;
+  if (minutes < 60) return `${minutesText(minutes)} ${secondsText(number(Math.floor(seconds % 60), 0, 2))}`;
+  return hoursText(minutes);
+}
+
+function secondsText(value: string): string {
+  return t("measure.seconds", { value });
+}
+
+function minutesText(minutes: number, leastDigits = 1): string {
+  return t("measure.minutes", { value: number(minutes, 0, leastDigits) });
+}
+
+function hoursText(minutes: number): string {
+  const hours = t("measure.hours", { value: number(Math.floor(minutes / 60)) });
+  return `${hours} ${minutesText(minutes % 60, 2)}`;
 }
 
 /** How old something is, as coarse as it is old: "0.4 s", "42 s", "3 min", "1 h 12 min". */
@@ -31,8 +46,8 @@ export function age(ms: number): string {
 /** A long time without the seconds: "< 1 min", "12 min", "1 h 05 min". */
 export function minutes(ms: number): string {
   const whole = Math.floor(Math.max(0, ms) / 60_000);
-  if (whole < 1) return "< 1 min";
-  return whole < 60 ? `${whole} min` : `${Math.floor(whole / 60)} h ${pad(whole % 60)} min`;
+  if (whole < 1) return t("measure.under_a_minute");
+  return whole < 60 ? minutesText(whole) : hoursText(whole);
 }
 
 /** Minutes and seconds as on a kitchen clock: "12:40", "1:02:40". */
@@ -49,20 +64,20 @@ const CLOCK_WRONG_MS = 10_000;
 
 /** What a unit has found wrong when it checked itself at its start. */
 export function preflightText({ level, text }: PreflightView): string {
-  return `${level === "failed" ? "not ready" : "with warnings"}: ${text}`;
+  return t(level === "failed" ? "member.preflight_failed" : "member.preflight_warning", { text });
 }
 
 /** Where a sensor is worn, and how: "left foot", "lower back (belt)". */
 export function wornAt({ place, place_recognised, mount }: WornSensorView): string {
-  const where = place === "" ? "place not known" : place.replaceAll("_", " ");
-  const how = [mount, place_recognised ? "recognised" : ""].filter((word) => word !== "");
+  const where = place === "" ? t("member.place_unknown") : label("worn", place);
+  const how = [mount, place_recognised ? t("member.recognised") : ""].filter((word) => word !== "");
   return how.length === 0 ? where : `${where} (${how.join(", ")})`;
 }
 
 /** How far a unit's own clock is from the station's: "40 ms ahead ± 3 ms", "1 min 15 s behind". */
 export function clockOffset({ ahead_ms, std_ms }: ClockView): string {
-  const way = ahead_ms < 0 ? "behind" : "ahead";
-  return `${briefDuration(Math.abs(ahead_ms))} ${way} ±\u00a0${briefDuration(std_ms)}`;
+  const way = ahead_ms < 0 ? "measure.behind" : "measure.ahead";
+  return t(way, { time: briefDuration(Math.abs(ahead_ms)), std: briefDuration(std_ms) });
 }
 
 /** Far enough for times in its black box to mislead. */
@@ -71,25 +86,27 @@ export function isClockWrong({ ahead_ms }: ClockView): boolean {
 }
 
 function briefDuration(ms: number): string {
-  return ms < 1000 ? `${Math.ceil(ms)}\u00a0ms` : duration(ms);
+  return ms < 1000 ? t("measure.milliseconds", { value: number(Math.ceil(ms)) }) : duration(ms);
 }
 
 /** Time of the day where the console stands. */
 export function clockTime(ms: number): string {
-  const at = new Date(ms);
-  return [at.getHours(), at.getMinutes(), at.getSeconds()].map(pad).join(":");
+  return clock(ms);
 }
 
+/** "Nov 26, 2026, 18:42", as the locale writes it. */
 export function dateAndTime(ms: number): string {
-  const at = new Date(ms);
-  const date = [at.getFullYear(), at.getMonth() + 1, at.getDate()].map(pad).join("-");
-  return `${date} ${clockTime(ms).slice(0, 5)}`;
+  return listed([date(ms), clock(ms, false)]);
+}
+
+/** The same with seconds. */
+export function dateAndClock(ms: number): string {
+  return listed([date(ms), clock(ms)]);
 }
 
 /** The same time where the day is that of `sinceMs`; else with the date: an incident lasts over midnight. */
 export function timeSince(sinceMs: number, ms: number): string {
-  const [since, at] = [dateAndTime(sinceMs), dateAndTime(ms)].map((one) => one.slice(0, 10));
-  return since === at ? clockTime(ms) : `${at} ${clockTime(ms)}`;
+  return date(sinceMs) === date(ms) ? clock(ms) : dateAndClock(ms);
 }
 
 /** By how much the times on the screen are not those of exports and of the terminal: "UTC+5:30". */
@@ -100,15 +117,23 @@ export function zone(ms: number): string {
   return `UTC${ahead < 0 ? "−" : "+"}${hours}${rest === 0 ? "" : `:${pad(rest)}`}`;
 }
 
-/** "± 2.1 m" while that means something, whole metres above ten. */
+/** "± 2.1 m" while that means something, whole metres above ten; in feet whole ones. */
 export function plusMinus(radiusM: number): string {
-  return `±\u00a0${radiusM < 10 ? radiusM.toFixed(1) : Math.round(radiusM)}\u00a0m`;
+  return t("measure.plus_minus", { value: length(radiusM, radiusM < 10 ? 1 : 0) });
 }
 
 export function floorName(floor: number | null): string {
-  if (floor === null) return "floor unknown";
-  if (floor === 0) return "ground floor";
-  return floor > 0 ? `floor ${floor}` : `basement ${-floor}`;
+  if (floor === null) return t("measure.floor_unknown");
+  if (floor < 0) return t("measure.basement", { number: -floor });
+  if (floorNames.value === "american") return t("measure.floor_by_ordinal", { number: floor + 1 });
+  return floor === 0 ? t("measure.ground_floor") : t("measure.upper_floor", { number: floor });
+}
+
+/** On a button or a mark: "G", "1", "B1"; American "1", "2", "B1". */
+export function shortFloor(floor: number): string {
+  if (floor < 0) return t("measure.basement_short", { number: -floor });
+  if (floorNames.value === "american") return number(floor + 1);
+  return floor === 0 ? t("measure.ground_floor_short") : number(floor);
 }
 
 const FLOOR_CERTAIN = 0.95;
@@ -124,14 +149,14 @@ export function isFloorLikely({ floor_probability: sure }: PositionView): boolea
 export function floorOf(position: PositionView, old = false): string {
   const { floor, floor_probability: sure } = position;
   if (floor === null) return floorName(floor);
-  const name = old ? `last on ${floorName(floor)}` : floorName(floor);
+  const name = old ? t("measure.floor_last", { floor: floorName(floor) }) : floorName(floor);
   if (sure === null || sure >= FLOOR_CERTAIN) return name;
-  if (!isFloorLikely(position)) return `floor unknown, perhaps ${name}`;
-  return `${name} (${Math.round(100 * sure)} % sure)`;
+  if (!isFloorLikely(position)) return t("measure.floor_doubtful", { floor: name });
+  return t("measure.floor_probable", { floor: name, probability: share(sure) });
 }
 
 export function temperature(degc: number | null): string {
-  return degc === null ? "no reading" : `${Math.round(degc)}\u00a0°C`;
+  return degc === null ? t("measure.no_reading") : degrees(degc);
 }
 
 const READING_OLD_MS = 10_000;
@@ -145,7 +170,7 @@ export function isReadingOld(readMs: number | null, nowMs: number): boolean {
 export function sensorsText(sensors: readonly SensorTemperatureView[]): string {
   if (sensors.length < 2) return "";
   const hottestFirst = [...sensors].sort((a, b) => b.temperature_degc - a.temperature_degc);
-  return hottestFirst.map((one) => `${one.name} ${temperature(one.temperature_degc)}`).join(", ");
+  return listed(hottestFirst.map((one) => `${one.name} ${temperature(one.temperature_degc)}`));
 }
 
 /** The hottest of some sensors; null: there are none. */
@@ -155,27 +180,15 @@ export function hottest(sensors: readonly SensorTemperatureView[]): number | nul
 
 /** Behind the battery's level: "charging", "2 h 05 min left"; nothing where nothing is known. */
 export function batteryText(status: StatusView): string {
-  if (status.battery_state === "charging") return "charging";
-  if (status.battery_state === "full") return "on external power";
+  if (status.battery_state === "charging") return t("battery.charging");
+  if (status.battery_state === "full") return t("battery.external");
   if (status.battery_left_s === null) return "";
-  return `${minutes(status.battery_left_s * 1000)} left`;
+  return t("measure.left", { time: minutes(status.battery_left_s * 1000) });
 }
 
 export function percent(part: number | null): string {
-  return part === null ? "unknown" : `${Math.round(part * 100)}\u00a0%`;
+  return part === null ? t("measure.unknown") : share(part);
 }
-
-export const ACTIVITIES: Record<string, string> = {
-  unknown: "Unknown",
-  still: "Still",
-  walking: "Walking",
-  running: "Running",
-  stairs_up: "Stairs up",
-  stairs_down: "Stairs down",
-  crawling: "Crawling",
-  lying: "Lying",
-  falling: "Falling",
-};
 
 /** Less is no stillness that anybody would speak of. */
 export const MOTIONLESS_SHOWN_S = 10;
@@ -183,53 +196,23 @@ export const MOTIONLESS_SHOWN_S = 10;
 /** What the wearer does; stillness says for how long. */
 export function activityOf(unit: UnitView): string {
   const { status } = unit;
-  if (status === null) return "No status";
-  if (status.mayday) return "MAYDAY";
-  const word = ACTIVITIES[status.activity] ?? status.activity;
-  if (status.motionless_s < MOTIONLESS_SHOWN_S) return word;
-  return `${word}, motionless ${age(status.motionless_s * 1000)}`;
+  if (status === null) return t("member.no_status");
+  if (status.mayday) return t("member.mayday");
+  const activity = label("activity", status.activity);
+  if (status.motionless_s < MOTIONLESS_SHOWN_S) return activity;
+  return t("member.motionless", { activity, age: age(status.motionless_s * 1000) });
 }
-
-const POSTURES: Record<string, string> = {
-  upright: "Upright",
-  standing: "Standing",
-  sitting: "Sitting",
-  kneeling: "Kneeling",
-  crawling: "On hands and knees",
-  bent: "Bent forward",
-  lying: "Lying",
-  prone: "Lying face down",
-  supine: "Lying on the back",
-  left_side: "Lying on the left side",
-  right_side: "Lying on the right side",
-};
-
-const MOBILITIES: Record<string, string> = {
-  backward: "going backward",
-  leftward: "stepping to the left",
-  rightward: "stepping to the right",
-  turning: "turning on the spot",
-};
 
 /** How the body is held and goes; empty where the unit does not tell it. */
 export function postureText({ posture, posture_confidence, mobility }: StatusView): string {
-  const word = POSTURES[posture];
-  const held = word === undefined ? [] : [`${word} (${Math.round(posture_confidence * 100)} %)`];
-  return [...held, MOBILITIES[mobility] ?? ""].filter((part) => part !== "").join(", ");
+  const confidence = share(posture_confidence);
+  const word = knownLabel("posture", posture);
+  const held = word === undefined ? undefined : t("member.posture", { posture: word, confidence });
+  return listed([held, knownLabel("mobility", mobility)].filter((part) => part !== undefined));
 }
 
-const LINKS: Record<Link, string> = {
-  live: "Link good",
-  stale: "Link stale",
-  lost: "Link lost",
-  never: "Never heard",
-};
-
-/** Of a unit whose name two machines use. */
-export const DUPLICATE_DEVICE = "two machines speak under this name; only one is shown";
-
 export function linkText({ link, switched_off }: UnitView): string {
-  return switched_off ? "Switched off" : LINKS[link];
+  return t(switched_off ? "link.switched_off" : `link.${link}`);
 }
 
 /** For how long the wearer is in the building; null: outside, as far as is known.  What became of them
@@ -241,36 +224,33 @@ export function insideMs(unit: UnitView, nowMs: number): number | null {
 }
 
 export function insideText(unit: UnitView): string {
-  return unit.switched_off && unit.inside_since_ms !== null ? "Was inside" : "Inside for";
+  return t(unit.switched_off && unit.inside_since_ms !== null ? "member.was_inside" : "member.inside_for");
 }
 
-const HEAT: Record<string, string> = {
-  "": "normal",
-  caution: "caution",
-  warning: "warning",
-  critical: "CRITICAL",
-};
-
 export function heatText(level: string): string {
-  return HEAT[level] ?? level;
+  return label("heat", level === "" ? "normal" : level);
 }
 
 /** Where that is, for who does not see the plan: "12.0 m north, 3.4 m west". */
 export function place(at: { north_m: number; east_m: number }): string {
-  const along = `${Math.abs(at.north_m).toFixed(1)} m ${at.north_m < 0 ? "south" : "north"}`;
-  return `${along}, ${Math.abs(at.east_m).toFixed(1)} m ${at.east_m < 0 ? "west" : "east"}`;
+  const along = { length: length(Math.abs(at.north_m)) };
+  const across = { length: length(Math.abs(at.east_m)) };
+  return listed([
+    at.north_m < 0 ? t("measure.south", along) : t("measure.north", along),
+    at.east_m < 0 ? t("measure.west", across) : t("measure.east", across),
+  ]);
 }
 
 /** What is wrong with the station, sentence by sentence. */
 export function problemsOf(health: HealthView): string[] {
   if (!health.insecure) return health.problems;
-  return [...health.problems, "Not encrypted: others on the network can listen and speak"];
+  return [...health.problems, t("station.not_encrypted")];
 }
 
 /** Whether somebody's place goes by satellites, and why not. */
 export function gpsText(reason: string | null): string {
-  if (reason === null) return "no fix yet";
-  return reason === "" ? "used" : `not used: ${reason}`;
+  if (reason === null) return t("member.gps_none");
+  return reason === "" ? t("member.gps_used") : t("member.gps_unused", { reason });
 }
 
 /** The level of an alarm that only informs: the unit's silence is no loss. */
@@ -322,28 +302,23 @@ function truncated(text: string, most: number): string {
 }
 
 export function bytes(count: number): string {
-  const units = ["B", "kB", "MB", "GB", "TB"];
+  const units = ["byte", "kilobyte", "megabyte", "gigabyte", "terabyte"] as const;
   const step = count < 1 ? 0 : Math.min(Math.floor(Math.log10(count) / 3), units.length - 1);
   const value = count / 1000 ** step;
-  return `${value < 10 && step > 0 ? value.toFixed(1) : Math.round(value)} ${units[step]}`;
+  return quantity(value, units[step] ?? "byte", value < 10 && step > 0 ? 1 : 0, "narrow");
 }
 
 function pad(whole: number): string {
   return String(whole).padStart(2, "0");
 }
 
-const FORWARDER_STATES: Record<ForwarderView["state"], string> = {
-  connected: "connected",
-  connecting: "not connected",
-  standby: "the other station forwards",
-};
-
 /** A connection with another system in one line. */
 export function forwarderLine(one: ForwarderView): string {
-  const state = FORWARDER_STATES[one.state];
-  const line = `${one.kind.toUpperCase()} ${one.name} (${one.address}): ${state}`;
-  const sent = `${one.sent.toLocaleString("en")} events sent`;
-  const received = `${one.received.toLocaleString("en")} received`;
-  const refused = one.refused > 0 ? `${one.refused.toLocaleString("en")} left out` : "";
+  const { name, address } = one;
+  const state = t(`forwarder.${one.state}`);
+  const line = t("forwarder.line", { kind: one.kind.toUpperCase(), name, address, state });
+  const sent = t("forwarder.sent", { count: one.sent });
+  const received = t("forwarder.received", { count: one.received });
+  const refused = one.refused > 0 ? t("forwarder.refused", { count: one.refused }) : "";
   return [line, sent, received, refused, one.text].filter(Boolean).join("; ");
 }

@@ -16,10 +16,11 @@ import "./styles/wall.css";
 import "./styles/print.css";
 import "./appearance";
 import { install } from "./install";
+import { useLanguage } from "./language/choices";
 import { resume } from "./sessions";
 import { App } from "./ui/App";
 
 install();
-await resume();
+await Promise.all([useLanguage(), resume()]);
 const root = document.getElementById("app");
 if (root) render(<App />, root);

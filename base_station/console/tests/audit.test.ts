@@ -18,7 +18,7 @@ describe("the audit log", () => {
   it.each([
     [
       { command_id: "08a1", kind: 2, unit_id: "", everyone: true, text: "", lasts_s: 600 },
-      "PAR, everyone, lasts 10 min 00 s",
+      "PAR, everyone, lasts 10\u00a0min 00\u00a0s",
     ],
     [
       { unit_id: "FF-05", north_m: -6, east_m: 4.04, down_m: 0, std_m: 1, heading_std_rad: 0.2 },
@@ -65,7 +65,7 @@ describe("the audit log", () => {
     ],
     [
       { thresholds: { "no-motion.alarm_s": 25, "heat.caution_degc": 80, "battery.low": 0.2 } },
-      "no-motion alarm 25 s, heat caution 80 °C, battery low 0.2",
+      "no-motion alarm 25\u00a0s, heat caution 80 °C, battery low 0.2",
     ],
     [{ thresholds: {} }, "all as usual"],
     [{ alarm_id: "fall:1:2", note: "", last_raised_ms: 0 }, "alarm id: fall:1:2"],

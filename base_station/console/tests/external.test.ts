@@ -11,7 +11,7 @@ describe("a person of another team", () => {
     const marker = externalMarker({ t_ms: 1_000, stale_ms: 60_000 });
     expect(isStale(marker, 59_999)).toBe(false);
     expect(isStale(marker, 60_000)).toBe(true);
-    expect(externalLabel(marker, 61_000)).toBe("Police 1 (county, 1 min 00 s ago)");
+    expect(externalLabel(marker, 61_000)).toBe("Police 1 (county, 1\u00a0min 00\u00a0s ago)");
   });
 
   it("is named as an emergency where it is one", () => {

@@ -4,44 +4,44 @@ import { alarm, HEALTH, position, STATUS, unit } from "./fixtures";
 
 describe("words", () => {
   it.each([
-    [-50, "0.0 s"],
-    [440, "0.4 s"],
-    [9_990, "9.9 s"],
-    [10_000, "10 s"],
-    [42_900, "42 s"],
-    [60_000, "1 min 00 s"],
-    [185_000, "3 min 05 s"],
-    [3_600_000, "1 h 00 min"],
-    [4_320_000, "1 h 12 min"],
+    [-50, "0.0\u00a0s"],
+    [440, "0.4\u00a0s"],
+    [9_990, "9.9\u00a0s"],
+    [10_000, "10\u00a0s"],
+    [42_900, "42\u00a0s"],
+    [60_000, "1\u00a0min 00\u00a0s"],
+    [185_000, "3\u00a0min 05\u00a0s"],
+    [3_600_000, "1\u00a0h 00\u00a0min"],
+    [4_320_000, "1\u00a0h 12\u00a0min"],
   ])("say %i ms as %s", (ms, text) => {
     expect(format.duration(ms)).toBe(text);
   });
 
   it("say an age no finer than it is worth", () => {
-    expect(format.age(42_900)).toBe("42 s");
-    expect(format.age(185_000)).toBe("3 min");
+    expect(format.age(42_900)).toBe("42\u00a0s");
+    expect(format.age(185_000)).toBe("3\u00a0min");
   });
 
   it.each([
-    [-1, "< 1 min"],
-    [59_999, "< 1 min"],
-    [60_000, "1 min"],
-    [3_599_000, "59 min"],
-    [7_500_000, "2 h 05 min"],
+    [-1, "< 1\u00a0min"],
+    [59_999, "< 1\u00a0min"],
+    [60_000, "1\u00a0min"],
+    [3_599_000, "59\u00a0min"],
+    [7_500_000, "2\u00a0h 05\u00a0min"],
   ])("say %i ms without seconds as %s", (ms, text) => {
     expect(format.minutes(ms)).toBe(text);
   });
 
-  it("say a date as everybody writes it", () => {
-    expect(format.dateAndTime(new Date(2026, 0, 9, 8, 5, 59).getTime())).toBe("2026-01-09 08:05");
-    expect(format.dateAndTime(new Date(2026, 11, 31, 23, 0).getTime())).toBe("2026-12-31 23:00");
+  it("say a date as the locale writes it", () => {
+    expect(format.dateAndTime(new Date(2026, 0, 9, 8, 5, 59).getTime())).toBe("Jan 9, 2026, 08:05");
+    expect(format.dateAndTime(new Date(2026, 11, 31, 23, 0).getTime())).toBe("Dec 31, 2026, 23:00");
   });
 
   it("say the day of a time that is of another day than the beginning", () => {
     const eve = new Date(2026, 10, 24, 23, 50).getTime();
     expect(format.timeSince(eve, eve + 60_000)).toBe("23:51:00");
-    expect(format.timeSince(eve, eve + 20 * 60_000)).toBe("2026-11-25 00:10:00");
-    expect(format.timeSince(eve, eve + 24 * 3_600_000)).toBe("2026-11-25 23:50:00");
+    expect(format.timeSince(eve, eve + 20 * 60_000)).toBe("Nov 25, 2026, 00:10:00");
+    expect(format.timeSince(eve, eve + 24 * 3_600_000)).toBe("Nov 25, 2026, 23:50:00");
   });
 
   it.each([
@@ -70,15 +70,15 @@ describe("words", () => {
 
   it.each([
     [12.2, 2.4, "13\u00a0ms ahead ±\u00a03\u00a0ms", false],
-    [-75_000, 3, "1 min 15 s behind ±\u00a03\u00a0ms", true],
-    [9_900, 1_500, "9.9 s ahead ±\u00a01.5 s", false],
+    [-75_000, 3, "1\u00a0min 15\u00a0s behind ±\u00a03\u00a0ms", true],
+    [9_900, 1_500, "9.9\u00a0s ahead ±\u00a01.5\u00a0s", false],
   ])("say a clock %f ms ahead, sure to %f ms, as %s", (ahead_ms, std_ms, text, wrong) => {
     expect(format.clockOffset({ ahead_ms, std_ms })).toBe(text);
     expect(format.isClockWrong({ ahead_ms, std_ms })).toBe(wrong);
   });
 
   it("say a place without the plan", () => {
-    expect(format.place({ north_m: 12, east_m: -3.44 })).toBe("12.0 m north, 3.4 m west");
+    expect(format.place({ north_m: 12, east_m: -3.44 })).toBe("12.0\u00a0m north, 3.4\u00a0m west");
   });
 
   it("say floors as people do", () => {
@@ -92,9 +92,9 @@ describe("words", () => {
 
   it("says how the body is held, and how sure that is", () => {
     const held = { ...STATUS, posture: "supine", posture_confidence: 0.934 };
-    expect(format.postureText(held)).toBe("Lying on the back (93 %)");
+    expect(format.postureText(held)).toBe("Lying on the back (93\u00a0%)");
     expect(format.postureText({ ...held, mobility: "turning" })).toBe(
-      "Lying on the back (93 %), turning on the spot",
+      "Lying on the back (93\u00a0%), turning on the spot",
     );
     expect(format.postureText({ ...STATUS, mobility: "leftward" })).toBe("stepping to the left");
     expect(format.postureText(STATUS)).toBe("");
@@ -102,7 +102,7 @@ describe("words", () => {
 
   it("say how long somebody has been motionless, and mayday before all else", () => {
     const lying = { ...STATUS, activity: "lying", motionless_s: 33 };
-    expect(format.activityOf(unit("a", { status: lying }))).toBe("Lying, motionless 33 s");
+    expect(format.activityOf(unit("a", { status: lying }))).toBe("Lying, motionless 33\u00a0s");
     expect(format.activityOf(unit("a", { status: { ...lying, mayday: true } }))).toBe("MAYDAY");
     expect(format.activityOf(unit("a", { status: null }))).toBe("No status");
   });
@@ -116,7 +116,7 @@ describe("words", () => {
   it("says how sure a floor is only where there is a doubt", () => {
     expect(format.floorOf(position({ floor: 1, floor_probability: 0.97 }))).toBe("floor 1");
     expect(format.floorOf(position({ floor: 1, floor_probability: 0.8 }))).toBe(
-      "floor 1 (80 % sure)",
+      "floor 1 (80\u00a0% sure)",
     );
     expect(format.floorOf(position({ floor: null }))).toBe("floor unknown");
   });
@@ -124,7 +124,7 @@ describe("words", () => {
   it("say of which time a floor is that somebody was last heard on", () => {
     const then = (of: Parameters<typeof position>[0]) => format.floorOf(position(of), true);
     expect(then({ floor: 1 })).toBe("last on floor 1");
-    expect(then({ floor: 0, floor_probability: 0.8 })).toBe("last on ground floor (80 % sure)");
+    expect(then({ floor: 0, floor_probability: 0.8 })).toBe("last on ground floor (80\u00a0% sure)");
     expect(then({ floor: 1, floor_probability: 0.25 })).toBe("floor unknown, perhaps last on floor 1");
     expect(then({ floor: null })).toBe("floor unknown");
   });
@@ -207,7 +207,7 @@ describe("words", () => {
   it.each([
     ["unknown", null, ""],
     ["discharging", null, ""],
-    ["discharging", 7_500, "2 h 05 min left"],
+    ["discharging", 7_500, "2\u00a0h 05\u00a0min left"],
     ["charging", 7_500, "charging"],
     ["full", null, "on external power"],
   ])("say of a battery that is %s with %s s: %s", (battery_state, battery_left_s, text) => {
@@ -221,10 +221,10 @@ describe("words", () => {
 
   it("count bytes", () => {
     expect([0, 999, 1_500, 98_000_000].map(format.bytes)).toEqual([
-      "0 B",
-      "999 B",
-      "1.5 kB",
-      "98 MB",
+      "0\u00a0B",
+      "999\u00a0B",
+      "1.5\u00a0kB",
+      "98\u00a0MB",
     ]);
   });
 

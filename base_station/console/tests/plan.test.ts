@@ -264,12 +264,12 @@ describe("the name of somebody on the plan", () => {
 
   it("says which floor and how old", () => {
     expect(nameOf({})?.getText()).toBe("Ana");
-    expect(nameOf({ floor: "floor 1", old: true })?.getText()).toBe("Ana, floor 1, 1 min old");
+    expect(nameOf({ floor: "floor 1", old: true })?.getText()).toBe("Ana, floor 1, 1\u00a0min old");
   });
 
   it("leaves others room: of a long name it says the beginning, and all that follows it", () => {
     const long = { name: "W".repeat(80), floor: "floor 1", old: true };
-    expect(nameOf(long)?.getText()).toBe(`${"W".repeat(23)}…, floor 1, 1 min old`);
+    expect(nameOf(long)?.getText()).toBe(`${"W".repeat(23)}…, floor 1, 1\u00a0min old`);
     expect(nameOf({ name: "Wolfeschlegel von Bergen" })?.getText()).toBe("Wolfeschlegel von Bergen");
   });
 });

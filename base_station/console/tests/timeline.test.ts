@@ -48,7 +48,7 @@ describe("the value at a moment", () => {
     expect(text("activity", 8)).toBe("Falling");
     expect(text("activity", 99)).toBe("Unknown");
     expect(text("battery", 0.5)).toBe("50\u00a0%");
-    expect(text("silence_s", 41)).toBe("41 s");
+    expect(text("silence_s", 41)).toBe("41\u00a0s");
   });
 
   it("is also given in words for a whole line", () => {

@@ -2,7 +2,7 @@
 import { urgencyOf } from "../live/urgency";
 import type { FloorChoice } from "../uiState";
 import type { AlarmView, Plan, PositionView, UnitView } from "../wire";
-import { floorName, floorOf, isFloorLikely } from "../format";
+import { floorName, floorOf, isFloorLikely, shortFloor } from "../format";
 
 export interface Floor {
   floor: number;
@@ -27,7 +27,7 @@ export function floorsOf(
       const on = units.filter((unit) => unit.position?.floor === floor);
       return {
         floor,
-        name: shortName(floor),
+        name: shortFloor(floor),
         people: on.length,
         endangered: on.filter((unit) => urgencyOf(unit, alarms) === "immediate").length,
       };
@@ -54,10 +54,6 @@ export function floorRemark(position: PositionView, shown: FloorChoice, old = fa
 export function floorsUp(position: PositionView, shown: FloorChoice): number {
   if (shown === "all" || position.floor === null || !isFloorLikely(position)) return 0;
   return position.floor - shown;
-}
-
-export function shortName(floor: number): string {
-  return floor < 0 ? `B${-floor}` : floor === 0 ? "G" : String(floor);
 }
 
 function planFloors(plan: Plan | null): Set<number> {

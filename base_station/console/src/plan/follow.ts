@@ -1,6 +1,7 @@
 /** Keeps the plan as the picture is, a few times a second at most. */
 import { effect } from "@preact/signals";
 import { shownTheme } from "../appearance";
+import { units } from "../language/measures";
 import { guarded } from "../live/faults";
 import { floor, selectedUnit } from "../uiState";
 import type { Picture } from "../live/picture";
@@ -48,6 +49,7 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       void shownTheme.value; // what is drawn below with these colours looks at it too, and later
       map.recolour();
     }),
+    following("The scale of the plan", () => map.showUnits(units.value)),
     following("The building", () => map.showPlan(picture.plan.value)),
     followBaseMap(map.ground, () => picture.anchor.value),
     effect(() => {

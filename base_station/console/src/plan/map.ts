@@ -8,6 +8,7 @@ import Point from "ol/geom/Point";
 import { defaults } from "ol/interaction/defaults";
 import Translate from "ol/interaction/Translate";
 import type { Route } from "../api";
+import type { Units } from "../language/measures";
 import type { FloorChoice } from "../uiState";
 import type { Plan } from "../wire";
 import { BaseMapLayer } from "./baseMap";
@@ -56,6 +57,7 @@ export class PlanMap {
   private readonly past = new PastLayer();
   private readonly external = new ExternalLayer();
   private readonly route = new RouteLayer();
+  private readonly scale = new ScaleLine({ minWidth: 80 });
   private readonly view = new View({
     projection: SITE,
     center: [0, 0],
@@ -91,7 +93,7 @@ export class PlanMap {
         this.pins.layer,
       ],
       interactions: defaults().extend([this.dragging()]),
-      controls: [new ScaleLine({ minWidth: 80 })],
+      controls: [this.scale],
     });
     for (const kind of ["wheel", "pointerdown"]) {
       target.addEventListener(kind, () => (this.chosen = true), { passive: true });
@@ -165,6 +167,10 @@ export class PlanMap {
       }
     });
     return translate;
+  }
+
+  showUnits(units: Units): void {
+    this.scale.setUnits(units);
   }
 
   showPlan(plan: Plan | null): void {

@@ -1,6 +1,7 @@
 /** What a timeline shows, and which part of the time.  Pure. */
 import type { TimelineAnswer, TimelineColumn } from "../answers";
-import { ACTIVITIES, duration, floorName, percent } from "../format";
+import { duration, floorName, percent } from "../format";
+import { label } from "../language/translate";
 
 export type Timeline = TimelineAnswer;
 
@@ -60,7 +61,7 @@ export const STRIPS: readonly Strip[] = [
 
 function activityWord(value: number, { activity_names }: Timeline): string {
   const name = activity_names[value] ?? "unknown";
-  return ACTIVITIES[name] ?? name;
+  return label("activity", name);
 }
 
 /** The last value until then; null: none, or nothing was known then. */

@@ -1,6 +1,6 @@
 import * as api from "../api";
 import { actionWord, detailWords } from "../audit";
-import { clockTime, dateAndTime } from "../format";
+import { dateAndClock } from "../format";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useLoaded } from "./useLoaded";
@@ -20,7 +20,7 @@ export function AuditDialog() {
           {entries.value.map((entry) => (
             <tr key={entry.entry_id}>
               <td>
-                {dateAndTime(entry.t_ms).slice(0, 10)} {clockTime(entry.t_ms)}
+                {dateAndClock(entry.t_ms)}
               </td>
               <td>{entry.by}</td>
               <th scope="row">{actionWord(entry.action)}</th>

@@ -10,6 +10,7 @@ import { displayName, type Urgency } from "../live/urgency";
 import { OLD_MS } from "../plan/ellipse";
 import type { AlarmView, UnitView } from "../wire";
 import * as format from "../format";
+import { t } from "../language/translate";
 import { CardActions } from "./CardActions";
 import { OpenCommands } from "./CommandState";
 import { BriefFacts, Facts, Sensors } from "./Facts";
@@ -257,7 +258,7 @@ function TwoMachines() {
   return (
     <p class="trust red">
       <Icon name="people" />
-      Somebody may be unseen: {format.DUPLICATE_DEVICE}
+      Somebody may be unseen: {t("member.duplicate")}
     </p>
   );
 }

@@ -1,69 +1,112 @@
 import type { Signal } from "@preact/signals";
-import { gloves, shortcutsOn, theme, THEMES, type Theme, wall } from "../appearance";
+import { gloves, shortcutsOn, theme, THEMES, wall } from "../appearance";
+import {
+  floorsChoice,
+  LANGUAGE_CHOICES,
+  languageChoice,
+  languageMissing,
+  unitsChoice,
+} from "../language/choices";
+import { FLOOR_NAMES, UNITS } from "../language/measures";
+import { label, t } from "../language/translate";
 import { canSpeak, speechOn } from "../speech";
 import { Dialog } from "./Dialog";
 import { SHORTCUTS } from "./shortcuts";
 
-const THEME_WORDS: Record<Theme, string> = {
-  system: "As this device",
-  light: "Light",
-  dark: "Dark",
-  red: "Red light",
-};
-
-/** How this console looks and sounds; this browser keeps it. */
+/** How this console looks, reads and sounds; this browser keeps it. */
 export function DisplayDialog() {
   return (
-    <Dialog title="Display">
+    <Dialog title={t("display.title")}>
+      <Radios
+        name="theme"
+        legend={t("display.theme")}
+        all={THEMES}
+        choice={theme}
+        wordOf={(one) => t(`display.theme_${one}`)}
+      />
+      <Radios
+        name="language"
+        legend={t("display.language")}
+        all={LANGUAGE_CHOICES}
+        choice={languageChoice}
+        wordOf={(one) => (one === "browser" ? t("display.language_browser") : label("language_name", one))}
+      />
+      {languageMissing.value && (
+        <p class="warned" role="alert">
+          {t("display.language_missing")}
+        </p>
+      )}
+      <Radios
+        name="units"
+        legend={t("display.units")}
+        all={UNITS}
+        choice={unitsChoice}
+        wordOf={(one) => t(`display.units_${one}`)}
+      />
+      <Radios
+        name="floors"
+        legend={t("display.floors")}
+        all={FLOOR_NAMES}
+        choice={floorsChoice}
+        wordOf={(one) => t(`display.floors_${one}`)}
+      />
       <fieldset class="choices">
-        <legend>Theme</legend>
-        {THEMES.map((one) => (
-          <label key={one}>
-            <input
-              type="radio"
-              name="theme"
-              checked={theme.value === one}
-              onChange={() => (theme.value = one)}
-            />
-            {THEME_WORDS[one]}
-          </label>
-        ))}
+        <legend>{t("display.wall")}</legend>
+        <Switch label={t("display.wall_use")} choice={wall} />
       </fieldset>
       <fieldset class="choices">
-        <legend>Wall</legend>
-        <Switch label="Names, state and floor, to be read from 2 m" choice={wall} />
+        <legend>{t("display.gloves")}</legend>
+        <Switch label={t("display.gloves_use")} choice={gloves} />
       </fieldset>
       <fieldset class="choices">
-        <legend>Gloves</legend>
-        <Switch label="Large targets (15 mm)" choice={gloves} />
-      </fieldset>
-      <fieldset class="choices">
-        <legend>Keyboard shortcuts</legend>
-        <Switch label="Use them" choice={shortcutsOn} />
+        <legend>{t("display.shortcuts")}</legend>
+        <Switch label={t("display.shortcuts_use")} choice={shortcutsOn} />
         <dl class="keys">
           {SHORTCUTS.map(({ key, words }) => (
             <div key={key}>
               <dt>
                 <kbd>{key.toUpperCase()}</kbd>
               </dt>
-              <dd>{words}</dd>
+              <dd>{t(words)}</dd>
             </div>
           ))}
         </dl>
       </fieldset>
       <fieldset class="choices">
-        <legend>Spoken alarms</legend>
+        <legend>{t("display.speech")}</legend>
         {canSpeak ? (
-          <Switch label="Say each emergency and warning after its tone" choice={speechOn} />
+          <Switch label={t("display.speech_use")} choice={speechOn} />
         ) : (
-          <p>This browser cannot speak.</p>
+          <p>{t("display.speech_impossible")}</p>
         )}
       </fieldset>
     </Dialog>
   );
 }
 
-function Switch({ label, choice }: { label: string; choice: Signal<"on" | "off"> }) {
+interface RadiosProps<T extends string> {
+  name: string;
+  legend: string;
+  all: readonly T[];
+  choice: Signal<T>;
+  wordOf: (one: T) => string;
+}
+
+function Radios<T extends string>({ name, legend, all, choice, wordOf }: RadiosProps<T>) {
+  return (
+    <fieldset class="choices">
+      <legend>{legend}</legend>
+      {all.map((one) => (
+        <label key={one}>
+          <input type="radio" name={name} checked={choice.value === one} onChange={() => (choice.value = one)} />
+          {wordOf(one)}
+        </label>
+      ))}
+    </fieldset>
+  );
+}
+
+function Switch({ label: words, choice }: { label: string; choice: Signal<"on" | "off"> }) {
   return (
     <label>
       <input
@@ -71,7 +114,7 @@ function Switch({ label, choice }: { label: string; choice: Signal<"on" | "off">
         checked={choice.value === "on"}
         onChange={({ currentTarget }) => (choice.value = currentTarget.checked ? "on" : "off")}
       />
-      {label}
+      {words}
     </label>
   );
 }

@@ -2,7 +2,6 @@ import { isOfAnother } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
 import { isOld, regionAt } from "../plan/ellipse";
-import { shortName } from "../plan/floors";
 import { roomWord } from "../plan/rooms";
 import type { UnitView } from "../wire";
 import * as format from "../format";
@@ -40,5 +39,5 @@ export function whatOrWhere(unit: UnitView, picture: Picture): string {
     return placeWords(unit.position, picture, old);
   }
   const room = roomWord(picture.plan.value, unit.position, regionAt(unit.position, 0));
-  return room === "" ? format.floorName(floor) : `${shortName(floor)}, ${room}`;
+  return room === "" ? format.floorName(floor) : `${format.shortFloor(floor)}, ${room}`;
 }

@@ -1,7 +1,8 @@
 import { useSignal, type ReadonlySignal, type Signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
-import { dateAndTime, timeSince } from "../format";
+import { timeSince } from "../format";
+import { date } from "../language/measures";
 import { displayName } from "../live/urgency";
 import { attempt, picture, replay, steer } from "../sessions";
 import type { Charts } from "../timeline/charts";
@@ -74,7 +75,7 @@ export function UnitTimeline({ unitId, only }: UnitTimelineProps) {
       />
       <p class="quiet">
         {timeSince(whole.value.fromMs, shown.value.fromMs)} to{" "}
-        {timeSince(whole.value.fromMs, shown.value.untilMs)}, {dateAndTime(shown.value.fromMs).slice(0, 10)}.
+        {timeSince(whole.value.fromMs, shown.value.untilMs)}, {date(shown.value.fromMs)}.
         Grey: no radio contact. Draw over a line to zoom in.
         {isReplay() && " Press on a line to go there in the replay."}
         <span role="status">{asking.value && " The station reads its log …"}</span>

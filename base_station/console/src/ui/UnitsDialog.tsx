@@ -3,7 +3,8 @@ import { attempt, live, user } from "../sessions";
 import * as api from "../api";
 import { openDialog } from "../uiState";
 import type { ClockView, PreflightView, UnitView, WornSensorView } from "../wire";
-import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, preflightText, wornAt, DUPLICATE_DEVICE } from "../format";
+import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, preflightText, wornAt } from "../format";
+import { t } from "../language/translate";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useDone } from "./Done";
@@ -83,7 +84,7 @@ function UnitRow({ unit, people, calibration }: RowProps) {
       </th>
       <td>
         {linkText(unit)}
-        {unit.cloned && <small class="warned"> {DUPLICATE_DEVICE}</small>}
+        {unit.cloned && <small class="warned"> {t("member.duplicate")}</small>}
       </td>
       <td data-label="Clock">
         <UnitClock clock={unit.clock} />

@@ -1,11 +1,10 @@
 import { useComputed, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { wall } from "../appearance";
-import { clockTime } from "../format";
+import { clockTime, shortFloor } from "../format";
 import { headcountOf } from "../live/headcount";
 import type { Picture } from "../live/picture";
 import { arrange, displayName, type Place } from "../live/urgency";
-import { shortName } from "../plan/floors";
 import type { UnitView } from "../wire";
 import { Icon } from "./Icon";
 import { whatOrWhere } from "./Line";
@@ -57,7 +56,7 @@ function Row({ place, picture }: { place: Place; picture: Picture }) {
 }
 
 function floorOf({ position }: UnitView): string {
-  return position === null || position.floor === null ? "?" : shortName(position.floor);
+  return position === null || position.floor === null ? "?" : shortFloor(position.floor);
 }
 
 /** Whom the wall has no room for; the most urgent stand above. */

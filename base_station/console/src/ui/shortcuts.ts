@@ -1,6 +1,7 @@
 /** Keys for what is needed at once.  Each opens what its button opens, and asks the same. */
 import { useEffect } from "preact/hooks";
 import { shortcutsOn } from "../appearance";
+import type { PlainKey } from "../language/translate";
 import type { Picture } from "../live/picture";
 import { mayAct, picture, waiting } from "../sessions";
 import { dialog, find, openDialog, pane } from "../uiState";
@@ -8,17 +9,17 @@ import { finding, seeking } from "./listState";
 
 interface Shortcut {
   key: string; // as `KeyboardEvent.key`, in lower case
-  words: string;
+  words: PlainKey;
   acts?: boolean; // only for who may act
   run(): void;
 }
 
 export const SHORTCUTS: readonly Shortcut[] = [
-  { key: "e", words: "Evacuate: opens the order, sends nothing yet", acts: true, run: () => openDialog("evacuate") },
-  { key: "p", words: "PAR: opens the request, sends nothing yet", acts: true, run: () => openDialog("par_request") },
-  { key: "n", words: "Next alarm: shows its member on the plan", run: showNextAlarm },
-  { key: "/", words: "Search the list of people", run: seek },
-  { key: "?", words: "This list", run: () => openDialog("display") },
+  { key: "e", words: "shortcut.evacuate", acts: true, run: () => openDialog("evacuate") },
+  { key: "p", words: "shortcut.par", acts: true, run: () => openDialog("par_request") },
+  { key: "n", words: "shortcut.next_alarm", run: showNextAlarm },
+  { key: "/", words: "shortcut.search", run: seek },
+  { key: "?", words: "shortcut.help", run: () => openDialog("display") },
 ];
 
 /** The shortcut of a press, or undefined: a key held down, one of a text, or one for the browser is none. */

@@ -1,0 +1,50 @@
+/** The language, units and names of floors that this browser keeps. */
+import { effect, signal } from "@preact/signals";
+import { kept } from "../kept";
+import { type Language, LANGUAGES, show } from "./catalogue";
+import { FLOOR_NAMES, floorNames, UNITS, units } from "./measures";
+
+const CHOICES = ["browser", ...LANGUAGES] as const;
+export type LanguageChoice = (typeof CHOICES)[number];
+export const LANGUAGE_CHOICES: readonly LanguageChoice[] = CHOICES;
+
+export const languageChoice = kept<LanguageChoice>("muster-language", CHOICES, "browser");
+export const unitsChoice = kept("muster-units", UNITS, "metric");
+export const floorsChoice = kept("muster-floors", FLOOR_NAMES, "european");
+
+/** Whether the file of the chosen language did not come: the one before is still shown. */
+export const languageMissing = signal(false);
+
+/** The first of the browser's that the console has. */
+function browsers(): Language {
+  const codes = navigator.languages.map((tag) => tag.split("-")[0]);
+  return codes.map((code) => LANGUAGES.find((one) => one === code)).find((one) => one !== undefined) ?? "en";
+}
+
+effect(() => {
+  units.value = unitsChoice.value;
+});
+
+effect(() => {
+  floorNames.value = floorsChoice.value;
+});
+
+async function follow(choice: LanguageChoice): Promise<void> {
+  try {
+    await show(choice === "browser" ? browsers() : choice);
+    languageMissing.value = false;
+  } catch (error) {
+    console.warn(error);
+    languageMissing.value = true;
+  }
+}
+
+/** Follows the choice from now on; done when the first one is shown. */
+export async function useLanguage(): Promise<void> {
+  let first: Promise<void> | undefined;
+  languageChoice.subscribe((choice) => {
+    const following = follow(choice);
+    first ??= following;
+  });
+  await first;
+}

@@ -1,0 +1,75 @@
+/** What is known of a member: activity, posture, link, battery, heat. */
+export const activity = {
+  unknown: "Unknown",
+  still: "Still",
+  walking: "Walking",
+  running: "Running",
+  stairs_up: "Stairs up",
+  stairs_down: "Stairs down",
+  crawling: "Crawling",
+  lying: "Lying",
+  falling: "Falling",
+} as const;
+
+export const posture = {
+  upright: "Upright",
+  standing: "Standing",
+  sitting: "Sitting",
+  kneeling: "Kneeling",
+  crawling: "On hands and knees",
+  bent: "Bent forward",
+  lying: "Lying",
+  prone: "Lying face down",
+  supine: "Lying on the back",
+  left_side: "Lying on the left side",
+  right_side: "Lying on the right side",
+} as const;
+
+export const mobility = {
+  backward: "going backward",
+  leftward: "stepping to the left",
+  rightward: "stepping to the right",
+  turning: "turning on the spot",
+} as const;
+
+export const link = {
+  live: "Link good",
+  stale: "Link stale",
+  lost: "Link lost",
+  never: "Never heard",
+  switched_off: "Switched off",
+} as const;
+
+export const heat = {
+  normal: "normal",
+  caution: "caution",
+  warning: "warning",
+  critical: "CRITICAL",
+} as const;
+
+export const battery = {
+  charging: "charging",
+  external: "on external power",
+} as const;
+
+export const member = {
+  no_status: "No status",
+  mayday: "MAYDAY",
+  motionless: "{activity}, motionless {age}",
+  posture: "{posture} ({confidence})",
+  preflight_failed: "not ready: {text}",
+  preflight_warning: "with warnings: {text}",
+  place_unknown: "place not known",
+  recognised: "recognised",
+  was_inside: "Was inside",
+  inside_for: "Inside for",
+  duplicate: "two machines speak under this name; only one is shown",
+  gps_none: "no fix yet",
+  gps_used: "used",
+  gps_unused: "not used: {reason}",
+} as const;
+
+export const worn = {
+  left_foot: "left foot",
+  right_foot: "right foot",
+} as const;

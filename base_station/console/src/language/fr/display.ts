@@ -1,0 +1,43 @@
+import type { Part } from "../catalogue";
+
+export const display: Part<"display"> = {
+  title: "Affichage",
+  theme: "Thème",
+  theme_system: "Comme cet appareil",
+  theme_light: "Clair",
+  theme_dark: "Sombre",
+  theme_red: "Lumière rouge",
+  language: "Langue",
+  language_browser: "Comme ce navigateur",
+  language_missing:
+    "Les textes de cette langue ne sont pas arrivés de la station. Choisissez-la de nouveau quand la station est connectée.",
+  units: "Unités",
+  units_metric: "Métriques : m, °C",
+  units_imperial: "Impériales : pi, °F",
+  floors: "Étages",
+  floors_european: "Européens : rez-de-chaussée, étage 1",
+  floors_american: "Américains : 1er étage, 2e étage",
+  wall: "Affichage mural",
+  wall_use: "Noms, état et étage, lisibles à 2 m",
+  gloves: "Gants",
+  gloves_use: "Grandes cibles (15 mm)",
+  shortcuts: "Raccourcis clavier",
+  shortcuts_use: "Les utiliser",
+  speech: "Alarmes parlées",
+  speech_use: "Annoncer chaque urgence et alerte après sa tonalité",
+  speech_impossible: "Ce navigateur ne peut pas parler.",
+};
+
+export const language_name: Part<"language_name"> = {
+  en: "English",
+  de: "Deutsch",
+  fr: "Français",
+};
+
+export const shortcut: Part<"shortcut"> = {
+  evacuate: "Évacuation : ouvre l’ordre, n’envoie encore rien",
+  par: "PAR : ouvre la demande, n’envoie encore rien",
+  next_alarm: "Alarme suivante : montre la personne sur le plan",
+  search: "Chercher dans la liste des personnes",
+  help: "Cette liste",
+};

@@ -1,0 +1,76 @@
+import type { Part } from "../catalogue";
+
+export const activity: Part<"activity"> = {
+  unknown: "Inconnue",
+  still: "Immobile",
+  walking: "Marche",
+  running: "Court",
+  stairs_up: "Monte l’escalier",
+  stairs_down: "Descend l’escalier",
+  crawling: "Rampe",
+  lying: "Allongé",
+  falling: "Chute",
+};
+
+export const posture: Part<"posture"> = {
+  upright: "Redressé",
+  standing: "Debout",
+  sitting: "Assis",
+  kneeling: "À genoux",
+  crawling: "À quatre pattes",
+  bent: "Penché en avant",
+  lying: "Allongé",
+  prone: "Allongé sur le ventre",
+  supine: "Allongé sur le dos",
+  left_side: "Allongé sur le côté gauche",
+  right_side: "Allongé sur le côté droit",
+};
+
+export const mobility: Part<"mobility"> = {
+  backward: "recule",
+  leftward: "pas vers la gauche",
+  rightward: "pas vers la droite",
+  turning: "tourne sur place",
+};
+
+export const link: Part<"link"> = {
+  live: "Liaison bonne",
+  stale: "Liaison intermittente",
+  lost: "Liaison perdue",
+  never: "Jamais reçu",
+  switched_off: "Éteint",
+};
+
+export const heat: Part<"heat"> = {
+  normal: "normale",
+  caution: "attention",
+  warning: "alerte",
+  critical: "CRITIQUE",
+};
+
+export const battery: Part<"battery"> = {
+  charging: "en charge",
+  external: "sur alimentation externe",
+};
+
+export const member: Part<"member"> = {
+  no_status: "Aucun état",
+  mayday: "MAYDAY",
+  motionless: "{activity}, sans mouvement depuis {age}",
+  posture: "{posture} ({confidence})",
+  preflight_failed: "pas prêt : {text}",
+  preflight_warning: "avec des avertissements : {text}",
+  place_unknown: "emplacement inconnu",
+  recognised: "reconnu",
+  was_inside: "Était à l’intérieur",
+  inside_for: "À l’intérieur depuis",
+  duplicate: "deux appareils émettent sous ce nom ; un seul est affiché",
+  gps_none: "pas encore de position",
+  gps_used: "utilisé",
+  gps_unused: "non utilisé : {reason}",
+};
+
+export const worn: Part<"worn"> = {
+  left_foot: "pied gauche",
+  right_foot: "pied droit",
+};

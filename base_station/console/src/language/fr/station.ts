@@ -1,0 +1,15 @@
+import type { Part } from "../catalogue";
+
+export const station: Part<"station"> = {
+  not_encrypted: "Non chiffré : d’autres sur le réseau peuvent écouter et émettre",
+};
+
+export const forwarder: Part<"forwarder"> = {
+  connected: "connecté",
+  connecting: "non connecté",
+  standby: "l’autre station transmet",
+  line: "{kind} {name} ({address}) : {state}",
+  sent: "{count, number} événements envoyés",
+  received: "{count, number} reçus",
+  refused: "{count, number} ignorés",
+};
