@@ -12,11 +12,11 @@ export const display: Part<"display"> = {
   language_missing:
     "Les textes de cette langue ne sont pas arrivés de la station. Choisissez-la de nouveau quand la station est connectée.",
   units: "Unités",
-  units_metric: "Métriques : m, °C",
-  units_imperial: "Impériales : pi, °F",
+  units_metric: "Métriques\u00a0: m, °C",
+  units_imperial: "Impériales\u00a0: pi, °F",
   floors: "Étages",
-  floors_european: "Européens : rez-de-chaussée, étage 1",
-  floors_american: "Américains : 1er étage, 2e étage",
+  floors_european: "Européens\u00a0: rez-de-chaussée, étage 1",
+  floors_american: "Américains\u00a0: 1er étage, 2e étage",
   wall: "Affichage mural",
   wall_use: "Noms, état et étage, lisibles à 2 m",
   gloves: "Gants",
@@ -35,9 +35,9 @@ export const language_name: Part<"language_name"> = {
 };
 
 export const shortcut: Part<"shortcut"> = {
-  evacuate: "Évacuation : ouvre l’ordre, n’envoie encore rien",
-  par: "PAR : ouvre la demande, n’envoie encore rien",
-  next_alarm: "Alarme suivante : montre la personne sur le plan",
+  evacuate: "Évacuation\u00a0: ouvre l’ordre, n’envoie encore rien",
+  par: "PAR\u00a0: ouvre la demande, n’envoie encore rien",
+  next_alarm: "Alarme suivante\u00a0: montre la personne sur le plan",
   search: "Chercher dans la liste des personnes",
   help: "Cette liste",
 };

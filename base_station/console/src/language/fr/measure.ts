@@ -23,7 +23,7 @@ export const measure: Part<"measure"> = {
   basement: "sous-sol {number}",
   floor_by_ordinal: "{number, selectordinal, one {#er étage} other {#e étage}}",
   floor_unknown: "étage inconnu",
-  floor_last: "en dernier : {floor}",
+  floor_last: "en dernier\u00a0: {floor}",
   floor_probable: "{floor} (sûr à {probability})",
   floor_doubtful: "étage inconnu, peut-être {floor}",
   ground_floor_short: "RdC",

@@ -58,16 +58,16 @@ export const member: Part<"member"> = {
   mayday: "MAYDAY",
   motionless: "{activity}, sans mouvement depuis {age}",
   posture: "{posture} ({confidence})",
-  preflight_failed: "pas prêt : {text}",
-  preflight_warning: "avec des avertissements : {text}",
+  preflight_failed: "pas prêt\u00a0: {text}",
+  preflight_warning: "avec des avertissements\u00a0: {text}",
   place_unknown: "emplacement inconnu",
   recognised: "reconnu",
   was_inside: "Était à l’intérieur",
   inside_for: "À l’intérieur depuis",
-  duplicate: "deux appareils émettent sous ce nom ; un seul est affiché",
+  duplicate: "deux appareils émettent sous ce nom\u00a0; un seul est affiché",
   gps_none: "pas encore de position",
   gps_used: "utilisé",
-  gps_unused: "non utilisé : {reason}",
+  gps_unused: "non utilisé\u00a0: {reason}",
 };
 
 export const worn: Part<"worn"> = {
