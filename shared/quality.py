@@ -52,6 +52,16 @@ _IN_WORDS = {
 }
 
 
+def code_of(reason: Reason) -> str:
+    """Code of a single reason: its name in lower case with hyphens."""
+    return (reason.name or "").lower().replace("_", "-")
+
+
+def codes_of(reasons: Reason) -> tuple[str, ...]:
+    """Codes of reasons, in the order of their bits."""
+    return tuple(map(code_of, reasons))
+
+
 def in_words(reasons: Reason) -> str:
     """For a person, and what to do where anything helps."""
     return ", ".join(_IN_WORDS[reason] for reason in reasons) or "it gives no reason"

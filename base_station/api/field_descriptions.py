@@ -212,6 +212,23 @@ FIELDS: Mapping[str, str] = {
     "PastAlarm.state": "raised, acknowledged or resolved.",
     "AlarmHistoryEntry.state": "raised, acknowledged or resolved.",
     "level": "How bad it is, within the rule; empty: the rule has no levels.",
+    "code": "Code of the sentence in text, for who has it in another language; empty: recorded by "
+    "an earlier version.",
+    "parameters": "Amounts and names in that sentence, as they were when the alarm was raised.",
+    "member": "Who it is about; the unit's label or id where nobody wears it.",
+    "member_before": "Who wore the unit before, where it may be about them; null: nobody.",
+    "AlarmParametersView.unit_id": "The unit in the sentence; null: none.",
+    "AlarmParametersView.duration_s": "For how long it has been so, seconds; null: not in it.",
+    "AlarmParametersView.temperature_degc": "Of the air around the equipment, degrees Celsius; "
+    "null: not in it.",
+    "heat_fraction": "Used part of the equipment's heat limit, 1: all of it; null: not in it.",
+    "battery_fraction": "Charge of the unit's battery, 0 to 1; null: not in it.",
+    "radius_m": "Radius that holds the member with 95 % probability, metres; null: not in it.",
+    "AlarmParametersView.reasons": "Why an estimate is poor, or a fix is not used; codes.",
+    "AlarmParametersView.fault": "In words of the unit, of its agent or of the station; null: not "
+    "in it.",
+    "AlarmParametersView.part": "Part of the station that fails; null: not in it.",
+    "calibrated_s": "When the calibration was made, UTC seconds; null: not in it.",
     "text": "A sentence for a person.",
     "CommandView.text": "The message to the wearer; empty: there is none.",
     "NewCommand.text": "The message to the wearer; only with the kind text.",

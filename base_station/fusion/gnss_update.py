@@ -9,6 +9,7 @@ import numpy as np
 
 from base_station.fusion.fuser_memory import FuserMemory
 from base_station.fusion.gnss.common_mode_error import COMMON_S
+from base_station.fusion.gnss.fix_faults import FIX_FAULTS
 from base_station.fusion.horizontal.heading_hypotheses import GnssObservation
 from base_station.fusion.horizontal.map_aided import MapAidedFilter
 from base_station.fusion.interface import FixVerdict, PlaceFix
@@ -47,7 +48,7 @@ class GnssUpdater:
             return self._update_late(fix, then)
         walked_m = memory.last.distance_m if memory.last else 0.0
         if memory.receiver.is_stuck(self._kind, fix, walked_m):
-            return FixVerdict(False, "the receiver is stuck", faulty=True)
+            return FixVerdict(False, FIX_FAULTS["stuck"], faulty=True)
         if memory.assumed:  # the first thing known of the incident frame
             memory.assumed = False
             self._horizontal.reset_place()

@@ -21,7 +21,11 @@ class Answer(msgspec.Struct, frozen=True):
         cls, _source: object, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         hints = get_type_hints(cls)
-        fields = {field.name: (hints[field.name], ...) for field in msgspec.structs.fields(cls)}
+        omits = cls.__struct_config__.omit_defaults
+        fields = {
+            field.name: (hints[field.name], field.default if omits and not field.required else ...)
+            for field in msgspec.structs.fields(cls)
+        }
         model = create_model(cls.__name__, __doc__=cls.__doc__, **fields)  # type: ignore[call-overload]
         return core_schema.no_info_before_validator_function(msgspec.to_builtins, handler(model))
 

@@ -11,6 +11,7 @@ import msgspec
 
 from base_station.core.person_references import reference_to
 from base_station.storage.db.known_people import KnownPerson, PersonLookup, shown_text
+from base_station.views.alarm_parameters import named_parameters
 from base_station.views.wire import (
     AlarmView,
     BeaconView,
@@ -65,7 +66,8 @@ def _named_person(person: PersonView, people: PersonLookup) -> PersonView:
 
 def named_alarm(alarm: AlarmView, people: PersonLookup) -> AlarmView:
     text, by = shown_text(alarm.text, people), shown_text(alarm.by, people)
-    return msgspec.structs.replace(alarm, text=text, by=by)
+    parameters = named_parameters(alarm.parameters, people)
+    return msgspec.structs.replace(alarm, text=text, by=by, parameters=parameters)
 
 
 def named_command(command: CommandView, people: PersonLookup) -> CommandView:

@@ -12,6 +12,7 @@ from base_station.core.state.pin import WAITING, Pin
 from base_station.core.units.unkept_messages import unkept_problem
 from base_station.storage.db.known_people import PersonLookup, shown_text
 from base_station.storage.db.models import AlarmRow as StoredAlarm
+from base_station.views.alarm_parameters import parameters_view, stored_parameters_view
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.units import unit_views
 from base_station.views.wire import (
@@ -70,6 +71,12 @@ def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm, people: PersonLookup) -
         raised_ms=to_ms(alarm.raised_ns),
         last_raised_ms=to_ms(alarm.last_raised_ns),
         changed_ms=to_ms(changed_ns),
+        code=alarm.code,
+        parameters=(
+            stored_parameters_view(alarm.parameters, people)
+            if isinstance(alarm, StoredAlarm)
+            else parameters_view(alarm.parameters, people)
+        ),
     )
 
 

@@ -97,6 +97,23 @@ class PositionView(Answer, frozen=True):
     # not heard can have walked to, walls considered; empty: the ellipse is all that is known
 
 
+class AlarmParametersView(Answer, frozen=True, omit_defaults=True):
+    """Amounts and names in the sentence of an alarm; what is not in it is left out."""
+
+    member: str | None = None  # who it is about, or the unit where nobody wears it
+    member_before: str | None = None  # who wore the unit before, where it may be about them
+    unit_id: str | None = None
+    duration_s: float | None = None
+    temperature_degc: float | None = None  # of the air around the equipment
+    heat_fraction: float | None = None  # used part of the equipment's heat limit; 1: all of it
+    battery_fraction: float | None = None
+    radius_m: float | None = None  # that holds the member with 95 % probability
+    reasons: tuple[str, ...] = ()  # why an estimate is poor, or a fix is not used; codes
+    fault: str | None = None  # in words of the unit, its agent or the station
+    part: str | None = None  # of the station, that fails
+    calibrated_s: int | None = None  # UTC seconds
+
+
 class AlarmView(Answer, frozen=True):
     alarm_id: str
     rule: str
@@ -109,6 +126,8 @@ class AlarmView(Answer, frozen=True):
     raised_ms: int
     last_raised_ms: int  # at first, or anew: it got worse, or happened again
     changed_ms: int
+    code: str = ""  # of the sentence; empty: recorded by an earlier version, there is only the text
+    parameters: AlarmParametersView = AlarmParametersView()
 
 
 class DutyView(Answer, frozen=True):

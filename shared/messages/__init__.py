@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from shared.messages.alarm import AlarmChange, AlarmState
+from shared.messages.alarm import AlarmChange, AlarmParameters, AlarmState
 from shared.messages.command import (
     ASKS_WEARER,
     OF_STATION,
@@ -56,6 +56,7 @@ __all__ = [
     "STATION_ID",
     "Activity",
     "AlarmChange",
+    "AlarmParameters",
     "AlarmState",
     "BatteryState",
     "BodyPosture",

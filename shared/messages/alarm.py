@@ -6,6 +6,7 @@ from enum import IntEnum
 
 import msgspec
 
+from shared.messages.fields import get_fields, put_fields
 from shared.messages.header import Header
 from shared.messages.known import known
 from shared.messages.muster.v1 import alarm_pb2
@@ -16,6 +17,26 @@ class AlarmState(IntEnum):
     RAISED = 1
     ACKNOWLEDGED = 2
     RESOLVED = 3
+
+
+class AlarmParameters(msgspec.Struct, frozen=True, omit_defaults=True):
+    """Amounts and names in the sentence of an alarm; None: the sentence has none."""
+
+    member: str | None = None  # who it is about, or the unit; {person ID} stands for a name
+    member_before: str | None = None  # who wore the unit before, where it may be about them
+    unit_id: str | None = None
+    duration_s: float | None = None
+    temperature_degc: float | None = None  # of the air around the equipment
+    heat_fraction: float | None = None  # used part of the equipment's heat limit; 1: all of it
+    battery_fraction: float | None = None
+    radius_m: float | None = None  # that holds the member with 95 % probability
+    reasons: tuple[str, ...] = ()  # why an estimate is poor, or a fix is not used; codes
+    fault: str | None = None  # in words of the unit, its agent or the station
+    part: str | None = None  # of the station, that fails
+    calibrated_s: int | None = None  # UTC seconds
+
+
+NO_PARAMETERS = AlarmParameters()
 
 
 class AlarmChange(msgspec.Struct, frozen=True):
@@ -30,9 +51,11 @@ class AlarmChange(msgspec.Struct, frozen=True):
     by: str  # who acknowledged, or what resolved it
     raised_ns: int  # station time of the first change
     last_raised_ns: int  # when it was raised anew last: worse, or again; or ``raised_ns``
+    code: str = ""  # of the sentence in ``text``; empty: of an earlier version
+    parameters: AlarmParameters = NO_PARAMETERS  # what the sentence says besides
 
     def to_wire(self) -> alarm_pb2.AlarmChange:
-        return alarm_pb2.AlarmChange(
+        wire = alarm_pb2.AlarmChange(
             header=self.header.to_wire(),
             alarm_id=self.alarm_id,
             rule=self.rule,
@@ -44,7 +67,10 @@ class AlarmChange(msgspec.Struct, frozen=True):
             by=self.by,
             raised_ns=self.raised_ns,
             last_raised_ns=self.last_raised_ns,
+            code=self.code,
         )
+        put_fields(wire.parameters, self.parameters)
+        return wire
 
     @staticmethod
     def from_wire(wire: alarm_pb2.AlarmChange) -> AlarmChange:
@@ -60,4 +86,6 @@ class AlarmChange(msgspec.Struct, frozen=True):
             by=wire.by,
             raised_ns=wire.raised_ns,
             last_raised_ns=wire.last_raised_ns,
+            code=wire.code,
+            parameters=AlarmParameters(**get_fields(wire.parameters, AlarmParameters)),
         )

@@ -10,6 +10,7 @@ import pytest
 from base_station.core.alarms import ALARMS
 from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.alarms.interface import AlarmRule, Clear, Finding
+from base_station.core.alarms.sentences import SENTENCES, sentence
 from base_station.core.alarms.thresholds import limits_of
 from base_station.core.alarms.worn_wrong import WornWrong
 from base_station.core.state import Fault, GpsUse, StationState, UnitState
@@ -20,6 +21,7 @@ from base_station.core.state.unit_place import UnitPlace
 from shared.channels import NO_TRACKER
 from shared.clock import NS_PER_S
 from shared.messages import (
+    AlarmParameters,
     FusedPosition,
     Header,
     Temperature,
@@ -124,8 +126,24 @@ def test_it_finds_what_it_looks_for(rule: AlarmRule) -> None:
     assert isinstance(verdict, Finding)
     assert verdict.level in rule.levels
     assert verdict.priority in {1, 2, 3}
-    assert verdict.text
+    assert verdict.code in SENTENCES
+    assert "None" not in verdict.text  # each parameter of the sentence is there
     assert verdict.seen_ns <= T_NS
+
+
+def test_sentences_take_what_they_say_from_the_parameters() -> None:
+    full = AlarmParameters(
+        member="Ana", member_before="Bo", unit_id="FF-01", duration_s=61.0, temperature_degc=120.0,
+        heat_fraction=0.5, battery_fraction=0.1, radius_m=40.0, reasons=("no-stance", "stuck"),
+        fault="stuck", part="disk", calibrated_s=1,
+    )  # fmt: skip
+    texts = {code: sentence(code, full) for code in SENTENCES}
+    assert len(set(texts.values())) == len(texts)
+    assert texts["mayday"] == "Mayday from Ana or, before, Bo"
+    assert texts["par-overdue-unanswered"].endswith("PAR overdue, no answer for 1 min")
+    assert "no footfall felt" in texts["tracker-lost"]
+    assert "the receiver is stuck" in texts["gps-unused"]
+    assert "1 January 1970" in texts["calibration-old"]
 
 
 def test_it_is_silent_about_a_calm_unit(rule: AlarmRule) -> None:

@@ -75,7 +75,7 @@ def test_two_that_speak_at_once_are_an_alarm(script: Script, pair: tuple[Machine
     assert alarms(script) == [AlarmState.RAISED]
     assert is_shown_as_cloned(script)
     (alarm,) = (one for one in script.alarms if one.rule == "cloned-unit")
-    assert "Two machines speak" in alarm.text
+    assert "two devices report" in alarm.text
 
 
 def test_both_paths_are_kept_and_only_one_is_shown(

@@ -41,6 +41,9 @@ names = {}
 exec(compile(code, "<example>", "exec", dont_inherit=True), names)
 module = importlib.import_module(package)
 setattr(module, entries, (*getattr(module, entries), names["entry"]))
+if "sentence" in names:
+    sentences = importlib.import_module("base_station.core.alarms.sentences")
+    sentences.SENTENCES[name] = names["sentence"]
 how = ["-q", "-p", "no:cacheprovider", "--tb=short", suite, "-k", name]
 sys.exit(pytest.main(how, plugins=[Written()]))
 """

@@ -19,9 +19,10 @@ from base_station.api.services import Services, Station
 from base_station.report.alarm_explanation import Crossing
 from base_station.report.contents import Series
 from base_station.storage.db.window import Window
+from base_station.views.alarm_parameters import stored_parameters_view
 from base_station.views.answer import Answer, to_ms
 from base_station.views.station import alarm_view
-from base_station.views.wire import AlarmView
+from base_station.views.wire import AlarmParametersView, AlarmView
 from shared.errors import LogError
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
@@ -39,9 +40,11 @@ class AlarmHistoryEntry(Answer, frozen=True):
     level: str
     text: str
     by: str
+    code: str
+    parameters: AlarmParametersView
 
 
-class AlarmWithLife(AlarmView, frozen=True):
+class AlarmWithLife(AlarmView, frozen=True, kw_only=True):
     changes: tuple[AlarmHistoryEntry, ...]  # oldest first
 
 
@@ -105,7 +108,13 @@ def get_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> AlarmWit
     shown = station.roster.shown
     changes = tuple(
         AlarmHistoryEntry(
-            to_ms(life.t_ns), life.state, life.level, shown(life.text), shown(life.by)
+            to_ms(life.t_ns),
+            life.state,
+            life.level,
+            shown(life.text),
+            shown(life.by),
+            life.code,
+            stored_parameters_view(life.parameters, station.roster.known),
         )
         for life in station.records.alarm_life(alarm_id)
     )

@@ -35,9 +35,10 @@ from base_station.core.alarms import ALARMS
 from base_station.storage.db import models
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.window import FOREVER_NS, Window
+from base_station.views.alarm_parameters import stored_parameters_view
 from base_station.views.answer import Answer, to_ms, to_ms_or_none
 from base_station.views.station import alarm_view, dispatch_view
-from base_station.views.wire import AlarmView, DispatchView
+from base_station.views.wire import AlarmParametersView, AlarmView, DispatchView
 from shared.clock import NS_PER_S
 from shared.messages.station import CloseIncident, OpenIncident
 
@@ -63,9 +64,11 @@ class Raising(Answer, frozen=True):
 
     t_ms: int
     text: str
+    code: str  # empty: of an earlier version, there is only the text
+    parameters: AlarmParametersView
 
 
-class PastAlarm(AlarmView, frozen=True):
+class PastAlarm(AlarmView, frozen=True, kw_only=True):
     raisings: tuple[Raising, ...]  # in the incident, at first and anew, oldest first
 
 
@@ -210,7 +213,12 @@ def _past_alarm(
     levels = _LEVELS.get(alarm.rule, ())
     anew = (now for before, now in pairwise(life) if _is_raised_anew(before, now, levels))
     raisings = tuple(
-        Raising(to_ms(one.t_ns), roster.shown(one.text))
+        Raising(
+            to_ms(one.t_ns),
+            roster.shown(one.text),
+            one.code,
+            stored_parameters_view(one.parameters, roster.known),
+        )
         for one in (*life[:1], *anew)
         if one.t_ns < was_open.until_ns
     )

@@ -29,6 +29,23 @@ export interface AlarmHistoryEntry {
   level: string;
   text: string;
   by: string;
+  code: string;
+  parameters: AlarmParametersView;
+}
+
+export interface AlarmParametersView {
+  member?: string | null;
+  member_before?: string | null;
+  unit_id?: string | null;
+  duration_s?: number | null;
+  temperature_degc?: number | null;
+  heat_fraction?: number | null;
+  battery_fraction?: number | null;
+  radius_m?: number | null;
+  reasons?: string[];
+  fault?: string | null;
+  part?: string | null;
+  calibrated_s?: number | null;
 }
 
 export interface AlarmView {
@@ -43,6 +60,8 @@ export interface AlarmView {
   raised_ms: number;
   last_raised_ms: number;
   changed_ms: number;
+  code: string;
+  parameters: AlarmParametersView;
 }
 
 export interface AlarmWithLife {
@@ -57,6 +76,8 @@ export interface AlarmWithLife {
   raised_ms: number;
   last_raised_ms: number;
   changed_ms: number;
+  code: string;
+  parameters: AlarmParametersView;
   changes: AlarmHistoryEntry[];
 }
 
@@ -492,6 +513,8 @@ export interface PastAlarm {
   raised_ms: number;
   last_raised_ms: number;
   changed_ms: number;
+  code: string;
+  parameters: AlarmParametersView;
   raisings: Raising[];
 }
 
@@ -598,6 +621,8 @@ export interface Progress {
 export interface Raising {
   t_ms: number;
   text: string;
+  code: string;
+  parameters: AlarmParametersView;
 }
 
 export interface Recording {

@@ -56,6 +56,21 @@ export interface PositionView {
   reach: [number, number][];
 }
 
+export interface AlarmParametersView {
+  member?: string;
+  member_before?: string;
+  unit_id?: string;
+  duration_s?: number;
+  temperature_degc?: number;
+  heat_fraction?: number;
+  battery_fraction?: number;
+  radius_m?: number;
+  reasons?: string[];
+  fault?: string;
+  part?: string;
+  calibrated_s?: number;
+}
+
 export interface AlarmView {
   alarm_id: string;
   rule: string;
@@ -68,6 +83,8 @@ export interface AlarmView {
   raised_ms: number;
   last_raised_ms: number;
   changed_ms: number;
+  code: string;
+  parameters: AlarmParametersView;
 }
 
 export interface DutyView {

@@ -25,6 +25,7 @@ from base_station.core.person_references import without_numbers
 from base_station.core.state import ERASED_TEXT, Alarm, StationState, UnitState
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.messages import (
+    AlarmParameters,
     AlarmState,
     GpsFix,
     Heartbeat,
@@ -34,6 +35,7 @@ from shared.messages import (
     Status,
     Temperature,
 )
+from shared.messages.alarm import NO_PARAMETERS
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
 # What comes all the time: only who heeds it looks at it before the next tick.
@@ -107,10 +109,9 @@ class AlarmManager:
         if text:
             state.problems[part] = text
             if standing is None:
-                finding = Finding(part, WARNING, text, seen_ns=state.t_ns)
-                yield self._raise(state, key, STATION_RULE, "", finding)
+                yield self._raise(state, key, STATION_RULE, "", _station_fault(state, part, text))
             elif without_numbers(text) not in without_numbers(standing.text):
-                yield _raise_anew(state, standing, text)
+                yield _raise_anew(state, standing, _station_fault(state, part, text))
         else:
             state.problems.pop(part, None)
             if standing is not None:
@@ -144,6 +145,7 @@ class AlarmManager:
         for alarm in (*state.alarms.values(), *state.history):
             if alarm.unit_id == unit.unit_id:
                 alarm.text, alarm.by = ERASED_TEXT, ERASED_TEXT if alarm.by else ""
+                alarm.code, alarm.parameters = "", NO_PARAMETERS
 
     def _follow(
         self,
@@ -177,9 +179,16 @@ class AlarmManager:
             about=finding.about,
             last_raised_ns=state.t_ns,
             changed_ns=state.t_ns,
+            code=finding.code,
+            parameters=finding.parameters,
         )
         state.alarms[key] = alarm
         return alarm
+
+
+def _station_fault(state: StationState, part: str, text: str) -> Finding:
+    parameters = AlarmParameters(part=part, fault=text)
+    return Finding(part, WARNING, "station-fault", parameters, seen_ns=state.t_ns)
 
 
 def _new_id(state: StationState, of: str) -> str:
@@ -232,7 +241,7 @@ def _move_level(
     alarm.clear_since_ns = None
     rank, standing = rule.levels.index(finding.level), rule.levels.index(alarm.level)
     if rank == standing and _is_new_occurrence(alarm, finding):
-        return _raise_anew(state, alarm, finding.text)
+        return _raise_anew(state, alarm, finding)
     if rank == standing or (rank < standing and alarm.latched):
         alarm.lower_since_ns = None
         return None
@@ -244,16 +253,22 @@ def _move_level(
     else:
         alarm.state, alarm.by, alarm.last_raised_ns = AlarmState.RAISED, "", state.t_ns
     alarm.lower_since_ns = None
-    alarm.level, alarm.priority, alarm.text = finding.level, finding.priority, finding.text
+    alarm.level, alarm.priority = finding.level, finding.priority
+    _take_sentence(alarm, finding)
     alarm.latched = alarm.latched or finding.latched
     alarm.changed_ns = state.t_ns
     return alarm
 
 
-def _raise_anew(state: StationState, alarm: Alarm, text: str) -> Alarm:
-    alarm.state, alarm.by, alarm.text = AlarmState.RAISED, "", text
+def _raise_anew(state: StationState, alarm: Alarm, finding: Finding) -> Alarm:
+    alarm.state, alarm.by = AlarmState.RAISED, ""
+    _take_sentence(alarm, finding)
     alarm.changed_ns = alarm.last_raised_ns = state.t_ns
     return alarm
+
+
+def _take_sentence(alarm: Alarm, finding: Finding) -> None:
+    alarm.code, alarm.parameters, alarm.text = finding.code, finding.parameters, finding.text
 
 
 def _is_new_occurrence(alarm: Alarm, finding: Finding) -> bool:

@@ -9,7 +9,7 @@ from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from shared.config import Within
 from shared.errors import ConfigError
-from shared.messages import Message, Status
+from shared.messages import AlarmParameters, Message, Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +36,7 @@ class BatteryLow:
         return Finding(
             "low",
             WARNING,
-            f"The battery of {unit.name}'s unit is at {battery:.0%}",
+            "battery-low",
+            AlarmParameters(member=unit.name, battery_fraction=battery),
             seen_ns=unit.status_ns,
         )

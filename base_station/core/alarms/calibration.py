@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from typing import Annotated
 
 from base_station.core.alarms.interface import ADVISORY, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 _DAY_S = 86_400
 
@@ -35,17 +34,13 @@ class CalibrationPoor:
         if made_s is None:
             return Clear(unit.last_message_ns, "the unit uses no calibration")
         if description.calibration_faults:
-            defect = f"is poor ({description.calibration_faults})"
-            return self._finding("poor", defect, unit.name, unit.last_message_ns)
+            parameters = AlarmParameters(member=unit.name, fault=description.calibration_faults)
+            return _finding("poor", parameters, unit.last_message_ns)
         if unit.last_message_ns / NS_PER_S - made_s > self.old_after_days * _DAY_S:
-            defect = f"is of {datetime.fromtimestamp(made_s, UTC):%-d %B %Y}"
-            return self._finding("old", defect, unit.name, unit.last_message_ns)
+            parameters = AlarmParameters(member=unit.name, calibrated_s=made_s)
+            return _finding("old", parameters, unit.last_message_ns)
         return Clear(unit.last_message_ns, "the unit uses a good calibration")
 
-    def _finding(self, level: str, defect: str, name: str, seen_ns: int) -> Finding:
-        return Finding(
-            level,
-            ADVISORY,
-            f"The calibration of {name}'s unit {defect}; calibrate it anew when it is back",
-            seen_ns=seen_ns,
-        )
+
+def _finding(level: str, parameters: AlarmParameters, seen_ns: int) -> Finding:
+    return Finding(level, ADVISORY, f"calibration-{level}", parameters, seen_ns=seen_ns)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +31,11 @@ class ClonedUnit:
                 continue
             seen_ns = min(other.last_live_ns, sender.boots[-1].last_live_ns)
             if (sender.last_message_ns - seen_ns) / NS_PER_S < self.gone_after_s:
-                what = "unit" if sender is unit else "tracking agent"
                 return Finding(
                     "cloned",
                     WARNING,
-                    f"Two machines speak as {unit.name}'s {what}; only one is shown: find the "
-                    f"other and switch it off, or revoke {unit.unit_id}",
+                    "duplicate-unit" if sender is unit else "duplicate-agent",
+                    AlarmParameters(member=unit.name, unit_id=unit.unit_id),
                     seen_ns=seen_ns,
                     onset_ns=max(other.first_live_ns, sender.boots[-1].first_live_ns),
                 )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from base_station.core.alarms.interface import EMERGENCY, Finding, Verdict
 from base_station.core.state import UnitState
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,10 +22,12 @@ class Fall:
         fall = unit.fall
         if fall.t_ns is None:
             return None
+        now, before = unit.names_at(fall.dated_ns)
         return Finding(
             "fall",
             EMERGENCY,
-            f"{unit.name_at(fall.dated_ns)} may have fallen",
+            "fall",
+            AlarmParameters(member=now, member_before=before),
             seen_ns=fall.t_ns,
             onset_ns=fall.t_ns,
             latched=True,

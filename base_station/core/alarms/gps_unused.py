@@ -7,9 +7,10 @@ from typing import Annotated
 
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict, switched_off
 from base_station.core.state import UnitState
+from base_station.fusion.gnss.fix_faults import fault_code
 from shared.clock import NS_PER_S
 from shared.config import Within
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,8 @@ class GpsUnused:
         return Finding(
             "unused",
             WARNING,
-            f"The GPS of {unit.name} is not used: {gps.reason}",
+            "gps-unused",
+            AlarmParameters(member=unit.name, reasons=(fault_code(gps.reason),)),
             seen_ns=gps.t_ns,
             onset_ns=gps.faulty_since_ns,
         )

@@ -13,7 +13,7 @@ from base_station.core.state import UnitState
 from base_station.core.units.thermal_dose import CAUTION_DEGC, CRITICAL_DEGC, WARNING_DEGC
 from shared.config import Within
 from shared.errors import ConfigError
-from shared.messages import Message, Temperature
+from shared.messages import AlarmParameters, Message, Temperature
 
 _PRIORITIES = {"caution": ADVISORY, "warning": WARNING, "critical": EMERGENCY}
 
@@ -46,8 +46,10 @@ class Heat:
         return Finding(
             found,
             _PRIORITIES[found],
-            f"{ambient_degc:.0f} °C around the equipment of {unit.name}, "
-            f"{heat.dose:.0%} of its heat budget used",
+            "heat",
+            AlarmParameters(
+                member=unit.name, temperature_degc=ambient_degc, heat_fraction=heat.dose
+            ),
             seen_ns=heat.temperature_ns,
         )
 

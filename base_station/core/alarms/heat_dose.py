@@ -11,7 +11,7 @@ from typing import Annotated
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from shared.config import Within
-from shared.messages import Message, Temperature
+from shared.messages import AlarmParameters, Message, Temperature
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +31,10 @@ class HeatDose:
         if heat.dose < self.used_up:
             return Clear(heat.temperature_ns, "another incident")
         is_late = heat.dose - heat.late_dose < self.used_up
-        remark = ", as only its journal told, so some time ago" if is_late else ""
         return Finding(
             "used up",
             WARNING,
-            f"The equipment of {unit.name} has used up its heat budget{remark}: it may fail",
+            "heat-limit-late" if is_late else "heat-limit",
+            AlarmParameters(member=unit.name),
             seen_ns=heat.temperature_ns,
         )

@@ -6,8 +6,9 @@ from typing import Protocol
 
 import msgspec
 
+from base_station.core.alarms.sentences import sentence
 from base_station.core.state import UnitState
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 EMERGENCY, WARNING, ADVISORY = 1, 2, 3  # priorities
 
@@ -17,11 +18,17 @@ class Finding(msgspec.Struct, frozen=True):
 
     level: str  # one of the rule's levels
     priority: int
-    text: str  # a sentence for a person
+    code: str  # of its sentence, in ``sentences``
+    parameters: AlarmParameters  # of the sentence
     seen_ns: int  # station time of the evidence
     onset_ns: int = 0  # when it began; begun after an alarm was resolved, it is a new one
     latched: bool = False  # only a person resolves it
     about: int | str | None = None  # which of several of one unit: whose, or which fault
+
+    @property
+    def text(self) -> str:
+        """The sentence in English, for logs, exports and programs."""
+        return sentence(self.code, self.parameters)
 
 
 class Clear(msgspec.Struct, frozen=True):

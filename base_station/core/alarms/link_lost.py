@@ -8,7 +8,7 @@ from base_station.core.alarms.interface import ADVISORY, WARNING, Clear, Finding
 from base_station.core.state import UnitState
 from base_station.core.state.message_stream import LOST_AFTER_S, STALE_AFTER_S
 from shared.clock import NS_PER_S
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +34,8 @@ class LinkLost:
         return Finding(
             "switched off" if stopped else "lost",
             ADVISORY if stopped else WARNING,
-            f"{unit.name}'s unit was switched off"
-            if stopped
-            else f"Nothing heard of {unit.name}'s unit for {silent_s:.0f} s",
+            "unit-off" if stopped else "signal-lost",
+            AlarmParameters(member=unit.name, duration_s=silent_s),
             seen_ns=unit.last_message_ns,
             onset_ns=unit.last_message_ns,
         )

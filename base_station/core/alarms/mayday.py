@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from base_station.core.alarms.interface import EMERGENCY, Clear, Finding, Verdict
 from base_station.core.state import UnitState
-from shared.messages import Message, Status
+from shared.messages import AlarmParameters, Message, Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +24,12 @@ class Mayday:
             return None
         if call.cancelled_ns is not None:
             return Clear(call.cancelled_ns, "cancelled by the wearer")
+        now, before = unit.names_at(call.dated_ns)
         return Finding(
             "mayday",
             EMERGENCY,
-            f"Mayday from {unit.name_at(call.dated_ns)}",
+            "mayday",
+            AlarmParameters(member=now, member_before=before),
             seen_ns=call.t_ns,
             onset_ns=call.t_ns,
             latched=True,

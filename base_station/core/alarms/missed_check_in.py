@@ -13,7 +13,7 @@ from base_station.core.alarms.interface import EMERGENCY, Clear, Finding, Verdic
 from base_station.core.state import UnitState
 from base_station.core.state.duty import Duty
 from shared.clock import NS_PER_S
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,17 +37,18 @@ class MissedCheckIn:
         return Finding(
             "overdue",
             EMERGENCY,
-            f"{unit.name}: PAR overdue, {_reason(duty, onset_ns)}",
+            _code(duty),
+            AlarmParameters(
+                member=unit.name, duration_s=(onset_ns - duty.counts_from_ns) / NS_PER_S
+            ),
             seen_ns=duty.counts_from_ns,
             onset_ns=onset_ns,
             about=unit.wearer.from_ns(t_ns),
         )
 
 
-def _reason(duty: Duty, onset_ns: int) -> str:
-    silent_min = (onset_ns - duty.counts_from_ns) / NS_PER_S / 60.0
+def _code(duty: Duty) -> str:
+    is_asked = duty.open_request_ns is not None
     if duty.confirmation is None:
-        prefix = "asked, " if duty.open_request_ns is not None else ""
-        return f"{prefix}not yet confirmed, on duty for {silent_min:.0f} min"
-    prefix = "asked and " if duty.open_request_ns is not None else ""
-    return f"{prefix}not heard from for {silent_min:.0f} min"
+        return "par-overdue-no-answer-yet" if is_asked else "par-overdue-unconfirmed"
+    return "par-overdue-unanswered" if is_asked else "par-overdue"

@@ -14,7 +14,7 @@ from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
 from shared.errors import ConfigError
-from shared.messages import Message, Status
+from shared.messages import AlarmParameters, Message, Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +43,15 @@ class NoMotion:
         onset_ns = seen_ns - round(motionless_s * NS_PER_S)
         lying_from_ns = onset_ns + round(self.pre_alert_s * NS_PER_S)
         now, then = unit.name, unit.name_at(lying_from_ns)
-        names = now if now == then else f"{now} or, before, {then}"
         return Finding(
             "alarm" if full else "pre-alert",
             EMERGENCY if full else WARNING,
-            f"{names} has not moved for {motionless_s:.0f} s",
+            "no-motion",
+            AlarmParameters(
+                member=now,
+                member_before=None if now == then else then,
+                duration_s=motionless_s,
+            ),
             seen_ns=seen_ns,
             onset_ns=onset_ns,
             latched=full,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -9,7 +10,8 @@ from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict,
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
-from shared.messages import Message
+from shared.messages import AlarmParameters, FusedPosition, Message
+from shared.quality import NOT_OF_STEPS, Quality, codes_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,10 +36,22 @@ class PositionLost:
             return Clear(seen_ns, "the position is known again")
         if seen_ns - place.lost_since_ns < self.after_s * NS_PER_S:
             return None
+        code, parameters = _found(unit, fused)
         return Finding(
             "lost",
             WARNING,
-            f"The position of {unit.name} is lost ({fused.quality_reason})",
+            code,
+            parameters,
             seen_ns=seen_ns,
             onset_ns=place.lost_since_ns,
         )
+
+
+def _found(unit: UnitState, fused: FusedPosition) -> tuple[str, AlarmParameters]:
+    """Code and parameters: the unit's own tracker is lost, or doubt has grown too far."""
+    position = unit.position
+    if position is not None and position.path_quality is Quality.LOST:
+        reasons = codes_of(position.reasons & ~NOT_OF_STEPS)
+        return "position-lost-tracker", AlarmParameters(member=unit.name, reasons=reasons)
+    radius_m = 2.0 * math.hypot(fused.std_north_m, fused.std_east_m)
+    return "position-lost", AlarmParameters(member=unit.name, radius_m=radius_m)

@@ -9,7 +9,7 @@ from base_station.core.alarms.interface import ADVISORY, Clear, Finding, Verdict
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +30,12 @@ class RestDue:
             return Clear(duty.rest_since_ns, "rests", about=about)
         if duty.work_since_ns is None or duty.rest_due_ns is None or t_ns < duty.rest_due_ns:
             return Clear(duty.ready_ns, "not due", about=about)
-        worked_min = (t_ns - duty.work_since_ns) / NS_PER_S / 60.0
+        worked_s = (t_ns - duty.work_since_ns) / NS_PER_S
         return Finding(
             "due",
             ADVISORY,
-            f"{unit.name} has worked for {worked_min:.0f} min: send to rest",
+            "work-limit",
+            AlarmParameters(member=unit.name, duration_s=worked_s),
             seen_ns=duty.work_since_ns,
             onset_ns=duty.rest_due_ns,
             about=about,

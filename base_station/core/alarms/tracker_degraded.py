@@ -9,8 +9,8 @@ from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict,
 from base_station.core.state import UnitState
 from shared.clock import NS_PER_S
 from shared.config import Within
-from shared.messages import Message
-from shared.quality import NOT_OF_STEPS, Quality, Reason, in_words
+from shared.messages import AlarmParameters, Message
+from shared.quality import NOT_OF_STEPS, Quality, Reason, codes_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class TrackerDegraded:
         return Finding(
             "lost" if lost else "degraded",
             WARNING,
-            f"The tracker of {unit.name}'s unit {'is lost' if lost else 'is unsure'}"
-            f" ({in_words(position.reasons & ~NOT_OF_STEPS)})",
+            "tracker-lost" if lost else "tracker-unsure",
+            AlarmParameters(member=unit.name, reasons=codes_of(position.reasons & ~NOT_OF_STEPS)),
             seen_ns=unit.position_ns,
             onset_ns=unit.degraded_since_ns,
         )

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from base_station.core.alarms.interface import WARNING, Finding, Verdict
 from base_station.core.person_references import without_numbers
 from base_station.core.state import UnitState
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,8 @@ class TrackerFault:
         return Finding(
             "fault",
             WARNING,
-            f"The agent that tracks for {unit.name} ({agent.unit_id}): {fault.text}",
+            "agent-fault",
+            AlarmParameters(member=unit.name, unit_id=agent.unit_id, fault=fault.text),
             seen_ns=fault.t_ns,
             onset_ns=fault.t_ns,
             latched=True,

@@ -11,7 +11,7 @@ from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict,
 from base_station.core.state import UnitState
 from base_station.core.state.message_stream import LOST_AFTER_S, STALE_AFTER_S
 from shared.clock import NS_PER_S
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,6 @@ class TrackerGone:
         last_message_ns = None if unit.tracker is None else unit.tracker.last_message_ns
         if last_message_ns is not None and (t_ns - last_message_ns) / NS_PER_S < self.live_within_s:
             return Clear(last_message_ns, "its tracking agent speaks again")
-        what = "never spoke" if last_message_ns is None else "is silent"
         since_ns = max(
             last_message_ns or 0, unit.boots[-1].first_live_ns
         )  # it may start with the unit
@@ -45,8 +44,8 @@ class TrackerGone:
         return Finding(
             "gone",
             WARNING,
-            f"Nobody tracks {unit.name}: the agent for {unit.unit_id} {what}; start it, "
-            "the position shown is old",
+            "agent-never-started" if last_message_ns is None else "agent-silent",
+            AlarmParameters(member=unit.name, unit_id=unit.unit_id),
             seen_ns=since_ns,
             onset_ns=since_ns,
         )

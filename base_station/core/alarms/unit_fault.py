@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from base_station.core.alarms.interface import WARNING, Finding, Verdict
 from base_station.core.person_references import without_numbers
 from base_station.core.state import UnitState
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,8 @@ class UnitFault:
         return Finding(
             "fault",
             WARNING,
-            f"{unit.name}'s unit: {unit.fault.text}",
+            "unit-fault",
+            AlarmParameters(member=unit.name, fault=unit.fault.text),
             seen_ns=unit.fault.t_ns,
             onset_ns=unit.fault.t_ns,
             latched=True,

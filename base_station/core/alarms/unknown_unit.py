@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from base_station.core.alarms.interface import ADVISORY, Clear, Finding, Verdict
 from base_station.core.state import UnitState
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +26,7 @@ class UnknownUnit:
         return Finding(
             "unknown",
             ADVISORY,
-            f"A unit that is not registered is sending: {unit.unit_id}",
+            "unregistered-unit",
+            AlarmParameters(unit_id=unit.unit_id),
             seen_ns=unit.last_message_ns,
         )

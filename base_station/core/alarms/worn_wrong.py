@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from base_station.core.alarms.interface import WARNING, Clear, Finding, Verdict, switched_off
 from base_station.core.state import UnitState
-from shared.messages import Message
+from shared.messages import AlarmParameters, Message
 from shared.quality import Reason
 
 
@@ -32,7 +32,7 @@ class WornWrong:
         return Finding(
             "not-on-foot",
             WARNING,
-            f"{unit.name}'s unit is not worn on a foot: its position is wrong until it is strapped"
-            " to the instep",
+            "not-on-foot",
+            AlarmParameters(member=unit.name),
             seen_ns=unit.position_ns,
         )

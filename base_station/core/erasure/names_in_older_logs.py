@@ -19,7 +19,9 @@ from shared.messages import OperatorAction
 from shared.messages.station import Assign
 
 # The program's own, whoever is called Heat or Fall, and who did something.
-_PROGRAM_FIELDS = frozenset({"rule", "level", "part", "thresholds", "station", "who"})
+_PROGRAM_FIELDS = frozenset(
+    {"rule", "level", "part", "code", "reasons", "thresholds", "station", "who"}
+)
 
 
 def has_names(actions: Iterable[OperatorAction]) -> bool:

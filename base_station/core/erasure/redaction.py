@@ -41,6 +41,7 @@ from shared.messages import (
     Heartbeat,
     OperatorAction,
 )
+from shared.messages.alarm import NO_PARAMETERS
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
 from shared.messages.station import (
     Action,
@@ -146,7 +147,10 @@ class Redactor:
         if not self._erasure.covers(change.unit_id, change.raised_ns):
             return self._renamed(record, self._erasure.is_about(change.unit_id, change.raised_ns))
         by = self._without_names(without_note(change.by))
-        return t_ns, key, encode(msgspec.structs.replace(change, text=ERASED_TEXT, by=by))
+        erased = msgspec.structs.replace(
+            change, text=ERASED_TEXT, by=by, code="", parameters=NO_PARAMETERS
+        )
+        return t_ns, key, encode(erased)
 
     def _derived(self, record: Record) -> list[Record]:
         """Records that only repeat others.  What consoles were shown is taken out whole: a replay

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
-from shared.messages import AlarmChange, AlarmState, Header
+from shared.messages import AlarmChange, AlarmParameters, AlarmState, Header
+from shared.messages.alarm import NO_PARAMETERS
 
 
 class Alarm(msgspec.Struct):
@@ -26,6 +27,8 @@ class Alarm(msgspec.Struct):
     resolved_while_active: bool = False  # resolved by a person while the condition went on
     clear_since_ns: int | None = None  # time of the first evidence that it is over
     lower_since_ns: int | None = None  # time of the first evidence of a lower level
+    code: str = ""  # of the sentence in ``text``; empty: of a checkpoint of an earlier version
+    parameters: AlarmParameters = NO_PARAMETERS
 
     @property
     def is_open(self) -> bool:
@@ -45,4 +48,6 @@ class Alarm(msgspec.Struct):
             by=self.by,
             raised_ns=self.raised_ns,
             last_raised_ns=self.last_raised_ns,
+            code=self.code,
+            parameters=self.parameters,
         )

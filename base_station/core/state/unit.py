@@ -90,6 +90,15 @@ class UnitState(MessageStream):
         worn = wearer.former_at(t_ns)
         return worn.name if worn else self.label or self.unit_id
 
+    def names_at(self, t_ns: int | None) -> tuple[str, str | None]:
+        """Name for people at that time; None: it is not known, and the second one is that of
+        whom it may be instead, where there is one.
+        """
+        if t_ns is None:
+            before = [one.name for one in self.wearer.former if one.name != self.name]
+            return self.name, next(iter(before[-1:]), None)
+        return self.name_at(t_ns), None
+
     def end_wearing(self, t_ns: int) -> None:
         """The person who wears it does so no more."""
         self.wearer.end(t_ns, self._concerns)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from base_station.fusion.gnss.fix_faults import FIX_FAULTS
 from base_station.fusion.interface import MAX_FIX_DISTANCE_M, FixVerdict, PlaceFix
 from shared.geo import Anchor
 from shared.messages import FixType, GpsFix
@@ -21,17 +22,15 @@ def screen_fix(fix: GpsFix) -> FixVerdict:
         return FixVerdict(False, "the receiver has no fix")
     std_m = fix.horizontal_std_m
     defects = {
-        "coordinates that are no numbers": not all(
+        "not-a-number": not all(
             math.isfinite(value) for value in (fix.lat_deg, fix.lon_deg, fix.height_m)
         ),
-        "coordinates that are not on the Earth": abs(fix.lat_deg) > 90.0
-        or abs(fix.lon_deg) > 180.0,
-        "latitude and longitude 0": abs(fix.lat_deg) < 1e-6 and abs(fix.lon_deg) < 1e-6,
-        "a height at which nobody stands": fix.fix_type is FixType.THREE_D
-        and not DEEPEST_M <= fix.height_m <= HIGHEST_M,
-        "an accuracy that cannot be used": std_m is not None and not 0.0 < std_m <= STD_ABSURD_M,
+        "not-on-earth": abs(fix.lat_deg) > 90.0 or abs(fix.lon_deg) > 180.0,
+        "zero": abs(fix.lat_deg) < 1e-6 and abs(fix.lon_deg) < 1e-6,
+        "height": fix.fix_type is FixType.THREE_D and not DEEPEST_M <= fix.height_m <= HIGHEST_M,
+        "accuracy": std_m is not None and not 0.0 < std_m <= STD_ABSURD_M,
     }
-    reason = next((reason for reason, holds in defects.items() if holds), "")
+    reason = next((FIX_FAULTS[code] for code, holds in defects.items() if holds), "")
     return FixVerdict(not reason, reason, faulty=bool(reason))
 
 
@@ -45,7 +44,7 @@ def in_incident_frame(fix: GpsFix, anchor: Anchor) -> PlaceFix | FixVerdict:
     """The screened fix where the anchor puts it, or why it cannot be there."""
     north_m, east_m, down_m = anchor.to_incident_m(fix.lat_deg, fix.lon_deg, fix.height_m)
     if math.hypot(north_m, east_m) > MAX_FIX_DISTANCE_M:
-        return FixVerdict(False, "too far from the site", faulty=True)
+        return FixVerdict(False, FIX_FAULTS["far-away"], faulty=True)
     horizontal_std_m = max(fix.horizontal_std_m or STD_UNSTATED_M, STD_FLOOR_M)
     has_height = fix.fix_type is FixType.THREE_D
     return PlaceFix(

@@ -226,6 +226,8 @@ class AlarmRow(Base):
     raised_ns: Mapped[int] = mapped_column(index=True)
     last_raised_ns: Mapped[int] = mapped_column(server_default="0")  # at first, or anew
     changed_ns: Mapped[int]
+    code: Mapped[str] = mapped_column(server_default="")  # empty: of an earlier version
+    parameters: Mapped[str] = mapped_column(server_default="{}")  # JSON
 
 
 class AlarmTransition(Base):
@@ -239,6 +241,8 @@ class AlarmTransition(Base):
     level: Mapped[str] = mapped_column(primary_key=True)
     text: Mapped[str]
     by: Mapped[str]
+    code: Mapped[str] = mapped_column(server_default="")
+    parameters: Mapped[str] = mapped_column(server_default="{}")
 
 
 class TrackPoint(Base):

@@ -49,7 +49,7 @@ def test_a_roll_call_on_demand_is_due_in_three_minutes(script: Script) -> None:
     assert left_s(script) == 180.0
     script.wait(181)
     assert {one.unit_id for one in overdue(script)} == {"FF-01", "FF-02", "FF-03"}
-    assert "PAR overdue, asked, not yet confirmed, on duty for 3 min" in overdue(script)[0].text
+    assert "PAR overdue, no answer, on duty for 3 min" in overdue(script)[0].text
 
 
 def test_the_wearers_own_button_answers_a_roll_call_and_having_it_does_not(script: Script) -> None:
@@ -81,7 +81,7 @@ def test_who_does_not_answer_the_evacuation_is_overdue_anew(
     script.wait(2)
     again = [one for one in overdue(script) if one.unit_id == "FF-01"][2:]
     assert [one.state for one in again] == [AlarmState.RAISED]
-    assert again[0].text == "Person 1: PAR overdue, asked, not yet confirmed, on duty for 5 min"
+    assert again[0].text == "Person 1: PAR overdue, no answer, on duty for 5 min"
 
 
 def test_receipt_of_an_evacuation_confirms_nobody(script: Script) -> None:

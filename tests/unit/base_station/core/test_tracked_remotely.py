@@ -315,7 +315,7 @@ def test_fault_of_the_agent_is_reported_as_the_agents(script: Remote, is_late: b
     else:
         script.say(event)
     walk(script, 3)
-    assert faults(script) == [f"The agent that tracks for unit {U} ({AGENT}): its disk is full"]
+    assert faults(script) == [f"unit {U}'s tracking agent {AGENT}: its disk is full"]
     assert faults(script, rule="unit-fault") == []
     assert script.unit.fault is None
 

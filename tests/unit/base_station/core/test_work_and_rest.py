@@ -40,7 +40,7 @@ def test_work_begins_inside_and_rest_is_due_after_it(script: Script) -> None:
     script.wait(3)
     (due,) = rest_alarms(script)
     assert (due.unit_id, due.priority) == ("FF-01", 3)
-    assert due.text == "Person 1 has worked for 2 min: send to rest"
+    assert due.text == "Person 1: work limit reached (2 min), send to rehab"
     script.act(SetRest("FF-01", True))
     rests = rest_alarms(script)[-1]
     assert (rests.state, rests.by) == (AlarmState.RESOLVED, "rests")
@@ -55,7 +55,7 @@ def test_who_is_not_sent_to_rest_is_named_again_after_ten_minutes(script: Script
     assert len(rest_alarms(script)) == 2
     script.wait(1)
     assert len(rest_alarms(script)) == 3
-    assert rest_alarms(script)[-1].text == "Person 1 has worked for 12 min: send to rest"
+    assert rest_alarms(script)[-1].text == "Person 1: work limit reached (12 min), send to rehab"
 
 
 def test_work_lasts_until_the_rest_wherever_it_goes_on(script: Script) -> None:
@@ -109,7 +109,7 @@ def test_who_is_given_another_unit_has_worked_before(script: Script) -> None:
     script.act(Assign("FF-04", "p1", "Person 1", "red", ""))
     script.wait(21)
     assert [(one.unit_id, one.text) for one in rest_alarms(script)] == [
-        ("FF-04", "Person 1 has worked for 2 min: send to rest")
+        ("FF-04", "Person 1: work limit reached (2 min), send to rehab")
     ]
     assert unit(script).duty is None
 

@@ -36,7 +36,7 @@ def test_age_and_residuals_are_judged(age_days, faults, level):
         return
     assert isinstance(verdict, Finding)
     assert (verdict.level, verdict.priority) == (level, ADVISORY)
-    assert "The calibration of FF-01's unit is " in verdict.text
+    assert "FF-01: calibration of the unit is " in verdict.text
     assert faults in verdict.text
 
 

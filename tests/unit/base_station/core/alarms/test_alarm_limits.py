@@ -157,7 +157,7 @@ def test_two_machines_until_one_of_them_is_silent(
     assert judged(ClonedUnit(), unit) == found
     verdict = ClonedUnit().judge(unit, NOW_NS, "")
     if isinstance(verdict, Finding):
-        assert f"as FF-01's {who};" in verdict.text
+        assert verdict.code == ("duplicate-unit" if who == "unit" else "duplicate-agent")
         assert verdict.onset_ns == NOW_NS - ns(98)
 
 
@@ -193,7 +193,7 @@ def test_worn_wrong_is_raised_alone_and_names_the_remedy(
     assert isinstance(TrackerDegraded().judge(unit, NOW_NS, ""), Finding) == (found is None)
     if isinstance(verdict, Finding):
         assert verdict.level == found
-        assert verdict.text.startswith("FF-01's unit is not worn on a foot")
+        assert verdict.text.startswith("FF-01: unit is not worn on a foot")
 
 
 @pytest.mark.parametrize(

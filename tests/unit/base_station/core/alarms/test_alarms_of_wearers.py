@@ -52,7 +52,7 @@ def test_late_alert_is_of_the_wearer_at_its_time(script: Script, kind: EventKind
         script.wait(1)
     script.event(U, kind)
     told["Cem"] = script.alarms[-1].text
-    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{}: possible fall"
     assert told == {name: text.format(name or f"unit {U}") for name in told}
 
 
@@ -80,7 +80,7 @@ def test_alert_of_a_run_without_live_messages_names_possible_wearers(
     script.wait(1)
     script.event(U, kind)
     texts.append(script.alarms[-1].text)
-    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{}: possible fall"
     wearer = "Ana" if has_time else "Bo or, before, Ana"
     assert texts == [text.format(wearer), text.format("Bo")]
 
@@ -120,7 +120,7 @@ def test_two_wearers_of_one_unit_are_two_people_in_need(
         script.wait(3)
         script.record(backfilled_key(U, EVENT.suffix), encode(of_ana))
     script.wait(3)
-    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{} may have fallen"
+    text = "Mayday from {}" if kind is EventKind.MAYDAY else "{}: possible fall"
     ana, bo = (text.format(name) for name in ("Ana", "Bo"))
     assert open_texts(script) == {ana, bo}
     assert [one.text for one in script.alarms if one.state is AlarmState.RAISED] == (
@@ -206,7 +206,7 @@ def test_two_wearers_of_one_unit_who_lie_still_are_two_people_in_need(script: Sc
     lie(script, 0, 40)
     script.act(Assign(U, "bo", "Bo", "", ""))
     lie(script, 0, 40)
-    ana, bo = "Ana has not moved for 30 s", "Bo has not moved for 30 s"
+    ana, bo = "Ana: no motion, 30 s", "Bo: no motion, 30 s"
     assert open_texts(script) == {ana, bo}
     of_bo = next(one.alarm_id for one in script.alarms if one.text == bo)
     lie(script, 0, 3)
@@ -220,8 +220,8 @@ def test_wearer_of_a_unit_that_lay_still_can_raise_alarms(script: Script) -> Non
     script.act(Assign(U, "ana", "Ana", "", ""))
     lie(script, 0, 40)
     assert open_texts(script) == {
-        "unit FF-01 has not moved for 30 s",
-        "Ana has not moved for 30 s",
+        "unit FF-01: no motion, 30 s",
+        "Ana: no motion, 30 s",
     }
 
 
@@ -241,8 +241,8 @@ def test_of_who_lay_still_before_the_unit_was_given_on_both_are_named(script: Sc
     script.act(Assign(U, "bo", "Bo", "", ""))
     lie(script, 25, 40)
     assert [one.text for one in script.alarms] == [
-        "Ana has not moved for 20 s",
-        "Bo or, before, Ana has not moved for 30 s",
+        "Ana: no motion, 20 s",
+        "Bo or, before, Ana: no motion, 30 s",
     ]
     assert len({one.alarm_id for one in script.alarms}) == 1
 
@@ -253,7 +253,7 @@ def test_who_had_hardly_lain_still_before_is_not_named(script: Script) -> None:
     script.act(Assign(U, "bo", "Bo", "", ""))
     lie(script, 10, 40)
     assert {one.text for one in script.alarms} == {
-        f"Bo has not moved for {lain_s} s" for lain_s in (20, 30)
+        f"Bo: no motion, {lain_s} s" for lain_s in (20, 30)
     }
 
 
@@ -266,7 +266,7 @@ def test_a_pre_alert_of_who_wears_the_unit_no_more_is_over(script: Script) -> No
     script.wait(30)
     lie(script, 20, 22)
     no_motion = [one for one in script.alarms if one.rule == "no-motion"]
-    assert [(one.text.partition(" ")[0], one.state.name) for one in no_motion] == [
+    assert [(one.text.partition(":")[0], one.state.name) for one in no_motion] == [
         ("Ana", "RAISED"),
         ("Ana", "RESOLVED"),
         ("Bo", "RAISED"),
@@ -291,7 +291,7 @@ def test_who_wore_a_unit_before_is_forgotten_with_it(script: Script) -> None:
     script.act(ForgetWearers(U))
     assert b"Ana" not in script.pipeline.checkpoint()
     script.record(backfilled_key(U, EVENT.suffix), encode(fell))
-    assert script.alarms[-1].text == "(forgotten) may have fallen"
+    assert script.alarms[-1].text == "(forgotten): possible fall"
 
 
 def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Script) -> None:
@@ -305,7 +305,7 @@ def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Scr
     script.act(Assign(U, "bo", "Bo", "", ""))
     script.wait(3)
     script.record(backfilled_key(agent, EVENT.suffix), encode(fell))
-    assert script.alarms[-1].text == "Ana may have fallen"
+    assert script.alarms[-1].text == "Ana: possible fall"
 
 
 def overdue_pair(script: Script) -> None:
@@ -357,7 +357,7 @@ def test_who_is_to_rest_is_so_with_another_unit(script: Script) -> None:
     script.wait(40)
     script.act(Assign("FF-02", "Ana", "Ana", "", ""))
     script.wait(3)
-    assert open_texts(script) == {"Ana has worked for 1 min: send to rest"}
+    assert open_texts(script) == {"Ana: work limit reached (1 min), send to rehab"}
 
 
 STANDING = {

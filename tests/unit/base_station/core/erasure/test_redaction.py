@@ -23,6 +23,7 @@ from shared.mcap_log import DELTA_TOPIC
 from shared.messages import (
     STATION_ID,
     AlarmChange,
+    AlarmParameters,
     AlarmState,
     CommandKind,
     Header,
@@ -84,6 +85,12 @@ def test_who_is_called_like_an_alarm_leaves_the_alarms_as_they_are() -> None:
     )
     wanted = msgspec.structs.replace(alarm, text=f"{ERASED_TEXT} is hot", by=ERASED_TEXT)
     assert redacted("Heat", ALARM, alarm) == wanted
+    with_code = msgspec.structs.replace(
+        alarm, code="heat", parameters=AlarmParameters(member="Heat", reasons=("heat",))
+    )
+    assert redacted("Heat", ALARM, with_code) == msgspec.structs.replace(
+        wanted, code="heat", parameters=AlarmParameters(member=ERASED_TEXT, reasons=("heat",))
+    )
     ours = OperatorAction(HEADER, "a1", STATION_ID, SetThresholds({"heat.caution_degc": 80.0}))
     assert redacted("Heat", OPERATOR, ours) == ours
 

@@ -138,8 +138,8 @@ def test_budget_used_up_without_contact_is_reported_as_late() -> None:
     assert heat_alarms(script) == [
         (
             "heat-dose",
-            f"The equipment of unit {U} has used up its heat budget, as only its journal told, "
-            "so some time ago: it may fail",
+            f"unit {U}: heat limit of the equipment reached some time ago, as its journal shows, "
+            "it may fail",
         )
     ]
 

@@ -184,7 +184,7 @@ def test_wrong_receiver_is_reported_until_it_is_right(
     assert gps_alarms() == []
     script.wait(31, lambda: send_fix(wrong))
     script.wait(60, lambda: script.position(U, 0.0, 0.0))
-    said = f"The GPS of unit {U} is not used: {reason}"
+    said = f"unit {U}: GPS is not used ({reason})"
     assert gps_alarms() == [("RAISED", said)]
     script.wait(5, lambda: send_fix({}))
     assert gps_alarms()[1:] == [("RESOLVED", said)]

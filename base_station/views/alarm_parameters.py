@@ -1,0 +1,30 @@
+"""Parameters of an alarm's sentence, with names in the place of references."""
+
+from __future__ import annotations
+
+import msgspec
+
+from base_station.storage.db.known_people import PersonLookup, shown_text
+from base_station.views.wire import AlarmParametersView
+from shared.messages import AlarmParameters
+
+_TEXTS = ("member", "member_before", "fault")  # which may have a person in them
+
+
+def parameters_view(parameters: AlarmParameters, people: PersonLookup) -> AlarmParametersView:
+    return named_parameters(AlarmParametersView(**msgspec.structs.asdict(parameters)), people)
+
+
+def stored_parameters_view(stored: str, people: PersonLookup) -> AlarmParametersView:
+    """Of the JSON in the tables."""
+    return named_parameters(msgspec.json.decode(stored, type=AlarmParametersView), people)
+
+
+def named_parameters(parameters: AlarmParametersView, people: PersonLookup) -> AlarmParametersView:
+    """The parameters of a recording as they are shown."""
+    named = {
+        name: shown_text(text, people)
+        for name in _TEXTS
+        if (text := getattr(parameters, name)) is not None
+    }
+    return msgspec.structs.replace(parameters, **named)
