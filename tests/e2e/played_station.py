@@ -75,6 +75,12 @@ class PlayedStation:
         for socket in self._sockets:
             socket.send(msgspec.json.encode(changes).decode())
 
+    def begin_anew(self, picture: Snapshot) -> None:
+        """A whole picture goes out, as when an incident is opened or closed."""
+        self._picture = picture
+        for socket in self._sockets:
+            self._show(socket)
+
     def _whole(self, name: str, changed: object) -> tuple[object, ...]:
         """A list of the picture with what has changed in it: a page may ask for all again."""
         assert isinstance(changed, tuple)

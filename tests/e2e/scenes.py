@@ -575,6 +575,52 @@ def stored() -> wire.Snapshot:
     return msgspec.structs.replace(shown, health=msgspec.structs.replace(HEALTH, reading=0.42))
 
 
+HARBOUR = wire.IncidentView(
+    "20261121-2",
+    "Harbour, shed 4",
+    NOW_MS - 12 * MINUTE_MS,
+    None,
+    1200.0,
+    300.0,
+    2400.0,
+    site_id="site-2",
+)
+
+
+def two_incidents() -> wire.Snapshot:
+    """Five in the flats, two at the harbour, opened last, one of them down; one in none."""
+    incidents = 5 * [INCIDENT.incident_id] + 2 * [HARBOUR.incident_id] + [None]
+    units = [
+        msgspec.structs.replace(unit(index), incident_id=incident_id)
+        for index, incident_id in enumerate(incidents)
+    ]
+    fall = alarm(6, "fall", 1, f"{NAMES[6]} may have fallen", 50)
+    units[6] = with_alarms(units[6], fall)
+    units[7] = msgspec.structs.replace(units[7], duty=None)
+    flats = picture(units, fall)
+    assert flats.plan is not None
+    own = wire.SiteView("", flats.plan, None, plan_placed=True)
+    return msgspec.structs.replace(
+        flats, incident=HARBOUR, incidents=(INCIDENT, HARBOUR), plan=None, sites=(own,)
+    )
+
+
+def dispatch(number: str, **change: Any) -> wire.DispatchView:
+    """Offered: no incident was opened from it."""
+    reported = wire.DispatchView(
+        *(number, "json", "Structure fire", "", "", "Main St 5", None, None),
+        units=("E12",),
+        called_ms=None,
+        dispatched_ms=None,
+        updated_ms=None,
+        remarks="",
+        has_ended=False,
+        warnings=(),
+        received_ms=NOW_MS,
+    )
+    return msgspec.structs.replace(reported, **change)
+
+
 def past() -> wire.Snapshot:
     shown = bad_minute()
     replay = wire.ReplayView(

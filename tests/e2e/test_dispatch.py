@@ -17,7 +17,6 @@ from typer.testing import CliRunner
 
 from base_station.app.dispatch_command import TOKEN_VARIABLE
 from base_station.cli import app
-from base_station.views.wire import DispatchView
 from tests.e2e import scenes
 from tests.e2e.console_page import answer_to, barriers, close, confirm, menu
 from tests.e2e.stage import Stage
@@ -177,16 +176,11 @@ def test_it_is_in_the_report_and_in_the_list_of_incidents(page: Page) -> None:
 @pytest.mark.parametrize("screen", ["laptop", "phone"])
 def test_a_long_report_fits_and_several_are_counted(stage: Stage, screen: str) -> None:
     reports = tuple(
-        DispatchView(
-            *(str(number), "json", "Fire " * 30, "", "", "x" * 200, None, None),
+        scenes.dispatch(
+            str(number),
             units=tuple(f"E{unit}" for unit in range(40)),
-            called_ms=None,
-            dispatched_ms=None,
-            updated_ms=None,
-            remarks="",
-            has_ended=False,
-            warnings=(),
-            received_ms=scenes.NOW_MS,
+            type="Fire " * 30,
+            address="x" * 200,
         )
         for number in range(3)
     )

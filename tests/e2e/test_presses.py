@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 import msgspec
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Route, expect
 
 from base_station.views.wire import UnitView
 from tests.e2e import scenes
@@ -258,3 +258,24 @@ def test_who_has_keys_only_goes_on_in_what_was_opened_and_back(stage: Stage) -> 
     expect(north).to_be_focused()
     page.keyboard.press("Escape")
     expect(pins).to_be_focused()
+
+
+def test_a_list_that_comes_in_moves_nothing_that_is_pressed_meanwhile(stage: Stage) -> None:
+    """A dialog grows downwards; where it grew to both sides, the press was lost."""
+    dispatched = msgspec.structs.replace(scenes.quiet(), dispatches=(scenes.dispatch("2026/7"),))
+    page, _ = stage.open(dispatched)
+    asked: list[Route] = []
+
+    def keep_waiting(route: Route) -> None:
+        asked.append(route)
+
+    page.route("**/api/v1/incidents?*", keep_waiting)
+    dialog = menu(page, "Incidents")
+    look = dialog.get_by_role("button", name="Look at dispatch 2026/7")
+    expect(dialog.get_by_text("Asking the station")).to_be_visible()
+    look.hover()
+    page.mouse.down()
+    asked.pop().fulfill(json=scenes.INCIDENTS)
+    expect(dialog.get_by_role("row").nth(1)).to_be_visible()
+    page.mouse.up()
+    expect(page.get_by_role("dialog", name="Dispatch 2026/7")).to_be_visible()

@@ -128,6 +128,12 @@ export const openIncident = (name: string, times: Partial<Times>, dispatchNumber
   const from = dispatchNumber === undefined ? {} : { dispatch_number: dispatchNumber };
   return act<Incident>("POST", "/incidents", { name, ...times, ...from });
 };
+/** While others are open. */
+export const openBeside = (name: string, times: Partial<Times>) =>
+  act<Incident>("POST", "/incidents", { name, ...times, beside_others: true });
+/** From where they are. */
+export const assignMembers = (incidentId: string, target: Target) =>
+  act<object>("POST", `/incidents/${id(incidentId)}/members`, { target });
 export const dispatches = () => call<OfferedDispatch[]>("GET", "/dispatch");
 export const dismissDispatch = (number: string) =>
   act<void>("POST", "/dispatch/dismissals", { number });
@@ -154,8 +160,8 @@ export const acknowledge = ({ alarm_id, last_raised_ms }: AlarmView) =>
 export const resolve = ({ alarm_id, last_raised_ms }: AlarmView) =>
   act<void>("POST", `/alarms/${id(alarm_id)}/resolve`, { last_raised_ms });
 
-export const sendCommand = (kind: CommandKind, target: Target, text: string) =>
-  act<CommandView>("POST", "/commands", { kind, target, text });
+export const sendCommand = (kind: CommandKind, target: Target, text: string, incidentId?: string) =>
+  act<CommandView>("POST", "/commands", { kind, target, text, incident_id: incidentId });
 /** To a member: of the three nearest by way, or of one rescuer. */
 export const routes = (unitId: string, rescuerId: string | null = null) =>
   call<Route[]>(
@@ -181,8 +187,8 @@ export const undoConfirmCommand = (commandId: string, unitId: string) =>
   act<void>("POST", `/commands/${id(commandId)}/confirm/undo`, { unit_id: unitId });
 
 /** PAR by radio; by the id it can be undone. */
-export const checkIn = (target: Target, checkInId: string) =>
-  act<void>("POST", "/check-ins", { target, check_in_id: checkInId });
+export const checkIn = (target: Target, checkInId: string, incidentId?: string) =>
+  act<void>("POST", "/check-ins", { target, check_in_id: checkInId, incident_id: incidentId });
 /** Of one member, or of all whom it confirmed. */
 export const undoCheckIn = (checkInId: string, unitId = "") =>
   act<void>("POST", `/check-ins/${id(checkInId)}/undo`, { unit_id: unitId });
@@ -215,9 +221,9 @@ export const movePin = (pinId: string, pin: MovedPin) =>
 export const removePin = (pinId: string) => call<void>("DELETE", `/pins/${id(pinId)}`);
 export const startTogether = (start: Start) => act<PinView[]>("POST", "/pins/start", start);
 export const setMeeting = (meeting: Required<answers.MeetingForm>) => act<PinView>("POST", "/pins/meeting", meeting);
-export const placeBeacon = (beacon: MovedBeacon) => {
+export const placeBeacon = (beacon: MovedBeacon, incidentId?: string) => {
   const { beacon_id, ...place } = beacon;
-  return call<BeaconView>("PUT", `/beacons/${id(beacon_id)}`, place);
+  return call<BeaconView>("PUT", `/beacons/${id(beacon_id)}`, { ...place, incident_id: incidentId });
 };
 export const removeBeacon = (beaconId: string) =>
   call<void>("DELETE", `/beacons/${id(beaconId)}`);
@@ -244,6 +250,10 @@ export const carriedOut = (key: string) => call<CarriedOut>("GET", `/idempotency
 
 export const takeOver = () => call<void>("POST", "/standby/take-over");
 
+function onSiteOf(incidentId?: string): string {
+  return incidentId === undefined ? "" : `?incident_id=${id(incidentId)}`;
+}
+
 /** Nothing of it is kept. */
 export const draftPlan = (file: File, page: number, unit: string) =>
   call<PlanDraft>(
@@ -251,7 +261,8 @@ export const draftPlan = (file: File, page: number, unit: string) =>
     `/site/drafts?page=${page}&name=${id(file.name.slice(0, 80))}${unit === "" ? "" : `&unit=${unit}`}`,
     new Blob([file], { type: "application/octet-stream" }),
   );
-export const setPlan = (plan: object) => call<void>("PUT", "/site/plan", plan);
+export const setPlan = (plan: object, incidentId?: string) =>
+  call<void>("PUT", `/site/plan${onSiteOf(incidentId)}`, plan);
 export const baseMap = () => call<BaseMap | null>("GET", "/site/base-map");
 export const setBaseMap = (image: Blob, world: readonly number[], crs: string) =>
   call<BaseMap>(
@@ -260,7 +271,8 @@ export const setBaseMap = (image: Blob, world: readonly number[], crs: string) =
     image,
   );
 export const removeBaseMap = () => call<void>("DELETE", "/site/base-map");
-export const setAnchor = (anchor: AnchorView) => call<void>("PUT", "/site/anchor", anchor);
+export const setAnchor = (anchor: AnchorView, incidentId?: string) =>
+  call<void>("PUT", `/site/anchor${onSiteOf(incidentId)}`, anchor);
 
 export const replays = () => call<RunningReplay[]>("GET", "/replays");
 export const startReplay = (incidentId: string) =>

@@ -43,6 +43,14 @@ export const mayAct = computed(
   () => user.value !== null && user.value.role !== "viewer" && !isPast.value && leads.value,
 );
 
+/** Of several open incidents the one that is shown: what is asked for a whole incident, or for its
+ * ground, names it. */
+export function namedIncident(): string | undefined {
+  const shown = live.peek()?.picture;
+  if (shown === undefined || shown.choices.peek().length === 0) return undefined;
+  return shown.incident.peek()?.incident_id;
+}
+
 /** Show the console of whoever is logged in, or comes from the other station with a ticket; without
  * anyone the login form stays. */
 export async function resume(): Promise<void> {

@@ -3,7 +3,7 @@ import { signal } from "@preact/signals";
 import * as api from "./api";
 import { newKey } from "./http";
 import type { Target } from "./live/commands";
-import { attempt } from "./sessions";
+import { attempt, namedIncident } from "./sessions";
 
 export interface Undoable {
   words: string;
@@ -20,7 +20,8 @@ let timer: ReturnType<typeof setTimeout> | undefined;
 /** Have PAR confirmed by radio. */
 export async function confirmPar(target: Target, whom: string): Promise<void> {
   const checkInId = newKey();
-  await enter(api.checkIn(target, checkInId), {
+  const incidentId = "unit_id" in target ? undefined : namedIncident();
+  await enter(api.checkIn(target, checkInId, incidentId), {
     words: `PAR of ${whom}: confirmed by radio`,
     undo: () => api.undoCheckIn(checkInId),
   });

@@ -20,10 +20,14 @@ export function singleRows(open: readonly AlarmView[]): AlarmRow[] {
 }
 
 /** `open` in the order in which alarms want a person: a row stands where its first alarm does.  A member
- * who is down keeps all alarms in the own row. */
-export function alarmRows(open: readonly AlarmView[]): AlarmRow[] {
+ * who is down keeps all alarms in the own row, and a flood is of one incident. */
+export function alarmRows(
+  open: readonly AlarmView[],
+  incidentOf: (unitId: string) => string = () => "",
+): AlarmRow[] {
   const down = new Set(open.filter(isOfDown).map((alarm) => alarm.unit_id));
-  const floods = floodsOf(open.filter((alarm) => alarm.unit_id !== "" && !down.has(alarm.unit_id)));
+  const others = open.filter((alarm) => alarm.unit_id !== "" && !down.has(alarm.unit_id));
+  const floods = floodsOf(others, incidentOf);
   const rows = new Map<string, { isFlood: boolean; alarms: AlarmView[] }>();
   for (const alarm of open) {
     const flood = floods.get(alarm.alarm_id);
@@ -40,10 +44,13 @@ function isOfDown({ priority, rule, unit_id }: AlarmView): boolean {
 }
 
 /** The key of the flood by the id of each alarm that belongs to one. */
-function floodsOf(alarms: readonly AlarmView[]): Map<string, string> {
+function floodsOf(
+  alarms: readonly AlarmView[],
+  incidentOf: (unitId: string) => string,
+): Map<string, string> {
   const alike = new Map<string, AlarmView[]>();
   for (const alarm of alarms) {
-    const kind = `${alarm.rule} ${alarm.level} ${alarm.priority}`;
+    const kind = `${alarm.rule} ${alarm.level} ${alarm.priority} ${incidentOf(alarm.unit_id)}`;
     alike.set(kind, [...(alike.get(kind) ?? []), alarm]);
   }
   const floods = new Map<string, string>();

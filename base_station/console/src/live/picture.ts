@@ -16,6 +16,7 @@ import type {
   UnitView,
 } from "../wire";
 import { openAlarms } from "./alarms";
+import { choicesOf, cutTo, shownIncident, unassignedUnits, type IncidentChoice } from "./incidents";
 import type { State } from "./state";
 
 /** `sinceMs` is by the console's own clock. */
@@ -37,7 +38,11 @@ export class Picture {
     const silentMs = this.nowMs.value - this.heardMs.value;
     return silentMs < SILENCE_MS ? 0 : silentMs;
   });
+  /** The one that is shown; plan, anchor, pins, beacons, orders and trails are of it. */
   readonly incident = signal<IncidentView | null>(null);
+  /** The open incidents, where several are open; else empty. */
+  readonly choices = signal<readonly IncidentChoice[]>([]);
+  /** Of all incidents. */
   readonly alarms = signal<ReadonlyMap<string, AlarmView>>(new Map());
   readonly commands = signal<ReadonlyMap<string, CommandView>>(new Map());
   readonly plan = signal<Plan | null>(null);
@@ -48,6 +53,7 @@ export class Picture {
   readonly dispatches = signal<readonly DispatchView[]>([]);
   readonly health = signal<HealthView | null>(null);
   readonly replay = signal<ReplayView | null>(null);
+  /** Of everybody on the station. */
   readonly unitIds = signal<readonly string[]>([]);
   readonly trails = signal<ReadonlyMap<string, readonly TrailPoint[]>>(new Map());
   /** Changes with every message that touched a unit; the plan redraws on it. */
@@ -59,6 +65,10 @@ export class Picture {
 
   private readonly units = new Map<string, Signal<UnitView>>();
   private latest: State["units"] = new Map();
+  private shown: State["units"] = new Map();
+  private unassigned: readonly UnitView[] = [];
+  private state: State | null = null;
+  private wanted: string | null = null;
   /** What cards show with the next step of the clock. */
   private readonly waiting = new Map<string, UnitView>();
 
@@ -67,27 +77,61 @@ export class Picture {
     return this.units.get(unitId);
   }
 
-  /** All units as they are, without listening to them. */
+  /** All units of the incident that is shown as they are, without listening to them. */
   allUnits(): UnitView[] {
+    return [...this.shown.values()];
+  }
+
+  /** Those of no open incident, beside the ones that are shown. */
+  unassignedUnits(): readonly UnitView[] {
+    return this.unassigned;
+  }
+
+  /** Everybody on the station. */
+  unitsOfAll(): UnitView[] {
     return [...this.latest.values()];
   }
 
-  show(state: State): void {
+  isShown(unitId: string): boolean {
+    return this.shown.has(unitId);
+  }
+
+  /** The open incident that a unit works in where another one is shown; else null. */
+  otherIncidentOf(unitId: string): IncidentView | null {
+    if (this.shown.has(unitId)) return null;
+    const incidentId = this.latest.get(unitId)?.incident_id;
+    return this.choices.value.find(({ incident }) => incident.incident_id === incidentId)?.incident ?? null;
+  }
+
+  /** Show another incident, at once or as soon as it is open. */
+  choose(incidentId: string): void {
+    this.wanted = incidentId;
+    if (this.state !== null) this.show(this.state);
+  }
+
+  show(whole: State): void {
+    this.state = whole;
+    const before = this.incident.peek();
+    const state = cutTo(whole, shownIncident(whole, [this.wanted, before?.incident_id ?? null]));
     batch(() => {
       this.heardMs.value = state.now_ms;
       this.incident.value = state.incident;
+      keep(this.choices, choicesOf(whole), isSameChoice);
       this.alarms.value = state.alarms;
-      this.commands.value = state.commands;
+      keepEntries(this.commands, state.commands);
       this.plan.value = state.plan;
       this.anchor.value = state.anchor;
-      this.pins.value = state.pins;
-      this.beacons.value = state.beacons;
-      this.external.value = state.external;
+      keep(this.pins, state.pins);
+      keep(this.beacons, state.beacons);
+      keep(this.external, state.external);
       this.dispatches.value = state.dispatches;
       this.health.value = state.health;
       this.replay.value = state.replay;
       this.trails.value = state.trails;
-      this.showUnits(state.units);
+      this.unassigned = unassignedUnits(whole, state);
+      this.shown = state.units;
+      if (before?.incident_id !== state.incident?.incident_id) this.unitsChanged.value += 1;
+      this.showUnits(whole.units);
       this.ready.value = true;
     });
   }
@@ -130,6 +174,39 @@ export class Picture {
       this.unitIds.value = ids;
     }
   }
+}
+
+/** A list that is cut anew with every message stays the same one while it has the same entries: what
+ * is being done with them goes on. */
+function keep<T>(
+  shown: Signal<readonly T[]>,
+  next: readonly T[],
+  isSame: (a: T, b: T) => boolean = Object.is,
+): void {
+  if (!isSameList(shown.peek(), next, isSame)) shown.value = next;
+}
+
+/** What is no list is never the same: where it is shown, it is named. */
+function isSameList<T>(
+  before: readonly T[],
+  next: readonly T[],
+  isSame: (a: T, b: T) => boolean,
+): boolean {
+  if (!Array.isArray(before) || !Array.isArray(next) || before.length !== next.length) return false;
+  return next.every((one, i) => {
+    const other = before[i];
+    return other !== undefined && isSame(one, other);
+  });
+}
+
+function keepEntries<V>(shown: Signal<ReadonlyMap<string, V>>, next: ReadonlyMap<string, V>): void {
+  const before = shown.peek();
+  const same = before.size === next.size && [...next].every(([key, one]) => before.get(key) === one);
+  if (!same) shown.value = next;
+}
+
+function isSameChoice(a: IncidentChoice, b: IncidentChoice): boolean {
+  return a.incident === b.incident && a.openAlarms === b.openAlarms;
 }
 
 /** Whoever walks changes in these with every message, and a card shows them to a metre and a second. */

@@ -13,6 +13,7 @@ import type {
   PinView,
   Plan,
   ReplayView,
+  SiteView,
   Snapshot,
   Trail,
   TrailPoint,
@@ -33,8 +34,10 @@ export interface State {
   beacons: readonly BeaconView[];
   external: readonly ExternalMarkerView[]; // of other teams
   dispatches: readonly DispatchView[]; // from which no incident was opened
-  plan: Plan | null;
+  plan: Plan | null; // of `incident`, as the anchor is
   anchor: AnchorView | null;
+  incidents: readonly IncidentView[]; // open, and closed ones whose people are still on their ground
+  sites: readonly SiteView[]; // other grounds than that of `incident`
   health: HealthView;
   replay: ReplayView | null;
 }
@@ -74,17 +77,21 @@ function fromSnapshot(message: Snapshot, before: State | null): State {
     beacons: message.beacons,
     external: message.external,
     dispatches: message.dispatches,
-    plan: planOf(message, before),
+    plan: knownPlan(message.plan, before),
     anchor: message.anchor,
+    incidents: message.incidents,
+    sites: message.sites.map((site) => ({ ...site, plan: knownPlan(site.plan, before) })),
     health: message.health,
     replay: message.replay,
   };
 }
 
 /** The same object while it is the same plan: whoever looks at a part of it goes on looking there. */
-function planOf({ plan }: Snapshot, before: State | null): Plan | null {
-  const shown = before?.plan ?? null;
-  return JSON.stringify(plan) === JSON.stringify(shown) ? shown : plan;
+function knownPlan(plan: Plan | null, before: State | null): Plan | null {
+  if (plan === null || before === null) return plan;
+  const text = JSON.stringify(plan);
+  const known = [before.plan, ...before.sites.map((site) => site.plan)];
+  return known.find((one) => JSON.stringify(one) === text) ?? plan;
 }
 
 /** The changed units, whole. */

@@ -1,5 +1,5 @@
 /** Keeps the plan as the picture is, a few times a second at most. */
-import { effect } from "@preact/signals";
+import { computed, effect } from "@preact/signals";
 import { shownTheme } from "../appearance";
 import { units } from "../language/measures";
 import { guarded } from "../live/faults";
@@ -32,6 +32,7 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       }),
     ),
   );
+  const siteId = computed(() => picture.incident.value?.site_id ?? "");
   const drawPins = () => {
     void shownTheme.value;
     map.showPins({
@@ -50,7 +51,10 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       map.recolour();
     }),
     following("The scale of the plan", () => map.showUnits(units.value)),
-    following("The building", () => map.showPlan(picture.plan.value)),
+    following("The building", () => {
+      void siteId.value; // another ground without a plan is another place all the same
+      map.showPlan(picture.plan.value);
+    }),
     followBaseMap(map.ground, () => picture.anchor.value),
     effect(() => {
       void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value];

@@ -1,6 +1,5 @@
 import { useRef } from "preact/hooks";
 import { attempt, mayAct } from "../sessions";
-import { find } from "../uiState";
 import * as api from "../api";
 import { handedTo, sinceMs } from "../live/alarms";
 import { alarmCurrentValue } from "../live/alarmCurrentValue";
@@ -9,6 +8,7 @@ import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
 import { alarmLabel, duration } from "../format";
 import { ConfirmButton } from "./ConfirmButton";
+import { showUnit } from "./showIncident";
 import { useGuardedPress } from "./useGuardedPress";
 import { Icon } from "./Icon";
 
@@ -29,7 +29,7 @@ export function AlarmRowView({ row, place, picture, onFlood }: Props) {
   const taken = raisedOf(row).length === 0;
   const unit = picture.unit(first.unit_id);
   const words = spoken(row, picture);
-  const show = () => find(first.unit_id, unit?.peek().position?.floor ?? null);
+  const show = () => showUnit(picture, first.unit_id);
   return (
     <li class={`alarm p${first.priority} ${taken ? "taken" : ""}`} data-alarm={first.alarm_id}>
       <Icon name={taken ? "check" : "alarm"} />
@@ -41,7 +41,7 @@ export function AlarmRowView({ row, place, picture, onFlood }: Props) {
         disabled={!row.isFlood && unit === undefined}
         onClick={row.isFlood ? onFlood : show}
       >
-        {row.isFlood ? floodText(row) : textOf(first, picture)}
+        {headOf(row, first, picture)}
         {!row.isFlood &&
           row.alarms.slice(1).map((alarm) => (
             <span class="cause" key={alarm.alarm_id}>
@@ -61,6 +61,13 @@ export function AlarmRowView({ row, place, picture, onFlood }: Props) {
   );
 }
 
+/** What stands first in a row; of another incident than the one that is shown, with its name. */
+function headOf(row: AlarmRow, first: AlarmView, picture: Picture): string {
+  const other = picture.otherIncidentOf(first.unit_id);
+  const words = row.isFlood ? floodText(row) : textOf(first, picture);
+  return other === null ? words : `${other.name}: ${words}`;
+}
+
 function textOf(alarm: AlarmView, picture: Picture): string {
   const unit = picture.unit(alarm.unit_id);
   const handed = unit === undefined ? "" : handedTo(alarm, unit.value);
@@ -71,8 +78,8 @@ function textOf(alarm: AlarmView, picture: Picture): string {
 function spoken(row: AlarmRow, picture: Picture): string {
   const [first, ...others] = row.alarms;
   if (first === undefined) return "";
-  if (row.isFlood) return floodText(row);
-  return [textOf(first, picture), ...others.map(alarmLabel)].join(", ");
+  const head = headOf(row, first, picture);
+  return row.isFlood ? head : [head, ...others.map(alarmLabel)].join(", ");
 }
 
 function figureOf(alarm: AlarmView, picture: Picture): string {

@@ -12,7 +12,7 @@ import { SoundButton } from "./SoundButton";
  * no room for is listed over the page, one row an alarm, once that is asked for. */
 export function AlarmStrip({ picture }: { picture: Picture }) {
   const open = picture.openAlarms.value;
-  const rows = alarmRows(open);
+  const rows = alarmRows(open, (unitId) => picture.otherIncidentOf(unitId)?.incident_id ?? "");
   const zone = useRef<HTMLDivElement>(null);
   const room = useRoom(zone);
   const isListed = useSignal(false);

@@ -1,5 +1,5 @@
 import { useSignal, useSignalEffect } from "@preact/signals";
-import { attempt } from "../sessions";
+import { attempt, namedIncident } from "../sessions";
 import * as api from "../api";
 import type { LatLon } from "../api";
 import type { Picture } from "../live/picture";
@@ -33,7 +33,7 @@ export function AnchorPanel({ picture }: { picture: Picture }) {
     isNone(); // it was asked of other points
   });
   const send = (next: AnchorView) =>
-    void attempt(api.setAnchor(next).then(() => true)).then((done) => done && putDown());
+    void attempt(api.setAnchor(next, namedIncident()).then(() => true)).then((done) => done && putDown());
   const submit = (event: SubmitEvent) => {
     take(fields(event));
     const found = fit.value;

@@ -1,4 +1,4 @@
-import { attempt } from "../sessions";
+import { attempt, namedIncident } from "../sessions";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
 import { putDown } from "../plan/tools";
@@ -24,7 +24,7 @@ export function BeaconPanel({ picture, beacon }: Props) {
       reach_m: Number(given["reach"]),
       ...placeOf(given, beacon ?? undefined),
     };
-    void attempt(api.placeBeacon(wanted)).then((done) => done && putDown());
+    void attempt(api.placeBeacon(wanted, namedIncident())).then((done) => done && putDown());
   };
   const seenMs = beacon?.seen_ms ?? null;
   return (

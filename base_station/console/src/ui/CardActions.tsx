@@ -1,4 +1,4 @@
-import { attempt } from "../sessions";
+import { attempt, live } from "../sessions";
 import { openDialog } from "../uiState";
 import * as api from "../api";
 import { take } from "../plan/tools";
@@ -13,8 +13,18 @@ export function CardActions({ unit }: { unit: UnitView }) {
   const { unit_id: unitId, duty } = unit;
   const name = displayName(unit);
   const resting = duty !== null && duty.rest_since_ms !== null;
+  const incidentId = incidentFor(unitId);
   return (
     <div class="card-actions" role="group" aria-label={`For ${name}`}>
+      {incidentId !== null && (
+        <button
+          type="button"
+          class="primary"
+          onClick={() => void attempt(api.assignMembers(incidentId, { unit_id: unitId }))}
+        >
+          Assign to this incident
+        </button>
+      )}
       {duty !== null && (
         <>
           <ByRadio
@@ -41,6 +51,13 @@ export function CardActions({ unit }: { unit: UnitView }) {
       </button>
     </div>
   );
+}
+
+/** The incident that is shown, where the unit is of none; else null. */
+function incidentFor(unitId: string): string | null {
+  const shown = live.value?.picture;
+  if (shown === undefined || shown.choices.value.length === 0 || shown.isShown(unitId)) return null;
+  return shown.incident.value?.incident_id ?? null;
 }
 
 /** Asks first where it cannot do what it is for. */

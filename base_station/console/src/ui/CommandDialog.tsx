@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import { attempt, live, mayAct } from "../sessions";
+import { attempt, live, mayAct, namedIncident } from "../sessions";
 import { dialogUnit } from "../uiState";
 import * as api from "../api";
 import {
@@ -74,27 +74,29 @@ function CommandForm({ kind, picture, sent }: FormProps) {
   const about = dialogUnit.peek();
   const to = useSignal(about === null ? EVERYONE : `unit:${about}`);
   const once = useSinglePress();
-  const units = picture.unitIds.value
-    .map((unitId) => picture.unit(unitId)?.value)
-    .filter((unit) => unit !== undefined)
-    .filter((unit) => unit.registered);
+  void picture.unitsChanged.value;
+  const members = picture.allUnits().filter((unit) => unit.registered);
+  const units = [...members, ...picture.unassignedUnits().filter((unit) => unit.registered)];
   const targets = new Map([
-    [EVERYONE, "Everyone"],
-    ...crewsOf(units).map((crew) => [`crew:${crew}`, crew] as const),
-    ...floorsOf(units).map((floor) => [`floor:${floor}`, floorWord(floor)] as const),
+    [EVERYONE, everyoneWord(picture)],
+    ...crewsOf(members).map((crew) => [`crew:${crew}`, crew] as const),
+    ...floorsOf(members).map((floor) => [`floor:${floor}`, floorWord(floor)] as const),
     ...units.map((unit) => [`unit:${unit.unit_id}`, nameAmong(unit, units)] as const),
   ]);
   // Else the list would turn to its first entry, which is everyone.
   if (!targets.has(to.value)) targets.set(to.value, `${nameIn(to.value)} (nobody now)`);
-  const unreachable = notNotifiable(targetOf(to.value), units);
+  const target = targetOf(to.value);
+  const unreachable = notNotifiable(target, "unit_id" in target ? units : members);
   return (
     <form
       class="row command-form"
       onSubmit={(event) => {
         const form = event.currentTarget;
         const { text = "" } = fields(event);
+        const wanted = targetOf(to.peek());
+        const incidentId = "unit_id" in wanted ? undefined : namedIncident();
         once(() =>
-          attempt(api.sendCommand(kind, targetOf(to.peek()), text)).then(
+          attempt(api.sendCommand(kind, wanted, text, incidentId)).then(
             (command) => {
               if (!command) return;
               sent(command);
@@ -135,6 +137,11 @@ function CommandForm({ kind, picture, sent }: FormProps) {
       </p>
     </form>
   );
+}
+
+function everyoneWord(picture: Picture): string {
+  const several = picture.choices.value.length > 0;
+  return several ? `Everyone in ${picture.incident.value?.name}` : "Everyone";
 }
 
 function floorWord(floor: number): string {

@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import { attempt, isPast, mayAct, picture } from "../sessions";
+import { attempt, isPast, mayAct, namedIncident, picture } from "../sessions";
 import * as api from "../api";
 import { dispatchOf, facts, positionWords, suggestedName, unitWords } from "../live/dispatch";
 import type { Picture } from "../live/picture";
@@ -145,7 +145,7 @@ function UsePosition({ dispatch, shown }: Props) {
       label="Take its position as the place of the site"
       question={`${change} The plan is put at ${positionWords(dispatch)} for everybody.`}
       yes="Yes, take the position"
-      onConfirm={() => void attempt(api.setAnchor(place))}
+      onConfirm={() => void attempt(api.setAnchor(place, namedIncident()))}
     />
   );
 }

@@ -3,6 +3,7 @@ import { openDialog, openDispatch } from "../uiState";
 import type { Picture } from "../live/picture";
 import { clockTime, minutes, problemsOf, timeSince, zone } from "../format";
 import { Icon } from "./Icon";
+import { IncidentSwitch } from "./IncidentSwitch";
 import { Menu } from "./Menu";
 import { ParClock } from "./ParClock";
 
@@ -32,7 +33,14 @@ function IncidentTitle({ picture }: { picture: Picture }) {
   const until = incident.closed_ms ?? picture.nowMs.value;
   return (
     <div class="incident">
-      <h1 title={incident.name}>{incident.name}</h1>
+      {picture.choices.value.length > 0 ? (
+        <>
+          <h1 class="spoken">{incident.name}</h1>
+          <IncidentSwitch picture={picture} />
+        </>
+      ) : (
+        <h1 title={incident.name}>{incident.name}</h1>
+      )}
       <span class="quiet">
         {incident.closed_ms === null ? "open for " : "closed after "}
         {minutes(until - incident.opened_ms)}

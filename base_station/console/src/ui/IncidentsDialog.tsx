@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import { attempt, live, liveIsPast, mayAct, user, watchReplay } from "../sessions";
 import * as api from "../api";
 import { unfinished } from "../live/closing";
+import type { Picture } from "../live/picture";
 import { summary } from "../live/dispatch";
 import { KINDS, type TrailKind } from "../plan/pastTrails";
 import { assess, openDispatch } from "../uiState";
@@ -9,10 +10,12 @@ import type { IncidentView } from "../wire";
 import { dateAndTime, minutes, zone } from "../format";
 import { saveAs } from "../saving";
 import { Columns } from "./Columns";
+import { AssignForm } from "./AssignForm";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { useDone } from "./Done";
 import { EraseForm } from "./EraseForm";
+import { showIncident } from "./showIncident";
 import { TimesFields, timesOf } from "./TimesFields";
 import { useSinglePress } from "./useGuardedPress";
 import { OpenReplays } from "./OpenReplays";
@@ -40,7 +43,10 @@ export function IncidentsDialog() {
           <CloseButton incident={running} done={again} />
         </p>
       )}
-      {mayAct.value && running !== null && <TimesForm incident={running} />}
+      {mayAct.value && running !== null && <TimesForm key={running.incident_id} incident={running} />}
+      {mayAct.value && running !== null && live.value !== null && (
+        <SeveralIncidents running={running} picture={live.value.picture} done={again} />
+      )}
       {mayAct.value && <Dispatches />}
       {entries.value.length > 0 && (
         <p class="quiet">
@@ -155,7 +161,9 @@ function CloseButton({ incident, done }: { incident: IncidentView; done: () => v
   const picture = live.value?.picture;
   if (picture === undefined) return null;
   void picture.unitsChanged.value;
-  const { words, ...despite } = unfinished(picture.allUnits(), picture.alarms.value.values());
+  const members = picture.allUnits();
+  const alarms = [...picture.alarms.value.values()].filter(({ unit_id }) => picture.isShown(unit_id));
+  const { words, ...despite } = unfinished(members, alarms);
   const over = words === "" ? "" : `${words} Close it all the same? Orders without an answer end. `;
   return (
     <ConfirmButton
@@ -166,7 +174,53 @@ function CloseButton({ incident, done }: { incident: IncidentView; done: () => v
   );
 }
 
-function OpenForm({ done }: { done: () => void }) {
+/** Crews for the incident that is shown, and another incident beside it. */
+function SeveralIncidents({ running, picture, done }: SeveralProps) {
+  const isAsked = useSignal(false);
+  const several = picture.choices.value.length > 0;
+  const opened = (incident: api.Incident | null) => {
+    if (incident === null) return;
+    isAsked.value = false;
+    showIncident(picture, incident.incident_id);
+    done();
+  };
+  return (
+    <>
+      {several && <AssignForm key={running.incident_id} incident={running} picture={picture} />}
+      <p class="row">
+        <button
+          type="button"
+          aria-expanded={isAsked.value}
+          onClick={() => (isAsked.value = !isAsked.value)}
+        >
+          Open another incident
+        </button>
+      </p>
+      {isAsked.value && (
+        <>
+          <p>
+            <strong>{running.name}</strong> goes on beside it; to end it, close it first. The new incident has
+            nobody and no plan yet: assign crews to it here.
+          </p>
+          <OpenForm beside done={opened} />
+        </>
+      )}
+    </>
+  );
+}
+
+interface SeveralProps {
+  running: IncidentView;
+  picture: Picture;
+  done: () => void;
+}
+
+interface OpenProps {
+  done: (opened: api.Incident | null) => void;
+  beside?: boolean; // another one that is open
+}
+
+function OpenForm({ done, beside = false }: OpenProps) {
   const [usual] = useLoaded(api.usualTimes);
   const once = useSinglePress();
   return (
@@ -175,7 +229,8 @@ function OpenForm({ done }: { done: () => void }) {
       onSubmit={(event) => {
         const given = fields(event);
         const times = usual.value === null ? {} : timesOf(given);
-        once(() => attempt(api.openIncident(given["name"] ?? "", times)).then(done));
+        const open = beside ? api.openBeside : api.openIncident;
+        once(() => attempt(open(given["name"] ?? "", times)).then(done));
       }}
     >
       <label>
@@ -183,7 +238,7 @@ function OpenForm({ done }: { done: () => void }) {
         <input name="name" required maxLength={80} autofocus />
       </label>
       {usual.value && <TimesFields times={usual.value} />}
-      <button class="primary">Open incident</button>
+      <button class="primary">{beside ? "Open beside" : "Open incident"}</button>
     </form>
   );
 }

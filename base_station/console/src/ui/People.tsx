@@ -13,6 +13,7 @@ import { Headcount } from "./Headcount";
 import { ListTools } from "./ListTools";
 import { finding, order, part, showAll, text } from "./listState";
 import { PeopleGroups } from "./PeopleGroups";
+import { Unassigned } from "./Unassigned";
 
 /** With more than this, whoever is well is said in short, so that who is not is seen. */
 const MANY = 6;
@@ -24,12 +25,12 @@ export function People({ picture }: { picture: Picture }) {
   const down = useComputed(() => places.value.filter(isCasualty).map((place) => place.unitId));
   const second = useComputed(() => Math.floor(picture.nowMs.value / 1000));
   const counts = useComputed(() => {
-    void [picture.unitIds.value, second.value];
+    void [picture.unitIds.value, picture.incident.value, second.value];
     return headcountOf(picture.allUnits());
   });
   const seenMs = useRef(0);
   useSignalEffect(() => {
-    void [picture.unitIds.value, picture.alarms.value, second.value, held.value];
+    void [picture.unitIds.value, picture.incident.value, picture.alarms.value, second.value, held.value];
     guarded("The list of people", () => untracked(() => {
       const nowMs = picture.nowMs.value;
       const before = isJump(seenMs.current, nowMs) ? [] : places.value;
@@ -76,16 +77,21 @@ export function People({ picture }: { picture: Picture }) {
       <div class="people-list">
         {places.value.length === 0 ? (
           <p class="nobody">
-            {picture.ready.value
-              ? "No unit has been heard yet. Each appears here by itself when it is switched on."
-              : "Waiting for the station."}
+            {nobodyWords(picture)}
           </p>
         ) : (
           <PeopleGroups groups={shown} brief={places.value.length > MANY} picture={picture} />
         )}
+        <Unassigned picture={picture} second={second} brief={places.value.length > MANY} />
       </div>
     </section>
   );
+}
+
+function nobodyWords(picture: Picture): string {
+  if (!picture.ready.value) return "Waiting for the station.";
+  if (picture.choices.value.length > 0) return "Nobody is in this incident yet: assign crews in Incidents.";
+  return "No unit has been heard yet. Each appears here by itself when it is switched on.";
 }
 
 /** All of them where they cannot be sorted out. */

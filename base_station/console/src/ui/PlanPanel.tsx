@@ -1,6 +1,6 @@
 import { useSignal, useSignalEffect, type Signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { attempt, mayAct } from "../sessions";
+import { attempt, mayAct, namedIncident } from "../sessions";
 import { centring, pane, notice, select, selectedUnit } from "../uiState";
 import * as api from "../api";
 import type { Picture } from "../live/picture";
@@ -34,7 +34,9 @@ export function PlanPanel({ picture }: { picture: Picture }) {
 
   useSignalEffect(() => {
     if (centring.value === 0) return;
-    const position = picture.unit(selectedUnit.peek() ?? "")?.peek().position;
+    const unitId = selectedUnit.peek() ?? "";
+    if (!picture.isShown(unitId)) return; // where it is, is of another ground
+    const position = picture.unit(unitId)?.peek().position;
     if (position) map.current?.centre(siteCoordinate(position));
   });
 
@@ -122,7 +124,7 @@ async function move(picture: Picture, standing: Standing, place: Place): Promise
 function moved(picture: Picture, standing: Standing, place: Place): Promise<object | null> {
   const beacon = picture.beacons.peek().find((one) => one.beacon_id === standing.id);
   if (standing.kind === "beacon" && beacon !== undefined) {
-    return api.placeBeacon({ beacon_id: beacon.beacon_id, ...place });
+    return api.placeBeacon({ beacon_id: beacon.beacon_id, ...place }, namedIncident());
   }
   const pin = picture.pins.peek().find((one) => one.pin_id === standing.id);
   if (pin === undefined || pin.kind !== "place") {

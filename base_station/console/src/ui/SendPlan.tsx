@@ -1,5 +1,5 @@
 import { setAnchor, setPlan } from "../api";
-import { attempt } from "../sessions";
+import { attempt, namedIncident } from "../sessions";
 import { dialog } from "../uiState";
 import { ConfirmButton } from "./ConfirmButton";
 
@@ -23,7 +23,9 @@ export function SendPlan({ plan, replaces, place }: Props) {
 }
 
 async function sent(plan: object, place: Props["place"]): Promise<void> {
-  await setPlan(plan);
+  const incidentId = namedIncident();
+  await setPlan(plan, incidentId);
   if (!place || place.lat_deg === null || place.lon_deg === null) return;
-  await setAnchor({ lat_deg: place.lat_deg, lon_deg: place.lon_deg, height_m: 0, plan_rotation_rad: 0 });
+  const anchor = { lat_deg: place.lat_deg, lon_deg: place.lon_deg, height_m: 0, plan_rotation_rad: 0 };
+  await setAnchor(anchor, incidentId);
 }

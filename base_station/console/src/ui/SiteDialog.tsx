@@ -1,6 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { setAnchor } from "../api";
-import { attempt, live } from "../sessions";
+import { attempt, live, namedIncident } from "../sessions";
 import { dialog } from "../uiState";
 import { changeOf, placeWords } from "../plan/anchor";
 import { take } from "../plan/tools";
@@ -45,7 +45,7 @@ function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
   const asked = useSignal<AnchorView | null>(null);
   const button = useFocusBack(asked.value !== null);
   const send = (next: AnchorView) =>
-    void attempt(setAnchor(next).then(() => (dialog.value = null)));
+    void attempt(setAnchor(next, namedIncident()).then(() => (dialog.value = null)));
   return (
     <form
       class="row"

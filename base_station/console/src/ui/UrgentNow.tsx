@@ -1,6 +1,7 @@
 import { isPast, live, stopReplay } from "../sessions";
-import { dialog, find } from "../uiState";
+import { dialog } from "../uiState";
 import { Icon } from "./Icon";
+import { showUnit } from "./showIncident";
 
 /** In a dialog, which covers the alarms: those that nobody has taken and that cannot wait.  Over a
  * replay they are of what is live, and lead there; of the past there are none. */
@@ -13,16 +14,18 @@ export function UrgentNow() {
   );
   const [first, ...more] = urgent;
   if (picture === undefined || first === undefined) return <div role="alert" />;
+  const other = picture.otherIncidentOf(first.unit_id);
   const show = () => {
     stopReplay();
     dialog.value = null;
-    find(first.unit_id, picture.unit(first.unit_id)?.peek().position?.floor ?? null);
+    showUnit(picture, first.unit_id);
   };
   return (
     <div role="alert" class="urgent-now">
       <button type="button" onClick={show}>
         <Icon name="alarm" />
         {overPast && "Live now: "}
+        {other !== null && `${other.name}: `}
         {first.text}
         {more.length > 0 && ` (+${more.length})`}
       </button>

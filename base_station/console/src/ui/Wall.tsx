@@ -4,7 +4,7 @@ import { wall } from "../appearance";
 import { clockTime, shortFloor } from "../format";
 import { headcountOf } from "../live/headcount";
 import type { Picture } from "../live/picture";
-import { arrange, displayName, type Place } from "../live/urgency";
+import { arrange, displayName, urgencyOf, type Place } from "../live/urgency";
 import type { UnitView } from "../wire";
 import { Icon } from "./Icon";
 import { whatOrWhere } from "./Line";
@@ -17,7 +17,7 @@ export function Wall({ picture }: { picture: Picture }) {
   const list = useRef<HTMLUListElement>(null);
   const room = useRoom(list);
   const units = picture.allUnits();
-  const places = arrange([], units, picture.alarms.value, picture.nowMs.peek(), false);
+  const places = arrange([], [...units, ...inNeedElsewhere(picture)], picture.alarms.value, picture.nowMs.peek(), false);
   const counts = headcountOf(units);
   const left = places.slice(room);
   return (
@@ -49,10 +49,23 @@ function Row({ place, picture }: { place: Place; picture: Picture }) {
     <li class={place.urgency}>
       {urgent && <Icon name="alarm" />}
       <span class="wall-name">{displayName(unit)}</span>
-      <span class="wall-words">{whatOrWhere(unit, picture)}</span>
+      <span class="wall-words">{wordsOf(unit, picture)}</span>
       <span class="wall-floor">{floorOf(unit)}</span>
     </li>
   );
+}
+
+/** Of other incidents whoever needs somebody: this screen has no list of alarms. */
+function inNeedElsewhere(picture: Picture): UnitView[] {
+  const others = picture.unitsOfAll().filter(({ unit_id }) => !picture.isShown(unit_id));
+  return others.filter((unit) => ["immediate", "soon"].includes(urgencyOf(unit, picture.alarms.value)));
+}
+
+/** What is the matter; of another ground not the place, but the incident. */
+function wordsOf(unit: UnitView, picture: Picture): string {
+  if (picture.isShown(unit.unit_id)) return whatOrWhere(unit, picture);
+  const name = picture.otherIncidentOf(unit.unit_id)?.name ?? "Unassigned";
+  return `${name}: ${whatOrWhere(unit, picture)}`;
 }
 
 function floorOf({ position }: UnitView): string {

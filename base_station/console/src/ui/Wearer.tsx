@@ -43,7 +43,7 @@ function nameAndCrew({ name, crew }: Named): string {
 
 /** Whoever is given another unit wears the one before no more: ", wears FF-02". */
 function wornElsewhere(personId: string, unitId: string): string {
-  const units = live.peek()?.picture.allUnits() ?? [];
+  const units = live.peek()?.picture.unitsOfAll() ?? [];
   const other = units.find(({ unit_id, person }) => unit_id !== unitId && person?.person_id === personId);
   return other === undefined ? "" : `, wears ${other.label || other.unit_id}`;
 }

@@ -4,8 +4,9 @@ import { shortcutsOn } from "../appearance";
 import type { PlainKey } from "../language/translate";
 import type { Picture } from "../live/picture";
 import { mayAct, picture, waiting } from "../sessions";
-import { dialog, find, openDialog, pane } from "../uiState";
+import { dialog, openDialog, pane } from "../uiState";
 import { finding, seeking } from "./listState";
+import { showUnit } from "./showIncident";
 
 interface Shortcut {
   key: string; // as `KeyboardEvent.key`, in lower case
@@ -67,5 +68,5 @@ function showNextAlarm(): void {
   const next = alarms[(before + 1) % alarms.length];
   if (shown === null || next === undefined) return;
   lastShown = next.alarm_id;
-  find(next.unit_id, shown.unit(next.unit_id)?.peek().position?.floor ?? null);
+  showUnit(shown, next.unit_id);
 }

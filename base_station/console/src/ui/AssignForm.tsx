@@ -1,0 +1,61 @@
+import { useSignal } from "@preact/signals";
+import * as api from "../api";
+import { crewsOf, type Target } from "../live/commands";
+import type { Picture } from "../live/picture";
+import { nameAmong } from "../live/urgency";
+import { attempt } from "../sessions";
+import type { IncidentView, UnitView } from "../wire";
+import { useSinglePress } from "./useGuardedPress";
+
+interface Props {
+  incident: IncidentView;
+  picture: Picture;
+}
+
+/** Who works in the incident that is shown from now on: a crew or a unit of another one, or of none. */
+export function AssignForm({ incident, picture }: Props) {
+  const whom = useSignal("");
+  const once = useSinglePress();
+  void picture.unitsChanged.value;
+  const others = picture.unitsOfAll().filter((unit) => unit.registered && !picture.isShown(unit.unit_id));
+  const targets = new Map<string, string>([
+    ...crewsOf(others).map((crew) => [`crew:${crew}`, crew] as const),
+    ...others.map((unit) => [`unit:${unit.unit_id}`, wordsOf(unit, picture)] as const),
+  ]);
+  const chosen = targets.has(whom.value) ? whom.value : "";
+  return (
+    <form
+      class="row"
+      onSubmit={(event) => {
+        event.preventDefault();
+        once(() => attempt(api.assignMembers(incident.incident_id, targetOf(chosen))));
+      }}
+    >
+      <label>
+        Crew or unit of another incident, or of none
+        <select required value={chosen} onChange={(event) => (whom.value = event.currentTarget.value)}>
+          <option value="">{others.length === 0 ? "nobody is elsewhere" : "choose"}</option>
+          {[...targets].map(([target, words]) => (
+            <option key={target} value={target}>
+              {words}
+            </option>
+          ))}
+        </select>
+      </label>
+      <button disabled={others.length === 0}>Assign to this incident</button>
+      <p class="quiet">PAR of who is assigned is to be confirmed here, and the path begins anew.</p>
+    </form>
+  );
+}
+
+/** "Jonas Bergman, in Harbour". */
+function wordsOf(unit: UnitView, picture: Picture): string {
+  const other = picture.otherIncidentOf(unit.unit_id);
+  const where = other === null ? "unassigned" : `in ${other.name}`;
+  return `${nameAmong(unit, picture.unitsOfAll())}, ${where}`;
+}
+
+function targetOf(chosen: string): Target {
+  const name = chosen.slice(chosen.indexOf(":") + 1);
+  return chosen.startsWith("crew:") ? { crew: name } : { unit_id: name };
+}
