@@ -6,7 +6,6 @@ path (``odometry``) and the GNSS update (``gnss_update``), and gives the estimat
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -22,7 +21,6 @@ from base_station.fusion.horizontal.map_aided import MapAidedFilter
 from base_station.fusion.interface import (
     BarometricHeight,
     CompassHeading,
-    Estimate,
     FixVerdict,
     PlaceFix,
     Posterior,
@@ -33,8 +31,8 @@ from base_station.fusion.odometry.odometry_increments import OdometryIncrements
 from base_station.fusion.odometry.recent_path import RecentPath
 from base_station.fusion.odometry.run_changes import jump_m, set_back_ns, strayed_m
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.position_quality import quality_of
-from base_station.fusion.vertical.height import HeightFilter, climb_var_m2
+from base_station.fusion.path_estimates import PathEstimates
+from base_station.fusion.vertical.height import HeightFilter
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.storeys import Storey
@@ -57,8 +55,12 @@ class GpsInertial(Parameters):
         return GpsInertialFuser(self, msgspec.msgpack.decode(saved, type=FuserMemory))
 
 
-class GpsInertialFuser:
+class GpsInertialFuser(PathEstimates):
     """One unit's filter; see the module's text."""
+
+    _kind: GpsInertial
+    _memory: FuserMemory
+    _previous_run: GpsInertialFuser | None
 
     def __init__(self, kind: GpsInertial, memory: FuserMemory) -> None:
         self._kind = kind
@@ -167,73 +169,12 @@ class GpsInertialFuser:
         if self._previous_run is not None:
             self._previous_run.reframe(turn_rad, north_m, east_m, down_m)
 
-    def estimate(self) -> Estimate | None:
-        memory = self._memory
-        if memory.last is None and memory.fix_t_mono_ns is None:
-            return None
-        last = memory.last
-        t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
-        heading_rad = last.heading_rad if last else 0.0
-        placed = self._horizontal.estimate_before(0.0, 0.0)
-        height = self._height.down_m, self._height.variance_m2
-        return self._to_estimate(t_mono_ns, heading_rad, placed, height)
+    @property
+    def _is_split(self) -> bool:
+        return self._horizontal.is_split
 
-    def insert_late_position(self, position: Position) -> None:
-        last = self._memory.last
-        if last is not None and last.header.boot_id == position.header.boot_id:
-            self._memory.path.insert_late(position)
-
-    def estimate_at(self, position: Position) -> Estimate | None:
-        """Estimate at an earlier position: the present place less the path since, with the present
-        heading and scale; of the previous run, from its last state.
-        """
-        last, kind = self._memory.last, self._kind
-        if last is None or last.header.boot_id != position.header.boot_id:
-            return None if self._previous_run is None else self._previous_run.estimate_at(position)
-        placed = self._horizontal.estimate_before(
-            last.north_m - position.north_m, last.east_m - position.east_m
-        )
-        walked_m = abs(last.distance_m - position.distance_m)
-        climbed_m = last.down_m - position.down_m
-        height_m = self._height.down_m - climbed_m
-        height_var_m2 = self._height.variance_m2 + climb_var_m2(kind, climbed_m, walked_m)
-        return self._to_estimate(
-            position.header.t_mono_ns,
-            position.heading_rad,
-            placed.inflated(kind.walk_m_per_sqrt_m**2 * walked_m),
-            (height_m, height_var_m2),
-        )
-
-    def _to_estimate(
-        self,
-        t_mono_ns: int,
-        own_heading_rad: float,
-        placed: HorizontalEstimate,
-        height: tuple[float, float],
-    ) -> Estimate:
-        """``height`` with its variance."""
-        memory, fix_ns = self._memory, self._memory.fix_t_mono_ns
-        split = self._horizontal.is_split
-        quality, reason = quality_of(
-            self._kind, placed, memory.last, assumed=memory.assumed, split=split
-        )
-        return Estimate(  # by place: every position comes through here
-            t_mono_ns,
-            placed.north_m,
-            placed.east_m,
-            height[0],
-            placed.std_north_m,
-            placed.std_east_m,
-            math.sqrt(height[1]),
-            placed.correlation_ne,
-            (placed.turn_rad + own_heading_rad) % (2.0 * math.pi),
-            placed.turn_std_rad,
-            quality,
-            reason,
-            None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
-            memory.height_assumed,
-            memory.assumed,
-        )
+    def _place_before(self, north_m: float, east_m: float) -> HorizontalEstimate:
+        return self._horizontal.estimate_before(north_m, east_m)
 
     def _predict(self, increment: OdometryIncrement, own_std_m: float) -> None:
         kind = self._kind

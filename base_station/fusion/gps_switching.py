@@ -23,7 +23,6 @@ from base_station.fusion.dead_reckoning import DeadReckoning
 from base_station.fusion.interface import (
     BarometricHeight,
     CompassHeading,
-    Estimate,
     FixVerdict,
     PlaceFix,
     Posterior,
@@ -34,8 +33,8 @@ from base_station.fusion.odometry.odometry_increments import OdometryIncrements
 from base_station.fusion.odometry.recent_path import PathPoint, RecentPath
 from base_station.fusion.odometry.run_changes import jump_m, set_back_ns, strayed_m
 from base_station.fusion.parameters import Parameters
-from base_station.fusion.position_quality import quality_of
-from base_station.fusion.vertical.height import HeightFilter, SavedHeight, climb_var_m2
+from base_station.fusion.path_estimates import PathEstimates
+from base_station.fusion.vertical.height import HeightFilter, SavedHeight
 from base_station.site.floor_grid import FloorGrid
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.storeys import Storey
@@ -80,8 +79,12 @@ class _Memory(msgspec.Struct):
     course_from: _CourseFix | None = None
 
 
-class GpsSwitchingFuser:
+class GpsSwitchingFuser(PathEstimates):
     """One unit's place by the newest fix and the own path since; see the module's text."""
+
+    _kind: GpsSwitching
+    _memory: _Memory
+    _previous_run: GpsSwitchingFuser | None
 
     def __init__(self, kind: GpsSwitching, memory: _Memory) -> None:
         self._kind = kind
@@ -188,68 +191,14 @@ class GpsSwitchingFuser:
         if self._previous_run is not None:
             self._previous_run.reframe(turn_rad, north_m, east_m, down_m)
 
-    def estimate(self) -> Estimate | None:
-        memory = self._memory
-        if memory.last is None and memory.fix_t_mono_ns is None:
-            return None
-        last = memory.last
-        t_mono_ns = max(last.header.t_mono_ns if last else 0, memory.fix_t_mono_ns or 0)
-        heading_rad = last.heading_rad if last else 0.0
-        height = self._height.down_m, self._height.variance_m2
-        placed = memory.reckoning.estimate_at(self._own_m())
-        return self._to_estimate(t_mono_ns, heading_rad, placed, height)
+    @property
+    def _is_split(self) -> bool:
+        return False
 
-    def insert_late_position(self, position: Position) -> None:
-        last = self._memory.last
-        if last is not None and last.header.boot_id == position.header.boot_id:
-            self._memory.path.insert_late(position)
-
-    def estimate_at(self, position: Position) -> Estimate | None:
-        last, kind = self._memory.last, self._kind
-        if last is None or last.header.boot_id != position.header.boot_id:
-            return None if self._previous_run is None else self._previous_run.estimate_at(position)
-        back_m = last.north_m - position.north_m, last.east_m - position.east_m
-        own_m = position.north_m, position.east_m
-        placed = self._memory.reckoning.estimate_at(own_m, back_m)
-        walked_m = abs(last.distance_m - position.distance_m)
-        climbed_m = last.down_m - position.down_m
-        height_var_m2 = self._height.variance_m2 + climb_var_m2(kind, climbed_m, walked_m)
-        return self._to_estimate(
-            position.header.t_mono_ns,
-            position.heading_rad,
-            placed.inflated(kind.walk_m_per_sqrt_m**2 * walked_m),
-            (self._height.down_m - climbed_m, height_var_m2),
-        )
-
-    def _to_estimate(
-        self,
-        t_mono_ns: int,
-        own_heading_rad: float,
-        placed: HorizontalEstimate,
-        height: tuple[float, float],
-    ) -> Estimate:
-        """``height`` with its variance."""
-        memory, fix_ns = self._memory, self._memory.fix_t_mono_ns
-        quality, reason = quality_of(
-            self._kind, placed, memory.last, assumed=memory.assumed, split=False
-        )
-        return Estimate(
-            t_mono_ns=t_mono_ns,
-            north_m=placed.north_m,
-            east_m=placed.east_m,
-            down_m=height[0],
-            std_north_m=placed.std_north_m,
-            std_east_m=placed.std_east_m,
-            std_down_m=math.sqrt(height[1]),
-            correlation_ne=placed.correlation_ne,
-            heading_rad=(placed.turn_rad + own_heading_rad) % (2.0 * math.pi),
-            heading_std_rad=placed.turn_std_rad,
-            quality=quality,
-            quality_reason=reason,
-            since_gps_s=None if fix_ns is None else max(0.0, (t_mono_ns - fix_ns) / NS_PER_S),
-            height_assumed=memory.height_assumed,
-            assumed=memory.assumed,
-        )
+    def _place_before(self, north_m: float, east_m: float) -> HorizontalEstimate:
+        end_m, back_m = self._own_m(), (north_m, east_m)
+        own_m = end_m[0] - north_m, end_m[1] - east_m
+        return self._memory.reckoning.estimate_at(own_m, back_m)
 
     def _own_m(self) -> tuple[float, float]:
         last = self._memory.last
