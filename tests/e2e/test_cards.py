@@ -100,7 +100,7 @@ def test_who_is_overdue_is_said_to_be_so_once(stage: Stage) -> None:
     late = station.picture.units[0]
     station.change(units=(msgspec.structs.replace(late, duty=heard),))
     open_alarms = card.get_by_label("Open alarms of this person")
-    expect(open_alarms.get_by_role("listitem")).to_have_text(["Missed check-in"])
+    expect(open_alarms.get_by_role("listitem")).to_have_text(["PAR overdue"])
 
 
 def test_each_fault_of_a_unit_says_which_it_is(stage: Stage) -> None:

@@ -259,8 +259,8 @@ export const SWITCHED_OFF = "switched off";
 /** The rule of the alarm that nobody has heard from somebody in time. */
 export const MISSED_CHECK_IN = "missed-check-in";
 
-/** What the station puts before the own words of a unit, or of the agent that tracks for one
- * (base_station/core/alarms/unit_fault.py, tracker_fault.py). */
+/** What stations of earlier versions put before the own words of a unit, or of the agent that tracks for
+ * one; later ones have them as a parameter. */
 const FAULT_PREFIXES: Readonly<Record<string, string>> = {
   "unit-fault": "'s unit: ",
   "tracker-fault": "@tracker): ",
@@ -270,16 +270,25 @@ const MAX_FAULT_LENGTH = 70;
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost".  A unit
  * may have several faults, so each says which it is. */
 export function alarmLabel(alarm: AlarmView): string {
-  if (alarm.level === SWITCHED_OFF) return "Switched off"; // its link is not lost
-  if (alarm.rule === MISSED_CHECK_IN) return "Missed check-in"; // it has no other level
-  const rule = alarm.rule.replaceAll(/[-_]/g, " ").replace(/^gps\b/, "GPS");
-  const word = rule.charAt(0).toUpperCase() + rule.slice(1);
-  const before = FAULT_PREFIXES[alarm.rule];
-  if (before !== undefined && alarm.text.includes(before)) {
-    const own = alarm.text.slice(alarm.text.indexOf(before) + before.length);
-    return `${word}: ${truncated(own, MAX_FAULT_LENGTH)}`;
-  }
-  return alarm.level === "alarm" || rule.includes(alarm.level) ? word : `${word}: ${alarm.level}`;
+  const label = knownLabel("alarm_label", `${alarm.rule}/${alarm.level}`) ?? knownLabel("alarm_label", alarm.rule);
+  if (label === undefined) return alarmCode(alarm);
+  const fault = faultOf(alarm);
+  return fault === "" ? label : `${label}: ${truncated(fault, MAX_FAULT_LENGTH)}`;
+}
+
+/** Of a rule of another version. */
+function alarmCode({ rule, level }: AlarmView): string {
+  const words = rule.replaceAll(/[-_]/g, " ");
+  const word = words.charAt(0).toUpperCase() + words.slice(1);
+  return level === "alarm" || words.includes(level) ? word : `${word}: ${level}`;
+}
+
+/** The words of the unit or agent that has a fault; empty: it has none. */
+function faultOf({ rule, parameters, text }: AlarmView): string {
+  const before = FAULT_PREFIXES[rule];
+  if (before === undefined) return "";
+  if (parameters.fault !== undefined) return parameters.fault;
+  return text.includes(before) ? text.slice(text.indexOf(before) + before.length) : "";
 }
 
 export function initials(name: string): string {

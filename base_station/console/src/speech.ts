@@ -1,6 +1,9 @@
 /** Alarms are spoken after their tone, where the browser can and somebody has chosen it. */
 import { keptSwitch } from "./kept";
 import type { Tone } from "./live/alarmTones";
+import { locale } from "./language/measures";
+import { t } from "./language/translate";
+import { alarmText } from "./live/alarmText";
 import type { AlarmView } from "./wire";
 
 export const canSpeak = "speechSynthesis" in window;
@@ -13,12 +16,12 @@ const AFTER_MS: Partial<Record<Tone, number>> = { high: 3_400, medium: 1_100, li
 /** Only the newest: nobody wants to listen to what was urgent before. */
 export function speak(tone: Tone, alarm: AlarmView | null): void {
   const afterMs = AFTER_MS[tone];
-  const words = tone === "link" ? "Connection to the station lost" : alarm?.text;
-  if (!canSpeak || speechOn.peek() === "off" || afterMs === undefined || words === undefined) return;
+  const words = tone === "link" ? t("alarm_now.station_lost") : alarm && alarmText(alarm);
+  if (!canSpeak || speechOn.peek() === "off" || afterMs === undefined || !words) return;
   setTimeout(() => {
     speechSynthesis.cancel();
     const utterance = new SpeechSynthesisUtterance(words);
-    utterance.lang = "en";
+    utterance.lang = locale();
     speechSynthesis.speak(utterance);
   }, afterMs);
 }

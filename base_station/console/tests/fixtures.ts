@@ -116,6 +116,8 @@ export function alarm(alarmId: string, change: Partial<AlarmView> = {}): AlarmVi
     raised_ms: 0,
     last_raised_ms: 0,
     changed_ms: 0,
+    code: "",
+    parameters: {},
     ...change,
   };
 }

@@ -136,7 +136,7 @@ describe("words", () => {
     ["link-lost", "lost", "Link lost"],
     ["link-lost", "switched off", "Switched off"],
     ["mayday", "mayday", "Mayday"],
-    ["missed-check-in", "overdue", "Missed check-in"],
+    ["missed-check-in", "overdue", "PAR overdue"],
   ])("say the alarm %s (%s) in short as %s", (rule, level, short) => {
     expect(format.alarmLabel(alarm("x", { rule, level }))).toBe(short);
   });

@@ -4,8 +4,9 @@ import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../s
 const ALARMS = [{ raised_ms: 60_000 }, { raised_ms: 100_000 }];
 
 function raised(texts: Record<number, string>) {
-  const raisings = Object.entries(texts).map(([ms, text]) => ({ t_ms: Number(ms), text }));
-  return { raised_ms: raisings[0]?.t_ms ?? 0, text: raisings.at(-1)?.text ?? "", raisings };
+  const sentence = { code: "", parameters: {} };
+  const raisings = Object.entries(texts).map(([ms, text]) => ({ ...sentence, t_ms: Number(ms), text }));
+  return { raised_ms: raisings[0]?.t_ms ?? 0, ...sentence, text: raisings.at(-1)?.text ?? "", raisings };
 }
 
 describe("from alarm to alarm", () => {

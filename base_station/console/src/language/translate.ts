@@ -38,6 +38,16 @@ export function knownLabel(part: PartName, code: string): string | undefined {
   return texts[code];
 }
 
+/** The message for a code of the station with its values, or nothing for a code that has no text. */
+export function knownMessage(
+  part: PartName,
+  code: string,
+  values: Record<string, string>,
+): string | undefined {
+  const message = knownLabel(part, code);
+  return message === undefined ? undefined : String(parsed(message).format(values));
+}
+
 function messageOf(key: Key): string {
   const dot = key.indexOf(".");
   const texts: Readonly<Record<string, string>> = shown.value.catalogue[key.slice(0, dot) as PartName];

@@ -1,6 +1,7 @@
 /** Which alarms are open, in the order in which they want a person. */
 import type { AlarmView, UnitView } from "../wire";
 import { alarmLabel, MISSED_CHECK_IN } from "../format";
+import { alarmText } from "./alarmText";
 import { displayName } from "./urgency";
 
 export function isOpen(alarm: AlarmView): boolean {
@@ -69,8 +70,8 @@ function wholeWord(name: string): RegExp {
 }
 
 /** Who has the unit now, where an alarm was raised while somebody else did; else empty. */
-export function handedTo({ text }: AlarmView, unit: UnitView): string {
+export function handedTo(alarm: AlarmView, unit: UnitView): string {
   const name = displayName(unit);
-  if (wholeWord(name).test(text)) return "";
+  if (wholeWord(name).test(alarmText(alarm))) return "";
   return unit.person === null ? "nobody wears this unit now" : `${name} wears this unit now`;
 }

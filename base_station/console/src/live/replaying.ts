@@ -1,4 +1,5 @@
 /** Where to go in the past: from alarm to alarm, with a little of what came before.  Pure. */
+import type { AlarmSentence } from "./alarmText";
 
 /** An alarm is better seen coming. */
 export const LEAD_MS = 5_000;
@@ -9,16 +10,15 @@ interface Raised {
   raised_ms: number;
 }
 
-interface RaisedOften extends Raised {
-  text: string;
-  raisings: readonly { t_ms: number; text: string }[];
+interface RaisedOften extends Raised, AlarmSentence {
+  raisings: readonly (AlarmSentence & { t_ms: number })[];
 }
 
 /** An entry for each time that an alarm was raised, at first and anew, by time and as it was said then. */
 export function eachRaising<A extends RaisedOften>(alarms: readonly A[]): A[] {
   return alarms
     .flatMap((alarm) =>
-      alarm.raisings.map(({ t_ms, text }) => ({ ...alarm, raised_ms: t_ms, text })),
+      alarm.raisings.map(({ t_ms, ...sentence }) => ({ ...alarm, ...sentence, raised_ms: t_ms })),
     )
     .sort((a, b) => a.raised_ms - b.raised_ms);
 }

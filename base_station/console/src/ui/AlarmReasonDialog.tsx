@@ -4,6 +4,7 @@ import type { AlarmExplanationAnswer } from "../answers";
 import * as api from "../api";
 import { alarmLabel } from "../format";
 import { displayName } from "../live/urgency";
+import { alarmText } from "../live/alarmText";
 import { attempt, picture } from "../sessions";
 import { crossingText, thresholdsText } from "../timeline/explanation";
 import { dialogUnit } from "../uiState";
@@ -44,7 +45,7 @@ function Reason({ alarm }: { alarm: AlarmView }) {
   const found = explanation.value;
   return (
     <section aria-label={alarmLabel(alarm)}>
-      <h3>{alarm.text}</h3>
+      <h3>{alarmText(alarm)}</h3>
       {found && <Thresholds explanation={found} />}
       {found && (
         <UnitTimeline

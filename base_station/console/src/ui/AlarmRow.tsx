@@ -3,6 +3,7 @@ import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
 import { handedTo, sinceMs } from "../live/alarms";
 import { alarmCurrentValue } from "../live/alarmCurrentValue";
+import { alarmText } from "../live/alarmText";
 import { floodText, raisedOf, takenBy, type AlarmRow } from "../live/alarmRows";
 import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
@@ -71,7 +72,8 @@ function headOf(row: AlarmRow, first: AlarmView, picture: Picture): string {
 function textOf(alarm: AlarmView, picture: Picture): string {
   const unit = picture.unit(alarm.unit_id);
   const handed = unit === undefined ? "" : handedTo(alarm, unit.value);
-  return handed === "" ? alarm.text : `${alarm.text} (${handed})`;
+  const text = alarmText(alarm);
+  return handed === "" ? text : `${text} (${handed})`;
 }
 
 /** All of it in one sentence, without figures that change. */

@@ -1,3 +1,5 @@
+import { t } from "../language/translate";
+import { alarmText } from "../live/alarmText";
 import { isPast, live, stopReplay } from "../sessions";
 import { dialog } from "../uiState";
 import { Icon } from "./Icon";
@@ -20,13 +22,12 @@ export function UrgentNow() {
     dialog.value = null;
     showUnit(picture, first.unit_id);
   };
+  const words = other === null ? alarmText(first) : `${other.name}: ${alarmText(first)}`;
   return (
     <div role="alert" class="urgent-now">
       <button type="button" onClick={show}>
         <Icon name="alarm" />
-        {overPast && "Live now: "}
-        {other !== null && `${other.name}: `}
-        {first.text}
+        {overPast ? t("alarm_now.live", { text: words }) : words}
         {more.length > 0 && ` (+${more.length})`}
       </button>
     </div>
