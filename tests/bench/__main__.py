@@ -12,6 +12,7 @@ BENCHES = {
     "backfill": "tests.bench.backfill:bench_backfill",
     "bus": "tests.bench.bus.command:bench_bus",
     "console": "tests.bench.console.command:bench_console",
+    "constants": "tests.bench.tracker.constants:bench_constants",
     "department": "tests.bench.department:bench_department",
     "exports": "tests.bench.past.exports:bench_exports",
     "faults": "tests.bench.faults.command:bench_faults",
