@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from base_station.app.archive_cli import archive as archive_commands
 from base_station.app.dispatch_command import dispatch
 from base_station.app.export_command import export
 from base_station.app.foxglove_cli import foxglove
@@ -20,6 +21,7 @@ from base_station.app.recordings_command import fetch_recording
 from base_station.app.rehearse_command import rehearse
 from base_station.app.report_command import report
 from base_station.app.rerun_command import rerun
+from base_station.app.search_command import search
 from base_station.app.unit_tokens_cli import unit_tokens
 from base_station.app.users_cli import users
 from base_station.process import gc_tuning
@@ -39,10 +41,12 @@ app.command()(export)
 app.command()(report)
 app.command()(rehearse)
 app.command()(rerun)
+app.command()(search)
 app.add_typer(users, name="users")
 app.add_typer(unit_tokens, name="unit-tokens")
 app.add_typer(log, name="log")
 app.add_typer(foxglove, name="foxglove")
+app.add_typer(archive_commands, name="archive")
 
 ConfigOption = Annotated[
     Path | None, typer.Option(help="TOML file with settings; flags overrule it.")
@@ -106,6 +110,9 @@ def replay(
     recompute: Annotated[
         bool, typer.Option(help="Decide everything again instead of playing what was shown.")
     ] = False,
+    archive: Annotated[
+        str | None, typer.Option(help="Read it in this archive: a folder, or s3://BUCKET/PLACE.")
+    ] = None,
 ) -> None:
     """Show a past incident in a console of its own; the folder is only read."""
     flags = {"data": data, "http.listen": http, "insecure": insecure or None}
@@ -114,7 +121,15 @@ def replay(
         from base_station.app.replay import run_replay_station  # noqa: PLC0415
 
     with sigterm_as_ctrl_c(), progress_bar("reading the log") as on_progress:
-        run_replay_station(settings, incident, speed, _announce, on_progress, recompute=recompute)
+        run_replay_station(
+            settings,
+            incident,
+            speed,
+            _announce,
+            on_progress,
+            recompute=recompute,
+            archive=archive,
+        )
 
 
 @app.command()

@@ -15,6 +15,7 @@
       │    ├─ DatabaseAwayError     its server does not answer
       │    ├─ DiskFullError         its disk takes nothing: it is full, or can only be read
       │    └─ MemoryLimitError      it would take more memory than it may
+      ├─ ArchiveError       an archive of incidents cannot do what was asked
       ├─ LinkRefusedError   a link leads out of a folder
       └─ UserError          a person asked for something impossible
 
@@ -82,6 +83,10 @@ class DiskFullError(StoreError):
 
 class MemoryLimitError(StoreError):
     """It would take more memory than it may; so it would the next time."""
+
+
+class ArchiveError(MusterError):
+    """An archive of incidents, on a disk or in a bucket, cannot do what was asked."""
 
 
 class LinkRefusedError(MusterError):

@@ -502,6 +502,10 @@ PARAMETERS: Mapping[str, str] = {
     "until_ms": "End of the window of time, milliseconds since 1970.",
     "limit": "How many to give, the newest; those of the same millisecond as the last come along. "
     "The page before has until_ms at that millisecond.",
+    "text": "Beginnings of words: of the name, the dispatch (number, address, type), people who "
+    "were in it, and alarms; all of them must be there.",
+    "person": "Beginnings of the words of one person's name, or the person's id.",
+    "alarm": "Beginning of the name of a rule that raised an alarm, such as mayday.",
     "only": "Ids of units, or names of people or crews; left out: everybody.",
     "gzip": "Compressed, as a file whose name ends in .gz.",
     "buckets": "Parts of the span: each has at most two values of a column, its least and its "

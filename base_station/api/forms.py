@@ -65,7 +65,7 @@ class Form(BaseModel):
 
 FromMs = Annotated[int, Query(ge=0, le=MAX_TIME_MS)]
 UntilMs = Annotated[int, Query(ge=0, le=MAX_TIME_MS)]
-
+SearchText = Annotated[str, Query(max_length=200, pattern=_PRINTABLE)]
 
 Limit = Annotated[int, Query(ge=1, le=1000)]
 """How many entries of a list to give, the newest: what belongs to the millisecond of the last one

@@ -12,12 +12,14 @@ from base_station.api.hub import Hub
 from base_station.api.replays import Replays
 from base_station.api.server import ConsoleServer, bind, serve_until_stopped
 from base_station.api.services import Services
+from base_station.app.archive_sources import open_archived_log
 from base_station.app.factories import (
     Announce,
     replay_starter,
 )
 from base_station.app.first_login import add_own_login
 from base_station.app.offline_log import named_incident, open_offline_log
+from base_station.archive.store import open_store
 from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.post_processing import PostProcessor
@@ -41,12 +43,14 @@ def run_replay_station(
     on_progress: Callable[[float], None],
     *,
     recompute: bool = False,
+    archive: str | None = None,
 ) -> None:
     """A station that shows one past incident, and writes nothing to the folder.
 
     It plays what consoles were shown; with ``recompute``, and where the log has nothing of that,
     everything is decided again.
 
+    ``archive``: the incident is read there, and the folder is not asked.
     ``incident_id`` may be a file that has one incident.  A live station may be running on the
     folder: the database is copied first.  ``on_progress`` hears the fraction done of reading the
     log, where that must be.
@@ -54,16 +58,19 @@ def run_replay_station(
     clock = SystemClock()
     with ExitStack() as closing:
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
-        incident_id, data = named_incident(incident_id, config.data)
-        offline_log = open_offline_log(
-            data,
-            incident_id,
-            closing,
-            announce,
-            on_progress,
-            in_place=False,
-            decides_again=recompute,
-        )
+        if archive is not None:
+            offline_log = open_archived_log(open_store(archive), incident_id, closing, announce)
+        else:
+            incident_id, data = named_incident(incident_id, config.data)
+            offline_log = open_offline_log(
+                data,
+                incident_id,
+                closing,
+                announce,
+                on_progress,
+                in_place=False,
+                decides_again=recompute,
+            )
         folder, store = offline_log.folder, offline_log.store
         accounts, records = Accounts(store, clock), Records(store, clock)
         roster, hub = Roster(store, clock), Hub()
@@ -71,8 +78,8 @@ def run_replay_station(
         username, password = add_own_login(accounts)
         announce(f"login for this replay: {username}  password: {password}")
 
-        archive = offline_log.archive(recompute=recompute)
-        replays = Replays(replay_starter(archive, roster, clock, folder.recorded_until_ns))
+        past = offline_log.archive(recompute=recompute)
+        replays = Replays(replay_starter(past, roster, clock, folder.recorded_until_ns))
         services = Services(
             accounts=accounts,
             roster=roster,
@@ -86,7 +93,7 @@ def run_replay_station(
             clock=clock,
             secure=config.http.certificate is not None,
             is_replay_only=True,
-            post_processor=PostProcessor(archive, SMOOTHERS[0], SmoothedTracks(store), clock),
+            post_processor=PostProcessor(past, SMOOTHERS[0], SmoothedTracks(store), clock),
             read_timeline=partial(read_timeline, records, offline_log.log),
             log=offline_log.log,
             alarm_explainer=AlarmExplainer(records, offline_log.log.records),

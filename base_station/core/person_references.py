@@ -50,6 +50,11 @@ def with_names(text: str, name_of: Callable[[str], str]) -> str:
     return _REFERENCE.sub(lambda found: name_of(found[1]), text)
 
 
+def references_in(text: str) -> set[str]:
+    """Ids of the people whom a text mentions."""
+    return set(_REFERENCE.findall(text))
+
+
 def without_people(text: str, person_ids: Collection[str], instead: str) -> str:
     """The text without the references to these people."""
     return with_names(text, lambda one: instead if one in person_ids else reference_to(one))

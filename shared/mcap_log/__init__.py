@@ -4,6 +4,7 @@ read as they are, complete, growing, torn or damaged.  The only package that imp
 
 from __future__ import annotations
 
+from shared.mcap_log.byte_ranges import ChunkRange, SegmentRanges, byte_ranges_of
 from shared.mcap_log.enclosures import Enclosures, enclosures_of
 from shared.mcap_log.folder import (
     missing_segments,
@@ -16,6 +17,7 @@ from shared.mcap_log.folder import (
 from shared.mcap_log.foreign import LEFT_OUT, foreign_in_words, identity_in_log, own_segments
 from shared.mcap_log.identity import SegmentIdentity, identity_of
 from shared.mcap_log.one_log import log_id_of, segments_of_one_log
+from shared.mcap_log.ranged_file import FetchRange, RangedSegmentFile
 from shared.mcap_log.reading import LogRecord, SegmentReader, read_log
 from shared.mcap_log.rebuilding import RebuiltSegment
 from shared.mcap_log.recovery import Recovery, recover_log
@@ -47,18 +49,23 @@ __all__ = [
     "PLAN_TOPIC",
     "SNAPSHOT_TOPIC",
     "TRAIL_TOPIC",
+    "ChunkRange",
     "Enclosures",
+    "FetchRange",
     "LogRecord",
     "LogTail",
+    "RangedSegmentFile",
     "RebuiltSegment",
     "Recovery",
     "Segment",
     "SegmentIdentity",
     "SegmentInfo",
     "SegmentPolicy",
+    "SegmentRanges",
     "SegmentReader",
     "SegmentState",
     "SegmentWriter",
+    "byte_ranges_of",
     "descriptor_set",
     "enclosures_of",
     "foreign_in_words",

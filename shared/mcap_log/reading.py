@@ -59,10 +59,10 @@ class SegmentReader:
     ``damage`` while reading, and reading goes on behind it where it can.
     """
 
-    def __init__(self, path: Path) -> None:
-        """Raises LogError when there is no such file."""
+    def __init__(self, path: Path, file: SegmentFile | None = None) -> None:
+        """``file``: where it is elsewhere.  Raises LogError when there is no such file."""
         self.path = path
-        self._file = SegmentFile(path)
+        self._file = file or SegmentFile(path)
         self._contents = contents_of(self._file)
 
     def __enter__(self) -> SegmentReader:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import pytest
+from sqlalchemy import select
 
 from base_station.accounts.principals import Role
 from base_station.storage.db import models
@@ -88,6 +89,28 @@ async def test_pages_have_everything_once(station: DeskStation, path: str) -> No
     assert [one[name] for one in paged] == [one[name] for one in everything]
     assert [one[time] for one in paged] == sorted((one[time] for one in paged), reverse=True)
     assert all(len(page) == 2 or page[1][time] == page[-1][time] for page in pages[:-1])
+
+
+async def test_what_is_searched_for_is_paged_too(station: DeskStation) -> None:
+    fill(station.store, TIMES_NS)
+    async with station.client(Role.VIEWER) as client:
+
+        async def ids(**query: str | int) -> list[str]:
+            answer = await client.get("/incidents", params=query)
+            return [one["incident_id"] for one in answer.json()]
+
+        assert INCIDENT in await ids(alarm="heat"), "they were raised while it was open"
+        everything = await ids(text="eng")
+        assert everything == []
+        with station.store.write() as session:
+            for row in session.scalars(select(models.IncidentRow)):
+                row.name = "Engine house"
+        everything = await ids(text="eng")
+        assert len(everything) == len(TIMES_NS) + 1
+        assert (await ids(text="eng", limit=2, until_ms=START_MS + 9))[0] in everything[1:]
+        assert await ids(text="eng", limit=1, from_ms=START_MS + 9) == everything[:1]
+        for refused in ({"text": "x" * 201}, {"alarm": "a\x00"}, {"person": "\n"}):
+            assert (await client.get("/incidents", params=refused)).status_code == 422
 
 
 @pytest.mark.parametrize("path", LISTS)

@@ -42,7 +42,7 @@ def test_the_library_of_an_optional_part_is_that_which_is_tested(part: str) -> N
     assert installed == (required, pinned("requirements.lock")[required])
 
 
-@pytest.mark.parametrize("part", ["plans", "postgresql", "report"])
+@pytest.mark.parametrize("part", ["archive", "plans", "postgresql", "report"])
 def test_a_library_is_that_which_is_tested_with_all_that_it_needs(part: str) -> None:
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
     installed, tested = pinned(f"deploy/requirements-{part}.lock"), pinned("requirements.lock")

@@ -21,6 +21,7 @@ from base_station.api.forms import (
     Id,
     Limit,
     Name,
+    SearchText,
     UnitIdText,
     window,
 )
@@ -33,6 +34,7 @@ from base_station.api.routes.accountability import Seconds
 from base_station.api.services import Services, Station
 from base_station.core.alarms import ALARMS
 from base_station.storage.db import models
+from base_station.storage.db.incident_search import IncidentQuery
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.window import FOREVER_NS, Window
 from base_station.views.alarm_parameters import stored_parameters_view
@@ -109,10 +111,25 @@ def window_of(incident: models.IncidentRow) -> Window:
 
 @router.get("/incidents")
 def list_incidents(
-    station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
+    station: CurrentStation,
+    _: Viewer,
+    when: Annotated[Window, Depends(window)],
+    limit: Limit = 100,
+    text: SearchText = "",
+    person: SearchText = "",
+    alarm: SearchText = "",
 ) -> list[IncidentAnswer]:
-    """Those opened in the window, newest first."""
-    return [_incident(one, station.roster) for one in station.records.incidents(when, limit)]
+    """Those opened in the window, newest first.
+
+    With ``text``, ``person`` and ``alarm`` those of which all that is true; case and accents do
+    not count.
+    """
+    query = IncidentQuery(text, person, alarm, when)
+    if query.is_plain:
+        found = station.records.incidents(when, limit)
+    else:
+        found = station.records.find_incidents(query, limit)
+    return [_incident(one, station.roster) for one in found]
 
 
 @router.post("/incidents", status_code=201)

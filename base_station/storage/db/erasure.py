@@ -14,12 +14,15 @@ from base_station.core.state import ERASED_TEXT
 from base_station.storage.db.models import (
     AlarmRow,
     AlarmTransition,
+    ArchivedIncident,
     Assignment,
     AuditEntry,
     IncidentRow,
     IncidentTrails,
+    IndexedIncident,
     PersonRow,
     PostProcessingCache,
+    SearchTerm,
     SmoothedIncident,
     Tombstone,
     TrackPoint,
@@ -61,8 +64,16 @@ def _looked_back(session: Session, erasure: Erasure) -> None:
     for incident in session.scalars(select(IncidentRow)).all():
         until_ns = incident.closed_ns or FOREVER_NS
         if any(begin < until_ns and end > incident.opened_ns for begin, end in spans):
-            for table in (SmoothedIncident, IncidentTrails, PostProcessingCache):
+            for table in (
+                *(SmoothedIncident, IncidentTrails, PostProcessingCache),
+                *(SearchTerm, IndexedIncident),
+            ):
                 session.execute(delete(table).where(table.incident_id == incident.incident_id))
+            session.execute(  # its copy is made again
+                update(ArchivedIncident)
+                .where(ArchivedIncident.incident_id == incident.incident_id)
+                .values(known_ns=0)
+            )
 
 
 def known_names(session: Session, person_id: str) -> set[str]:

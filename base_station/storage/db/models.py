@@ -6,7 +6,7 @@ A table is either a *projection*, which ``muster base rebuild`` makes again from
 
 from __future__ import annotations
 
-from sqlalchemy import BigInteger, ForeignKey, Index, Integer, LargeBinary, MetaData, false
+from sqlalchemy import BigInteger, ForeignKey, Index, Integer, LargeBinary, MetaData, String, false
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 
@@ -132,6 +132,43 @@ class AuditEntry(Base):
     detail: Mapped[str]
 
 
+class ArchivedIncident(Base):
+    """A copy of an incident in an archive; the archive has this and what follows as a file, too."""
+
+    __tablename__ = "archived_incidents"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    archive: Mapped[str]  # its address
+    archived_ns: Mapped[int]
+    known_ns: Mapped[int]  # as ``IndexedIncident``; another than there: it is copied once more
+
+
+class ArchivedObject(Base):
+    """A file of a copy."""
+
+    __tablename__ = "archived_objects"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(primary_key=True)
+    size_bytes: Mapped[int]
+    sha256: Mapped[str]
+    summary_offset: Mapped[int]  # where the file's own table of contents begins
+    topics: Mapped[str]  # JSON, a list
+
+
+class ArchivedRange(Base):
+    """A chunk of such a file: a request for these bytes gives all of that time."""
+
+    __tablename__ = "archived_ranges"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(primary_key=True)
+    offset: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    size_bytes: Mapped[int]
+    from_ns: Mapped[int]
+    until_ns: Mapped[int]  # of the last message
+
+
 # ---- projections of the log
 
 
@@ -159,7 +196,7 @@ class IncidentRow(Base):
 
     incident_id: Mapped[str] = mapped_column(primary_key=True)
     name: Mapped[str]
-    opened_ns: Mapped[int]
+    opened_ns: Mapped[int] = mapped_column(index=True)
     opened_by: Mapped[str]
     closed_ns: Mapped[int | None]
     closed_by: Mapped[str]
@@ -337,6 +374,29 @@ class PostProcessingCache(Base):
     report: Mapped[bytes | None] = mapped_column(LargeBinary)  # None: not assessed yet
 
 
+class IndexedIncident(Base):
+    """The search finds an incident as it was known then (``search_index``)."""
+
+    __tablename__ = "indexed_incidents"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    known_ns: Mapped[int]  # station time of the newest of it; 0: it is open, or to be indexed again
+
+
+class SearchTerm(Base):
+    """A word by which an incident is found, whoever was in it, or a rule that raised an alarm."""
+
+    __tablename__ = "search_terms"
+
+    kind: Mapped[str] = mapped_column(primary_key=True)
+    # A word of the place; the id of a person; the name of a rule.  In the order of its bytes:
+    # words that begin alike stand beside each other.
+    value: Mapped[str] = mapped_column(
+        String().with_variant(String(collation="C"), "postgresql"), primary_key=True
+    )
+    incident_id: Mapped[str] = mapped_column(primary_key=True, index=True)
+
+
 class LogSegment(Base):
     """One file of the log."""
 
@@ -366,5 +426,7 @@ PROJECTIONS: tuple[type[Base], ...] = (
     SmoothedIncident,
     IncidentTrails,
     PostProcessingCache,
+    IndexedIncident,
+    SearchTerm,
     LogSegment,
 )

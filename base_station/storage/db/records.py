@@ -12,6 +12,7 @@ from sqlalchemy.orm import InstrumentedAttribute
 from base_station.fusion.lazy_mapping import LastValueMapping
 from base_station.storage.db import models
 from base_station.storage.db.database import Database
+from base_station.storage.db.incident_search import IncidentQuery, IncidentSearch
 from base_station.storage.db.known_people import load_people, person_lookup, shown_text
 from base_station.storage.db.members import Members, members_of, was_member
 from base_station.storage.db.models import (
@@ -95,6 +96,12 @@ class Records:
         wanted = select(IncidentRow).where(*_in(opened, IncidentRow.opened_ns))
         with self._store.read() as session:
             return newest(session, wanted, IncidentRow.opened_ns, IncidentRow.incident_id, limit)
+
+    def find_incidents(
+        self, query: IncidentQuery, limit: int | None = None
+    ) -> Sequence[IncidentRow]:
+        """Those of which all of the query is true, newest first (``pages.newest``)."""
+        return IncidentSearch(self._store).find(query, limit)
 
     def incident(self, incident_id: str) -> IncidentRow | None:
         with self._store.read() as session:

@@ -59,11 +59,14 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "foxglove live": (),
     "log recover": (),
     "log list": (),
+    "search": ("mill",),
+    "archive copy": ("ARCHIVE",),
     "fetch-recording": ("FF-01", "--from", "2026-03-01T10:00"),
 }
 WITHOUT_FOLDER = {
     # They look at what somebody gave, and write none of it.
     *("replay", "assess", "smooth", "report", "export", "rehearse", "rerun", "foxglove replay"),
+    *("archive list", "archive verify", "archive fetch"),  # they look at the archive alone
     "foxglove layout",  # it reads the log alone, and writes where it is told to
     "dispatch",  # it hands it to a running station
     "compile",  # into the program's own
@@ -171,6 +174,7 @@ def test_a_command_says_so_and_stops(
     monkeypatch.setattr("shared.log.set_up_logging", lambda *_: None)
     of, _, name = command.partition(" ")
     paths = {"FILE": station.parent / "FILE", "COPY": tmp_path / "COPY", "OUT": tmp_path / "OUT"}
+    paths["ARCHIVE"] = tmp_path / "ARCHIVE"
     told = [str(paths.get(one, one)) for one in arguments]
     flags = [*name.split(), *told, "--data", str(station)]
     refused, mask = set(), os.umask(0o022)

@@ -1,0 +1,61 @@
+"""Sources of the archive's commands: a station's folder, or a copy in the archive itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from base_station.app.offline_log import OfflineLog, Report
+from base_station.archive.copying import ArchiveCopier
+from base_station.archive.entry import require_entry
+from base_station.archive.feed import ArchivedFeed
+from base_station.archive.store import ArchiveStore, open_store
+from base_station.engine.feed import LogFeed
+from base_station.storage.data_folder import DataFolder
+from base_station.storage.db.incident_rows import put_rows
+from base_station.storage.db.opening import open_database
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.store import Store
+from base_station.storage.log_defects import LogDefects
+from shared.clock import SystemClock
+
+
+@contextmanager
+def open_copier(archive: str, data: Path) -> Iterator[ArchiveCopier]:
+    """Copies from a folder, beside a running station or without one."""
+    folder = DataFolder(data)
+    folder.require()
+    target = open_store(archive)
+    with open_database(folder.require_database()) as store:
+        yield ArchiveCopier(target, store, LogFeed(folder.log), SystemClock())
+
+
+NOT_FETCHED = (
+    "it is shown from the archive: tracks, reports and assessments need all of it, which "
+    "muster base archive fetch brings"
+)
+
+
+def open_archived_log(
+    archive: ArchiveStore, incident_id: str, closing: ExitStack, report: Report
+) -> OfflineLog:
+    """An incident where it is in the archive: little of it is fetched until it is asked for.
+
+    Raises ArchiveError.
+    """
+    entry = require_entry(archive, incident_id)
+    scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-archived-")))
+    folder = DataFolder(scratch)
+    store = closing.enter_context(Store(folder.database))
+    put_rows(store, entry.tables)
+    Roster(store, SystemClock()).bring_people(entry.people)
+    defects = LogDefects(folder.log, (), is_written=False, on_defect=report)
+    for words in (*entry.damage, NOT_FETCHED):
+        defects.note(words)
+    files = {one.name: one for one in entry.files}
+    log = ArchivedFeed(archive, incident_id, files, entry.log_id, defects.note_damage)
+    return OfflineLog(
+        folder, store, keeps_result=False, scratch=scratch, log=log, defects=defects, report=report
+    )

@@ -1,0 +1,145 @@
+"""An archive in a bucket that speaks S3.
+
+Who may use it is taken from the environment, as by other programs: AWS_ACCESS_KEY_ID,
+AWS_SECRET_ACCESS_KEY, AWS_REGION, and AWS_ENDPOINT_URL for another server than Amazon's.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from datetime import timedelta
+from ipaddress import ip_address
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import obstore
+from obstore.exceptions import (
+    BaseError,
+    NotFoundError,
+    PermissionDeniedError,
+    UnauthenticatedError,
+)
+from obstore.store import S3Store
+
+from shared.errors import ArchiveError, UserError
+
+PATIENCE = timedelta(seconds=30)  # of a request, with all its repetitions
+_TRY = timedelta(seconds=10)
+_STATUS = re.compile(r"status code: (\d+)")
+_CREDENTIALS = "AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY"
+
+
+class BucketStore:
+    def __init__(self, address: str) -> None:
+        """Raises UserError where the address has no bucket."""
+        parts = urlsplit(address)
+        if not parts.hostname or parts.username or parts.query:
+            raise UserError(
+                f"{address} is no bucket: give s3://BUCKET/PLACE, and {_CREDENTIALS} in the "
+                "environment"
+            )
+        self._address = address.rstrip("/")
+        # Else it would ask for credentials at an address that only machines of a cloud have.
+        is_named = "AWS_ACCESS_KEY_ID" in os.environ or "AWS_PROFILE" in os.environ
+        self._store = S3Store(
+            parts.netloc,
+            prefix=parts.path.strip("/") or None,
+            skip_signature=not is_named and "AWS_WEB_IDENTITY_TOKEN_FILE" not in os.environ,
+            client_options={
+                "allow_http": _is_on_this_machine(os.environ.get("AWS_ENDPOINT_URL", ""))
+                or os.environ.get("AWS_ALLOW_HTTP", "") == "true",
+                "timeout": PATIENCE,
+                "connect_timeout": _TRY,
+            },
+            retry_config={"retry_timeout": PATIENCE, "max_retries": 5},
+        )
+
+    @property
+    def address(self) -> str:
+        return self._address
+
+    def put(self, name: str, content: Path) -> None:
+        with self._asking(f"{name} cannot be written"):
+            obstore.put(self._store, name, content)
+
+    def size(self, name: str) -> int | None:
+        with self._asking(f"{name} cannot be read"):
+            try:
+                return obstore.head(self._store, name)["size"]
+            except (NotFoundError, FileNotFoundError):
+                return None
+
+    def read_all(self, name: str) -> bytes | None:
+        with self._asking(f"{name} cannot be read"):
+            try:
+                return bytes(obstore.get(self._store, name).bytes())
+            except (NotFoundError, FileNotFoundError):
+                return None
+
+    def read(self, name: str, begin: int, end: int) -> bytes:
+        with self._asking(f"{name} cannot be read"):
+            data = bytes(obstore.get_range(self._store, name, start=begin, end=end))
+        if len(data) < end - begin:
+            raise ArchiveError(f"{self.address}: {name} is shorter than it was: copy it once more")
+        return data
+
+    def names(self, beginning: str = "") -> Sequence[str]:
+        with self._asking("what is in it cannot be read"):
+            pages = obstore.list(self._store)
+            return sorted(
+                one["path"] for page in pages for one in page if one["path"].startswith(beginning)
+            )
+
+    def remove(self, name: str) -> None:
+        with self._asking(f"{name} cannot be removed"):
+            obstore.delete(self._store, name)
+
+    @contextmanager
+    def _asking(self, what: str) -> Iterator[None]:
+        try:
+            yield
+        except (PermissionDeniedError, UnauthenticatedError) as error:
+            raise self._refused(what) from error
+        except (NotFoundError, FileNotFoundError) as error:
+            raise self._missing(what) from error
+        except (BaseError, OSError) as error:
+            status = _STATUS.search(str(error))  # lists fail with an error like any other
+            if status and status[1] in ("401", "403"):
+                raise self._refused(what) from error
+            if status and status[1] == "404":
+                raise self._missing(what) from error
+            raise ArchiveError(
+                f"the archive {self.address}: {what} now ({_reason(error)}); nothing is lost: try "
+                "it again when the bucket answers"
+            ) from error
+
+    def _refused(self, what: str) -> ArchiveError:
+        return ArchiveError(
+            f"the archive {self.address}: {what}: whoever {_CREDENTIALS} are of may not do it; "
+            "give them the rights to list, read, write and delete there (s3:ListBucket, "
+            "s3:GetObject, s3:PutObject, s3:DeleteObject)"
+        )
+
+    def _missing(self, what: str) -> ArchiveError:
+        return ArchiveError(
+            f"the archive {self.address}: {what}: there is no such bucket or file; make the "
+            "bucket, or see that the address is right"
+        )
+
+
+def _is_on_this_machine(endpoint: str) -> bool:
+    """Names of people go to others encrypted alone."""
+    host = urlsplit(endpoint).hostname or ""
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def _reason(error: Exception) -> str:
+    """The innermost reason, which comes last but for what helps developers alone."""
+    text = str(error).split("\n\nDebug source")[0]
+    return text.strip().splitlines()[0][:300]

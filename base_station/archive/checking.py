@@ -1,0 +1,84 @@
+"""Check of an archive against its own checksums; and copies brought back from it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from base_station.archive.entry import (
+    LOG_NAME,
+    CatalogueEntry,
+    archived_ids,
+    name_in_archive,
+    require_entry,
+    unfinished_ids,
+)
+from base_station.archive.store import ArchiveStore
+from base_station.storage.db.archived import ArchivedFile
+from shared.errors import ArchiveError
+from shared.out_file import whole
+
+_PART_BYTES = 4 << 20
+
+
+def defects_of(
+    store: ArchiveStore, on_progress: Callable[[float], None]
+) -> Iterator[tuple[str, str]]:
+    """Incident and what is wrong with its copy, in words; reads all of the archive.
+
+    Raises ArchiveError where the archive does not answer.
+    """
+    for incident_id in unfinished_ids(store):
+        yield incident_id, "the copy was cut short: it is made again with the next one"
+    ids = archived_ids(store)
+    for number, incident_id in enumerate(ids):
+        entry = require_entry(store, incident_id)
+        for file in entry.files:
+            defect = _defect_of(store, entry, file)
+            if defect:
+                yield incident_id, defect
+        on_progress((number + 1) / len(ids))
+
+
+def _defect_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) -> str:
+    name = name_in_archive(entry.incident_id, file.name)
+    size = store.size(name)
+    if size != file.size_bytes:
+        there = "is missing" if size is None else f"has {size} bytes"
+        return f"{file.name} {there}, and should have {file.size_bytes}: copy it once more"
+    digest = hashlib.sha256()
+    for part in parts_of(store, entry, file):
+        digest.update(part)
+    if digest.hexdigest() != file.sha256:
+        return f"{file.name} is not as it was written: copy it once more"
+    return ""
+
+
+def fetch_log(
+    store: ArchiveStore, entry: CatalogueEntry, out: Path, on_progress: Callable[[float], None]
+) -> None:
+    """Bring an incident back as one file that stands alone, whole or not at all.
+
+    Raises ArchiveError where it is not as it was written.
+    """
+    file = entry.file(LOG_NAME)
+    digest = hashlib.sha256()
+    with whole(out) as making:
+        count = 0
+        with making.open("wb") as target:
+            for part in parts_of(store, entry, file):
+                digest.update(part)
+                count += target.write(part)
+                on_progress(count / file.size_bytes)
+        if digest.hexdigest() != file.sha256:
+            raise ArchiveError(
+                f"the archive {store.address}: {file.name} of {entry.incident_id} is not as it was "
+                f"written, and {out} was not made: copy it once more while the station has it"
+            )
+
+
+def parts_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) -> Iterator[bytes]:
+    name = name_in_archive(entry.incident_id, file.name)
+    for begin in range(0, file.size_bytes, _PART_BYTES):
+        yield store.read(name, begin, min(begin + _PART_BYTES, file.size_bytes))

@@ -1,0 +1,218 @@
+"""Copies of incidents into an archive: what is missing there, or is known better since."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import msgspec
+
+from base_station.archive.entry import (
+    CONSOLE_NAME,
+    ENTRY_NAME,
+    LOG_NAME,
+    VERSION,
+    CatalogueEntry,
+    encoded_entry,
+    name_in_archive,
+    read_entry,
+)
+from base_station.archive.store import ArchiveStore
+from base_station.core.state import ERASED_TEXT
+from base_station.engine.feed import LogFeed
+from base_station.replay.incident_file import AFTER_NS, IncidentFileSource, incident_file
+from base_station.storage.db.archived import ArchivedCopies, ArchivedFile
+from base_station.storage.db.database import Database
+from base_station.storage.db.incident_rows import rows_of_incident
+from base_station.storage.db.incident_search import IncidentSearch
+from base_station.storage.db.known_people import KnownPerson
+from base_station.storage.db.models import IncidentRow
+from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.search_index import ALARM, PERSON
+from shared.clock import NS_PER_S, Clock
+from shared.errors import ArchiveError
+from shared.mcap_log import (
+    Segment,
+    SegmentIdentity,
+    SegmentReader,
+    byte_ranges_of,
+    is_console,
+)
+
+_FLUSHED_NS = 10 * NS_PER_S  # what a station has recorded is on its disk
+_CONSOLE_CHUNK_BYTES = 1 << 20
+_READ_BYTES = 4 << 20
+_WAITING_BYTES = 1 << 20
+
+
+@dataclass(frozen=True)
+class CopyResult:
+    incident_id: str
+    size_bytes: int  # that were sent; 0: the archive had it already
+    damage: tuple[str, ...]  # what of the station's log could not be read
+
+
+class ArchiveCopier:
+    def __init__(self, archive: ArchiveStore, store: Database, log: LogFeed, clock: Clock) -> None:
+        self._archive = archive
+        self._store = store
+        self._log = log
+        self._clock = clock
+        self._copies = ArchivedCopies(store)
+
+    def copy_due(self, on_progress: Callable[[float], None]) -> Iterator[CopyResult]:
+        """Copy what is due, the oldest first; each is in the catalogue when its result comes.
+        What was closed a minute ago waits: the log goes on with it.
+
+        Raises ArchiveError: what was copied until then is there, and the rest is due still.
+        """
+        until_ns = self._clock.utc_ns() - AFTER_NS - _FLUSHED_NS
+        due = self._copies.due(self._archive.address, until_ns)
+        for number, incident in enumerate(due):
+            yield self._copy(incident)
+            on_progress((number + 1) / len(due))
+
+    def _copy(self, incident: IncidentRow) -> CopyResult:
+        known_ns = max(incident.closed_ns or 0, incident.late_data_ns)
+        there = read_entry(self._archive, incident.incident_id)
+        if there is not None and there.log_id not in ("", self._log.log_id):
+            raise ArchiveError(
+                f"the archive {self._archive.address} has a copy of {incident.incident_id} of "
+                "another station: give each station a place of its own in it"
+            )
+        if there is not None and self._is_current(there, incident, known_ns):
+            self._note(there)
+            return CopyResult(incident.incident_id, 0, there.damage)
+        with TemporaryDirectory(prefix="muster-archive-") as scratch:
+            entry = self._pack(incident, known_ns, Path(scratch))
+            if there is not None:  # what is cut short from here on is no copy
+                self._archive.remove(name_in_archive(incident.incident_id, ENTRY_NAME))
+            self._send(entry, Path(scratch))
+        self._note(entry)
+        size_bytes = sum(one.size_bytes for one in entry.files)
+        return CopyResult(incident.incident_id, size_bytes, entry.damage)
+
+    def _is_current(self, entry: CatalogueEntry, incident: IncidentRow, known_ns: int) -> bool:
+        """A copy that this database lost sight of; not one from before somebody was forgotten."""
+        here = self._mentioned(incident)
+        return (
+            entry.known_ns == known_ns and entry.people == here and _is_whole(self._archive, entry)
+        )
+
+    def _note(self, entry: CatalogueEntry) -> None:
+        self._copies.note(
+            entry.incident_id,
+            self._archive.address,
+            entry.archived_ns,
+            entry.known_ns,
+            entry.files,
+        )
+
+    def _send(self, entry: CatalogueEntry, scratch: Path) -> None:
+        """The entry goes last: what is cut short has none."""
+        for one in entry.files:
+            name = name_in_archive(entry.incident_id, one.name)
+            self._archive.put(name, scratch / one.name)
+        if not _is_whole(self._archive, entry):
+            raise ArchiveError(
+                f"the archive {self._archive.address} did not keep all of {entry.incident_id}: "
+                "copy it once more"
+            )
+        (scratch / ENTRY_NAME).write_bytes(encoded_entry(entry))
+        self._archive.put(name_in_archive(entry.incident_id, ENTRY_NAME), scratch / ENTRY_NAME)
+
+    def _pack(self, incident: IncidentRow, known_ns: int, scratch: Path) -> CatalogueEntry:
+        """Make the files of a copy, and the entry that is to say so."""
+        damage: list[str] = []
+        records, roster = Records(self._store, self._clock), Roster(self._store, self._clock)
+        people = self._mentioned(incident)
+        closed_ns = incident.closed_ns or 0
+        source = IncidentFileSource(
+            log=self._log,
+            incident=incident,
+            name=roster.shown(incident.name),
+            people=roster.known_people(),
+            plan=records.plan(closed_ns, incident.site_id),
+            until_ns=closed_ns,
+            report=damage.append,
+        )
+        with (scratch / LOG_NAME).open("wb") as file:
+            file.writelines(incident_file(source))
+        write_console_file(scratch / LOG_NAME, scratch / CONSOLE_NAME, self._log.log_id)
+        dispatch = records.dispatch(incident.dispatch_number) if incident.dispatch_number else None
+        terms = IncidentSearch(self._store).terms(incident.incident_id)
+        return CatalogueEntry(
+            version=VERSION,
+            muster_version=version("muster"),
+            incident_id=incident.incident_id,
+            name=roster.shown(incident.name),
+            opened_ns=incident.opened_ns,
+            closed_ns=closed_ns,
+            known_ns=known_ns,
+            archived_ns=self._clock.utc_ns(),
+            log_id=self._log.log_id,
+            address="" if dispatch is None else dispatch.address,
+            people=people,
+            alarm_rules=tuple(sorted(terms.get(ALARM, ()))),
+            files=(archived_file(scratch / CONSOLE_NAME), archived_file(scratch / LOG_NAME)),
+            tables=rows_of_incident(self._store, incident),
+            damage=tuple(damage),
+        )
+
+    def _mentioned(self, incident: IncidentRow) -> dict[str, KnownPerson]:
+        known = Roster(self._store, self._clock).known_people()
+        ids = IncidentSearch(self._store).terms(incident.incident_id).get(PERSON, set())
+        return {
+            one: msgspec.structs.replace(known[one], photo_url=None)
+            for one in sorted(ids & set(known))
+            if known[one].name != ERASED_TEXT
+        }
+
+
+def write_console_file(log: Path, target: Path, log_id: str) -> None:
+    """Write what consoles were shown as a segment of its own: the chunks stand side by side, and
+    one request gives all of a time.
+    """
+    topics: Mapping[str, int]
+    with SegmentReader(log) as reader:
+        topics = reader.topic_counts or {}
+        segment = Segment(target, _CONSOLE_CHUNK_BYTES, SegmentIdentity(log_id))
+        wanted = frozenset(filter(is_console, topics))
+        for record in reader.records(keys=wanted, derived=True):
+            segment.add(*record)
+            if segment.file.waiting_bytes > _WAITING_BYTES:
+                segment.file.sync()
+    segment.finish()
+    segment.file.sync()
+    segment.file.close()
+
+
+def archived_file(path: Path) -> ArchivedFile:
+    ranges = byte_ranges_of(path)
+    with SegmentReader(path) as reader:
+        topics = tuple(sorted(reader.topic_counts or ()))
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while part := file.read(_READ_BYTES):
+            digest.update(part)
+    return ArchivedFile(
+        path.name,
+        ranges.size,
+        digest.hexdigest(),
+        ranges.summary_offset,
+        topics,
+        tuple((one.from_ns, one.until_ns, one.offset, one.end) for one in ranges.chunks),
+    )
+
+
+def _is_whole(archive: ArchiveStore, entry: CatalogueEntry) -> bool:
+    """Every file is there, and as long as it should be (``checking`` reads all of them)."""
+    return all(
+        archive.size(name_in_archive(entry.incident_id, one.name)) == one.size_bytes
+        for one in entry.files
+    )

@@ -1,0 +1,100 @@
+"""Entry of an incident in an archive: the file ``catalogue.json`` beside the copy.
+
+It is written last: a copy without it was cut short, and is made again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+
+from base_station.archive.store import ArchiveStore
+from base_station.storage.db.archived import ArchivedFile
+from base_station.storage.db.incident_rows import Row
+from base_station.storage.db.known_people import KnownPerson
+from shared.errors import ArchiveError
+
+LOG_NAME = "incident.mcap"  # all of it, a log that stands alone (decision 119)
+CONSOLE_NAME = "console.mcap"  # what consoles were shown, again: a replay needs no more
+ENTRY_NAME = "catalogue.json"
+VERSION = 1
+
+
+class CatalogueEntry(msgspec.Struct, frozen=True):
+    """An incident in an archive."""
+
+    version: int
+    muster_version: str
+    incident_id: str
+    name: str
+    opened_ns: int
+    closed_ns: int
+    known_ns: int  # station time of the newest that was known of it
+    archived_ns: int
+    log_id: str  # of the station's log
+    address: str  # of its dispatch
+    people: dict[str, KnownPerson]  # who were in it, or are mentioned, by id
+    alarm_rules: tuple[str, ...]
+    files: tuple[ArchivedFile, ...]
+    tables: dict[str, list[Row]]  # rows of the station's tables that a replay asks for
+    damage: tuple[str, ...] = ()  # what of the station's log could not be read, in words
+
+    def file(self, name: str) -> ArchivedFile:
+        """Raises ArchiveError where it has none of the name."""
+        for one in self.files:
+            if one.name == name:
+                return one
+        raise ArchiveError(f"the copy of {self.incident_id} has no {name}: copy it once more")
+
+
+def name_in_archive(incident_id: str, name: str) -> str:
+    return f"{incident_id}/{name}"
+
+
+def encoded_entry(entry: CatalogueEntry) -> bytes:
+    return msgspec.json.encode(entry)
+
+
+def read_entry(store: ArchiveStore, incident_id: str) -> CatalogueEntry | None:
+    """None where there is no complete copy.  Raises ArchiveError."""
+    name = name_in_archive(incident_id, ENTRY_NAME)
+    encoded = store.read_all(name)
+    if encoded is None:
+        return None
+    try:
+        entry = msgspec.json.decode(encoded, type=CatalogueEntry)
+    except msgspec.MsgspecError as error:
+        raise ArchiveError(
+            f"the archive {store.address}: {name} cannot be read ({error}): copy the incident once "
+            "more, or use the version of Muster that wrote it"
+        ) from error
+    if entry.version > VERSION:
+        raise ArchiveError(
+            f"the archive {store.address}: {name} was written by a newer version of Muster "
+            f"({entry.muster_version}): use that one"
+        )
+    return entry
+
+
+def require_entry(store: ArchiveStore, incident_id: str) -> CatalogueEntry:
+    """Raises ArchiveError, which names those that there are."""
+    entry = read_entry(store, incident_id)
+    if entry is None:
+        known = ", ".join(archived_ids(store)) or "none"
+        raise ArchiveError(
+            f"the archive {store.address} has no complete copy of {incident_id}; it has: {known}"
+        )
+    return entry
+
+
+def archived_ids(store: ArchiveStore) -> Sequence[str]:
+    """Incidents of which there is a complete copy."""
+    ends = f"/{ENTRY_NAME}"
+    return sorted(one.removesuffix(ends) for one in store.names() if one.endswith(ends))
+
+
+def unfinished_ids(store: ArchiveStore) -> Sequence[str]:
+    """Incidents of which there are files without an entry: the copy was cut short."""
+    there = {one.partition("/")[0] for one in store.names() if "/" in one}
+    return sorted(there - set(archived_ids(store)))

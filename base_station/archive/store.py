@@ -1,0 +1,136 @@
+"""Place of an archive: a folder of a disk, or a bucket that speaks S3."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Protocol
+
+from shared.durable_names import sync_folder
+from shared.errors import ArchiveError, ConfigError, UserError
+from shared.out_file import whole
+from shared.own_files import make_folder
+
+BUCKET = "s3://"
+
+
+class ArchiveStore(Protocol):
+    """Named files.  Every method raises ArchiveError where the archive does not do it."""
+
+    @property
+    def address(self) -> str:
+        """As a person gives it, without secrets."""
+        ...
+
+    def put(self, name: str, content: Path) -> None:
+        """Store a file, whole or not at all."""
+        ...
+
+    def size(self, name: str) -> int | None:
+        """None: there is none of the name."""
+        ...
+
+    def read_all(self, name: str) -> bytes | None:
+        """A small file, by one request; None: there is none of the name."""
+        ...
+
+    def read(self, name: str, begin: int, end: int) -> bytes:
+        """Bytes from ``begin`` until before ``end``, by one request."""
+        ...
+
+    def names(self, beginning: str = "") -> Sequence[str]: ...
+
+    def remove(self, name: str) -> None: ...
+
+
+def open_store(address: str) -> ArchiveStore:
+    """Raises UserError for an address of another kind, ConfigError where a library is missing."""
+    if address.startswith(BUCKET):
+        try:
+            from base_station.archive.bucket import BucketStore  # noqa: PLC0415  # optional
+        except ModuleNotFoundError as error:
+            raise ConfigError(
+                f"{address} needs a library that is not installed: pip install --require-hashes "
+                "-r deploy/requirements-archive.lock"
+            ) from error
+        return BucketStore(address)
+    if "://" in address:
+        raise UserError(f"{address}: an archive is a folder, or s3://BUCKET/PLACE")
+    return FolderStore(Path(address))
+
+
+class FolderStore:
+    """Each file is a file of that name below the folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    @property
+    def address(self) -> str:
+        return str(self._folder.absolute())
+
+    def put(self, name: str, content: Path) -> None:
+        with self._asking(f"{name} cannot be written"):
+            path = self._folder / name
+            make_folder(path.parent)
+            try:
+                with (
+                    whole(path) as making,
+                    content.open("rb") as source,
+                    making.open("wb") as target,
+                ):
+                    shutil.copyfileobj(source, target)
+                    target.flush()
+                    os.fsync(target.fileno())
+            except UserError as error:
+                raise ArchiveError(f"{self.address}: {error}") from error
+            sync_folder(path.parent)
+
+    def size(self, name: str) -> int | None:
+        with self._asking(f"{name} cannot be read"):
+            try:
+                return (self._folder / name).stat().st_size
+            except FileNotFoundError:
+                return None
+
+    def read_all(self, name: str) -> bytes | None:
+        with self._asking(f"{name} cannot be read"):
+            try:
+                return (self._folder / name).read_bytes()
+            except FileNotFoundError:
+                return None
+
+    def read(self, name: str, begin: int, end: int) -> bytes:
+        with (
+            self._asking(f"{name} cannot be read"),
+            (self._folder / name).open("rb") as file,
+        ):
+            data = os.pread(file.fileno(), end - begin, begin)
+        if len(data) < end - begin:
+            raise ArchiveError(f"{self.address}: {name} is shorter than it was: copy it once more")
+        return data
+
+    def names(self, beginning: str = "") -> Sequence[str]:
+        with self._asking("what is in it cannot be read"):
+            if not self._folder.is_dir():
+                raise FileNotFoundError(2, "there is no such folder")
+            files = (one for one in self._folder.rglob("*") if one.is_file())
+            names = (one.relative_to(self._folder).as_posix() for one in files)
+            return sorted(one for one in names if one.startswith(beginning))
+
+    def remove(self, name: str) -> None:
+        with self._asking(f"{name} cannot be removed"):
+            (self._folder / name).unlink(missing_ok=True)
+
+    @contextmanager
+    def _asking(self, what: str) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise ArchiveError(
+                f"the archive {self.address}: {what} ({error.strerror or error}); see that the "
+                "disk is there, has room, and may be used by whom the station runs as"
+            ) from error

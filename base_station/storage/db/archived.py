@@ -1,0 +1,144 @@
+"""Copies of incidents in an archive, as the database knows them: down to ranges of bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import msgspec
+from sqlalchemy import delete, exists, select
+
+from base_station.storage.db.database import Database
+from base_station.storage.db.incident_search import IncidentSearch
+from base_station.storage.db.models import (
+    ArchivedIncident,
+    ArchivedObject,
+    ArchivedRange,
+    IncidentRow,
+    IndexedIncident,
+)
+from shared.mcap_log import ChunkRange, SegmentRanges
+
+
+class ArchivedFile(msgspec.Struct, frozen=True):
+    """A file of a copy, and where in it is what."""
+
+    name: str
+    size_bytes: int
+    sha256: str
+    summary_offset: int
+    topics: tuple[str, ...]
+    ranges: tuple[tuple[int, int, int, int], ...]  # from, until (log time, ns), offset, end
+
+    @property
+    def segment_ranges(self) -> SegmentRanges:
+        chunks = tuple(ChunkRange(*one) for one in self.ranges)
+        return SegmentRanges(chunks, self.summary_offset, self.size_bytes)
+
+
+class ArchivedCopies:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Database) -> None:
+        self._store = store
+
+    def due(self, archive: str, until_ns: int) -> Sequence[IncidentRow]:
+        """Incidents closed before ``until_ns`` of which the archive has no copy, or of which more
+        is known since; the oldest first.
+        """
+        IncidentSearch(self._store).index_changes()
+        with self._store.read() as session:
+            is_copied = exists().where(
+                ArchivedIncident.incident_id == IncidentRow.incident_id,
+                ArchivedIncident.archive == archive,
+                ArchivedIncident.known_ns == IndexedIncident.known_ns,
+            )
+            wanted = (
+                select(IncidentRow)
+                .join(IndexedIncident, IndexedIncident.incident_id == IncidentRow.incident_id)
+                .where(IncidentRow.closed_ns < until_ns, ~is_copied)
+            )
+            return session.scalars(wanted.order_by(IncidentRow.opened_ns)).all()
+
+    def note(
+        self,
+        incident_id: str,
+        archive: str,
+        archived_ns: int,
+        known_ns: int,
+        files: Sequence[ArchivedFile],
+    ) -> None:
+        with self._store.write() as session:
+            for table in (ArchivedObject, ArchivedRange):
+                session.execute(delete(table).where(table.incident_id == incident_id))
+            session.merge(
+                ArchivedIncident(
+                    incident_id=incident_id,
+                    archive=archive,
+                    archived_ns=archived_ns,
+                    known_ns=known_ns,
+                )
+            )
+            for file in files:
+                session.add_all(_rows(incident_id, file))
+
+    def archives(self, incident_ids: Collection[str]) -> dict[str, str]:
+        """Addresses of the archives that have copies, by incident."""
+        of_these = ArchivedIncident.incident_id.in_(incident_ids)
+        wanted = select(ArchivedIncident.incident_id, ArchivedIncident.archive).where(of_these)
+        with self._store.read() as session:
+            return {one.incident_id: one.archive for one in session.execute(wanted)}
+
+    def files(self, incident_id: str) -> dict[str, ArchivedFile]:
+        """Files of a copy by name; none where there is no copy."""
+        objects = select(ArchivedObject).where(ArchivedObject.incident_id == incident_id)
+        with self._store.read() as session:
+            return {
+                one.name: ArchivedFile(
+                    one.name,
+                    one.size_bytes,
+                    one.sha256,
+                    one.summary_offset,
+                    msgspec.json.decode(one.topics, type=tuple[str, ...]),
+                    tuple(
+                        (
+                            chunk.from_ns,
+                            chunk.until_ns,
+                            chunk.offset,
+                            chunk.offset + chunk.size_bytes,
+                        )
+                        for chunk in session.scalars(
+                            select(ArchivedRange)
+                            .where(
+                                ArchivedRange.incident_id == incident_id,
+                                ArchivedRange.name == one.name,
+                            )
+                            .order_by(ArchivedRange.offset)
+                        )
+                    ),
+                )
+                for one in session.scalars(objects)
+            }
+
+
+def _rows(incident_id: str, file: ArchivedFile) -> Sequence[ArchivedObject | ArchivedRange]:
+    ranges = [
+        ArchivedRange(
+            incident_id=incident_id,
+            name=file.name,
+            offset=offset,
+            size_bytes=end - offset,
+            from_ns=from_ns,
+            until_ns=until_ns,
+        )
+        for from_ns, until_ns, offset, end in file.ranges
+    ]
+    topics = msgspec.json.encode(file.topics).decode()
+    stored = ArchivedObject(
+        incident_id=incident_id,
+        name=file.name,
+        size_bytes=file.size_bytes,
+        sha256=file.sha256,
+        summary_offset=file.summary_offset,
+        topics=topics,
+    )
+    return [stored, *ranges]

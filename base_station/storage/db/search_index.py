@@ -1,0 +1,169 @@
+"""Index by which incidents are found: words of the place, people, and alarms.
+
+It is made of the other tables when somebody searches: of what has changed since.  A person is in
+it by the id, whose name is in the roster alone.
+"""
+
+from __future__ import annotations
+
+import heapq
+import re
+import unicodedata
+from collections.abc import Iterator, Sequence
+
+import msgspec
+from sqlalchemy import ColumnElement, and_, case, delete, exists, func, insert, or_, select
+from sqlalchemy.orm import Session
+
+from base_station.core.person_references import references_in, with_names
+from base_station.storage.db.models import (
+    AlarmRow,
+    Assignment,
+    DispatchRow,
+    IncidentMember,
+    IncidentRow,
+    IndexedIncident,
+    SearchTerm,
+)
+from base_station.storage.db.window import FOREVER_NS
+from shared.messages.station import NoteDispatch
+
+WORD, PERSON, ALARM = "word", "person", "alarm"
+_AT_ONCE = 500  # incidents
+_WORDS = re.compile(r"\w+")
+_REPORTS = msgspec.json.Decoder(NoteDispatch)
+_Term = tuple[str, str, str]  # incident, kind, value
+
+
+def words_of(text: str) -> set[str]:
+    """Words as they are compared: without case and accents."""
+    parts = unicodedata.normalize("NFKD", text.casefold())
+    plain = "".join(part for part in parts if not unicodedata.combining(part))
+    return set(_WORDS.findall(plain))
+
+
+def newest_known_ns() -> ColumnElement[int]:
+    """Station time of the newest that is known of an incident; 0 while it is open."""
+    ended_ns, late_ns = IncidentRow.closed_ns, IncidentRow.late_data_ns
+    later_ns = case((late_ns > ended_ns, late_ns), else_=ended_ns)
+    return func.coalesce(later_ns, 0)
+
+
+def outdated(session: Session) -> Sequence[str]:
+    """Incidents that are open, or of which more is known than the index has."""
+    is_indexed = exists().where(
+        IndexedIncident.incident_id == IncidentRow.incident_id,
+        IndexedIncident.known_ns == newest_known_ns(),
+        IndexedIncident.known_ns != 0,
+    )
+    wanted = select(IncidentRow.incident_id).where(~is_indexed)
+    return session.scalars(wanted.order_by(IncidentRow.opened_ns)).all()
+
+
+def index(session: Session, incident_ids: Sequence[str]) -> None:
+    """Index these incidents anew."""
+    for begin in range(0, len(incident_ids), _AT_ONCE):
+        some = incident_ids[begin : begin + _AT_ONCE]
+        for table in (SearchTerm, IndexedIncident):
+            session.execute(delete(table).where(table.incident_id.in_(some)))
+        known = select(IncidentRow.incident_id, newest_known_ns())
+        session.execute(
+            insert(IndexedIncident).from_select(
+                ["incident_id", "known_ns"], known.where(IncidentRow.incident_id.in_(some))
+            )
+        )
+        terms = {*_texts(session, some), *_people(session, some), *_alarms(session, some)}
+        rows = [
+            {"incident_id": incident_id, "kind": kind, "value": value}
+            for incident_id, kind, value in terms
+        ]
+        if rows:
+            session.execute(insert(SearchTerm), rows)
+
+
+def _texts(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
+    """Words of names and dispatches, and whom these mention."""
+    wanted = select(IncidentRow.incident_id, IncidentRow.name, DispatchRow.report).join_from(
+        IncidentRow, DispatchRow, DispatchRow.number == IncidentRow.dispatch_number, isouter=True
+    )
+    for incident_id, name, encoded in session.execute(
+        wanted.where(IncidentRow.incident_id.in_(incident_ids))
+    ):
+        yield from ((incident_id, PERSON, person_id) for person_id in references_in(name))
+        texts = [with_names(name, lambda _: "")]
+        if encoded is not None:
+            report = _REPORTS.decode(encoded)
+            texts += [report.number, report.address, report.type]
+        yield from ((incident_id, WORD, word) for text in texts for word in words_of(text))
+
+
+def _people(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
+    """Who wore a unit in them."""
+    during = and_(
+        Assignment.unit_id == IncidentMember.unit_id,
+        Assignment.from_ns < func.coalesce(IncidentMember.until_ns, FOREVER_NS),
+        func.coalesce(Assignment.until_ns, FOREVER_NS) > IncidentMember.from_ns,
+    )
+    members = (
+        select(IncidentMember.incident_id, Assignment.person_id)
+        .join(Assignment, during)
+        .where(IncidentMember.incident_id.in_(incident_ids), Assignment.person_id != "")
+        .distinct()
+    )
+    for incident_id, person_id in session.execute(members):
+        yield incident_id, PERSON, person_id
+    yield from _everybody(session, incident_ids)
+
+
+def _everybody(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
+    """Who wore a unit meanwhile, of incidents of an earlier version, in which everybody was."""
+    incidents = session.execute(
+        select(IncidentRow.incident_id, IncidentRow.opened_ns, IncidentRow.closed_ns)
+        .where(IncidentRow.incident_id.in_(incident_ids), ~IncidentRow.has_members)
+        .order_by(IncidentRow.opened_ns)
+    ).all()
+    if not incidents:
+        return
+    last_ns = max(one.closed_ns or FOREVER_NS for one in incidents)
+    worn = session.execute(
+        select(Assignment.from_ns, Assignment.until_ns, Assignment.person_id)
+        .where(
+            Assignment.from_ns < last_ns,
+            or_(Assignment.until_ns.is_(None), Assignment.until_ns > incidents[0].opened_ns),
+            Assignment.person_id != "",
+        )
+        .order_by(Assignment.from_ns)
+    ).all()
+    begun: list[tuple[int, int, str]] = []  # until, from, person: a heap of those not yet over
+    count = 0
+    for incident_id, opened_ns, closed_ns in incidents:
+        end_ns = closed_ns or FOREVER_NS
+        while count < len(worn) and worn[count].from_ns < end_ns:
+            from_ns, until_ns, person_id = worn[count]
+            heapq.heappush(begun, (until_ns or FOREVER_NS, from_ns, person_id))
+            count += 1
+        while begun and begun[0][0] <= opened_ns:
+            heapq.heappop(begun)
+        for _, from_ns, person_id in begun:
+            if from_ns < end_ns:
+                yield incident_id, PERSON, person_id
+
+
+def _alarms(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
+    """Rules that raised an alarm of a member, or of the station, while they were open."""
+    was_member = exists().where(
+        IncidentMember.incident_id == IncidentRow.incident_id,
+        IncidentMember.unit_id == AlarmRow.unit_id,
+        IncidentMember.from_ns <= AlarmRow.raised_ns,
+        func.coalesce(IncidentMember.until_ns, FOREVER_NS) >= AlarmRow.raised_ns,
+    )
+    raised = and_(
+        AlarmRow.raised_ns >= IncidentRow.opened_ns,
+        AlarmRow.raised_ns < func.coalesce(IncidentRow.closed_ns, FOREVER_NS),
+        or_(~IncidentRow.has_members, AlarmRow.unit_id == "", was_member),
+    )
+    rules = select(IncidentRow.incident_id, AlarmRow.rule).join(AlarmRow, raised).distinct()
+    wanted = rules.where(IncidentRow.incident_id.in_(incident_ids))
+    for incident_id, rule in session.execute(wanted):
+        yield incident_id, ALARM, rule
+        yield from ((incident_id, WORD, word) for word in words_of(rule))

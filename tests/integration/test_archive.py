@@ -1,0 +1,296 @@
+"""Incidents in an archive: copied to a real S3 server and to a disk, found out about, and shown."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import select
+from typer.testing import CliRunner, Result
+
+from base_station.app.archive_sources import open_archived_log, open_copier
+from base_station.app.factories import project_whole_log
+from base_station.archive.entry import CONSOLE_NAME, ENTRY_NAME, LOG_NAME, require_entry
+from base_station.archive.store import ArchiveStore, open_store
+from base_station.cli import app
+from base_station.engine.feed import LogFeed
+from base_station.replay.recorded_player import RecordedPlayer
+from base_station.storage.db.archived import ArchivedCopies
+from base_station.storage.db.models import AlarmRow
+from base_station.storage.db.records import Records
+from base_station.storage.db.roster import Roster
+from base_station.storage.db.store import Store
+from base_station.storage.db.window import EVER
+from shared.clock import NS_PER_S, SystemClock
+from shared.errors import ArchiveError, ConfigError, UserError
+from shared.mcap_log import SegmentPolicy, SegmentWriter
+from shared.messages import EventKind
+from shared.messages.station import Assign, CloseIncident, OpenIncident, SetPlan
+from tests.golden.test_recorded_console import people, shown_at
+from tests.integration.test_incident_file import PEOPLE
+from tests.rig.bucket_server import ADDRESS, BucketServer, bucket_server
+from tests.rig.console_log import with_console
+from tests.rig.live_station import Screen, make_pipeline
+from tests.rig.round_walk import PLAN, Walk
+from tests.rig.station_script import START_NS, Script
+
+WALKED_S = 400  # three keyframes
+MOST_REQUESTS = 5
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A station's folder with two closed incidents, i1 and i2, and one that is open."""
+    walk = Walk("FF-01", "FF-02", turn_rad=0.3)
+    script = walk.script
+    for action in (SetPlan(PLAN), Assign("FF-01", "ada0"), Assign("FF-02", "bo00")):
+        script.act(action)
+    for unit_id in walk.units:
+        walk.start(unit_id)
+    walk.go(60)
+    script.event("FF-01", EventKind.MAYDAY)
+    walk.go(WALKED_S - 60)
+    script.act(CloseIncident("i1"))
+    script.wait(30.0)
+    script.act(OpenIncident("i2", "Harbour"))
+    walk.go(30)
+    script.act(CloseIncident("i2"))
+    script.wait(30.0)
+    script.act(OpenIncident("i3", "still open"))
+    walk.go(5)
+    folder = tmp_path_factory.mktemp("station")
+    records = with_console(script.records, make_pipeline(None))
+    with closing(SegmentWriter(folder / "log", SegmentPolicy(segment_s=60.0))) as log:
+        for record in records:
+            log.write(*record)
+    with Store(folder / "station.sqlite") as store:
+        project_whole_log(store, folder / "log", lambda _: None)
+        Roster(store, SystemClock()).bring_people(PEOPLE)
+    return folder
+
+
+@pytest.fixture
+def data(made: Path, tmp_path: Path) -> Path:
+    """A copy: what is archived is noted in it."""
+    return Path(shutil.copytree(made, tmp_path / "station"))
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[BucketServer]:
+    with bucket_server() as server:
+        yield server
+
+
+@pytest.fixture
+def ask_as(server: BucketServer, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    def ask(name: str) -> None:
+        for variable, value in server.environment(name).items():
+            monkeypatch.setenv(variable, value)
+
+    ask("owner")
+    return ask
+
+
+def muster(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(app, list(map(str, arguments)))
+
+
+def succeeded(*arguments: str | Path) -> str:
+    result = muster(*arguments)
+    assert result.exit_code == 0, (result.output, result.exception)
+    return result.output
+
+
+def refusal(*arguments: str | Path) -> str:
+    result = muster(*arguments)
+    assert isinstance(result.exception, ArchiveError | UserError | ConfigError), result
+    return str(result.exception)
+
+
+class CountingStore:
+    """Counts what is asked of an archive."""
+
+    def __init__(self, store: ArchiveStore) -> None:
+        self._store = store
+        self.requests = self.bytes = 0
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._store, name)
+
+    def read_all(self, name: str) -> bytes | None:
+        data = self._store.read_all(name)
+        self._count(data or b"")
+        return data
+
+    def read(self, name: str, begin: int, end: int) -> bytes:
+        data = self._store.read(name, begin, end)
+        self._count(data)
+        return data
+
+    def _count(self, data: bytes) -> None:
+        self.requests += 1
+        self.bytes += len(data)
+
+
+@pytest.mark.slow
+def test_a_bucket_has_what_the_station_has(
+    data: Path, ask_as: Callable[[str], None], tmp_path: Path
+) -> None:
+    address = f"{ADDRESS}-whole"
+    copied = succeeded("archive", "copy", address, "--data", data)
+    assert "2 incidents copied" in copied
+    assert "0 incidents copied" in succeeded("archive", "copy", address, "--data", data)
+    listed = succeeded("archive", "list", address)
+    assert "i1\\t" in listed.replace("\t", "\\t")
+    assert "mayday" in listed
+    assert "Mill Lane" in listed
+    assert ": 0 defects" in succeeded("archive", "verify", address)
+    found = succeeded("search", "mill", "--person", "ada", "--alarm", "mayday", "--data", data)
+    assert address in found
+    assert "i2" not in found
+
+    fetched, exported = tmp_path / "fetched.mcap", tmp_path / "exported.mcap"
+    succeeded("archive", "fetch", address, "i1", fetched)
+    succeeded("export", "i1", exported, "--data", data)
+    assert fetched.read_bytes() == exported.read_bytes()
+
+    with Store(data / "station.sqlite") as store:
+        entry = require_entry(open_store(address), "i1")
+        files = ArchivedCopies(store).files("i1")
+        assert files == {one.name: one for one in entry.files}
+        assert {CONSOLE_NAME, LOG_NAME} == set(files)
+        assert entry.people.keys() == {"ada0", "bo00"}
+        with store.write() as session:
+            for table in ("archived_incidents", "archived_objects", "archived_ranges"):
+                session.connection().exec_driver_sql(f"DELETE FROM {table}")
+    again = succeeded("archive", "copy", address, "--data", data)
+    assert again.count("is there already") == 2, "the catalogue is made again from the archive"
+    with Store(data / "station.sqlite") as store:
+        assert ArchivedCopies(store).files("i1") == files
+
+
+@pytest.mark.slow
+def test_any_second_is_shown_as_by_the_station_with_few_requests(
+    data: Path, ask_as: Callable[[str], None]
+) -> None:
+    address = f"{ADDRESS}-shown"
+    succeeded("archive", "copy", address, "--data", data)
+    here = RecordedPlayer(LogFeed(data / "log").everything, Screen(), people)
+    with Store(data / "station.sqlite") as store:
+        incident = Records(store, SystemClock()).require_incident("i1")
+    for second in range(1, WALKED_S, 57):
+        t_ns = incident.opened_ns + second * NS_PER_S
+        counted = CountingStore(open_store(address))
+        with ExitStack() as closing_all:
+            opened = open_archived_log(counted, "i1", closing_all, lambda _: None)
+            there = RecordedPlayer(opened.log.everything, Screen(), people)
+            assert shown_at(there, t_ns) == shown_at(here, t_ns), second
+            assert counted.requests <= MOST_REQUESTS
+            if second >= WALKED_S - 57:
+                rows = Records(opened.store, SystemClock())
+                assert "mayday" in {one.rule for one in rows.alarms(EVER)}
+                before = list(LogFeed(data / "log").records(incident.opened_ns, incident.closed_ns))
+                after = list(opened.log.records(incident.opened_ns, incident.closed_ns))
+                assert after == before, "to decide again, all of it is fetched"
+
+
+@pytest.mark.slow
+def test_a_bucket_without_rights_is_named_and_takes_nothing(
+    data: Path, ask_as: Callable[[str], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    address = f"{ADDRESS}-rights"
+    succeeded("archive", "copy", address, "--data", data)
+    for asker in ("reader", "nobody"):
+        ask_as(asker)
+        said = refusal("archive", "copy", f"{address}-other", "--data", data)
+        assert "s3:PutObject" in said
+        assert "AWS_ACCESS_KEY_ID" in said
+    assert "s3:ListBucket" in refusal("archive", "list", address)
+    ask_as("reader")
+    assert "2 incidents" not in succeeded("archive", "verify", address)
+    with Store(data / "station.sqlite") as store:
+        assert ArchivedCopies(store).archives(["i1", "i2"]) == {"i1": address, "i2": address}
+    ask_as("owner")
+    assert "has no complete copy of ?; it has: i1, i2" in refusal(
+        "archive", "fetch", address, "?", data / "out.mcap"
+    )
+    assert "make the bucket" in refusal("archive", "list", "s3://no-such-bucket/x")
+    monkeypatch.setenv("AWS_ENDPOINT_URL", "http://192.0.2.1:1")
+    assert "192.0.2.1" in refusal("archive", "list", address), "names of people are encrypted"
+
+
+@pytest.mark.slow
+def test_a_bucket_that_goes_away_loses_nothing(
+    data: Path, server: BucketServer, ask_as: Callable[[str], None]
+) -> None:
+    address = f"{ADDRESS}-away"
+    with open_copier(address, data) as copier:
+        results = copier.copy_due(lambda _: None)
+        assert next(results).incident_id == "i1"
+        server.stop()
+        try:
+            with pytest.raises(ArchiveError, match="nothing is lost"):
+                next(results)
+            assert "nothing is lost" in refusal("archive", "list", address)
+        finally:
+            server.start()
+    again = succeeded("archive", "copy", address, "--data", data)
+    assert "i2\t" in again
+    assert "i1" not in again
+    assert ": 0 defects" in succeeded("archive", "verify", address)
+
+
+def test_a_disk_s_copy_that_is_torn_is_found_and_made_again(data: Path, tmp_path: Path) -> None:
+    disk = tmp_path / "disk"
+    succeeded("archive", "copy", disk, "--data", data)
+    assert ": 0 defects" in succeeded("archive", "verify", disk)
+    whole = (disk / "i1" / LOG_NAME).read_bytes()
+    flipped = bytearray(whole)
+    flipped[len(whole) // 2] ^= 1
+    (disk / "i1" / LOG_NAME).write_bytes(flipped)
+    (disk / "i2" / ENTRY_NAME).unlink()
+    verified = muster("archive", "verify", disk)
+    assert verified.exit_code == 1
+    assert f"i1: {LOG_NAME} is not as it was written" in verified.output
+    assert "i2: the copy was cut short" in verified.output
+    out = tmp_path / "out.mcap"
+    assert "is not as it was written" in refusal("archive", "fetch", disk, "i1", out)
+    assert list(tmp_path.glob("*out.mcap*")) == [], "no partial file is left"
+    (disk / "i1" / LOG_NAME).write_bytes(whole[:-1])
+    with suppress(UserError), Store(data / "station.sqlite") as store, store.write() as session:
+        session.connection().exec_driver_sql("DELETE FROM archived_incidents")
+    copied = succeeded("archive", "copy", disk, "--data", data)
+    assert "already" not in copied
+    assert ": 0 defects" in succeeded("archive", "verify", disk)
+    entry = json.loads((disk / "i1" / ENTRY_NAME).read_bytes())
+    (disk / "i1" / ENTRY_NAME).write_text(json.dumps(entry | {"version": 99}))
+    assert "newer version of Muster" in refusal("archive", "fetch", disk, "i1", out)
+    assert "an archive is a folder, or s3://" in refusal("archive", "list", "ftp://x/y")
+    assert "see that the disk is there" in refusal("archive", "list", tmp_path / "none")
+
+
+def test_whoever_is_forgotten_is_gone_from_the_copy_with_the_next_one(
+    data: Path, tmp_path: Path
+) -> None:
+    records = list(LogFeed(data / "log").records())
+    script = Script()
+    script.now_s = (records[-1][0] - START_NS) / NS_PER_S + 1.0
+    script.act(CloseIncident("i3"))
+    with closing(SegmentWriter(data / "log")) as log:
+        for record in script.records:
+            log.write(*record)
+    succeeded("rebuild", "--data", data)
+    disk = tmp_path / "disk"
+    succeeded("archive", "copy", disk, "--data", data)
+    assert any(b"Ada" in file.read_bytes() for file in disk.rglob("*.*"))
+    forgotten = CliRunner().invoke(app, ["forget", "Ada", "--data", str(data)], input="Ada\n")
+    assert forgotten.exit_code == 0, forgotten.output
+    assert "3 incidents copied" in succeeded("archive", "copy", disk, "--data", data)
+    assert not any(b"Ada" in file.read_bytes() for file in disk.rglob("*.*"))
+    with Store(data / "station.sqlite") as store, store.read() as session:
+        assert "mayday" in session.scalars(select(AlarmRow.rule)).all()

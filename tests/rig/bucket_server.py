@@ -1,0 +1,148 @@
+"""A real S3 server (SeaweedFS) in a folder of its own, that can be stopped and started again.
+
+It ends with the test, also where that is killed: it gets SIGTERM when this process ends.
+"""
+
+from __future__ import annotations
+
+import json
+import secrets
+import shutil
+import socket
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+import obstore
+from obstore.exceptions import BaseError
+from obstore.store import S3Store
+
+from tests.rig.station_process import free_port
+from tests.rig.waiting import until
+
+BUCKET = "muster"
+ADDRESS = f"s3://{BUCKET}/station"
+_PARTS = ("s3", "master", "volume", "filer")
+_END_WITH_PARENT = """
+import ctypes, os, signal, sys
+ctypes.CDLL(None).prctl(1, signal.SIGTERM)
+os.execv(sys.argv[1], sys.argv[1:])
+"""
+
+
+class BucketServer:
+    """``environment`` gives who asks: everything is allowed to ``owner``, reading to ``reader``."""
+
+    def __init__(self, folder: Path, host: str = "127.0.0.1", beginning: tuple[str, ...] = ()):
+        """``beginning``: of the command, such as ``ip netns exec NAME``."""
+        self._folder, self._host, self._beginning = folder, host, beginning
+        self._ports = {f"{part}{grpc}": free_port() for part in _PARTS for grpc in ("", ".grpc")}
+        self._secrets = {name: secrets.token_hex(16) for name in ("owner", "reader")}
+        self._running: subprocess.Popen[bytes] | None = None
+        rights = {"owner": ["Admin", "Read", "List", "Write"], "reader": ["Read", "List"]}
+        who = [
+            {
+                "name": name,
+                "credentials": [{"accessKey": name, "secretKey": secret}],
+                "actions": rights[name],
+            }
+            for name, secret in self._secrets.items()
+        ]
+        (folder / "s3.json").write_text(json.dumps({"identities": who}))
+        (folder / "data").mkdir()
+
+    @property
+    def endpoint(self) -> str:
+        return f"http://{self._host}:{self._ports['s3']}"
+
+    def environment(self, name: str = "owner") -> dict[str, str]:
+        return {
+            "AWS_ACCESS_KEY_ID": name,
+            "AWS_SECRET_ACCESS_KEY": self._secrets.get(name, "wrong"),
+            "AWS_REGION": "us-east-1",
+            "AWS_ENDPOINT_URL": self.endpoint,
+        }
+
+    def start(self) -> None:
+        """Answers when this returns."""
+        program = Path(sysconfig.get_path("scripts")) / "weed"
+        ports = [f"-{name}.port{grpc}" for name in _PARTS for grpc in ("", ".grpc")]
+        flags = [
+            word
+            for flag, port in zip(ports, self._ports.values(), strict=True)
+            for word in (flag, str(port))
+        ]
+        command = (
+            *(*self._beginning, sys.executable, "-c", _END_WITH_PARENT, str(program), "server"),
+            *("-dir", str(self._folder / "data"), "-ip", self._host, "-ip.bind", self._host),
+            *("-filer", "-s3", "-s3.config", str(self._folder / "s3.json"), *flags),
+            *(
+                "-master.volumeSizeLimitMB",
+                "64",
+                "-volume.max",
+                "40",
+                "-volume.preStopSeconds",
+                "0",
+            ),
+        )
+        with (self._folder / "output.txt").open("ab") as output:
+            self._running = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=output, stderr=output
+            )
+        until(self._answers, f"the S3 server answers; {self._folder / 'output.txt'} has its words")
+        until(self._has_bucket, "the server takes files")
+
+    def stop(self) -> None:
+        if self._running is not None:
+            self._running.kill()
+            self._running.wait()
+            self._running = None
+
+    def _answers(self) -> bool:
+        if self._beginning:
+            return self._listens_elsewhere()
+        try:
+            return httpx.get(f"{self.endpoint}/healthz").status_code == httpx.codes.OK
+        except httpx.HTTPError:
+            return False
+
+    def _has_bucket(self) -> bool:
+        """The server makes a bucket for the first file of whoever may do everything."""
+        owner = self.environment()
+        bucket = S3Store(
+            BUCKET,
+            endpoint=self.endpoint,
+            access_key_id=owner["AWS_ACCESS_KEY_ID"],
+            secret_access_key=owner["AWS_SECRET_ACCESS_KEY"],
+            client_options={"allow_http": True},
+        )
+        try:
+            obstore.put(bucket, "ready", b"")
+        except BaseError:
+            return False
+        return True
+
+    def _listens_elsewhere(self) -> bool:
+        try:
+            socket.create_connection((self._host, self._ports["s3"]), 1.0).close()
+        except OSError:
+            return False
+        return True
+
+
+@contextmanager
+def bucket_server() -> Iterator[BucketServer]:
+    """One that runs."""
+    folder = Path(tempfile.mkdtemp(prefix="muster-s3-"))
+    server = BucketServer(folder)
+    try:
+        server.start()
+        yield server
+    finally:
+        server.stop()
+        shutil.rmtree(folder, ignore_errors=True)
