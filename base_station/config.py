@@ -12,6 +12,7 @@ from base_station.core.work_limits import PAR_INTERVAL_S, WORK_LIMIT_S
 from base_station.dispatch.config import DispatchConfig
 from base_station.forwarders.department.config import DepartmentConfig
 from base_station.forwarders.tak.config import TakConfig
+from base_station.radio.config import RadioConfig
 from base_station.storage.db.server_address import ServerAddress
 from shared.channels import validate_unit_id
 from shared.config import Within
@@ -175,6 +176,7 @@ class StationConfig(ServerConfig):
     dispatch: DispatchConfig = field(default_factory=DispatchConfig)
     alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
     tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
+    radio: dict[str, RadioConfig] = field(default_factory=dict)  # recorded channels by name
     department: DepartmentConfig | None = None  # to which this station reports; None: to none
 
     def forwarders(self) -> Mapping[str, Mapping[str, Any]]:

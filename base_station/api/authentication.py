@@ -165,6 +165,7 @@ class Scope(StrEnum):
     LIVE = "live"
     PEOPLE = "people"
     PINS = "pins"
+    RADIO = "radio"
     RECORDINGS = "recordings"
     REPLAYS = "replays"
     SAMPLES = "samples"

@@ -468,6 +468,18 @@ FIELDS: Mapping[str, str] = {
     "ForwarderView.received": "Events of other teams taken since the station started.",
     "ForwarderView.refused": "Events of other teams that could not be read or were too many.",
     "ForwarderView.text": "Why it is not connected, or why less is sent; empty: all is well.",
+    # ---- radio
+    "radio": "Radio channels whose audio is recorded.",
+    "RadioView.name": "The channel's name in the station's settings.",
+    "RadioView.source": "Where its audio comes from: device:NAME, or a URL without its password.",
+    "RadioView.state": "recording, or away: what its source gives, or does not, is missing.",
+    "RadioView.problem": "Why it is not recorded, as a sentence; empty: it is.",
+    "RadioAnswer.channels": "Channels of which anything was recorded in the incident, by name.",
+    "RadioChannelAnswer.name": "The channel's name in the station's settings.",
+    "RadioChannelAnswer.recorded_ms": "Spans that were recorded, each from and until: between them "
+    "nothing was.",
+    "RadioChannelAnswer.voice_ms": "Spans with voice, each from and until: what else was recorded "
+    "is silent.",
     "repeated": "How many messages came again since the start, and were kept once.",
     "left_out": "How many messages since the start came faster than the station takes them; they "
     "are fetched from the units' journals.",
@@ -498,6 +510,8 @@ FIELDS: Mapping[str, str] = {
 }
 
 PARAMETERS: Mapping[str, str] = {
+    "channel": "Name of a radio channel, as in the station's settings.",
+    "length_ms": "Length of the window, milliseconds.",
     "from_ms": "Beginning of the window of time, milliseconds since 1970.",
     "until_ms": "End of the window of time, milliseconds since 1970.",
     "limit": "How many to give, the newest; those of the same millisecond as the last come along. "

@@ -55,6 +55,7 @@ class StationCollector(Collector):
         )
         yield from _of_standby(self._picture.health)
         yield from _of_forwarders(self._picture.health)
+        yield from _of_radio(self._picture.health)
         yield _machine_temperatures()
 
 
@@ -177,6 +178,15 @@ def _of_forwarders(health: HealthView) -> Iterator[Metric]:
         received.add_metric([one.kind, one.name], one.received)
         refused.add_metric([one.kind, one.name], one.refused)
     yield from (connected, sent, received, refused)
+
+
+def _of_radio(health: HealthView) -> Iterator[Metric]:
+    recording = GaugeMetricFamily(
+        "muster_radio_recording", "1 while a radio channel is recorded.", labels=["name"]
+    )
+    for one in health.radio:
+        recording.add_metric([one.name], one.state == "recording")
+    yield recording
 
 
 def _position_ages(ages: PositionAges) -> Metric:

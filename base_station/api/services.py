@@ -26,6 +26,7 @@ from base_station.engine.feed import LogFeed
 from base_station.engine.ports import ActionResult, OperatorGate, Trails
 from base_station.engine.sample_intake import SampleIntake
 from base_station.privacy.erasure_queue import ErasureQueue
+from base_station.radio.radio_log import RadioLog
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.timelines.unit_timeline import TimelineRequest, UnitTimeline
 from base_station.report.alarm_explanation import AlarmExplainer
@@ -74,6 +75,7 @@ class Services(LoginServices):
     read_timeline: Callable[[TimelineRequest], UnitTimeline] | None = None
     log: LogFeed | None = None  # None: a station without a log
     alarm_explainer: AlarmExplainer | None = None  # None: a station without a log
+    radio: RadioLog | None = None  # None: a station without a log
     pki: PkiFolder | None = None  # None: a station that enrols nobody
     intake: SampleIntake | None = None  # None: a station that only replays
     alerts: AlertIntake | None = None  # None: a station that only replays

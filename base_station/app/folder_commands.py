@@ -18,6 +18,7 @@ from base_station.fusion.smoothing import SMOOTHERS
 from base_station.privacy.erasure_queue import erase_now
 from base_station.privacy.erasure_service import ClosedLog, ErasureResult, ErasureService
 from base_station.privacy.requests import hand_over
+from base_station.radio.radio_log import RadioLog
 from base_station.replay.assessment.wearers import wearers
 from base_station.replay.post_processing import PostProcessor, Tracks
 from base_station.replay.trail_kind import TrailKind
@@ -159,6 +160,7 @@ def _forgetter(folder: DataFolder, store: Database) -> ErasureService:
         Records(store, clock),
         clock,
         TransferQueue(_no_query, folder.recordings, clock),
+        erase_audio=RadioLog(folder.radio).erase,
     )
 
 

@@ -9,7 +9,7 @@ from base_station.app.resources import Resources
 from base_station.engine.station_clock import SteadyClock
 from base_station.standby.mode import HaMode
 from base_station.views.station import StationFacts
-from base_station.views.wire import ForwarderView
+from base_station.views.wire import ForwarderView, RadioView
 
 
 class ReportsProblems(Protocol):
@@ -26,6 +26,7 @@ def health_facts(
     *,
     missing: int,
     forwarders: tuple[ForwarderView, ...],
+    radio: tuple[RadioView, ...],
 ) -> StationFacts:
     """``missing``: numbers of messages that no journal has any more."""
     certificates = resources.expiry, resources.console_expiry, resources.renewal
@@ -52,4 +53,5 @@ def health_facts(
         standby=None if side.ha_status is None else side.ha_status.view(),
         recordings=resources.recordings.views(),
         forwarders=forwarders,
+        radio=radio,
     )

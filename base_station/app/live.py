@@ -40,6 +40,9 @@ from base_station.process import gc_tuning
 from base_station.process.open_files import allow_many_files
 from base_station.process.shutdown_watchdog import ShutdownWatchdog
 from base_station.process.thread_crash_monitor import ThreadCrashMonitor
+from base_station.radio.config import require_channel_names
+from base_station.radio.radio_log import RadioLog
+from base_station.radio.recorders import RadioRecorders
 from base_station.replay.post_processing_worker import PostProcessingWorker
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.site.plan_reader import PlanReader
@@ -64,9 +67,10 @@ def run_station(
     ``loading_router`` becomes the bus's first router.
 
     Raises ConfigError where no alarm rule can have the thresholds of the settings, or there is no
-    such fuser.
+    such fuser, or a radio channel has a name that it cannot have.
     """
     require_fuser(config.positioning.fuser)
+    require_channel_names(config.radio)
     thresholds = thresholds_of(ALARMS, config.alarms)
     gc_tuning.configure()
     allow_many_files()
@@ -151,12 +155,16 @@ class _Station:
         self._shown = LiveFanOut(resources.hub, self._forwarders)
         stamper = Stamper(STATION_ID, secrets.randbits(63), clock)
         self._downlink = CommandSender(bus, stamper, clock, self._disk.roster.shown)
+        self._radio = RadioRecorders(
+            resources.config.radio, RadioLog(self._disk.folder.radio), self._disk.clock
+        )
         self._erasures = self._disk.forgetting_desk(
             resources.recordings,
             self._submit_if_leader,
             self._request_checkpoint,
             self._is_leader,
             self._has_peer,
+            self._radio.erase,
         )
         plans = PlanReader()
         saved = self._disk.latest_state()
@@ -179,6 +187,8 @@ class _Station:
             thread.start()
             closing.callback(thread.close)
         closing.callback(self._forwarders.close)
+        self._radio.start()
+        closing.callback(self._radio.close)
         self._shown.start(self._engine)
         closing.callback(self._side.feed.close)
         post_processor, records = self._disk.post_processor(replays), self._disk.records
@@ -299,7 +309,10 @@ class _Station:
         not, and the service manager notices.
         """
         self._manager.working()
-        others = (self._erasures, self._disk.check, self._restarts.stale, self._crashes)
+        others = (
+            *(self._erasures, self._disk.check, self._restarts.stale, self._crashes),
+            self._radio,
+        )
         return health_facts(
             self._resources,
             self._disk.clock,
@@ -307,6 +320,7 @@ class _Station:
             others,
             missing=self._reports.backfill.gone,
             forwarders=self._forwarders.views(),
+            radio=self._radio.views(),
         )
 
     def _is_leader(self) -> bool:

@@ -14,6 +14,7 @@ from base_station.app.pipeline_factory import past_pipeline
 from base_station.dispatch.alert_intake import AlertIntake
 from base_station.engine.feed import LogFeed
 from base_station.engine.sample_intake import SampleIntake
+from base_station.radio.radio_log import RadioLog
 from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.processes.replay_process import ReplayContext
 from base_station.replay.processes.timeline_process import TimelineProcess
@@ -49,6 +50,7 @@ def new_services(parts: LiveParts) -> Services:
         pki=resources.pki,
         intake=SampleIntake(parts.gate.deliver, resources.bus, disk.clock),
         alerts=AlertIntake(parts.engine.note_external),
+        radio=RadioLog(disk.folder.radio),
         dispatch=resources.config.dispatch,
         accountability=resources.config.accountability,
     )

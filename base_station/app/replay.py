@@ -22,10 +22,12 @@ from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.archive.store import open_store
 from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
+from base_station.radio.radio_log import RadioLog
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.read_only import ReadOnlyGate
 from base_station.replay.timelines.unit_timeline import read_timeline
 from base_station.report.alarm_explanation import AlarmExplainer
+from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.records import Records
@@ -96,6 +98,7 @@ def run_replay_station(
             post_processor=PostProcessor(past, SMOOTHERS[0], SmoothedTracks(store), clock),
             read_timeline=partial(read_timeline, records, offline_log.log),
             log=offline_log.log,
+            radio=RadioLog(DataFolder(data).radio),
             alarm_explainer=AlarmExplainer(records, offline_log.log.records),
         )
         app = create_app(

@@ -14,7 +14,7 @@ from base_station.engine.feed import LogFeed
 from base_station.engine.station_clock import SteadyClock
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.privacy.erasure_queue import ErasureJob, ErasureQueue
-from base_station.privacy.erasure_service import Act, ErasureService, RecordingTransfers
+from base_station.privacy.erasure_service import Act, EraseAudio, ErasureService, RecordingTransfers
 from base_station.replay.playback import Archive
 from base_station.replay.processes.post_processing_process import (
     PostProcessingContext,
@@ -120,9 +120,11 @@ class StationStorage:
         save_soon: Callable[[], None],
         leads: Callable[[], bool],
         other_there: Callable[[], bool],
+        erase_audio: EraseAudio,
     ) -> ErasureQueue:
         """``act`` has the running station forget what it holds in memory, ``save_soon`` save its
         state, which forgetting has removed.  ``other_there``: the other one of two is heard.
+        ``erase_audio``: as of ``ErasureService``.
         """
 
         def record_result(done: ErasureJob) -> None:
@@ -150,7 +152,7 @@ class StationStorage:
 
         forgetter = ErasureService(
             self.recorder, self.store, self.checkpoints, self.records, self.clock, pulls, act,
-            mended_first, self.roster.forget,
+            mended_first, self.roster.forget, erase_audio,
         )  # fmt: skip
         return ErasureQueue(forgetter, self.folder.forgettings, obstacle, record_result)
 

@@ -58,6 +58,7 @@ _ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
 Progress = Callable[[float], None]  # hears the fraction done
 RepairFirst = Callable[[Path, str], bool]  # hears what is damaged in a segment of the log
+EraseAudio = Callable[[int, int], int]  # station times, the second left out; gives packets
 Act = Callable[[str, Action], Future[ActionResult] | None]  # None: no station that leads does it
 
 
@@ -150,10 +151,12 @@ class ErasureService:
         act: Act = lambda _by, _action: None,
         mended_first: RepairFirst = lambda _path, _damage: False,
         forget_name: Callable[[str], None] = lambda _person_id: None,
+        erase_audio: EraseAudio = lambda _from_ns, _until_ns: 0,
     ) -> None:
         """``act`` has the running station forget what it holds in memory.  ``mended_first`` tells
         whether what is lost of a segment is about to be fetched from the other station.
-        ``forget_name`` has it show a person's name no more.
+        ``forget_name`` has it show a person's name no more.  ``erase_audio`` is called for a whole
+        incident alone: in what is spoken nobody can tell who speaks.
         """
         self._log = log
         self._store = store
@@ -164,6 +167,7 @@ class ErasureService:
         self._act = act
         self._mended_first = mended_first
         self._forget_name = forget_name
+        self._erase_audio = erase_audio
         self._begun = PendingErasure(DataFolder(log.folder.parent).begun)
 
     def person(
@@ -220,6 +224,8 @@ class ErasureService:
         self._forget_in_memory(by, erasure)
         self._checkpoints.clear()
         self._rewrite_log(erasure, on_progress, tally)
+        if erasure.incident_id:
+            tally.records += self._erase_audio(erasure.from_ns, erasure.until_ns)
         with self._store.write() as session:
             forget_in(session, erasure)
         tally.files += self._store.compact()
@@ -284,7 +290,7 @@ class ErasureService:
     def _set_aside(self) -> list[Path]:
         """Parts of logs that stand beside the log in the station's folder."""
         station = self._log.folder.parent
-        known = (self._log.folder, DataFolder(station).recordings)
+        known = (self._log.folder, DataFolder(station).recordings, DataFolder(station).radio)
         return sorted(
             path
             for path in station.rglob("*.mcap")

@@ -20,6 +20,7 @@ class DataFolder:
         self.log = path / LOG_FOLDER
         self.checkpoints = path / "checkpoints"
         self.recordings = path / "recordings"  # of units' raw sensors, pulled on request
+        self.radio = path / "radio"  # audio of radio channels
         self.database = path / "station.sqlite"
         self.tables_behind = path / "tables-behind"  # since when, while a server was away
         self.forgettings = path / "forgetting.json"  # what is to be forgotten, until it is

@@ -27,6 +27,7 @@ from base_station.views.wire import (
     HealthView,
     IncidentView,
     PinView,
+    RadioView,
     RecordingView,
     ReplayView,
     SiteView,
@@ -55,6 +56,7 @@ class StationFacts(msgspec.Struct, frozen=True):
     standby: StandbyView | None = None
     recordings: tuple[RecordingView, ...] = ()
     forwarders: tuple[ForwarderView, ...] = ()
+    radio: tuple[RadioView, ...] = ()
 
 
 def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm, people: PersonLookup) -> AlarmView:
@@ -263,6 +265,7 @@ def health_view(state: StationState, facts: StationFacts) -> HealthView:
         standby=facts.standby,
         recordings=facts.recordings,
         forwarders=facts.forwarders,
+        radio=facts.radio,
     )
 
 

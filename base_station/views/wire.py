@@ -371,6 +371,15 @@ class ForwarderView(Answer, frozen=True):
     text: str  # for a person: why it is not connected, or why less is sent; empty: all is well
 
 
+class RadioView(Answer, frozen=True):
+    """A radio channel whose audio is recorded."""
+
+    name: str  # as in the settings
+    source: str  # device:NAME or a URL, without a password
+    state: Annotated[str, one_of("recording", "away")]
+    problem: str  # a sentence for a person; empty: it is recorded
+
+
 class HealthView(Answer, frozen=True):
     """The station's own state; ``problems`` are sentences for a person."""
 
@@ -388,6 +397,7 @@ class HealthView(Answer, frozen=True):
     left_out: int = 0  # since then, as they came faster than this machine takes them
     missing: int = 0  # since then, numbers of messages that no unit's journal has any more
     forwarders: tuple[ForwarderView, ...] = ()  # live connections with other systems
+    radio: tuple[RadioView, ...] = ()  # channels whose audio is recorded
     reading: float | None = None  # share of its log; nothing is live: what was last stored is shown
 
 

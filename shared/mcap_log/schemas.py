@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from foxglove_schemas_protobuf.CompressedAudio_pb2 import CompressedAudio
 from foxglove_schemas_protobuf.GeoJSON_pb2 import GeoJSON
 from foxglove_schemas_protobuf.LocationFix_pb2 import LocationFix
 from foxglove_schemas_protobuf.Log_pb2 import Log
@@ -19,7 +20,12 @@ from shared.messages.muster.v1.header_pb2 import Header
 FOXGLOVE = "foxglove/"  # topics made from others for Foxglove
 CONSOLE = "console/"  # what consoles were shown, once a second: a replay plays it
 DERIVED = (FOXGLOVE, CONSOLE)  # beginnings of topics that follow from the others
-_DERIVED_TYPES: dict[str, Any] = {"location": LocationFix, "log": Log, "plan": GeoJSON}
+_DERIVED_TYPES: dict[str, Any] = {
+    "audio": CompressedAudio,
+    "location": LocationFix,
+    "log": Log,
+    "plan": GeoJSON,
+}
 PLAN_TOPIC = f"{FOXGLOVE}station/plan"
 SNAPSHOT_TOPIC = f"{CONSOLE}snapshot"
 TRAIL_TOPIC = f"{CONSOLE}trail"  # behind a snapshot: one unit's
@@ -32,6 +38,11 @@ def location_topic(unit_id: str) -> str:
 
 def log_topic(unit_id: str) -> str:
     return f"{FOXGLOVE}{unit_id}/log"
+
+
+def audio_topic(channel: str) -> str:
+    """Of a radio channel.  It follows from nothing, but no reader of events wants it."""
+    return f"{FOXGLOVE}radio/{channel}/audio"
 
 
 def is_derived(key: str) -> bool:

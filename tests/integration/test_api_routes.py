@@ -90,6 +90,8 @@ LEAST: dict[str, dict[str, Role | None]] = {
                 "GET /incidents/{incident_id}/incident.mcap": V,
                 "GET /incidents/{incident_id}/report.html": V,
                 "GET /incidents/{incident_id}/report.pdf": V},
+    "radio": {"GET /incidents/{incident_id}/radio": V,
+              "GET /incidents/{incident_id}/radio/{channel}": C},
     "forgetting": {"GET /forgettings": A, "POST /people/{person_id}/forget": A,
                    "POST /incidents/{incident_id}/forget": A},
     "health": {"GET /health": V, "GET /metrics": V},

@@ -99,7 +99,7 @@ def test_what_was_wished_before_an_incident_opened_waits_for_its_end(tmp_path: P
             )  # fmt: skip
         desk = disk.forgetting_desk(
             NoPulls(), lambda _, action: acted.append(action), lambda: None, lambda: True,
-            lambda: False,
+            lambda: False, lambda *_: 0,
         )  # fmt: skip
         with desk:
             desk.add("ada", "person", "p-77")
@@ -125,7 +125,7 @@ def test_what_is_lost_of_a_segment_is_fetched_from_the_other_station_first(
         closing.callback(recorder.close)
         disk = open_storage(folder, recorder, clock, lambda _: None, closing, alone=False)
         desk = disk.forgetting_desk(
-            NoPulls(), lambda _by, _action: None, lambda: None, lambda: True, lambda: True
+            NoPulls(), lambda *_: None, lambda: None, lambda: True, lambda: True, lambda *_: 0
         )
         with desk:
             desk.add("ada", "person", "p-77")

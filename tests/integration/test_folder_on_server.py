@@ -166,7 +166,7 @@ def test_nobody_is_forgotten_while_the_log_is_projected_again(
         disk = open_storage(data, recorder, clock, pytest.fail, closing, address)
         recordings = TransferQueue(lambda *_: None, data.recordings, clock)
         queue = disk.forgetting_desk(
-            recordings, lambda *_: None, lambda: None, lambda: True, lambda: False
+            recordings, lambda *_: None, lambda: None, lambda: True, lambda: False, lambda *_: 0
         )
         job = ErasureJob("1", "chief", "person", "p-77")
         assert "brought up to date from the log" in queue._obstacle(job)

@@ -27,7 +27,7 @@ PACKAGE = "generated_muster_client"
 # It skips media types that it does not know; pictures and exports are files.
 FILES = (
     *("image/jpeg", "image/png", "image/webp", "text/csv", "*/*"),
-    *("application/pdf", "application/x-protobuf"),
+    *("application/pdf", "application/x-protobuf", "audio/ogg"),
     *("application/cap+xml", "application/xml", "text/xml"),
 )
 SETTINGS = {

@@ -15,6 +15,7 @@ from base_station.core.alarms.thresholds import limits_of
 from base_station.department.config import DepartmentServerConfig
 from base_station.forwarders.department.config import DepartmentConfig
 from base_station.forwarders.tak.config import TakConfig
+from base_station.radio.config import RadioConfig
 from edge.config import EdgeConfig
 from shared.config import load_config
 from tests.conftest import PROJECT_ROOT
@@ -34,11 +35,12 @@ LEFT_OUT = {
     "place",
     "sensors",
     "speed",
+    "radio",  # the last test
     "tak",  # the last test
     "wearer.height_m",
     "wearer.leg_length_m",
 }
-_COMMENTED = re.compile(r"^# (\[[\w.]+\]|\w+ = .*)$", re.MULTILINE)
+_COMMENTED = re.compile(r"^# (\[[\w.-]+\]|\w+ = .*)$", re.MULTILINE)
 
 
 def keys_of(config_class: type, prefix: str = "") -> set[str]:
@@ -95,6 +97,7 @@ def test_examples_of_connections_name_every_setting_with_its_default(tmp_path: P
     file.write_text("\n".join(_COMMENTED.findall(text[text.index("# [tak.") :])))
     settings, named = load_config(file, StationConfig), tomllib.loads(file.read_text())
     assert_names_defaults(settings.tak["county"], TakConfig, named["tak"]["county"])
+    assert_names_defaults(settings.radio["Tac-1"], RadioConfig, named["radio"]["Tac-1"])
     assert_names_defaults(settings.department, DepartmentConfig, named["department"])
 
 

@@ -34,7 +34,7 @@ def test_the_library_of_a_button_is_that_which_is_tested():
     assert required.replace("evdev==", "evdev-binary==") in pinned("requirements.lock")
 
 
-@pytest.mark.parametrize("part", ["foxglove", "parquet", "pictures"])
+@pytest.mark.parametrize("part", ["foxglove", "parquet", "pictures", "radio"])
 def test_the_library_of_an_optional_part_is_that_which_is_tested(part: str) -> None:
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
     (required,) = project["optional-dependencies"][part]

@@ -322,6 +322,7 @@ export interface Health {
   left_out: number;
   missing: number;
   forwarders: ForwarderView[];
+  radio: RadioView[];
   reading: number | null;
   consoles: number;
   segments: LogSegmentAnswer[];
@@ -618,6 +619,25 @@ export interface Progress {
   files: number;
 }
 
+export interface RadioAnswer {
+  from_ms: number;
+  until_ms: number;
+  channels: RadioChannelAnswer[];
+}
+
+export interface RadioChannelAnswer {
+  name: string;
+  recorded_ms: [number, number][];
+  voice_ms: [number, number][];
+}
+
+export interface RadioView {
+  name: string;
+  source: string;
+  state: string;
+  problem: string;
+}
+
 export interface Raising {
   t_ms: number;
   text: string;
@@ -722,7 +742,7 @@ export interface SamplesReceipt {
   samples: number;
 }
 
-export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "dispatch" | "enrolments" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "recordings" | "replays" | "samples" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
+export type Scope = "accountability" | "alarms" | "assignments" | "audit" | "commands" | "dispatch" | "enrolments" | "exports" | "forgetting" | "health" | "incidents" | "live" | "people" | "pins" | "radio" | "recordings" | "replays" | "samples" | "site" | "standby" | "tokens" | "tracks" | "units" | "users";
 
 export interface ShownEnrolment {
   unit_id: string;

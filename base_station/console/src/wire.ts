@@ -291,6 +291,13 @@ export interface ForwarderView {
   text: string;
 }
 
+export interface RadioView {
+  name: string;
+  source: string;
+  state: "recording" | "away";
+  problem: string;
+}
+
 export interface HealthView {
   problems: string[];
   messages: number;
@@ -306,6 +313,7 @@ export interface HealthView {
   left_out: number;
   missing: number;
   forwarders: ForwarderView[];
+  radio: RadioView[];
   reading: number | null;
 }
 

@@ -28,6 +28,7 @@ export const HEALTH: HealthView = {
   left_out: 0,
   missing: 0,
   forwarders: [],
+  radio: [],
   reading: null,
 };
 
