@@ -78,7 +78,7 @@ def test_on_the_card_and_of_an_order_it_is_asked_too(stage: Stage) -> None:
     card.get_by_role("button", name="No", exact=True).click()
     dialog = command(page, "PAR")
     row = dialog.get_by_role("row", name=DOWN)
-    press(row.get_by_role("button", name="Answered by radio"))
+    press(row.get_by_role("button", name="Confirm by radio"))
     expect(row.get_by_role("group", name=ALARMS)).to_be_visible()
     assert flaws(page) == []
     station.expect_changes()

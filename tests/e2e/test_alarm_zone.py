@@ -87,7 +87,7 @@ def test_a_member_has_one_row_and_one_press_acknowledges_all_of_it(stage: Stage)
     station.change(alarms=(scenes.taken(fall), scenes.taken(still)))
     expect(rows.filter(has_text=fall.text)).to_contain_text("acknowledged by chief")
     rows.filter(has_text=fall.text).get_by_role("button", name="Resolve").click()
-    expect(strip(page)).to_contain_text("Are all 2 over?")
+    expect(strip(page)).to_contain_text("Resolve all 2 alarms?")
 
 
 def test_a_press_at_once_after_a_row_got_another_cause_is_ignored(stage: Stage) -> None:

@@ -56,7 +56,7 @@ def test_a_mayday_is_seen_acknowledged_and_resolved(
     wearable.press_mayday()
     strip = page.get_by_role("region", name="Open alarms")
     alarm = strip.get_by_role("listitem").filter(has_text=f"Mayday from {NAME}")
-    expect(alarm).to_contain_text("Immediate", ignore_case=True)
+    expect(alarm).to_contain_text("Emergency", ignore_case=True)
     expect(card).to_contain_text("Mayday")
     press(alarm.get_by_role("button", name="Acknowledge"))
     expect(alarm).to_contain_text("acknowledged by admin")
@@ -77,11 +77,11 @@ def test_two_machines_under_one_name_are_unmistakable(
     name = "FF-09"
     with Wearable(name, station.bus), Wearable(name, station.bus):
         cloned = page.locator(f"[data-unit='{name}']")
-        expect(cloned).to_contain_text("Somebody may be unseen: two machines")
+        expect(cloned).to_contain_text("Duplicate unit ID: two devices")
         row = menu(page, "Units").get_by_role("row", name=name)
-        expect(row).to_contain_text("two machines speak under this name")
+        expect(row).to_contain_text("two devices report under this name")
         close(page.get_by_role("dialog"))
-    expect(card).not_to_contain_text("two machines")
+    expect(card).not_to_contain_text("two devices")
 
 
 def test_a_lost_station_is_unmistakable_and_comes_back(

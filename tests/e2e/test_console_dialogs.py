@@ -74,12 +74,12 @@ def test_everybody_can_use_the_dialogs(page: Page, card: Locator, name: str) -> 
 
 
 def test_everybody_can_read_how_good_the_positions_were(page: Page, card: Locator) -> None:
-    menu(page, "Incidents").get_by_role("button", name="How good were the positions?").click()
+    menu(page, "Incidents").get_by_role("button", name="Accuracy report").click()
     dialog = page.get_by_role("dialog", name=INCIDENT)
     errors = dialog.get_by_role("table", name="ISO/IEC 18305")
     expect(errors.get_by_role("rowheader", name=f"{NAME} ({UNIT})")).to_be_visible()
     everybody = errors.get_by_role("row", name="Everybody")
-    expect(everybody).to_contain_text(re.compile(r"as promised then(\d+\.\d\sm){4}"))
+    expect(everybody).to_contain_text(re.compile(r"Estimated live(\d+\.\d\sm){4}"))
     assert barriers(page) == []
     dialog.get_by_role("button", name="All incidents").click()
     close(page.get_by_role("dialog", name="Incidents"))
@@ -130,14 +130,14 @@ def test_a_person_is_forgotten_by_who_writes_the_name(
     dialog.get_by_label("Name", exact=True).fill(name)
     dialog.get_by_role("button", name="Add person").click()
     row = dialog.get_by_role("row", name=name)
-    row.get_by_role("button", name=f"Forget {name}").click()
-    row.get_by_label(f"Write “{name}” to go on").fill("Bo")
-    row.get_by_role("button", name="Forget for good").click()
+    row.get_by_role("button", name=f"Delete data … {name}").click()
+    row.get_by_label(f"Type “{name}” to confirm").fill("Bo")
+    row.get_by_role("button", name="Delete permanently").click()
     notice = page.get_by_text("The name is another")
     expect(notice).to_have_count(1)
     assert "422" in complaints.pop()  # the browser notes the refusal, as it should
-    row.get_by_label(f"Write “{name}” to go on").fill(name)
-    row.get_by_role("button", name="Forget for good").click()
+    row.get_by_label(f"Type “{name}” to confirm").fill(name)
+    row.get_by_role("button", name="Delete permanently").click()
     expect(row).to_have_count(0)
     expect(dialog.get_by_role("row", name=NAME)).to_be_visible()
     close(dialog)

@@ -55,7 +55,7 @@ def test_each_theme_is_kept_and_can_be_used_by_everybody(
         assert greens_and_blues(picture) > 0
         return
     assert greens_and_blues(picture) == 0
-    expect(mayday).to_contain_text("Immediate", ignore_case=True)  # not by its colour
+    expect(mayday).to_contain_text("Emergency", ignore_case=True)  # not by its colour
 
 
 def test_keys_open_what_buttons_open_and_send_nothing(page: Page, mayday: Locator) -> None:

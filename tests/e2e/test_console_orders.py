@@ -61,13 +61,13 @@ def test_par_is_confirmed_by_radio_and_that_is_undone(page: Page, card: Locator)
 def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card: Locator) -> None:
     card.get_by_role("button", name=NAME).click()
     actions = card.get_by_role("group", name=f"For {NAME}")
-    actions.get_by_role("button", name="To rest").click()
+    actions.get_by_role("button", name="To rehab").click()
     expect(card).to_contain_text("Resting for")
-    actions.get_by_role("button", name="Back to work").click()
+    actions.get_by_role("button", name="Return to duty").click()
     expect(card).to_contain_text("Inside for")
-    actions.get_by_role("button", name="Locate").click()
+    actions.get_by_role("button", name="Sound locator").click()
     dialog = command(page, "Message")
-    expect(dialog.get_by_role("table", name="Locate")).to_contain_text("received")
+    expect(dialog.get_by_role("table", name="Locate")).to_contain_text("delivered")
     close(dialog)
 
 
@@ -77,7 +77,7 @@ def test_an_evacuation_asks_first_and_may_be_answered_by_radio(page: Page, card:
     dialog.get_by_role("button", name="Evacuate now").click()
     row = dialog.get_by_role("row", name=NAME).first
     expect(row).to_contain_text("received")
-    answered = row.get_by_role("button", name=f"Answered by radio: {NAME}")
+    answered = row.get_by_role("button", name=f"Confirm by radio: {NAME}")
     press(answered)
     expect(row).to_contain_text("acknowledgedby radio, admin")
     dialog.get_by_role("status").get_by_role("button", name="Undo").click()
@@ -109,7 +109,7 @@ def test_a_unit_says_that_it_cannot_notify_and_later_that_it_has(
     order = dialog.get_by_role("table").first
     expect(order.locator("caption")).to_contain_text("0 of 1 acknowledged, 1 cannot be notified")
     wearable.describe("led")
-    expect(order.get_by_role("row", name=NAME)).to_contain_text("received by the unit")
+    expect(order.get_by_role("row", name=NAME)).to_contain_text("delivered")
     wearable.notify()
     expect(order.get_by_role("row", name=NAME)).to_contain_text("signalled by the unit")
     close(dialog)
@@ -120,6 +120,6 @@ def test_everybody_can_use_the_roll_call_and_the_plan(page: Page, card: Locator)
     page.get_by_role("button", name="until the next PAR").click()
     assert barriers(page) == []
     close(page.get_by_role("dialog"))
-    card.get_by_role("button", name="Pin on the plan").click()
+    card.get_by_role("button", name="Correct position …").click()
     assert barriers(page) == []
     page.keyboard.press("Escape")

@@ -31,7 +31,7 @@ from tests.rig.waiting import until
 
 def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator) -> None:
     card.get_by_role("button", name=NAME).click()
-    card.get_by_role("button", name="Pin on the plan").click()
+    card.get_by_role("button", name="Correct position …").click()
     form = page.get_by_role("form", name=f"Pin: {NAME}")
     click_plan(page, -150, -80)
     expect(form.get_by_label("North, m")).not_to_have_value("")
@@ -72,10 +72,10 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
     drawn(page)
     page.get_by_role("button", name="Trails").click()
     kinds = page.get_by_role("region", name="Trails")
-    kinds.get_by_label("As shown at the time").uncheck()  # it lies above the others
+    kinds.get_by_label("Live track").uncheck()  # it lies above the others
     for word, kind, colour in (
-        ("own path", "raw", "--quiet"),
-        ("Best known since", "smoothed", "--watch"),
+        ("Dead-reckoning only", "raw", "--quiet"),
+        ("Post-processed", "smoothed", "--watch"),
     ):
         before = painted(page, colour)
         with page.expect_response(re.compile(rf"trails\?kind={kind}")) as said:
@@ -86,7 +86,7 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
         until(partial(draws, page, colour, before), kind)
         kinds.get_by_label(word).uncheck()
         until(partial(draws_no_more, page, colour, before), f"no {kind}")
-    kinds.get_by_label("As shown at the time").check()
+    kinds.get_by_label("Live track").check()
     kinds.get_by_role("button", name="Close").click()
 
 
@@ -119,7 +119,7 @@ def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator)
     for _ in range(2):
         page.get_by_role("button", name="Zoom out").click()
     menu(page, "Site").get_by_role("button", name="By two points of the plan").click()
-    form = page.get_by_role("form", name="Place on the Earth")
+    form = page.get_by_role("form", name="Plan location")
     click_plan(page, -150, 60)
     click_plan(page, 150, -60)
     (south_m, west_m), (north_m, east_m) = clicked_places(form)
@@ -128,10 +128,10 @@ def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator)
     fill_point(
         form, 1, 2 * (north_m - south_m) / 110_574.3, 16.0 + (east_m - west_m) / per_degree_m
     )
-    form.get_by_role("button", name="Set place").click()
+    form.get_by_role("button", name="Save location").click()
     expect(form.get_by_role("alert")).to_contain_text("m apart on the plan")
     fill_point(form, 1, (north_m - south_m) / 110_574.3, 16.0 + (east_m - west_m) / per_degree_m)
-    form.get_by_role("button", name="Set place").click()
+    form.get_by_role("button", name="Save location").click()
     expect(form).to_have_count(0)
     anchor = answer_to(page, "site/anchor")
     assert anchor["lat_deg"] * 110_574.3 == pytest.approx(-south_m, abs=0.5)
@@ -154,7 +154,7 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
     site.get_by_role("button", name="Set base map").click()
     expect(site.get_by_role("button", name="Remove base map")).to_be_visible()
     site.get_by_role("button", name="By two points of the plan").click()
-    form = page.get_by_role("form", name="Place on the Earth")
+    form = page.get_by_role("form", name="Plan location")
     click_plan(page, -150, 60)
     click_plan(page, 150, -60)
     (south_m, west_m), (north_m, east_m) = clicked_places(form)
@@ -166,7 +166,7 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
     for to_east_m, to_north_m in ((0.0, 0.0), (east_m - west_m, north_m - south_m)):
         at = {"x": across + to_east_m * scale, "y": down - to_north_m * scale}
         ground.click(position=at)  # type: ignore[arg-type]  # of Playwright's own
-    form.get_by_role("button", name="Set place").click()
+    form.get_by_role("button", name="Save location").click()
     page.wait_for_timeout(600)  # two presses in haste would be one
     form.get_by_role("button", name="Yes, replace place").click()
     expect(form).to_have_count(0)

@@ -86,7 +86,7 @@ def test_who_opens_a_form_writes_at_once(stage: Stage, name: str) -> None:
 
 @pytest.mark.parametrize(
     ("opener", "leads_to"),
-    [("Account", "Users"), ("Account", "Audit log"), ("Incidents", "How good were the positions?")],
+    [("Account", "Users"), ("Account", "Audit log"), ("Incidents", "Accuracy report")],
 )
 def test_from_a_dialog_that_another_led_to_keys_go_back_to_the_first_button(
     stage: Stage, opener: str, leads_to: str
@@ -144,7 +144,7 @@ def test_times_that_were_changed_are_said_to_be(stage: Stage) -> None:
     dialog = page.get_by_role("dialog")
     rest = dialog.get_by_label("Rest after, min")
     rest.fill("30")
-    dialog.get_by_role("button", name="Change times").click()
+    dialog.get_by_role("button", name="Save times").click()
     done = dialog.get_by_role("status").filter(has_text="The times are changed.")
     expect(done).to_be_visible()
     rest.fill("31")
@@ -157,7 +157,7 @@ def test_times_that_were_refused_are_not_said_to_be_changed(stage: Stage) -> Non
     page.route("**/accountability", lambda route: route.fulfill(status=409, json=refusal))
     entry(page, "Incidents").click()
     dialog = page.get_by_role("dialog")
-    dialog.get_by_role("button", name="Change times").click()
+    dialog.get_by_role("button", name="Save times").click()
     expect(dialog.get_by_role("alert").filter(has_text="It is closed.")).to_be_visible()
     expect(dialog.get_by_text("The times are changed.")).to_have_count(0)
 
@@ -201,7 +201,7 @@ def test_after_a_new_password_the_login_form_says_so_and_takes_the_user(stage: S
 
 
 @pytest.mark.parametrize(
-    ("asks", "field"), [("Change", "Name"), ("Forget", "Write “Li Na” to go on")]
+    ("asks", "field"), [("Change", "Name"), ("Delete data", "Type “Li Na” to confirm")]
 )
 def test_a_form_that_comes_in_place_of_a_button_takes_the_focus_and_gives_it_back(
     stage: Stage, asks: str, field: str

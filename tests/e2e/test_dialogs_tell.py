@@ -17,7 +17,7 @@ def test_a_button_that_does_nothing_yet_looks_so(stage: Stage) -> None:
     site = menu(page, "Site")
     idle, ready = (
         site.get_by_role("button", name=name).evaluate("one => getComputedStyle(one).background")
-        for name in ("Set base map", "Set place")
+        for name in ("Set base map", "Save location")
     )
     assert idle != ready
 
@@ -38,8 +38,8 @@ def test_escape_ends_a_dialog_and_not_what_was_begun_on_the_plan(stage: Stage) -
 def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
     """Behind it nobody could read or close it."""
     page, _ = stage.open(scenes.bad_minute())
-    menu(page, "Incidents").get_by_role("button", name="How good were the positions?").click()
-    dialog = page.get_by_role("dialog", name="How good were the positions?")
+    menu(page, "Incidents").get_by_role("button", name="Accuracy report").click()
+    dialog = page.get_by_role("dialog", name="Accuracy report")
     notice = dialog.get_by_role("alert").filter(has_text="The station answered 404")
     notice.get_by_role("button", name="OK").click()
     expect(notice).to_have_count(0)

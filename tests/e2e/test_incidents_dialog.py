@@ -72,7 +72,7 @@ def test_times_that_are_no_whole_minutes_stay_as_they_are(stage: Stage) -> None:
     dialog = menu(page, "Incidents")
     dialog.get_by_label("Rest after, min").fill("30")
     with page.expect_request(lambda request: request.method == "PUT") as sent:
-        dialog.get_by_role("button", name="Change times").click()
+        dialog.get_by_role("button", name="Save times").click()
     assert sent.value.post_data_json == {"par_interval_s": 90, "work_limit_s": 1800}
 
 

@@ -84,7 +84,7 @@ def test_a_pin_that_was_being_set_is_there_after_the_login(stage: Stage) -> None
     page, station = stage.open(scenes.bad_minute(), answers=answers())
     card = page.locator(".card").first
     card.get_by_role("button").first.click()
-    card.get_by_role("button", name="Pin on the plan").click()
+    card.get_by_role("button", name="Correct position …").click()
     panel = page.get_by_role("form", name="Pin: Jonas Bergman")
     page.locator(".map").click(position={"x": 150, "y": 120})
     expect(panel.get_by_label("North, m")).not_to_have_value("")

@@ -143,8 +143,8 @@ def test_how_good_positions_were_is_read_on_a_phone(stage: Stage) -> None:
     answers = {**ANSWERS, f"{PAST}/assessment": scenes.ASSESSMENT}
     page, _ = stage.open(scenes.bad_minute(), "phone", answers)
     page.get_by_role("button", name="Menu").click()
-    menu(page, "Incidents").get_by_role("button", name="How good were the positions?").click()
-    dialog = page.get_by_role("dialog", name="How good were the positions?")
+    menu(page, "Incidents").get_by_role("button", name="Accuracy report").click()
+    dialog = page.get_by_role("dialog", name="Accuracy report")
     expect(dialog).to_contain_text("not heard 35 s")
     assert dialog.evaluate("shown => shown.scrollWidth - shown.clientWidth") <= 0
     label = "one => getComputedStyle(one, '::before').content"

@@ -52,11 +52,11 @@ def test_of_an_evacuation_who_has_not_answered_stands_first(stage: Stage) -> Non
     expect(dialog.locator("caption")).to_contain_text("2 of 4 acknowledged")
     names = dialog.get_by_role("rowheader")
     expect(names).to_have_text(["Jonas Bergman", "Tomas Novak", "Astrid Lindqvist", "Mira Okafor"])
-    expect(dialog.get_by_role("row", name="Jonas Bergman")).to_contain_text("received by the unit")
+    expect(dialog.get_by_role("row", name="Jonas Bergman")).to_contain_text("delivered")
     assert flaws(page) == []
     assert barriers(page) == []
     done = scenes.order("c1", "evacuate", states | {"FF-02": "acknowledged"})
-    answered = dialog.get_by_role("button", name="Answered by radio: Jonas Bergman")
+    answered = dialog.get_by_role("button", name="Confirm by radio: Jonas Bergman")
     press(answered)
     station.change(commands=(done,))
     expect(names.first).to_have_text("Tomas Novak")
@@ -90,9 +90,9 @@ def test_locate_is_done_once_the_unit_has_signalled(stage: Stage) -> None:
     answers = {**ANSWERS, "POST /commands": msgspec.to_builtins(received)}
     page, station = stage.open(with_orders(received), answers=answers)
     card = page.locator(".card", has_text="Astrid Lindqvist")
-    expect(card.locator(".card-commands")).to_have_text("Locatereceived by the unit")
+    expect(card.locator(".card-commands")).to_have_text("Locatedelivered")
     card.get_by_role("button", name="Astrid Lindqvist").click()
-    locate = card.get_by_role("button", name="Locate")
+    locate = card.get_by_role("button", name="Sound locator")
     expect(locate).to_have_attribute("title", re.compile("such as a light or a sounder"))
     locate.click()
     station.expect_changes("/commands")
@@ -110,7 +110,7 @@ def test_a_signal_of_the_unit_is_no_answer_of_its_wearer(stage: Stage) -> None:
     expect(dialog.locator("caption")).to_contain_text("0 of 1 acknowledged")
     row = dialog.get_by_role("row", name="Astrid Lindqvist")
     expect(row).to_contain_text("signalled by the unit")
-    expect(row.get_by_role("button", name="Answered by radio")).to_be_visible()
+    expect(row.get_by_role("button", name="Confirm by radio")).to_be_visible()
 
 
 @pytest.mark.parametrize("order", ["Evacuate", "PAR", "Message"])
@@ -138,7 +138,7 @@ def test_a_card_shows_that_its_wearer_cannot_be_notified(stage: Stage) -> None:
     expect(shown).to_have_text(["Astrid Lindqvist", "Mira Okafor"])
     card = page.locator(".card", has_text="Astrid Lindqvist")
     card.get_by_role("button", name="Astrid Lindqvist").click()
-    card.get_by_role("button", name="Locate").click()
+    card.get_by_role("button", name="Sound locator").click()
     dialog = page.get_by_role("dialog", name="Locate")
     expect(dialog.locator(".not-notifiable")).to_have_text(
         "1 of 1 cannot be notified: use the voice radio: Astrid Lindqvist"
@@ -164,7 +164,7 @@ def test_who_cannot_be_notified_is_not_reached_until_the_answer_by_radio(stage: 
     expect(row).to_contain_text("cannot be notified")
     assert flaws(page) == []
     assert barriers(page) == []
-    press(row.get_by_role("button", name="Answered by radio: Astrid Lindqvist"))
+    press(row.get_by_role("button", name="Confirm by radio: Astrid Lindqvist"))
     station.expect_changes("/commands/c1/confirm")
     answered = states | {"FF-01": "acknowledged"}
     station.change(commands=(scenes.order("c1", "evacuate", answered, without_output=cannot),))

@@ -57,7 +57,7 @@ def test_a_beacon_is_found_and_changed_without_a_pointer(stage: Stage) -> None:
     panel = page.get_by_role("form", name="Beacon")
     panel.get_by_label("Name").fill("Door 4")
     with page.expect_request(is_move) as asked:
-        panel.get_by_role("button", name="Change beacon").press("Enter")
+        panel.get_by_role("button", name="Save beacon").press("Enter")
     place = {"north_m": 3.04, "east_m": 4.0, "std_m": 0.35, "floor": 1}
     assert asked.value.post_data_json == {"label": "Door 4", "reach_m": 5.0, **place}
 

@@ -120,7 +120,7 @@ def test_an_order_to_a_crew_that_is_gone_is_not_one_to_everyone(stage: Stage) ->
     to = dialog.get_by_role("combobox")
     to.select_option("crew:Engine 1")
     station.change(units=(msgspec.structs.replace(quiet.units[0], person=None),))
-    expect(page.locator(".card", has_text="nobody assigned")).to_have_count(1)
+    expect(page.locator(".card", has_text="unassigned")).to_have_count(1)
     expect(to).to_have_value("crew:Engine 1")
     with page.expect_request(re.compile("/commands$")) as asked:
         dialog.get_by_role("button", name="Evacuate now").click()
@@ -131,11 +131,11 @@ def test_who_was_met_is_no_other_once_nobody_wears_that_unit(stage: Stage) -> No
     quiet = scenes.quiet()
     page, station = stage.open(quiet)
     page.locator("[data-unit='FF-01']").get_by_role("button").first.click()
-    page.get_by_role("button", name="Met …").click()
+    page.get_by_role("button", name="Same place as …").click()
     panel = page.get_by_role("form", name="They met")
     panel.get_by_label("Whom").select_option("FF-03")
     station.change(units=(msgspec.structs.replace(quiet.units[2], person=None),))
-    expect(page.locator(".card", has_text="nobody assigned")).to_have_count(1)
+    expect(page.locator(".card", has_text="unassigned")).to_have_count(1)
     with page.expect_request(re.compile("/pins/meeting$")) as asked:
         panel.get_by_role("button", name="They met").click()
     assert (asked.value.post_data_json or {})["other_unit_id"] == "FF-03"
@@ -151,7 +151,7 @@ def test_two_presses_set_one_pin_and_add_one_person(stage: Stage) -> None:
     page.clock.resume()
     close(people)
     page.locator(".card").first.get_by_role("button").first.click()
-    page.get_by_role("button", name="Pin on the plan").click()
+    page.get_by_role("button", name="Correct position …").click()
     panel = page.get_by_role("form", name="Pin: ")
     panel.get_by_label("North, m").fill("1")
     panel.get_by_label("East, m").fill("2")
@@ -242,7 +242,7 @@ def test_who_has_keys_only_goes_on_in_what_was_opened_and_back(stage: Stage) -> 
     """The panel stands behind forty cards; back at the top everything begins again."""
     page, _ = stage.open(scenes.crowd())
     page.locator(".card").first.get_by_role("button").first.press("Enter")
-    pin = page.get_by_role("button", name="Pin on the plan")
+    pin = page.get_by_role("button", name="Correct position …")
     pin.press("Enter")
     page.keyboard.press("Tab")
     north = page.get_by_role("form", name="Pin: ").get_by_label("North, m")

@@ -164,7 +164,7 @@ def test_times_of_another_day_than_the_beginning_say_so_and_of_which_zone_they_a
     assert day.match(page.get_by_label("Go to an alarm").locator("option").nth(1).inner_text())
     seek = page.get_by_label("Time of the incident")
     assert day.match(seek.get_attribute("aria-valuetext") or "")
-    expect(menu(page, "Incidents")).to_contain_text("Times are of this browser: UTC+5:30 now.")
+    expect(menu(page, "Incidents")).to_contain_text("Times shown in this device's time zone (UTC+5:30).")
 
 
 def test_a_second_replay_at_a_station_that_only_replays_has_nothing_live_beside_it(
@@ -175,7 +175,7 @@ def test_a_second_replay_at_a_station_that_only_replays_has_nothing_live_beside_
     bar = page.get_by_role("region", name="Replay")
     expect(bar).to_contain_text("This is the past")
     dialog = menu(page, "Incidents")
-    expect(dialog.get_by_role("button", name="Forget")).to_have_count(0)
+    expect(dialog.get_by_role("button", name="Delete data")).to_have_count(0)
     dialog.get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
     station.expect_changes("/replays")
     back = bar.get_by_role("button", name="Back to the first replay")

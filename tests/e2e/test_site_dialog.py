@@ -20,7 +20,7 @@ def test_the_place_of_a_plan_that_has_one_is_replaced_on_a_second_word(stage: St
     page, station = stage.open(msgspec.structs.replace(scenes.quiet(), anchor=anchor))
     site = menu(page, "Site")
     expect(site).to_contain_text("origin lies at 57.70000°, 11.97000°")
-    latitude, asks = site.get_by_label("Latitude"), site.get_by_role("button", name="Set place")
+    latitude, asks = site.get_by_label("Latitude"), site.get_by_role("button", name="Save location")
     latitude.fill("57.701")
     latitude.press("Enter")
     question = site.get_by_role("group", name="Replace the place for everybody?")
@@ -48,7 +48,7 @@ def test_a_place_is_set_at_once_where_the_plan_has_none(stage: Stage) -> None:
     expect(site).to_contain_text("Nobody has said where the plan lies")
     for name in ("Latitude", "Longitude"):
         site.get_by_label(name).fill("11.5")
-    site.get_by_role("button", name="Set place").click()
+    site.get_by_role("button", name="Save location").click()
     expect(site).to_have_count(0)
     station.expect_changes("/site/anchor")
 
@@ -66,7 +66,7 @@ def test_a_plan_is_replaced_by_who_has_said_so(stage: Stage, tmp_path: Path) -> 
         ' "muster": {"frame": "site-m", "name": "Yard", "floors": [{"floor": 0, "down_m": 0}]}}'
     )
     file.set_input_files(tmp_path / "yard.json")
-    expect(site).to_contain_text("The file has Yard: 1 floor, 0 rooms")
+    expect(site).to_contain_text("This file: Yard: 1 floor, 0 rooms")
     site.get_by_role("button", name="Replace plan").click()
     site.get_by_role("button", name="No").click()
     station.expect_changes()

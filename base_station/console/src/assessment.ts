@@ -1,5 +1,7 @@
 /** How good an incident's positions were, as the station assesses it and as people read it. Pure. */
+import { t } from "./language/translate";
 import type * as answers from "./answers";
+import { length, listed, number, quantity } from "./language/measures";
 
 /** ISO/IEC 18305: circular, vertical and spherical error in metres, of 50 and of 95 %. */
 export type Figures = answers.Figures;
@@ -8,12 +10,12 @@ export type TrustSeconds = answers.TrustReport;
 export type UnitAssessment = answers.UnitReport;
 export type Assessment = answers.IncidentReport;
 
-/** The terms of the standard, in a few words. */
-export const TERMS: readonly [string, string][] = [
-  ["CE50, CE95", "circular error: half, or 95 %, of the places on the plan were no farther off"],
-  ["VE95", "vertical error: 95 % of the heights were no farther off"],
-  ["SE95", "spherical error: 95 % of the places in space were no farther off"],
-];
+/** The terms of the standard, and what each means. */
+export const TERMS = [
+  ["CE50, CE95", "assessment.ce"],
+  ["VE95", "assessment.ve"],
+  ["SE95", "assessment.se"],
+] as const;
 
 export const NOTHING = "–";
 
@@ -21,7 +23,7 @@ export const NOTHING = "–";
 export function cells(figures: Figures | null): string[] {
   if (figures === null) return [NOTHING, NOTHING, NOTHING, NOTHING];
   const { ce50_m, ce95_m, ve95_m, se95_m } = figures;
-  return [ce50_m, ce95_m, ve95_m, se95_m].map(metres);
+  return [ce50_m, ce95_m, ve95_m, se95_m].map((metres) => length(metres));
 }
 
 /** The station promised clearly less error than there was; people relied on that. */
@@ -48,23 +50,25 @@ export function lightParts(trust: TrustSeconds): { green: number; amber: number;
 /** How far the unit's own path missed where its wearer came back to the beginning. */
 export function closureOf(unit: UnitAssessment): string {
   if (unit.loop_closure_m === null) return NOTHING;
-  const share = unit.loop_closure_percent;
-  return metres(unit.loop_closure_m) + (share === null ? "" : ` (${share.toFixed(1)} %)`);
+  const distance = length(unit.loop_closure_m);
+  const percent = unit.loop_closure_percent;
+  if (percent === null) return distance;
+  return t("assessment.closure_share", { distance, share: quantity(percent, "percent", 1) });
 }
 
 export function jumpsOf(unit: UnitAssessment): string {
-  return unit.reentry_jumps_m.map(metres).join(", ") || NOTHING;
+  return listed(unit.reentry_jumps_m.map((metres) => length(metres))) || NOTHING;
 }
 
-/** "Stairs: 2.1 m then, 0.3 m since, wrong floor". */
+/** "Stairs: 2.1 m live, 0.3 m after post-processing, wrong floor". */
 export function pinWords(pin: PinResidual): string {
-  const then = pin.shown_m === null ? "not shown then" : `${metres(pin.shown_m)} then`;
-  const parts = [then, `${metres(pin.trail_m)} since (${pin.sigmas.toFixed(1)} σ)`];
-  if (pin.floor_right === false) parts.push("wrong floor");
-  if (!pin.used) parts.push("not used");
-  return `${pin.note || "Pin"}: ${parts.join(", ")}`;
-}
-
-export function metres(value: number): string {
-  return `${value.toFixed(1)}\u00a0m`;
+  const live =
+    pin.shown_m === null
+      ? t("assessment.not_shown")
+      : t("assessment.live", { distance: length(pin.shown_m) });
+  const since = { distance: length(pin.trail_m), sigmas: number(pin.sigmas, 1) };
+  const parts = [live, t("assessment.since", since)];
+  if (pin.floor_right === false) parts.push(t("assessment.wrong_floor"));
+  if (!pin.used) parts.push(t("assessment.unused"));
+  return t("assessment.pin_words", { pin: pin.note || t("assessment.pin"), words: listed(parts) });
 }

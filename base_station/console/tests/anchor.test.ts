@@ -46,7 +46,7 @@ describe("another place for a plan that has one", () => {
   it("says what is there, and how far people move by it", () => {
     const said = changeOf(shown, { ...shown, lat_deg: 57.7 + 30 / LAT_M, lon_deg: 11.97 - 40 / LON_M });
     expect(said).toContain("57.70000°, 11.97000°, its north towards 0.0°");
-    expect(said).toContain("whoever satellites have placed moves by 50.0 m.");
+    expect(said).toContain("whoever satellites have placed moves by 50.0\u00a0m.");
     expect(changeOf(shown, { ...shown, lat_deg: 50 })).toMatch(/moves by 85\d km\./);
   });
 
@@ -58,7 +58,7 @@ describe("another place for a plan that has one", () => {
   });
 
   it("says that of a height as well, and that nothing changes", () => {
-    expect(changeOf(shown, { ...shown, height_m: 15 })).toMatch(/new one, its height changes by 3.0 m\.$/);
+    expect(changeOf(shown, { ...shown, height_m: 15 })).toMatch(/new one, its height changes by 3.0\sm\.$/);
     expect(changeOf(shown, shown)).toBe("");
   });
 });

@@ -67,7 +67,7 @@ describe("the assessment of an incident", () => {
 
   it("says by how much the own path missed the beginning", () => {
     const looped = { ...UNIT, loop_closure_m: 1.23, loop_closure_percent: 3.04 };
-    expect(assessment.closureOf(looped)).toBe("1.2\u00a0m (3.0 %)");
+    expect(assessment.closureOf(looped)).toBe("1.2\u00a0m (3.0\u00a0%)");
     expect(assessment.closureOf(UNIT)).toBe(assessment.NOTHING);
   });
 
@@ -77,10 +77,10 @@ describe("the assessment of an incident", () => {
   });
 
   it("says how far a pin was off, and what was wrong besides", () => {
-    expect(assessment.pinWords(PIN)).toBe("Pin: 2.1\u00a0m then, 0.3\u00a0m since (0.6 σ)");
+    expect(assessment.pinWords(PIN)).toBe("Pin: 2.1\u00a0m live, 0.3\u00a0m after post-processing (0.6 σ)");
     const wrong = { ...PIN, note: "Stairs", shown_m: null, used: false, floor_right: false };
     expect(assessment.pinWords(wrong)).toBe(
-      "Stairs: not shown then, 0.3\u00a0m since (0.6 σ), wrong floor, not used",
+      "Stairs: not shown live, 0.3\u00a0m after post-processing (0.6 σ), wrong floor, not used",
     );
   });
 });

@@ -125,7 +125,7 @@ describe("commands", () => {
     expect(shownState(order, delivery!)).toBe("received");
     const rate = { kind: "set_position_rate", asks_wearer: false, notifies_wearer: false };
     expect(progress(without(command("x", { a: "received" }, rate), "a"))).toBe(
-      "1 of 1 received by the unit",
+      "1 of 1 delivered",
     );
   });
 

@@ -15,7 +15,7 @@ describe("what a plan holds", () => {
   });
 
   it("is said of any file, be it a plan or not", () => {
-    const nothing = "A plan without a name: 0 floors, 0 rooms, 0 shapes";
+    const nothing = "unnamed plan: 0 floors, 0 rooms, 0 shapes";
     for (const file of ["{}", "[]", '{"features": 3, "muster": 4}', '{"muster": {"floors": {}}}'])
       expect(contents(JSON.parse(file))).toBe(nothing);
     expect(contents({ features: [null] } as unknown as Plan)).toContain("1 shape");

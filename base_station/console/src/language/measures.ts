@@ -74,6 +74,15 @@ export function length(metres: number, digits = 1): string {
   return quantity(metres, "meter", digits);
 }
 
+const METRES_PER_MILE = 1609.344;
+
+/** Of what is kilometres or miles away. */
+export function far(metres: number): string {
+  return units.value === "imperial"
+    ? quantity(metres / METRES_PER_MILE, "mile")
+    : quantity(metres / 1000, "kilometer");
+}
+
 /** "m" or "ft", for the field in which a length is written. */
 export function lengthUnit(): string {
   return length(0).split("\u00a0")[1] ?? "";
@@ -82,6 +91,11 @@ export function lengthUnit(): string {
 /** A length as it is written in a field, and back. */
 export function shownLength(metres: number): number {
   return units.value === "imperial" ? metres / METRES_PER_FOOT : metres;
+}
+
+/** The same, no finer than a person would write it. */
+export function lengthField(metres: number): string {
+  return String(Number(shownLength(metres).toFixed(2)));
 }
 
 export function metresOf(written: number): number {

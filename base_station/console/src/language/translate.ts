@@ -48,6 +48,11 @@ export function knownMessage(
   return message === undefined ? undefined : String(parsed(message).format(values));
 }
 
+/** A label within a sentence; German keeps the capitals of its nouns. */
+export function inSentence(words: string): string {
+  return shown.value.language === "de" ? words : words.toLocaleLowerCase(locale());
+}
+
 function messageOf(key: Key): string {
   const dot = key.indexOf(".");
   const texts: Readonly<Record<string, string>> = shown.value.catalogue[key.slice(0, dot) as PartName];

@@ -2,6 +2,8 @@
  * Pure. */
 import type { AlarmView, UnitView } from "../wire";
 import * as format from "../format";
+import { listed } from "../language/measures";
+import { t } from "../language/translate";
 import { isOfAnother } from "./alarms";
 
 /** "now 4 %", or "last 4 %" where nothing newer is heard; empty where there is no figure.
@@ -14,16 +16,16 @@ export function alarmCurrentValue(
 ): string {
   if (alarm.level === format.SWITCHED_OFF || isOfAnother(alarm, unit)) return "";
   const counted = (fromMs: number | null, inWords: (ms: number) => string) =>
-    fromMs === null || silent ? "" : `now ${inWords(nowMs - fromMs)}`;
-  const told = (figure: string) =>
-    `${unit.link === "live" && !silent ? "now" : "last"} ${figure}`;
+    fromMs === null || silent ? "" : t("alarm.now", { value: inWords(nowMs - fromMs) });
+  const told = (value: string) =>
+    t(unit.link === "live" && !silent ? "alarm.now" : "alarm.last", { value });
   switch (alarm.rule) {
     case "heat":
     case "heat-dose": {
       if (unit.ambient_degc === null) return "";
       const used = format.percent(unit.heat_used); // as the words say it: of the heat budget
       if (alarm.rule === "heat-dose") return told(used);
-      return told(`${format.temperature(unit.ambient_degc)}, ${used}`);
+      return told(listed([format.temperature(unit.ambient_degc), used]));
     }
     case "battery": {
       const part = unit.status?.battery ?? null;
@@ -32,7 +34,7 @@ export function alarmCurrentValue(
     case "no-motion": {
       const stillS = unit.status?.motionless_s ?? null;
       if (stillS === null) return "";
-      if (stillS < format.MOTIONLESS_SHOWN_S) return "has moved since";
+      if (stillS < format.MOTIONLESS_SHOWN_S) return t("alarm.has_moved");
       return told(format.duration(stillS * 1000));
     }
     case "link-lost":

@@ -1,7 +1,9 @@
 /** Open alarms as the rows of the alarm zone: one for each member, and one for a flood of alike alarms.
  * Pure. */
 import type { AlarmView } from "../wire";
-import { alarmLabel, clockTime, MISSED_CHECK_IN } from "../format";
+import { alarmLabel, MISSED_CHECK_IN, SWITCHED_OFF } from "../format";
+import { clock, listed } from "../language/measures";
+import { t } from "../language/translate";
 
 export interface AlarmRow {
   key: string;
@@ -84,17 +86,16 @@ export function floodText({ alarms }: AlarmRow): string {
   const [first] = alarms;
   if (first === undefined) return "";
   const times = alarms.map((alarm) => alarm.raised_ms);
-  const [from, to] = [Math.min(...times), Math.max(...times)].map((ms) => clockTime(ms).slice(0, 5));
-  const when = from === to ? `at ${from}` : `from ${from} to ${to}`;
-  return `${whatHappened(first, alarms.length)} ${when}`;
+  const [from, to] = [clock(Math.min(...times), false), clock(Math.max(...times), false)];
+  const what = whatHappened(first, alarms.length);
+  return from === to ? t("alarm.flood_at", { what, time: from }) : t("alarm.flood_from", { what, from, to });
 }
 
 function whatHappened(alarm: AlarmView, count: number): string {
-  const label = alarmLabel(alarm);
-  if (alarm.rule === MISSED_CHECK_IN) return `${count} PARs overdue`;
-  if (label === "Switched off") return `${count} units were switched off`;
-  if (alarm.rule === "link-lost") return `${count} units lost their link`;
-  return `${count} units: ${label},`;
+  if (alarm.rule === MISSED_CHECK_IN) return t("alarm.flood_par", { count });
+  if (alarm.level === SWITCHED_OFF) return t("alarm.flood_off", { count });
+  if (alarm.rule === "link-lost") return t("alarm.flood_link", { count });
+  return t("alarm.flood_other", { count, alarm: alarmLabel(alarm) });
 }
 
 /** Those that nobody has acknowledged. */
@@ -104,5 +105,5 @@ export function raisedOf({ alarms }: AlarmRow): AlarmView[] {
 
 /** Who acknowledged them, each once: "mia, chief". */
 export function takenBy({ alarms }: AlarmRow): string {
-  return [...new Set(alarms.map((alarm) => alarm.by))].join(", ");
+  return listed([...new Set(alarms.map((alarm) => alarm.by))]);
 }

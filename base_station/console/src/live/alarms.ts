@@ -1,6 +1,8 @@
 /** Which alarms are open, in the order in which they want a person. */
 import type { AlarmView, UnitView } from "../wire";
 import { alarmLabel, MISSED_CHECK_IN } from "../format";
+import { listed } from "../language/measures";
+import { t } from "../language/translate";
 import { alarmText } from "./alarmText";
 import { displayName } from "./urgency";
 
@@ -59,7 +61,7 @@ export function inAlarm(
 ): string[] {
   return units.flatMap((unit) => {
     const needs = needsOf(unit, alarms);
-    return needs.length === 0 ? [] : [`${displayName(unit)} (${needs.map(alarmLabel).join(", ")})`];
+    return needs.length === 0 ? [] : [`${displayName(unit)} (${listed(needs.map(alarmLabel))})`];
   });
 }
 
@@ -73,5 +75,5 @@ function wholeWord(name: string): RegExp {
 export function handedTo(alarm: AlarmView, unit: UnitView): string {
   const name = displayName(unit);
   if (wholeWord(name).test(alarmText(alarm))) return "";
-  return unit.person === null ? "nobody wears this unit now" : `${name} wears this unit now`;
+  return unit.person === null ? t("alarm.unit_unassigned") : t("alarm.unit_of", { name });
 }

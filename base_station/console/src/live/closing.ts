@@ -2,6 +2,8 @@
 import type { Despite } from "../api";
 import type { AlarmView, UnitView } from "../wire";
 import { alarmLabel } from "../format";
+import { listed } from "../language/measures";
+import { t } from "../language/translate";
 import { isOpen } from "./alarms";
 import { displayName } from "./urgency";
 
@@ -13,8 +15,8 @@ export function unfinished(
   const open = [...alarms].filter((alarm) => isOpen(alarm) && alarm.unit_id !== "");
   const inside = units.filter((unit) => unit.person !== null && unit.inside_since_ms !== null);
   const parts = [
-    listed("Open alarms", byUnit(open, units)),
-    listed("Inside", inside.map(displayName)),
+    named("closing.open_alarms", byUnit(open, units)),
+    named("closing.inside", inside.map(displayName)),
   ];
   return {
     despite_alarm_ids: open.map((alarm) => alarm.alarm_id),
@@ -31,10 +33,10 @@ function byUnit(alarms: readonly AlarmView[], units: readonly UnitView[]): strin
   }
   return [...words].map(([unitId, of]) => {
     const unit = units.find((one) => one.unit_id === unitId);
-    return `${unit === undefined ? unitId : displayName(unit)} (${of.join(", ")})`;
+    return `${unit === undefined ? unitId : displayName(unit)} (${listed(of)})`;
   });
 }
 
-function listed(what: string, names: readonly string[]): string {
-  return names.length === 0 ? "" : `${what}: ${names.join("; ")}.`;
+function named(key: "closing.open_alarms" | "closing.inside", names: readonly string[]): string {
+  return names.length === 0 ? "" : t(key, { names: names.join("; ") });
 }

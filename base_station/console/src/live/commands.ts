@@ -1,5 +1,7 @@
 /** What units were told, as the screen needs it.  Pure. */
 import type { CommandView, DeliveryState, DeliveryView, IncidentView, UnitView } from "../wire";
+import { listed } from "../language/measures";
+import { label, t } from "../language/translate";
 import { nameAmong } from "./urgency";
 
 export interface UnitCommand {
@@ -49,10 +51,10 @@ export function unansweredFirst(command: CommandView): DeliveryView[] {
 /** "2 of 5 acknowledged, 1 cannot be notified". */
 export function progress(command: CommandView): string {
   const [done, all] = answered(command);
-  const words = `${done} of ${all} ${stateWord(doneState(command))}`;
+  const words = t("order.progress", { done, all, state: stateWord(doneState(command)) });
   const states = command.units.map((one) => shownState(command, one));
   const cannot = states.filter((state) => state === CANNOT_BE_NOTIFIED).length;
-  return cannot === 0 ? words : `${words}, ${cannot} ${stateWord(CANNOT_BE_NOTIFIED)}`;
+  return cannot === 0 ? words : t("order.progress_cannot", { progress: words, count: cannot });
 }
 
 /** An answer by radio is as good as any signal. */
@@ -118,45 +120,22 @@ export function notNotifiable(target: Target, units: readonly UnitView[]): strin
   const all = recipients(target, units);
   const cannot = all.filter((unit) => unit.can_be_notified === false);
   if (cannot.length === 0) return "";
-  const words = `${cannot.length} of ${all.length} cannot be notified: use the voice radio`;
+  const words = t("order.cannot", { count: cannot.length, all: all.length });
   if (cannot.length === all.length && all.length > 1) return words;
-  return `${words}: ${cannot.map((unit) => nameAmong(unit, units)).join(", ")}`;
+  const names = listed(cannot.map((unit) => nameAmong(unit, units)));
+  return t("order.cannot_names", { cannot: words, names });
 }
-
-const KINDS: Record<string, string> = {
-  evacuate: "Evacuate",
-  par_request: "PAR",
-  text: "Message",
-  locate: "Locate",
-  set_position_rate: "Position rate",
-  mayday_acknowledged: "Mayday acknowledged",
-};
 
 export function kindWord(kind: string): string {
-  return KINDS[kind] ?? kind;
+  return label("order", kind);
 }
-
-/** What a locate order does. */
-export const LOCATE_HINT =
-  "The unit signals its place with its outputs, such as a light or a sounder. Done once it has.";
 
 /** "PAR", "Message: come out". */
 export function commandWord(command: CommandView): string {
   const word = kindWord(command.kind);
-  return command.text === "" ? word : `${word}: ${command.text}`;
+  return command.text === "" ? word : t("order.with_text", { order: word, text: command.text });
 }
 
-const STATES: Record<ShownState, string> = {
-  queued: "not reached yet",
-  sent: "sent",
-  received: "received by the unit",
-  notified: "signalled by the unit",
-  acknowledged: "acknowledged",
-  refused: "refused",
-  expired: "no answer",
-  cannot_be_notified: "cannot be notified",
-};
-
 export function stateWord(state: ShownState): string {
-  return STATES[state];
+  return t(`delivery.${state}`);
 }

@@ -2,6 +2,8 @@
 import type { CallSignAnswer } from "../answers";
 import type { DispatchView, IncidentView } from "../wire";
 import { dateAndTime, zone } from "../format";
+import { listed } from "../language/measures";
+import { t } from "../language/translate";
 
 const NAME_CHARACTERS = 80; // of an incident
 
@@ -24,13 +26,13 @@ export function dispatchOf(
 export function summary(dispatch: DispatchView): string {
   const kind = dispatch.type || dispatch.type_code;
   const words = [kind, dispatch.address, ...dispatch.units].filter((word) => word !== "");
-  return words.length === 0 ? "nothing more is known" : words.join(", ");
+  return words.length === 0 ? t("dispatch.nothing_known") : listed(words);
 }
 
 /** Name of the incident, for a person to change. */
 export function suggestedName(dispatch: DispatchView): string {
   const words = [dispatch.type, dispatch.address].filter((word) => word !== "").join(", ");
-  return (words || `Dispatch ${dispatch.number}`).slice(0, NAME_CHARACTERS).trim();
+  return (words || t("dispatch.title", { number: dispatch.number })).slice(0, NAME_CHARACTERS).trim();
 }
 
 /** What is known of it, for a list of names and values. */
@@ -38,15 +40,15 @@ export function facts(dispatch: DispatchView): [name: string, value: string][] {
   const { type, type_code: code } = dispatch;
   const kind = type !== "" && code !== "" && code !== type ? `${type} (${code})` : type || code;
   const all: [string, string][] = [
-    ["Type", kind],
-    ["Priority", dispatch.priority],
-    ["Address", dispatch.address],
-    ["Position", positionWords(dispatch)],
-    ["Call", time(dispatch.called_ms)],
-    ["Dispatched", time(dispatch.dispatched_ms)],
-    ["Changed", time(dispatch.updated_ms)],
-    ["Remarks", dispatch.remarks],
-    ["State", dispatch.has_ended ? "ended by the dispatch centre" : ""],
+    [t("dispatch.type"), kind],
+    [t("dispatch.priority"), dispatch.priority],
+    [t("dispatch.address"), dispatch.address],
+    [t("dispatch.position"), positionWords(dispatch)],
+    [t("dispatch.call"), time(dispatch.called_ms)],
+    [t("dispatch.dispatched"), time(dispatch.dispatched_ms)],
+    [t("dispatch.changed"), time(dispatch.updated_ms)],
+    [t("dispatch.remarks"), dispatch.remarks],
+    [t("dispatch.state"), dispatch.has_ended ? t("dispatch.ended") : ""],
   ];
   return all.filter(([, value]) => value !== "");
 }
@@ -58,8 +60,10 @@ export function positionWords({ lat_deg, lon_deg }: DispatchView): string {
 /** "Engine 12 (E12): crew Engine 12", and what nobody here knows. */
 export function unitWords(one: CallSignAnswer): string {
   const name = one.words === one.call_sign ? one.words : `${one.words} (${one.call_sign})`;
-  const known = [one.crew === "" ? "" : `crew ${one.crew}`, ...one.unit_ids].filter((word) => word !== "");
-  return `${name}: ${known.join(", ") || "not known at this station"}`;
+  const known = [one.crew === "" ? "" : t("dispatch.crew", { crew: one.crew }), ...one.unit_ids].filter((word) => word !== "");
+  return known.length === 0
+    ? t("dispatch.unit_unknown", { unit: name })
+    : t("dispatch.unit_known", { unit: name, known: listed(known) });
 }
 
 function time(ms: number | null): string {

@@ -1,13 +1,15 @@
 /** What cannot be shown, though the station said it: a part that fails takes no other along, and says
  * so where it would stand, or here where it stands nowhere. */
 import { signal } from "@preact/signals";
+import { t } from "../language/translate";
 
 /** Sentences; the same one once. */
 export const faults = signal<readonly string[]>([]);
 const KEPT = 5;
 
 export function cannotShow(what: string, error: unknown): string {
-  return `${what} cannot be shown: ${error instanceof Error ? error.message : String(error)}`;
+  const problem = error instanceof Error ? error.message : String(error);
+  return t("common.cannot_show", { what, problem });
 }
 
 /** Do it; that it fails is said on the screen. */

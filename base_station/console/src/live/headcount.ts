@@ -5,14 +5,6 @@ import { recipients } from "./commands";
 export const PARTS = ["inside", "outside", "rehab", "not_located", "never_heard"] as const;
 export type Part = (typeof PARTS)[number];
 
-export const PART_WORDS: Readonly<Record<Part, string>> = {
-  inside: "Inside",
-  outside: "Outside",
-  rehab: "Rehab",
-  not_located: "Not located",
-  never_heard: "Never heard",
-};
-
 export interface Headcount {
   onScene: number;
   parts: Readonly<Record<Part, number>>;

@@ -1,6 +1,7 @@
 /** Keeps a picture as the station describes it: connection, messages, snapshots on a gap, time. */
 import { batch } from "@preact/signals";
 import type { Message } from "../wire";
+import { t } from "../language/translate";
 import { LocalClock, StationClock } from "./clock";
 import { Connection } from "./connection";
 import { guarded } from "./faults";
@@ -49,7 +50,7 @@ export class Session {
 
   /** One that fails costs itself: what it would have said comes with a whole picture. */
   private hearGuarded(text: string): void {
-    const heard = guarded("A message of the station", () => this.hear(JSON.parse(text) as Message));
+    const heard = guarded(t("frame.message"), () => this.hear(JSON.parse(text) as Message));
     if (!heard) this.askOnce();
   }
 

@@ -1,6 +1,8 @@
 /** Where the plan lies on the Earth, from two of its points whose latitude and longitude are known.
  * Pure. */
+import * as measures from "../language/measures";
 import type { AnchorView } from "../wire";
+import { t } from "../language/translate";
 import type { Place } from "./tools";
 
 export interface Known {
@@ -66,10 +68,10 @@ export function siteOf(anchor: AnchorView, latDeg: number, lonDeg: number): Plac
 
 /** What is wrong with the two points; empty: nothing. */
 export function doubtOf(fit: Fit): string {
-  const said = `The points are ${fit.plan_m.toFixed(1)} m apart on the plan and ${fit.earth_m.toFixed(1)} m on the Earth`;
-  if (fit.plan_m < 5) return `${said}: take two that are farther apart.`;
+  const apart = { plan: measures.length(fit.plan_m), earth: measures.length(fit.earth_m) };
+  if (fit.plan_m < 5) return t("anchor.too_near", apart);
   const off = Math.abs(fit.earth_m / fit.plan_m - 1);
-  return off > MOST_OFF ? `${said}: one of them is another point, or the plan's scale is wrong.` : "";
+  return off > MOST_OFF ? t("anchor.wrong_point", apart) : "";
 }
 
 /** What another place for the plan changes, for who is to say whether that is meant; empty: nothing. */
@@ -78,31 +80,36 @@ export function changeOf(shown: AnchorView, next: AnchorView): string {
   const turn = next.plan_rotation_rad - shown.plan_rotation_rad;
   const turned = Math.abs(Math.atan2(Math.sin(turn), Math.cos(turn)) / RAD);
   const raised = Math.abs(next.height_m - shown.height_m);
-  const changes = [
-    moved < LEAST_M ? "" : `moves by ${distance(moved)}`,
-    turned < LEAST_DEG ? "" : `is turned by ${turned.toFixed(1)}°`,
-  ].filter((change) => change !== "");
-  const people = `on the plan, whoever satellites have placed ${changes.join(" and ")}`;
-  const all = [
-    changes.length === 0 ? "" : people,
-    raised < LEAST_M ? "" : `its height changes by ${distance(raised)}`,
-  ].filter((change) => change !== "");
-  if (all.length === 0) return "";
-  return `The plan has a place: ${placeWords(shown)}. With the new one, ${all.join(", and ")}.`;
+  const people = movedWords(moved < LEAST_M ? "" : distance(moved), turned < LEAST_DEG ? "" : angle(turned));
+  const height = raised < LEAST_M ? "" : t("anchor.height", { distance: distance(raised) });
+  const [change, other] = [people, height].filter((words) => words !== "");
+  if (change === undefined) return "";
+  const place = placeWords(shown);
+  return other === undefined ? t("anchor.change", { place, change }) : t("anchor.change_two", { place, change, other });
+}
+
+/** What happens to whoever satellites have placed; empty: nothing. */
+function movedWords(by: string, turn: string): string {
+  if (by !== "" && turn !== "") return t("anchor.moves_and_turns", { distance: by, angle: turn });
+  if (by !== "") return t("anchor.moves", { distance: by });
+  return turn === "" ? "" : t("anchor.turns", { angle: turn });
 }
 
 /** "57.70000°, 11.97000°, its north towards 12.0°". */
 export function placeWords({ lat_deg, lon_deg, plan_rotation_rad }: AnchorView): string {
   const heading = (plan_rotation_rad / RAD + 360) % 360;
-  return `${lat_deg.toFixed(5)}°, ${lon_deg.toFixed(5)}°, its north towards ${heading.toFixed(1)}°`;
+  return t("anchor.place", { latitude: angle(lat_deg, 5), longitude: angle(lon_deg, 5), heading: angle(heading) });
 }
 
 const LEAST_M = 0.05;
 const LEAST_DEG = 0.05;
 
 function distance(metres: number): string {
-  if (metres >= 10_000) return `${Math.round(metres / 1000)} km`;
-  return metres < 100 ? `${metres.toFixed(1)} m` : `${Math.round(metres)} m`;
+  return metres >= 10_000 ? measures.far(metres) : measures.length(metres, metres < 100 ? 1 : 0);
+}
+
+function angle(degrees: number, digits = 1): string {
+  return `${measures.number(degrees, digits)}°`;
 }
 
 function metresPerDegree(latDeg: number): { lat: number; lon: number } {

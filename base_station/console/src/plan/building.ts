@@ -8,6 +8,7 @@ import type { FeatureLike } from "ol/Feature";
 import { guarded } from "../live/faults";
 import type { FloorChoice } from "../uiState";
 import type { Plan } from "../wire";
+import { t } from "../language/translate";
 import type { Colours } from "./colours";
 import { SITE } from "./site";
 
@@ -29,7 +30,7 @@ export class Building {
     if (plan === null) return;
     const format = new GeoJSON({ dataProjection: SITE, featureProjection: SITE });
     plan.features.forEach((feature, number) =>
-      guarded(`Feature ${number} of the plan`, () => {
+      guarded(t("plan.feature", { number }), () => {
         this.source.addFeatures(format.readFeatures(feature));
       }),
     );

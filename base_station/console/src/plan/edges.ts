@@ -1,4 +1,5 @@
 /** Where the plan's edge points to members in danger who are outside the view.  Pure. */
+import { t } from "../language/translate";
 import type { Box, Pixel } from "./names";
 
 export interface Outside {
@@ -91,10 +92,10 @@ function meet(a: Box, b: Box): boolean {
   return a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 }
 
-const COMPASS = ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
+const COMPASS = ["n", "ne", "e", "se", "s", "sw", "w", "nw"] as const;
 
 /** North is up. */
 export function compassWord(bearingRad: number): string {
   const eighths = Math.round(bearingRad / (Math.PI / 4));
-  return COMPASS[(eighths + 8) % 8] ?? "";
+  return t(`compass.${COMPASS[(eighths + 8) % 8] ?? "n"}`);
 }

@@ -3,6 +3,7 @@ import { createEmpty, extend, type Extent } from "ol/extent";
 import { guarded } from "../live/faults";
 import type { FloorChoice } from "../uiState";
 import type { Plan } from "../wire";
+import { t } from "../language/translate";
 import { PictureLayer, type Corners } from "./pictureLayer";
 import type { FloorPicture } from "./planFile";
 
@@ -49,7 +50,7 @@ export class FloorPictureLayer extends PictureLayer {
     const wanted = this.floor === "all" ? byHeight[0] : byHeight.find((one) => one.floor === this.floor);
     if (wanted === (this.shown ?? undefined)) return;
     this.shown = wanted ?? null;
-    guarded("The picture of this floor", () => this.draw(wanted ?? null));
+    guarded(t("plan.floor_picture"), () => this.draw(wanted ?? null));
   }
 
   private draw(wanted: FloorPicture | null): void {

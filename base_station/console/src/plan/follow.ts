@@ -8,6 +8,7 @@ import type { Picture } from "../live/picture";
 import { drawnRoute, rescue } from "../live/rescue";
 import { displayName } from "../live/urgency";
 import type { TrailPoint } from "../wire";
+import { type PlainKey, t } from "../language/translate";
 import { followBaseMap } from "./baseMap";
 import { beginOnAFloor } from "./floorShown";
 import type { PlanMap } from "./map";
@@ -20,7 +21,7 @@ const NO_TRAILS = new Map<string, readonly TrailPoint[]>();
 /** Begin to follow; the result ends it. */
 export function follow(map: PlanMap, picture: Picture): () => void {
   const redraw = atMostEvery(REDRAW_MS, () =>
-    guarded("The plan", () =>
+    guarded(t("frame.plan"), () =>
       map.showPeople({
         units: picture.allUnits(),
         alarms: picture.alarms.peek(),
@@ -46,12 +47,12 @@ export function follow(map: PlanMap, picture: Picture): () => void {
   };
   const ends = [
     () => redraw.cancel(),
-    following("The colours of the plan", () => {
+    following("plan.colours", () => {
       void shownTheme.value; // what is drawn below with these colours looks at it too, and later
       map.recolour();
     }),
-    following("The scale of the plan", () => map.showUnits(units.value)),
-    following("The building", () => {
+    following("plan.scale", () => map.showUnits(units.value)),
+    following("plan.building", () => {
       void siteId.value; // another ground without a plan is another place all the same
       map.showPlan(picture.plan.value);
     }),
@@ -62,8 +63,8 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       void [pastTrails.value, shownTheme.value];
       redraw.ask();
     }),
-    following("The pins on the plan", drawPins),
-    following("The trails on the plan", () => {
+    following("plan.pins", drawPins),
+    following("plan.trails", () => {
       void shownTheme.value;
       map.showPast({
         past: pastTrails.value,
@@ -73,12 +74,12 @@ export function follow(map: PlanMap, picture: Picture): () => void {
         chosen: selectedUnit.value,
       });
     }),
-    following("The way on the plan", () => {
+    following("plan.way", () => {
       void shownTheme.value;
       const now = rescue.value;
       map.showRoute(now === null ? null : drawnRoute(now), floor.value);
     }),
-    following("Other teams on the plan", () => {
+    following("plan.others", () => {
       void shownTheme.value;
       map.showExternal({ external: picture.external.value, nowMs: picture.nowMs.value });
     }),
@@ -89,9 +90,9 @@ export function follow(map: PlanMap, picture: Picture): () => void {
 }
 
 /** An effect that fails costs itself, and is tried again with the next change. */
-function following(what: string, work: () => void): () => void {
+function following(what: PlainKey, work: () => void): () => void {
   return effect(() => {
-    guarded(what, work);
+    guarded(t(what), work);
   });
 }
 

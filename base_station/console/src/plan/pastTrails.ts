@@ -9,11 +9,7 @@ import type { TrailPoint } from "../wire";
 /** Of `fused` the console draws the last minutes anyway. */
 export type TrailKind = "fused" | "raw" | "smoothed";
 
-export const KINDS: readonly (readonly [TrailKind, string])[] = [
-  ["fused", "As shown at the time"],
-  ["raw", "The unit’s own path"],
-  ["smoothed", "Best known since"],
-];
+export const KINDS = ["fused", "raw", "smoothed"] as const satisfies readonly TrailKind[];
 
 export interface PastTrails {
   kind: TrailKind;

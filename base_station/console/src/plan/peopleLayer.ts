@@ -11,6 +11,7 @@ import { displayName, urgencyOf } from "../live/urgency";
 import type { FloorChoice } from "../uiState";
 import type { AlarmView, PositionView, TrailPoint, UnitView } from "../wire";
 import { initials } from "../format";
+import { t } from "../language/translate";
 import type { Colours } from "./colours";
 import { isOld, outline } from "./ellipse";
 import { floorRemark, floorsUp } from "./floors";
@@ -96,7 +97,7 @@ export class PeopleLayer {
   show(scene: Scene): Box[] {
     const shown = new Map<string, Shown>();
     for (const unit of scene.units) {
-      guarded(`${unit.unit_id} on the plan`, () => {
+      guarded(t("plan.unit", { unit: unit.unit_id }), () => {
         const { position } = unit;
         if (position === null || !isShown(unit, position, scene)) return;
         const looks = markOf(unit, position, scene);
@@ -121,7 +122,7 @@ export class PeopleLayer {
     const places = placeNames(named, scene.screen);
     this.regions.show(all, scene.colours);
     all.forEach((one, i) =>
-      guarded(`${one.unit.unit_id} on the plan`, () => draw(one, places[i] ?? null, scene)),
+      guarded(t("plan.unit", { unit: one.unit.unit_id }), () => draw(one, places[i] ?? null, scene)),
     );
     return named.flatMap((one, i) => boxesOf(one, places[i] ?? null));
   }

@@ -1,6 +1,7 @@
 /** In which room of the plan somebody is, as far as that can be said.  Pure. */
 import type { Geometry } from "geojson";
 import type { Plan, PositionView } from "../wire";
+import { t } from "../language/translate";
 import { ring, type Region } from "./ellipse";
 import { siteCoordinate } from "./site";
 
@@ -23,7 +24,7 @@ export function roomWord(plan: Plan | null, position: PositionView, region: Regi
   const name: unknown = room?.properties?.["name"];
   if (room === undefined || typeof name !== "string" || name === "") return "";
   const whole = ring(centre, region).every((at) => holds(room.geometry, at));
-  return `${whole ? "in" : "near"} ${name}`;
+  return t(whole ? "plan.in_room" : "plan.near_room", { room: name });
 }
 
 /** Whether a place lies in an area, by counting the borders east of it; holes count by themselves.  What

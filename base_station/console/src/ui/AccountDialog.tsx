@@ -3,6 +3,8 @@ import { attempt, leave, user } from "../sessions";
 import { notice, openDialog } from "../uiState";
 import * as api from "../api";
 import { dateAndTime } from "../format";
+import { listed } from "../language/measures";
+import { label, rich, t } from "../language/translate";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -13,26 +15,26 @@ export function AccountDialog() {
   const me = user.value;
   if (me === null) return null;
   return (
-    <Dialog title={`${me.username}, ${me.role}`}>
+    <Dialog title={t("account.title", { name: me.username, role: label("role", me.role) })}>
       <p class="row">
         {me.role === "administrator" && (
           <>
             <button type="button" onClick={() => openDialog("users")}>
-              Users
+              {t("account.users")}
             </button>
             <button type="button" onClick={() => openDialog("audit")}>
-              Audit log
+              {t("audit.title")}
             </button>
           </>
         )}
-        <button type="button" class="primary" onClick={() => void leave()}>
-          Log out
+        <button type="button" onClick={() => void leave()}>
+          {t("account.log_out")}
         </button>
       </p>
-      <h3>Password</h3>
+      <h3>{t("account.password")}</h3>
       <PasswordForm username={me.username} />
       <details>
-        <summary>Tokens for programs</summary>
+        <summary>{t("token.title")}</summary>
         <Tokens role={me.role} />
       </details>
     </Dialog>
@@ -47,21 +49,21 @@ function PasswordForm({ username }: { username: string }) {
         const { old = "", fresh = "" } = fields(event);
         const changed = api.changeOwnPassword(old, fresh).then(async () => {
           await leave(); // its sessions have ended
-          notice.value = "The password is changed. Log in with the new one.";
+          notice.value = t("account.password_changed");
         });
         void attempt(changed);
       }}
     >
       <input name="username" autocomplete="username" value={username} readOnly hidden />
       <label>
-        Old password
+        {t("account.old_password")}
         <input name="old" type="password" required autocomplete="current-password" />
       </label>
       <label>
-        New password, at least 10 characters
+        {t("account.new_password")}
         <input name="fresh" type="password" required minLength={10} autocomplete="new-password" />
       </label>
-      <button class="primary">Change password</button>
+      <button class="primary">{t("account.change_password")}</button>
     </form>
   );
 }
@@ -93,50 +95,59 @@ function Tokens({ role }: { role: api.Role }) {
         }}
       >
         <label>
-          What it is for
+          {t("token.name")}
           <input name="name" required maxLength={80} />
         </label>
         <label>
-          May do what
+          {t("token.role")}
           <select name="role">
             {api.ROLES.slice(0, api.ROLES.indexOf(role) + 1).map((one) => (
-              <option key={one}>{one}</option>
+              <option key={one} value={one}>
+                {label("role", one)}
+              </option>
             ))}
           </select>
         </label>
         <label>
-          Days it is valid (empty: always)
+          {t("token.days")}
           <input name="days" type="number" min={1} max={3660} />
         </label>
         <label>
-          Parts of the station (none chosen: all)
+          {t("token.scopes")}
           <select name="scopes" multiple size={4}>
             {api.SCOPES.map((scope) => (
-              <option key={scope}>{scope}</option>
+              <option key={scope} value={scope}>
+                {label("scope", scope)}
+              </option>
             ))}
           </select>
         </label>
-        <button class="primary">Make token</button>
+        <button class="primary">{t("token.make")}</button>
       </form>
       {made.value !== null && (
         <p class="made" role="status">
-          Copy it now, it is not shown again: <code>{made.value}</code>
+          {rich("token.made", { token: <code>{made.value}</code> })}
         </p>
       )}
       <table class="stacked">
-        <Columns names={["Token", "May", "Valid until"]} spoken="Remove" />
+        <Columns names={[t("token.token"), t("token.may"), t("token.valid_until")]} spoken={t("common.remove")} />
         <tbody>
           {(tokens.value ?? []).map((token) => (
             <tr key={token.token_id}>
               <th scope="row">{token.name}</th>
-              <td data-label="May">
-                {token.role}, {token.scopes.length === 0 ? "all parts" : token.scopes.join(", ")}
+              <td data-label={t("token.may")}>
+                {label("role", token.role)},{" "}
+                {token.scopes.length === 0
+                  ? t("token.all_parts")
+                  : listed(token.scopes.map((scope) => label("scope", scope)))}
               </td>
-              <td data-label="Valid until">{token.expires_ms === null ? "always" : dateAndTime(token.expires_ms)}</td>
+              <td data-label={t("token.valid_until")}>
+                {token.expires_ms === null ? t("token.always") : dateAndTime(token.expires_ms)}
+              </td>
               <td>
                 <ConfirmButton
-                  label="Remove"
-                  question="Programs that use it are shut out."
+                  label={t("common.remove")}
+                  question={t("token.remove_question")}
                   onConfirm={() => void attempt(api.removeToken(token.token_id)).then(again)}
                 />
               </td>

@@ -9,6 +9,7 @@ import { attempt, picture } from "../sessions";
 import { crossingText, thresholdsText } from "../timeline/explanation";
 import { dialogUnit } from "../uiState";
 import type { AlarmView } from "../wire";
+import { t } from "../language/translate";
 import { Dialog } from "./Dialog";
 import { UnitTimeline } from "./TimelineDialog";
 
@@ -22,8 +23,8 @@ export function AlarmReasonDialog() {
   if (unitId === null || unit === undefined || all === undefined) return null;
   const open = unit.alarms.map((id) => all.get(id)).filter((alarm) => alarm !== undefined);
   return (
-    <Dialog title={`Alarms of ${displayName(unit)}`} wide>
-      {open.length === 0 && <p class="quiet">No open alarms.</p>}
+    <Dialog title={t("alarm.of_member", { name: displayName(unit) })} wide>
+      {open.length === 0 && <p class="quiet">{t("alarm.none_open_of_member")}</p>}
       {open.map((alarm) => (
         <Reason key={alarm.alarm_id} alarm={alarm} />
       ))}
@@ -61,8 +62,8 @@ function Thresholds({ explanation }: { explanation: AlarmExplanationAnswer }) {
   const thresholds = thresholdsText(explanation);
   return (
     <>
-      <p>{crossingText(explanation) ?? "No measured value crossed a threshold: a button, an event or a silence raised it."}</p>
-      {thresholds !== "" && <p class="quiet">Thresholds at that time: {thresholds}.</p>}
+      <p>{crossingText(explanation) ?? t("alarm.no_threshold")}</p>
+      {thresholds !== "" && <p class="quiet">{t("alarm.thresholds", { thresholds })}</p>}
     </>
   );
 }

@@ -8,12 +8,13 @@ import { floodText, raisedOf, takenBy, type AlarmRow } from "../live/alarmRows";
 import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
 import { alarmLabel, duration } from "../format";
+import { type PlainKey, t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 import { showUnit } from "./showIncident";
 import { useGuardedPress } from "./useGuardedPress";
 import { Icon } from "./Icon";
 
-const PRIORITY: Record<number, string> = { 1: "Immediate", 2: "Soon", 3: "Information" };
+const PRIORITY: Record<number, PlainKey> = { 1: "alarm.emergency", 2: "alarm.warning", 3: "alarm.advisory" };
 
 interface Props {
   row: AlarmRow;
@@ -34,11 +35,14 @@ export function AlarmRowView({ row, place, picture, onFlood }: Props) {
   return (
     <li class={`alarm p${first.priority} ${taken ? "taken" : ""}`} data-alarm={first.alarm_id}>
       <Icon name={taken ? "check" : "alarm"} />
-      <span class="priority">{PRIORITY[first.priority] ?? `Priority ${first.priority}`}</span>
+      <span class="priority">{priorityWord(first.priority)}</span>
       <button
         type="button"
         class="what"
-        title={`${words}. ${row.isFlood ? "List them" : "Show on the plan"}`}
+        title={t("common.hint", {
+          what: words,
+          action: t(row.isFlood ? "alarm.list" : "common.show_on_plan"),
+        })}
         disabled={!row.isFlood && unit === undefined}
         onClick={row.isFlood ? onFlood : show}
       >
@@ -53,7 +57,7 @@ export function AlarmRowView({ row, place, picture, onFlood }: Props) {
           ))}
       </button>
       <span class="since" aria-live="off">
-        {duration(picture.nowMs.value - sinceMs(first))} ago{" "}
+        {t("measure.ago", { age: duration(picture.nowMs.value - sinceMs(first)) })}{" "}
         {!row.isFlood && <Figure alarm={first} picture={picture} />}
       </span>
       <State words={stateOf(row, taken, mayAct.value)} />
@@ -66,7 +70,12 @@ export function AlarmRowView({ row, place, picture, onFlood }: Props) {
 function headOf(row: AlarmRow, first: AlarmView, picture: Picture): string {
   const other = picture.otherIncidentOf(first.unit_id);
   const words = row.isFlood ? floodText(row) : textOf(first, picture);
-  return other === null ? words : `${other.name}: ${words}`;
+  return other === null ? words : t("alarm.of_incident", { incident: other.name, text: words });
+}
+
+function priorityWord(priority: number): string {
+  const key = PRIORITY[priority];
+  return key === undefined ? t("alarm.priority", { number: priority }) : t(key);
 }
 
 function textOf(alarm: AlarmView, picture: Picture): string {
@@ -111,8 +120,8 @@ function State({ words }: { words: string }) {
 
 /** Where there is a button to acknowledge, it says that nobody has. */
 function stateOf(row: AlarmRow, taken: boolean, hasButton: boolean): string {
-  if (taken) return `acknowledged by ${takenBy(row)}`;
-  return hasButton ? "" : "not acknowledged";
+  if (taken) return t("alarm.acknowledged_by", { who: takenBy(row) });
+  return hasButton ? "" : t("alarm.not_acknowledged");
 }
 
 type ActionProps = Pick<Props, "row" | "place"> & { words: string };
@@ -129,22 +138,22 @@ function Action({ row, place, words }: ActionProps) {
       <button
         type="button"
         class="act"
-        aria-label={`Acknowledge: ${words}`}
+        aria-label={t("common.about", { action: t("alarm.acknowledge"), what: words })}
         onClick={steady(() => {
           pressed.current = true;
           void inTurn(raised, api.acknowledge);
         })}
       >
-        Acknowledge
+        {t("alarm.acknowledge")}
       </button>
     );
   }
   if (row.isFlood) return null;
   return (
     <ConfirmButton
-      label="Resolve"
+      label={t("alarm.resolve")}
       about={words}
-      question={row.alarms.length === 1 ? "Is it over?" : `Are all ${row.alarms.length} over?`}
+      question={t("alarm.resolve_question", { count: row.alarms.length })}
       focused={pressed.current}
       onConfirm={steady(() => void inTurn(row.alarms, api.resolve))}
     />

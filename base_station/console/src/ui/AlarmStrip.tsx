@@ -4,6 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { isPast } from "../sessions";
 import { alarmRows, singleRows, type AlarmRow } from "../live/alarmRows";
 import type { Picture } from "../live/picture";
+import { t } from "../language/translate";
 import { AlarmRowView } from "./AlarmRow";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { SoundButton } from "./SoundButton";
@@ -22,11 +23,11 @@ export function AlarmStrip({ picture }: { picture: Picture }) {
   return (
     <section
       class="alarms"
-      aria-label="Open alarms"
+      aria-label={t("alarm.open")}
       onKeyDown={({ key }) => key === "Escape" && close()}
     >
       <div class="alarms-head">
-        <h2>{open.length === 0 ? "No open alarms" : `${open.length} open`}</h2>
+        <h2>{open.length === 0 ? t("alarm.none_open") : t("alarm.count_open", { count: open.length })}</h2>
         {(listed || hidden > 0 || open.length > rows.length) && (
           <button
             type="button"
@@ -34,7 +35,7 @@ export function AlarmStrip({ picture }: { picture: Picture }) {
             aria-expanded={listed}
             onClick={() => (isListed.value = !listed)}
           >
-            {listed ? "Fewer" : hidden > 0 ? `+${hidden} more` : "One by one"}
+            {listed ? t("alarm.fewer") : hidden > 0 ? t("alarm.more", { count: hidden }) : t("alarm.one_by_one")}
           </button>
         )}
         {!isPast.value && <SoundButton />}
@@ -63,7 +64,7 @@ function Rows({ rows, kind, picture, onFlood }: RowsProps) {
   return (
     <ul class={kind} aria-live="assertive" aria-relevant="additions">
       {rows.map((row, place) => (
-        <ErrorBoundary as="li" key={row.key} what={`The alarm "${row.alarms[0]?.text}"`}>
+        <ErrorBoundary as="li" key={row.key} what={t("alarm.row", { text: row.alarms[0]?.text ?? "" })}>
           <AlarmRowView row={row} place={place} picture={picture} onFlood={onFlood} />
         </ErrorBoundary>
       ))}

@@ -8,6 +8,7 @@ import { baseMap } from "../plan/baseMap";
 import { clicked, putDown, type Place } from "../plan/tools";
 import type { AnchorView } from "../wire";
 import { place as inWords } from "../format";
+import { t } from "../language/translate";
 import { PanelActions } from "./PanelActions";
 import { MapPicker } from "./MapPicker";
 import { ReplacePlace } from "./ReplacePlace";
@@ -45,10 +46,10 @@ export function AnchorPanel({ picture }: { picture: Picture }) {
     <ReplacePlace shown={shown} next={asked} onYes={send} />
   );
   return (
-    <form class="tool-panel" aria-label="Place on the Earth" onInput={isNone} onSubmit={submit}>
-      <h3>Place on the Earth</h3>
-      <Point name="one" label="First point" place={one} at={picked.value[0]} />
-      <Point name="other" label="Second point" place={other} at={picked.value[1]} />
+    <form class="tool-panel" aria-label={t("anchor.title")} onInput={isNone} onSubmit={submit}>
+      <h3>{t("anchor.title")}</h3>
+      <Point name="one" label={t("anchor.first_point")} place={one} at={picked.value[0]} />
+      <Point name="other" label={t("anchor.second_point")} place={other} at={picked.value[1]} />
       {map !== null && (
         <MapPicker
           map={map}
@@ -61,14 +62,9 @@ export function AnchorPanel({ picture }: { picture: Picture }) {
           {doubt}
         </p>
       )}
-      <p class="quiet">
-        Take two corners far apart.{" "}
-        {map === null
-          ? "A map or a GPS receiver tells where they are."
-          : "Click the same two, in the same order, on the plan and on the map."}
-      </p>
+      <p class="quiet">{t(map === null ? "anchor.hint" : "anchor.hint_map")}</p>
       <PanelActions
-        label={one !== undefined && other !== undefined ? "Set place" : null}
+        label={one !== undefined && other !== undefined ? t("anchor.save") : null}
         question={question || null}
       />
     </form>
@@ -87,11 +83,10 @@ function Point({ name, label, place, at }: PointProps) {
   return (
     <fieldset class="place">
       <legend>
-        {label}:{" "}
-        {place === undefined ? "click on the plan" : inWords(place)}
+        {t("anchor.point", { point: label, where: place === undefined ? t("anchor.click") : inWords(place) })}
       </legend>
       <label>
-        Latitude, °
+        {t("anchor.latitude")}
         <input
           key={lat}
           name={`${name}-lat`}
@@ -104,7 +99,7 @@ function Point({ name, label, place, at }: PointProps) {
         />
       </label>
       <label>
-        Longitude, °
+        {t("anchor.longitude")}
         <input
           key={lon}
           name={`${name}-lon`}

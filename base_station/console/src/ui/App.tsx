@@ -5,6 +5,7 @@ import type { Picture } from "../live/picture";
 import { sound } from "../sound";
 import { entitle } from "../title";
 import { dialog, pane } from "../uiState";
+import { t } from "../language/translate";
 import { AlarmStrip } from "./AlarmStrip";
 import { Dialogs } from "./Dialogs";
 import { DispatchBar } from "./DispatchBar";
@@ -55,22 +56,22 @@ function Console({ shown }: { shown: Picture }) {
       class={`console ${kind} ${link === "down" ? "stopped" : ""} ${notNow ? "not-now" : ""}`}
       hidden={waiting.value}
     >
-      <ErrorBoundary what="The state of the connection">
+      <ErrorBoundary what={t("frame.link_state")}>
         <LinkBanner picture={shown} />
       </ErrorBoundary>
-      <ErrorBoundary what="The state of the two stations">
+      <ErrorBoundary what={t("frame.stations_state")}>
         <StandbyBar picture={shown} />
       </ErrorBoundary>
-      <ErrorBoundary what="The offer of a dispatch">
+      <ErrorBoundary what={t("frame.dispatch_offer")}>
         <DispatchBar picture={shown} />
       </ErrorBoundary>
       {replay.value && live.value && (
-        <ErrorBoundary what="The replay">
+        <ErrorBoundary what={t("frame.replay")}>
           <ReplayBar replay={replay.value} live={live.value.picture} />
         </ErrorBoundary>
       )}
       {wall.value === "on" ? (
-        <ErrorBoundary what="The wall">
+        <ErrorBoundary what={t("frame.wall")}>
           <Wall picture={shown} />
         </ErrorBoundary>
       ) : (
@@ -88,27 +89,26 @@ function Console({ shown }: { shown: Picture }) {
 function Desk({ shown, kind }: { shown: Picture; kind: "live" | "replay" }) {
   return (
     <>
-      <ErrorBoundary what="The header">
+      <ErrorBoundary what={t("frame.header")}>
         <Header picture={shown} />
       </ErrorBoundary>
       <Faults />
-      <ErrorBoundary what="The list of alarms">
+      <ErrorBoundary what={t("frame.alarms")}>
         <AlarmStrip picture={shown} />
       </ErrorBoundary>
       <main class="main">
         <PaneSwitch />
         <div class={`columns with-${pane.value}`}>
-          <ErrorBoundary what="The list of people" key={kind}>
+          <ErrorBoundary what={t("frame.people")} key={kind}>
             <People picture={shown} />
           </ErrorBoundary>
-          <ErrorBoundary what="The plan">
+          <ErrorBoundary what={t("frame.plan")}>
             <PlanPanel picture={shown} />
           </ErrorBoundary>
         </div>
       </main>
       <footer class="footer">
-        Muster supplements a certified PASS device and never replaces it.{" "}
-        <span>Temperatures are of the equipment’s environment, not of the wearer.</span>
+        {t("frame.pass_device")} <span>{t("frame.temperatures")}</span>
       </footer>
     </>
   );

@@ -18,6 +18,8 @@ import {
   type TrustSeconds,
 } from "../assessment";
 import { duration, percent } from "../format";
+import { length, listed } from "../language/measures";
+import { t } from "../language/translate";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 
@@ -33,30 +35,26 @@ export function AssessmentDialog() {
   }, [incident]);
   if (incident === null) return null;
   return (
-    <Dialog title={`How good were the positions? ${incident.name}`} wide>
+    <Dialog title={t("assessment.title", { incident: incident.name })} wide>
       <div aria-live="polite" aria-busy={report.value === "asked"}>
         <Answer report={report.value} />
       </div>
       <p class="ends">
         <button type="button" onClick={() => openDialog("incidents")}>
-          All incidents
+          {t("assessment.all_incidents")}
         </button>
       </p>
     </Dialog>
   );
 }
 
-const LATE =
-  "A unit’s journal or a pin has told more of this incident since. The station works it out " +
-  "again once nothing more has come for half a minute: open this again then.";
-
 function Answer({ report }: { report: Assessment | "asked" | "failed" }) {
-  if (report === "asked") return <p>The station works it out. That may take some seconds …</p>;
-  if (report === "failed") return <p class="warned">The station could not work it out.</p>;
-  if (report.units.length === 0) return <p>Nobody’s position was shown in this incident.</p>;
+  if (report === "asked") return <p>{t("assessment.waiting")}</p>;
+  if (report === "failed") return <p class="warned">{t("assessment.failed")}</p>;
+  if (report.units.length === 0) return <p>{t("assessment.nobody")}</p>;
   return (
     <>
-      {!report.is_newest && <p class="warned">{LATE}</p>}
+      {!report.is_newest && <p class="warned">{t("assessment.late")}</p>}
       {report.flaws.map((flaw) => (
         <p key={flaw} class="warned">
           {flaw}
@@ -65,10 +63,10 @@ function Answer({ report }: { report: Assessment | "asked" | "failed" }) {
       <Lights report={report} />
       <Errors report={report} />
       <dl class="terms">
-        {TERMS.map(([term, words]) => (
+        {TERMS.map(([term, key]) => (
           <div key={term}>
             <dt>{term}</dt>
-            <dd>{words}</dd>
+            <dd>{t(key)}</dd>
           </div>
         ))}
       </dl>
@@ -78,13 +76,12 @@ function Answer({ report }: { report: Assessment | "asked" | "failed" }) {
 }
 
 const FIGURES = ["CE50", "CE95", "VE95", "SE95"];
-const FLOOR = "Floor right";
 
 function Errors({ report }: { report: Assessment }) {
   return (
     <table class="assessment stacked">
-      <caption>Errors in the terms of ISO/IEC 18305</caption>
-      <Columns names={["Person", "Error", ...FIGURES, FLOOR]} />
+      <caption>{t("assessment.errors")}</caption>
+      <Columns names={[t("assessment.person"), t("assessment.error"), ...FIGURES, t("assessment.floor_correct")]} />
       {report.units.map((unit) => (
         <ErrorRows
           key={unit.unit_id}
@@ -93,7 +90,7 @@ function Errors({ report }: { report: Assessment }) {
           floors={[unit.floor_probability, unit.floor_right]}
         />
       ))}
-      <ErrorRows name="Everybody" figures={report} floors={[null, null]} />
+      <ErrorRows name={t("assessment.everybody")} figures={report} floors={[null, null]} />
     </table>
   );
 }
@@ -112,17 +109,17 @@ function ErrorRows({ name, figures, floors }: ErrorRowsProps) {
         <th scope="rowgroup" rowSpan={2}>
           {name}
         </th>
-        <th scope="row">as promised then</th>
+        <th scope="row">{t("assessment.estimated_live")}</th>
         <Cells of={stated} />
-        <td data-label={FLOOR}>{share(floors[0])}</td>
+        <td data-label={t("assessment.floor_correct")}>{share(floors[0])}</td>
       </tr>
       <tr>
         <th scope="row">
-          by what is known since
-          {tooSure(stated, known) && <strong class="warned"> more than promised</strong>}
+          {t("assessment.post_processed")}
+          {tooSure(stated, known) && <strong class="warned"> {t("assessment.more_than_estimated")}</strong>}
         </th>
         <Cells of={known} />
-        <td data-label={FLOOR}>{share(floors[1])}</td>
+        <td data-label={t("assessment.floor_correct")}>{share(floors[1])}</td>
       </tr>
     </tbody>
   );
@@ -136,11 +133,15 @@ function share(part: number | null): string {
 function Lights({ report }: { report: Assessment }) {
   return (
     <table class="assessment stacked">
-      <caption>
-        How far the places could be trusted: amber is “Place uncertain” on the card, red “Do not trust this
-        place”
-      </caption>
-      <Columns names={["Person", "Green, amber, red", "For how long", "Why not green"]} />
+      <caption>{t("assessment.confidence")}</caption>
+      <Columns
+        names={[
+          t("assessment.person"),
+          t("assessment.lights"),
+          t("assessment.for_how_long"),
+          t("assessment.why_not_green"),
+        ]}
+      />
       <tbody>
         {report.units.map((unit) => (
           <tr key={unit.unit_id}>
@@ -149,7 +150,7 @@ function Lights({ report }: { report: Assessment }) {
               <LightBar trust={unit.trust} />
             </td>
             <td>{lightWords(unit.trust)}</td>
-            <td class="detail" data-label="Why not green">
+            <td class="detail" data-label={t("assessment.why_not_green")}>
               {unit.trust.causes.length === 0 && NOTHING}
               {unit.trust.causes.map(([cause, seconds]) => (
                 <div key={cause}>
@@ -177,13 +178,13 @@ function LightBar({ trust }: { trust: TrustSeconds }) {
 }
 
 function lightWords(trust: TrustSeconds): string {
-  const said = [
-    [trust.green_s, "green"],
-    [trust.amber_s, "amber"],
-    [trust.red_s, "red"],
+  const times = [
+    [trust.green_s, "assessment.green"],
+    [trust.amber_s, "assessment.amber"],
+    [trust.red_s, "assessment.red"],
   ] as const;
-  const words = said.filter(([seconds]) => seconds > 0);
-  return words.map(([seconds, level]) => `${unbroken(seconds)} ${level}`).join(", ") || NOTHING;
+  const words = times.filter(([seconds]) => seconds > 0);
+  return listed(words.map(([seconds, key]) => t(key, { time: unbroken(seconds) }))) || NOTHING;
 }
 
 /** So long, on one line. */
@@ -203,32 +204,32 @@ function Cells({ of }: { of: Figures | null }) {
   );
 }
 
-const CHECKS = {
-  seconds: "Shown for",
-  walked: "Walked",
-  closure: "Own path missed the beginning by",
-  jumps: "Jumps as GPS came back",
-  pins: "Off from pins",
-  notUsed: "GPS and beacons not used",
-};
+const CHECKS = [
+  "assessment.shown_for",
+  "assessment.walked",
+  "assessment.closure",
+  "assessment.jumps",
+  "assessment.pins",
+  "assessment.not_used",
+] as const;
 
 function Checks({ report }: { report: Assessment }) {
   return (
     <table class="assessment stacked">
-      <caption>What else tells how good they were</caption>
-      <Columns names={["Person", ...Object.values(CHECKS)]} />
+      <caption>{t("assessment.checks")}</caption>
+      <Columns names={[t("assessment.person"), ...CHECKS.map((key) => t(key))]} />
       <tbody>
         {report.units.map((unit) => (
           <tr key={unit.unit_id}>
             <th scope="row">{wearerOf(unit)}</th>
-            <td data-label={CHECKS.seconds}>{duration(1000 * unit.seconds)}</td>
-            <td data-label={CHECKS.walked}>{Math.round(unit.walked_m)} m</td>
-            <td data-label={CHECKS.closure}>{closureOf(unit)}</td>
-            <td data-label={CHECKS.jumps}>{jumpsOf(unit)}</td>
-            <td class="detail" data-label={CHECKS.pins}>
+            <td data-label={t("assessment.shown_for")}>{duration(1000 * unit.seconds)}</td>
+            <td data-label={t("assessment.walked")}>{length(unit.walked_m, 0)}</td>
+            <td data-label={t("assessment.closure")}>{closureOf(unit)}</td>
+            <td data-label={t("assessment.jumps")}>{jumpsOf(unit)}</td>
+            <td class="detail" data-label={t("assessment.pins")}>
               {unit.pin_residuals.map(pinWords).join("; ") || NOTHING}
             </td>
-            <td class="detail" data-label={CHECKS.notUsed}>
+            <td class="detail" data-label={t("assessment.not_used")}>
               {unit.not_used.map(([reason, count]) => `${count} ${reason}`).join("; ") || NOTHING}
             </td>
           </tr>

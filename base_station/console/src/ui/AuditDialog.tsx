@@ -1,6 +1,7 @@
 import * as api from "../api";
 import { actionWord, detailWords } from "../audit";
 import { dateAndClock } from "../format";
+import { t } from "../language/translate";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useLoaded } from "./useLoaded";
@@ -13,9 +14,9 @@ export function AuditDialog() {
   const [people] = useLoaded(api.people);
   const names = new Map((people.value ?? []).map((person) => [person.person_id, person.name]));
   return (
-    <Dialog title="Audit log" wide>
+    <Dialog title={t("audit.title")} wide>
       <table class="audit stacked">
-        <Columns names={["When", "Who", "Did", "What"]} />
+        <Columns names={[t("audit.when"), t("audit.who"), t("audit.action"), t("audit.what")]} />
         <tbody>
           {entries.value.map((entry) => (
             <tr key={entry.entry_id}>
@@ -32,7 +33,7 @@ export function AuditDialog() {
       {!loaded.value && <Waiting />}
       {older && (
         <button type="button" onClick={older}>
-          Older entries
+          {t("audit.older")}
         </button>
       )}
     </Dialog>

@@ -3,6 +3,7 @@ import { removeBaseMap, setBaseMap } from "../api";
 import { ApiError } from "../http";
 import { baseMap, crsOf, worldOf } from "../plan/baseMap";
 import { attempt, user } from "../sessions";
+import { t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 import { useDone } from "./Done";
 
@@ -11,21 +12,21 @@ export function BaseMapForm() {
   const image = useSignal<File | null>(null);
   const world = useSignal<File | null>(null);
   const epsg = useSignal("");
-  const done = useDone("The base map is set.");
+  const done = useDone(t("base_map.done"));
   if (user.value?.role !== "administrator") {
-    return <p class="quiet">{baseMap.value === null ? "There is none." : "There is one."}</p>;
+    return <p class="quiet">{t(baseMap.value === null ? "base_map.none" : "base_map.some")}</p>;
   }
   const send = async () => {
     if (image.value === null || world.value === null) return;
     const numbers = worldOf(await world.value.text());
-    if (numbers === null) throw new ApiError("A world file has six numbers, one a line.", 0);
+    if (numbers === null) throw new ApiError(t("base_map.not_world_file"), 0);
     baseMap.value = await setBaseMap(image.value, numbers, crsOf(epsg.value, numbers));
     done.say();
   };
   return (
     <div class="row" onChange={done.unsay}>
       <label>
-        Picture (PNG, JPEG or WebP)
+        {t("base_map.picture")}
         <input
           type="file"
           accept="image/png,image/jpeg,image/webp"
@@ -33,7 +34,7 @@ export function BaseMapForm() {
         />
       </label>
       <label>
-        World file (.pgw, .jgw, .tfw or .wld)
+        {t("base_map.world_file")}
         <input
           type="file"
           accept=".pgw,.jgw,.tfw,.wld,text/plain"
@@ -41,7 +42,7 @@ export function BaseMapForm() {
         />
       </label>
       <label>
-        EPSG number (empty: degrees or web map)
+        {t("base_map.epsg")}
         <input
           inputMode="numeric"
           pattern="[0-9]*"
@@ -56,13 +57,13 @@ export function BaseMapForm() {
         disabled={image.value === null || world.value === null}
         onClick={() => void attempt(send())}
       >
-        Set base map
+        {t("base_map.set")}
       </button>
       {done.words}
       {baseMap.value !== null && (
         <ConfirmButton
-          label="Remove base map"
-          question="Remove the map for everybody?"
+          label={t("base_map.remove")}
+          question={t("base_map.remove_question")}
           onConfirm={() => void attempt(removeBaseMap().then(() => (baseMap.value = null)))}
         />
       )}

@@ -4,6 +4,8 @@ import type { Picture } from "../live/picture";
 import { putDown } from "../plan/tools";
 import type { BeaconView } from "../wire";
 import { age } from "../format";
+import { lengthField, lengthUnit, metresOf, shownLength } from "../language/measures";
+import { t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 import { PanelActions } from "./PanelActions";
 import { FloorField, placeOf, PlaceFields, WithinField } from "./PlaceFields";
@@ -21,51 +23,51 @@ export function BeaconPanel({ picture, beacon }: Props) {
     const wanted = {
       beacon_id: beacon?.beacon_id ?? given["beacon"] ?? "",
       label: given["label"] ?? "",
-      reach_m: Number(given["reach"]),
+      reach_m: metresOf(Number(given["reach"])),
       ...placeOf(given, beacon ?? undefined),
     };
     void attempt(api.placeBeacon(wanted, namedIncident())).then((done) => done && putDown());
   };
   const seenMs = beacon?.seen_ms ?? null;
   return (
-    <form class="tool-panel" aria-label="Beacon" onSubmit={send}>
-      <h3>{beacon === null ? "A beacon hangs here" : beacon.label || beacon.beacon_id}</h3>
+    <form class="tool-panel" aria-label={t("beacon.title")} onSubmit={send}>
+      <h3>{beacon === null ? t("beacon.new") : beacon.label || beacon.beacon_id}</h3>
       {beacon === null ? (
         <label>
-          Its number
+          {t("beacon.number")}
           <input name="beacon" required maxLength={64} />
         </label>
       ) : (
         <p class="quiet">
           {seenMs === null
-            ? "No unit has passed it yet."
-            : `A unit passed it ${age(picture.nowMs.value - seenMs)} ago.`}
+            ? t("beacon.not_passed")
+            : t("beacon.passed", { age: age(picture.nowMs.value - seenMs) })}
         </p>
       )}
       <label>
-        Name
+        {t("common.name")}
         <input name="label" maxLength={80} defaultValue={beacon?.label ?? ""} />
       </label>
       <PlaceFields {...(beacon === null ? {} : { start: beacon })} />
       <WithinField startM={2 * (beacon?.std_m ?? 0.5)} />
       <label>
-        Noticed from, m
+        {t("beacon.reach", { unit: lengthUnit() })}
         <input
           name="reach"
           type="number"
           min={0}
-          max={100}
-          step="0.5"
+          max={shownLength(100)}
+          step="any"
           required
-          defaultValue={beacon?.reach_m ?? 3}
+          defaultValue={lengthField(beacon?.reach_m ?? 3)}
         />
       </label>
       <FloorField picture={picture} start={beacon?.floor} />
-      <PanelActions label={beacon === null ? "Place beacon" : "Change beacon"}>
+      <PanelActions label={t(beacon === null ? "beacon.place" : "beacon.save")}>
         {beacon !== null && (
           <ConfirmButton
-            label="Remove beacon"
-            question="Nobody who passes it is placed by it any more."
+            label={t("beacon.remove")}
+            question={t("beacon.remove_question")}
             onConfirm={() => void attempt(api.removeBeacon(beacon.beacon_id)).then(putDown)}
           />
         )}

@@ -1,10 +1,12 @@
 import { picture as shown } from "../sessions";
 import { alarmLabel, dateAndTime, floorName, minutes } from "../format";
-import { onScene, PART_WORDS, partOf } from "../live/headcount";
+import { onScene, partOf } from "../live/headcount";
+import { listed } from "../language/measures";
 import { needsOf } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
 import type { UnitView } from "../wire";
+import { label, t } from "../language/translate";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 
@@ -16,18 +18,29 @@ export function BoardDialog() {
   const nowMs = picture.nowMs.value;
   const members = [...onScene(picture.allUnits())].sort(byCrew);
   return (
-    <Dialog title="Board" wide>
+    <Dialog title={t("board.title")} wide>
       <p class="row not-printed">
         <button type="button" class="primary" onClick={() => print()}>
-          Print
+          {t("board.print")}
         </button>
       </p>
       <p>
-        {picture.incident.value?.name ?? "No incident open"}, {members.length} on scene, {dateAndTime(nowMs)}
-        {picture.link.value.kind !== "up" && ". Not current: the station is not connected."}
+        {t("board.summary", {
+          incident: picture.incident.value?.name ?? t("board.no_incident"),
+          count: members.length,
+          time: dateAndTime(nowMs),
+        })}
+        {picture.link.value.kind !== "up" && `. ${t("board.not_current")}`}
       </p>
       <table class="board">
-        <Columns names={["Crew", "Name", "Unit", "State", "Floor", "Inside for"]} />
+        <Columns names={[
+            t("board.crew"),
+            t("common.name"),
+            t("board.unit"),
+            t("board.state"),
+            t("board.floor"),
+            t("board.inside_for"),
+          ]} />
         <tbody>
           {members.map((unit) => (
             <tr key={unit.unit_id}>
@@ -47,11 +60,11 @@ export function BoardDialog() {
 
 function stateOf(unit: UnitView, picture: Picture): string {
   const needs = needsOf(unit, picture.alarms.value).map(alarmLabel);
-  return [PART_WORDS[partOf(unit)], ...needs].join(", ");
+  return listed([label("headcount", partOf(unit)), ...needs]);
 }
 
 function floorOf({ position }: UnitView): string {
-  return position === null || position.floor === null ? "not known" : floorName(position.floor);
+  return position === null || position.floor === null ? t("board.floor_unknown") : floorName(position.floor);
 }
 
 function byCrew(a: UnitView, b: UnitView): number {

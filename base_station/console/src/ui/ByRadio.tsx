@@ -1,6 +1,7 @@
 import { picture as shown } from "../sessions";
 import { inAlarm } from "../live/alarms";
 import type { UnitView } from "../wire";
+import { t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 
 interface Props {
@@ -17,18 +18,19 @@ interface Props {
 export function ByRadio({ label, about, members, question, always = false, kind, onConfirm }: Props) {
   const needy = inAlarm(members, shown.value?.alarms.value ?? new Map());
   if (needy.length > 0 || always) {
-    const alarms = needy.length === 0 ? "" : `In alarm: ${needy.join("; ")}. `;
+    const asked =
+      needy.length === 0 ? question : t("radio.in_alarm", { members: needy.join("; "), question });
     return (
       <ConfirmButton
         label={label}
         {...(about === undefined ? {} : { about })}
-        question={`${alarms}${question}`}
-        yes="Yes, answered by radio"
+        question={asked}
+        yes={t("radio.yes")}
         onConfirm={onConfirm}
       />
     );
   }
-  const spoken = about === undefined ? {} : { "aria-label": `${label}: ${about}` };
+  const spoken = about === undefined ? {} : { "aria-label": t("common.about", { action: label, what: about }) };
   return (
     <button type="button" class={kind} {...spoken} onClick={onConfirm}>
       {label}

@@ -77,7 +77,7 @@ function Whole({ unit, chosen, short, picture }: WholeProps) {
   const name = displayName(unit);
   return (
     <>
-      <button type="button" class="card-head" aria-pressed={chosen} title="Show on the plan">
+      <button type="button" class="card-head" aria-pressed={chosen} title={t("common.show_on_plan")}>
         {!short && <Photo name={name} url={unit.person?.photo_url ?? null} />}
         <span class="names">
           <span class="name">{name}</span>
@@ -118,11 +118,11 @@ function ToRecords({ unit }: { unit: UnitView }) {
   return (
     <div class="to-records">
       <button type="button" onClick={show("timeline")}>
-        Timeline
+        {t("card.timeline")}
       </button>
       {unit.alarms.length > 0 && (
         <button type="button" onClick={show("alarm_reason")}>
-          {unit.alarms.length === 1 ? "Reason of the alarm" : "Reasons of the alarms"}
+          {t("card.reasons", { count: unit.alarms.length })}
         </button>
       )}
     </div>
@@ -138,7 +138,7 @@ function ToPlan() {
   };
   return (
     <button type="button" class="to-plan" onClick={go}>
-      To this person on the plan
+      {t("card.to_plan")}
     </button>
   );
 }
@@ -168,7 +168,7 @@ function flags(set: Record<string, boolean>): string {
 }
 
 function crewAndRole(unit: UnitView): string {
-  if (unit.person === null) return unit.registered ? "nobody assigned" : "unknown unit";
+  if (unit.person === null) return t(unit.registered ? "card.unassigned" : "card.unknown_unit");
   return [unit.person.crew, unit.person.role].filter((word) => word !== "").join(" · ");
 }
 
@@ -181,7 +181,7 @@ function Activity({ unit, picture }: { unit: UnitView; picture: Picture }) {
       <Icon name={mayday ? "alarm" : activityOrNone(unit)} />
       {format.activityOf(unit)}
       {posture !== "" && <small>{posture}</small>}
-      {oldMs >= OLD_MS && <small class="old-mark">{format.age(oldMs)} old</small>}
+      {oldMs >= OLD_MS && <small class="old-mark">{t("measure.old", { age: format.age(oldMs) })}</small>}
     </span>
   );
 }
@@ -198,12 +198,12 @@ function OpenAlarms({ unit, picture }: { unit: UnitView; picture: Picture }) {
     .filter((alarm) => !(overdue && saysOverdue(alarm, unit)));
   if (open.length === 0) return null;
   return (
-    <ul class="card-alarms" aria-label="Open alarms of this person">
+    <ul class="card-alarms" aria-label={t("alarm.of_person")}>
       {open.map((alarm) => (
         <li key={alarm.alarm_id} class={`p${alarm.priority}`}>
           <Icon name="alarm" />
           {format.alarmLabel(alarm)}
-          {isOfAnother(alarm, unit) && <small>(who wore it before)</small>}
+          {isOfAnother(alarm, unit) && <small>{t("alarm.by_other")}</small>}
         </li>
       ))}
     </ul>
@@ -221,11 +221,11 @@ function Trust({ unit }: { unit: UnitView }) {
   const { level, reason } = unit.trust;
   const off = unit.switched_off && unit.link !== "live";
   if (unit.position === null || level === "green" || off) return null;
-  const word = level === "red" ? "Do not trust this place" : "Place uncertain";
+  const word = t(level === "red" ? "card.unreliable" : "card.uncertain");
   return (
     <p class={`trust ${level}`}>
       <Icon name="target" />
-      {reason === "" ? word : `${word}: ${reason}`}
+      {reason === "" ? word : t("card.reason", { what: word, reason })}
     </p>
   );
 }
@@ -233,9 +233,9 @@ function Trust({ unit }: { unit: UnitView }) {
 /** The unit has no light and no sounder: its wearer does not notice what is sent to it. */
 function NotNotifiable() {
   return (
-    <p class="not-notifiable" title="The unit has no output: use the voice radio">
+    <p class="not-notifiable" title={t("card.cannot_be_notified_hint")}>
       <Icon name="bellOff" />
-      cannot be notified
+      {t("card.cannot_be_notified")}
     </p>
   );
 }
@@ -248,7 +248,7 @@ function NotReady({ unit: { preflight, registered }, chosen }: { unit: UnitView;
   return (
     <p class={`trust ${preflight.level === "failed" ? "red" : ""}`}>
       <Icon name="alarm" />
-      Unit {format.preflightText(preflight)}
+      {t("card.preflight", { state: format.preflightText(preflight) })}
     </p>
   );
 }
@@ -258,7 +258,7 @@ function TwoMachines() {
   return (
     <p class="trust red">
       <Icon name="people" />
-      Somebody may be unseen: {t("member.duplicate")}
+      {t("card.duplicate", { reason: t("member.duplicate") })}
     </p>
   );
 }
@@ -266,10 +266,10 @@ function TwoMachines() {
 function UnknownUnit({ unitId }: { unitId: string }) {
   return (
     <p class="unknown">
-      Not one of ours yet: kept in the log, not believed.
+      {t("card.unregistered")}
       {mayAct.value && (
         <button type="button" onClick={() => void attempt(api.registerUnit(unitId, unitId))}>
-          Register
+          {t("card.register")}
         </button>
       )}
     </p>

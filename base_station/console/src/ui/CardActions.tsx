@@ -2,10 +2,10 @@ import { attempt, live } from "../sessions";
 import { openDialog } from "../uiState";
 import * as api from "../api";
 import { take } from "../plan/tools";
-import { LOCATE_HINT } from "../live/commands";
 import { displayName } from "../live/urgency";
 import { confirmPar } from "../undo";
 import type { UnitView } from "../wire";
+import { t } from "../language/translate";
 import { ByRadio } from "./ByRadio";
 
 /** What can be done for one person; only on the card that was chosen, so that cards stay calm. */
@@ -15,39 +15,39 @@ export function CardActions({ unit }: { unit: UnitView }) {
   const resting = duty !== null && duty.rest_since_ms !== null;
   const incidentId = incidentFor(unitId);
   return (
-    <div class="card-actions" role="group" aria-label={`For ${name}`}>
+    <div class="card-actions" role="group" aria-label={t("card.actions", { name })}>
       {incidentId !== null && (
         <button
           type="button"
           class="primary"
           onClick={() => void attempt(api.assignMembers(incidentId, { unit_id: unitId }))}
         >
-          Assign to this incident
+          {t("card.assign_incident")}
         </button>
       )}
       {duty !== null && (
         <>
           <ByRadio
-            label="PAR by radio"
+            label={t("card.par_by_radio")}
             members={[unit]}
-            question={`Has ${name} answered by radio?`}
+            question={t("card.has_answered", { name })}
             kind="primary"
             onConfirm={() => void confirmPar({ unit_id: unitId }, name)}
           />
           <button type="button" onClick={() => void attempt(api.setRest(unitId, !resting))}>
-            {resting ? "Back to work" : "To rest"}
+            {t(resting ? "card.return_to_duty" : "card.to_rehab")}
           </button>
         </>
       )}
       <button type="button" onClick={() => take({ kind: "pin", unitId })}>
-        Pin on the plan
+        {t("card.correct_position")}
       </button>
       <button type="button" onClick={() => take({ kind: "meeting", unitId })}>
-        Met …
+        {t("card.same_place")}
       </button>
       <Locate unit={unit} />
       <button type="button" onClick={() => openDialog("text", unitId)}>
-        Message
+        {t("card.message")}
       </button>
     </div>
   );
@@ -65,17 +65,17 @@ function Locate({ unit: { unit_id: unitId, can_be_notified } }: { unit: UnitView
   if (can_be_notified === false) {
     return (
       <button type="button" onClick={() => openDialog("locate", unitId)}>
-        Locate …
+        {t("card.locate_asks")}
       </button>
     );
   }
   return (
     <button
       type="button"
-      title={LOCATE_HINT}
+      title={t("order.locate_hint")}
       onClick={() => void attempt(api.sendCommand("locate", { unit_id: unitId }, ""))}
     >
-      Locate
+      {t("card.locate")}
     </button>
   );
 }

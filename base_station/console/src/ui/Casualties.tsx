@@ -1,10 +1,12 @@
 import { select, selectedUnit } from "../uiState";
+import { listed } from "../language/measures";
 import { needsOf } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
 import { isOld } from "../plan/ellipse";
 import type { UnitView } from "../wire";
 import * as format from "../format";
+import { t } from "../language/translate";
 import { Icon } from "./Icon";
 import { useGuardedPress } from "./useGuardedPress";
 
@@ -16,7 +18,7 @@ export function Casualties({ unitIds, picture }: { unitIds: readonly string[]; p
   if (unitIds.length === 0) return null;
   const many = unitIds.length > MANY ? "many" : "";
   return (
-    <ul class={`casualties ${many}`} aria-label="Members who are down">
+    <ul class={`casualties ${many}`} aria-label={t("card.members_down")}>
       {unitIds.map((unitId, place) => (
         <Casualty key={unitId} unitId={unitId} place={place} picture={picture} />
       ))}
@@ -35,14 +37,14 @@ function Casualty({ unitId, place, picture }: Props) {
   const steady = useGuardedPress(place);
   if (unit === undefined) return null;
   const name = displayName(unit);
-  const matter = needsOf(unit, picture.alarms.value).map(format.alarmLabel).join(", ");
-  const words = [placeOf(unit, picture.nowMs.value), matter || format.activityOf(unit)].join(" · ");
+  const matter = needsOf(unit, picture.alarms.value).map(format.alarmLabel);
+  const words = [placeOf(unit, picture.nowMs.value), listed(matter) || format.activityOf(unit)].join(" · ");
   return (
     <li>
       <button
         type="button"
         aria-pressed={selectedUnit.value === unitId}
-        title={`${name}: ${words}. Show on the plan`}
+        title={t("common.hint", { what: t("card.words", { name, words }), action: t("common.show_on_plan") })}
         onClick={steady(() => select(unitId, unit.position?.floor ?? null))}
       >
         <Icon name="alarm" />
@@ -55,7 +57,8 @@ function Casualty({ unitId, place, picture }: Props) {
 
 /** In short: the card says the rest. */
 function placeOf({ position }: UnitView, nowMs: number): string {
-  if (position === null) return "not located";
+  if (position === null) return t("card.not_located");
   const floor = format.isFloorLikely(position) ? position.floor : null;
-  return format.floorName(floor) + (isOld(position, nowMs) ? ", old" : "");
+  const place = format.floorName(floor);
+  return isOld(position, nowMs) ? t("card.old_place", { place }) : place;
 }

@@ -2,27 +2,28 @@ import { mayAct } from "../sessions";
 import { openDialog } from "../uiState";
 import { commandWord, newestFirst, progress } from "../live/commands";
 import type { Picture } from "../live/picture";
+import { t } from "../language/translate";
 
 /** What a commander can tell everyone with two presses, and how far that has got. */
 export function CommandBar({ picture }: { picture: Picture }) {
   const open = newestFirst(picture.commands.value.values()).filter((command) => command.open);
   if (!mayAct.value && open.length === 0) return null;
   return (
-    <div class="command-bar" role="group" aria-label="Commands">
+    <div class="command-bar" role="group" aria-label={t("order.commands")}>
       {mayAct.value && (
         <>
           <button type="button" class="danger" aria-keyshortcuts="E" onClick={() => openDialog("evacuate")}>
-            Evacuate
+            {t("order.evacuate")}
           </button>
           <button type="button" aria-keyshortcuts="P" onClick={() => openDialog("par_request")}>
-            PAR
+            {t("order.par_request")}
           </button>
           <button type="button" onClick={() => openDialog("text")}>
-            Message
+            {t("order.text")}
           </button>
         </>
       )}
-      <ul aria-label="Open commands">
+      <ul aria-label={t("order.open")}>
         {open.map((command) => (
           <li key={command.command_id}>
             <strong>{commandWord(command)}</strong> {progress(command)}

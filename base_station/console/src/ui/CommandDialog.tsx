@@ -7,27 +7,28 @@ import {
   floorsOf,
   current,
   kindWord,
-  LOCATE_HINT,
   newestFirst,
   notNotifiable,
   type Target,
 } from "../live/commands";
+import { locale } from "../language/measures";
 import type { Picture } from "../live/picture";
 import { nameAmong } from "../live/urgency";
 import type { CommandView } from "../wire";
 import { floorName } from "../format";
+import { type PlainKey, t } from "../language/translate";
 import { Deliveries } from "./Deliveries";
 import { Dialog } from "./Dialog";
 import { Icon } from "./Icon";
 import { useSinglePress } from "./useGuardedPress";
 import { fields } from "./useLoaded";
 
-const SAYS: Record<api.CommandKind, string> = {
-  evacuate: "Orders everyone out at once. Each member is asked to acknowledge it.",
-  par_request: "Asks each member to answer. Only a person’s answer confirms a PAR.",
-  text: "Each member is asked to acknowledge it.",
-  locate: LOCATE_HINT,
-};
+const HINTS = {
+  evacuate: "order.evacuate_hint",
+  par_request: "order.par_hint",
+  text: "order.text_hint",
+  locate: "order.locate_hint",
+} as const satisfies Record<api.CommandKind, PlainKey>;
 
 const EVERYONE = "everyone";
 
@@ -84,7 +85,7 @@ function CommandForm({ kind, picture, sent }: FormProps) {
     ...units.map((unit) => [`unit:${unit.unit_id}`, nameAmong(unit, units)] as const),
   ]);
   // Else the list would turn to its first entry, which is everyone.
-  if (!targets.has(to.value)) targets.set(to.value, `${nameIn(to.value)} (nobody now)`);
+  if (!targets.has(to.value)) targets.set(to.value, t("order.nobody_now", { name: nameIn(to.value) }));
   const target = targetOf(to.value);
   const unreachable = notNotifiable(target, "unit_id" in target ? units : members);
   return (
@@ -106,9 +107,9 @@ function CommandForm({ kind, picture, sent }: FormProps) {
         );
       }}
     >
-      <p>{SAYS[kind]}</p>
+      <p>{t(HINTS[kind])}</p>
       <label>
-        To
+        {t("order.to")}
         <select
           autofocus={kind !== "text"}
           value={to.value}
@@ -123,12 +124,12 @@ function CommandForm({ kind, picture, sent }: FormProps) {
       </label>
       {kind === "text" && (
         <label class="long">
-          Message
+          {t("order.message")}
           <input name="text" required maxLength={120} autofocus />
         </label>
       )}
       <button class={kind === "evacuate" ? "danger" : "primary"}>
-        {kind === "evacuate" ? "Evacuate now" : "Send"}
+        {t(kind === "evacuate" ? "order.evacuate_now" : "order.send")}
       </button>
       {/* Below the button, which many names would push out of sight. */}
       <p class="not-notifiable" aria-live="polite">
@@ -141,12 +142,13 @@ function CommandForm({ kind, picture, sent }: FormProps) {
 
 function everyoneWord(picture: Picture): string {
   const several = picture.choices.value.length > 0;
-  return several ? `Everyone in ${picture.incident.value?.name}` : "Everyone";
+  const incident = picture.incident.value?.name ?? "";
+  return several ? t("order.everyone_in", { incident }) : t("order.everyone");
 }
 
 function floorWord(floor: number): string {
   const name = floorName(floor);
-  return `${name.charAt(0).toUpperCase()}${name.slice(1)}, and whose floor is not known`;
+  return t("order.floor", { floor: name.charAt(0).toLocaleUpperCase(locale()) + name.slice(1) });
 }
 
 function clearText(form: HTMLFormElement): void {

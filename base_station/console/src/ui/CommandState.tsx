@@ -7,6 +7,7 @@ import {
   type ShownState,
 } from "../live/commands";
 import type { CommandView } from "../wire";
+import { t } from "../language/translate";
 import { Icon, type IconName } from "./Icon";
 
 const ICONS: Record<ShownState, IconName> = {
@@ -40,7 +41,7 @@ export function OpenCommands({ unitId, commands }: Props) {
   const open = openTo(unitId, newestFirst(commands.values()));
   if (open.length === 0) return null;
   return (
-    <ul class="card-commands" aria-label="Open commands to this person">
+    <ul class="card-commands" aria-label={t("order.open_to")}>
       {open.map(({ command, delivery }) => (
         <li key={command.command_id}>
           <span class="command-word">{commandWord(command)}</span>

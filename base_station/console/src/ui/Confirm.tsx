@@ -1,4 +1,5 @@
 import type { RefObject } from "preact";
+import { t } from "../language/translate";
 import { useEffect, useRef } from "preact/hooks";
 import { GUARD_MS } from "./useGuardedPress";
 
@@ -25,7 +26,7 @@ export function Confirm({ question, yes, onYes, onNo }: Props) {
         {yes}
       </button>
       <button type="button" ref={no} onClick={onNo}>
-        No
+        {t("common.no")}
       </button>
     </span>
   );

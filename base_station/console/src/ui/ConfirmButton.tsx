@@ -1,4 +1,5 @@
 import { useSignal } from "@preact/signals";
+import { inSentence, t } from "../language/translate";
 import { useEffect } from "preact/hooks";
 import { Confirm, useFocusBack } from "./Confirm";
 
@@ -16,7 +17,7 @@ export function ConfirmButton({
   label,
   about = "",
   question,
-  yes = `Yes, ${label.toLowerCase()}`,
+  yes = t("common.yes", { action: inSentence(label) }),
   focused = false,
   onConfirm,
 }: Props) {
@@ -39,7 +40,7 @@ export function ConfirmButton({
       />
     );
   }
-  const spoken = about === "" ? {} : { "aria-label": `${label}: ${about}` };
+  const spoken = about === "" ? {} : { "aria-label": t("common.about", { action: label, what: about }) };
   return (
     <button type="button" class="asks" ref={button} {...spoken} onClick={() => (asked.value = true)}>
       {label}

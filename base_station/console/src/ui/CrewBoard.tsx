@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
 import * as api from "../api";
 import { attempt } from "../sessions";
+import { rich, t } from "../language/translate";
 import "../styles/setup.css";
 import { Photo } from "./Photo";
 import { fields } from "./useLoaded";
@@ -31,11 +32,8 @@ export function CrewBoard({ people, done }: Props) {
   const drop = (personId: string, crew: string) =>
     move(picked.value.has(personId) ? picked.value : new Set([personId]), crew);
   return (
-    <section aria-label="Crews">
-      <p class="quiet">
-        Draw a person to another crew, or press people and then <em>Move here</em>. Drop a picture on a person
-        for a photo.
-      </p>
+    <section aria-label={t("crew.title")}>
+      <p class="quiet">{rich("crew.hint", { move: <em>{t("crew.move_here")}</em> })}</p>
       <div class="crew-board">
         {crews.map((crew) => (
           <Crew
@@ -59,10 +57,10 @@ export function CrewBoard({ people, done }: Props) {
         }}
       >
         <label>
-          New crew
+          {t("crew.new")}
           <input name="crew" required maxLength={60} autocomplete="off" />
         </label>
-        <button>Add crew</button>
+        <button>{t("crew.add")}</button>
       </form>
     </section>
   );
@@ -80,7 +78,7 @@ interface CrewProps {
 
 function Crew({ crew, members, picked, pick, moveHere, drop, done }: CrewProps) {
   const over = useSignal(false);
-  const name = crew === "" ? "No crew" : crew;
+  const name = crew === "" ? t("crew.none") : crew;
   const others = members.filter((one) => picked.has(one.person_id)).length < picked.size;
   return (
     <section
@@ -101,7 +99,7 @@ function Crew({ crew, members, picked, pick, moveHere, drop, done }: CrewProps) 
       }}
     >
       <h3>
-        {name}: {members.length}
+        {t("crew.count", { crew: name, count: members.length })}
       </h3>
       <ul>
         {members.map((person) => (
@@ -115,8 +113,8 @@ function Crew({ crew, members, picked, pick, moveHere, drop, done }: CrewProps) 
         ))}
       </ul>
       {others && (
-        <button type="button" aria-label={`Move here: ${name}`} onClick={moveHere}>
-          Move here
+        <button type="button" aria-label={t("common.about", { action: t("crew.move_here"), what: name })} onClick={moveHere}>
+          {t("crew.move_here")}
         </button>
       )}
     </section>

@@ -6,6 +6,7 @@ import { displayName, nameAmong } from "../live/urgency";
 import { confirmAnswer } from "../undo";
 import type { CommandView, DeliveryView } from "../wire";
 import { clockTime } from "../format";
+import { rich, t } from "../language/translate";
 import { ByRadio } from "./ByRadio";
 import { CommandState } from "./CommandState";
 import { ConfirmButton } from "./ConfirmButton";
@@ -21,14 +22,18 @@ export function Deliveries({ command, picture }: Props) {
   return (
     <table class="deliveries stacked">
       <caption>
-        {commandWord(command)} ({clockTime(command.issued_ms)}, {command.issued_by}):{" "}
-        <strong>{progress(command)}</strong>
+        {rich("order.caption", {
+          order: commandWord(command),
+          time: clockTime(command.issued_ms),
+          who: command.issued_by,
+          progress: <strong>{progress(command)}</strong>,
+        })}
       </caption>
       <thead class="spoken">
         <tr>
-          <th scope="col">Who</th>
-          <th scope="col">State</th>
-          <th scope="col">By whom and when</th>
+          <th scope="col">{t("order.who")}</th>
+          <th scope="col">{t("order.state")}</th>
+          <th scope="col">{t("order.by_and_when")}</th>
         </tr>
       </thead>
       <tbody>
@@ -70,10 +75,10 @@ function Answer({ command, delivery, place, picture }: AnswerProps) {
   if (!mayAnswerByRadio(command, delivery) || !mayAct.value) return null;
   return (
     <ByRadio
-      label="Answered by radio"
+      label={t("order.answered_by_radio")}
       about={name}
       members={unit === undefined ? [] : [unit]}
-      question={`Has ${name} answered by radio?`}
+      question={t("card.has_answered", { name })}
       onConfirm={steady(() => void confirmAnswer(command.command_id, unitId, name))}
     />
   );
@@ -84,12 +89,12 @@ function Acknowledged({ command, delivery, name }: Omit<Props, "picture"> & { de
   const radio = via === "radio";
   return (
     <span class="answered">
-      {radio ? `by radio, ${by}` : `${by}, own unit`}, {clockTime(atMs ?? 0)}
+      {t(radio ? "order.by_radio" : "order.by_unit", { who: by, time: clockTime(atMs ?? 0) })}
       {radio && mayAct.value && (
         <ConfirmButton
-          label="Undo"
-          about={`answer of ${name} by radio`}
-          question={`${name} has not answered?`}
+          label={t("common.undo")}
+          about={t("order.undo_about", { name })}
+          question={t("order.undo_question", { name })}
           onConfirm={() =>
             void attempt(api.undoConfirmCommand(command.command_id, delivery.unit_id))
           }

@@ -2,6 +2,7 @@ import type { ComponentChildren } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { waiting } from "../sessions";
 import { dialog } from "../uiState";
+import { t } from "../language/translate";
 import { LinkLost } from "./LinkBanner";
 import { Notice } from "./Notice";
 import { UndoBar } from "./UndoBar";
@@ -30,7 +31,7 @@ export function Dialog({ title, wide = false, children }: Props) {
       <header>
         <h2 id="dialog-title">{title}</h2>
         <button type="button" onClick={() => element.current?.close()}>
-          Close
+          {t("common.close")}
         </button>
         <Sending />
         <LinkLost />

@@ -1,6 +1,7 @@
 import { useLayoutEffect } from "preact/hooks";
 import { report } from "../live/faults";
 import { dialog } from "../uiState";
+import { t } from "../language/translate";
 import { AccountDialog } from "./AccountDialog";
 import { AlarmReasonDialog } from "./AlarmReasonDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
@@ -25,7 +26,7 @@ import { UsersDialog } from "./UsersDialog";
 export function Dialogs() {
   useFocusBack(dialog.value !== null);
   return (
-    <ErrorBoundary what="This dialog" key={dialog.value ?? ""} onFault={closeWith}>
+    <ErrorBoundary what={t("frame.dialog")} key={dialog.value ?? ""} onFault={closeWith}>
       <Opened />
     </ErrorBoundary>
   );

@@ -5,6 +5,7 @@ import { offered, summary } from "../live/dispatch";
 import type { Picture } from "../live/picture";
 import { notice, openDispatch } from "../uiState";
 import type { DispatchView } from "../wire";
+import { t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 
 /** Numbers that were announced over an open incident; the dialog *Incidents* has them on. */
@@ -24,12 +25,12 @@ export function DispatchBar({ picture }: { picture: Picture }) {
   const [first, ...more] = offers;
   if (first === undefined || isOpen) return null;
   return (
-    <section class="standby-bar dispatch-bar" aria-label="Dispatch" role="status">
-      <strong>Dispatch {first.number}</strong>
+    <section class="standby-bar dispatch-bar" aria-label={t("dispatch.label")} role="status">
+      <strong>{t("dispatch.title", { number: first.number })}</strong>
       <span class="report">{summary(first)}</span>
-      {more.length > 0 && <span>and {more.length} more, in Incidents</span>}
+      {more.length > 0 && <span>{t("dispatch.more", { count: more.length })}</span>}
       <button type="button" class="primary" onClick={() => openDispatch(first.number)}>
-        Open incident from dispatch…
+        {t("dispatch.open")}
       </button>
       <DismissButton dispatch={first} />
     </section>
@@ -39,10 +40,10 @@ export function DispatchBar({ picture }: { picture: Picture }) {
 export function DismissButton({ dispatch }: { dispatch: DispatchView }) {
   return (
     <ConfirmButton
-      label="Dismiss"
-      about={`dispatch ${dispatch.number}`}
-      question={`Dispatch ${dispatch.number} is offered no longer. It stays in Incidents.`}
-      yes="Yes, dismiss"
+      label={t("dispatch.dismiss")}
+      about={t("dispatch.about", { number: dispatch.number })}
+      question={t("dispatch.dismiss_question", { number: dispatch.number })}
+      yes={t("dispatch.dismiss_yes")}
       onConfirm={() => void attempt(api.dismissDispatch(dispatch.number))}
     />
   );
@@ -50,6 +51,8 @@ export function DismissButton({ dispatch }: { dispatch: DispatchView }) {
 
 function announcement([first, ...more]: readonly DispatchView[]): string {
   if (first === undefined) return "";
-  const others = more.length === 0 ? "" : ` And ${more.length} more.`;
-  return `Dispatch ${first.number}: ${summary(first)}.${others} It is in Incidents.`;
+  const about = { number: first.number, summary: summary(first) };
+  return more.length === 0
+    ? t("dispatch.announced", about)
+    : t("dispatch.announced_more", { ...about, count: more.length });
 }

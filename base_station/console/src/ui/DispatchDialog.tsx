@@ -6,6 +6,7 @@ import type { Picture } from "../live/picture";
 import { changeOf } from "../plan/anchor";
 import { dialog, dialogDispatch } from "../uiState";
 import type { AnchorView, DispatchView } from "../wire";
+import { rich, t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
 import { DismissButton } from "./DispatchBar";
@@ -24,15 +25,15 @@ export function DispatchDialog() {
   const isOther = incident !== null && incident.closed_ms === null && !isOpened;
   const acts = mayAct.value && !isPast.value;
   return (
-    <Dialog title={`Dispatch ${number}`} wide>
+    <Dialog title={t("dispatch.title", { number })} wide>
       {dispatch === null ? (
-        <p class="quiet">It is not known here any more.</p>
+        <p class="quiet">{t("dispatch.unknown")}</p>
       ) : (
         <>
           <Facts dispatch={dispatch} />
           {acts && isOther && (
             <p class="said">
-              <strong>{incident.name}</strong> is open. Close it to open an incident from this dispatch.
+              {rich("dispatch.other_open", { incident: <strong>{incident.name}</strong> })}
             </p>
           )}
           {acts && !isOther && !isOpened && <OpenForm dispatch={dispatch} shown={shown} />}
@@ -58,7 +59,7 @@ function Facts({ dispatch }: { dispatch: DispatchView }) {
         ))}
         {dispatch.units.length > 0 && (
           <div>
-            <dt>Units</dt>
+            <dt>{t("dispatch.units")}</dt>
             <dd>
               {callSigns === undefined ? (
                 dispatch.units.join(", ")
@@ -75,7 +76,7 @@ function Facts({ dispatch }: { dispatch: DispatchView }) {
       </dl>
       {dispatch.warnings.map((warning) => (
         <p class="verdict conflict" key={warning}>
-          Of the report: {warning}.
+          {t("dispatch.warning", { warning })}
         </p>
       ))}
     </>
@@ -107,7 +108,7 @@ function OpenForm({ dispatch, shown }: Props) {
     >
       <div class="row">
         <label>
-          Name of the new incident
+          {t("dispatch.incident_name")}
           <input name="name" required maxLength={80} defaultValue={suggestedName(dispatch)} />
         </label>
         {usual.value && <TimesFields times={usual.value} />}
@@ -120,13 +121,15 @@ function OpenForm({ dispatch, shown }: Props) {
             onChange={(event) => (uses.value = event.currentTarget.checked)}
           />
           <span>
-            Take {positionWords(dispatch)} as the place of the site on the Earth.
-            {shown.anchor.value !== null && ` ${changeOf(shown.anchor.value, place)}`}
+            {t("dispatch.take_position", {
+              position: positionWords(dispatch),
+              change: shown.anchor.value === null ? "" : changeOf(shown.anchor.value, place),
+            })}
           </span>
         </label>
       )}
       <div class="row">
-        <button class="primary">Open incident</button>
+        <button class="primary">{t("dispatch.open_incident")}</button>
         {!dispatch.is_dismissed && <DismissButton dispatch={dispatch} />}
       </div>
     </form>
@@ -138,13 +141,13 @@ function UsePosition({ dispatch, shown }: Props) {
   const place = anchorOf(dispatch, shown);
   const before = shown.anchor.value;
   if (place === null) return null;
-  const change = before === null ? "The site has no place yet." : changeOf(before, place);
+  const change = before === null ? t("dispatch.no_place") : changeOf(before, place);
   if (before !== null && change === "") return null; // it is there already
   return (
     <ConfirmButton
-      label="Take its position as the place of the site"
-      question={`${change} The plan is put at ${positionWords(dispatch)} for everybody.`}
-      yes="Yes, take the position"
+      label={t("dispatch.use_position")}
+      question={t("dispatch.use_question", { change, position: positionWords(dispatch) })}
+      yes={t("dispatch.use_yes")}
       onConfirm={() => void attempt(api.setAnchor(place, namedIncident()))}
     />
   );

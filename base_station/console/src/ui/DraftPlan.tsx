@@ -4,6 +4,7 @@ import * as api from "../api";
 import { contents } from "../plan/contents";
 import { attempt } from "../sessions";
 import type { Plan } from "../wire";
+import { t } from "../language/translate";
 import { PlanDrawing } from "./PlanDrawing";
 import { SendPlan } from "./SendPlan";
 import { Waiting } from "./Waiting";
@@ -43,9 +44,9 @@ export function DraftPlan({ file, shown, done }: Props) {
     <>
       {isDxf && (
         <label class="row">
-          Unit of length
+          {t("draft.unit")}
           <select value={unit.value} onChange={(event) => (unit.value = event.currentTarget.value)}>
-            <option value="">as the file says</option>
+            <option value="">{t("draft.unit_of_file")}</option>
             {UNITS.map((one) => (
               <option key={one}>{one}</option>
             ))}
@@ -54,11 +55,11 @@ export function DraftPlan({ file, shown, done }: Props) {
       )}
       {read.pages > 1 && (
         <label class="row">
-          Page
+          {t("draft.page")}
           <select value={page.value} onChange={(event) => (page.value = Number(event.currentTarget.value))}>
             {Array.from({ length: read.pages }, (_, at) => (
               <option key={at} value={at + 1}>
-                {at + 1} of {read.pages}
+                {t("draft.page_of", { page: at + 1, all: read.pages })}
               </option>
             ))}
           </select>
@@ -74,7 +75,7 @@ export function DraftPlan({ file, shown, done }: Props) {
       )}
       {read.plan !== null && (
         <div class="row">
-          <span>The file has {contents(read.plan as Partial<Plan>)}.</span>
+          <span>{t("draft.contents", { contents: contents(read.plan as Partial<Plan>) })}</span>
           <SendPlan plan={read.plan} replaces={shown !== null} place={read} />
         </div>
       )}

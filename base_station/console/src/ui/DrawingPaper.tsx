@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { linesOf, pixelAt, type Line, type Paper, type Pixel, type Scale } from "../plan/drawing";
 import type { Plan } from "../wire";
+import { t } from "../language/translate";
 
 const STEP = 0.005; // of the paper's width, for an arrow key
 
@@ -48,7 +49,7 @@ export function DrawingPaper({ paper, url, points, lines, scale, shown, floor, z
         style={{ width: `${zoom * 100}%`, height: `${zoom * 100}%` }}
         role="application"
         tabIndex={0}
-        aria-label="Paper: arrow keys move the cross, Enter sets a point"
+        aria-label={t("plan.paper")}
         onClick={press}
         onKeyDown={key}
         onBlur={() => (cross.value = null)}

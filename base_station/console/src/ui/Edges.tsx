@@ -2,6 +2,7 @@ import type { ReadonlySignal } from "@preact/signals";
 import { find } from "../uiState";
 import type { Picture } from "../live/picture";
 import { compassWord, type EdgeMark } from "../plan/edges";
+import { t } from "../language/translate";
 
 interface Props {
   picture: Picture;
@@ -13,13 +14,13 @@ export function Edges({ picture, marks }: Props) {
   if (marks.value.length === 0) return null;
   const show = (unitId: string) => find(unitId, picture.unit(unitId)?.peek().position?.floor ?? null);
   return (
-    <ul class="edges" aria-label="In danger, outside the view">
+    <ul class="edges" aria-label={t("plan.outside_view")}>
       {marks.value.map(({ unitId, name, initials, at: [x, y], bearingRad }) => (
         <li key={unitId} style={{ left: `${x}px`, top: `${y}px` }}>
           <button
             type="button"
-            title={`Show ${name}`}
-            aria-label={`Show ${name}, outside the view to the ${compassWord(bearingRad)}`}
+            title={t("plan.show", { name })}
+            aria-label={t("plan.show_outside", { name, direction: compassWord(bearingRad) })}
             onClick={() => show(unitId)}
           >
             <span class="edge-arrow" style={{ rotate: `${bearingRad}rad` }} aria-hidden="true" />

@@ -3,6 +3,7 @@ import { attempt, live } from "../sessions";
 import * as api from "../api";
 import { dateAndTime } from "../format";
 import { saveAs } from "../saving";
+import { rich, t } from "../language/translate";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -26,22 +27,22 @@ export function EnrolmentsDialog() {
     );
   };
   return (
-    <Dialog title="Enrolments" wide>
+    <Dialog title={t("enrolment.title")} wide>
       {made.value === null ? (
         <>
           <EnrolForm enrolled={enrolled.value ?? []} enrol={(unitId) => enrol(unitId, false)} />
           <table class="stacked">
-            <Columns names={["Unit", "Enrolled until"]} spoken="Renew" />
+            <Columns names={[t("enrolment.unit"), t("enrolment.until")]} spoken={t("enrolment.renew")} />
             <tbody>
               {(enrolled.value ?? []).map(({ unit_id: unitId, valid_to_ms: validToMs }) => (
                 <tr key={unitId}>
                   <th scope="row">{unitId}</th>
-                  <td data-label="Enrolled until">{dateAndTime(validToMs)}</td>
+                  <td data-label={t("enrolment.until")}>{dateAndTime(validToMs)}</td>
                   <td>
                     <ConfirmButton
-                      label="Renew"
+                      label={t("enrolment.renew")}
                       about={unitId}
-                      question={`${unitId} gets a new certificate, and the old one works until it ends. A unit that is lost is revoked instead.`}
+                      question={t("enrolment.renew_question", { unit: unitId })}
                       onConfirm={() => enrol(unitId, true)}
                     />
                   </td>
@@ -50,7 +51,7 @@ export function EnrolmentsDialog() {
             </tbody>
           </table>
           {enrolled.value === null && <Waiting />}
-          {enrolled.value?.length === 0 && <p class="quiet">No unit is enrolled yet.</p>}
+          {enrolled.value?.length === 0 && <p class="quiet">{t("enrolment.none")}</p>}
           <UnitTokens />
         </>
       ) : (
@@ -72,7 +73,7 @@ function EnrolForm({
   return (
     <form class="row" onSubmit={(event) => enrol(fields(event)["unit_id"] ?? "")}>
       <label>
-        Unit id
+        {t("enrolment.unit_id")}
         <input name="unit_id" required maxLength={64} list="not-enrolled" autocomplete="off" />
       </label>
       <datalist id="not-enrolled">
@@ -80,7 +81,7 @@ function EnrolForm({
           <option key={unitId} value={unitId} />
         ))}
       </datalist>
-      <button class="primary">Enrol unit</button>
+      <button class="primary">{t("enrolment.enrol")}</button>
     </form>
   );
 }
@@ -90,33 +91,34 @@ function Shown({ enrolment, onDone }: { enrolment: api.ShownEnrolment; onDone: (
   const { unit_id: unitId, valid_to_ms: validToMs, text } = enrolment;
   const file = `${unitId}.enrolment.toml`;
   return (
-    <section class="enrolment" aria-label={`Enrolment of ${unitId}`}>
+    <section class="enrolment" aria-label={t("enrolment.of", { unit: unitId })}>
       <div>
         <p role="status">
-          Enrolment of <strong>{unitId}</strong>, valid until {dateAndTime(validToMs)}. It is shown this once, and
-          whoever has it is {unitId}: photograph it for that unit alone, and keep no copy.
+          {rich("enrolment.made", {
+            unit: <strong>{unitId}</strong>,
+            time: dateAndTime(validToMs),
+            name: unitId,
+          })}
         </p>
         <p>
           <button type="button" class="primary" onClick={() => saveAs(file, new Blob([text]))}>
-            Save as file
+            {t("enrolment.save")}
           </button>{" "}
-          Carry it to the unit and delete it here. There: <code>muster edge run --enrolment {file}</code>
+          {rich("enrolment.carry", { command: <code>muster edge run --enrolment {file}</code> })}
         </p>
-        <p>
-          With a photo of the code, on the unit: <code>muster edge enrol PHOTO</code>
-        </p>
+        <p>{rich("enrolment.photo", { command: <code>muster edge enrol PHOTO</code> })}</p>
         <details class="made">
-          <summary>As text, to be saved as a file on the unit</summary>
+          <summary>{t("enrolment.as_text")}</summary>
           <code>{text}</code>
         </details>
         <ConfirmButton
-          label="Done"
-          question="It cannot be shown again. Does the unit have it?"
-          yes="Yes, it has it"
+          label={t("enrolment.done")}
+          question={t("enrolment.done_question")}
+          yes={t("enrolment.done_yes")}
           onConfirm={onDone}
         />
       </div>
-      <QrCode rows={enrolment.qr_rows} label={`QR code of the enrolment of ${unitId}`} />
+      <QrCode rows={enrolment.qr_rows} label={t("enrolment.qr_code", { unit: unitId })} />
     </section>
   );
 }

@@ -3,6 +3,7 @@ import { useEffect } from "preact/hooks";
 import { attempt } from "../sessions";
 import { notice } from "../uiState";
 import * as api from "../api";
+import { t } from "../language/translate";
 import { useFirstField, useFocusBack } from "./Confirm";
 import { fields } from "./useLoaded";
 
@@ -46,8 +47,8 @@ export function EraseForm({ name, subjectId, warning, forget, done }: Props) {
   if (underWay.value !== null) return <ErasureProgress name={name} one={underWay.value} />;
   if (!asked.value) {
     return (
-      <button type="button" ref={button} aria-label={`Forget ${name}`} onClick={() => (asked.value = true)}>
-        Forget
+      <button type="button" ref={button} aria-label={t("erase.delete_of", { name })} onClick={() => (asked.value = true)}>
+        {t("erase.delete")}
       </button>
     );
   }
@@ -60,14 +61,14 @@ export function EraseForm({ name, subjectId, warning, forget, done }: Props) {
         void attempt(forget(typed)).then((begun) => (underWay.value = begun));
       }}
     >
-      <p>{warning} It cannot be undone; the audit log keeps that it was done.</p>
+      <p>{t("erase.warning", { warning })}</p>
       <label>
-        Write “{name}” to go on
+        {t("erase.type_name", { name })}
         <input name="typed" required autocomplete="off" />
       </label>
-      <button class="danger">Forget for good</button>
+      <button class="danger">{t("erase.delete_permanently")}</button>
       <button type="button" onClick={() => (asked.value = false)}>
-        No
+        {t("common.no")}
       </button>
     </form>
   );
@@ -76,7 +77,7 @@ export function EraseForm({ name, subjectId, warning, forget, done }: Props) {
 function ErasureProgress({ name, one }: { name: string; one: api.Forgetting }) {
   return (
     <label class="under-way">
-      Forgetting {name}
+      {t("erase.deleting", { name })}
       <progress value={one.share} max={1} />
       {one.problem !== "" && <small>{one.problem}</small>}
     </label>
@@ -88,7 +89,7 @@ function isOver(one: api.Forgetting): boolean {
 }
 
 function outcome(one: api.Forgetting): string {
-  if (one.state !== "done") return `Nothing was forgotten: ${one.problem}.`;
-  const done = `${one.records} records were taken out of the log.`;
-  return one.problem === "" ? done : `${done} ${one.problem}.`;
+  if (one.state !== "done") return t("erase.nothing_deleted", { problem: one.problem });
+  const deleted = t("erase.deleted", { count: one.records });
+  return one.problem === "" ? deleted : t("erase.deleted_but", { deleted, problem: one.problem });
 }

@@ -1,17 +1,18 @@
 import type { ReadonlySignal } from "@preact/signals";
 import type { Headcount as Counts } from "../live/headcount";
-import { PART_WORDS, PARTS } from "../live/headcount";
+import { PARTS } from "../live/headcount";
 import type { Sought } from "../live/finding";
+import { t } from "../language/translate";
 import { part } from "./listState";
 
 /** How many are on scene, and where; each press shows those alone, and the next one everybody again. */
 export function Headcount({ counts }: { counts: ReadonlySignal<Counts> }) {
   const { onScene, parts } = counts.value;
   return (
-    <div class="headcount" role="group" aria-label="Headcount">
-      <Count of="on_scene" word="On scene" count={onScene} />
+    <div class="headcount" role="group" aria-label={t("headcount.title")}>
+      <Count of="on_scene" word={t("headcount.on_scene")} count={onScene} />
       {PARTS.map((one) => (
-        <Count key={one} of={one} word={PART_WORDS[one]} count={parts[one]} />
+        <Count key={one} of={one} word={t(`headcount.${one}`)} count={parts[one]} />
       ))}
     </div>
   );

@@ -9,6 +9,7 @@ import { assess, openDispatch } from "../uiState";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes, zone } from "../format";
 import { saveAs } from "../saving";
+import { rich, t } from "../language/translate";
 import { Columns } from "./Columns";
 import { AssignForm } from "./AssignForm";
 import { ConfirmButton } from "./ConfirmButton";
@@ -24,7 +25,15 @@ import { fields, useLoaded } from "./useLoaded";
 import { usePages } from "./usePages";
 import { Waiting } from "./Waiting";
 
-const COLUMNS = ["Incident", "Opened", "Lasted", "Replay", "Tracks", "Report", "Positions"];
+const COLUMNS = [
+  "incident.incident",
+  "incident.opened",
+  "incident.duration",
+  "incident.replay",
+  "incident.tracks",
+  "incident.report",
+  "incident.positions",
+] as const;
 
 export function IncidentsDialog() {
   const { entries, loaded, older, again } = usePages(api.incidents, (one) => one.opened_ms);
@@ -32,14 +41,13 @@ export function IncidentsDialog() {
   const open = live.value?.picture.incident.value ?? null;
   const forgets = user.value?.role === "administrator" && !liveIsPast.value;
   const running = open !== null && open.closed_ms === null ? open : null;
+  const columns = [...COLUMNS.map((key) => t(key)), ...(forgets ? [t("incident.personal_data")] : [])];
   return (
-    <Dialog title="Incidents" wide>
+    <Dialog title={t("incident.title")} wide>
       {mayAct.value && running === null && <OpenForm done={again} />}
       {mayAct.value && running !== null && (
         <p class="row said">
-          <span>
-            <strong>{running.name}</strong> is open.
-          </span>
+          <span>{rich("incident.is_open", { incident: <strong>{running.name}</strong> })}</span>
           <CloseButton incident={running} done={again} />
         </p>
       )}
@@ -49,51 +57,48 @@ export function IncidentsDialog() {
       )}
       {mayAct.value && <Dispatches />}
       {entries.value.length > 0 && (
-        <p class="quiet">
-          Times are of this browser: {zone(Date.now())} now. Saved files, the log and the terminal have
-          UTC.
-        </p>
+        <p class="quiet">{t("incident.times_zone", { zone: zone(Date.now()) })}</p>
       )}
       <table class="stacked">
-        <caption>Incidents so far</caption>
-        <Columns names={forgets ? [...COLUMNS, "Personal data"] : COLUMNS} />
+        <caption>{t("incident.past")}</caption>
+        <Columns names={columns} />
         <tbody>
           {entries.value.map((incident) => (
             <tr key={incident.incident_id}>
               <th scope="row">
                 {incident.name}
                 {incident.dispatch_number !== "" && (
-                  <span class="quiet"> Dispatch {incident.dispatch_number}</span>
+                  <span class="quiet"> {t("dispatch.title", { number: incident.dispatch_number })}</span>
                 )}
               </th>
-              <td data-label="Opened">{dateAndTime(incident.opened_ms)}</td>
-              <td data-label="Lasted">
+              <td data-label={t("incident.opened")}>{dateAndTime(incident.opened_ms)}</td>
+              <td data-label={t("incident.duration")}>
                 {incident.closed_ms === null
-                  ? "open"
+                  ? t("incident.still_open")
                   : minutes(incident.closed_ms - incident.opened_ms)}
               </td>
               <td>
                 <button
                   type="button"
-                  aria-label={`Replay ${incident.name}`}
+                  aria-label={t("incident.replay_of", { incident: incident.name })}
                   onClick={() => void watchReplay(incident)}
                 >
-                  Replay
+                  {t("incident.replay")}
                 </button>
               </td>
               <td>
                 <Downloads incident={incident} formats={formats.value ?? []} />
               </td>
-              <td data-label="Report">
+              <td data-label={t("incident.report")}>
                 <Report incident={incident} />
               </td>
               <td>
                 <button
                   type="button"
-                  aria-label={`How good were the positions? ${incident.name}`}
+                  aria-label={t("assessment.title", { incident: incident.name })}
                   onClick={() => assess(incident)}
                 >
-                  How good?
+                  {t("incident.accuracy")}
                 </button>
               </td>
               {forgets && (
@@ -101,7 +106,7 @@ export function IncidentsDialog() {
                   {incident.closed_ms !== null && (
                     <EraseForm
                       name={incident.name}
-                      warning="Who was there and where is deleted."
+                      warning={t("incident.erase_warning")}
                       subjectId={incident.incident_id}
                       forget={(name) => api.forgetIncident(incident.incident_id, name)}
                       done={again}
@@ -115,11 +120,11 @@ export function IncidentsDialog() {
       </table>
       {!loaded.value && <Waiting />}
       {loaded.value && entries.value.length === 0 && (
-        <p class="quiet">None yet. What a unit says is kept all the same.</p>
+        <p class="quiet">{t("incident.none")}</p>
       )}
       {older && (
         <button type="button" onClick={older}>
-          Older incidents
+          {t("incident.older")}
         </button>
       )}
       <OpenReplays incidents={entries.value} />
@@ -132,22 +137,22 @@ function Dispatches() {
   const dispatches = live.value?.picture.dispatches.value ?? [];
   if (dispatches.length === 0) return null;
   return (
-    <section aria-label="Dispatches">
-      <h3>From dispatch</h3>
+    <section aria-label={t("incident.dispatches")}>
+      <h3>{t("incident.from_dispatch")}</h3>
       <ul class="dispatches">
         {dispatches.toReversed().map((one) => (
           <li class="row" key={one.number}>
             <span>
               <strong>{one.number}</strong> {summary(one)}
-              {one.has_ended && <span class="quiet"> (ended)</span>}
-              {one.is_dismissed && <span class="quiet"> (dismissed)</span>}
+              {one.has_ended && <span class="quiet"> {t("incident.ended")}</span>}
+              {one.is_dismissed && <span class="quiet"> {t("incident.dismissed")}</span>}
             </span>
             <button
               type="button"
-              aria-label={`Look at dispatch ${one.number}`}
+              aria-label={t("incident.look_at", { number: one.number })}
               onClick={() => openDispatch(one.number)}
             >
-              Look…
+              {t("incident.look")}
             </button>
           </li>
         ))}
@@ -164,11 +169,12 @@ function CloseButton({ incident, done }: { incident: IncidentView; done: () => v
   const members = picture.allUnits();
   const alarms = [...picture.alarms.value.values()].filter(({ unit_id }) => picture.isShown(unit_id));
   const { words, ...despite } = unfinished(members, alarms);
-  const over = words === "" ? "" : `${words} Close it all the same? Orders without an answer end. `;
   return (
     <ConfirmButton
-      label="Close this incident"
-      question={`${over}It cannot be opened again.`}
+      label={t("incident.close")}
+      question={
+        words === "" ? t("incident.close_question") : t("incident.close_over", { unfinished: words })
+      }
       onConfirm={() => void attempt(api.closeIncident(incident.incident_id, despite)).then(done)}
     />
   );
@@ -234,18 +240,18 @@ function OpenForm({ done, beside = false }: OpenProps) {
       }}
     >
       <label>
-        Name of the new incident
+        {t("dispatch.incident_name")}
         <input name="name" required maxLength={80} autofocus />
       </label>
       {usual.value && <TimesFields times={usual.value} />}
-      <button class="primary">{beside ? "Open beside" : "Open incident"}</button>
+      <button class="primary">{t(beside ? "incident.open_beside" : "dispatch.open_incident")}</button>
     </form>
   );
 }
 
 /** Other times while the incident runs. */
 function TimesForm({ incident }: { incident: IncidentView }) {
-  const done = useDone("The times are changed.");
+  const done = useDone(t("incident.times_changed"));
   return (
     <form
       class="row"
@@ -256,7 +262,7 @@ function TimesForm({ incident }: { incident: IncidentView }) {
       }}
     >
       <TimesFields times={incident} />
-      <button>Change times</button>
+      <button>{t("incident.change_times")}</button>
       {done.words}
     </form>
   );
@@ -277,7 +283,7 @@ const WHOLE = "mcap";
 /** An incident for other programs: its tracks, or all of it. */
 function Downloads({ incident, formats }: DownloadsProps) {
   const writing = useSignal(false);
-  const files = KINDS.flatMap(([kind]) => formats.map((format) => ({ kind, format })));
+  const files = KINDS.flatMap((kind) => formats.map((format) => ({ kind, format })));
   const write = async (content: Promise<Blob>, ending: string) => {
     writing.value = true;
     await attempt(save(content, `${incident.incident_id}${ending}`));
@@ -293,13 +299,13 @@ function Downloads({ incident, formats }: DownloadsProps) {
   });
   return (
     <select
-      aria-label={`Save ${incident.name} as a file`}
+      aria-label={t("incident.save_of", { incident: incident.name })}
       disabled={writing.value}
       {...chosen}
     >
-      <option value="">{writing.value ? "Is written …" : "Save as …"}</option>
-      {KINDS.map(([kind, word]) => (
-        <optgroup key={kind} label={word}>
+      <option value="">{t(writing.value ? "incident.writing" : "incident.save_as")}</option>
+      {KINDS.map((kind) => (
+        <optgroup key={kind} label={t(`trail.${kind}`)}>
           {formats.map((format) => (
             <option key={format.name} value={keyOf(kind, format)}>
               {format.name}
@@ -307,7 +313,7 @@ function Downloads({ incident, formats }: DownloadsProps) {
           ))}
         </optgroup>
       ))}
-      <optgroup label="All of it, to replay elsewhere">
+      <optgroup label={t("incident.whole")}>
         <option value={WHOLE}>{WHOLE}</option>
       </optgroup>
     </select>
@@ -330,7 +336,7 @@ function Report({ incident }: { incident: api.Incident }) {
           key={suffix}
           type="button"
           disabled={writing.value}
-          aria-label={`Report on ${incident.name} as ${suffix.toUpperCase()}`}
+          aria-label={t("incident.report_of", { incident: incident.name, format: suffix.toUpperCase() })}
           onClick={() => void write(suffix)}
         >
           {suffix.toUpperCase()}

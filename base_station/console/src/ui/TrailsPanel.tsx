@@ -1,5 +1,6 @@
 import { KINDS, loadingKinds, shownKinds, toggle } from "../plan/pastTrails";
 import { selectedUnit } from "../uiState";
+import { t } from "../language/translate";
 import { PanelActions } from "./PanelActions";
 
 /** Which trails are drawn, with the lines they are drawn in. */
@@ -8,7 +9,7 @@ export function TrailsPanel() {
   return (
     <section class="tool-panel trails" aria-label="Trails">
       <h3>Trails</h3>
-      {KINDS.map(([kind, word]) => (
+      {KINDS.map((kind) => (
         <label key={kind}>
           <input
             type="checkbox"
@@ -16,7 +17,7 @@ export function TrailsPanel() {
             onChange={() => toggle(kind)}
           />
           <span class={`trail-line ${kind} ${ofChosen}`} aria-hidden="true" />
-          {word}
+          {t(`trail.${kind}`)}
           {loadingKinds.value.has(kind) && <small> is worked out …</small>}
         </label>
       ))}

@@ -64,7 +64,7 @@ export const member: Part<"member"> = {
   recognised: "erkannt",
   was_inside: "War im Gebäude",
   inside_for: "Im Gebäude seit",
-  duplicate: "zwei Geräte senden unter diesem Namen; nur eines wird gezeigt",
+  duplicate: "zwei Geräte melden sich unter diesem Namen, eines ist verdeckt",
   gps_none: "noch keine Position",
   gps_used: "verwendet",
   gps_unused: "nicht verwendet: {reason}",

@@ -63,7 +63,7 @@ export const member = {
   recognised: "recognised",
   was_inside: "Was inside",
   inside_for: "Inside for",
-  duplicate: "two machines speak under this name; only one is shown",
+  duplicate: "two devices report under this name, one is hidden",
   gps_none: "no fix yet",
   gps_used: "used",
   gps_unused: "not used: {reason}",

@@ -1,0 +1,16 @@
+import type { Part } from "../catalogue";
+
+export const common: Part<"common"> = {
+  close: "Schließen",
+  save: "Speichern",
+  remove: "Entfernen",
+  no: "Nein",
+  ok: "OK",
+  undo: "Rückgängig",
+  yes: "Ja: {action}",
+  about: "{action}: {what}",
+  show_on_plan: "Auf dem Plan zeigen",
+  hint: "{what}. {action}",
+  name: "Name",
+  cannot_show: "{what} kann nicht angezeigt werden: {problem}",
+};

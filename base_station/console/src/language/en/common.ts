@@ -1,0 +1,15 @@
+/** Words that several parts of the screen have. */
+export const common = {
+  close: "Close",
+  save: "Save",
+  remove: "Remove",
+  no: "No",
+  ok: "OK",
+  undo: "Undo",
+  yes: "Yes, {action}",
+  about: "{action}: {what}",
+  show_on_plan: "Show on the plan",
+  hint: "{what}. {action}",
+  name: "Name",
+  cannot_show: "{what} cannot be shown: {problem}",
+} as const;

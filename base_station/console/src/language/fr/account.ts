@@ -1,0 +1,69 @@
+import type { Part } from "../catalogue";
+
+export const role: Part<"role"> = {
+  viewer: "observateur",
+  commander: "commandant",
+  administrator: "administrateur",
+};
+
+export const account: Part<"account"> = {
+  title: "Connecté\u00a0: {name} ({role})",
+  users: "Utilisateurs",
+  log_out: "Se déconnecter",
+  password: "Mot de passe",
+  password_changed: "Le mot de passe est changé. Connectez-vous avec le nouveau.",
+  old_password: "Ancien mot de passe",
+  new_password: "Nouveau mot de passe, au moins 10 caractères",
+  change_password: "Changer le mot de passe",
+};
+
+export const token: Part<"token"> = {
+  title: "Jetons d’API",
+  name: "Pour quel usage",
+  role: "Rôle",
+  days: "Jours de validité (vide\u00a0: toujours)",
+  scopes: "Parties de la station (aucune choisie\u00a0: toutes)",
+  make: "Créer un jeton",
+  made: "Copiez-le maintenant, il ne sera plus montré\u00a0: {token}",
+  token: "Jeton",
+  may: "Droits",
+  valid_until: "Valable jusqu’au",
+  always: "toujours",
+  all_parts: "toutes les parties",
+  remove_question: "Les programmes qui l’utilisent n’ont plus accès.",
+};
+
+export const audit: Part<"audit"> = {
+  title: "Journal d’audit",
+  when: "Quand",
+  who: "Qui",
+  action: "Action",
+  what: "Détail",
+  older: "Entrées plus anciennes",
+};
+
+export const scope: Part<"scope"> = {
+  accountability: "contrôle des effectifs",
+  alarms: "alarmes",
+  assignments: "affectations",
+  audit: "audit",
+  commands: "ordres",
+  dispatch: "départs",
+  enrolments: "enrôlements",
+  exports: "exports",
+  forgetting: "effacement",
+  health: "état de la station",
+  incidents: "interventions",
+  live: "direct",
+  people: "personnes",
+  pins: "repères",
+  recordings: "enregistrements",
+  replays: "relectures",
+  samples: "mesures",
+  site: "site",
+  standby: "station de secours",
+  tokens: "jetons",
+  tracks: "traces",
+  units: "appareils",
+  users: "utilisateurs",
+};

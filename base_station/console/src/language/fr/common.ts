@@ -1,0 +1,16 @@
+import type { Part } from "../catalogue";
+
+export const common: Part<"common"> = {
+  close: "Fermer",
+  save: "Enregistrer",
+  remove: "Retirer",
+  no: "Non",
+  ok: "OK",
+  undo: "Annuler",
+  yes: "Oui, {action}",
+  about: "{action}\u00a0: {what}",
+  show_on_plan: "Montrer sur le plan",
+  hint: "{what}. {action}",
+  name: "Nom",
+  cannot_show: "{what}\u00a0: affichage impossible ({problem})",
+};

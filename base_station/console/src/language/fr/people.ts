@@ -1,0 +1,63 @@
+import type { Part } from "../catalogue";
+
+export const board: Part<"board"> = {
+  title: "Tableau",
+  print: "Imprimer",
+  no_incident: "Aucune intervention en cours",
+  summary: "{incident}, {count, number} sur place, {time}",
+  not_current: "Pas à jour\u00a0: la station n’est pas connectée.",
+  crew: "Équipe",
+  unit: "Appareil",
+  state: "État",
+  floor: "Étage",
+  inside_for: "À l’intérieur depuis",
+  floor_unknown: "inconnu",
+};
+
+export const radio: Part<"radio"> = {
+  in_alarm: "En alarme\u00a0: {members}. {question}",
+  yes: "Oui, répondu par radio",
+};
+
+export const headcount: Part<"headcount"> = {
+  title: "Effectif",
+  on_scene: "Sur place",
+  inside: "À l’intérieur",
+  outside: "À l’extérieur",
+  rehab: "Repos",
+  not_located: "Non localisé",
+  never_heard: "Jamais reçu",
+};
+
+export const card: Part<"card"> = {
+  to_plan: "Aller à cette personne sur le plan",
+  timeline: "Chronologie",
+  reasons: "{count, plural, one {Motif de l’alarme} other {Motifs des alarmes}}",
+  unassigned: "non affecté",
+  unknown_unit: "appareil inconnu",
+  unreliable: "Position non fiable",
+  uncertain: "Position incertaine",
+  reason: "{what}\u00a0: {reason}",
+  cannot_be_notified: "ne peut pas être prévenu",
+  cannot_be_notified_hint: "L’appareil n’a pas de sortie\u00a0: utiliser la radio",
+  preflight: "Appareil {state}",
+  duplicate: "Identifiant d’appareil en double\u00a0: {reason}",
+  unregistered: "Appareil non enregistré\u00a0: journalisé, non utilisé.",
+  register: "Enregistrer",
+  actions: "Pour {name}",
+  par_by_radio: "PAR par radio",
+  has_answered: "{name} a répondu par radio\u00a0?",
+  return_to_duty: "Retour en service",
+  to_rehab: "Au repos",
+  correct_position: "Corriger la position …",
+  same_place: "Au même endroit que …",
+  locate: "Signal de localisation",
+  locate_asks: "Signal de localisation …",
+  message: "Message",
+  members_down: "Personnes en détresse",
+  words: "{name}\u00a0: {words}",
+  not_located: "non localisé",
+  no_position: "pas encore de position",
+  old_place: "{place}, ancienne",
+  assign_incident: "Affecter à cette intervention",
+};

@@ -1,0 +1,55 @@
+import type { Part } from "../catalogue";
+
+export const crew: Part<"crew"> = {
+  title: "Équipes",
+  hint:
+    "Glissez une personne vers une autre équipe, ou choisissez des personnes puis {move}. Déposez une image sur une personne pour sa photo.",
+  move_here: "Déplacer ici",
+  new: "Nouvelle équipe",
+  add: "Ajouter l’équipe",
+  none: "Sans équipe",
+  count: "{crew}\u00a0: {count, number}",
+};
+
+export const enrolment: Part<"enrolment"> = {
+  title: "Enrôlements",
+  unit: "Appareil",
+  until: "Enrôlé jusqu’au",
+  renew: "Renouveler",
+  renew_question:
+    "{unit} reçoit un nouveau certificat, et l’ancien reste valable jusqu’à sa fin. Un appareil perdu est révoqué à la place.",
+  none: "Aucun appareil n’est encore enrôlé.",
+  unit_id: "Identifiant de l’appareil",
+  enrol: "Enrôler l’appareil",
+  of: "Enrôlement de {unit}",
+  made:
+    "Enrôlement de {unit}, valable jusqu’au {time}. Il n’est montré que cette fois, et qui le possède est {name}\u00a0: photographiez-le pour cet appareil seulement, et n’en gardez pas de copie.",
+  save: "Enregistrer en fichier",
+  carry: "Portez-le sur l’appareil et effacez-le ici. Là-bas\u00a0: {command}",
+  photo: "Avec une photo du code, sur l’appareil\u00a0: {command}",
+  as_text: "En texte, à enregistrer en fichier sur l’appareil",
+  done: "Terminé",
+  done_question: "Il ne pourra plus être montré. L’appareil l’a-t-il\u00a0?",
+  done_yes: "Oui, il l’a",
+  qr_code: "Code QR de l’enrôlement de {unit}",
+};
+
+export const draft: Part<"draft"> = {
+  unit: "Unité de longueur",
+  unit_of_file: "comme dans le fichier",
+  page: "Page",
+  page_of: "{page, number} sur {all, number}",
+  contents: "Ce fichier\u00a0: {contents}.",
+};
+
+export const erase: Part<"erase"> = {
+  delete: "Effacer les données …",
+  delete_of: "Effacer les données … {name}",
+  warning: "{warning} C’est définitif\u00a0; le journal d’audit garde la trace de l’effacement.",
+  type_name: "Saisir «\u00a0{name}\u00a0» pour confirmer",
+  delete_permanently: "Effacer définitivement",
+  deleting: "Effacement de {name}",
+  nothing_deleted: "Rien n’a été effacé\u00a0: {problem}.",
+  deleted: "{count, plural, one {# enregistrement retiré} other {# enregistrements retirés}} du journal.",
+  deleted_but: "{deleted} {problem}.",
+};
