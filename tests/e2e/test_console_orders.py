@@ -62,7 +62,7 @@ def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card
     card.get_by_role("button", name=NAME).click()
     actions = card.get_by_role("group", name=f"For {NAME}")
     actions.get_by_role("button", name="To rehab").click()
-    expect(card).to_contain_text("Resting for")
+    expect(card).to_contain_text("In rehab")
     actions.get_by_role("button", name="Return to duty").click()
     expect(card).to_contain_text("Inside for")
     actions.get_by_role("button", name="Sound locator").click()

@@ -16,6 +16,6 @@ def test_a_notice_of_an_order_that_was_carried_out_says_so(stage: Stage) -> None
     page.route("**/api/v1/idempotency-keys/*", lambda route: route.fulfill(json=done))
     press(page.locator(".alarm").first.get_by_role("button", name="Acknowledge"))
     notice = page.locator(".notice")
-    expect(notice).to_contain_text("cannot be reached: look whether it was done")
+    expect(notice).to_contain_text("No reply from the base station")
     expect(notice).to_contain_text("What had no answer was carried out at")
-    expect(notice).not_to_contain_text("cannot be reached")
+    expect(notice).not_to_contain_text("No reply")

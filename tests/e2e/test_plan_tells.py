@@ -30,8 +30,8 @@ def test_a_name_at_the_edge_of_the_plan_is_whole(
 def test_a_floor_says_how_many_of_those_on_it_are_in_danger(stage: Stage) -> None:
     page, _ = stage.open(scenes.crowd())
     floors = page.get_by_role("group", name="Floor shown").get_by_role("button")
-    expect(floors.nth(0)).to_have_accessible_name("Floor 1 , 1 in danger, of 20 people")
-    expect(floors.nth(1)).to_have_accessible_name("Floor G , 20 people")
+    expect(floors.nth(0)).to_have_accessible_name("Floor 1, 1 in danger, of 20 people")
+    expect(floors.nth(1)).to_have_accessible_name("Floor G, 20 people")
 
 
 def test_what_is_looked_at_by_keys_stays_until_somebody_asks_for_all(stage: Stage) -> None:

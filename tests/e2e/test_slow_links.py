@@ -50,7 +50,7 @@ def test_a_list_that_the_station_could_not_give_is_there_once_it_can(
     page, station = stage.open(scenes.quiet())
     page.route(f"**/api/v1/{path}", lambda route: route.abort())
     dialog = menu(page, name)
-    notice = dialog.get_by_role("alert").filter(has_text="The station cannot be reached.")
+    notice = dialog.get_by_role("alert").filter(has_text="The base station cannot be reached.")
     expect(notice).to_be_visible()
     page.unroute(f"**/api/v1/{path}")
     station.restart()
@@ -61,7 +61,7 @@ def test_that_a_list_could_not_be_had_is_not_said_of_a_station_that_is_back(stag
     page, station = stage.open(scenes.quiet())
     page.route("**/api/v1/people", lambda route: route.abort())
     dialog = menu(page, "People")
-    notice = dialog.get_by_role("alert").filter(has_text="The station cannot be reached")
+    notice = dialog.get_by_role("alert").filter(has_text="The base station cannot be reached")
     expect(notice).to_be_visible()
     page.unroute("**/api/v1/people")
     station.restart()
@@ -75,7 +75,7 @@ def test_that_nobody_knows_whether_something_was_done_stays_said(stage: Stage) -
     page.get_by_role("group", name="Commands").get_by_role("button", name="Evacuate").click()
     dialog = page.get_by_role("dialog")
     dialog.get_by_role("button", name="Evacuate now").click()
-    notice = dialog.get_by_role("alert").filter(has_text="look whether it was done")
+    notice = dialog.get_by_role("alert").filter(has_text="Check whether the order went out")
     expect(notice).to_be_visible()
     station.restart()
     expect(page.get_by_test_id("link")).to_have_text("Connected")
@@ -90,7 +90,7 @@ def test_who_cannot_log_in_for_want_of_an_answer_need_not_look_what_was_done(sta
     page.get_by_label("User").fill("chief")
     page.get_by_label("Password").fill("what it is")
     page.get_by_role("button", name="Log in").click()
-    expect(page.get_by_role("alert")).to_have_text("The station cannot be reached.")
+    expect(page.get_by_role("alert")).to_have_text("The base station cannot be reached.")
 
 
 def test_a_press_over_a_slow_link_is_seen_to_be_under_way(stage: Stage) -> None:

@@ -120,8 +120,8 @@ def test_of_a_damaged_plan_the_map_says_what_is_left_out(stage: Stage) -> None:
 def test_while_the_link_is_lost_nothing_says_that_the_station_is_well(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet(3))
     header = page.locator(".header")
-    expect(header).to_contain_text("Station is well")
+    expect(header).to_contain_text("Base station OK")
     station.fall_silent()
     expect(header).to_contain_text("Connection lost")
-    expect(header).to_contain_text("Station state unknown")
-    expect(header).not_to_contain_text("Station is well")
+    expect(header).to_contain_text("Base station state unknown")
+    expect(header).not_to_contain_text("Base station OK")

@@ -1,5 +1,6 @@
 /** How the station is asked over HTTP, and how it refuses. */
 import { signal } from "@preact/signals";
+import { t } from "./language/translate";
 
 /** The station refused or could not be reached; the text is for a person. */
 export class ApiError extends Error {
@@ -12,11 +13,6 @@ export class ApiError extends Error {
     super(message);
   }
 }
-
-/** Nothing was to be done: that is over once the station is heard again. */
-export const UNREACHABLE = "The station cannot be reached.";
-/** The answer may be what was lost, and not what was asked for. */
-const OUTCOME_UNKNOWN = "The station cannot be reached: look whether it was done before you do it again.";
 
 export const BASE = "/api/v1";
 
@@ -69,7 +65,7 @@ function statusOf(error: unknown): number {
 }
 
 function messageOf(error: unknown): string {
-  return error instanceof ApiError ? error.message : OUTCOME_UNKNOWN;
+  return error instanceof ApiError ? error.message : t("connection.outcome_unknown");
 }
 
 async function withRetry<T>(path: string, init: RequestInit): Promise<T> {
@@ -114,7 +110,9 @@ export async function file(path: string): Promise<Blob> {
 
 async function answer(path: string, init: RequestInit): Promise<Response> {
   const response = await fetch(BASE + path, { ...init, credentials: "same-origin" }).catch(() => {
-    throw new ApiError((init.method ?? "GET") === "GET" ? UNREACHABLE : OUTCOME_UNKNOWN, 0);
+    // Of an action the answer may be what was lost, and not what was asked for.
+    const isRead = (init.method ?? "GET") === "GET";
+    throw new ApiError(t(isRead ? "connection.unreachable" : "connection.outcome_unknown"), 0);
   });
   if (!response.ok) throw new ApiError(await reason(response), response.status);
   return response;
@@ -124,7 +122,7 @@ async function answer(path: string, init: RequestInit): Promise<Response> {
 async function reason(response: Response): Promise<string> {
   const body: unknown = await response.json().catch(() => null);
   const detail = (body as { detail?: unknown } | null)?.detail;
-  return typeof detail === "string" ? detail : `The station answered ${response.status}.`;
+  return typeof detail === "string" ? detail : t("connection.answered", { status: response.status });
 }
 
 export const id = encodeURIComponent;

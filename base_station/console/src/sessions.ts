@@ -1,7 +1,8 @@
 /** Who is logged in, what is live, and which replay is watched. */
 import { batch, computed, effect, signal } from "@preact/signals";
+import { t } from "./language/translate";
 import * as api from "./api";
-import { ApiError, isUnanswered, UNREACHABLE } from "./http";
+import { ApiError, isUnanswered } from "./http";
 import { arrivalSoundNotice, ticketOf, withoutTicket } from "./live/loginTransfer";
 import { NOT_LOGGED_IN } from "./live/connection";
 import { watchOver } from "./live/failover";
@@ -75,7 +76,7 @@ const AWAY_AFTER_MS = 8_000;
 /** A station that hangs is as good as away. */
 function inTime<T>(work: Promise<T>): Promise<T> {
   const late = new Promise<never>((_, reject) =>
-    setTimeout(() => reject(new ApiError(UNREACHABLE, 0)), AWAY_AFTER_MS),
+    setTimeout(() => reject(new ApiError(t("connection.unreachable"), 0)), AWAY_AFTER_MS),
   );
   return Promise.race([work, late]);
 }
@@ -99,7 +100,7 @@ let stopWatching: () => void = () => undefined;
 /** The station lets nobody look on any more; without a word it would look like a fault. */
 function loginEnded(): void {
   wait();
-  notice.value = "This login has ended. Log in again: what you were doing is still there.";
+  notice.value = t("login.ended");
 }
 
 export async function leave(): Promise<void> {
@@ -214,7 +215,7 @@ function forget(): void {
 function replayEnded(): void {
   replay.peek()?.session.close();
   replay.value = adopted;
-  notice.value = "The station has ended this replay.";
+  notice.value = t("replay.ended");
 }
 
 /** `muster base replay` shows the past where other stations show what is live. */
@@ -229,7 +230,7 @@ effect(() => {
 
 effect(() => {
   const isHeard = live.value?.picture.link.value.kind === "up";
-  if (isHeard && notice.peek() === UNREACHABLE) notice.value = null;
+  if (isHeard && notice.peek() === t("connection.unreachable")) notice.value = null;
 });
 
 async function adopt(session: Session): Promise<void> {

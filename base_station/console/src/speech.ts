@@ -1,8 +1,8 @@
 /** Alarms are spoken after their tone, where the browser can and somebody has chosen it. */
-import { keptSwitch } from "./kept";
-import type { Tone } from "./live/alarmTones";
-import { locale } from "./language/measures";
 import { t } from "./language/translate";
+import { keptSwitch } from "./kept";
+import { locale } from "./language/measures";
+import type { Tone } from "./live/alarmTones";
 import { alarmText } from "./live/alarmText";
 import type { AlarmView } from "./wire";
 

@@ -1,5 +1,6 @@
 /** The page's title says what is wrong also where another page lies above this one. */
 import { effect } from "@preact/signals";
+import { t } from "./language/translate";
 import type { Picture } from "./live/picture";
 
 /** Until the returned function is called. */
@@ -16,7 +17,7 @@ export function entitle(picture: Picture): () => void {
 }
 
 export function titleOf(linkLost: boolean, isPast: boolean, alarms: number): string {
-  if (linkLost) return "NO CONNECTION – Muster";
-  if (isPast) return "Replay – Muster";
-  return alarms === 0 ? "Muster" : `(${alarms}!) Muster`;
+  if (linkLost) return t("connection.title_lost");
+  if (isPast) return t("connection.title_replay");
+  return alarms === 0 ? "Muster" : t("connection.title_alarms", { count: alarms });
 }

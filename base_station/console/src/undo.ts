@@ -1,5 +1,6 @@
 /** What was just entered by radio, and can be undone with one press for a while. */
 import { signal } from "@preact/signals";
+import { t } from "./language/translate";
 import * as api from "./api";
 import { newKey } from "./http";
 import type { Target } from "./live/commands";
@@ -22,7 +23,7 @@ export async function confirmPar(target: Target, whom: string): Promise<void> {
   const checkInId = newKey();
   const incidentId = "unit_id" in target ? undefined : namedIncident();
   await enter(api.checkIn(target, checkInId, incidentId), {
-    words: `PAR of ${whom}: confirmed by radio`,
+    words: t("par.undo_par", { whom }),
     undo: () => api.undoCheckIn(checkInId),
   });
 }
@@ -30,7 +31,7 @@ export async function confirmPar(target: Target, whom: string): Promise<void> {
 /** Have a command answered by radio. */
 export async function confirmAnswer(commandId: string, unitId: string, whom: string): Promise<void> {
   await enter(api.confirmCommand(commandId, unitId), {
-    words: `${whom}: answered by radio`,
+    words: t("par.undo_answer", { whom }),
     undo: () => api.undoConfirmCommand(commandId, unitId),
   });
 }

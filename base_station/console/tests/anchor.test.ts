@@ -47,7 +47,7 @@ describe("another place for a plan that has one", () => {
     const said = changeOf(shown, { ...shown, lat_deg: 57.7 + 30 / LAT_M, lon_deg: 11.97 - 40 / LON_M });
     expect(said).toContain("57.70000°, 11.97000°, its north towards 0.0°");
     expect(said).toContain("whoever satellites have placed moves by 50.0\u00a0m.");
-    expect(changeOf(shown, { ...shown, lat_deg: 50 })).toMatch(/moves by 85\d km\./);
+    expect(changeOf(shown, { ...shown, lat_deg: 50 })).toMatch(/moves by 85\d\skm\./);
   });
 
   it("says by how much people are turned, the short way about", () => {

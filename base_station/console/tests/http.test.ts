@@ -45,13 +45,13 @@ describe("what the station is to do", () => {
 
   it("is asked for once more where the station cannot be reached, and then given up", async () => {
     sent.mockImplementation(() => Promise.reject(new TypeError("failed")));
-    await expect(act("POST", "/commands", {})).rejects.toThrow("cannot be reached");
+    await expect(act("POST", "/commands", {})).rejects.toThrow("No reply from the base station");
     expect(sent.mock.calls.length).toBe(2);
   });
 
   it("is given up in the end", async () => {
     sent.mockImplementation(silent);
-    const done = expect(act("POST", "/commands", {})).rejects.toThrow("cannot be reached");
+    const done = expect(act("POST", "/commands", {})).rejects.toThrow("No reply from the base station");
     await vi.advanceTimersByTimeAsync(MAX_ACT_MS);
     await done;
     expect(sent.mock.calls.length).toBe(2);
@@ -87,6 +87,6 @@ it("counts what is told to the station for as long as no answer comes", async ()
 
 it("asks for anything else once, and without a key", async () => {
   sent.mockImplementation(() => Promise.reject(new TypeError("failed")));
-  await expect(call("POST", "/replays", {})).rejects.toThrow("cannot be reached");
+  await expect(call("POST", "/replays", {})).rejects.toThrow("No reply from the base station");
   expect(keys()).toEqual([null]);
 });

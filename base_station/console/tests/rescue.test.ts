@@ -12,7 +12,10 @@ const ROUTE: Route = {
   crosses_walls: false,
   text: "14 m to the stairs, up one floor, left, 9 m",
   next_text: "14 m to the stairs, up one floor",
-  legs: [],
+  legs: [
+    { turn: "ahead", bearing_rad: 0, distance_m: 14, floors: 1 },
+    { turn: "left", bearing_rad: -1.57, distance_m: 9, floors: 0 },
+  ],
   places: [
     { north_m: 0, east_m: 0, floor: 0 },
     { north_m: 14, east_m: 0, floor: 0 },
@@ -28,9 +31,15 @@ function member(unitId: string, crew: string) {
 
 describe("words of a way", () => {
   it("tells length and doubt, and a line as a line", () => {
-    expect(wayWords(ROUTE)).toBe("38 m ± 4 m");
-    expect(wayWords({ ...ROUTE, known: false })).toBe("38 m ± 4 m in a straight line");
-    expect(routeWords(ROUTE)).toBe(ROUTE.text);
+    expect(wayWords(ROUTE)).toBe("38\u00a0m ± 4\u00a0m");
+    expect(wayWords({ ...ROUTE, known: false })).toBe("38\u00a0m ± 4\u00a0m in a straight line");
+    expect(routeWords(ROUTE)).toBe("14\u00a0m to the stairs, up one floor, left, 9\u00a0m");
+    expect(routeWords({ ...ROUTE, known: false })).toBe(
+      "no known way; 17\u00a0m to the north-west, up one floor",
+    );
+    const unturned = { turn: null, bearing_rad: Math.PI / 2, distance_m: 3.2, floors: -2 };
+    expect(routeWords({ ...ROUTE, legs: [unturned] })).toBe("east, 3\u00a0m to the stairs, down 2 floors");
+    expect(routeWords({ ...ROUTE, legs: [] })).toBe("beside you");
     expect(routeWords({ ...ROUTE, crosses_walls: true })).toContain("through a wall of the plan");
   });
 });

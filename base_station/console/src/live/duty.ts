@@ -1,6 +1,7 @@
 /** PAR as the screen needs it: who is due when, crew by crew.  Pure. */
 import type { DutyView, IncidentView, UnitView } from "../wire";
 import { clockTime } from "../format";
+import { t } from "../language/translate";
 
 export type ParState = "green" | "unconfirmed" | "warning" | "overdue";
 
@@ -19,9 +20,11 @@ export function parOf(duty: DutyView, incident: IncidentView | null, nowMs: numb
 
 /** How and when the PAR was confirmed last, and who entered it. */
 export function confirmationWords({ confirmed, checked_in_ms, checked_in_by }: DutyView): string {
-  if (checked_in_ms === null || confirmed === "not_yet") return "not yet confirmed";
-  const how = confirmed === "self" ? "by own unit" : `by radio, entered by ${checked_in_by}`;
-  return `confirmed ${clockTime(checked_in_ms)} ${how}`;
+  if (checked_in_ms === null || confirmed === "not_yet") return t("par.not_yet_confirmed");
+  const time = clockTime(checked_in_ms);
+  return confirmed === "self"
+    ? t("par.confirmed_by_unit", { time })
+    : t("par.confirmed_by_radio", { time, who: checked_in_by });
 }
 
 export interface OnDuty {

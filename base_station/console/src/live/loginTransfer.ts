@@ -1,6 +1,7 @@
 /** Who comes from the console of the other station goes on there with the ticket that the address
  * carries.  It is another address, and browsers keep logins apart by address: without a ticket that is
  * still good they log in again, and are told why. */
+import { t } from "../language/translate";
 
 const FROM = "#from=";
 const TICKET = "&ticket=";
@@ -15,19 +16,19 @@ export function transferUrl(station: string, url: string, ticket = ""): string {
 /** What the login page says to who came that way; empty: nobody did. */
 export function arrivalNotice(hash: string): string {
   const from = originSentence(hash);
-  return from === "" ? "" : `${from} The same user and password hold here.`;
+  return from === "" ? "" : t("login.same_here", { origin: from });
 }
 
 /** To who went on by a ticket, where the browser plays nothing yet: nobody need have pressed anything. */
 export function arrivalSoundNotice(hash: string): string {
-  return `${originSentence(hash)} Press OK: no alarm is heard here before.`.trim();
+  return t("login.press_ok", { origin: originSentence(hash) }).trim();
 }
 
 function originSentence(hash: string): string {
   if (!hash.startsWith(FROM)) return "";
   const [station] = hash.slice(FROM.length).split(TICKET);
   const name = decoded(station).slice(0, MAX_NAME_LENGTH);
-  return name === "" ? "" : `You come from the console of the station “${name}”.`;
+  return name === "" ? "" : t("login.came_from", { station: name });
 }
 
 /** What lets go on who came that way; empty: nothing does. */

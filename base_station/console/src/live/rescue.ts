@@ -2,6 +2,9 @@
 import { signal } from "@preact/signals";
 import * as api from "../api";
 import type { UnitView } from "../wire";
+import { length } from "../language/measures";
+import { t } from "../language/translate";
+import { routeText } from "./routeText";
 import { displayName } from "./urgency";
 
 /** Routes to one member as last answered, and whose is drawn. */
@@ -76,14 +79,17 @@ export function drawnRoute({ routes, rescuerId }: Rescue): api.Route | null {
 
 /** "14 m to the stairs, up one floor, left, 9 m": or how far off a line, where no way is known. */
 export function routeWords(route: api.Route): string {
-  const warned = route.crosses_walls ? "; a trail on it leads through a wall of the plan" : "";
-  return route.text + warned;
+  const words = routeText(route);
+  return route.crosses_walls ? t("route.crosses_walls", { route: words }) : words;
 }
 
 /** "38 m ± 4 m"; of a straight line nobody knows how far it is to walk. */
 export function wayWords({ known, distance_m, uncertainty_m }: api.Route): string {
-  const figure = `${Math.round(distance_m)} m ± ${Math.max(1, Math.round(uncertainty_m))} m`;
-  return known ? figure : `${figure} in a straight line`;
+  const words = t("route.length", {
+    distance: length(distance_m, 0),
+    uncertainty: length(Math.max(1, uncertainty_m), 0),
+  });
+  return known ? words : t("route.straight_line", { length: words });
 }
 
 /** Members of the rapid intervention crew, but for who is down. */

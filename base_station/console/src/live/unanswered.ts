@@ -3,6 +3,7 @@
 import type { CarriedOut } from "../api";
 import { ApiError } from "../http";
 import { clockTime } from "../format";
+import { t } from "../language/translate";
 
 const ASK_EVERY_MS = 2_000;
 /** What waits in a station that was busy or hung is carried out soon after it is heard again. */
@@ -29,13 +30,13 @@ export async function followUp(key: string, around: Around): Promise<void> {
     heardSinceMs ??= around.nowMs();
     try {
       const { t_ms } = await around.ask(key);
-      around.say(`What had no answer was carried out at ${clockTime(t_ms)}.`);
+      around.say(t("connection.carried_out", { time: clockTime(t_ms) }));
       return;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.status === 401) return;
       if (error.status === 0 || around.nowMs() - heardSinceMs < PATIENCE_MS) continue;
-      around.say("What had no answer was not carried out. Give the order again if it is still wanted.");
+      around.say(t("connection.not_carried_out"));
       return;
     }
   }

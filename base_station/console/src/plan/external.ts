@@ -1,6 +1,8 @@
 /** Words for people and markers of other teams.  Pure. */
 import { duration } from "../format";
+import { listed } from "../language/measures";
 import type { ExternalMarkerView } from "../wire";
+import { t } from "../language/translate";
 
 /** From then on nobody knows whether it is still there. */
 export function isStale(one: ExternalMarkerView, nowMs: number): boolean {
@@ -9,7 +11,7 @@ export function isStale(one: ExternalMarkerView, nowMs: number): boolean {
 
 /** The name and the system that it is from; of an old one its age. */
 export function externalLabel(one: ExternalMarkerView, nowMs: number): string {
-  const name = one.kind === "emergency" ? `EMERGENCY ${one.name}` : one.name;
-  const age = isStale(one, nowMs) ? `, ${duration(Math.max(nowMs - one.t_ms, 0))} ago` : "";
-  return `${name} (${one.source}${age})`;
+  const name = one.kind === "emergency" ? t("mark.emergency", { name: one.name }) : one.name;
+  const age = isStale(one, nowMs) ? [t("measure.ago", { age: duration(Math.max(nowMs - one.t_ms, 0)) })] : [];
+  return t("mark.other_team", { name, source: listed([one.source, ...age]) });
 }

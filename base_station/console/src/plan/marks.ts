@@ -3,6 +3,7 @@ import { Fill, Stroke, Style, Text } from "ol/style";
 import type { State as RenderState } from "ol/render";
 import type { Urgency } from "../live/urgency";
 import { age, planLabel } from "../format";
+import { t } from "../language/translate";
 import { faint, type Colours } from "./colours";
 import type { Pixel } from "./names";
 
@@ -64,7 +65,7 @@ export function isHollow({ old, floorsUp }: Pick<Mark, "old" | "floorsUp">): boo
 }
 
 export function labelOf(mark: Mark): string {
-  const words = [planLabel(mark.name), mark.floor, mark.old ? `${age(mark.ageMs)} old` : ""];
+  const words = [planLabel(mark.name), mark.floor, mark.old ? t("measure.old", { age: age(mark.ageMs) }) : ""];
   return words.filter((word) => word !== "").join(", ");
 }
 

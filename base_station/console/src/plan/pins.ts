@@ -9,7 +9,9 @@ import type { State as RenderState } from "ol/render";
 import { measureTextWidth } from "ol/render/canvas";
 import type { FloorChoice } from "../uiState";
 import type { BeaconView, PinView } from "../wire";
-import { clockTime, planLabel } from "../format";
+import { planLabel } from "../format";
+import { clock } from "../language/measures";
+import { t } from "../language/translate";
 import { faint, type Colours } from "./colours";
 import { BESIDE, placeNames, type Named, type Pixel, type Screen, type Side } from "./names";
 import { siteCoordinate } from "./site";
@@ -192,8 +194,8 @@ export function isNamed({ state, t_ms }: PinView): boolean {
 
 /** Nobody is there now: it says that it is a pin. */
 export function pinWords(pin: PinView, name: string): string {
-  const when = pin.t_ms === 0 ? "start" : clockTime(pin.t_ms).slice(0, 5);
-  return `Pin: ${planLabel(name)}, ${when}`;
+  const when = pin.t_ms === 0 ? t("mark.start") : clock(pin.t_ms, false);
+  return t("mark.pin", { name: planLabel(name), when });
 }
 
 function textStyle(

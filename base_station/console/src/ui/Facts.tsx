@@ -1,10 +1,12 @@
 import type { ComponentChildren } from "preact";
+import { listed } from "../language/measures";
 import { hasAlarm } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { isOld, regionAt } from "../plan/ellipse";
 import { roomWord } from "../plan/rooms";
 import type { Link, PositionView, StatusView, UnitView } from "../wire";
 import * as format from "../format";
+import { t } from "../language/translate";
 import { Icon, type IconName } from "./Icon";
 
 interface Props {
@@ -46,9 +48,9 @@ export function BriefFacts({ unit, picture }: Props) {
       <span class="spoken">, {format.place(position)}</span>
       {ambient_degc !== null && ` · ${format.temperature(ambient_degc)}`}
       {format.isReadingOld(ambient_ms, now) && ambient_ms !== null && (
-        <small class="old-mark">{format.age(now - ambient_ms)} old</small>
+        <small class="old-mark">{t("measure.old", { age: format.age(now - ambient_ms) })}</small>
       )}
-      {old && <small class="old-mark">{format.age(now - position.t_ms)} old</small>}
+      {old && <small class="old-mark">{t("measure.old", { age: format.age(now - position.t_ms) })}</small>}
     </p>
   );
 }
@@ -58,7 +60,7 @@ export function placeWords(position: PositionView, picture: Picture, old: boolea
   const region = regionAt(position, picture.silentMs.value);
   const room = roomWord(picture.plan.value, position, region);
   const parts = [format.floorOf(position, old), room, format.plusMinus(region.major_m)];
-  return parts.filter((part) => part !== "").join(", ");
+  return listed(parts.filter((part) => part !== ""));
 }
 
 function Where({ unit, picture }: Props) {
@@ -66,17 +68,17 @@ function Where({ unit, picture }: Props) {
   const now = picture.nowMs.value;
   if (position === null) {
     return (
-      <Fact icon="floor" label="Position" width="wide">
-        {unit.duty !== null && !unit.duty.located ? "not located" : "no position yet"}
+      <Fact icon="floor" label={t("fact.position")} width="wide">
+        {t(unit.duty !== null && !unit.duty.located ? "card.not_located" : "card.no_position")}
       </Fact>
     );
   }
   const old = isOld(position, now);
   return (
-    <Fact icon="floor" label="Position" level={old ? "old" : ""} width="wide">
+    <Fact icon="floor" label={t("fact.position")} level={old ? "old" : ""} width="wide">
       {placeWords(position, picture, old)}
       <span class="spoken">, {format.place(position)}</span>
-      {old && <small class="old-mark">{format.age(now - position.t_ms)} old</small>}
+      {old && <small class="old-mark">{t("measure.old", { age: format.age(now - position.t_ms) })}</small>}
     </Fact>
   );
 }
@@ -93,10 +95,10 @@ function Heard({ unit, now, silent }: HeardProps) {
   return (
     <Fact
       icon={good ? "linkGood" : "linkLost"}
-      label={silent ? "Not updated" : format.linkText(unit)}
+      label={silent ? t("fact.not_updated") : format.linkText(unit)}
       level={silent ? "critical" : level}
     >
-      {unit.last_heard_ms === null ? "—" : `${format.age(now - unit.last_heard_ms)} ago`}
+      {unit.last_heard_ms === null ? "—" : t("measure.ago", { age: format.age(now - unit.last_heard_ms) })}
     </Fact>
   );
 }
@@ -106,12 +108,12 @@ function Environment({ unit, now }: { unit: UnitView; now: number }) {
   const old = format.isReadingOld(ambient_ms, now);
   const sensors = format.sensorsText(unit.ambient_sensors);
   return (
-    <Fact icon="heat" label="Environment" level={unit.heat_level || (old ? "old" : "")}>
+    <Fact icon="heat" label={t("fact.environment")} level={unit.heat_level || (old ? "old" : "")}>
       {format.temperature(ambient_degc)}
       {ambient_degc !== null && <Remark>{format.heatText(unit.heat_level)}</Remark>}
       {sensors !== "" && <Remark>{sensors}</Remark>}
       {old && ambient_ms !== null && (
-        <small class="old-mark">{format.age(now - ambient_ms)} old</small>
+        <small class="old-mark">{t("measure.old", { age: format.age(now - ambient_ms) })}</small>
       )}
     </Fact>
   );
@@ -122,7 +124,7 @@ function Electronics({ status }: { status: StatusView | null }) {
   const degc = format.hottest(status?.electronics ?? []);
   if (degc === null) return null;
   return (
-    <Fact icon="heat" label="Electronics">
+    <Fact icon="heat" label={t("fact.electronics")}>
       {format.temperature(degc)}
     </Fact>
   );
@@ -131,9 +133,9 @@ function Electronics({ status }: { status: StatusView | null }) {
 function Battery({ status, low }: { status: StatusView | null; low: boolean }) {
   const state = status === null ? "" : format.batteryText(status);
   return (
-    <Fact icon="battery" label="Battery" level={low ? "warning" : ""}>
+    <Fact icon="battery" label={t("fact.battery")} level={low ? "warning" : ""}>
       {format.percent(status?.battery ?? null)}
-      {low && <Remark>low</Remark>}
+      {low && <Remark>{t("fact.battery_low")}</Remark>}
       {state !== "" && <Remark>{state}</Remark>}
     </Fact>
   );
@@ -144,8 +146,8 @@ export function Sensors({ unit: { sensors, tracker } }: { unit: UnitView }) {
   if (tracker === "") return null;
   return (
     <dl class="facts">
-      <Fact icon="walking" label="Sensors" width="whole">
-        {sensors.map(format.wornAt).join(", ")}
+      <Fact icon="walking" label={t("fact.sensors")} width="whole">
+        {listed(sensors.map(format.wornAt))}
         <Remark>{tracker}</Remark>
       </Fact>
     </dl>
@@ -156,7 +158,7 @@ function Inside({ unit, now }: { unit: UnitView; now: number }) {
   const restSinceMs = unit.duty?.rest_since_ms ?? null;
   if (restSinceMs !== null) {
     return (
-      <Fact icon="clock" label="Resting for">
+      <Fact icon="clock" label={t("fact.in_rehab")}>
         {format.minutes(now - restSinceMs)}
       </Fact>
     );

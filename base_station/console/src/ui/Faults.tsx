@@ -1,4 +1,5 @@
 import { faults } from "../live/faults";
+import { t } from "../language/translate";
 import { Icon } from "./Icon";
 
 /** What could not be shown, until a person has read it. */
@@ -13,7 +14,7 @@ export function Faults() {
         ))}
       </ul>
       <button type="button" onClick={() => (faults.value = [])}>
-        OK
+        {t("common.ok")}
       </button>
     </div>
   );

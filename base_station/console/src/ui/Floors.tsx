@@ -1,6 +1,7 @@
 import { floor, type FloorChoice } from "../uiState";
 import type { Picture } from "../live/picture";
 import { floorsOf } from "../plan/floors";
+import { t } from "../language/translate";
 import { Icon } from "./Icon";
 
 /** One big button a floor, top floor on top, each with the number of people on it, and of those in danger. */
@@ -11,7 +12,7 @@ export function Floors({ picture }: { picture: Picture }) {
   if (floors.length === 0) return null;
   const placed = units.filter((unit) => unit.position !== null).length;
   return (
-    <div class="floors" role="group" aria-label="Floor shown">
+    <div class="floors" role="group" aria-label={t("plan.floor_shown")}>
       {floors.map((one) => (
         <FloorButton
           key={one.floor}
@@ -21,7 +22,7 @@ export function Floors({ picture }: { picture: Picture }) {
           endangered={one.endangered}
         />
       ))}
-      <FloorButton choice="all" name="All" people={placed} endangered={0} />
+      <FloorButton choice="all" name={t("plan.all_floors")} people={placed} endangered={0} />
     </div>
   );
 }
@@ -43,21 +44,22 @@ function FloorButton({ choice, name, people, endangered }: ButtonProps) {
       onClick={() => (floor.value = choice)}
     >
       <span class="floor-name">
-        <span class="spoken">{choice === "all" ? "Floors: " : "Floor "}</span>
-        {name}
-        <span class="spoken">,</span>
+        <span class="spoken">
+          {t(choice === "all" ? "plan.floors_label" : "plan.floor_label", { floor: name })}
+        </span>
+        <span aria-hidden="true">{name}</span>
       </span>
       {alarmed && (
         <span class="floor-people endangered">
           <Icon name="alarm" />
           {endangered}
-          <span class="spoken"> in danger, of</span>
+          <span class="spoken"> {t("plan.in_danger_of")}</span>
         </span>
       )}
       <span class="floor-people">
         <Icon name="people" />
         {people}
-        <span class="spoken"> people</span>
+        <span class="spoken"> {t("plan.people", { count: people })}</span>
       </span>
     </button>
   );

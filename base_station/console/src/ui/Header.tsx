@@ -2,6 +2,7 @@ import { isPast } from "../sessions";
 import { openDialog, openDispatch } from "../uiState";
 import type { Picture } from "../live/picture";
 import { clockTime, minutes, problemsOf, timeSince, zone } from "../format";
+import { t } from "../language/translate";
 import { Icon } from "./Icon";
 import { IncidentSwitch } from "./IncidentSwitch";
 import { Menu } from "./Menu";
@@ -25,8 +26,8 @@ function IncidentTitle({ picture }: { picture: Picture }) {
   if (incident === null) {
     return (
       <div class="incident">
-        <h1>No incident open</h1>
-        <span class="quiet">Everything is recorded all the same</span>
+        <h1>{t("incident.none_open")}</h1>
+        <span class="quiet">{t("incident.recorded")}</span>
       </div>
     );
   }
@@ -42,8 +43,9 @@ function IncidentTitle({ picture }: { picture: Picture }) {
         <h1 title={incident.name}>{incident.name}</h1>
       )}
       <span class="quiet">
-        {incident.closed_ms === null ? "open for " : "closed after "}
-        {minutes(until - incident.opened_ms)}
+        {t(incident.closed_ms === null ? "incident.open_for" : "incident.closed_after", {
+          time: minutes(until - incident.opened_ms),
+        })}
         {incident.dispatch !== null && <DispatchNumber number={incident.dispatch.number} />}
       </span>
     </div>
@@ -56,7 +58,7 @@ function DispatchNumber({ number }: { number: string }) {
     <>
       {", "}
       <button type="button" class="as-text" onClick={() => openDispatch(number)}>
-        dispatch {number}
+        {t("dispatch.about", { number })}
       </button>
     </>
   );
@@ -72,21 +74,18 @@ function Clock({ picture }: { picture: Picture }) {
   );
 }
 
-/** What it said last may be over. */
-const UNKNOWN = "Station state unknown";
-
 function HealthLight({ picture }: { picture: Picture }) {
   const health = picture.health.value;
   if (health === null) return null;
   const lost = picture.link.value.kind !== "up";
-  const [first, ...more] = lost ? [UNKNOWN] : problemsOf(health);
-  const sentence = first ?? "Station is well";
+  const [first, ...more] = lost ? [t("health.unknown")] : problemsOf(health); // what it said last may be over
+  const sentence = first ?? t("health.ok");
   const others = more.length === 0 ? "" : `+${more.length}`;
   return (
     <button
       type="button"
       class={`light ${first === undefined ? "good" : "bad"}`}
-      aria-label={`Station health: ${sentence} ${others}`}
+      aria-label={t("health.light", { sentence, others })}
       onClick={() => openDialog("health")}
     >
       <Icon name={first === undefined ? "check" : "alarm"} />
@@ -99,8 +98,10 @@ function HealthLight({ picture }: { picture: Picture }) {
 function LinkLight({ picture }: { picture: Picture }) {
   const { kind } = picture.link.value;
   const station = picture.health.value?.standby?.station;
-  const connected = station === undefined ? "Connected" : `Connected to ${station}`;
-  const word = kind === "up" ? connected : kind === "down" ? "Connection lost" : "Connecting";
+  const connected =
+    station === undefined ? t("connection.connected") : t("connection.connected_to", { station });
+  const word =
+    kind === "up" ? connected : t(kind === "down" ? "connection.lost" : "connection.connecting");
   return (
     <span class={`light ${kind === "up" ? "good" : "bad"}`} data-testid="link">
       <Icon name={kind === "up" ? "linkGood" : "linkLost"} />

@@ -1,5 +1,7 @@
 import { picture } from "../sessions";
 import { bytes, problemsOf } from "../format";
+import { number } from "../language/measures";
+import { t } from "../language/translate";
 import { Dialog } from "./Dialog";
 import { Forwarders } from "./Forwarders";
 import { Recordings } from "./Recording";
@@ -9,9 +11,9 @@ export function HealthDialog() {
   if (!health) return null;
   const problems = problemsOf(health);
   return (
-    <Dialog title="Station health">
+    <Dialog title={t("health.title")}>
       {problems.length === 0 ? (
-        <p>The station is well.</p>
+        <p>{t("health.ok")}</p>
       ) : (
         <ul class="problems">
           {problems.map((problem) => (
@@ -20,13 +22,13 @@ export function HealthDialog() {
         </ul>
       )}
       <dl class="figures">
-        <Figure name="Messages received" value={health.messages.toLocaleString("en")} />
-        <Figure name="Messages a second" value={health.messages_per_s.toFixed(1)} />
-        <Figure name="Messages that could not be read" value={String(health.undecodable)} />
-        <Figure name="Messages that came again" value={String(health.repeated)} />
-        <Figure name="Unknown units" value={String(health.unknown_units)} />
-        <Figure name="Recorded" value={bytes(health.log_bytes)} />
-        <Figure name="Free disk space" value={bytes(health.disk_free_bytes)} />
+        <Figure name={t("health.messages")} value={number(health.messages)} />
+        <Figure name={t("health.messages_per_s")} value={number(health.messages_per_s, 1)} />
+        <Figure name={t("health.undecodable")} value={number(health.undecodable)} />
+        <Figure name={t("health.duplicates")} value={number(health.repeated)} />
+        <Figure name={t("health.unknown_units")} value={number(health.unknown_units)} />
+        <Figure name={t("health.recorded")} value={bytes(health.log_bytes)} />
+        <Figure name={t("health.disk_free")} value={bytes(health.disk_free_bytes)} />
       </dl>
       <Forwarders forwarders={health.forwarders} />
       <Recordings pulls={health.recordings} />

@@ -1,3 +1,4 @@
+import { listed } from "../language/measures";
 import { isOfAnother } from "../live/alarms";
 import type { Picture } from "../live/picture";
 import { displayName } from "../live/urgency";
@@ -5,6 +6,7 @@ import { isOld, regionAt } from "../plan/ellipse";
 import { roomWord } from "../plan/rooms";
 import type { UnitView } from "../wire";
 import * as format from "../format";
+import { t } from "../language/translate";
 import { placeWords } from "./Facts";
 import { activityIcon, Icon } from "./Icon";
 import { ParMark } from "./ParClock";
@@ -14,7 +16,7 @@ export function Line({ unit, picture }: { unit: UnitView; picture: Picture }) {
   const name = displayName(unit);
   const words = whatOrWhere(unit, picture);
   return (
-    <button type="button" class="card-head" aria-pressed={false} title={`${name}: ${words}. Show on the plan`}>
+    <button type="button" class="card-head" aria-pressed={false} title={t("common.hint", { what: t("card.words", { name, words }), action: t("common.show_on_plan") })}>
       <Icon name={unit.alarms.length > 0 ? "alarm" : activityIcon(unit.status?.activity ?? "")} />
       <span class="name">{name}</span>
       <span class="line-words">{words}</span>
@@ -29,15 +31,15 @@ export function whatOrWhere(unit: UnitView, picture: Picture): string {
     .map((alarmId) => picture.alarms.value.get(alarmId))
     .filter((alarm) => alarm !== undefined)
     .filter((alarm) => !isOfAnother(alarm, unit));
-  if (alarms.length > 0) return alarms.map(format.alarmLabel).join(", ");
-  if (!unit.registered) return "unknown unit";
+  if (alarms.length > 0) return listed(alarms.map(format.alarmLabel));
+  if (!unit.registered) return t("card.unknown_unit");
   if (unit.link !== "live") return format.linkText(unit);
-  if (unit.position === null) return "not located";
+  if (unit.position === null) return t("card.not_located");
   const old = isOld(unit.position, picture.nowMs.value) || picture.silentMs.value > 0;
   const { floor } = unit.position;
   if (floor === null || old || !format.isFloorLikely(unit.position)) {
     return placeWords(unit.position, picture, old);
   }
   const room = roomWord(picture.plan.value, unit.position, regionAt(unit.position, 0));
-  return room === "" ? format.floorName(floor) : `${format.shortFloor(floor)}, ${room}`;
+  return room === "" ? format.floorName(floor) : listed([format.shortFloor(floor), room]);
 }

@@ -4,6 +4,7 @@ import { useSignal } from "@preact/signals";
 import type { Picture } from "../live/picture";
 import { live } from "../sessions";
 import { clockTime, duration } from "../format";
+import { rich, t } from "../language/translate";
 import { Icon } from "./Icon";
 import { OtherConsole } from "./StandbyBar";
 
@@ -13,12 +14,14 @@ export function LinkBanner({ picture }: { picture: Picture }) {
   if (lost === null) return null;
   const standby = picture.health.peek()?.standby;
   const shown = picture.ready.value
-    ? `This picture is from ${clockTime(picture.heardMs.peek())} and is not being updated.`
+    ? t("connection.picture_from", { time: clockTime(picture.heardMs.peek()) })
     : "";
   return (
     <div class="link-banner" role="alert">
       {lost}
-      <span>{shown} Trying to connect again.</span>
+      <span>
+        {shown} {t("connection.trying")}
+      </span>
       {standby && <OtherConsole standby={standby} />}
     </div>
   );
@@ -35,7 +38,7 @@ function LostInDialog({ picture }: { picture: Picture }) {
   return (
     <div role="alert" class={lost === null ? "" : "link-banner"}>
       {lost}
-      {lost !== null && <span>Nothing here is being updated.</span>}
+      {lost !== null && <span>{t("connection.nothing_updated")}</span>}
     </div>
   );
 }
@@ -57,7 +60,9 @@ function useLost(picture: Picture): JSX.Element | null {
     <>
       <Icon name="linkLost" />
       <strong>
-        Connection to the station lost <span aria-live="off">{age} ago</span>.
+        {rich("connection.lost_since", {
+          age: <span aria-live="off">{t("measure.ago", { age: age.value })}</span>,
+        })}
       </strong>
     </>
   );

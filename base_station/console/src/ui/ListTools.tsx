@@ -1,13 +1,10 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { Order } from "../live/finding";
 import { openDialog } from "../uiState";
+import { t } from "../language/translate";
 import { density, finding, order, seeking, text } from "./listState";
 
-const ORDERS: readonly [Order, string][] = [
-  ["need", "By need"],
-  ["crew", "By crew"],
-  ["name", "By name"],
-];
+const ORDERS: readonly Order[] = ["need", "crew", "name"];
 
 /** Search, order and density of the list. */
 export function ListTools() {
@@ -21,25 +18,25 @@ export function ListTools() {
     field.current?.blur();
   };
   return (
-    <div class="list-tools" role="search" aria-label="List of people">
+    <div class="list-tools" role="search" aria-label={t("list.title")}>
       <input
         ref={field}
         type="search"
-        placeholder="Name, unit or crew  ( / )"
-        aria-label="Search by name, unit or crew"
+        placeholder={t("list.placeholder")}
+        aria-label={t("list.search")}
         aria-keyshortcuts="/"
         value={text.value}
         onInput={({ currentTarget }) => (text.value = currentTarget.value)}
         onKeyDown={({ key }) => key === "Escape" && leave()}
       />
       <select
-        aria-label="Order of the list"
+        aria-label={t("list.order")}
         value={order.value}
         onChange={({ currentTarget }) => (order.value = currentTarget.value as Order)}
       >
-        {ORDERS.map(([one, word]) => (
+        {ORDERS.map((one) => (
           <option key={one} value={one}>
-            {word}
+            {t(`list.by_${one}`)}
           </option>
         ))}
       </select>
@@ -48,10 +45,10 @@ export function ListTools() {
         aria-pressed={density.value === "lines"}
         onClick={() => (density.value = density.value === "lines" ? "cards" : "lines")}
       >
-        One line each
+        {t("list.lines")}
       </button>
       <button type="button" class="to-board" onClick={() => openDialog("board")}>
-        Board
+        {t("list.board")}
       </button>
     </div>
   );

@@ -67,3 +67,16 @@ export const scope: Part<"scope"> = {
   units: "Geräte",
   users: "Benutzer",
 };
+
+export const login: Part<"login"> = {
+  not_the_same: "Die beiden sind nicht gleich; geben Sie das neue Passwort noch einmal ein.",
+  log_in: "Anmelden",
+  user: "Benutzer",
+  generated:
+    "Dieses Passwort hat die Station erzeugt; es steht in einer Datei. Wählen Sie ein eigenes, bevor Sie weitermachen.",
+  again: "Neues Passwort noch einmal",
+  ended: "Diese Anmeldung ist beendet. Melden Sie sich wieder an: Ihre Arbeit ist noch da.",
+  came_from: "Sie kommen von der Konsole der Station „{station}“.",
+  same_here: "{origin} Derselbe Benutzer und dasselbe Passwort gelten hier.",
+  press_ok: "{origin} Drücken Sie OK: Vorher ist hier kein Alarm zu hören.",
+};

@@ -61,3 +61,34 @@ export const card: Part<"card"> = {
   old_place: "{place}, alt",
   assign_incident: "Diesem Einsatz zuordnen",
 };
+
+export const fact: Part<"fact"> = {
+  position: "Position",
+  not_updated: "Nicht aktuell",
+  environment: "Umgebung",
+  electronics: "Elektronik",
+  battery: "Akku",
+  battery_low: "schwach",
+  sensors: "Sensoren",
+  in_rehab: "In Erholung seit",
+};
+
+export const list: Part<"list"> = {
+  by_need: "Nach Dringlichkeit",
+  by_crew: "Nach Trupp",
+  by_name: "Nach Name",
+  title: "Liste der Personen",
+  placeholder: "Name, Gerät oder Trupp  ( / )",
+  search: "Nach Name, Gerät oder Trupp suchen",
+  order: "Reihenfolge der Liste",
+  lines: "Einzeilig",
+  board: "Übersichtstafel",
+};
+
+export const par: Part<"par"> = {
+  not_yet_confirmed: "noch nicht bestätigt",
+  confirmed_by_unit: "um {time} mit eigenem Gerät bestätigt",
+  confirmed_by_radio: "um {time} über Funk bestätigt, eingetragen von {who}",
+  undo_par: "PAR von {whom}: über Funk bestätigt",
+  undo_answer: "{whom}: über Funk geantwortet",
+};

@@ -97,3 +97,10 @@ export const trail: Part<"trail"> = {
   raw: "Nur Koppelnavigation",
   smoothed: "Nachbearbeitet",
 };
+
+export const mark: Part<"mark"> = {
+  pin: "Fixpunkt: {name}, {when}",
+  start: "Start",
+  emergency: "NOTFALL {name}",
+  other_team: "{name} ({source})",
+};

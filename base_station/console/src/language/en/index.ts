@@ -1,5 +1,5 @@
 /** English: the catalogue that the others are measured by. */
-import { role, account, token, audit, scope } from "./account";
+import { role, account, token, audit, scope, login } from "./account";
 import { alarm_text, alarm_label, tracker_reason, fix_fault, alarm_subject, alarm_now } from "./alarm_texts";
 import { alarm, closing } from "./alarms";
 import { assessment } from "./assessment";
@@ -11,10 +11,12 @@ import { incident } from "./incidents";
 import { measure } from "./measure";
 import { activity, posture, mobility, link, heat, battery, member, worn } from "./member";
 import { order, delivery } from "./orders";
-import { board, radio, headcount, card } from "./people";
-import { anchor, base_map, beacon, plan, compass, trail } from "./plan";
+import { board, radio, headcount, card, fact, list, par } from "./people";
+import { anchor, base_map, beacon, plan, compass, trail, mark } from "./plan";
+import { replay } from "./replay";
+import { route } from "./rescue";
 import { crew, enrolment, draft, erase } from "./setup";
-import { station, forwarder } from "./station";
+import { station, forwarder, health, connection, systems } from "./station";
 
 export const en = {
   account,
@@ -35,6 +37,7 @@ export const en = {
   closing,
   common,
   compass,
+  connection,
   crew,
   delivery,
   dispatch,
@@ -42,25 +45,34 @@ export const en = {
   draft,
   enrolment,
   erase,
+  fact,
   fix_fault,
   forwarder,
   frame,
   headcount,
+  health,
   heat,
   incident,
   language_name,
   link,
+  list,
+  login,
+  mark,
   measure,
   member,
   mobility,
   order,
+  par,
   plan,
   posture,
   radio,
+  replay,
   role,
+  route,
   scope,
   shortcut,
   station,
+  systems,
   token,
   tracker_reason,
   trail,

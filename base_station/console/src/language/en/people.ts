@@ -60,3 +60,34 @@ export const card = {
   old_place: "{place}, old",
   assign_incident: "Assign to this incident",
 } as const;
+
+export const fact = {
+  position: "Position",
+  not_updated: "Not updated",
+  environment: "Environment",
+  electronics: "Electronics",
+  battery: "Battery",
+  battery_low: "low",
+  sensors: "Sensors",
+  in_rehab: "In rehab",
+} as const;
+
+export const list = {
+  by_need: "By need",
+  by_crew: "By crew",
+  by_name: "By name",
+  title: "List of people",
+  placeholder: "Name, unit or crew  ( / )",
+  search: "Search by name, unit or crew",
+  order: "Order of the list",
+  lines: "One line each",
+  board: "Board",
+} as const;
+
+export const par = {
+  not_yet_confirmed: "not yet confirmed",
+  confirmed_by_unit: "confirmed {time} by own unit",
+  confirmed_by_radio: "confirmed {time} by radio, entered by {who}",
+  undo_par: "PAR of {whom}: confirmed by radio",
+  undo_answer: "{whom}: answered by radio",
+} as const;

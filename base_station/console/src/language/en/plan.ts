@@ -94,3 +94,10 @@ export const trail = {
   raw: "Dead-reckoning only",
   smoothed: "Post-processed",
 } as const;
+
+export const mark = {
+  pin: "Pin: {name}, {when}",
+  start: "start",
+  emergency: "EMERGENCY {name}",
+  other_team: "{name} ({source})",
+} as const;

@@ -12,3 +12,42 @@ export const forwarder = {
   received: "{count, number} received",
   refused: "{count, number} left out",
 } as const;
+
+export const health = {
+  title: "Station health",
+  ok: "Base station OK",
+  unknown: "Base station state unknown",
+  light: "Station health: {sentence} {others}",
+  messages: "Messages received",
+  messages_per_s: "Messages per second",
+  undecodable: "Messages that could not be read",
+  duplicates: "Duplicates",
+  unknown_units: "Unknown units",
+  recorded: "Recorded",
+  disk_free: "Free disk space",
+} as const;
+
+export const connection = {
+  connected: "Connected",
+  connected_to: "Connected to {station}",
+  lost: "Connection lost",
+  connecting: "Connecting",
+  picture_from: "This picture is from {time} and is not being updated.",
+  trying: "Trying to connect again.",
+  nothing_updated: "Nothing here is being updated.",
+  lost_since: "Connection to the station lost {age}.",
+  lost_spoken: "Connection to the station lost",
+  unreachable: "The base station cannot be reached.",
+  outcome_unknown: "No reply from the base station. Check whether the order went out before repeating it.",
+  answered: "The station answered {status, number}.",
+  carried_out: "What had no answer was carried out at {time}.",
+  not_carried_out: "What had no answer was not carried out. Give the order again if it is still wanted.",
+  title_lost: "NO CONNECTION – Muster",
+  title_replay: "Replay – Muster",
+  title_alarms: "({count, number}!) Muster",
+} as const;
+
+export const systems = {
+  title: "Other systems",
+  label: "Forwarders",
+} as const;

@@ -67,3 +67,16 @@ export const scope: Part<"scope"> = {
   units: "appareils",
   users: "utilisateurs",
 };
+
+export const login: Part<"login"> = {
+  not_the_same: "Les deux ne sont pas identiques\u00a0; saisissez de nouveau le nouveau mot de passe.",
+  log_in: "Se connecter",
+  user: "Utilisateur",
+  generated:
+    "Ce mot de passe a été généré par la station et il est écrit dans un fichier. Choisissez le vôtre avant de continuer.",
+  again: "Nouveau mot de passe encore une fois",
+  ended: "Cette session est terminée. Reconnectez-vous\u00a0: ce que vous faisiez est toujours là.",
+  came_from: "Vous venez de la console de la station «\u00a0{station}\u00a0».",
+  same_here: "{origin} Le même utilisateur et le même mot de passe sont valables ici.",
+  press_ok: "{origin} Appuyez sur OK\u00a0: aucune alarme n’est audible ici avant.",
+};

@@ -61,3 +61,34 @@ export const card: Part<"card"> = {
   old_place: "{place}, ancienne",
   assign_incident: "Affecter à cette intervention",
 };
+
+export const fact: Part<"fact"> = {
+  position: "Position",
+  not_updated: "Pas à jour",
+  environment: "Environnement",
+  electronics: "Électronique",
+  battery: "Batterie",
+  battery_low: "faible",
+  sensors: "Capteurs",
+  in_rehab: "Au repos depuis",
+};
+
+export const list: Part<"list"> = {
+  by_need: "Par urgence",
+  by_crew: "Par équipe",
+  by_name: "Par nom",
+  title: "Liste des personnes",
+  placeholder: "Nom, appareil ou équipe  ( / )",
+  search: "Chercher par nom, appareil ou équipe",
+  order: "Ordre de la liste",
+  lines: "Une ligne chacun",
+  board: "Tableau",
+};
+
+export const par: Part<"par"> = {
+  not_yet_confirmed: "pas encore confirmé",
+  confirmed_by_unit: "confirmé à {time} par son appareil",
+  confirmed_by_radio: "confirmé à {time} par radio, saisi par {who}",
+  undo_par: "PAR de {whom}\u00a0: confirmé par radio",
+  undo_answer: "{whom}\u00a0: répondu par radio",
+};

@@ -97,3 +97,10 @@ export const trail: Part<"trail"> = {
   raw: "À l’estime seulement",
   smoothed: "Post-traitée",
 };
+
+export const mark: Part<"mark"> = {
+  pin: "Repère\u00a0: {name}, {when}",
+  start: "départ",
+  emergency: "URGENCE {name}",
+  other_team: "{name} ({source})",
+};
