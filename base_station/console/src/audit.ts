@@ -1,32 +1,32 @@
 /** What people did, from the audit log as the station keeps it, in words and usual units.  Pure. */
+import { knownLabel, type PlainKey, t } from "./language/translate";
 import { dateAndTime, duration, floorName } from "./format";
+import { degrees, length, listed, number } from "./language/measures";
 
 /** By number, as the station's messages have them (shared/messages/command.py). */
-const COMMANDS = ["", "evacuate", "PAR", "message", "locate", "position rate", "reset alarm", "mayday acknowledged", "end of an order"];
+const COMMANDS: readonly (PlainKey | "")[] = [
+  "",
+  "order.evacuate",
+  "order.par_request",
+  "order.text",
+  "order.locate",
+  "order.set_position_rate",
+  "audit_value.reset_alarm",
+  "order.mayday_acknowledged",
+  "audit_value.end_of_order",
+];
 /** Says nothing to a person. */
 const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "check_in_id", "entry_id", "term"]);
-/** Where 0 is no number: what it stands for, and nothing where it was left out. */
-const ZEROS = new Map([
-  ["t_ns", "where the path begins"],
-  ["after_t_ns", ""],
-  ["last_raised_ms", ""],
-  ["par_interval_s", ""],
-  ["work_limit_s", ""],
-  ["position_rate_hz", ""],
-]);
+/** Where 0 is no number: it was left out. */
+const ZEROS = new Set(["after_t_ns", "last_raised_ms", "par_interval_s", "work_limit_s", "position_rate_hz"]);
+/** Where 0 is the beginning of the path. */
+const FROM_START = "t_ns";
 const DEGREES = 180 / Math.PI;
-
-/** Where the name alone does not say what was entered. */
-const ACTIONS: Readonly<Record<string, string>> = {
-  CheckIn: "PAR confirmed by radio",
-  ConfirmCommand: "Order answered by radio",
-  UndoConfirmation: "Answer by radio undone",
-};
 
 /** "AcknowledgeAlarm" as "Acknowledge alarm". */
 export function actionWord(action: string): string {
-  const special = ACTIONS[action];
-  if (special !== undefined) return special;
+  const known = knownLabel("audit_action", action);
+  if (known !== undefined) return known; // else of another version
   const words = action.replaceAll(/(?<=[a-z])(?=[A-Z])/g, " ").toLowerCase();
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
@@ -36,10 +36,10 @@ export function detailWords(detail: string, names: ReadonlyMap<string, string>):
   if (!detail.startsWith("{")) return withNames(detail, names);
   const values = JSON.parse(detail) as Record<string, unknown>;
   if (values["heading_rad"] === null) delete values["heading_std_rad"]; // it is of nothing
-  return Object.entries(values)
+  const all = Object.entries(values)
     .map(([name, value]) => said(name, value))
-    .filter((words) => words !== "")
-    .join(", ");
+    .filter((words) => words !== "");
+  return listed(all);
 }
 
 /** People stand there by id, with the name that was given then where one was. */
@@ -53,56 +53,77 @@ function withNames(detail: string, names: ReadonlyMap<string, string>): string {
 function said(name: string, value: unknown): string {
   if (WITHOUT_MEANING.has(name) || value === "" || value === null) return "";
   if (Array.isArray(value) && value.length === 0) return "";
-  if (value === 0 && ZEROS.has(name)) return ZEROS.get(name) ?? "";
-  if (name === "resting") return value === true ? "to rest" : "back to work";
-  if (typeof value === "boolean") return value ? spaced(name) : "";
+  if (value === 0 && name === FROM_START) return t("audit_value.start");
+  if (value === 0 && ZEROS.has(name)) return "";
+  if (name === "resting") return t(value === true ? "audit_value.to_rehab" : "audit_value.return_to_duty");
+  if (typeof value === "boolean") return value ? fieldWord(name) : "";
   if (name === "floor" && typeof value === "number") return floorName(value);
-  if (name === "kind" && typeof value === "number") return COMMANDS[value] ?? String(value);
+  if (name === "kind" && typeof value === "number") return commandWord(value);
   if (typeof value === "number") return quantity(name, value);
   if (name === "thresholds") return thresholds(value as Record<string, number>);
   const words = Array.isArray(value) ? value.join(" ") : String(value);
-  if (name === "other_unit_id") return `met ${words}`;
-  return name === "unit_id" || name === "unit_ids" ? words : `${spaced(name)}: ${words}`;
+  if (name === "other_unit_id") return t("audit_value.same_place", { unit: words });
+  return name === "unit_id" || name === "unit_ids" ? words : t("audit_value.named", { field: fieldWord(name), value: words });
 }
 
 /** Of alarm rules, by rule and name: "no-motion.alarm_s". */
 function thresholds(values: Record<string, number>): string {
   const set = Object.entries(values).map(([name, value]) => quantity(name, value));
-  return set.length === 0 ? "all as usual" : set.join(", ");
+  return set.length === 0 ? t("audit_value.default_thresholds") : listed(set);
+}
+
+function commandWord(kind: number): string {
+  const key = COMMANDS[kind] ?? "";
+  return key === "" ? String(kind) : t(key);
 }
 
 /** A number with the unit that its name ends with. */
 function quantity(name: string, value: number): string {
   const [, what = name, unit = ""] = /^(.*)_(m|s|ms|ns|deg|degc|rad|hz|days)$/.exec(name) ?? [];
+  const field = fieldWord(unit === "" ? name : what);
+  return t("audit_value.with_number", { field, value: valueWord(unit, value) });
+}
+
+function valueWord(unit: string, value: number): string {
   switch (unit) {
     case "m":
-      return `${spaced(what)} ${rounded(value)} m`;
+      return length(value, roundDigits(value));
     case "s":
-      return `${spaced(what)} ${duration(1000 * value)}`;
+      return duration(1000 * value);
     case "ms":
-      return `${spaced(what)} ${dateAndTime(value)}`;
+      return dateAndTime(value);
     case "ns":
-      return `${spaced(what)} ${dateAndTime(value / 1e6)}`;
+      return dateAndTime(value / 1e6);
     case "deg":
-      return `${spaced(what)} ${value}°`;
+      return `${plain(value)}°`;
     case "degc":
-      return `${spaced(what)} ${value} °C`;
+      return degrees(value);
     case "days":
-      return `${spaced(what)} ${value} days`;
+      return t("audit_value.days", { count: value });
     case "rad":
-      return `${spaced(what)} ${rounded(value * DEGREES)}°`;
+      return `${number(value * DEGREES, roundDigits(value * DEGREES))}°`;
     case "hz":
-      return `${spaced(what)} ${value} a second`;
+      return t("audit_value.rate", { value: plain(value) });
     default:
-      return `${spaced(name)} ${value}`;
+      return plain(value);
   }
 }
 
-function rounded(value: number): string {
-  return String(Math.round(10 * value) / 10);
+/** With one digit behind the point where that is none of zero. */
+function roundDigits(value: number): number {
+  return Math.round(10 * value) % 10 === 0 ? 0 : 1;
+}
+
+/** As it was entered. */
+function plain(value: number): string {
+  return number(value, String(value).split(".")[1]?.length ?? 0);
+}
+
+/** The name of a field; of one that this console does not know, as the station has it. */
+function fieldWord(name: string): string {
+  return knownLabel("audit_field", name) ?? spaced(name);
 }
 
 function spaced(name: string): string {
-  if (name === "t") return "at";
-  return name.replaceAll(/[_.]/g, " ").replace(/\bstd\b/, "±").replace(/^(.*) ±$/, "± of $1");
+  return name.replaceAll(/[_.]/g, " ");
 }

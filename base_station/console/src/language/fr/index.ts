@@ -3,6 +3,7 @@ import { role, account, token, audit, scope, login } from "./account";
 import { alarm_text, alarm_label, tracker_reason, fix_fault, alarm_subject, alarm_now } from "./alarm_texts";
 import { alarm, closing } from "./alarms";
 import { assessment } from "./assessment";
+import { audit_action, audit_field, audit_value } from "./audit";
 import { common } from "./common";
 import { dispatch } from "./dispatch";
 import { display, language_name, shortcut } from "./display";
@@ -29,6 +30,9 @@ export const fr: Catalogue = {
   anchor,
   assessment,
   audit,
+  audit_action,
+  audit_field,
+  audit_value,
   base_map,
   battery,
   beacon,
