@@ -59,7 +59,7 @@ def confirm(where: Locator, name: str) -> None:
 
 def metres_north(card: Locator) -> float:
     text = card.text_content() or ""
-    found = re.search(r"([\d.]+) m north", text)
+    found = re.search(r"([\d.]+)\sm north", text)
     assert found is not None, text
     return float(found[1])
 

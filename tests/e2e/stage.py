@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from playwright.sync_api import Browser, Page
 
 from base_station.views.wire import Snapshot
@@ -45,11 +47,16 @@ class Stage:
         screen: str = "laptop",
         answers: Answers = ANSWERS,
         timezone: str | None = None,
+        locale: str | None = None,
+        kept: Mapping[str, str] | None = None,
     ) -> tuple[Page, PlayedStation]:
+        """`locale` is the browser's; `kept` are choices that it has kept, by name."""
         width, height = SCREENS[screen]
         page = self._browser.new_page(
-            viewport={"width": width, "height": height}, timezone_id=timezone
+            viewport={"width": width, "height": height}, timezone_id=timezone, locale=locale
         )
+        for name, choice in (kept or {}).items():
+            page.add_init_script(f"localStorage.setItem({name!r}, {choice!r})")
         self._pages.append(page)
         station = PlayedStation(page, picture, answers)
         station.open()

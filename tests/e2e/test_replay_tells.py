@@ -164,7 +164,9 @@ def test_times_of_another_day_than_the_beginning_say_so_and_of_which_zone_they_a
     assert day.match(page.get_by_label("Go to an alarm").locator("option").nth(1).inner_text())
     seek = page.get_by_label("Time of the incident")
     assert day.match(seek.get_attribute("aria-valuetext") or "")
-    expect(menu(page, "Incidents")).to_contain_text("Times shown in this device's time zone (UTC+5:30).")
+    expect(menu(page, "Incidents")).to_contain_text(
+        "Times shown in this device's time zone (UTC+5:30)."
+    )
 
 
 def test_a_second_replay_at_a_station_that_only_replays_has_nothing_live_beside_it(

@@ -29,6 +29,11 @@ effect(() => {
   floorNames.value = floorsChoice.value;
 });
 
+const AGAIN_MS = 5_000;
+/** A page that waits longer for its language is shown in English meanwhile. */
+const PATIENCE_MS = 3_000;
+
+/** Asks again for a file that did not come: the station may be away. */
 async function follow(choice: LanguageChoice): Promise<void> {
   try {
     await show(choice === "browser" ? browsers() : choice);
@@ -36,6 +41,7 @@ async function follow(choice: LanguageChoice): Promise<void> {
   } catch (error) {
     console.warn(error);
     languageMissing.value = true;
+    setTimeout(() => choice === languageChoice.peek() && void follow(choice), AGAIN_MS);
   }
 }
 
@@ -46,5 +52,5 @@ export async function useLanguage(): Promise<void> {
     const following = follow(choice);
     first ??= following;
   });
-  await first;
+  await Promise.race([first, new Promise((done) => setTimeout(done, PATIENCE_MS))]);
 }

@@ -10,7 +10,7 @@ export const display: Part<"display"> = {
   language: "Sprache",
   language_browser: "Wie dieser Browser",
   language_missing:
-    "Die Texte dieser Sprache kamen nicht von der Station. Wählen Sie sie noch einmal, wenn die Station verbunden ist.",
+    "Die Texte dieser Sprache sind noch nicht von der Station gekommen; sie wird wieder gefragt.",
   units: "Einheiten",
   units_metric: "Metrisch: m, °C",
   units_imperial: "Angloamerikanisch: ft, °F",

@@ -9,7 +9,7 @@ export const display = {
   language: "Language",
   language_browser: "As this browser",
   language_missing:
-    "The texts of this language did not come from the station. Choose it again once the station is connected.",
+    "The texts of this language have not come from the station yet; it is asked again.",
   units: "Units",
   units_metric: "Metric: m, °C",
   units_imperial: "Imperial: ft, °F",

@@ -10,7 +10,7 @@ export const display: Part<"display"> = {
   language: "Langue",
   language_browser: "Comme ce navigateur",
   language_missing:
-    "Les textes de cette langue ne sont pas arrivés de la station. Choisissez-la de nouveau quand la station est connectée.",
+    "Les textes de cette langue ne sont pas encore arrivés de la station\u00a0; elle est redemandée.",
   units: "Unités",
   units_metric: "Métriques\u00a0: m, °C",
   units_imperial: "Impériales\u00a0: pi, °F",
