@@ -118,7 +118,7 @@ def test_all_were_somewhere_where_their_paths_begin_or_now(page: Page, card: Loc
 def test_the_plan_is_put_on_the_earth_with_two_clicks(page: Page, card: Locator) -> None:
     for _ in range(2):
         page.get_by_role("button", name="Zoom out").click()
-    menu(page, "Site").get_by_role("button", name="By two points of the plan").click()
+    menu(page, "Site").get_by_role("button", name="Align by two points").click()
     form = page.get_by_role("form", name="Plan location")
     click_plan(page, -150, 60)
     click_plan(page, 150, -60)
@@ -153,7 +153,7 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
     site.get_by_label("World file").set_input_files(world)
     site.get_by_role("button", name="Set base map").click()
     expect(site.get_by_role("button", name="Remove base map")).to_be_visible()
-    site.get_by_role("button", name="By two points of the plan").click()
+    site.get_by_role("button", name="Align by two points").click()
     form = page.get_by_role("form", name="Plan location")
     click_plan(page, -150, 60)
     click_plan(page, 150, -60)

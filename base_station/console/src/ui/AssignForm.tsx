@@ -5,6 +5,7 @@ import type { Picture } from "../live/picture";
 import { nameAmong } from "../live/urgency";
 import { attempt } from "../sessions";
 import type { IncidentView, UnitView } from "../wire";
+import { t } from "../language/translate";
 import { useSinglePress } from "./useGuardedPress";
 
 interface Props {
@@ -32,9 +33,9 @@ export function AssignForm({ incident, picture }: Props) {
       }}
     >
       <label>
-        Crew or unit of another incident, or of none
+        {t("incident.whom")}
         <select required value={chosen} onChange={(event) => (whom.value = event.currentTarget.value)}>
-          <option value="">{others.length === 0 ? "nobody is elsewhere" : "choose"}</option>
+          <option value="">{t(others.length === 0 ? "incident.nobody_elsewhere" : "incident.choose")}</option>
           {[...targets].map(([target, words]) => (
             <option key={target} value={target}>
               {words}
@@ -42,8 +43,8 @@ export function AssignForm({ incident, picture }: Props) {
           ))}
         </select>
       </label>
-      <button disabled={others.length === 0}>Assign to this incident</button>
-      <p class="quiet">PAR of who is assigned is to be confirmed here, and the path begins anew.</p>
+      <button disabled={others.length === 0}>{t("card.assign_incident")}</button>
+      <p class="quiet">{t("incident.assign_hint")}</p>
     </form>
   );
 }
@@ -51,8 +52,9 @@ export function AssignForm({ incident, picture }: Props) {
 /** "Jonas Bergman, in Harbour". */
 function wordsOf(unit: UnitView, picture: Picture): string {
   const other = picture.otherIncidentOf(unit.unit_id);
-  const where = other === null ? "unassigned" : `in ${other.name}`;
-  return `${nameAmong(unit, picture.unitsOfAll())}, ${where}`;
+  const member = nameAmong(unit, picture.unitsOfAll());
+  if (other === null) return t("incident.member_unassigned", { member });
+  return t("incident.member_in", { member, incident: other.name });
 }
 
 function targetOf(chosen: string): Target {

@@ -199,15 +199,12 @@ function SeveralIncidents({ running, picture, done }: SeveralProps) {
           aria-expanded={isAsked.value}
           onClick={() => (isAsked.value = !isAsked.value)}
         >
-          Open another incident
+          {t("incident.open_another")}
         </button>
       </p>
       {isAsked.value && (
         <>
-          <p>
-            <strong>{running.name}</strong> goes on beside it; to end it, close it first. The new incident has
-            nobody and no plan yet: assign crews to it here.
-          </p>
+          <p>{rich("incident.goes_on", { incident: <strong>{running.name}</strong> })}</p>
           <OpenForm beside done={opened} />
         </>
       )}

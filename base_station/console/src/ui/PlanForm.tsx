@@ -3,6 +3,7 @@ import { ApiError } from "../http";
 import { contents } from "../plan/contents";
 import { attempt } from "../sessions";
 import type { Plan } from "../wire";
+import { t } from "../language/translate";
 import { onDemand } from "./onDemand";
 import { SendPlan } from "./SendPlan";
 
@@ -51,7 +52,7 @@ export function PlanForm({ shown }: { shown: Plan | null }) {
       </p>
       {chosen.value !== null && (
         <div class="row">
-          <span>The file has {contents(chosen.value)}.</span>
+          <span>{t("draft.contents", { contents: contents(chosen.value) })}</span>
           <SendPlan plan={chosen.value} replaces={shown !== null} />
         </div>
       )}

@@ -3,6 +3,7 @@ import { assess, openDialog } from "../uiState";
 import type { Picture } from "../live/picture";
 import { dateAndTime, problemsOf, timeSince, zone } from "../format";
 import type { GapView } from "../wire";
+import { t } from "../language/translate";
 import { Icon } from "./Icon";
 import { Transport } from "./Transport";
 
@@ -26,11 +27,10 @@ export function ReplayBar({ replay, live }: Props) {
       <button
         type="button"
         class="about-positions"
-        aria-label="How good were the positions?"
-        title="How good were the positions?"
+        title={t("incident.accuracy")}
         onClick={() => assess(replay.incident)}
       >
-        How good?
+        {t("incident.accuracy")}
       </button>
       {besideLive.value && liveIsPast.value && (
         <button type="button" class="primary" onClick={stopReplay}>

@@ -5,6 +5,7 @@ import { dialog } from "../uiState";
 import { changeOf, placeWords } from "../plan/anchor";
 import { take } from "../plan/tools";
 import type { AnchorView } from "../wire";
+import { t } from "../language/translate";
 import { BaseMapForm } from "./BaseMapForm";
 import { useFocusBack } from "./Confirm";
 import { Dialog } from "./Dialog";
@@ -22,7 +23,7 @@ export function SiteDialog() {
       <PlanForm shown={picture?.plan.value ?? null} />
       <h3>Base map</h3>
       <BaseMapForm />
-      <h3>Place on the Earth</h3>
+      <h3>{t("anchor.title")}</h3>
       <p>
         <button
           type="button"
@@ -31,7 +32,7 @@ export function SiteDialog() {
             take({ kind: "anchor" });
           }}
         >
-          By two points of the plan
+          {t("anchor.align")}
         </button>{" "}
         Without a plan, the first good fix of a unit does it.
       </p>
@@ -71,7 +72,7 @@ function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
       />
       {asked.value === null || anchor === null ? (
         <button class="primary" ref={button}>
-          Set place
+          {t("anchor.save")}
         </button>
       ) : (
         <ReplacePlace shown={anchor} next={asked} onYes={send} />

@@ -42,4 +42,15 @@ export const incident: Part<"incident"> = {
   open_for: "offen seit {time}",
   closed_after: "geschlossen nach {time}",
   open_beside: "Daneben eröffnen",
+  switch: "Einsatz",
+  choice: "{incident} ({count, plural, one {# offener Alarm} other {# offene Alarme}})",
+  open_another: "Weiteren Einsatz eröffnen",
+  goes_on:
+    "{incident} läuft daneben weiter; um ihn zu beenden, schließen Sie ihn zuerst. Der neue Einsatz hat noch niemanden und keinen Plan: Ordnen Sie ihm hier Trupps zu.",
+  whom: "Trupp oder Gerät eines anderen Einsatzes oder ohne Einsatz",
+  nobody_elsewhere: "niemand ist anderswo",
+  choose: "wählen",
+  assign_hint: "PAR der Zugeordneten ist hier zu bestätigen, und ihr Weg beginnt neu.",
+  member_in: "{member}, in {incident}",
+  member_unassigned: "{member}, nicht zugeordnet",
 };

@@ -40,4 +40,15 @@ export const incident = {
   open_for: "open for {time}",
   closed_after: "closed after {time}",
   open_beside: "Open beside",
+  switch: "Incident",
+  choice: "{incident} ({count, plural, one {# open alarm} other {# open alarms}})",
+  open_another: "Open another incident",
+  goes_on:
+    "{incident} goes on beside it; to end it, close it first. The new incident has nobody and no plan yet: assign crews to it here.",
+  whom: "Crew or unit of another incident, or of none",
+  nobody_elsewhere: "nobody is elsewhere",
+  choose: "choose",
+  assign_hint: "PAR of who is assigned is to be confirmed here, and the path begins anew.",
+  member_in: "{member}, in {incident}",
+  member_unassigned: "{member}, unassigned",
 } as const;

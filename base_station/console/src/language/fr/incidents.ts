@@ -42,4 +42,15 @@ export const incident: Part<"incident"> = {
   open_for: "en cours depuis {time}",
   closed_after: "clôturée après {time}",
   open_beside: "Ouvrir en parallèle",
+  switch: "Intervention",
+  choice: "{incident} ({count, plural, one {# alarme en cours} other {# alarmes en cours}})",
+  open_another: "Ouvrir une autre intervention",
+  goes_on:
+    "{incident} continue en parallèle\u00a0; pour y mettre fin, clôturez-la d’abord. La nouvelle intervention n’a encore personne ni plan\u00a0: affectez-lui des équipes ici.",
+  whom: "Équipe ou appareil d’une autre intervention, ou sans intervention",
+  nobody_elsewhere: "personne n’est ailleurs",
+  choose: "choisir",
+  assign_hint: "Le PAR des personnes affectées est à confirmer ici, et leur parcours recommence.",
+  member_in: "{member}, dans {incident}",
+  member_unassigned: "{member}, non affecté",
 };
