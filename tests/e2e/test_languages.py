@@ -15,10 +15,8 @@ from tests.e2e.looks import flaws
 from tests.e2e.stage import Stage
 
 LANGUAGES = CONSOLE / "src/language"
-TEXT = re.compile(r"^  (\w+):\s+\"((?:[^\"\\\\]|\\\\.)*)\",$", re.MULTILINE)
+TEXT = re.compile(r'^  (\w+):\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
 PART = re.compile(r"^export const (\w+)\b[^=]*= \{$(.*?)^\}", re.MULTILINE | re.DOTALL)
-# Beside one another on the screen, and so nothing by which a text is found to be English.
-NAMES_OF_LANGUAGES = "language_name"
 
 SHOWN_TEXTS = """
 () => {
@@ -89,6 +87,7 @@ def test_the_console_is_whole_in_the_language_of_the_browser(
         assert flaws(page) == []
         assert barriers(page) == []
         assert english_on(page, language) == set()
+        assert dialog.evaluate("one => one.scrollWidth <= one.clientWidth")
         page.keyboard.press("Escape")
         expect(page.locator("dialog")).to_have_count(0)
 

@@ -137,6 +137,7 @@ export function date(ms: number): string {
   return kept(Intl.DateTimeFormat, { dateStyle: "medium" } as const).format(ms);
 }
 
-export function listed(names: readonly string[]): string {
-  return kept(Intl.ListFormat, { type: "unit", style: "short" } as const).format(names);
+/** Beside one another, not as a sentence: `Intl.ListFormat` puts a word before the last in some languages. */
+export function listed(words: readonly string[]): string {
+  return words.join(", ");
 }

@@ -43,8 +43,8 @@ export const draft: Part<"draft"> = {
 };
 
 export const erase: Part<"erase"> = {
-  delete: "Daten löschen …",
-  delete_of: "Daten löschen … {name}",
+  delete: "Löschen …",
+  delete_of: "Löschen … {name}",
   warning: "{warning} Das ist endgültig; das Protokoll hält fest, dass es geschehen ist.",
   type_name: "Zur Bestätigung „{name}“ eingeben",
   delete_permanently: "Endgültig löschen",

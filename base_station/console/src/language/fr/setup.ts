@@ -43,8 +43,8 @@ export const draft: Part<"draft"> = {
 };
 
 export const erase: Part<"erase"> = {
-  delete: "Effacer les données …",
-  delete_of: "Effacer les données … {name}",
+  delete: "Effacer …",
+  delete_of: "Effacer … {name}",
   warning: "{warning} C’est définitif\u00a0; le journal d’audit garde la trace de l’effacement.",
   type_name: "Saisir «\u00a0{name}\u00a0» pour confirmer",
   delete_permanently: "Effacer définitivement",
