@@ -113,8 +113,6 @@ export function alarm(alarmId: string, change: Partial<AlarmView> = {}): AlarmVi
     state: "raised",
     level: "alarm",
     text: "No motion",
-    code: "no-motion",
-    parameters: {},
     by: "",
     raised_ms: 0,
     last_raised_ms: 0,

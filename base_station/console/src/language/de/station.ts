@@ -37,7 +37,6 @@ export const connection: Part<"connection"> = {
   trying: "Neuer Verbindungsversuch läuft.",
   nothing_updated: "Hier wird nichts aktualisiert.",
   lost_since: "Verbindung zur Station verloren, {age}.",
-  lost_spoken: "Verbindung zur Station verloren",
   unreachable: "Die Basisstation ist nicht erreichbar.",
   outcome_unknown:
     "Keine Antwort von der Basisstation. Prüfen Sie, ob der Befehl hinausging, bevor Sie ihn wiederholen.",

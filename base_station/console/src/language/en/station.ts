@@ -36,7 +36,6 @@ export const connection = {
   trying: "Trying to connect again.",
   nothing_updated: "Nothing here is being updated.",
   lost_since: "Connection to the station lost {age}.",
-  lost_spoken: "Connection to the station lost",
   unreachable: "The base station cannot be reached.",
   outcome_unknown: "No reply from the base station. Check whether the order went out before repeating it.",
   answered: "The station answered {status, number}.",

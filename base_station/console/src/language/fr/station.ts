@@ -37,7 +37,6 @@ export const connection: Part<"connection"> = {
   trying: "Nouvelle tentative de connexion.",
   nothing_updated: "Rien n’est mis à jour ici.",
   lost_since: "Connexion à la station perdue {age}.",
-  lost_spoken: "Connexion à la station perdue",
   unreachable: "La station de base est injoignable.",
   outcome_unknown: "Pas de réponse de la station de base. Vérifiez si l’ordre est parti avant de le répéter.",
   answered: "La station a répondu {status, number}.",
