@@ -45,7 +45,8 @@ _FIND = """
   for (const one of root.querySelectorAll("button, select, input, summary, a")) {
     if (!isShown(one)) continue;
     const box = one.getBoundingClientRect();
-    if (Math.min(box.width, box.height) < smallestTarget && !["checkbox", "radio"].includes(one.type))
+    const isInLabel = ["checkbox", "radio"].includes(one.type);
+    if (Math.min(box.width, box.height) < smallestTarget && !isInLabel)
       found.push(`too small to hit: ${said(one)}`);
     const left = seen(one);
     const [x, y] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
