@@ -219,7 +219,7 @@ def constants_table(decisions: Sequence[Decision]) -> Table:
     table.add_column("value", justify="right")
     kinds = list(decisions[0].walks) if decisions else []
     for kind in kinds:
-        table.add_column(kind, justify="right")
+        table.add_column(kind, justify="right", no_wrap=True)
     for title in ("rows, %", "error x", "worst x", "stated x", "silent"):
         table.add_column(title, justify="right")
     for one in decisions:
@@ -227,7 +227,7 @@ def constants_table(decisions: Sequence[Decision]) -> Table:
         table.add_row(
             one.constant,
             f"{one.value:g}",
-            *(f"{one.walks[kind]} of {one.looked_at[kind]}" for kind in kinds),
+            *(f"{one.walks[kind]}/{one.looked_at[kind]}" for kind in kinds),
             f"{100.0 * one.rows:.1f}",
             *(figures if one.decides else ("", "", "")),
             str(one.silent or ""),
