@@ -61,6 +61,7 @@ export const SCOPES = [
   "live",
   "people",
   "pins",
+  "radio",
   "recordings",
   "replays",
   "samples",
@@ -280,6 +281,11 @@ export const startReplay = (incidentId: string) =>
 export const changeReplay = (replayId: string, change: ReplayChange) =>
   call<void>("POST", `/replays/${id(replayId)}`, change);
 export const endReplay = (replayId: string) => call<void>("DELETE", `/replays/${id(replayId)}`);
+
+export const radio = (incidentId: string) => call<answers.RadioAnswer>("GET", `/incidents/${id(incidentId)}/radio`);
+/** The audio of a window, second for second; a player asks for it in parts. */
+export const radioPath = (incidentId: string, channel: string, fromMs: number, lengthMs: number) =>
+  `${BASE}/incidents/${id(incidentId)}/radio/${id(channel)}?from_ms=${fromMs}&length_ms=${lengthMs}`;
 
 export const LIVE_PATH = `${BASE}/live`;
 export const replayPath = (replayId: string) => `${BASE}/replays/${id(replayId)}/live`;

@@ -11,6 +11,7 @@ import { dialogUnit } from "../uiState";
 import type { AlarmView } from "../wire";
 import { t } from "../language/translate";
 import { Dialog } from "./Dialog";
+import { HearAlarm } from "./HearAlarm";
 import { UnitTimeline } from "./TimelineDialog";
 
 const ABOUT_MS = 60_000; // before and after
@@ -48,6 +49,7 @@ function Reason({ alarm }: { alarm: AlarmView }) {
     <section aria-label={alarmLabel(alarm)}>
       <h3>{alarmText(alarm)}</h3>
       {found && <Thresholds explanation={found} />}
+      {found && <HearAlarm raisedMs={found.raised_ms} />}
       {found && (
         <UnitTimeline
           unitId={alarm.unit_id}

@@ -5,6 +5,7 @@ import { dateAndTime, problemsOf, timeSince, zone } from "../format";
 import type { GapView } from "../wire";
 import { t } from "../language/translate";
 import { Icon } from "./Icon";
+import { RadioPlayer } from "./RadioPlayer";
 import { Transport } from "./Transport";
 
 interface Props {
@@ -47,6 +48,7 @@ export function ReplayBar({ replay, live }: Props) {
         </>
       )}
       {state && <Transport key={replay.id} replay={replay} state={state} />}
+      {state && <RadioPlayer key={`radio ${replay.id}`} replay={replay} state={state} />}
     </section>
   );
 }

@@ -57,6 +57,7 @@ export const scope: Part<"scope"> = {
   live: "Live",
   people: "Personen",
   pins: "Fixpunkte",
+  radio: "Funk",
   recordings: "Aufzeichnungen",
   replays: "Wiedergaben",
   samples: "Messwerte",

@@ -57,6 +57,7 @@ export const audit_action: Part<"audit_action"> = {
   StartedReplay: "Wiedergabe begonnen",
   EndedReplay: "Wiedergabe beendet",
   FetchedRecording: "Aufzeichnung geholt",
+  HeardRadio: "Funk abgehört",
   StoppedRecording: "Aufzeichnung angehalten",
   PostedAlert: "Meldung eingereicht",
   TakeOverByHand: "Von Hand übernommen",

@@ -14,6 +14,7 @@ import { activity, posture, mobility, link, heat, battery, member, worn } from "
 import { order, delivery } from "./orders";
 import { board, radio, headcount, card, fact, list, par } from "./people";
 import { anchor, base_map, beacon, plan, compass, trail, mark } from "./plan";
+import { radio_audio } from "./radio_audio";
 import { replay } from "./replay";
 import { route } from "./rescue";
 import { crew, enrolment, draft, erase } from "./setup";
@@ -70,6 +71,7 @@ export const de: Catalogue = {
   plan,
   posture,
   radio,
+  radio_audio,
   replay,
   role,
   route,

@@ -56,6 +56,7 @@ export const scope = {
   live: "live",
   people: "people",
   pins: "pins",
+  radio: "radio",
   recordings: "recordings",
   replays: "replays",
   samples: "samples",

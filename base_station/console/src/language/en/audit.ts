@@ -56,6 +56,7 @@ export const audit_action = {
   StartedReplay: "Started replay",
   EndedReplay: "Ended replay",
   FetchedRecording: "Fetched recording",
+  HeardRadio: "Listened to the radio",
   StoppedRecording: "Stopped recording",
   PostedAlert: "Posted alert",
   TakeOverByHand: "Take over by hand",

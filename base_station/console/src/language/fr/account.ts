@@ -57,6 +57,7 @@ export const scope: Part<"scope"> = {
   live: "direct",
   people: "personnes",
   pins: "repères",
+  radio: "radio",
   recordings: "enregistrements",
   replays: "relectures",
   samples: "mesures",

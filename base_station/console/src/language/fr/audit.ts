@@ -57,6 +57,7 @@ export const audit_action: Part<"audit_action"> = {
   StartedReplay: "Relecture commencée",
   EndedReplay: "Relecture terminée",
   FetchedRecording: "Enregistrement récupéré",
+  HeardRadio: "Radio écoutée",
   StoppedRecording: "Enregistrement arrêté",
   PostedAlert: "Alerte déposée",
   TakeOverByHand: "Reprise manuelle",
