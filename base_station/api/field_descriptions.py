@@ -16,7 +16,6 @@ FIELDS: Mapping[str, str] = {
     "UnitTarget.unit_id": "The one unit that is meant.",
     "Reference.unit_id": "The unit whose barometer stays where it is; empty: none.",
     "Confirmation.unit_id": "The unit whose wearer has answered by radio.",
-    "AlarmView.unit_id": "The unit that it is about; empty: the station itself.",
     "AlarmWithLife.unit_id": "The unit that it is about; empty: the station itself.",
     "PastAlarm.unit_id": "The unit that it was about; empty: the station itself.",
     "other_unit_id": "The unit of the other person of the meeting.",
@@ -53,12 +52,17 @@ FIELDS: Mapping[str, str] = {
     "registered": "Whether messages of the unit count; else it is only listed.",
     "people": "Names of those who wore the unit in the incident.",
     "by": "Who did it: a user's name.",
-    "AlarmView.by": "Who acknowledged or resolved it, or the cause that did; empty: still raised.",
     "AlarmWithLife.by": "Who acknowledged or resolved it, or the cause that did.",
     "PastAlarm.by": "Who acknowledged or resolved it, or the cause that did.",
     "AlarmHistoryEntry.by": "Who made the change; empty: the rule itself.",
     "PinView.by": "Who set it; the unit's id where the unit itself saw a beacon or tag.",
     "note": "Free text of the person who did it.",
+    "Resolution.reason": "Why it is over; null: no reason is given.",
+    "AlarmWithLife.reason": "Code of the reason of the user who resolved it; empty: none given.",
+    "PastAlarm.reason": "Code of the reason of the user who resolved it; empty: none given.",
+    "AlarmHistoryEntry.reason": "Code of the reason of the user who resolved it; empty: none.",
+    "peak": "Worst value so far of what the rule measures: degrees Celsius (heat), part of the "
+    "heat budget (heat-dose), lowest level (battery), else seconds; null: nothing was measured.",
     "LogSegmentAnswer.note": "What was repaired or lost when the file was recovered; empty: "
     "nothing.",
     # ---- login, users and tokens
@@ -207,7 +211,6 @@ FIELDS: Mapping[str, str] = {
     "rule": "Name of the rule that raised it.",
     "priority": "1 immediate, 2 soon, 3 information.",
     "state": "Where it stands.",
-    "AlarmView.state": "raised, acknowledged or resolved.",
     "AlarmWithLife.state": "raised, acknowledged or resolved.",
     "PastAlarm.state": "raised, acknowledged or resolved.",
     "AlarmHistoryEntry.state": "raised, acknowledged or resolved.",
@@ -247,7 +250,8 @@ FIELDS: Mapping[str, str] = {
     "command_id": "The command's id.",
     "kind": "Which kind it is.",
     "CommandView.kind": "evacuate, par_request, text, locate, set_position_rate, or "
-    "mayday_acknowledged, which the station sends to the unit when that alarm is acknowledged.",
+    "mayday_acknowledged or alarm_acknowledged, which the station sends to the unit when an alarm "
+    "about its wearer is acknowledged.",
     "PinView.kind": "place, start, meeting, beacon or tag.",
     "Progress.kind": "person or incident.",
     "issued_by": "The user who gave it.",

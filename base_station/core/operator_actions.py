@@ -9,7 +9,11 @@ from typing import assert_never
 from base_station.core import accountability, idempotency
 from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.closed_incidents import last_closed_ns
-from base_station.core.commands import command_tracker, mayday_acknowledgements
+from base_station.core.commands import (
+    alarm_acknowledgements,
+    command_tracker,
+    mayday_acknowledgements,
+)
 from base_station.core.events import (
     ClosedIncidentChanged,
     NamesErased,
@@ -164,9 +168,10 @@ class ActionHandler:
         yield alarm
         incident = state.open_incident_of(state.units[alarm.unit_id]) if alarm.unit_id else None
         incident_id = "" if incident is None else incident.incident_id
-        command = mayday_acknowledgements.acknowledge(state, by, alarm, incident_id)
-        if command is not None:
-            yield command
+        for of_rule in (mayday_acknowledgements, alarm_acknowledgements):
+            command = of_rule.acknowledge(state, by, alarm, incident_id)
+            if command is not None:
+                yield command
 
     def _station_action(
         self, state: StationState, action: ReportProblem | SetThresholds | SetFuser | DoneApart

@@ -18,7 +18,11 @@ from base_station.core import (
 from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.alarms.interface import AlarmRule
 from base_station.core.checkpoint import Checkpoint
-from base_station.core.commands import command_tracker, mayday_acknowledgements
+from base_station.core.commands import (
+    alarm_acknowledgements,
+    command_tracker,
+    mayday_acknowledgements,
+)
 from base_station.core.events import (
     ClosedIncidentChanged,
     CommandChanged,
@@ -152,7 +156,11 @@ class StationPipeline:
                 outputs.append(UnitChanged(unit.unit_id))
             alarms = self._alarms.review(state, unit)
             outputs.extend(alarm.change(state.next_header()) for alarm in alarms)
-        over = [*command_tracker.expire(state), *mayday_acknowledgements.withdraw(state)]
+        over = [
+            *command_tracker.expire(state),
+            *mayday_acknowledgements.withdraw(state),
+            *alarm_acknowledgements.withdraw(state),
+        ]
         outputs.extend(CommandChanged(one.command_id) for one in over)
         outputs.extend(_external_changed(external_markers.expire(state)))
         update_trust_tallies(state)

@@ -296,7 +296,9 @@ class _Gathering:
             text = texts.alarm_raised(change.text, change.level)
             is_urgent = alarm.priority == _EMERGENCY
         else:
-            text, is_urgent = texts.alarm_ended(change.state, change.text), False
+            peak = "" if change.peak is None else texts.alarm_peak(alarm.rule, change.peak)
+            text = texts.alarm_ended(change.state, change.text, change.reason, change.note, peak)
+            is_urgent = False
         return TimelineEntry(
             change.t_ns, texts.ALARM, self._shown(text), self._shown(change.by), is_urgent
         )

@@ -92,6 +92,19 @@ ORDER_NAMES = {
 }
 
 
+# Why an alarm was resolved, by the codes of ``base_station.core.alarms.resolution_reasons``.
+REASONS: Mapping[str, str] = {
+    "false_alarm": "false alarm",
+    "member_well": "member is well",
+    "found_and_helped": "found and helped",
+    "cause_removed": "cause removed",
+    "unit_fault": "fault of the unit",
+    "training": "training or test",
+    "other": "other reason",
+}
+PEAK = "measured peak"
+
+
 def clock_time(t_ns: int) -> str:
     return f"{datetime.fromtimestamp(t_ns // 1_000_000_000, UTC):%H:%M:%S}"
 
@@ -159,8 +172,22 @@ def alarm_raised(text: str, level: str) -> str:
     return f"{text} ({level})" if level else text
 
 
-def alarm_ended(state: str, text: str) -> str:
-    return f"{state}: {text}"
+def alarm_ended(state: str, text: str, reason: str, note: str, peak: str) -> str:
+    """An acknowledgement or a resolution; empty: no reason, no note, nothing measured."""
+    why = REASONS.get(reason, reason.replace("_", " "))
+    words = [f"{state}: {text}", why, note, f"{PEAK} {peak}" if peak else ""]
+    return "; ".join(one for one in words if one)
+
+
+def alarm_peak(rule: str, peak: float) -> str:
+    """Worst measured value, in the unit of the rule."""
+    match rule:
+        case "heat":
+            return f"{peak:.0f} °C"
+        case "heat-dose" | "battery":
+            return f"{peak:.0%}"
+        case _:
+            return duration(peak)
 
 
 def more_in_timeline(count: int) -> str:

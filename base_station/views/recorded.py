@@ -65,9 +65,9 @@ def _named_person(person: PersonView, people: PersonLookup) -> PersonView:
 
 
 def named_alarm(alarm: AlarmView, people: PersonLookup) -> AlarmView:
-    text, by = shown_text(alarm.text, people), shown_text(alarm.by, people)
+    texts = {name: shown_text(getattr(alarm, name), people) for name in ("text", "by", "note")}
     parameters = named_parameters(alarm.parameters, people)
-    return msgspec.structs.replace(alarm, text=text, by=by, parameters=parameters)
+    return msgspec.structs.replace(alarm, **texts, parameters=parameters)
 
 
 def named_command(command: CommandView, people: PersonLookup) -> CommandView:

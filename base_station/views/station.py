@@ -79,6 +79,9 @@ def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm, people: PersonLookup) -
             if isinstance(alarm, StoredAlarm)
             else parameters_view(alarm.parameters, people)
         ),
+        reason=alarm.reason,
+        note=shown_text(alarm.note, people),
+        peak=alarm.peak,
     )
 
 

@@ -128,6 +128,9 @@ class AlarmView(Answer, frozen=True):
     changed_ms: int
     code: str = ""  # of the sentence; empty: recorded by an earlier version, there is only the text
     parameters: AlarmParametersView = AlarmParametersView()
+    reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
+    note: str = ""  # the user's words about it
+    peak: float | None = None  # worst value until changed_ms of what the rule measures
 
 
 class DutyView(Answer, frozen=True):

@@ -92,6 +92,11 @@ class CommandHandler:
         self._remember(notified)
         return notified
 
+    def has_notified(self, command_id: str) -> bool:
+        """True if the newest answer is that an output has notified the wearer."""
+        reply = self._replies.get(command_id)
+        return reply is not None and reply.state is CommandState.NOTIFIED
+
     def _remember(self, reply: CommandReply) -> None:
         self._replies[reply.command_id] = reply
         if len(self._replies) > REMEMBERED:

@@ -20,7 +20,7 @@ from shared.worker import UNTIL_WOKEN, Worker
 
 logger = logging.getLogger(__name__)
 
-NOTIFIES_WEARER = ASKS_WEARER | {CommandKind.LOCATE}
+NOTIFIES_WEARER = ASKS_WEARER | {CommandKind.LOCATE, CommandKind.ALARM_ACKNOWLEDGED}
 _MOST_KEPT = 100
 _CLOSE_TIMEOUT_S = 5.0  # a disk that hangs is left behind
 

@@ -42,6 +42,10 @@ class WearerNotifier:
         self._linked_ns = clock.monotonic_ns()  # when there last was a link
 
     def start(self) -> None:
+        for command in self._open_commands:  # played before a restart: it is of then
+            once = command.kind is CommandKind.ALARM_ACKNOWLEDGED
+            if once and self._handler.has_notified(command.command_id):
+                self._open_commands.close_one(command.command_id)
         self._outputs.start()
 
     @property

@@ -22,6 +22,7 @@ class Signal(StrEnum):
     PAR_REQUEST = "PAR request"
     TEXT = "message"
     MAYDAY_ACKNOWLEDGED = "mayday acknowledged"
+    ALARM_ACKNOWLEDGED = "alarm acknowledged"
     LOCATE = "locate"
     MAYDAY_SENT = "mayday sent"
     NOT_ON_FOOT = "worn wrongly"
@@ -83,6 +84,7 @@ PATTERNS: dict[Signal, tuple[Pulse, ...]] = {
         Pulse(0.2, 0.1, _MIDDLE_HZ),
         Pulse(1.2, 1.0, _LOW_HZ),
     ),
+    Signal.ALARM_ACKNOWLEDGED: (Pulse(1.2, 0.2, _MIDDLE_HZ),) + (Pulse(0.2, 0.1, _LOW_HZ),) * 2,
     Signal.MAYDAY_SENT: (Pulse(0.8, 0.2, _LOW_HZ), Pulse(0.8, 1.0, _HIGH_HZ)),
     Signal.NOT_ON_FOOT: (Pulse(0.5, 0.2, _LOW_HZ),) * 2 + (Pulse(0.1, 1.0, _LOW_HZ),),
     Signal.LINK_LOST: (Pulse(0.6, 0.3, _MIDDLE_HZ), Pulse(0.6, 1.0, _LOW_HZ)),
@@ -98,6 +100,7 @@ _SENTENCES = {
     Signal.TEXT: "Message:",
     Signal.LOCATE: "You are being located.",
     Signal.MAYDAY_ACKNOWLEDGED: "The commander knows of your mayday.",
+    Signal.ALARM_ACKNOWLEDGED: "The commander knows of your alarm.",
     Signal.MAYDAY_SENT: "Your mayday has reached the station.",
     Signal.NOT_ON_FOOT: "This unit is not on a foot. Your position is not known.",
     Signal.LINK_LOST: "No link. The commander does not see you.",

@@ -48,11 +48,14 @@ class AlarmChange(msgspec.Struct, frozen=True):
     state: AlarmState
     level: str  # within the rule: "pre-alert", "critical" ...
     text: str  # for a person
-    by: str  # who acknowledged, or what resolved it
+    by: str  # who acknowledged or resolved it, or what resolved it
     raised_ns: int  # station time of the first change
     last_raised_ns: int  # when it was raised anew last: worse, or again; or ``raised_ns``
     code: str = ""  # of the sentence in ``text``; empty: of an earlier version
     parameters: AlarmParameters = NO_PARAMETERS  # what the sentence says besides
+    reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
+    note: str = ""  # the user's words about it
+    peak: float | None = None  # worst value so far of what the rule measures, in its unit
 
     def to_wire(self) -> alarm_pb2.AlarmChange:
         wire = alarm_pb2.AlarmChange(
@@ -68,6 +71,9 @@ class AlarmChange(msgspec.Struct, frozen=True):
             raised_ns=self.raised_ns,
             last_raised_ns=self.last_raised_ns,
             code=self.code,
+            reason=self.reason,
+            note=self.note,
+            peak=self.peak,
         )
         put_fields(wire.parameters, self.parameters)
         return wire
@@ -88,4 +94,7 @@ class AlarmChange(msgspec.Struct, frozen=True):
             last_raised_ns=wire.last_raised_ns,
             code=wire.code,
             parameters=AlarmParameters(**get_fields(wire.parameters, AlarmParameters)),
+            reason=wire.reason,
+            note=wire.note,
+            peak=wire.peak if wire.HasField("peak") else None,
         )

@@ -22,12 +22,15 @@ class CommandKind(IntEnum):
     RESET_ALARM = 6
     MAYDAY_ACKNOWLEDGED = 7
     END_ORDER = 8
+    ALARM_ACKNOWLEDGED = 9
 
 
 # Done when the wearer has acknowledged it; the others are done when the unit has them.
 ASKS_WEARER = frozenset({CommandKind.EVACUATE, CommandKind.PAR_REQUEST, CommandKind.TEXT})
 # Those of the station itself, which follow from what an operator does; nobody orders them.
-OF_STATION = frozenset({CommandKind.MAYDAY_ACKNOWLEDGED, CommandKind.END_ORDER})
+OF_STATION = frozenset(
+    {CommandKind.MAYDAY_ACKNOWLEDGED, CommandKind.END_ORDER, CommandKind.ALARM_ACKNOWLEDGED}
+)
 
 
 class CommandState(IntEnum):

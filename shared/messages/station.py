@@ -45,6 +45,7 @@ class ResolveAlarm(msgspec.Struct, frozen=True):
     alarm_id: str
     note: str
     last_raised_ms: int = 0  # as above
+    reason: str = ""  # code of ``ResolutionReason``; empty: none was given
 
 
 class OpenIncident(msgspec.Struct, frozen=True):

@@ -657,17 +657,43 @@ PEOPLE = [
     }
     for index, name in enumerate(NAMES)
 ]
-PAST_ALARMS: list[dict[str, Any]] = [
-    {
-        "alarm_id": one.alarm_id,
-        "unit_id": one.unit_id,
-        "priority": one.priority,
-        "text": one.text,
-        "raised_ms": one.raised_ms - minutes * MINUTE_MS,
-        "raisings": [{"t_ms": one.raised_ms - minutes * MINUTE_MS, "text": one.text}],
+
+
+def life(alarm: wire.AlarmView, minutes: int = 0, **resolution: object) -> dict[str, Any]:
+    """An alarm as the list has it, raised so many minutes earlier; with a resolution it was
+    acknowledged after 9 s and resolved after 40 s.
+    """
+    raised_ms = alarm.raised_ms - minutes * MINUTE_MS
+    states = [(raised_ms, "raised", "", {})]
+    if resolution:
+        states.append((raised_ms + 9_000, "acknowledged", "mia", {}))
+        states.append((raised_ms + 40_000, "resolved", "chief", resolution))
+    sentence = {
+        "text": alarm.text,
+        "code": alarm.code,
+        "parameters": msgspec.to_builtins(alarm.parameters),
     }
-    for minutes, one in enumerate(bad_minute().alarms)
-]
+    none = {"reason": "", "note": "", "peak": alarm.peak}
+    changes = [
+        {
+            "t_ms": t_ms, "state": state, "level": alarm.level, "by": by, **sentence,
+            **none, **more,
+        }
+        for t_ms, state, by, more in states
+    ]  # fmt: skip
+    last = {name: changes[-1][name] for name in ("state", "by", "reason", "note", "peak")}
+    return {
+        **msgspec.to_builtins(alarm),
+        **last,
+        "raised_ms": raised_ms,
+        "last_raised_ms": raised_ms,
+        "changed_ms": changes[-1]["t_ms"],
+        "raisings": [{"t_ms": raised_ms, **sentence}],
+        "changes": changes,
+    }
+
+
+PAST_ALARMS = [life(one, minutes) for minutes, one in enumerate(bad_minute().alarms)]
 _FIGURES = dict.fromkeys(("ce50_m", "ve50_m", "se50_m"), 0.4) | dict.fromkeys(
     ("ce95_m", "ve95_m", "se95_m"), 2.4
 )

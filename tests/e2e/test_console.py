@@ -12,7 +12,6 @@ from tests.e2e.conftest import log_in
 from tests.e2e.console_page import (
     barriers,
     close,
-    confirm,
     menu,
     metres_north,
     press,
@@ -61,8 +60,16 @@ def test_a_mayday_is_seen_acknowledged_and_resolved(
     press(alarm.get_by_role("button", name="Acknowledge"))
     expect(alarm).to_contain_text("acknowledged by admin")
     wearable.cancel_mayday()
-    confirm(alarm, "Resolve")
+    press(alarm.get_by_role("button", name="Resolve"))
+    asked = page.get_by_role("dialog", name="Resolve this alarm")
+    asked.get_by_label("Note").fill("on the stairs")
+    press(asked.get_by_role("button", name="Found and helped"))
     expect(alarm).to_have_count(0)
+    strip.get_by_role("button", name="All alarms").click()
+    life = page.get_by_role("dialog").get_by_role("listitem").filter(has_text="Mayday from")
+    expect(life.first).to_contain_text("resolved (admin: Found and helped, on the stairs)")
+    expect(life.first).to_contain_text("acknowledged (admin)")
+    close(page.get_by_role("dialog"))
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])

@@ -95,6 +95,7 @@ def test_it_tells_what_happened_and_who_did_it(written: bytes) -> None:
         "Alarm Mayday from Carl Berg (mayday)",
         "22:16:56 Order Evacuate to everyone: North exit chief",
         "Alarm acknowledged: Mayday from Carl Berg chief",
+        "Alarm resolved: Mayday from Carl Berg; found and helped; brought out chief",
         "Incident closed",
     ):
         assert words in timeline

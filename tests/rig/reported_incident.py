@@ -174,7 +174,7 @@ def _orders(script: Script, second: int) -> None:
             script.reply("FF-02", "c2", CommandState.RECEIVED)
         case 280:
             mayday = next(one for one in script.alarms if one.rule == "mayday")
-            script.act(ResolveAlarm(mayday.alarm_id, "brought out"))
+            script.act(ResolveAlarm(mayday.alarm_id, "brought out", reason="found_and_helped"))
         case _:
             pass
 

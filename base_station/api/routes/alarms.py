@@ -5,10 +5,10 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from typing import Annotated
 
-import msgspec
 from fastapi import APIRouter, Depends
 from pydantic import Field
 
+from base_station.api.alarm_lives import AlarmWithLife, with_life
 from base_station.api.authentication import Viewer
 from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import MAX_TIME_MS, AlarmId, Form, Limit, Note, window
@@ -16,13 +16,11 @@ from base_station.api.idempotent_request import Perform
 from base_station.api.problems import Problem
 from base_station.api.refusals import not_found_if_unknown
 from base_station.api.services import Services, Station
+from base_station.core.alarms.resolution_reasons import ResolutionReason
 from base_station.report.alarm_explanation import Crossing
 from base_station.report.contents import Series
 from base_station.storage.db.window import Window
-from base_station.views.alarm_parameters import stored_parameters_view
 from base_station.views.answer import Answer, to_ms
-from base_station.views.station import alarm_view
-from base_station.views.wire import AlarmParametersView, AlarmView
 from shared.errors import LogError
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
@@ -30,22 +28,6 @@ router = APIRouter(tags=["alarms"])
 
 _NO_ALARM = "There is no such alarm."
 _SERIES = {"battery": "battery_level"}  # under another name in the answer
-
-
-class AlarmHistoryEntry(Answer, frozen=True):
-    """One in the life of an alarm."""
-
-    t_ms: int
-    state: str
-    level: str
-    text: str
-    by: str
-    code: str
-    parameters: AlarmParametersView
-
-
-class AlarmWithLife(AlarmView, frozen=True, kw_only=True):
-    changes: tuple[AlarmHistoryEntry, ...]  # oldest first
 
 
 class TracePoint(Answer, frozen=True):
@@ -87,17 +69,18 @@ class Acknowledgement(Form):
 
 
 class Resolution(Acknowledgement):
+    reason: ResolutionReason | None = None
     note: Note = ""
 
 
 @router.get("/alarms")
 def list_alarms(
     station: CurrentStation, _: Viewer, when: Annotated[Window, Depends(window)], limit: Limit = 100
-) -> list[AlarmView]:
+) -> list[AlarmWithLife]:
     """Those raised in the window, newest first."""
-    return [
-        alarm_view(alarm, station.roster.known) for alarm in station.records.alarms(when, limit)
-    ]
+    alarms = station.records.alarms(when, limit)
+    lives = station.records.alarm_lives([alarm.alarm_id for alarm in alarms])
+    return [with_life(alarm, lives[alarm.alarm_id], station.roster) for alarm in alarms]
 
 
 @router.get("/alarms/{alarm_id}")
@@ -105,21 +88,7 @@ def get_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> AlarmWit
     alarm = station.records.alarm(alarm_id)
     if alarm is None:
         raise Problem(404, _NO_ALARM)
-    shown = station.roster.shown
-    changes = tuple(
-        AlarmHistoryEntry(
-            to_ms(life.t_ns),
-            life.state,
-            life.level,
-            shown(life.text),
-            shown(life.by),
-            life.code,
-            stored_parameters_view(life.parameters, station.roster.known),
-        )
-        for life in station.records.alarm_life(alarm_id)
-    )
-    view = alarm_view(alarm, station.roster.known)
-    return AlarmWithLife(**msgspec.structs.asdict(view), changes=changes)
+    return with_life(alarm, station.records.alarm_life(alarm_id), station.roster)
 
 
 @router.get("/alarms/{alarm_id}/explanation")
@@ -166,7 +135,11 @@ def acknowledge(
 @router.post("/alarms/{alarm_id}/resolve", status_code=204)
 def resolve(alarm_id: AlarmId, resolution: Resolution, station: Station, perform: Perform) -> None:
     with _not_found_if_unknown(station, alarm_id):
-        perform(ResolveAlarm(alarm_id, resolution.note, resolution.last_raised_ms))
+        perform(
+            ResolveAlarm(
+                alarm_id, resolution.note, resolution.last_raised_ms, resolution.reason or ""
+            )
+        )
 
 
 def _crossing(found: Crossing | None) -> ThresholdCrossing | None:

@@ -12,6 +12,7 @@ import msgspec
 from fastapi import APIRouter, Depends
 from pydantic import BaseModel, Field
 
+from base_station.api.alarm_lives import AlarmWithLife, with_life
 from base_station.api.authentication import Viewer
 from base_station.api.current_tables import CurrentStation
 from base_station.api.forms import (
@@ -39,8 +40,8 @@ from base_station.storage.db.roster import Roster
 from base_station.storage.db.window import FOREVER_NS, Window
 from base_station.views.alarm_parameters import stored_parameters_view
 from base_station.views.answer import Answer, to_ms, to_ms_or_none
-from base_station.views.station import alarm_view, dispatch_view
-from base_station.views.wire import AlarmParametersView, AlarmView, DispatchView
+from base_station.views.station import dispatch_view
+from base_station.views.wire import AlarmParametersView, DispatchView
 from shared.clock import NS_PER_S
 from shared.messages.station import CloseIncident, OpenIncident
 
@@ -70,7 +71,7 @@ class Raising(Answer, frozen=True):
     parameters: AlarmParametersView
 
 
-class PastAlarm(AlarmView, frozen=True, kw_only=True):
+class PastAlarm(AlarmWithLife, frozen=True, kw_only=True):
     raisings: tuple[Raising, ...]  # in the incident, at first and anew, oldest first
 
 
@@ -239,7 +240,8 @@ def _past_alarm(
         for one in (*life[:1], *anew)
         if one.t_ns < was_open.until_ns
     )
-    return PastAlarm(**msgspec.structs.asdict(alarm_view(alarm, roster.known)), raisings=raisings)
+    view = with_life(alarm, life, roster)
+    return PastAlarm(**msgspec.structs.asdict(view), raisings=raisings)
 
 
 def _is_raised_anew(

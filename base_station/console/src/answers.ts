@@ -31,6 +31,9 @@ export interface AlarmHistoryEntry {
   by: string;
   code: string;
   parameters: AlarmParametersView;
+  reason: string;
+  note: string;
+  peak: number | null;
 }
 
 export interface AlarmParametersView {
@@ -48,22 +51,6 @@ export interface AlarmParametersView {
   calibrated_s?: number | null;
 }
 
-export interface AlarmView {
-  alarm_id: string;
-  rule: string;
-  unit_id: string;
-  priority: number;
-  state: string;
-  level: string;
-  text: string;
-  by: string;
-  raised_ms: number;
-  last_raised_ms: number;
-  changed_ms: number;
-  code: string;
-  parameters: AlarmParametersView;
-}
-
 export interface AlarmWithLife {
   alarm_id: string;
   rule: string;
@@ -78,6 +65,9 @@ export interface AlarmWithLife {
   changed_ms: number;
   code: string;
   parameters: AlarmParametersView;
+  reason: string;
+  note: string;
+  peak: number | null;
   changes: AlarmHistoryEntry[];
 }
 
@@ -516,6 +506,10 @@ export interface PastAlarm {
   changed_ms: number;
   code: string;
   parameters: AlarmParametersView;
+  reason: string;
+  note: string;
+  peak: number | null;
+  changes: AlarmHistoryEntry[];
   raisings: Raising[];
 }
 
@@ -694,8 +688,11 @@ export interface ReplayChange {
 
 export interface Resolution {
   last_raised_ms: number;
+  reason?: ResolutionReason | null;
   note?: string;
 }
+
+export type ResolutionReason = "false_alarm" | "member_well" | "found_and_helped" | "cause_removed" | "unit_fault" | "training" | "other";
 
 export interface Rest {
   resting: boolean;

@@ -155,11 +155,18 @@ export const wholeIncident = (incidentId: string) => file(`/incidents/${id(incid
 export const exported = (incidentId: string, format: string, kind: string) =>
   file(`/incidents/${id(incidentId)}/export/${id(format)}?kind=${kind}`);
 
+/** Raised from then on, with their lives. */
+export const alarms = (fromMs: number) =>
+  fetchAllPages<answers.AlarmWithLife>("/alarms", (alarm) => alarm.raised_ms, `&from_ms=${fromMs}`);
+/** Which raising of it is on the screen. */
+export type SeenAlarm = Pick<AlarmView, "alarm_id" | "last_raised_ms">;
 /** As it is seen: the station refuses it for one that has been raised anew since. */
-export const acknowledge = ({ alarm_id, last_raised_ms }: AlarmView) =>
+export const acknowledge = ({ alarm_id, last_raised_ms }: SeenAlarm) =>
   act<void>("POST", `/alarms/${id(alarm_id)}/acknowledge`, { last_raised_ms });
-export const resolve = ({ alarm_id, last_raised_ms }: AlarmView) =>
-  act<void>("POST", `/alarms/${id(alarm_id)}/resolve`, { last_raised_ms });
+export const resolve = (
+  { alarm_id, last_raised_ms }: SeenAlarm,
+  { reason, note }: { reason: answers.ResolutionReason; note: string },
+) => act<void>("POST", `/alarms/${id(alarm_id)}/resolve`, { last_raised_ms, reason, note });
 
 export const sendCommand = (kind: CommandKind, target: Target, text: string, incidentId?: string) =>
   act<CommandView>("POST", "/commands", { kind, target, text, incident_id: incidentId });

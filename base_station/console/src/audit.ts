@@ -14,6 +14,7 @@ const COMMANDS: readonly (PlainKey | "")[] = [
   "audit_value.reset_alarm",
   "order.mayday_acknowledged",
   "audit_value.end_of_order",
+  "order.alarm_acknowledged",
 ];
 /** Says nothing to a person. */
 const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "check_in_id", "entry_id", "term"]);

@@ -267,6 +267,11 @@ const FAULT_PREFIXES: Readonly<Record<string, string>> = {
 };
 const MAX_FAULT_LENGTH = 70;
 
+/** The kind of an alarm: "No motion", "Heat". */
+export function ruleWord(rule: string): string {
+  return knownLabel("alarm_label", rule) ?? inWords(rule);
+}
+
 /** An alarm in short, for a place that says already whose it is: "Heat: warning", "Link lost".  A unit
  * may have several faults, so each says which it is. */
 export function alarmLabel(alarm: AlarmView): string {
@@ -278,9 +283,13 @@ export function alarmLabel(alarm: AlarmView): string {
 
 /** Of a rule of another version. */
 function alarmCode({ rule, level }: AlarmView): string {
+  const word = inWords(rule);
+  return level === "alarm" || word.toLowerCase().includes(level) ? word : `${word}: ${level}`;
+}
+
+function inWords(rule: string): string {
   const words = rule.replaceAll(/[-_]/g, " ");
-  const word = words.charAt(0).toUpperCase() + words.slice(1);
-  return level === "alarm" || words.includes(level) ? word : `${word}: ${level}`;
+  return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 /** The words of the unit or agent that has a fault; empty: it has none. */

@@ -136,12 +136,16 @@ export function page(untilMs: number | undefined, limit = PAGE): string {
 }
 
 /** All pages of a list that is shown whole. */
-export async function fetchAllPages<T>(path: string, timeOf: (entry: T) => number): Promise<T[]> {
+export async function fetchAllPages<T>(
+  path: string,
+  timeOf: (entry: T) => number,
+  query = "",
+): Promise<T[]> {
   const all: T[] = [];
   for (;;) {
     const last = all.at(-1);
-    const query = page(last && timeOf(last), MAX_PAGE);
-    const older = await call<T[]>("GET", path + query);
+    const pageOf = page(last && timeOf(last), MAX_PAGE);
+    const older = await call<T[]>("GET", path + pageOf + query);
     all.push(...older);
     if (older.length < MAX_PAGE) return all;
   }

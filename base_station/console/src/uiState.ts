@@ -1,5 +1,6 @@
 /** What the person looks at: the chosen unit and floor, the open dialog, what was last said. */
 import { signal } from "@preact/signals";
+import type { AlarmView } from "./wire";
 
 export const selectedUnit = signal<string | null>(null);
 /** Counts up when somebody asks to see the selected unit on the plan. */
@@ -29,10 +30,15 @@ export type DialogName =
   | "text"
   | "timeline"
   | "alarm_reason"
+  | "alarms"
+  | "resolve"
   | "dispatch";
 export const dialog = signal<DialogName | null>(null);
 /** The unit that the dialog is about, where it is about one. */
 export const dialogUnit = signal<string | null>(null);
+
+/** The alarms whose reason the dialog asks for. */
+export const resolving = signal<readonly AlarmView[]>([]);
 
 /** Number of the dispatch that the dialog is about. */
 export const dialogDispatch = signal<string | null>(null);
@@ -66,6 +72,11 @@ export function find(unitId: string, on: number | null): void {
 export function openDialog(name: DialogName, unitId: string | null = null): void {
   dialogUnit.value = unitId;
   dialog.value = name;
+}
+
+export function openResolve(alarms: readonly AlarmView[]): void {
+  resolving.value = alarms;
+  openDialog("resolve");
 }
 
 export function openDispatch(number: string): void {

@@ -85,6 +85,9 @@ export interface AlarmView {
   changed_ms: number;
   code: string;
   parameters: AlarmParametersView;
+  reason: string;
+  note: string;
+  peak: number | null;
 }
 
 export interface DutyView {

@@ -119,6 +119,9 @@ export function alarm(alarmId: string, change: Partial<AlarmView> = {}): AlarmVi
     changed_ms: 0,
     code: "",
     parameters: {},
+    reason: "",
+    note: "",
+    peak: null,
     ...change,
   };
 }

@@ -136,7 +136,8 @@ class AlarmManager:
         state.alarms.pop(alarm.alarm_id, None)  # where it stood beside a newer one
         if alarm.rule == STATION_RULE:
             state.problems.pop(alarm.level, None)
-        return _resolve(state, alarm, f"{by}: {action.note}" if action.note else by)
+        alarm.reason, alarm.note = action.reason, action.note
+        return _resolve(state, alarm, by)
 
     def erase_names(self, state: StationState, unit: UnitState) -> None:
         """Erase what alarms say of the unit's wearers, and the notes of their resolution; that
@@ -146,6 +147,7 @@ class AlarmManager:
             if alarm.unit_id == unit.unit_id:
                 alarm.text, alarm.by = ERASED_TEXT, ERASED_TEXT if alarm.by else ""
                 alarm.code, alarm.parameters = "", NO_PARAMETERS
+                alarm.note = ERASED_TEXT if alarm.note else ""
 
     def _follow(
         self,
@@ -160,7 +162,10 @@ class AlarmManager:
             return None if current is None else _clear(state, rule, current, verdict)
         if current is None or (not current.is_open and _is_new(state, rule, current, verdict)):
             return self._raise(state, key, rule.name, unit_id, verdict)
-        return _move_level(state, rule, current, verdict) if current.is_open else None
+        if not current.is_open:
+            return None
+        current.peak = _worst(current.peak, verdict)
+        return _move_level(state, rule, current, verdict)
 
     def _raise(
         self, state: StationState, key: str, rule_name: str, unit_id: str, finding: Finding
@@ -181,6 +186,7 @@ class AlarmManager:
             changed_ns=state.t_ns,
             code=finding.code,
             parameters=finding.parameters,
+            peak=finding.measured,
         )
         state.alarms[key] = alarm
         return alarm
@@ -189,6 +195,12 @@ class AlarmManager:
 def _station_fault(state: StationState, part: str, text: str) -> Finding:
     parameters = AlarmParameters(part=part, fault=text)
     return Finding(part, WARNING, "station-fault", parameters, seen_ns=state.t_ns)
+
+
+def _worst(peak: float | None, finding: Finding) -> float | None:
+    if peak is None or finding.measured is None:
+        return finding.measured if peak is None else peak
+    return (min if finding.is_low else max)(peak, finding.measured)
 
 
 def _new_id(state: StationState, of: str) -> str:

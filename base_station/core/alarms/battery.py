@@ -39,4 +39,6 @@ class BatteryLow:
             "battery-low",
             AlarmParameters(member=unit.name, battery_fraction=battery),
             seen_ns=unit.status_ns,
+            measured=battery,
+            is_low=True,
         )

@@ -51,6 +51,7 @@ class Heat:
                 member=unit.name, temperature_degc=ambient_degc, heat_fraction=heat.dose
             ),
             seen_ns=heat.temperature_ns,
+            measured=ambient_degc,
         )
 
     def _level(self, ambient_degc: float, level: str) -> str:

@@ -37,4 +37,5 @@ class HeatDose:
             "heat-limit-late" if is_late else "heat-limit",
             AlarmParameters(member=unit.name),
             seen_ns=heat.temperature_ns,
+            measured=heat.dose,
         )

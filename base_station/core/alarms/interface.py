@@ -24,6 +24,8 @@ class Finding(msgspec.Struct, frozen=True):
     onset_ns: int = 0  # when it began; begun after an alarm was resolved, it is a new one
     latched: bool = False  # only a person resolves it
     about: int | str | None = None  # which of several of one unit: whose, or which fault
+    measured: float | None = None  # value that was judged, in the rule's unit; None: none
+    is_low: bool = False  # of values the lowest is the worst
 
     @property
     def text(self) -> str:

@@ -38,4 +38,5 @@ class LinkLost:
             AlarmParameters(member=unit.name, duration_s=silent_s),
             seen_ns=unit.last_message_ns,
             onset_ns=unit.last_message_ns,
+            measured=silent_s,
         )

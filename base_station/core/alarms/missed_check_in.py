@@ -44,6 +44,7 @@ class MissedCheckIn:
             seen_ns=duty.counts_from_ns,
             onset_ns=onset_ns,
             about=unit.wearer.from_ns(t_ns),
+            measured=(t_ns - duty.due_ns) / NS_PER_S,
         )
 
 

@@ -56,4 +56,5 @@ class NoMotion:
             onset_ns=onset_ns,
             latched=full,
             about=unit.wearer.from_ns(lying_from_ns),
+            measured=motionless_s,
         )

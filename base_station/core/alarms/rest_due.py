@@ -39,4 +39,5 @@ class RestDue:
             seen_ns=duty.work_since_ns,
             onset_ns=duty.rest_due_ns,
             about=about,
+            measured=(t_ns - duty.work_since_ns) / NS_PER_S,
         )

@@ -147,8 +147,9 @@ class Redactor:
         if not self._erasure.covers(change.unit_id, change.raised_ns):
             return self._renamed(record, self._erasure.is_about(change.unit_id, change.raised_ns))
         by = self._without_names(without_note(change.by))
+        note = ERASED_TEXT if change.note else ""
         erased = msgspec.structs.replace(
-            change, text=ERASED_TEXT, by=by, code="", parameters=NO_PARAMETERS
+            change, text=ERASED_TEXT, by=by, code="", parameters=NO_PARAMETERS, note=note
         )
         return t_ns, key, encode(erased)
 
@@ -255,7 +256,7 @@ def without_texts(t_ns: int, action: Action, erasure: Erasure) -> Action:
 
 
 def without_note(by: str) -> str:
-    """Name of who resolved an alarm, without the note that stands behind it."""
+    """Name of who resolved an alarm, without the note that stands behind it in older logs."""
     resolver, noted, _ = by.partition(": ")
     return f"{resolver}{noted}{ERASED_TEXT}" if noted else by
 

@@ -29,6 +29,9 @@ class Alarm(msgspec.Struct):
     lower_since_ns: int | None = None  # time of the first evidence of a lower level
     code: str = ""  # of the sentence in ``text``; empty: of a checkpoint of an earlier version
     parameters: AlarmParameters = NO_PARAMETERS
+    reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
+    note: str = ""  # the user's words about it
+    peak: float | None = None  # worst value so far of what its rule measures
 
     @property
     def is_open(self) -> bool:
@@ -50,4 +53,7 @@ class Alarm(msgspec.Struct):
             last_raised_ns=self.last_raised_ns,
             code=self.code,
             parameters=self.parameters,
+            reason=self.reason,
+            note=self.note,
+            peak=self.peak,
         )

@@ -13,7 +13,11 @@ DeliveryState = Literal[
     "queued", "sent", "received", "notified", "acknowledged", "refused", "expired"
 ]
 # The others concern the unit alone.
-NOTIFIES_WEARER = ASKS_WEARER | {CommandKind.LOCATE, CommandKind.MAYDAY_ACKNOWLEDGED}
+NOTIFIES_WEARER = ASKS_WEARER | {
+    CommandKind.LOCATE,
+    CommandKind.MAYDAY_ACKNOWLEDGED,
+    CommandKind.ALARM_ACKNOWLEDGED,
+}
 
 
 class Delivery(msgspec.Struct):
@@ -54,6 +58,7 @@ class SentCommand(msgspec.Struct):
     # Of MAYDAY_ACKNOWLEDGED: the unit's message by which the mayday is known.
     mayday_boot_id: int = 0
     mayday_seq: int = 0
+    alarm_id: str = ""  # of ALARM_ACKNOWLEDGED
 
     @property
     def asks_wearer(self) -> bool:

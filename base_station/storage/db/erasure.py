@@ -121,6 +121,8 @@ def _rewrite_alarm(session: Session, alarm: AlarmRow, erasure: Erasure, covered:
         row.by = _without_names(without_note(row.by) if covered else row.by, erasure)
         row.code = "" if covered else row.code
         row.parameters = "{}" if covered else _without_names(row.parameters, erasure)
+        if row.note:
+            row.note = ERASED_TEXT if covered else _without_names(row.note, erasure)
 
 
 def _audit(session: Session, erasure: Erasure) -> None:

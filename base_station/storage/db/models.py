@@ -265,6 +265,9 @@ class AlarmRow(Base):
     changed_ns: Mapped[int]
     code: Mapped[str] = mapped_column(server_default="")  # empty: of an earlier version
     parameters: Mapped[str] = mapped_column(server_default="{}")  # JSON
+    reason: Mapped[str] = mapped_column(server_default="")  # of its resolution, as a code
+    note: Mapped[str] = mapped_column(server_default="")
+    peak: Mapped[float | None]  # worst value so far of what its rule measures
 
 
 class AlarmTransition(Base):
@@ -280,6 +283,9 @@ class AlarmTransition(Base):
     by: Mapped[str]
     code: Mapped[str] = mapped_column(server_default="")
     parameters: Mapped[str] = mapped_column(server_default="{}")
+    reason: Mapped[str] = mapped_column(server_default="")  # as above
+    note: Mapped[str] = mapped_column(server_default="")
+    peak: Mapped[float | None]
 
 
 class TrackPoint(Base):

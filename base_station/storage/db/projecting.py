@@ -203,20 +203,25 @@ def _whose_pin(session: Session, pin_id: str) -> dict[str, object]:
 
 def _alarm(session: Session, change: AlarmChange) -> None:
     t_ns, state = change.header.t_utc_ns, change.state.name.lower()
-    parameters = msgspec.json.encode(change.parameters).decode()
+    told = {
+        "text": change.text,
+        "by": change.by,
+        "code": change.code,
+        "parameters": msgspec.json.encode(change.parameters).decode(),
+        "reason": change.reason,
+        "note": change.note,
+        "peak": change.peak,
+    }
     current = {
         "rule": change.rule,
         "unit_id": change.unit_id,
         "priority": change.priority,
         "state": state,
         "level": change.level,
-        "text": change.text,
-        "by": change.by,
+        **told,
         "raised_ns": change.raised_ns,
         "last_raised_ns": change.last_raised_ns,
         "changed_ns": t_ns,
-        "code": change.code,
-        "parameters": parameters,
     }
     session.execute(
         insert_into(session, AlarmRow)
@@ -227,7 +232,7 @@ def _alarm(session: Session, change: AlarmChange) -> None:
     )
     _add(
         session, AlarmTransition, alarm_id=change.alarm_id, t_ns=t_ns, state=state,
-        level=change.level, text=change.text, by=change.by, code=change.code, parameters=parameters,
+        level=change.level, **told,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import { t } from "../language/translate";
 import { alarmText } from "./alarmText";
 import { displayName } from "./urgency";
 
-export function isOpen(alarm: AlarmView): boolean {
+export function isOpen(alarm: Pick<AlarmView, "state">): boolean {
   return alarm.state !== "resolved";
 }
 

@@ -1,5 +1,6 @@
-import { useRef } from "preact/hooks";
-import { attempt, mayAct } from "../sessions";
+import { useEffect, useRef } from "preact/hooks";
+import { mayAct } from "../sessions";
+import { openResolve } from "../uiState";
 import * as api from "../api";
 import { handedTo, sinceMs } from "../live/alarms";
 import { alarmCurrentValue } from "../live/alarmCurrentValue";
@@ -9,10 +10,10 @@ import type { Picture } from "../live/picture";
 import type { AlarmView } from "../wire";
 import { alarmLabel, duration } from "../format";
 import { type PlainKey, t } from "../language/translate";
-import { ConfirmButton } from "./ConfirmButton";
 import { showUnit } from "./showIncident";
 import { useGuardedPress } from "./useGuardedPress";
 import { Icon } from "./Icon";
+import { inTurn } from "./inTurn";
 
 const PRIORITY: Record<number, PlainKey> = { 1: "alarm.emergency", 2: "alarm.warning", 3: "alarm.advisory" };
 
@@ -73,7 +74,7 @@ function headOf(row: AlarmRow, first: AlarmView, picture: Picture): string {
   return other === null ? words : t("alarm.of_incident", { incident: other.name, text: words });
 }
 
-function priorityWord(priority: number): string {
+export function priorityWord(priority: number): string {
   const key = PRIORITY[priority];
   return key === undefined ? t("alarm.priority", { number: priority }) : t(key);
 }
@@ -126,8 +127,9 @@ function stateOf(row: AlarmRow, taken: boolean, hasButton: boolean): string {
 
 type ActionProps = Pick<Props, "row" | "place"> & { words: string };
 
-/** One press acknowledges all of the row that is raised.  To resolve asks first: it stands where the
- * button to acknowledge was a moment ago.  The alarms of a flood are resolved one by one, as listed. */
+/** One press acknowledges all of the row that is raised.  To resolve asks for the reason first: it stands
+ * where the button to acknowledge was a moment ago.  The alarms of a flood are resolved one by one, as
+ * listed. */
 function Action({ row, place, words }: ActionProps) {
   const ids = row.isFlood ? "" : row.alarms.map((alarm) => alarm.alarm_id).join(" ");
   const steady = useGuardedPress(`${place} ${ids}`);
@@ -149,29 +151,30 @@ function Action({ row, place, words }: ActionProps) {
     );
   }
   if (row.isFlood) return null;
-  return (
-    <ConfirmButton
-      label={t("alarm.resolve")}
-      about={words}
-      question={t("alarm.resolve_question", { count: row.alarms.length })}
-      focused={pressed.current}
-      onConfirm={steady(() => void inTurn(row.alarms, api.resolve))}
-    />
-  );
+  return <Resolve alarms={row.alarms} words={words} focused={pressed.current} steady={steady} />;
 }
 
-const AT_ONCE = 4;
+interface ResolveProps {
+  alarms: readonly AlarmView[];
+  words: string;
+  focused: boolean; // to begin with: it comes in place of what was pressed
+  steady: ReturnType<typeof useGuardedPress>;
+}
 
-/** A few at a time: the request after two hundred others would run out of time. */
-async function inTurn(
-  alarms: readonly AlarmView[],
-  act: (alarm: AlarmView) => Promise<void>,
-): Promise<void> {
-  const left = [...alarms];
-  const work = async () => {
-    for (let next = left.shift(); next !== undefined; next = left.shift()) {
-      await attempt(act(next));
-    }
-  };
-  await Promise.all(Array.from({ length: AT_ONCE }, work));
+function Resolve({ alarms, words, focused, steady }: ResolveProps) {
+  const button = useRef<HTMLButtonElement>(null);
+  useEffect(() => {
+    if (focused && document.activeElement === document.body) button.current?.focus();
+  }, []);
+  return (
+    <button
+      type="button"
+      class="act"
+      ref={button}
+      aria-label={t("alarm_list.about", { act: t("alarm.resolve"), alarm: words })}
+      onClick={steady(() => openResolve(alarms))}
+    >
+      {t("alarm_list.resolve")}
+    </button>
+  );
 }

@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import type { RefObject } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { isPast } from "../sessions";
+import { openDialog } from "../uiState";
 import { alarmRows, singleRows, type AlarmRow } from "../live/alarmRows";
 import type { Picture } from "../live/picture";
 import { t } from "../language/translate";
@@ -38,6 +39,9 @@ export function AlarmStrip({ picture }: { picture: Picture }) {
             {listed ? t("alarm.fewer") : hidden > 0 ? t("alarm.more", { count: hidden }) : t("alarm.one_by_one")}
           </button>
         )}
+        <button type="button" aria-keyshortcuts="A" onClick={() => openDialog("alarms")}>
+          {t("alarm_list.open_list")}
+        </button>
         {!isPast.value && <SoundButton />}
       </div>
       <div class="alarm-room" ref={zone}>

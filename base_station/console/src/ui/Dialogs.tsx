@@ -4,6 +4,7 @@ import { dialog } from "../uiState";
 import { t } from "../language/translate";
 import { AccountDialog } from "./AccountDialog";
 import { AlarmReasonDialog } from "./AlarmReasonDialog";
+import { AlarmsDialog } from "./AlarmsDialog";
 import { AssessmentDialog } from "./AssessmentDialog";
 import { AuditDialog } from "./AuditDialog";
 import { BoardDialog } from "./BoardDialog";
@@ -16,6 +17,7 @@ import { ErrorBoundary } from "./ErrorBoundary";
 import { HealthDialog } from "./HealthDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
+import { ResolveDialog } from "./ResolveDialog";
 import { RollCallDialog } from "./RollCallDialog";
 import { SiteDialog } from "./SiteDialog";
 import { TimelineDialog } from "./TimelineDialog";
@@ -72,6 +74,10 @@ function Opened() {
       return <TimelineDialog />;
     case "alarm_reason":
       return <AlarmReasonDialog />;
+    case "alarms":
+      return <AlarmsDialog />;
+    case "resolve":
+      return <ResolveDialog />;
     case "dispatch":
       return <DispatchDialog />;
     case "evacuate":

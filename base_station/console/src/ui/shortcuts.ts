@@ -19,6 +19,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { key: "e", words: "shortcut.evacuate", acts: true, run: () => openDialog("evacuate") },
   { key: "p", words: "shortcut.par", acts: true, run: () => openDialog("par_request") },
   { key: "n", words: "shortcut.next_alarm", run: showNextAlarm },
+  { key: "a", words: "shortcut.all_alarms", run: () => openDialog("alarms") },
   { key: "/", words: "shortcut.search", run: seek },
   { key: "?", words: "shortcut.help", run: () => openDialog("display") },
 ];

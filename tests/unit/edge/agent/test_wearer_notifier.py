@@ -20,6 +20,7 @@ from shared.envelope import Stamper
 from shared.messages import (
     Command,
     CommandKind,
+    CommandReply,
     CommandState,
     EventKind,
     Header,
@@ -36,6 +37,9 @@ class Outputs:
         self.shown: tuple[Notice, ...] = ()
         self.played: list[Notice] = []
 
+    def start(self) -> None:
+        pass
+
     def show(self, notices: tuple[Notice, ...]) -> None:
         self.shown = notices
 
@@ -48,7 +52,7 @@ class Outputs:
 
 
 class Rig:
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, known: tuple[CommandReply, ...] = ()) -> None:
         self.clock = ManualClock()
         self.outputs = Outputs()
         self.pipeline = SimpleNamespace(
@@ -60,7 +64,7 @@ class Rig:
         parts: tuple[Any, ...] = (
             self.outputs,
             OpenCommands(folder / "open_commands.json"),
-            CommandHandler(Stamper("u1", 1, self.clock), None, (), maydays),
+            CommandHandler(Stamper("u1", 1, self.clock), None, known, maydays),
             maydays,
             self.pipeline,
             self.link,
@@ -221,3 +225,25 @@ def test_a_mayday_that_was_acknowledged_at_once_need_not_be_said_to_have_arrived
     rig.journal.acknowledged_seq = 7
     rig.notifier.take_command(acknowledgement(7))
     assert rig.signals() == [Signal.MAYDAY_CALLED, Signal.MAYDAY_ACKNOWLEDGED]
+
+
+def test_an_alarm_that_was_acknowledged_is_played_and_not_again_after_a_restart(
+    tmp_path: Path,
+) -> None:
+    first = Rig(tmp_path)
+    with closing(first.notifier):
+        received = first.notifier.take_command(command(CommandKind.ALARM_ACKNOWLEDGED))
+        assert (received.state, received.awaits_wearer) == (CommandState.RECEIVED, False)
+        assert first.signals() == [Signal.ALARM_ACKNOWLEDGED]
+    again = Rig(tmp_path, (received,))
+    with closing(again.notifier):
+        again.notifier.start()
+        assert again.signals() == [Signal.ALARM_ACKNOWLEDGED], "it was not played yet"
+        again.outputs.played += again.outputs.shown
+        (notified,) = again.notifier.step()
+        assert notified.state is CommandState.NOTIFIED
+        assert again.signals() == [Signal.ALARM_ACKNOWLEDGED], "other outputs may still play it"
+    last = Rig(tmp_path, (received, notified))
+    with closing(last.notifier):
+        last.notifier.start()
+        assert last.signals() == []

@@ -17,7 +17,6 @@ export const alarm: Part<"alarm"> = {
   not_acknowledged: "nicht quittiert",
   acknowledge: "Quittieren",
   resolve: "Erledigt",
-  resolve_question: "{count, plural, one {Ist dieser Alarm erledigt?} other {Sind alle # Alarme erledigt?}}",
   of_member: "Alarme von {name}",
   none_open_of_member: "Keine offenen Alarme.",
   no_threshold:

@@ -38,6 +38,7 @@ export const shortcut: Part<"shortcut"> = {
   evacuate: "Räumung: öffnet den Befehl, sendet noch nichts",
   par: "PAR: öffnet die Abfrage, sendet noch nichts",
   next_alarm: "Nächster Alarm: zeigt die Person auf dem Plan",
+  all_alarms: "Alle Alarme, und was aus jedem wurde",
   search: "Personenliste durchsuchen",
   help: "Diese Liste",
 };

@@ -6,6 +6,7 @@ import { assessment } from "./assessment";
 import { audit_action, audit_field, audit_value } from "./audit";
 import { common } from "./common";
 import { dispatch } from "./dispatch";
+import { alarm_list, alarm_reason } from "./alarm_list";
 import { display, language_name, shortcut } from "./display";
 import { frame } from "./frame";
 import { incident } from "./incidents";
@@ -35,6 +36,8 @@ export const de: Catalogue = {
   audit_field,
   audit_value,
   base_map,
+  alarm_list,
+  alarm_reason,
   battery,
   beacon,
   board,

@@ -7,6 +7,7 @@ export const order: Part<"order"> = {
   locate: "Ortungssignal",
   set_position_rate: "Positionsrate",
   mayday_acknowledged: "Mayday quittiert",
+  alarm_acknowledged: "Alarm quittiert",
   with_text: "{order}: {text}",
   locate_hint:
     "Das Gerät macht mit seinen Signalgebern auf sich aufmerksam, etwa Licht oder Ton. Erledigt, sobald es das getan hat.",

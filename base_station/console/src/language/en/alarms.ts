@@ -16,7 +16,6 @@ export const alarm = {
   not_acknowledged: "not acknowledged",
   acknowledge: "Acknowledge",
   resolve: "Resolve",
-  resolve_question: "{count, plural, one {Resolve this alarm?} other {Resolve all # alarms?}}",
   of_member: "Alarms of {name}",
   none_open_of_member: "No open alarms.",
   no_threshold: "No measured value crossed a threshold: a button, an event or a silence raised it.",

@@ -37,6 +37,7 @@ export const shortcut = {
   evacuate: "Evacuate: opens the order, sends nothing yet",
   par: "PAR: opens the request, sends nothing yet",
   next_alarm: "Next alarm: shows its member on the plan",
+  all_alarms: "All alarms, with what became of each",
   search: "Search the list of people",
   help: "This list",
 } as const;

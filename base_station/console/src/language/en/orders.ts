@@ -6,6 +6,7 @@ export const order = {
   locate: "Locate",
   set_position_rate: "Position rate",
   mayday_acknowledged: "Mayday acknowledged",
+  alarm_acknowledged: "Alarm acknowledged",
   with_text: "{order}: {text}",
   locate_hint: "The unit signals its place with its outputs, such as a light or a sounder. Done once it has.",
   evacuate_hint: "Orders everyone out at once. Each firefighter must acknowledge.",

@@ -17,7 +17,6 @@ export const alarm: Part<"alarm"> = {
   not_acknowledged: "non acquittée",
   acknowledge: "Acquitter",
   resolve: "Clore",
-  resolve_question: "{count, plural, one {Clore cette alarme\u00a0?} other {Clore les # alarmes\u00a0?}}",
   of_member: "Alarmes de {name}",
   none_open_of_member: "Aucune alarme en cours.",
   no_threshold:

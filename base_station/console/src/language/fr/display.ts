@@ -38,6 +38,7 @@ export const shortcut: Part<"shortcut"> = {
   evacuate: "Évacuation\u00a0: ouvre l’ordre, n’envoie encore rien",
   par: "PAR\u00a0: ouvre la demande, n’envoie encore rien",
   next_alarm: "Alarme suivante\u00a0: montre la personne sur le plan",
+  all_alarms: "Toutes les alarmes, et ce qu’il en est advenu",
   search: "Chercher dans la liste des personnes",
   help: "Cette liste",
 };

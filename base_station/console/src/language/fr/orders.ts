@@ -7,6 +7,7 @@ export const order: Part<"order"> = {
   locate: "Localisation",
   set_position_rate: "Cadence des positions",
   mayday_acknowledged: "Mayday acquitté",
+  alarm_acknowledged: "Alarme acquittée",
   with_text: "{order}\u00a0: {text}",
   locate_hint:
     "L’appareil signale sa position par ses sorties, lumière ou son par exemple. Terminé dès qu’il l’a fait.",

@@ -41,9 +41,10 @@ def test_no_motion_warns_then_latches_until_a_person_resets_it(script: Script) -
     assert (alarm.header.t_utc_ns - pre_alert.header.t_utc_ns) == 10_000_000_000
     still(script, 0, 15)
     assert len(script.alarms) == 2, "motion does not end the full alarm"
-    script.act(ResolveAlarm(alarm.alarm_id, "is well"))
-    assert script.alarms[-1].state is AlarmState.RESOLVED
-    assert script.alarms[-1].by == "chief: is well"
+    script.act(ResolveAlarm(alarm.alarm_id, "is well", reason="member_well"))
+    resolved = script.alarms[-1]
+    assert (resolved.state, resolved.by) == (AlarmState.RESOLVED, "chief")
+    assert (resolved.reason, resolved.note, resolved.peak) == ("member_well", "is well", 34.0)
 
 
 def test_motion_cancels_the_pre_alert(script: Script) -> None:

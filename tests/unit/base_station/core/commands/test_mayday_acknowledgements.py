@@ -130,11 +130,9 @@ def test_the_mayday_of_a_former_wearer_is_not_acknowledged_to_another() -> None:
     assert commands(script) == []
 
 
-def test_resolution_and_other_acknowledgements_send_no_command() -> None:
+def test_resolution_sends_no_command() -> None:
     script = called()
     script.act(ResolveAlarm(script.alarms[-1].alarm_id, "spoke to him"))
-    script.event(U, EventKind.FALL)
-    acknowledge(script, "fall")
     assert commands(script) == []
 
 

@@ -1,0 +1,18 @@
+import { attempt } from "../sessions";
+
+const AT_ONCE = 4;
+
+/** A few at a time: the request after two hundred others would run out of time.  Whether all were
+ * carried out. */
+export async function inTurn<T>(all: readonly T[], act: (one: T) => Promise<void>): Promise<boolean> {
+  const left = [...all];
+  let done = true;
+  const work = async () => {
+    for (let next = left.shift(); next !== undefined; next = left.shift()) {
+      const answer = await attempt(act(next).then(() => true));
+      done = done && answer !== null;
+    }
+  };
+  await Promise.all(Array.from({ length: AT_ONCE }, work));
+  return done;
+}

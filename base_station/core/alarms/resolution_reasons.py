@@ -1,0 +1,15 @@
+"""Reasons for which a user resolves an alarm; the log has the code, screens have the words."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class ResolutionReason(StrEnum):
+    FALSE_ALARM = "false_alarm"
+    MEMBER_WELL = "member_well"  # spoken to, or seen
+    FOUND_AND_HELPED = "found_and_helped"
+    CAUSE_REMOVED = "cause_removed"  # cooled, charged, linked again ...
+    UNIT_FAULT = "unit_fault"
+    TRAINING = "training"
+    OTHER = "other"  # the note has it
