@@ -664,7 +664,7 @@ def life(alarm: wire.AlarmView, minutes: int = 0, **resolution: object) -> dict[
     acknowledged after 9 s and resolved after 40 s.
     """
     raised_ms = alarm.raised_ms - minutes * MINUTE_MS
-    states = [(raised_ms, "raised", "", {})]
+    states: list[tuple[int, str, str, dict[str, object]]] = [(raised_ms, "raised", "", {})]
     if resolution:
         states.append((raised_ms + 9_000, "acknowledged", "mia", {}))
         states.append((raised_ms + 40_000, "resolved", "chief", resolution))
