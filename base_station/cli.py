@@ -16,6 +16,7 @@ from base_station.app.archive_cli import archive as archive_commands
 from base_station.app.dispatch_command import dispatch
 from base_station.app.export_command import export
 from base_station.app.foxglove_cli import foxglove
+from base_station.app.import_command import import_
 from base_station.app.progress_bar import progress_bar
 from base_station.app.recordings_command import fetch_recording
 from base_station.app.rehearse_command import rehearse
@@ -38,6 +39,7 @@ log = typer.Typer(help="The log's segments.", no_args_is_help=True)
 app.command("fetch-recording")(fetch_recording)
 app.command()(dispatch)
 app.command()(export)
+app.command("import")(import_)
 app.command()(report)
 app.command()(rehearse)
 app.command()(rerun)

@@ -8,6 +8,7 @@ at which true heading the frame's north points.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -42,6 +43,23 @@ class Anchor:
         )
         north_m, east_m = rotate(float(north_m), float(east_m), -self.rotation_rad)
         return north_m, east_m, float(down_m)
+
+    def plane_m(
+        self, lat_deg: Sequence[float], lon_deg: Sequence[float]
+    ) -> tuple[list[float], list[float]]:
+        """North and east in the incident frame of many places, at the height of its origin."""
+        if not lat_deg:
+            return [], []
+        north_m, east_m, _ = pymap3d.geodetic2ned(
+            list(lat_deg), list(lon_deg), [self.height_m] * len(lat_deg),
+            self.lat_deg, self.lon_deg, self.height_m,
+        )  # fmt: skip
+        places = (
+            rotate(float(north), float(east), -self.rotation_rad)
+            for north, east in zip(north_m, east_m, strict=True)
+        )
+        norths_m, easts_m = zip(*places, strict=True)
+        return list(norths_m), list(easts_m)
 
     def to_geodetic(
         self, north_m: float, east_m: float, down_m: float

@@ -140,6 +140,23 @@ FIELDS: Mapping[str, str] = {
     "NewMembers.target": "Who comes to the incident: one unit with its wearer, one crew, one "
     "floor, or everyone who wears a unit.",
     "opened_ms": "When the incident was opened.",
+    "import_id": "Id of a file that was brought into the incident, by its content.",
+    "file_name": "The file's name where it comes from.",
+    "format": "What it is: gpx, kml, photo, or incident (of another station).",
+    "sha256": "SHA-256 of the file, in hexadecimal digits.",
+    "ImportAnswer.size_bytes": "Size of the file.",
+    "shift_s": "Seconds that were added to the times of the file, whose clock was off.",
+    "ImportAnswer.from_ms": "First time of what is in it, shifted.",
+    "ImportAnswer.until_ms": "Last time of what is in it, shifted.",
+    "ImportAnswer.t_ms": "When it was brought in.",
+    "is_here": "Whether this station has the file; else the other one of two has it.",
+    "ImportAnswer.tracks": "How many tracks it has; a photograph is one.",
+    "names": "Names of its tracks, of the first hundred.",
+    "ImportAnswer.warnings": "Sentences about what of the file was left out.",
+    "picture_url": "Where a photograph is fetched, small; null: it is none.",
+    "ImportedTracks.tracks": "Its tracks on the plan of the incident.",
+    "ImportedTrackAnswer.points": "Milliseconds since 1970, north and east in metres, and the "
+    "floor, or null where the file does not state it.",
     "opened_by": "The user who opened it.",
     "closed_ms": "When the incident was closed; null: it is open.",
     "closed_by": "The user who closed it; empty: it is open.",
@@ -518,6 +535,7 @@ PARAMETERS: Mapping[str, str] = {
     "length_ms": "Length of the window, milliseconds.",
     "from_ms": "Beginning of the window of time, milliseconds since 1970.",
     "until_ms": "End of the window of time, milliseconds since 1970.",
+    "utc_offset_h": "Hours of a camera's clock before UTC, where a photograph does not state it.",
     "limit": "How many to give, the newest; those of the same millisecond as the last come along. "
     "The page before has until_ms at that millisecond.",
     "text": "Beginnings of words: of the name, the dispatch (number, address, type), people who "

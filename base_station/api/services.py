@@ -35,6 +35,7 @@ from base_station.security.pki.folder import PkiFolder
 from base_station.site.plan_reader import PlanReader
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
+from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.projection import ProjectedTables
@@ -62,6 +63,7 @@ class LoginServices:
 class Services(LoginServices):
     roster: Roster
     base_maps: BaseMaps
+    imports: ImportCatalogue
     hub: Hub
     gate: OperatorGate
     projection: ProjectedTables  # of which ``records`` and ``roster`` read
@@ -87,6 +89,7 @@ class Services(LoginServices):
     # One whole incident at a time: an hour of a hundred units takes 300 MB.  Who waits holds no
     # thread: those are for who acts.
     export_lock: asyncio.Lock = field(default_factory=asyncio.Lock)
+    import_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # one file is read at a time
     timeline_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # as above, shorter work
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:

@@ -18,7 +18,9 @@ from base_station.security.pki.folder import PkiFolder
 from base_station.standby.log_truncation import APART, MERGED_SUFFIX
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.copying import copy_database, known_segments
-from base_station.storage.db.opening import copy_to_file
+from base_station.storage.db.imports import ImportCatalogue
+from base_station.storage.db.opening import copy_to_file, open_database
+from base_station.storage.imports import ImportFolder
 from shared.errors import LogError, StoreError, UserError
 from shared.mcap_log import segment_paths
 from shared.own_files import give_to_owner, make_folder, read_own, refuse_links, write_own
@@ -122,9 +124,21 @@ def _copy_files(
         on_progress(passed / total)
     if not source.begun.exists():
         copy.begun.unlink(missing_ok=True)  # it has names in it
+    _remove_taken_out(copy)
     here = {path.name for path in segment_paths(source.log)}
     done.removed = sum(path.name not in here for path in segment_paths(copy.log))
     return done
+
+
+def _remove_taken_out(copy: DataFolder) -> None:
+    """Removes what was brought into an incident and has been taken out since, or forgotten; what
+    is missing at the station alone stays.
+    """
+    if not (copy.imports.is_dir() and copy.database.exists()):
+        return
+    imports = ImportFolder(copy.imports)
+    with open_database(copy.database) as store:
+        imports.remove_others(ImportCatalogue(store, imports).ids())
 
 
 def _rename_handed_over(source: DataFolder, copy: DataFolder) -> None:
@@ -175,6 +189,7 @@ def _files(source: DataFolder) -> Iterator[Path]:
     # What is to be forgotten goes first: done meanwhile, it is done in the copy, too.
     yield from filter(Path.exists, (source.forgettings, source.begun))
     yield from segment_paths(source.log)
+    yield from ImportFolder(source.imports).files()
     for folder in (PkiFolder(source.path).path, source.path / APART):
         yield from sorted(path for path in folder.rglob("*") if path.is_file())
 

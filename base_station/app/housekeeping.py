@@ -7,12 +7,15 @@ from functools import partial
 from base_station.api.routes.forgetting import accept_from_command
 from base_station.api.services import Services
 from base_station.app.folder_commands import FORGET_COMMAND
+from base_station.app.import_command import COMMAND as IMPORT_COMMAND
 from base_station.app.live_parts import LiveParts
 from base_station.app.older_assignments import OlderAssignments
+from base_station.importers.requests import ImportAction, ImportRequests
 from base_station.privacy.requests import ErasureRequests
 from base_station.security.pki.enrolled_units import EnrolledUnits
 from base_station.storage.segment_index import SegmentIndex
 from base_station.unit_sync.log_gap_detector import Lost
+from shared.errors import UserError
 from shared.messages import STATION_ID
 from shared.messages.station import SetFuser, SetThresholds
 
@@ -30,6 +33,8 @@ class Housekeeping:
         )
         self._lost = disk.lost_from_log(self._mark_missing)
         self._older = OlderAssignments(disk.roster, parts.gate)
+        self._services = services
+        self._imports = ImportRequests(disk.folder, self._act_on_import)
         self._requests = ErasureRequests(
             disk.folder, partial(accept_from_command, services, FORGET_COMMAND)
         )
@@ -43,6 +48,7 @@ class Housekeeping:
             self._lost.look()
         parts.restarts.restart_if_stale()
         self._requests.look()
+        self._imports.look()
         resources.presence.update()
         resources.console_presence.update()
         parts.replays.end_idle()
@@ -65,6 +71,14 @@ class Housekeeping:
         for monitor in monitors:
             for report in monitor.changes(live.problems):
                 parts.gate.submit(STATION_ID, report)
+
+    def _act_on_import(self, action: ImportAction) -> None:
+        ha_status = self._services.ha_status
+        refusal = None if ha_status is None else ha_status.refusal()
+        if refusal is not None:
+            raise UserError(f"nothing was changed: {refusal}")
+        self._services.perform(IMPORT_COMMAND, action)
+        self._services.projection.flush()
 
     def _mark_missing(self, lost: Lost) -> None:
         self._parts.engine.mark_missing(lost)

@@ -21,6 +21,8 @@ from base_station.replay.processes.timeline_process import TimelineProcess
 from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.report.process import ReportProcess
 from base_station.storage.db.base_maps import BaseMaps
+from base_station.storage.db.imports import ImportCatalogue
+from base_station.storage.imports import ImportFolder
 
 
 def new_services(parts: LiveParts) -> Services:
@@ -51,6 +53,7 @@ def new_services(parts: LiveParts) -> Services:
         intake=SampleIntake(parts.gate.deliver, resources.bus, disk.clock),
         alerts=AlertIntake(parts.engine.note_external),
         radio=RadioLog(disk.folder.radio),
+        imports=ImportCatalogue(disk.store, ImportFolder(disk.folder.imports)),
         dispatch=resources.config.dispatch,
         accountability=resources.config.accountability,
     )

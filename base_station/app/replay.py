@@ -30,9 +30,11 @@ from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
+from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.imports import ImportFolder
 from base_station.storage.projection import FinishedTables
 from shared.clock import SystemClock
 
@@ -100,6 +102,7 @@ def run_replay_station(
             log=offline_log.log,
             radio=RadioLog(DataFolder(data).radio),
             alarm_explainer=AlarmExplainer(records, offline_log.log.records),
+            imports=ImportCatalogue(store, ImportFolder(folder.imports)),
         )
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, "", hub))

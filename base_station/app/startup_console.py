@@ -21,7 +21,9 @@ from base_station.app.stored_snapshot import StoredSnapshotSource
 from base_station.config import HttpConfig, StationConfig
 from base_station.engine.ports import Record
 from base_station.storage.db.base_maps import BaseMaps
+from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.models import IncidentRow
+from base_station.storage.imports import ImportFolder
 from base_station.storage.projection import FinishedTables
 from shared.errors import UserError
 from shared.mcap_log import SegmentInfo
@@ -132,6 +134,7 @@ def startup_application(
         roster=disk.roster,
         records=disk.records,
         base_maps=BaseMaps(disk.store),
+        imports=ImportCatalogue(disk.store, ImportFolder(disk.folder.imports)),
         hub=hub,
         gate=known,
         projection=FinishedTables(),

@@ -44,8 +44,10 @@ from shared.messages.station import (
     ConfirmCommand,
     DoneApart,
     ForgetWearers,
+    ImportFile,
     OpenIncident,
     RegisterUnit,
+    RemoveImport,
     ReportProblem,
     ResolveAlarm,
     SendCommand,
@@ -92,12 +94,12 @@ class ActionHandler:
         match action:
             case AcknowledgeAlarm() | ResolveAlarm():
                 changes = self._alarm(state, by, action)
-            case ReportProblem() | SetThresholds() | SetFuser() | DoneApart():
+            case ReportProblem() | SetThresholds() | SetFuser():
                 changes = self._station_action(state, action)
-            case RegisterUnit():
-                changes = self._register(state, action)
-            case SetStart():
-                changes = self._start(state, action)
+            case DoneApart() | ImportFile() | RemoveImport():
+                changes = ()  # the log and the tables have it
+            case RegisterUnit() | SetStart():
+                changes = self._unit(state, action)
             case SetAnchor() | SetPlan() | SetReference():
                 self._site(state, action)
             case TakeOver():
@@ -174,7 +176,7 @@ class ActionHandler:
                 yield command
 
     def _station_action(
-        self, state: StationState, action: ReportProblem | SetThresholds | SetFuser | DoneApart
+        self, state: StationState, action: ReportProblem | SetThresholds | SetFuser
     ) -> Iterator[StateChange]:
         """Apply an action of the station itself."""
         if isinstance(action, ReportProblem):
@@ -185,6 +187,11 @@ class ActionHandler:
             yield from self._with_alarms(state, state.units.values())
         elif isinstance(action, SetFuser):
             yield PinsChanged(tuple(sorted(self._positioning.use_fuser(state, action.name))))
+
+    def _unit(self, state: StationState, action: RegisterUnit | SetStart) -> Iterator[StateChange]:
+        if isinstance(action, SetStart):
+            return self._start(state, action)
+        return self._register(state, action)
 
     def _register(self, state: StationState, action: RegisterUnit) -> Iterator[StateChange]:
         unit = state.units.get(action.unit_id)

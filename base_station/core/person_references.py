@@ -14,6 +14,7 @@ import msgspec
 from shared.messages.pins import PlaceBeacon, SetMeeting, SetPin, StartTogether
 from shared.messages.station import (
     Action,
+    ImportFile,
     NoteDispatch,
     OpenIncident,
     RegisterUnit,
@@ -32,6 +33,7 @@ FREE_TEXTS: Mapping[type[Action], str] = {
     ResolveAlarm: "note",
     SendCommand: "text",
     NoteDispatch: "remarks",
+    ImportFile: "file_name",
     SetPin: "note",
     StartTogether: "note",
     SetMeeting: "note",

@@ -37,6 +37,7 @@ from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.database import Database
 from base_station.storage.db.erasure import forget_in, known_names
 from base_station.storage.db.records import Records
+from base_station.storage.imports import ImportFolder
 from base_station.storage.segment_index import segment_row
 from shared.channels import CHANNELS, OPERATOR, Direction, tracker_id
 from shared.clock import Clock
@@ -168,7 +169,9 @@ class ErasureService:
         self._mended_first = mended_first
         self._forget_name = forget_name
         self._erase_audio = erase_audio
-        self._begun = PendingErasure(DataFolder(log.folder.parent).begun)
+        folder = DataFolder(log.folder.parent)
+        self._begun = PendingErasure(folder.begun)
+        self._imports = ImportFolder(folder.imports)
 
     def person(
         self,
@@ -229,6 +232,8 @@ class ErasureService:
         with self._store.write() as session:
             forget_in(session, erasure)
         tally.files += self._store.compact()
+        if erasure.incident_id:
+            tally.files += self._imports.remove_all(erasure.incident_id)
         self._checkpoints.clear()  # one that was being written meanwhile
         self._begun.let_go(erasure.incident_id)
         done = ErasureResult(what, tally.records, tally.files, tally.damaged)

@@ -109,6 +109,18 @@ class UnitEntry(msgspec.Struct, frozen=True):
     calibration: str
 
 
+class ImportEntry(msgspec.Struct, frozen=True):
+    """A file from elsewhere that was brought into the incident."""
+
+    file_name: str
+    format: str
+    during: Interval  # of what is in it
+    shift_s: float
+    t_ns: int  # when it was brought in
+    by: str
+    sha256: str
+
+
 class ReportContents(msgspec.Struct, frozen=True):
     incident_id: str
     name: str
@@ -126,6 +138,7 @@ class ReportContents(msgspec.Struct, frozen=True):
     plan: Plan | None
     has_anchor: bool
     assessment: IncidentReport | None  # None: not worked out
+    imports: tuple[ImportEntry, ...]
     defects: tuple[str, ...]
     thresholds: tuple[tuple[str, float, float], ...]  # name, in force at the end, default
     par_interval_s: float  # at the end

@@ -42,6 +42,8 @@ def _sections(report: ReportContents) -> Iterable[Markup]:
     yield _section(texts.PLAN, _plan(report))
     yield _section(texts.PEOPLE, _people(report))
     yield _section(texts.TRACES, _traces(report))
+    if report.imports:
+        yield _section(texts.IMPORTS, _imports(report))
     yield _section(texts.POSITIONS, _positions(report))
     yield _section(texts.RECORD, _record(report))
     yield _section(texts.SETTINGS, _settings(report))
@@ -245,6 +247,21 @@ def _traces(report: ReportContents) -> Markup:
         element("p", texts.traces_left_out(left_out), class_="warning") if left_out else "",
         element("div", pictures, class_="small-pictures"),
     )
+
+
+def _imports(report: ReportContents) -> Markup:
+    rows = (
+        (
+            one.file_name,
+            one.format,
+            texts.from_to(one.during.from_ns, one.during.until_ns),
+            f"{one.shift_s:g}",
+            texts.when_and_by(one.t_ns, one.by),
+            one.sha256,
+        )
+        for one in report.imports
+    )
+    return joined(element("p", texts.IMPORTS_KEY, class_="note"), table(texts.HEAD_IMPORTS, rows))
 
 
 def _positions(report: ReportContents) -> Markup:

@@ -22,6 +22,7 @@ from base_station.replay.post_processing import read_report
 from base_station.report import texts
 from base_station.report.contents import (
     AlarmTrace,
+    ImportEntry,
     Interval,
     OrderEntry,
     PersonEntry,
@@ -122,6 +123,7 @@ class _Gathering:
             plan=plan,
             has_anchor=anchor is not None,
             assessment=report and with_people(report, worn),
+            imports=tuple(self._imports()),
             defects=tuple(sources.defects()),
             thresholds=tuple(self._thresholds()),
             par_interval_s=times[0],
@@ -129,6 +131,18 @@ class _Gathering:
             units=tuple(self._units()),
             version=version("muster"),
         )
+
+    def _imports(self) -> Iterable[ImportEntry]:
+        for row in self._sources.records.imports_of(self._incident.incident_id):
+            yield ImportEntry(
+                file_name=self._shown(row.file_name),
+                format=row.format,
+                during=Interval(row.first_ns, row.last_ns),
+                shift_s=row.shift_s,
+                t_ns=row.t_ns,
+                by=row.by,
+                sha256=row.sha256,
+            )
 
     def _dispatch(self) -> str:
         number = self._incident.dispatch_number

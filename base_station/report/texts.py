@@ -26,6 +26,7 @@ OPENED, CLOSED, STILL_OPEN, LASTED = "Opened", "Closed", "still open", "Lasted"
 ALARMS, RADIO_GAPS = "Alarms", "Radio gaps"
 TIMELINE, PAR, ORDERS = "Timeline", "Roll calls (PAR)", "Orders"
 PLAN, PEOPLE, TRACES = "Plan by floor", "People", "Alarms explained"
+IMPORTS = "Brought in"
 POSITIONS, RECORD, SETTINGS = "Quality of positions", "Gaps in the record", "Versions and settings"
 
 NO_ORDERS = "No order was given."
@@ -39,6 +40,10 @@ NO_DEFECTS = "None found: every segment of the log is there and can be read."
 NO_ASSESSMENT = (
     "Not worked out. With `muster base assess` or 'How good?' in the console it is, and the next "
     "report has it."
+)
+IMPORTS_KEY = (
+    "Files from elsewhere: this station has not measured what is in them. The hash is of the file "
+    "as it came."
 )
 NO_TIMELINE = "Nothing was recorded."
 TRAILS_KEY = (
@@ -72,6 +77,7 @@ HEAD_PEOPLE = (
 HEAD_POSITIONS = (
     "Unit", "Light: green amber red", "Main reason", "CE95 stated", "CE95 known", "Floor right",
 )  # fmt: skip
+HEAD_IMPORTS = ("File", "Format", "From to", "Seconds added", "Brought in", "SHA-256")
 HEAD_UNITS = ("Unit", "Software", "Tracker", "Calibration")
 HEAD_THRESHOLDS = ("Threshold", "In force", "Default", "")
 
@@ -260,6 +266,8 @@ _ACTIONS: Mapping[str, Callable[[Said, NameOf], tuple[str, str]]] = {
     ),
     "OpenIncident": lambda said, _: (INCIDENT, f"Incident opened: {said['name']}{_from(said)}"),
     "NoteDispatch": lambda said, _: (INCIDENT, f"Dispatch {_dispatch(said)}"),
+    "ImportFile": lambda said, _: (INCIDENT, f"{said['file_name']} brought in"),
+    "RemoveImport": lambda _said, _: (INCIDENT, "A file that was brought in was taken out"),
     "DismissDispatch": lambda said, _: (INCIDENT, f"Dispatch {said['number']} dismissed"),
     "CloseIncident": lambda said, _: (INCIDENT, f"Incident closed{_despite(said)}"),
     "Assign": lambda said, _: (PERSON, f"{said['person_name']} wears {said['unit_id']}"),

@@ -21,6 +21,7 @@ class DataFolder:
         self.checkpoints = path / "checkpoints"
         self.recordings = path / "recordings"  # of units' raw sensors, pulled on request
         self.radio = path / "radio"  # audio of radio channels
+        self.imports = path / "imports"  # what was brought into incidents from elsewhere
         self.database = path / "station.sqlite"
         self.tables_behind = path / "tables-behind"  # since when, while a server was away
         self.forgettings = path / "forgetting.json"  # what is to be forgotten, until it is

@@ -252,6 +252,27 @@ class DismissDispatch(msgspec.Struct, frozen=True):
     number: str
 
 
+class ImportFile(msgspec.Struct, frozen=True):
+    """A file from elsewhere becomes part of an incident; it stands beside the log."""
+
+    incident_id: str
+    import_id: str  # by its content: the same file has the same one
+    file_name: str  # as it was called where it comes from
+    format: str  # "gpx", "kml", "photo" or "incident"
+    sha256: str
+    size_bytes: int
+    shift_s: float  # added to its times
+    first_ns: int  # times of what is in it, shifted
+    last_ns: int
+
+
+class RemoveImport(msgspec.Struct, frozen=True):
+    """The file is taken out of the incident again, and removed."""
+
+    incident_id: str
+    import_id: str
+
+
 Action = (
     AcknowledgeAlarm
     | ResolveAlarm
@@ -285,6 +306,8 @@ Action = (
     | DoneApart
     | NoteDispatch
     | DismissDispatch
+    | ImportFile
+    | RemoveImport
 )
 
 _FIELD_OF_ACTION: dict[type[Action], str] = {
@@ -320,6 +343,8 @@ _FIELD_OF_ACTION: dict[type[Action], str] = {
     DoneApart: "done_apart",
     NoteDispatch: "note_dispatch",
     DismissDispatch: "dismiss_dispatch",
+    ImportFile: "import_file",
+    RemoveImport: "remove_import",
 }
 _ACTION_OF_FIELD = {field: action for action, field in _FIELD_OF_ACTION.items()}
 

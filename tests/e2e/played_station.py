@@ -194,6 +194,7 @@ def answers(role: str, more: Answers, people: Sequence[object] = ()) -> dict[str
         "/people": list(people),
         "/units": [],
         "/incidents": [],
+        f"/incidents/{scenes.INCIDENT.incident_id}/imports": [],
         "/accountability/usual": {"par_interval_s": 900.0, "work_limit_s": 1500.0},
         "/export-formats": [{"name": "gpx", "suffix": ".gpx", "needs_anchor": True}],
         "/replays": [],

@@ -40,7 +40,7 @@ BOUNDED = {  # lists that do not grow with what happens, by what bounds them
         "/units/{unit_id}/routes",  # the nearest three
     },
     "what is shown now": {"/pins", "/beacons", "/commands", "/replays", "/recordings", "/dispatch"},
-    "one incident": {"/incidents/{incident_id}/tracks"},
+    "one incident": {"/incidents/{incident_id}/tracks", "/incidents/{incident_id}/imports"},
     "the program": {"/export-formats"},
     "the last wishes": {"/forgettings"},
 }

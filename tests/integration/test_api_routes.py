@@ -6,6 +6,7 @@ import asyncio
 import dataclasses
 import io
 from collections.abc import AsyncIterator, Awaitable, Callable
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from base_station.security.pki.folder import PkiFolder
 from base_station.storage.db.window import EVER, Window
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.wire import StandbyView
-from shared.clock import NS_PER_MS, ManualClock
+from shared.clock import NS_PER_MS, NS_PER_S, ManualClock
 from shared.messages import EventKind, Header, UnitEvent
 from tests.rig import message_factory
 from tests.rig.desk_station import ORIGIN, PASSWORD, DeskStation
@@ -57,6 +58,12 @@ LEAST: dict[str, dict[str, Role | None]] = {
                   "GET /unassigned": V,
                   "GET /incidents/{incident_id}/alarms": V,
                   "GET /incidents/{incident_id}/dispatch": V,
+                  "GET /incidents/{incident_id}/imports": V,
+                  "POST /incidents/{incident_id}/imports": C,
+                  "DELETE /incidents/{incident_id}/imports/{import_id}": C,
+                  "GET /incidents/{incident_id}/imports/{import_id}/tracks": V,
+                  "GET /incidents/{incident_id}/imports/{import_id}/picture": V,
+                  "GET /incidents/{incident_id}/imports/{import_id}/file": V,
                   "GET /incidents/{incident_id}/assessment": V},
     "dispatch": {"GET /dispatch": V, "POST /dispatch": C, "POST /dispatch/dismissals": C,
                  "POST /dispatch/alerts": C},
@@ -349,10 +356,20 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     await do("DELETE /assignments/{unit_id}", **unit)
     await do("DELETE /incidents/{incident_id}/members/{unit_id}", incident_id=incident, **unit)
     await do("POST /incidents/{incident_id}/members", {"target": unit}, incident_id=incident)
+    await act_on_imports(do, station, incident)
     await do("POST /incidents/{incident_id}/close", incident_id=incident)
     await do("POST /people/{person_id}/forget", {"name": "Bea"}, person_id=person)
     gone = (await do("POST /people", {"name": "Cy"}))["person_id"]
     await do("DELETE /people/{person_id}", person_id=gone)
+
+
+async def act_on_imports(do: Do, station: DeskStation, incident_id: str) -> None:
+    now = datetime.fromtimestamp(station.services.clock.utc_ns() / NS_PER_S, UTC).isoformat()
+    track = f'<gpx><wpt lat="48" lon="11"><time>{now}</time></wpt></gpx>'.encode()
+    adding = "POST /incidents/{incident_id}/imports"
+    added = await do(adding, track, "?file_name=a.gpx", incident_id=incident_id)
+    taking_out = "DELETE /incidents/{incident_id}/imports/{import_id}"
+    await do(taking_out, incident_id=incident_id, import_id=added["import_id"])
 
 
 async def act_on_samples(do: Do) -> None:

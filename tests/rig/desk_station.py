@@ -44,11 +44,13 @@ from base_station.privacy.erasure_service import ClosedLog, ErasureService
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.base_maps import BaseMaps
+from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.projection import SqlProjection
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
+from base_station.storage.imports import ImportFolder
 from base_station.storage.projection import Projection
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from base_station.views.station import StationFacts, snapshot
@@ -213,6 +215,7 @@ class DeskStation:
             clock=clock,
             secure=False,
             alerts=AlertIntake(self.drive.note_external),
+            imports=ImportCatalogue(self.store, ImportFolder(folder / "imports")),
             intake=SampleIntake(self.drive.deliver, self.router.attach_station(), clock),
         )
         self.app = create_app(

@@ -318,6 +318,36 @@ export interface Health {
   segments: LogSegmentAnswer[];
 }
 
+export interface ImportAnswer {
+  import_id: string;
+  file_name: string;
+  format: string;
+  sha256: string;
+  size_bytes: number;
+  shift_s: number;
+  from_ms: number;
+  until_ms: number;
+  t_ms: number;
+  by: string;
+  is_here: boolean;
+  tracks: number;
+  names: string[];
+  warnings: string[];
+}
+
+export interface ImportedTrackAnswer {
+  name: string;
+  points: [number, number, number, number | null][];
+}
+
+export interface ImportedTracks {
+  import_id: string;
+  format: string;
+  file_name: string;
+  picture_url: string | null;
+  tracks: ImportedTrackAnswer[];
+}
+
 export interface IncidentAnswer {
   incident_id: string;
   name: string;

@@ -32,7 +32,8 @@ export type DialogName =
   | "alarm_reason"
   | "alarms"
   | "resolve"
-  | "dispatch";
+  | "dispatch"
+  | "imports";
 export const dialog = signal<DialogName | null>(null);
 /** The unit that the dialog is about, where it is about one. */
 export const dialogUnit = signal<string | null>(null);
@@ -43,12 +44,14 @@ export const resolving = signal<readonly AlarmView[]>([]);
 /** Number of the dispatch that the dialog is about. */
 export const dialogDispatch = signal<string | null>(null);
 
-interface AssessedIncident {
+interface NamedIncident {
   incident_id: string;
   name: string;
 }
 /** The incident that is assessed. */
-export const assessed = signal<AssessedIncident | null>(null);
+export const assessed = signal<NamedIncident | null>(null);
+/** The incident whose imports are listed. */
+export const withImports = signal<NamedIncident | null>(null);
 
 export const notice = signal<string | null>(null);
 
@@ -84,9 +87,14 @@ export function openDispatch(number: string): void {
   openDialog("dispatch");
 }
 
-export function assess(incident: AssessedIncident): void {
+export function assess(incident: NamedIncident): void {
   assessed.value = incident;
   openDialog("assessment");
+}
+
+export function openImports(incident: NamedIncident): void {
+  withImports.value = incident;
+  openDialog("imports");
 }
 
 /** As at the beginning, but for the floor. */

@@ -49,7 +49,9 @@ from shared.messages.station import (
     CheckIn,
     CloseIncident,
     DoneApart,
+    ImportFile,
     OpenIncident,
+    RemoveImport,
     ResolveAlarm,
     SendCommand,
     SetStart,
@@ -279,6 +281,11 @@ def _in_incident(t_ns: int, message: OperatorAction, erasure: Erasure) -> list[O
             return [*_replacement(message, returned_units), message]
         case CloseIncident(incident_id=erasure.incident_id):
             return [message, *_replacement(message, erasure.assigned_after)]
+        case (
+            ImportFile(incident_id=erasure.incident_id)
+            | RemoveImport(incident_id=erasure.incident_id)
+        ):
+            return []  # the files go, too
         case Assign() | Unassign() if erasure.from_ns <= t_ns < erasure.until_ns:
             return [message] if erasure.is_inserted(message.action_id) else []
         case _:

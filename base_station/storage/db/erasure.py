@@ -17,6 +17,7 @@ from base_station.storage.db.models import (
     ArchivedIncident,
     Assignment,
     AuditEntry,
+    ImportRow,
     IncidentRow,
     IncidentTrails,
     IndexedIncident,
@@ -29,7 +30,14 @@ from base_station.storage.db.models import (
     UnitStart,
 )
 from base_station.storage.db.tombstones import PERSON
-from shared.messages.station import Assign, CheckIn, DoneApart, ResolveAlarm, SendCommand
+from shared.messages.station import (
+    Assign,
+    CheckIn,
+    DoneApart,
+    ImportFile,
+    ResolveAlarm,
+    SendCommand,
+)
 
 _APART, _RESOLVED, _ASSIGNED = (one.__name__ for one in (DoneApart, ResolveAlarm, Assign))
 _WITH_WORDS: dict[str, type[SendCommand | CheckIn | ResolveAlarm]] = {
@@ -49,6 +57,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
     _looked_back(session, erasure)
     _alarms(session, erasure)
     _audit(session, erasure)
+    _imports(session, erasure)
     if erasure.person_id:
         of_person = Assignment.person_id == erasure.person_id
         session.execute(update(Assignment).where(of_person).values(_NOBODY))
@@ -56,6 +65,18 @@ def forget_in(session: Session, erasure: Erasure) -> None:
         session.merge(Tombstone(what=f"{PERSON}{erasure.person_id}", until_ns=None))
     else:
         _cut_out(session, erasure)
+
+
+def _imports(session: Session, erasure: Erasure) -> None:
+    """What was brought into an incident that is forgotten; else names in the names of files."""
+    if erasure.incident_id:
+        session.execute(delete(ImportRow).where(ImportRow.incident_id == erasure.incident_id))
+        of_it = AuditEntry.detail.contains(f'"{erasure.incident_id}"', autoescape=True)
+        is_import = AuditEntry.action == ImportFile.__name__
+        session.execute(update(AuditEntry).where(is_import, of_it).values(detail=ERASED_TEXT))
+        return
+    for row in session.scalars(select(ImportRow)):
+        row.file_name = _without_names(row.file_name, erasure)
 
 
 def _looked_back(session: Session, erasure: Erasure) -> None:

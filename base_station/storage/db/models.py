@@ -229,6 +229,24 @@ class DispatchRow(Base):
     report: Mapped[str]  # JSON of ``shared.messages.station.NoteDispatch``
 
 
+class ImportRow(Base):
+    """A file that was brought into an incident (``base_station.storage.imports``)."""
+
+    __tablename__ = "imports"
+
+    incident_id: Mapped[str] = mapped_column(primary_key=True)
+    import_id: Mapped[str] = mapped_column(primary_key=True)
+    file_name: Mapped[str]  # with references to people, as texts of the log
+    format: Mapped[str]
+    sha256: Mapped[str]
+    size_bytes: Mapped[int]
+    shift_s: Mapped[float]
+    first_ns: Mapped[int]
+    last_ns: Mapped[int]
+    t_ns: Mapped[int]  # when it was brought in
+    by: Mapped[str]
+
+
 class Assignment(Base):
     """Wearer of a unit, from when until when; name, crew and role as they were then only where
     the log is of an earlier version, and otherwise empty.
@@ -422,6 +440,7 @@ PROJECTIONS: tuple[type[Base], ...] = (
     IncidentRow,
     IncidentMember,
     DispatchRow,
+    ImportRow,
     Assignment,
     AlarmRow,
     AlarmTransition,

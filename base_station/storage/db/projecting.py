@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import msgspec
-from sqlalchemy import ColumnElement, func, select, update
+from sqlalchemy import ColumnElement, delete, func, select, update
 from sqlalchemy.orm import Session
 
 from base_station.core.person_references import reference_to
@@ -19,6 +19,7 @@ from base_station.storage.db.models import (
     Assignment,
     AuditEntry,
     DispatchRow,
+    ImportRow,
     IncidentMember,
     IncidentRow,
     PlanRow,
@@ -36,10 +37,11 @@ from shared.messages.station import (
     AcknowledgeAlarm,
     Assign,
     CloseIncident,
-    ForgetWearers,
+    ImportFile,
     NoteDispatch,
     OpenIncident,
     RegisterUnit,
+    RemoveImport,
     ReportProblem,
     ResolveAlarm,
     SetAnchor,
@@ -124,12 +126,20 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
         case SetStart() as start:
             columns = {name: getattr(start, name) for name in _START_COLUMNS}
             _add(session, UnitStart, **key, **columns)
+        case ImportFile() | RemoveImport():
+            _import(session, t_ns, done.by, done.action)
         case AcknowledgeAlarm() | ResolveAlarm() | ReportProblem():
             pass  # what it changed of the alarms comes with the same step
-        case ForgetWearers():
-            pass  # what is stored was rewritten before
         case _:
-            pass  # the audit and the log have it
+            pass  # the audit and the log have it, or what is stored was rewritten before
+
+
+def _import(session: Session, t_ns: int, by: str, action: ImportFile | RemoveImport) -> None:
+    if isinstance(action, ImportFile):
+        _add(session, ImportRow, t_ns=t_ns, by=by, **msgspec.structs.asdict(action))
+        return
+    is_it = ImportRow.incident_id == action.incident_id, ImportRow.import_id == action.import_id
+    session.execute(delete(ImportRow).where(*is_it))
 
 
 def _dispatch(session: Session, report: NoteDispatch) -> None:

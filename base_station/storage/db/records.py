@@ -21,6 +21,7 @@ from base_station.storage.db.models import (
     AlarmTransition,
     AuditEntry,
     DispatchRow,
+    ImportRow,
     IncidentRow,
     LogSegment,
     PlanRow,
@@ -124,6 +125,13 @@ class Records:
         with self._store.read() as session:
             row = session.get(DispatchRow, number)
             return None if row is None else _REPORTS.decode(row.report)
+
+    def imports_of(self, incident_id: str) -> Sequence[ImportRow]:
+        """Files that were brought into an incident, oldest first."""
+        wanted = select(ImportRow).where(ImportRow.incident_id == incident_id)
+        in_order = wanted.order_by(ImportRow.t_ns, ImportRow.import_id)
+        with self._store.read() as session:
+            return session.scalars(in_order).all()
 
     # ---- tracks and alarms
 

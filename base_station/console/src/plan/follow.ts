@@ -11,6 +11,7 @@ import type { TrailPoint } from "../wire";
 import { type PlainKey, t } from "../language/translate";
 import { followBaseMap } from "./baseMap";
 import { beginOnAFloor } from "./floorShown";
+import { areImportsShown, followImports, imports } from "./imports";
 import type { PlanMap } from "./map";
 import { followTrails, pastTrails, shownKinds } from "./pastTrails";
 import { clicked, tool } from "./tools";
@@ -83,7 +84,16 @@ export function follow(map: PlanMap, picture: Picture): () => void {
       void shownTheme.value;
       map.showExternal({ external: picture.external.value, nowMs: picture.nowMs.value });
     }),
+    following("imports.layer", () => {
+      void shownTheme.value;
+      map.showImports({
+        imports: areImportsShown.value ? imports.value : [],
+        nowMs: picture.nowMs.value,
+        floor: floor.value,
+      });
+    }),
     followTrails(picture),
+    followImports(picture),
     beginOnAFloor(picture),
   ];
   return () => ends.forEach((end) => end());

@@ -19,6 +19,7 @@ import { ExternalLayer, type ExternalScene } from "./externalLayer";
 import { FloorPictureLayer } from "./floorPicture";
 import { PeopleLayer, type Scene } from "./peopleLayer";
 import { Grid } from "./grid";
+import { ImportLayer, type ImportScene } from "./importLayer";
 import { fitMargins, leastMargins } from "./margins";
 import type { Box, Pixel } from "./names";
 import { PastLayer, type PastScene } from "./pastLayer";
@@ -56,6 +57,7 @@ export class PlanMap {
   private readonly pins = new PinLayer();
   private readonly past = new PastLayer();
   private readonly external = new ExternalLayer();
+  private readonly imported = new ImportLayer();
   private readonly route = new RouteLayer();
   private readonly scale = new ScaleLine({ minWidth: 80 });
   private readonly view = new View({
@@ -88,6 +90,7 @@ export class PlanMap {
         this.past.layer,
         this.route.layer,
         this.external.layer,
+        this.imported.layer,
         this.pins.labelLayer,
         ...this.peopleLayer.layers,
         this.pins.layer,
@@ -124,6 +127,10 @@ export class PlanMap {
 
   showRoute(route: Route | null, floor: FloorChoice): void {
     this.route.show(route, floor, this.colours);
+  }
+
+  showImports(scene: ImportScene): void {
+    this.imported.show(scene, this.colours);
   }
 
   showExternal(scene: ExternalScene): void {

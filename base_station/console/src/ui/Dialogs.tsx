@@ -15,6 +15,7 @@ import { EnrolmentsDialog } from "./EnrolmentsDialog";
 import { FlawsDialog } from "./FlawsDialog";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { HealthDialog } from "./HealthDialog";
+import { ImportsDialog } from "./ImportsDialog";
 import { IncidentsDialog } from "./IncidentsDialog";
 import { PeopleDialog } from "./PeopleDialog";
 import { ResolveDialog } from "./ResolveDialog";
@@ -44,6 +45,8 @@ function Opened() {
   switch (dialog.value) {
     case "incidents":
       return <IncidentsDialog />;
+    case "imports":
+      return <ImportsDialog />;
     case "assessment":
       return <AssessmentDialog />;
     case "people":

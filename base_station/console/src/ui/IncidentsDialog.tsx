@@ -5,7 +5,7 @@ import { unfinished } from "../live/closing";
 import type { Picture } from "../live/picture";
 import { summary } from "../live/dispatch";
 import { KINDS, type TrailKind } from "../plan/pastTrails";
-import { assess, openDispatch } from "../uiState";
+import { assess, openDispatch, openImports } from "../uiState";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes, zone } from "../format";
 import { saveAs } from "../saving";
@@ -84,6 +84,13 @@ export function IncidentsDialog() {
                   onClick={() => void watchReplay(incident)}
                 >
                   {t("incident.replay")}
+                </button>{" "}
+                <button
+                  type="button"
+                  aria-label={t("imports.open_about", { incident: incident.name })}
+                  onClick={() => openImports(incident)}
+                >
+                  {t("imports.open")}
                 </button>
               </td>
               <td>

@@ -1,3 +1,4 @@
+import { ImportsShown } from "./ImportsShown";
 import { KINDS, loadingKinds, shownKinds, toggle } from "../plan/pastTrails";
 import { selectedUnit } from "../uiState";
 import { t } from "../language/translate";
@@ -21,6 +22,7 @@ export function TrailsPanel() {
           {loadingKinds.value.has(kind) && <small> is worked out …</small>}
         </label>
       ))}
+      <ImportsShown />
       <p class="quiet">
         {selectedUnit.value === null
           ? "The last five minutes. Choose a person to compare all of that person’s."

@@ -49,6 +49,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "rebuild": (),
     "backup": ("COPY",),
     "forget": ("Ada",),
+    "import": ("i1",),
     "users list": (),
     "users add": ("bob",),
     "users password": ("mia",),

@@ -16,6 +16,7 @@ from shared.messages import CommandKind
 from shared.messages.pins import PlaceBeacon, SetMeeting, SetPin, StartTogether
 from shared.messages.station import (
     Action,
+    ImportFile,
     NoteDispatch,
     OpenIncident,
     RegisterUnit,
@@ -56,6 +57,7 @@ EVERY_FREE_TEXT: tuple[Action, ...] = (
     SetMeeting("s3", "u1", "u2", 0, 1.0, "to Ada"),
     PlaceBeacon("b1", "to Ada", 0.0, 0.0, None, 1.0, 1.0),
     NoteDispatch("2024-1", "json", remarks="to Ada"),
+    ImportFile("i1", "f1", "to Ada", "gpx", "", 0, 0.0, 0, 0),
 )
 
 

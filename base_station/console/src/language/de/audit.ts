@@ -33,6 +33,8 @@ export const audit_action: Part<"audit_action"> = {
   DoneApart: "Getrennt geschehen",
   NoteDispatch: "Einsatzauftrag notiert",
   DismissDispatch: "Einsatzauftrag verworfen",
+  ImportFile: "Datei einbringen",
+  RemoveImport: "Eingebrachtes herausnehmen",
   LoggedIn: "Angemeldet",
   LoggedOut: "Abgemeldet",
   LoginRefused: "Anmeldung abgewiesen",

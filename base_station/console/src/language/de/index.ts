@@ -10,6 +10,7 @@ import { alarm_list, alarm_reason } from "./alarm_list";
 import { display, language_name, shortcut } from "./display";
 import { frame } from "./frame";
 import { incident } from "./incidents";
+import { imports } from "./imports";
 import { measure } from "./measure";
 import { activity, posture, mobility, link, heat, battery, member, worn } from "./member";
 import { order, delivery } from "./orders";
@@ -60,6 +61,7 @@ export const de: Catalogue = {
   headcount,
   health,
   heat,
+  imports,
   incident,
   language_name,
   link,

@@ -32,6 +32,8 @@ export const audit_action = {
   DoneApart: "Done apart",
   NoteDispatch: "Note dispatch",
   DismissDispatch: "Dismiss dispatch",
+  ImportFile: "Import file",
+  RemoveImport: "Remove import",
   LoggedIn: "Logged in",
   LoggedOut: "Logged out",
   LoginRefused: "Login refused",

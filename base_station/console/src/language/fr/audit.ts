@@ -33,6 +33,8 @@ export const audit_action: Part<"audit_action"> = {
   DoneApart: "Fait séparément",
   NoteDispatch: "Départ noté",
   DismissDispatch: "Départ écarté",
+  ImportFile: "Verser un fichier",
+  RemoveImport: "Retirer un fichier versé",
   LoggedIn: "Connecté",
   LoggedOut: "Déconnecté",
   LoginRefused: "Connexion refusée",

@@ -1,0 +1,28 @@
+import type { Part } from "../catalogue";
+
+export const imports: Part<"imports"> = {
+  title: "Eingebracht in {incident}",
+  open: "Eingebracht …",
+  open_about: "Eingebracht in {incident}",
+  none: "Noch nichts: eine Spur als GPX oder KML, ein Foto mit Ort und Zeit oder der Einsatz einer anderen Station (MCAP).",
+  list: "Eingebrachte Dateien",
+  file: "Datei",
+  times: "Zeiten darin",
+  brought_in: "Eingebracht",
+  shifted: "(um {seconds} s verschoben)",
+  not_here: "(nicht auf dieser Station)",
+  take_out: "Herausnehmen",
+  take_out_question: "{file} gehört dann nicht mehr zu diesem Einsatz, und die Kopie der Station wird gelöscht.",
+  take_out_yes: "Ja, herausnehmen",
+  choose: "Dateien (GPX, KML, Foto, MCAP)",
+  shift: "Sekunden dazu, Uhr ging falsch",
+  offset: "Kamera: Stunden vor UTC",
+  add: "Einbringen",
+  busy: "Wird gelesen …",
+  done: "Ist eingebracht.",
+  back: "Einsätze",
+  on_plan: "{name}, eingebracht",
+  legend: "Eingebracht ({count})",
+  layer: "Eingebrachtes auf dem Plan",
+  failed: "Was eingebracht wurde, ließ sich nicht laden.",
+};

@@ -1,0 +1,28 @@
+import type { Part } from "../catalogue";
+
+export const imports: Part<"imports"> = {
+  title: "Versé dans {incident}",
+  open: "Versé…",
+  open_about: "Versé dans {incident}",
+  none: "Rien encore\u00a0: une trace GPX ou KML, une photo avec lieu et heure, ou l’intervention d’une autre station (MCAP).",
+  list: "Fichiers versés",
+  file: "Fichier",
+  times: "Heures contenues",
+  brought_in: "Versé",
+  shifted: "({seconds} s ajoutées)",
+  not_here: "(pas sur cette station)",
+  take_out: "Retirer",
+  take_out_question: "{file} ne fera plus partie de cette intervention, et la copie de la station sera supprimée.",
+  take_out_yes: "Oui, retirer",
+  choose: "Fichiers (GPX, KML, photo, MCAP)",
+  shift: "Secondes à ajouter, horloge décalée",
+  offset: "Appareil photo\u00a0: heures d’avance sur UTC",
+  add: "Verser",
+  busy: "Lecture…",
+  done: "C’est versé.",
+  back: "Interventions",
+  on_plan: "{name}, versé",
+  legend: "Versé ({count})",
+  layer: "Ce qui a été versé, sur le plan",
+  failed: "Ce qui a été versé n’a pas pu être chargé.",
+};

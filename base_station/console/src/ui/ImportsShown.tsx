@@ -1,0 +1,20 @@
+import { t } from "../language/translate";
+import { areImportsShown, imports, importsFailed } from "../plan/imports";
+
+/** Whether what was brought in is drawn, with the line it is drawn in; nothing where there is none. */
+export function ImportsShown() {
+  if (importsFailed.value) return <small>{t("imports.failed")}</small>;
+  const count = imports.value.length;
+  if (count === 0) return null;
+  return (
+    <label>
+      <input
+        type="checkbox"
+        checked={areImportsShown.value}
+        onChange={() => (areImportsShown.value = !areImportsShown.peek())}
+      />
+      <span class="trail-line imported" aria-hidden="true" />
+      {t("imports.legend", { count: String(count) })}
+    </label>
+  );
+}

@@ -1,0 +1,44 @@
+"""The process that reads one file: its path and the options as arguments, the content to its
+output.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import sys
+from pathlib import Path
+
+import msgspec
+
+from base_station.importers.interface import ImportOptions
+from base_station.importers.process import ImportRefusal
+from base_station.importers.reading import read_import
+from base_station.storage.imports import ImportedContent
+from shared.errors import MusterError
+
+MOST_MEMORY_BYTES = 3_000_000_000
+MOST_CPU_S = 900
+_BEHIND_LIVE = 10  # niceness
+
+
+def main() -> None:
+    os.nice(_BEHIND_LIVE)
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY_BYTES, MOST_MEMORY_BYTES))
+    resource.setrlimit(resource.RLIMIT_CPU, (MOST_CPU_S, MOST_CPU_S))
+    options = msgspec.json.decode(sys.argv[2], type=ImportOptions)
+    answer: ImportedContent | ImportRefusal
+    try:
+        answer = read_import(Path(sys.argv[1]), options)
+    except MusterError as error:
+        answer = ImportRefusal(str(error))
+    except OSError as error:
+        answer = ImportRefusal(f"it cannot be read: {error.strerror or error}")
+    except (MemoryError, RecursionError):
+        answer = ImportRefusal("it is too large to be read: take a part of it")
+    is_read = isinstance(answer, ImportedContent)
+    sys.stdout.buffer.write(bytes([is_read]) + msgspec.msgpack.encode(answer))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,138 @@
+"""Brings a file into an incident: looks whether it belongs there, and keeps it unchanged."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import msgspec
+
+from base_station.importers.interface import ImportOptions
+from base_station.importers.process import content_of
+from base_station.storage.db.imports import ImportCatalogue
+from base_station.storage.db.models import ImportRow, IncidentRow
+from base_station.storage.db.records import Records
+from base_station.storage.db.window import FOREVER_NS
+from base_station.storage.imports import ImportedContent, import_id_of
+from shared.clock import NS_PER_S
+from shared.errors import StoreError, UserError
+from shared.geo import Anchor
+from shared.messages.station import ImportFile
+
+AROUND_NS = 3600 * NS_PER_S  # before and behind an incident: who drove there, and back
+FAR_M = 20_000.0
+Act = Callable[[ImportFile], object]  # has the station log it; raises where it does not
+
+
+def anchor_of(records: Records, incident: IncidentRow) -> Anchor | None:
+    """Place of the incident's frame on the Earth."""
+    return records.anchor(incident.closed_ns or FOREVER_NS, incident.site_id)
+
+
+def require_anchor(records: Records, incident: IncidentRow) -> Anchor:
+    """UserError where the incident has no place on the Earth."""
+    anchor = anchor_of(records, incident)
+    if anchor is None:
+        raise UserError(
+            "the incident's site has no place on the Earth, so nothing from elsewhere can be put "
+            "on its plan: set the anchor first (Site in the console)"
+        )
+    return anchor
+
+
+@dataclass(frozen=True)
+class ImportDesk:
+    """Brings files into one incident."""
+
+    catalogue: ImportCatalogue
+    incident: IncidentRow
+    anchor: Anchor
+    until_ns: int  # end of an incident that is open
+
+    def bring_in(self, path: Path, options: ImportOptions, act: Act) -> str:
+        """Keep the incoming file, which is moved, and log it; what is here already stays as it is.
+        Gives its id.
+
+        Raises UserError with what is wrong with the file, and StoreError where the disk or the
+        station does not take it: then nothing of it is left.
+        """
+        try:
+            import_id, sha256 = import_id_of(path)
+            size_bytes = path.stat().st_size
+        except OSError as error:
+            raise StoreError(f"the file cannot be read: {error.strerror or error}") from error
+        entry = self.catalogue.entry(self.incident.incident_id, import_id)
+        if entry is not None:
+            _require_same_shift(entry, options)
+            if self._is_here(import_id):
+                return import_id
+        content = self._read(path, options)
+        folder = self.catalogue.folder
+        folder.keep(self.incident.incident_id, import_id, path, content)
+        if entry is not None:  # the other of two stations had it, or it was damaged
+            return import_id
+        first_ns, last_ns = content.span_ns
+        action = ImportFile(
+            self.incident.incident_id, import_id, options.file_name, content.format, sha256,
+            size_bytes, options.shift_s, first_ns, last_ns,
+        )  # fmt: skip
+        try:
+            act(action)
+        except BaseException:
+            folder.remove(self.incident.incident_id, import_id)
+            raise
+        return import_id
+
+    def _is_here(self, import_id: str) -> bool:
+        try:
+            found = self.catalogue.folder.content(self.incident.incident_id, import_id)
+        except StoreError:
+            return False  # damaged: it is read again
+        return found is not None
+
+    def _read(self, path: Path, options: ImportOptions) -> ImportedContent:
+        try:
+            content = content_of(path, options)
+            self._require_time(content)
+        except UserError as error:
+            raise UserError(f"{options.file_name} was not brought in: {error}") from error
+        return msgspec.structs.replace(content, warnings=(*content.warnings, *self._far(content)))
+
+    def _require_time(self, content: ImportedContent) -> None:
+        first_ns, last_ns = content.span_ns
+        from_ns = self.incident.opened_ns
+        until_ns = self.incident.closed_ns or max(self.until_ns, from_ns)
+        if from_ns - AROUND_NS <= last_ns and first_ns <= until_ns + AROUND_NS:
+            return
+        off_h = (first_ns - from_ns) / NS_PER_S / 3600.0
+        raise UserError(
+            f"it is of {_utc(first_ns)} to {_utc(last_ns)}, and the incident was from "
+            f"{_utc(from_ns)} to {_utc(until_ns)}: choose another incident; or, where the clock "
+            f"that made it was off (by about {off_h:+.1f} h), give the seconds to add (--shift-s)"
+        )
+
+    def _far(self, content: ImportedContent) -> Sequence[str]:
+        """A warning where nothing of it is near the incident."""
+        starts = [track.points[0] for track in content.tracks]
+        north_m, east_m = self.anchor.plane_m(
+            [point.lat_deg for point in starts], [point.lon_deg for point in starts]
+        )
+        nearest_m = min(map(math.hypot, north_m, east_m))
+        if nearest_m < FAR_M:
+            return ()
+        return (f"it begins {nearest_m / 1000.0:.0f} km away from the incident's site",)
+
+
+def _require_same_shift(entry: ImportRow, options: ImportOptions) -> None:
+    if entry.shift_s != options.shift_s:
+        raise UserError(
+            f"{options.file_name} is in this incident already, with {entry.shift_s:g} s added to "
+            "its times: take it out first, then bring it in anew"
+        )
+
+
+def _utc(t_ns: int) -> str:
+    return f"{datetime.fromtimestamp(t_ns // NS_PER_S, UTC):%Y-%m-%d %H:%M:%S} UTC"

@@ -1,0 +1,45 @@
+"""Files from elsewhere are read in a process of their own: whatever is in them, the station does
+not end, hang or fill the memory with it.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import msgspec
+
+from base_station.importers.interface import ImportOptions
+from base_station.storage.imports import ImportedContent
+from shared.errors import UserError
+
+MOST_WAIT_S = 1200.0
+
+
+class ImportRefusal(msgspec.Struct, frozen=True):
+    reason: str
+
+
+def content_of(path: Path, options: ImportOptions) -> ImportedContent:
+    """Read it.  Raises UserError with what is wrong with the file, and what to do."""
+    command = (
+        *(sys.executable, "-m", "base_station.importers"),
+        *(str(path.absolute()), msgspec.json.encode(options).decode()),
+    )
+    try:
+        done = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            timeout=MOST_WAIT_S,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise UserError("it took too long to be read: take a part of it") from None
+    if done.returncode != 0 or not done.stdout:
+        raise UserError("it cannot be read: it may be damaged; save it again, and bring that in")
+    is_read, encoded = done.stdout[0], done.stdout[1:]
+    if not is_read:
+        raise UserError(msgspec.msgpack.decode(encoded, type=ImportRefusal).reason)
+    return msgspec.msgpack.decode(encoded, type=ImportedContent)

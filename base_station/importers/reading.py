@@ -1,0 +1,64 @@
+"""Reads a file that is brought in, whatever it is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from base_station.importers import IMPORTERS
+from base_station.importers.interface import MOST_BYTES, Importer, ImportOptions
+from base_station.storage.imports import ImportedContent
+from shared.clock import NS_PER_S
+from shared.errors import UserError
+
+_HEAD_BYTES = 4096
+_OTHERS = {
+    b"PK\x03\x04": "it is packed, as a KMZ file is: unpack it, and bring in what is in it",
+    b"\x1f\x8b": "it is compressed: unpack it, and bring in what is in it",
+}
+_HEIF = b"ftyp"  # behind the length of the first box
+
+
+def read_import(path: Path, options: ImportOptions) -> ImportedContent:
+    """Its content with the shift of time added.  The importer is chosen by the file's first bytes.
+
+    Raises UserError with what is wrong with it, and OSError where it cannot be read.
+    """
+    size_bytes = path.stat().st_size
+    if size_bytes > MOST_BYTES:
+        raise UserError(f"it has {size_bytes >> 20} MB, and at most {MOST_BYTES >> 20} are taken")
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+    return _shifted(_importer_of(head).read(path, options), options.shift_s)
+
+
+def _importer_of(head: bytes) -> Importer:
+    for importer in IMPORTERS:
+        if importer.matches(head):
+            return importer
+    for beginning, advice in _OTHERS.items():
+        if head.startswith(beginning):
+            raise UserError(advice)
+    if head[4:8] == _HEIF:
+        raise UserError("pictures as HEIC are not read: save it as JPEG, with its Exif data")
+    raise UserError(
+        "it is nothing that can be brought in: take a GPX or KML track, a JPEG, PNG, TIFF or WebP "
+        "photograph, or an incident of another station (MCAP)"
+    )
+
+
+def _shifted(content: ImportedContent, shift_s: float) -> ImportedContent:
+    shift_ns = round(shift_s * 1000) * (NS_PER_S // 1000)
+    if shift_ns == 0:
+        return content
+    tracks = tuple(
+        msgspec.structs.replace(
+            track,
+            points=tuple(
+                msgspec.structs.replace(point, t_ns=point.t_ns + shift_ns) for point in track.points
+            ),
+        )
+        for track in content.tracks
+    )
+    return msgspec.structs.replace(content, tracks=tracks)

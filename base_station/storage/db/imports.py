@@ -1,0 +1,27 @@
+"""Catalogue of what was brought into incidents, with the folder that has the files."""
+
+from __future__ import annotations
+
+from sqlalchemy import select
+
+from base_station.storage.db.database import Database
+from base_station.storage.db.models import ImportRow
+from base_station.storage.imports import ImportFolder
+
+
+class ImportCatalogue:
+    """Thread-safe; every method is one transaction."""
+
+    def __init__(self, store: Database, folder: ImportFolder) -> None:
+        self._store = store
+        self.folder = folder
+
+    def ids(self) -> set[tuple[str, str]]:
+        """Incident and id of all."""
+        with self._store.read() as session:
+            found = session.execute(select(ImportRow.incident_id, ImportRow.import_id))
+            return {(incident_id, import_id) for incident_id, import_id in found}
+
+    def entry(self, incident_id: str, import_id: str) -> ImportRow | None:
+        with self._store.read() as session:
+            return session.get(ImportRow, (incident_id, import_id))

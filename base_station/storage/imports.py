@@ -1,0 +1,219 @@
+"""Files that were brought into incidents: each as it came, beside what was read of it.
+
+The log says which ones belong to an incident (``ImportFile``), with the hash of each; a second
+station has that from the log, and not the file.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+import time
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from hashlib import file_digest
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from base_station.storage.private_files import write_atomically
+from shared.durable_names import sync_folder
+from shared.errors import StoreError
+from shared.own_files import make_folder, read_own, write_own
+
+_PRIVATE = 0o700
+_INCOMING = "incoming"
+# Not by its own ending: what ends in .mcap in a station's folder is taken for a part of its log.
+_ORIGINAL, _CONTENT, _SUMMARY = ".original", ".content", ".summary"
+_MOST_NAMES = 100
+_LEFT_AFTER_S = 86_400.0
+KEEP_FREE_BYTES = 500_000_000  # of the disk, for the log
+
+
+class ImportedPoint(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    t_ns: int  # UTC
+    lat_deg: float  # WGS-84
+    lon_deg: float
+    height_m: float | None = None  # above the ellipsoid or the sea, as the file has it
+    floor: int | None = None  # of the building, where another station knew it
+
+
+class ImportedTrack(msgspec.Struct, frozen=True):
+    """Way of a person or thing, by time; a photograph is a track of one point."""
+
+    name: str
+    points: tuple[ImportedPoint, ...]
+
+
+class ImportSummary(msgspec.Struct, frozen=True):
+    """What a list of imports says of a file."""
+
+    tracks: int
+    names: tuple[str, ...]  # of the first tracks
+    warnings: tuple[str, ...]
+
+
+class ImportedContent(msgspec.Struct, frozen=True):
+    """Content of a file that could be read; ``warnings``: sentences about what was left out."""
+
+    format: str  # name of the importer that has read it
+    tracks: tuple[ImportedTrack, ...]
+    warnings: tuple[str, ...] = ()
+    picture: bytes | None = None  # small JPEG, of a photograph
+
+    @property
+    def summary(self) -> ImportSummary:
+        names = tuple(track.name for track in self.tracks[:_MOST_NAMES])
+        return ImportSummary(len(self.tracks), names, self.warnings)
+
+    @property
+    def span_ns(self) -> tuple[int, int]:
+        """First and last time."""
+        times_ns = [point.t_ns for track in self.tracks for point in track.points]
+        return min(times_ns), max(times_ns)
+
+
+_Part = TypeVar("_Part", ImportedContent, ImportSummary)
+
+
+class ImportFolder:
+    """``imports`` in a station's folder, with a folder for each incident."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def require_room(self, size_bytes: int) -> None:
+        """StoreError where a file of that size would leave too little of the disk to the log."""
+        self._make(self.path)
+        free_bytes = shutil.disk_usage(self.path).free
+        if free_bytes - size_bytes < KEEP_FREE_BYTES:
+            raise StoreError(
+                f"the disk has {free_bytes >> 20} MB left, of which the log needs "
+                f"{KEEP_FREE_BYTES >> 20}: the file is not taken; make room first"
+            )
+
+    @contextmanager
+    def incoming(self) -> Iterator[Path]:
+        """Where a file is put while it comes; nothing of it is left there afterwards.
+
+        Raises StoreError where the disk takes no more.
+        """
+        folder = self.path / _INCOMING
+        self._make(folder)
+        path = folder / secrets.token_hex(8)
+        try:
+            _remove_left(folder)
+            yield path
+        except OSError as error:
+            raise StoreError(f"the file cannot be kept: {error.strerror or error}") from error
+        finally:
+            path.unlink(missing_ok=True)
+
+    def copy(self, original: Path, path: Path) -> None:
+        """Copy a file to where it is incoming.  Raises OSError."""
+        with original.open("rb") as source, write_own(path, 0o600) as target:
+            shutil.copyfileobj(source, target, 1 << 20)
+
+    def keep(self, incident_id: str, import_id: str, path: Path, content: ImportedContent) -> None:
+        """Move an incoming file to where it stays, with what was read of it.
+
+        Raises StoreError, and leaves nothing of it, where the disk takes no more.
+        """
+        folder = self.path / incident_id
+        self._make(folder)
+        (folder / f"{import_id}{_SUMMARY}").unlink(missing_ok=True)
+        try:
+            with read_own(path) as file:
+                os.fsync(file.fileno())
+            path.replace(folder / f"{import_id}{_ORIGINAL}")
+            write_atomically(folder / f"{import_id}{_CONTENT}", msgspec.msgpack.encode(content))
+            write_atomically(  # the last: a file without one is not here
+                folder / f"{import_id}{_SUMMARY}", msgspec.msgpack.encode(content.summary)
+            )
+        except OSError as error:
+            self.remove(incident_id, import_id)
+            raise StoreError(f"the file cannot be kept: {error.strerror or error}") from error
+        except StoreError:
+            self.remove(incident_id, import_id)
+            raise
+
+    def content(self, incident_id: str, import_id: str) -> ImportedContent | None:
+        """None where the file is not here.  Raises StoreError where it cannot be read."""
+        if self.summary(incident_id, import_id) is None:
+            return None
+        return self._read(incident_id, f"{import_id}{_CONTENT}", ImportedContent)
+
+    def summary(self, incident_id: str, import_id: str) -> ImportSummary | None:
+        """As ``content``."""
+        return self._read(incident_id, f"{import_id}{_SUMMARY}", ImportSummary)
+
+    def _read(self, incident_id: str, name: str, kind: type[_Part]) -> _Part | None:
+        try:
+            with read_own(self.path / incident_id / name) as file:
+                return msgspec.msgpack.decode(file.read(), type=kind)
+        except FileNotFoundError:
+            return None
+        except (OSError, msgspec.MsgspecError) as error:
+            raise StoreError(
+                f"what was read of an imported file is damaged ({error}); bring the file in again"
+            ) from error
+
+    def original(self, incident_id: str, import_id: str) -> Path | None:
+        """The file as it came; None where it is not here."""
+        path = self.path / incident_id / f"{import_id}{_ORIGINAL}"
+        return path if path.is_file() else None
+
+    def remove(self, incident_id: str, import_id: str) -> None:
+        for suffix in (_SUMMARY, _CONTENT, _ORIGINAL):
+            (self.path / incident_id / f"{import_id}{suffix}").unlink(missing_ok=True)
+
+    def remove_all(self, incident_id: str) -> int:
+        """Remove all files of an incident; gives how many there were.  Raises StoreError."""
+        folder = self.path / incident_id
+        files = list(folder.glob("*"))
+        try:
+            shutil.rmtree(folder)
+            sync_folder(self.path)
+        except FileNotFoundError:
+            return 0
+        except OSError as error:
+            raise StoreError(f"{folder} cannot be removed: {error.strerror or error}") from error
+        return len(files)
+
+    def files(self) -> Iterator[Path]:
+        """All that is kept."""
+        for path in sorted(self.path.glob("*/*")):
+            if path.parent.name != _INCOMING:
+                yield path
+
+    def remove_others(self, kept: Collection[tuple[str, str]]) -> None:
+        """Remove what is not among these incidents and ids."""
+        for path in self.path.glob("*/*"):
+            if (path.parent.name, path.stem) not in kept:
+                path.unlink(missing_ok=True)
+
+    def _make(self, folder: Path) -> None:
+        try:
+            make_folder(self.path, _PRIVATE)
+            make_folder(folder, _PRIVATE)
+        except OSError as error:
+            raise StoreError(f"{folder} cannot be made: {error.strerror or error}") from error
+
+
+def _remove_left(folder: Path) -> None:
+    """What came when a station or a command was killed."""
+    for path in folder.iterdir():
+        if time.time() - path.stat().st_mtime > _LEFT_AFTER_S:
+            path.unlink(missing_ok=True)
+
+
+def import_id_of(path: Path) -> tuple[str, str]:
+    """Id in an incident, and SHA-256, of a file's bytes: the same file has the same id.
+
+    Raises OSError.
+    """
+    with path.open("rb") as file:
+        sha256 = file_digest(file, "sha256").hexdigest()
+    return sha256[:32], sha256
