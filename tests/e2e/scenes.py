@@ -605,6 +605,19 @@ def two_incidents() -> wire.Snapshot:
     )
 
 
+def with_sensors() -> wire.Snapshot:
+    """Each unit has two, and the station knows where."""
+    worn = (
+        wire.WornSensorView("left", "left_foot", False, "laces", "ICM-20948"),
+        wire.WornSensorView("trunk", "lower_back", True, "belt", "ICM-20948"),
+    )
+    shown = crowd()
+    units = [
+        msgspec.structs.replace(one, sensors=worn, tracker="foot_and_trunk") for one in shown.units
+    ]
+    return msgspec.structs.replace(shown, units=tuple(units))
+
+
 def dispatch(number: str, **change: Any) -> wire.DispatchView:
     """Offered: no incident was opened from it."""
     reported = wire.DispatchView(

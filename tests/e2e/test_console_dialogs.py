@@ -48,10 +48,12 @@ def test_the_units_are_looked_after_in_their_dialog(
     press(card.get_by_role("button").first)
     sensors = card.locator(".fact", has_text="Sensors")
     expect(sensors).to_contain_text("left foot (laces), lower back (recognised)")
-    expect(sensors).to_contain_text("foot_and_trunk")
+    expect(sensors).to_contain_text("position from foot and trunk")
     dialog = menu(page, "Units")
     row = dialog.get_by_role("row", name=UNIT)
-    expect(row.get_by_role("list")).to_contain_text("lower back (recognised)foot_and_trunk")
+    expect(row.get_by_role("list")).to_contain_text(
+        "lower back (recognised)position from foot and trunk"
+    )
     expect(row).to_contain_text("1 min 15 s behind ± 3 ms")
     row.get_by_role("button", name=f"Fetch the recording of {UNIT}").click()
     expect(row).to_contain_text("waiting")

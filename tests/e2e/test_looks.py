@@ -103,7 +103,7 @@ def test_dialogs_fit_every_screen(stage: Stage) -> None:
 
 def test_forty_people_fit_the_dialogs(stage: Stage) -> None:
     """Long names among them: no name runs into what stands beside it, no button beyond the edge."""
-    page, _ = stage.open(scenes.crowd())
+    page, _ = stage.open(scenes.with_sensors())
     page.locator(".par-clock").click()
     names = page.locator(".roll-crew strong")
     expect(names.first).to_be_visible()
@@ -116,6 +116,7 @@ def test_forty_people_fit_the_dialogs(stage: Stage) -> None:
     dialog = menu(page, "Units")
     dialog.get_by_role("row").nth(40).wait_for()
     assert dialog.evaluate("shown => shown.scrollWidth - shown.clientWidth") <= 0
+    expect(dialog.get_by_role("row").nth(1)).to_contain_text("position from foot and trunk")
     close(dialog)
     page.get_by_role("button", name="All start here").click()
     start = page.get_by_role("form", name="All start here")

@@ -6,7 +6,7 @@ import { isOld, regionAt } from "../plan/ellipse";
 import { roomWord } from "../plan/rooms";
 import type { Link, PositionView, StatusView, UnitView } from "../wire";
 import * as format from "../format";
-import { t } from "../language/translate";
+import { label, t } from "../language/translate";
 import { Icon, type IconName } from "./Icon";
 
 interface Props {
@@ -148,7 +148,7 @@ export function Sensors({ unit: { sensors, tracker } }: { unit: UnitView }) {
     <dl class="facts">
       <Fact icon="walking" label={t("fact.sensors")} width="whole">
         {listed(sensors.map(format.wornAt))}
-        <Remark>{tracker}</Remark>
+        <Remark>{label("tracker", tracker)}</Remark>
       </Fact>
     </dl>
   );

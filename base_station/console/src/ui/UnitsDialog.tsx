@@ -4,7 +4,7 @@ import * as api from "../api";
 import { openDialog } from "../uiState";
 import type { ClockView, PreflightView, UnitView, WornSensorView } from "../wire";
 import { alarmLabel, clockOffset, gpsText, isClockWrong, linkText, preflightText, wornAt } from "../format";
-import { t } from "../language/translate";
+import { label, t } from "../language/translate";
 import { Columns } from "./Columns";
 import { Dialog } from "./Dialog";
 import { useDone } from "./Done";
@@ -121,7 +121,7 @@ function Sensors({ sensors, tracker }: { sensors: readonly WornSensorView[]; tra
           {wornAt(one)}
         </li>
       ))}
-      <li class="quiet">{tracker}</li>
+      <li class="quiet">{label("tracker", tracker)}</li>
     </ul>
   );
 }

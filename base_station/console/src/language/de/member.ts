@@ -74,3 +74,16 @@ export const worn: Part<"worn"> = {
   left_foot: "linker Fuß",
   right_foot: "rechter Fuß",
 };
+
+/** What makes positions of the samples, by its name in the unit. */
+export const tracker: Part<"tracker"> = {
+  eskf: "Position aus den Schritten am Fuß",
+  huang: "Position aus den Schritten am Fuß (Huang)",
+  waist: "Position aus den Schritten am Bauch",
+  hip: "Position aus den Schritten an der Hüfte",
+  "hip-corridors": "Position aus den Schritten an der Hüfte, in geraden Fluren",
+  body: "Position aus den Schritten am Körper",
+  torso_shank: "Position aus Rumpf und Unterschenkel",
+  two_feet: "Position aus beiden Füßen",
+  foot_and_trunk: "Position aus Fuß und Rumpf",
+};

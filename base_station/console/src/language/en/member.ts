@@ -73,3 +73,16 @@ export const worn = {
   left_foot: "left foot",
   right_foot: "right foot",
 } as const;
+
+/** What makes positions of the samples, by its name in the unit. */
+export const tracker = {
+  eskf: "position from strides of the foot",
+  huang: "position from strides of the foot (Huang)",
+  waist: "position from steps at the waist",
+  hip: "position from steps at the hip",
+  "hip-corridors": "position from steps at the hip, in straight corridors",
+  body: "position from steps of the body",
+  torso_shank: "position from torso and shank",
+  two_feet: "position from both feet",
+  foot_and_trunk: "position from foot and trunk",
+} as const;

@@ -12,7 +12,7 @@ import { frame } from "./frame";
 import { incident } from "./incidents";
 import { imports } from "./imports";
 import { measure } from "./measure";
-import { activity, posture, mobility, link, heat, battery, member, worn } from "./member";
+import { activity, posture, mobility, link, heat, battery, member, worn, tracker } from "./member";
 import { order, delivery } from "./orders";
 import { board, radio, headcount, card, fact, list, par } from "./people";
 import { anchor, base_map, beacon, plan, compass, trail, mark } from "./plan";
@@ -85,6 +85,7 @@ export const fr: Catalogue = {
   station,
   systems,
   token,
+  tracker,
   tracker_reason,
   trail,
   worn,

@@ -74,3 +74,16 @@ export const worn: Part<"worn"> = {
   left_foot: "pied gauche",
   right_foot: "pied droit",
 };
+
+/** What makes positions of the samples, by its name in the unit. */
+export const tracker: Part<"tracker"> = {
+  eskf: "position d’après les foulées du pied",
+  huang: "position d’après les foulées du pied (Huang)",
+  waist: "position d’après les pas à la taille",
+  hip: "position d’après les pas à la hanche",
+  "hip-corridors": "position d’après les pas à la hanche, dans des couloirs droits",
+  body: "position d’après les pas du corps",
+  torso_shank: "position d’après le torse et le mollet",
+  two_feet: "position d’après les deux pieds",
+  foot_and_trunk: "position d’après le pied et le tronc",
+};
