@@ -21,7 +21,7 @@ def enlist(page: Page, card: Locator, unit_id: str) -> None:
 def register(card: Locator, unit_id: str) -> None:
     """In one press."""
     card.get_by_role("button", name="Register").click()
-    expect(card.get_by_label(f"Who wears {unit_id}")).to_be_visible()
+    expect(card.get_by_label(f"Assign {unit_id} to")).to_be_visible()
 
 
 def add_person(page: Page) -> None:
@@ -36,7 +36,7 @@ def add_person(page: Page) -> None:
 
 def assign(page: Page, unit_id: str) -> None:
     dialog = menu(page, "Units")
-    worn = dialog.get_by_label(f"Who wears {unit_id}")
+    worn = dialog.get_by_label(f"Assign {unit_id} to")
     worn.focus()
     worn.select_option(label=f"{NAME} (Ladder 1)")
     close(dialog)
@@ -45,7 +45,7 @@ def assign(page: Page, unit_id: str) -> None:
 def open_incident(page: Page) -> None:
     dialog = menu(page, "Incidents")
     dialog.get_by_label("Name of the new incident").fill(INCIDENT)
-    dialog.get_by_label("Roll call every, min").first.fill("10")
+    dialog.get_by_label("PAR every, min").first.fill("10")
     dialog.get_by_role("button", name="Open incident").click()
     expect(dialog.get_by_role("row", name=INCIDENT)).to_be_visible()
     close(dialog)

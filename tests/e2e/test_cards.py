@@ -138,7 +138,7 @@ def test_of_who_switched_off_it_says_how_long_they_were_inside(stage: Stage) -> 
 def test_who_is_given_a_unit_is_told_to_wear_another(stage: Stage) -> None:
     """Chosen by a slip, they would be looked for where that unit is."""
     page, _ = stage.open(scenes.quiet())
-    worn_by = menu(page, "Units").get_by_label("Who wears FF-01")
+    worn_by = menu(page, "Units").get_by_label("Assign FF-01 to")
     worn_by.focus()
     options = worn_by.get_by_role("option")
     expect(options.filter(has_text="Jonas Bergman")).to_have_text(

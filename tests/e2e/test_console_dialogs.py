@@ -55,7 +55,7 @@ def test_the_units_are_looked_after_in_their_dialog(
         "lower back (recognised)position from foot and trunk"
     )
     expect(row).to_contain_text("1 min 15 s behind ± 3 ms")
-    row.get_by_role("button", name=f"Fetch the recording of {UNIT}").click()
+    row.get_by_role("button", name=f"Download recording of {UNIT}").click()
     expect(row).to_contain_text("waiting")
     close(dialog)
     page.get_by_role("button", name="Station health").click()
@@ -93,7 +93,7 @@ def test_a_past_incident_is_replayed(page: Page, card: Locator) -> None:
     expect(dialog.get_by_label("Name of the new incident")).to_be_visible()
     dialog.get_by_role("button", name=f"Replay {INCIDENT}").click()
     banner = page.get_by_role("region", name="Replay")
-    expect(banner).to_contain_text("This is the past")
+    expect(banner).to_contain_text("Recorded, not live")
     expect(card).to_contain_text(NAME)
     banner.get_by_label("Time of the incident").press("End")
     resolved = page.get_by_role("region", name="Open alarms").get_by_role("listitem")

@@ -35,7 +35,7 @@ def test_a_pin_is_set_with_a_click_dragged_and_removed(page: Page, card: Locator
     form = page.get_by_role("form", name=f"Pin: {NAME}")
     click_plan(page, -150, -80)
     expect(form.get_by_label("North, m")).not_to_have_value("")
-    form.get_by_label("Sure to within").select_option("4")
+    form.get_by_label("Accuracy").select_option("4")
     form.get_by_role("button", name="Set pin").click()
     expect(form).to_have_count(0)
     (pin,) = pins(page)
@@ -91,8 +91,8 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
 
 
 def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -> None:
-    page.get_by_role("button", name="All start here").click()
-    form = page.get_by_role("form", name="All start here")
+    page.get_by_role("button", name="Set common start").click()
+    form = page.get_by_role("form", name="Set common start")
     expect(form).to_contain_text(NAME)
     page.keyboard.press("Escape")
     expect(form).to_have_count(0)
@@ -100,8 +100,8 @@ def test_what_is_begun_on_the_plan_ends_with_escape(page: Page, card: Locator) -
 
 def test_all_were_somewhere_where_their_paths_begin_or_now(page: Page, card: Locator) -> None:
     for when, is_now in (("at the start", False), ("now", True)):
-        page.get_by_role("button", name="All start here").click()
-        form = page.get_by_role("form", name="All start here")
+        page.get_by_role("button", name="Set common start").click()
+        form = page.get_by_role("form", name="Set common start")
         click_plan(page, -150, -80)
         form.get_by_label("When").select_option(label=when)
         form.get_by_role("button", name="Set start").click()
@@ -168,7 +168,7 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
         ground.click(position=at)  # type: ignore[arg-type]  # of Playwright's own
     form.get_by_role("button", name="Save location").click()
     page.wait_for_timeout(600)  # two presses in haste would be one
-    form.get_by_role("button", name="Yes, replace place").click()
+    form.get_by_role("button", name="Yes, replace location").click()
     expect(form).to_have_count(0)
     anchor = answer_to(page, "site/anchor")
     assert anchor["plan_rotation_rad"] == pytest.approx(0.0, abs=0.05)
@@ -184,7 +184,7 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
 def clicked_places(form: Locator) -> list[tuple[float, float]]:
     """North and east, as the panel says them."""
     said = form.text_content() or ""
-    found = re.findall(r"([\d.]+) m (north|south), ([\d.]+) m (east|west)", said)
+    found = re.findall(r"([\d.]+)\s+m (north|south), ([\d.]+)\s+m (east|west)", said)
     assert len(found) == 2
     return [
         (

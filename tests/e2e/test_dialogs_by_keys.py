@@ -142,7 +142,7 @@ def test_times_that_were_changed_are_said_to_be(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "Incidents").click()
     dialog = page.get_by_role("dialog")
-    rest = dialog.get_by_label("Rest after, min")
+    rest = dialog.get_by_label("Work limit, min")
     rest.fill("30")
     dialog.get_by_role("button", name="Save times").click()
     done = dialog.get_by_role("status").filter(has_text="The times are changed.")
@@ -212,7 +212,7 @@ def test_a_form_that_comes_in_place_of_a_button_takes_the_focus_and_gives_it_bac
     button = dialog.get_by_role("button", name=f"{asks} Li Na", exact=True)
     button.press("Enter")
     expect(dialog.get_by_role("cell").get_by_label(field, exact=True)).to_be_focused()
-    dialog.get_by_role("button", name=re.compile("^(No|Leave as it is)$")).press("Enter")
+    dialog.get_by_role("button", name=re.compile("^(No|Cancel)$")).press("Enter")
     expect(button).to_be_focused()
 
 
@@ -221,8 +221,8 @@ def test_another_rate_of_positions_is_said_to_be_set(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "Units").click()
     row = page.get_by_role("dialog").get_by_role("row", name="FF-01")
-    row.get_by_label("Positions a second of FF-01").select_option("5")
-    expect(row.get_by_role("status")).to_have_text("5 are asked for.")
+    row.get_by_label("Position rate of FF-01").select_option("5")
+    expect(row.get_by_role("status")).to_have_text("5 Hz requested.")
 
 
 def test_a_base_map_that_was_set_is_said_to_be(stage: Stage, tmp_path: Path) -> None:

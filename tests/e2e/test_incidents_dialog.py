@@ -54,9 +54,9 @@ def test_an_incident_is_saved_or_it_is_said_why_not_and_the_console_stays(stage:
 def test_an_incident_begins_with_the_times_that_the_station_has(stage: Stage) -> None:
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), incident=None))
     dialog = menu(page, "Incidents")
-    expect(dialog.get_by_label("Roll call every, min")).to_have_value("15")
+    expect(dialog.get_by_label("PAR every, min")).to_have_value("15")
     dialog.get_by_label("Name of the new incident").fill("Mill Lane")
-    dialog.get_by_label("Rest after, min").fill("30")
+    dialog.get_by_label("Work limit, min").fill("30")
     with page.expect_request(lambda request: request.method == "POST") as sent:
         dialog.get_by_role("button", name="Open incident").click()
     assert sent.value.post_data_json == {
@@ -70,7 +70,7 @@ def test_times_that_are_no_whole_minutes_stay_as_they_are(stage: Stage) -> None:
     incident = msgspec.structs.replace(scenes.INCIDENT, par_interval_s=90.0)
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), incident=incident))
     dialog = menu(page, "Incidents")
-    dialog.get_by_label("Rest after, min").fill("30")
+    dialog.get_by_label("Work limit, min").fill("30")
     with page.expect_request(lambda request: request.method == "PUT") as sent:
         dialog.get_by_role("button", name="Save times").click()
     assert sent.value.post_data_json == {"par_interval_s": 90, "work_limit_s": 1800}
@@ -82,7 +82,7 @@ def test_the_last_hour_is_the_station_s_whatever_the_browser_s_clock_says(stage:
     station.change()
     dialog = menu(page, "Units")
     with page.expect_request(re.compile("/recordings$")) as sent:
-        dialog.get_by_role("button", name="Fetch the recording of FF-01").click()
+        dialog.get_by_role("button", name="Download recording of FF-01").click()
     asked = sent.value.post_data_json
     assert asked is not None
     assert scenes.NOW_MS - asked["from_ms"] == pytest.approx(60 * scenes.MINUTE_MS, rel=0.1)

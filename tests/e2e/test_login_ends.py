@@ -106,7 +106,7 @@ def replay_an_incident(stage: Stage, username: str = "chief") -> tuple[Page, Pla
     bar = page.get_by_role("region", name="Replay")
     expect(bar.get_by_role("button", name="Pause")).to_be_visible()
     page.locator(".par-clock").click()
-    expect(page.get_by_role("dialog", name="Roll call")).to_be_visible()
+    expect(page.get_by_role("dialog", name="PAR status")).to_be_visible()
     station.end_logins()
     expect(page.get_by_role("status").filter(has_text=ENDED)).to_be_visible()
     expect(bar).to_be_hidden()
@@ -121,8 +121,8 @@ def test_a_replay_goes_on_where_it_was_after_the_login(stage: Stage) -> None:
     assert at is not None
     wanted = {"at_ms": at.at_ms, "speed": at.speed, "playing": at.playing}
     assert asked.value.post_data_json == wanted
-    expect(page.get_by_role("dialog", name="Roll call")).to_be_visible()
-    expect(page.get_by_role("region", name="Replay")).to_contain_text("This is the past")
+    expect(page.get_by_role("dialog", name="PAR status")).to_be_visible()
+    expect(page.get_by_role("region", name="Replay")).to_contain_text("Recorded, not live")
     expect(page.locator(".console")).to_have_class(re.compile("replay"))
     expect(page.locator(".console")).not_to_have_class(re.compile("not-now"))
     station.expect_changes("/replays", "/login", "/replays/r2")
@@ -138,7 +138,7 @@ def test_a_replay_that_the_station_has_ended_meanwhile_is_begun_again(stage: Sta
     log_in(page)
     expect(page.locator(".console")).to_have_class(re.compile("replay"))
     expect(page.locator(".console")).not_to_have_class(re.compile("not-now"))
-    expect(page.get_by_role("dialog", name="Roll call")).to_be_visible()
+    expect(page.get_by_role("dialog", name="PAR status")).to_be_visible()
     station.expect_changes("/replays", "/login", "/replays/r3")
     page.keyboard.press("Escape")
     page.get_by_role("button", name="Back to live").click()
@@ -169,7 +169,7 @@ def test_nobody_else_gets_what_somebody_was_writing(stage: Stage) -> None:
 def test_who_logs_out_leaves_nothing(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute(), answers=answers())
     page.locator(".card").first.get_by_role("button").first.click()
-    page.get_by_role("button", name="All start here").click()
+    page.get_by_role("button", name="Set common start").click()
     page.get_by_role("button", name="Account").click()
     page.get_by_role("dialog").get_by_role("button", name="Log out").click()
     expect(page.locator(".console")).to_have_count(0)

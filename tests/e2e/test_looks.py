@@ -118,8 +118,8 @@ def test_forty_people_fit_the_dialogs(stage: Stage) -> None:
     assert dialog.evaluate("shown => shown.scrollWidth - shown.clientWidth") <= 0
     expect(dialog.get_by_role("row").nth(1)).to_contain_text("position from foot and trunk")
     close(dialog)
-    page.get_by_role("button", name="All start here").click()
-    start = page.get_by_role("form", name="All start here")
+    page.get_by_role("button", name="Set common start").click()
+    start = page.get_by_role("form", name="Set common start")
     expect(start.get_by_label("North, m")).to_be_in_viewport()
     names = start.get_by_role("group").filter(has_text="All 41 who are on duty")
     names.get_by_text("All 41").click()
@@ -154,7 +154,7 @@ def test_how_good_positions_were_is_read_on_a_phone(stage: Stage) -> None:
 
 
 @pytest.mark.parametrize("screen", ["phone", "phone on its side"])
-@pytest.mark.parametrize("name", ["Beacon", "All start here"])
+@pytest.mark.parametrize("name", ["Beacon", "Set common start"])
 def test_on_a_phone_the_plan_can_be_clicked_while_a_panel_asks_for_it(
     stage: Stage, name: str, screen: str
 ) -> None:
@@ -192,7 +192,7 @@ def test_users_and_answers_are_read_on_a_phone(stage: Stage) -> None:
 def test_no_panel_lies_over_the_plan(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     tools = page.get_by_role("group", name="On the plan")
-    for name in ("Trails", "Pins 2", "Beacon", "All start here"):
+    for name in ("Trails", "Pins 2", "Beacon", "Set common start"):
         tools.get_by_role("button", name=name).click()
         assert on_every_screen(page, flaws) == {}, name
         assert barriers(page) == [], name
@@ -256,7 +256,7 @@ def test_in_the_past_a_tablet_shows_who_is_in_trouble_and_not_only_buttons(stage
     assert heights_px[1] < 3 * ROW_PX
 
 
-@pytest.mark.parametrize("name", ["Beacon", "All start here"])
+@pytest.mark.parametrize("name", ["Beacon", "Set common start"])
 def test_on_a_tablet_the_plan_can_be_clicked_while_a_panel_asks_for_it(
     stage: Stage, name: str
 ) -> None:

@@ -63,7 +63,7 @@ def test_after_a_place_on_the_earth_keys_go_on_where_the_dialog_was_opened(
 ) -> None:
     page, _ = stage.open(scenes.quiet(), screen)
     open_site(page, screen)
-    page.get_by_role("dialog").get_by_role("button", name="By two points").press("Enter")
+    page.get_by_role("dialog").get_by_role("button", name="Align by two points").press("Enter")
     panel = page.get_by_role("form", name="Plan location")
     expect(panel).to_be_focused()
     page.keyboard.press("Escape")
@@ -74,7 +74,7 @@ def test_after_a_place_on_the_earth_keys_go_on_where_the_dialog_was_opened(
 def test_a_point_that_was_clicked_is_said_in_words(stage: Stage) -> None:
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), plan=None))
     open_site(page, "laptop")
-    page.get_by_role("dialog").get_by_role("button", name="By two points").press("Enter")
+    page.get_by_role("dialog").get_by_role("button", name="Align by two points").press("Enter")
     panel = page.get_by_role("form", name="Plan location")
     page.locator(".map").click(position={"x": 10, "y": 60})
     expect(panel).to_contain_text("First point: ")

@@ -132,12 +132,12 @@ def test_who_was_met_is_no_other_once_nobody_wears_that_unit(stage: Stage) -> No
     page, station = stage.open(quiet)
     page.locator("[data-unit='FF-01']").get_by_role("button").first.click()
     page.get_by_role("button", name="Same place as …").click()
-    panel = page.get_by_role("form", name="They met")
-    panel.get_by_label("Whom").select_option("FF-03")
+    panel = page.get_by_role("form", name="Same place")
+    panel.get_by_label("With").select_option("FF-03")
     station.change(units=(msgspec.structs.replace(quiet.units[2], person=None),))
     expect(page.locator(".card", has_text="unassigned")).to_have_count(1)
     with page.expect_request(re.compile("/pins/meeting$")) as asked:
-        panel.get_by_role("button", name="They met").click()
+        panel.get_by_role("button", name="Save").click()
     assert (asked.value.post_data_json or {})["other_unit_id"] == "FF-03"
 
 
@@ -205,7 +205,7 @@ def test_everybody_is_ticked_off_once(stage: Stage) -> None:
 def test_whom_to_choose_from_is_listed_where_somebody_chooses(stage: Stage) -> None:
     """Each unit with each person would be a quarter of a million entries of 500."""
     page, _ = stage.open(scenes.quiet())
-    worn = menu(page, "Units").get_by_role("combobox", name="Who wears")
+    worn = menu(page, "Units").get_by_role("combobox", name="Assign ")
     expect(worn.first).to_have_value("p0")
     assert worn.locator("option").count() <= 2 * worn.count()  # nobody, and who wears it
     worn.first.hover()
@@ -216,7 +216,7 @@ def test_whom_arrow_keys_only_pass_is_given_no_unit(stage: Stage) -> None:
     """Nor is that person taken from another; by keys it counts with Enter, or on leaving."""
     quiet = scenes.quiet()
     page, station = stage.open(quiet)
-    worn = menu(page, "Units").get_by_label("Who wears FF-01")
+    worn = menu(page, "Units").get_by_label("Assign FF-01 to")
     expect(worn).to_have_value("p0")  # the people are there
     worn.focus()
     worn.press("ArrowDown")

@@ -34,7 +34,7 @@ def begin_replay(page: Page) -> Locator:
     """Beside what is live."""
     menu(page, "Incidents").get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
     banner = page.get_by_role("region", name="Replay")
-    expect(banner).to_contain_text("This is the past")
+    expect(banner).to_contain_text("Recorded, not live")
     return banner
 
 
@@ -43,7 +43,7 @@ def test_on_a_phone_what_is_live_leaves_a_replay_its_name(stage: Stage) -> None:
     page.get_by_role("button", name="Menu").click()
     banner = begin_replay(page)
     expect(banner).to_contain_text("Live now: 4 open alarms")
-    what = banner.get_by_text("This is the past.")
+    what = banner.get_by_text("Recorded, not live.")
     expect(what).to_contain_text(scenes.INCIDENT.name)
     box = what.bounding_box()
     assert box is not None
@@ -129,7 +129,7 @@ def test_what_is_not_as_it_was_reaches_who_does_not_see_the_terminal(
 def test_a_replay_of_a_whole_log_warns_of_nothing(stage: Stage) -> None:
     page, _ = stage.open(scenes.past())
     bar = page.get_by_role("region", name="Replay")
-    expect(bar).to_contain_text("This is the past")
+    expect(bar).to_contain_text("Recorded, not live")
     expect(bar).not_to_contain_text("Not all")
 
 
@@ -158,7 +158,9 @@ def test_times_of_another_day_than_the_beginning_say_so_and_of_which_zone_they_a
     stage: Stage,
 ) -> None:
     page, _ = stage.open(over_a_day(), timezone="Asia/Kolkata")
-    expect(page.get_by_role("region", name="Replay")).to_contain_text("UTC+5:30. This is the past.")
+    expect(page.get_by_role("region", name="Replay")).to_contain_text(
+        "UTC+5:30. Recorded, not live."
+    )
     day = re.compile(r"^\w{3} \d{1,2}, \d{4}, \d\d:\d\d:\d\d")
     expect(page.locator("time.clock")).to_have_text(day)
     assert day.match(page.get_by_label("Go to an alarm").locator("option").nth(1).inner_text())
@@ -175,7 +177,7 @@ def test_a_second_replay_at_a_station_that_only_replays_has_nothing_live_beside_
     """What is beside it is the past too, and nobody gets out of that without a banner."""
     page, station = stage.open(scenes.past())
     bar = page.get_by_role("region", name="Replay")
-    expect(bar).to_contain_text("This is the past")
+    expect(bar).to_contain_text("Recorded, not live")
     dialog = menu(page, "Incidents")
     expect(dialog.get_by_role("button", name="Delete data")).to_have_count(0)
     dialog.get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
@@ -190,6 +192,6 @@ def test_a_second_replay_at_a_station_that_only_replays_has_nothing_live_beside_
     assert flaws(page) == []
     back.click()
     expect(back).to_have_count(0)
-    expect(bar).to_contain_text("This is the past")
+    expect(bar).to_contain_text("Recorded, not live")
     expect(bar.get_by_label("Time of the incident")).to_be_visible()
     station.expect_changes("/replays", "/replays/r2")

@@ -16,7 +16,7 @@ def test_nobody_ticks_off_who_is_down_without_a_word(stage: Stage) -> None:
     """One press for a crew or for all is for those who answered."""
     page, station = stage.open(scenes.bad_minute())
     page.locator(".par-clock").click()
-    dialog = page.get_by_role("dialog", name="Roll call (PAR)")
+    dialog = page.get_by_role("dialog", name="PAR status")
     down = dialog.get_by_role("listitem").filter(has_text="Jonas Bergman")
     expect(down).to_contain_text("Fall, No motion")
     assert flaws(page) == []

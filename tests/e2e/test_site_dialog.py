@@ -23,7 +23,7 @@ def test_the_place_of_a_plan_that_has_one_is_replaced_on_a_second_word(stage: St
     latitude, asks = site.get_by_label("Latitude"), site.get_by_role("button", name="Save location")
     latitude.fill("57.701")
     latitude.press("Enter")
-    question = site.get_by_role("group", name="Replace the place for everybody?")
+    question = site.get_by_role("group", name="Replace the location for everybody?")
     expect(question).to_contain_text("whoever satellites have placed moves by 111 m")
     expect(question.get_by_role("button", name="No")).to_be_focused()
     assert flaws(page) == []
@@ -37,7 +37,7 @@ def test_the_place_of_a_plan_that_has_one_is_replaced_on_a_second_word(stage: St
     asks.click()
     expect(question).to_contain_text("moves by 223 m")
     page.wait_for_timeout(600)
-    question.get_by_role("button", name="Yes, replace place").click()
+    question.get_by_role("button", name="Yes, replace location").click()
     expect(site).to_have_count(0)
     station.expect_changes("/site/anchor")
 
@@ -45,7 +45,7 @@ def test_the_place_of_a_plan_that_has_one_is_replaced_on_a_second_word(stage: St
 def test_a_place_is_set_at_once_where_the_plan_has_none(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     site = menu(page, "Site")
-    expect(site).to_contain_text("Nobody has said where the plan lies")
+    expect(site).to_contain_text("The location of the plan is not known")
     for name in ("Latitude", "Longitude"):
         site.get_by_label(name).fill("11.5")
     site.get_by_role("button", name="Save location").click()
@@ -59,7 +59,7 @@ def test_a_plan_is_replaced_by_who_has_said_so(stage: Stage, tmp_path: Path) -> 
     file = site.get_by_label("New plan")
     (tmp_path / "notes.json").write_text("notes")
     file.set_input_files(tmp_path / "notes.json")
-    notice = site.get_by_role("alert").filter(has_text="This file is no GeoJSON")
+    notice = site.get_by_role("alert").filter(has_text="This is not a GeoJSON file")
     notice.get_by_role("button", name="OK").click()
     (tmp_path / "yard.json").write_text(
         '{"type": "FeatureCollection", "features": [],'

@@ -20,7 +20,7 @@ def test_who_wears_a_unit_is_said_before_the_list_of_people_is_there(stage: Stag
     """An empty field would say that nobody does."""
     page, _ = stage.open(scenes.quiet())
     page.route("**/api/v1/people", never)
-    worn_by = menu(page, "Units").get_by_label("Who wears FF-01")
+    worn_by = menu(page, "Units").get_by_label("Assign FF-01 to")
     expect(worn_by.locator("option:checked")).to_have_text("Astrid Lindqvist (Engine 1)")
     expect(worn_by).to_have_value("p0")
 

@@ -141,7 +141,7 @@ def test_an_alarm_shows_the_threshold_that_was_crossed_and_the_values_about_it(p
     card.get_by_role("button", name=re.compile("^Reasons? of the alarm")).click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text("time without motion was")
-    expect(dialog).to_contain_text('beyond the threshold "pre alert" (20 s)')
+    expect(dialog).to_contain_text("beyond the threshold “pre alert” (20 s)")
     expect(dialog).to_contain_text("Thresholds at that time: pre alert 20 s, alarm 25 s")
     expect(dialog.locator("canvas")).to_have_count(len(STRIPS))
     assert barriers(page) == []

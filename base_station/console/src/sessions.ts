@@ -215,7 +215,7 @@ function forget(): void {
 function replayEnded(): void {
   replay.peek()?.session.close();
   replay.value = adopted;
-  notice.value = t("replay.ended");
+  notice.value = t("past.ended");
 }
 
 /** `muster base replay` shows the past where other stations show what is live. */

@@ -23,7 +23,7 @@ export async function confirmPar(target: Target, whom: string): Promise<void> {
   const checkInId = newKey();
   const incidentId = "unit_id" in target ? undefined : namedIncident();
   await enter(api.checkIn(target, checkInId, incidentId), {
-    words: t("par.undo_par", { whom }),
+    words: t("confirmation.undo_par", { whom }),
     undo: () => api.undoCheckIn(checkInId),
   });
 }
@@ -31,7 +31,7 @@ export async function confirmPar(target: Target, whom: string): Promise<void> {
 /** Have a command answered by radio. */
 export async function confirmAnswer(commandId: string, unitId: string, whom: string): Promise<void> {
   await enter(api.confirmCommand(commandId, unitId), {
-    words: t("par.undo_answer", { whom }),
+    words: t("confirmation.undo_answer", { whom }),
     undo: () => api.undoConfirmCommand(commandId, unitId),
   });
 }

@@ -20,11 +20,11 @@ export function parOf(duty: DutyView, incident: IncidentView | null, nowMs: numb
 
 /** How and when the PAR was confirmed last, and who entered it. */
 export function confirmationWords({ confirmed, checked_in_ms, checked_in_by }: DutyView): string {
-  if (checked_in_ms === null || confirmed === "not_yet") return t("par.not_yet_confirmed");
+  if (checked_in_ms === null || confirmed === "not_yet") return t("confirmation.not_yet_confirmed");
   const time = clockTime(checked_in_ms);
   return confirmed === "self"
-    ? t("par.confirmed_by_unit", { time })
-    : t("par.confirmed_by_radio", { time, who: checked_in_by });
+    ? t("confirmation.confirmed_by_unit", { time })
+    : t("confirmation.confirmed_by_radio", { time, who: checked_in_by });
 }
 
 export interface OnDuty {

@@ -1,7 +1,8 @@
 /** What a timeline shows, and which part of the time.  Pure. */
 import type { TimelineAnswer, TimelineColumn } from "../answers";
 import { duration, floorName, percent } from "../format";
-import { label } from "../language/translate";
+import { degrees, length, number } from "../language/measures";
+import { label, type PlainKey, t } from "../language/translate";
 
 export type Timeline = TimelineAnswer;
 
@@ -21,7 +22,7 @@ type ColumnName = {
 
 export interface Strip {
   column: ColumnName;
-  title: string;
+  title: PlainKey;
   /** Values that hold until the next one: no slope between them. */
   stepped?: boolean;
   /** The scale, where it is not that of the values. */
@@ -32,30 +33,30 @@ export interface Strip {
   tick?(value: number, of: Timeline): string;
 }
 
-const metres = (value: number) => `${value.toFixed(1)}\u00a0m`;
+const metres = (value: number) => length(value);
 
 export const STRIPS: readonly Strip[] = [
   {
     column: "temperature_degc",
-    title: "Temperature",
-    text: (value) => `${value.toFixed(1)}\u00a0°C`,
-    tick: (value) => `${value}\u00a0°C`,
+    title: "timeline.temperature_degc",
+    text: (value) => degrees(value, 1),
+    tick: (value) => degrees(value),
   },
-  { column: "height_m", title: "Height", text: metres, tick: (value) => `${value}\u00a0m` },
-  { column: "floor", title: "Floor", stepped: true, text: floorName, tick: String },
-  { column: "activity", title: "Activity", stepped: true, text: activityWord },
-  { column: "battery", title: "Battery", range: [0, 1], text: percent },
+  { column: "height_m", title: "timeline.height_m", text: metres, tick: (value) => length(value, 0) },
+  { column: "floor", title: "timeline.floor", stepped: true, text: floorName, tick: String },
+  { column: "activity", title: "timeline.activity", stepped: true, text: activityWord },
+  { column: "battery", title: "timeline.battery", range: [0, 1], text: percent },
   {
     column: "position_error_m",
-    title: "Stated position error (DRMS)",
+    title: "timeline.position_error_m",
     text: metres,
-    tick: (value) => `${value}\u00a0m`,
+    tick: (value) => length(value, 0),
   },
   {
     column: "silence_s",
-    title: "Link: time without a message",
+    title: "timeline.silence_s",
     text: (value) => duration(1000 * value),
-    tick: (value) => `${value}\u00a0s`,
+    tick: (value) => t("measure.seconds", { value: number(value) }),
   },
 ];
 
@@ -81,7 +82,7 @@ export function extremes(strip: Strip, of: Timeline): string | null {
   if (known.length === 0) return null;
   const [least, greatest] = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
   const [low, high] = [strip.text(least, of), strip.text(greatest, of)];
-  return low === high ? low : `${low} to ${high}`;
+  return low === high ? low : t("timeline.range", { low, high });
 }
 
 /** At most what the station gives: the end of it. */

@@ -6,13 +6,13 @@ import { Dialog } from "./Dialog";
 export function FlawsDialog() {
   const flaws = picture.value?.replay.value?.flaws ?? [];
   return (
-    <Dialog title={t("replay.flaws")}>
+    <Dialog title={t("past.flaws")}>
       <ul class="problems">
         {flaws.map((flaw) => (
           <li key={flaw}>{flaw}</li>
         ))}
       </ul>
-      <p class="quiet">{t("replay.flaws_hint")}</p>
+      <p class="quiet">{t("past.flaws_hint")}</p>
     </Dialog>
   );
 }

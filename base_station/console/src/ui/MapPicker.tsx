@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
 import type { BaseMap, LatLon } from "../api";
 import { earthAt } from "../plan/baseMap";
+import { t } from "../language/translate";
 
 const ZOOMS = [1, 2, 4, 8] as const;
 
@@ -16,7 +17,7 @@ export function MapPicker({ map, marks, pick }: MapPickerProps) {
   const zoom = useSignal<number>(1);
   return (
     <div class="map-picker">
-      <div class="map-picker-zoom" role="group" aria-label="Size of the map">
+      <div class="map-picker-zoom" role="group" aria-label={t("map_picker.size")}>
         {ZOOMS.map((one) => (
           <button
             key={one}
@@ -28,11 +29,11 @@ export function MapPicker({ map, marks, pick }: MapPickerProps) {
           </button>
         ))}
       </div>
-      <div class="map-picker-view" tabIndex={0} role="region" aria-label="Base map, to click on">
+      <div class="map-picker-view" tabIndex={0} role="region" aria-label={t("map_picker.map")}>
         <div class="map-picker-sheet" style={{ width: `${100 * zoom.value}%` }}>
           <img
             src={map.image_url}
-            alt="Base map"
+            alt={t("map_picker.image")}
             draggable={false}
             onClick={(event) => {
               const box = event.currentTarget.getBoundingClientRect();

@@ -2,12 +2,13 @@ import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { mayAct, user } from "../sessions";
 import { openDialog, type DialogName } from "../uiState";
+import { type PlainKey, t } from "../language/translate";
 
-const FOR_EVERYBODY: readonly [DialogName, string][] = [["incidents", "Incidents"]];
-const FOR_COMMANDERS: readonly [DialogName, string][] = [
-  ["units", "Units"],
-  ["people", "People"],
-  ["site", "Site"],
+const FOR_EVERYBODY: readonly [DialogName, PlainKey][] = [["incidents", "menu.incidents"]];
+const FOR_COMMANDERS: readonly [DialogName, PlainKey][] = [
+  ["units", "menu.units"],
+  ["people", "menu.people"],
+  ["site", "menu.site"],
 ];
 
 /** What is managed and not watched; behind one button where there is no room. */
@@ -45,23 +46,23 @@ export function Menu() {
         aria-controls="menu"
         onClick={() => (open.value = !open.value)}
       >
-        Menu
+        {t("menu.menu")}
       </button>
-      <nav id="menu" class={open.value ? "open" : ""} aria-label="Manage">
+      <nav id="menu" class={open.value ? "open" : ""} aria-label={t("menu.manage")}>
         {entries.map(([name, word]) => (
           <button key={name} type="button" onClick={() => choose(name)}>
-            {word}
+            {t(word)}
           </button>
         ))}
         <button type="button" onClick={() => choose("display")}>
-          Display
+          {t("menu.display")}
         </button>
         <button
           type="button"
           onClick={() => choose("account")}
-          title={`Logged in as ${user.value?.username}`}
+          title={t("menu.logged_in", { name: user.value?.username ?? "" })}
         >
-          Account
+          {t("menu.account")}
         </button>
       </nav>
     </div>

@@ -1,4 +1,5 @@
 import { notice } from "../uiState";
+import { t } from "../language/translate";
 
 /** What was last said; in a dialog it stands in it, as nothing behind a dialog can be read or pressed. */
 export function Notice() {
@@ -7,7 +8,7 @@ export function Notice() {
     <div class="notice" role="alert">
       <span>{notice.value}</span>
       <button type="button" onClick={() => (notice.value = null)}>
-        OK
+        {t("menu.ok")}
       </button>
     </div>
   );

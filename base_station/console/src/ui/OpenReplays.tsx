@@ -1,5 +1,6 @@
 import { attempt, replay, user } from "../sessions";
 import * as api from "../api";
+import { t } from "../language/translate";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { useLoaded } from "./useLoaded";
@@ -13,19 +14,19 @@ export function OpenReplays({ incidents }: { incidents: readonly api.Incident[] 
     incidents.find((one) => one.incident_id === incidentId)?.name ?? incidentId;
   return (
     <table class="stacked">
-      <caption>Replays that are open elsewhere</caption>
-      <Columns names={["Replay", "Begun by"]} spoken="End" />
+      <caption>{t("open_replays.title")}</caption>
+      <Columns names={[t("open_replays.replay"), t("open_replays.begun_by")]} spoken={t("open_replays.end")} />
       <tbody>
         {elsewhere.map(({ replay_id, incident_id, begun_by }) => (
           <tr key={replay_id}>
             <th scope="row">{nameOf(incident_id)}</th>
-            <td data-label="Begun by">{begun_by || "the station"}</td>
+            <td data-label={t("open_replays.begun_by")}>{begun_by || t("open_replays.station")}</td>
             <td>
               {mayEnd(begun_by) && (
                 <ConfirmButton
-                  label="End replay"
-                  about={`${nameOf(incident_id)}, of ${begun_by}`}
-                  question="Whoever looks at it sees it no more."
+                  label={t("open_replays.end_replay")}
+                  about={t("open_replays.about", { incident: nameOf(incident_id), who: begun_by })}
+                  question={t("open_replays.question")}
                   onConfirm={() => void attempt(api.endReplay(replay_id)).then(again)}
                 />
               )}

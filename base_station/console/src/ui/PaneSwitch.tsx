@@ -1,15 +1,16 @@
 import { pane, type Pane } from "../uiState";
+import { type PlainKey, t } from "../language/translate";
 import { Icon, type IconName } from "./Icon";
 
-const PANES: readonly [Pane, string, IconName][] = [
-  ["people", "People", "people"],
-  ["plan", "Plan", "floor"],
+const PANES: readonly [Pane, PlainKey, IconName][] = [
+  ["people", "menu.people", "people"],
+  ["plan", "menu.plan", "floor"],
 ];
 
 /** On a small screen: the list or the plan. */
 export function PaneSwitch() {
   return (
-    <div class="halves" role="group" aria-label="Shown">
+    <div class="halves" role="group" aria-label={t("menu.shown")}>
       {PANES.map(([one, word, icon]) => (
         <button
           key={one}
@@ -18,7 +19,7 @@ export function PaneSwitch() {
           onClick={() => (pane.value = one)}
         >
           <Icon name={icon} />
-          {word}
+          {t(word)}
         </button>
       ))}
     </div>

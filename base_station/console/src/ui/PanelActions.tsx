@@ -1,5 +1,6 @@
 import type { ComponentChildren } from "preact";
 import { putDown } from "../plan/tools";
+import { t } from "../language/translate";
 import { useFocusBack } from "./Confirm";
 
 interface Props {
@@ -21,7 +22,7 @@ export function PanelActions({ label = null, question = null, children }: Props)
         ))}
       {children}
       <button type="button" onClick={putDown}>
-        {label === null ? "Close" : "Cancel"}
+        {t(label === null ? "menu.close" : "menu.cancel")}
       </button>
     </p>
   );

@@ -3,6 +3,7 @@ import { confirmationWords, parOf, rollCall, type ParState } from "../live/duty"
 import type { Picture } from "../live/picture";
 import type { UnitView } from "../wire";
 import { countdown } from "../format";
+import { t } from "../language/translate";
 import { Icon, type IconName } from "./Icon";
 
 const ICONS: Record<ParState, IconName> = {
@@ -17,7 +18,10 @@ export function ParClock({ picture }: { picture: Picture }) {
   void picture.unitsChanged.value;
   const call = rollCall(picture.allUnits(), picture.incident.value, picture.nowMs.value);
   if (call === null) return null;
-  const words = call.overdue > 0 ? `${call.overdue} overdue` : countdown(call.leftMs);
+  const words =
+    call.overdue > 0
+      ? t("par.overdue_count", { count: call.overdue })
+      : t("par.countdown", { time: countdown(call.leftMs) });
   return (
     <button
       type="button"
@@ -26,9 +30,9 @@ export function ParClock({ picture }: { picture: Picture }) {
     >
       <Icon name={ICONS[call.state]} />
       <span class="par-words">
-        <span>PAR {words}</span>
-        <span class="spoken">{call.overdue > 0 ? "" : " until the next PAR"}</span>
-        {call.unconfirmed > 0 && <small>{call.unconfirmed} not yet confirmed</small>}
+        <span>{words}</span>
+        <span class="spoken">{call.overdue > 0 ? "" : t("par.until_next")}</span>
+        {call.unconfirmed > 0 && <small>{t("par.unconfirmed_count", { count: call.unconfirmed })}</small>}
       </span>
     </button>
   );
@@ -51,12 +55,16 @@ export function ParMark({ unit, picture, brief = false }: MarkProps) {
   const { duty } = unit;
   if (duty === null) return null;
   const { state, leftMs } = parOf(duty, picture.incident.value, picture.nowMs.value);
-  const word = state === "overdue" ? `${countdown(-leftMs)} over` : countdown(leftMs);
   return (
-    <span class={`par-mark ${state}`} title={`PAR ${confirmationWords(duty)}`}>
+    <span class={`par-mark ${state}`} title={t("par.state", { state: confirmationWords(duty) })}>
       <Icon name={ICONS[state]} />
-      {duty.asked_ms !== null && state !== "overdue" ? "PAR asked" : "PAR"} {word}
-      {!brief && duty.confirmed === "not_yet" && <small>not yet confirmed</small>}
+      {markWords(state, duty.asked_ms !== null, leftMs)}
+      {!brief && duty.confirmed === "not_yet" && <small>{t("par.unconfirmed")}</small>}
     </span>
   );
+}
+
+function markWords(state: ParState, isRequested: boolean, leftMs: number): string {
+  if (state === "overdue") return t("par.overdue", { time: countdown(-leftMs) });
+  return t(isRequested ? "par.requested" : "par.countdown", { time: countdown(leftMs) });
 }

@@ -6,6 +6,7 @@ import { headcountOf } from "../live/headcount";
 import type { Picture } from "../live/picture";
 import { guarded } from "../live/faults";
 import { arrange, isCasualty, isJump, samePlaces, type Place } from "../live/urgency";
+import { t } from "../language/translate";
 import { Casualties } from "./Casualties";
 import { CommandBar } from "./CommandBar";
 import { ErrorBoundary } from "./ErrorBoundary";
@@ -31,7 +32,7 @@ export function People({ picture }: { picture: Picture }) {
   const seenMs = useRef(0);
   useSignalEffect(() => {
     void [picture.unitIds.value, picture.incident.value, picture.alarms.value, second.value, held.value];
-    guarded("The list of people", () => untracked(() => {
+    guarded(t("people_list.list"), () => untracked(() => {
       const nowMs = picture.nowMs.value;
       const before = isJump(seenMs.current, nowMs) ? [] : places.value;
       seenMs.current = nowMs;
@@ -45,13 +46,13 @@ export function People({ picture }: { picture: Picture }) {
   return (
     <section
       class="people"
-      aria-label="People"
+      aria-label={t("people_list.title")}
       onPointerEnter={() => (held.value = true)}
       onPointerLeave={() => (held.value = false)}
     >
       <div class={`people-top ${finding.value ? "finding" : ""}`}>
         <div class="people-bar">
-          <ErrorBoundary what="The bar of orders">
+          <ErrorBoundary what={t("people_list.orders")}>
             <CommandBar picture={picture} />
           </ErrorBoundary>
           <button
@@ -60,16 +61,16 @@ export function People({ picture }: { picture: Picture }) {
             aria-expanded={finding.value}
             onClick={() => (finding.value = !finding.value)}
           >
-            Find
+            {t("people_list.find")}
           </button>
         </div>
-        <ErrorBoundary what="The members who are down">
+        <ErrorBoundary what={t("people_list.down")}>
           <Casualties unitIds={down.value} picture={picture} />
         </ErrorBoundary>
-        <ErrorBoundary what="The headcount">
+        <ErrorBoundary what={t("people_list.headcount")}>
           <Headcount counts={counts} />
         </ErrorBoundary>
-        <ErrorBoundary what="The search">
+        <ErrorBoundary what={t("people_list.search")}>
           <ListTools />
         </ErrorBoundary>
         <LeftOut groups={shown} all={places.value.length} />
@@ -89,16 +90,16 @@ export function People({ picture }: { picture: Picture }) {
 }
 
 function nobodyWords(picture: Picture): string {
-  if (!picture.ready.value) return "Waiting for the station.";
-  if (picture.choices.value.length > 0) return "Nobody is in this incident yet: assign crews in Incidents.";
-  return "No unit has been heard yet. Each appears here by itself when it is switched on.";
+  if (!picture.ready.value) return t("people_list.waiting");
+  if (picture.choices.value.length > 0) return t("people_list.nobody_in_incident");
+  return t("people_list.none");
 }
 
 /** All of them where they cannot be sorted out. */
 function shownOf(places: readonly Place[], picture: Picture): Group[] {
   let groups: Group[] = [{ crew: null, places, down: 0 }];
   const what = { text: text.value, part: part.value, always: selectedUnit.value };
-  guarded("The list of people", () => {
+  guarded(t("people_list.list"), () => {
     const units = picture.allUnits();
     groups = grouped(sought(places, units, what), units, order.value);
   });
@@ -113,11 +114,9 @@ function LeftOut({ groups, all }: { groups: readonly Group[]; all: number }) {
     <div class="left-out" role="status">
       {sought && (
         <>
-          <span>
-            {shown} of {all} shown
-          </span>
+          <span>{t("people_list.shown", { shown, all })}</span>
           <button type="button" onClick={showAll}>
-            Show all
+            {t("people_list.show_all")}
           </button>
         </>
       )}

@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { attempt, user } from "../sessions";
 import * as api from "../api";
+import { t } from "../language/translate";
 import { Columns } from "./Columns";
 import { useFirstField, useFocusBack } from "./Confirm";
 import { Dialog } from "./Dialog";
@@ -23,10 +24,10 @@ export function PeopleDialog() {
     again();
   };
   return (
-    <Dialog title="People" wide>
+    <Dialog title={t("people_list.title")} wide>
       <p class="row">
         <label>
-          People from a CSV file
+          {t("person.csv")}
           <input
             type="file"
             accept=".csv,.txt,text/csv"
@@ -41,7 +42,7 @@ export function PeopleDialog() {
           aria-pressed={showsCrews.value}
           onClick={() => (showsCrews.value = !showsCrews.value)}
         >
-          Crews
+          {t("person.crews")}
         </button>
       </p>
       {csv.value !== null && <PeopleImport file={csv.value} done={ended} />}
@@ -59,7 +60,7 @@ function PeopleList({ people, again }: { people: readonly api.Person[] | null; a
     <>
       <PersonForm done={again} />
       <table class="stacked">
-        <Columns names={["Name", "Crew", "Role", "Photo"]} spoken="Change" />
+        <Columns names={[t("person.name"), t("person.crew"), t("person.role"), t("person.photo")]} spoken={t("person.change")} />
         <tbody>
           {(people ?? []).map((person) => (
             <PersonRow key={person.person_id} person={person} done={again} />
@@ -67,7 +68,7 @@ function PeopleList({ people, again }: { people: readonly api.Person[] | null; a
         </tbody>
       </table>
       {people === null && <Waiting />}
-      {people?.length === 0 && <p class="quiet">Nobody yet. Add whoever may wear a unit.</p>}
+      {people?.length === 0 && <p class="quiet">{t("person.none")}</p>}
     </>
   );
 }
@@ -101,13 +102,13 @@ function PersonRow({ person, done }: RowProps) {
           {person.name}
         </span>
       </th>
-      <td data-label="Crew">{person.crew}</td>
-      <td data-label="Role">{person.role}</td>
-      <td data-label="Photo">
+      <td data-label={t("person.crew")}>{person.crew}</td>
+      <td data-label={t("person.role")}>{person.role}</td>
+      <td data-label={t("person.photo")}>
         <input
           type="file"
           accept="image/*"
-          aria-label={`New photo of ${person.name}`}
+          aria-label={t("person.new_photo", { name: person.name })}
           onChange={(event) => {
             const photo = event.currentTarget.files?.[0];
             if (photo) void attempt(api.setPhoto(person.person_id, photo)).then(done);
@@ -119,15 +120,15 @@ function PersonRow({ person, done }: RowProps) {
           <button
             type="button"
             ref={button}
-            aria-label={`Change ${person.name}`}
+            aria-label={t("person.change_of", { name: person.name })}
             onClick={() => (changing.value = true)}
           >
-            Change
+            {t("person.change")}
           </button>
           {user.value?.role === "administrator" && (
             <EraseForm
               name={person.name}
-              warning="Name, photo and everywhere this person was are deleted."
+              warning={t("person.erase")}
               subjectId={person.person_id}
               forget={(name) => api.forgetPerson(person.person_id, name)}
               done={done}
@@ -152,9 +153,9 @@ function ChangeForm({ person, done }: RowProps) {
       }}
     >
       <PersonFields person={person} />
-      <button class="primary">Change {person.name}</button>
+      <button class="primary">{t("person.save")}</button>
       <button type="button" onClick={done}>
-        Leave as it is
+        {t("menu.cancel")}
       </button>
     </form>
   );
@@ -164,15 +165,15 @@ function PersonFields({ person }: { person?: api.Person }) {
   return (
     <>
       <label>
-        Name
+        {t("person.name")}
         <input name="name" required maxLength={80} defaultValue={person?.name ?? ""} autofocus />
       </label>
       <label>
-        Crew
+        {t("person.crew")}
         <input name="crew" maxLength={60} defaultValue={person?.crew ?? ""} />
       </label>
       <label>
-        Role
+        {t("person.role")}
         <input name="role" maxLength={60} defaultValue={person?.role ?? ""} />
       </label>
     </>
@@ -205,10 +206,10 @@ function PersonForm({ done }: { done: () => void }) {
     >
       <PersonFields />
       <label>
-        Photo
+        {t("person.photo")}
         <input name="photo" type="file" accept="image/*" />
       </label>
-      <button class="primary">Add person</button>
+      <button class="primary">{t("person.add")}</button>
     </form>
   );
 }

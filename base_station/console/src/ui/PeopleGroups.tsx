@@ -3,6 +3,7 @@ import { selectedUnit } from "../uiState";
 import type { Group } from "../live/finding";
 import type { Picture } from "../live/picture";
 import type { Place } from "../live/urgency";
+import { t } from "../language/translate";
 import { Card } from "./Card";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { Icon } from "./Icon";
@@ -35,7 +36,7 @@ function Crew({ crew, group, brief, picture }: { crew: string; group: Group } & 
   const folded = foldedCrews.value.has(crew);
   const chosen = useComputed(() => selectedUnit.value);
   const shown = folded ? places.filter((place) => place.unitId === chosen.value) : places;
-  const name = crew === "" ? "Without a crew" : crew;
+  const name = crew === "" ? t("par.no_crew") : crew;
   return (
     <section class="crew" aria-label={name}>
       <h3>
@@ -45,7 +46,7 @@ function Crew({ crew, group, brief, picture }: { crew: string; group: Group } & 
           {down > 0 && (
             <span class="crew-down">
               <Icon name="alarm" />
-              {down} down
+              {t("people_list.down_count", { count: down })}
             </span>
           )}
         </button>
@@ -59,7 +60,7 @@ function Cards({ places, brief, picture }: { places: readonly Place[] } & Omit<P
   return (
     <ul class={`cards ${density.value}`}>
       {places.map((place, at) => (
-        <ErrorBoundary as="li" key={place.unitId} what={`The card of ${place.name}`}>
+        <ErrorBoundary as="li" key={place.unitId} what={t("people_list.card", { name: place.name })}>
           <Card
             unitId={place.unitId}
             urgency={place.urgency}

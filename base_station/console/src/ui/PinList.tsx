@@ -5,26 +5,28 @@ import { displayName } from "../live/urgency";
 import { take, type Tool } from "../plan/tools";
 import type { PinView } from "../wire";
 import { clockTime, floorName } from "../format";
+import { listed } from "../language/measures";
+import { label, t } from "../language/translate";
 import { PanelActions } from "./PanelActions";
 
 /** All pins and beacons in words: meetings stand nowhere on the plan, and not everybody has a pointer. */
 export function PinList({ picture }: { picture: Picture }) {
   return (
-    <section class="tool-panel pin-list" aria-label="Pins">
-      <h3>Pins</h3>
+    <section class="tool-panel pin-list" aria-label={t("pin.list")}>
+      <h3>{t("pin.list")}</h3>
       <ul>
         {worstFirst(picture.pins.value).map((pin) => (
           <li key={pin.pin_id} class={pin.state}>
             <Words edit={{ kind: "edit-pin", pinId: pin.pin_id }}>
               {said(pin, picture)}
-              <small> {WORDS[pin.state] ?? pin.state}</small>
+              <small> {label("pin", pin.state)}</small>
             </Words>
           </li>
         ))}
-        {picture.beacons.value.map(({ beacon_id, label, floor }) => (
+        {picture.beacons.value.map(({ beacon_id, label: beacon, floor }) => (
           <li key={`beacon ${beacon_id}`}>
             <Words edit={{ kind: "edit-beacon", beaconId: beacon_id }}>
-              Beacon {label || beacon_id}
+              {t("pin.beacon", { label: beacon || beacon_id })}
               <small> {floorName(floor)}</small>
             </Words>
           </li>
@@ -45,12 +47,6 @@ function Words({ edit, children }: { edit: Tool; children: ComponentChildren }) 
   );
 }
 
-const WORDS: Record<string, string> = {
-  used: "used",
-  waiting: "waits",
-  conflict: "in conflict",
-};
-
 /** What somebody is to see to stands on top; the others in the order in which they were set. */
 function worstFirst(pins: readonly PinView[]): PinView[] {
   const rank = (pin: PinView) => (pin.state === "conflict" ? 0 : 1);
@@ -65,11 +61,11 @@ function said(pin: PinView, picture: Picture): string {
   };
   const what =
     pin.kind === "meeting"
-      ? `${name(pin.unit_id)} met ${name(pin.other_id)}`
+      ? t("pin.met", { name: name(pin.unit_id), other: name(pin.other_id) })
       : pin.other_id === ""
-        ? `${name(pin.unit_id)} here`
-        : `${name(pin.unit_id)} at ${pin.kind} ${pin.other_id}`;
-  const when = pin.t_ms === 0 ? "at the start" : clockTime(pin.t_ms).slice(0, 5);
+        ? t("pin.here", { name: name(pin.unit_id) })
+        : t("pin.at", { name: name(pin.unit_id), place: `${pin.kind} ${pin.other_id}` });
+  const when = pin.t_ms === 0 ? t("pin.at_start") : clockTime(pin.t_ms).slice(0, 5);
   const where = pin.floor === null ? "" : floorName(pin.floor);
-  return [what, where, when, pin.note].filter((part) => part !== "").join(", ");
+  return listed([what, where, when, pin.note].filter((part) => part !== ""));
 }

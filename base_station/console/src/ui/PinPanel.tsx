@@ -5,7 +5,9 @@ import type { Picture } from "../live/picture";
 import { displayName, nameAmong } from "../live/urgency";
 import { putDown } from "../plan/tools";
 import type { PinView, UnitView } from "../wire";
-import { clockTime } from "../format";
+import { clockTime, minutes } from "../format";
+import { length, listed } from "../language/measures";
+import { knownLabel, type PlainKey, t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 import { PanelActions } from "./PanelActions";
 import { useSinglePress } from "./useGuardedPress";
@@ -38,9 +40,11 @@ export function PinPanel({ picture, unitId, pin }: Props) {
     once(() => attempt(sent()).then((done) => done && putDown()));
   };
   return (
-    <form class="tool-panel" aria-label={`Pin: ${name}`} onSubmit={send}>
+    <form class="tool-panel" aria-label={t("pin.title", { name })} onSubmit={send}>
       <h3>
-        {pin?.kind === "meeting" ? `${name} met ${nameOf(picture, pin.other_id)}` : `${name} was here`}
+        {pin?.kind === "meeting"
+          ? t("pin.met", { name, other: nameOf(picture, pin.other_id) })
+          : t("pin.was_here", { name })}
       </h3>
       {pin !== null && <Verdict pin={pin} />}
       {!fixed && (
@@ -50,16 +54,16 @@ export function PinPanel({ picture, unitId, pin }: Props) {
           <WhenField set={pin === null ? null : pin.t_ms} />
           <FloorField picture={picture} start={pin?.floor} />
           <label>
-            Note
+            {t("pin.note")}
             <input name="note" maxLength={200} defaultValue={pin?.note ?? ""} />
           </label>
         </>
       )}
-      <PanelActions label={fixed ? null : pin === null ? "Set pin" : "Move pin"}>
+      <PanelActions label={fixed ? null : t(pin === null ? "pin.set" : "pin.move")}>
         {pin !== null && (
           <ConfirmButton
-            label="Remove pin"
-            question="The trail goes back to what is known without it."
+            label={t("pin.remove")}
+            question={t("pin.remove_question")}
             onConfirm={() => void attempt(api.removePin(pin.pin_id)).then(putDown)}
           />
         )}
@@ -68,23 +72,18 @@ export function PinPanel({ picture, unitId, pin }: Props) {
   );
 }
 
-const STATES: Record<string, string> = {
-  used: "Used",
-  waiting: "Waits",
-  conflict: "Contradicts what else is known; it is not used",
-};
-
 /** What became of a pin. */
 function Verdict({ pin }: { pin: PinView }) {
-  const off = pin.residual_m === null ? "" : `, ${pin.residual_m.toFixed(1)} m from the trail`;
+  const state = knownLabel("pin", `state_${pin.state}`) ?? pin.state;
   return (
     <p class={`verdict ${pin.state}`}>
       <strong>
-        {STATES[pin.state] ?? pin.state}
-        {off}.
+        {pin.residual_m === null
+          ? t("pin.verdict", { state })
+          : t("pin.off", { state, distance: length(pin.residual_m) })}
       </strong>{" "}
       {pin.text === "" ? "" : `${pin.text}. `}
-      <span class="quiet">Set by {pin.by} at {clockTime(pin.set_ms)}.</span>
+      <span class="quiet">{t("pin.set_by", { who: pin.by, time: clockTime(pin.set_ms) })}</span>
     </p>
   );
 }
@@ -109,25 +108,25 @@ export function StartPanel({ picture }: { picture: Picture }) {
     once(() => attempt(api.startTogether(start)).then((done) => done && putDown()));
   };
   return (
-    <form class="tool-panel" aria-label="All start here" onSubmit={send}>
-      <h3>All were here</h3>
+    <form class="tool-panel" aria-label={t("pin.start")} onSubmit={send}>
+      <h3>{t("pin.start_of_all")}</h3>
       <Everybody names={units.map(displayName)} />
       <PlaceFields />
       <WithinField startM={4} />
       <WhenField set={0} />
       <label>
-        They looked towards
+        {t("pin.facing")}
         <select name="facing">
-          <option value="">not known</option>
+          <option value="">{t("pin.unknown")}</option>
           {COMPASS.map(([word, degrees]) => (
             <option key={word} value={degrees}>
-              {word} of the plan
+              {t("pin.of_plan", { direction: t(word) })}
             </option>
           ))}
         </select>
       </label>
       <FloorField picture={picture} start={undefined} />
-      <PanelActions label="Set start" />
+      <PanelActions label={t("pin.set_start")} />
     </form>
   );
 }
@@ -136,25 +135,25 @@ const MANY = 6;
 
 /** Forty names would push what is to be said out of sight. */
 function Everybody({ names }: { names: readonly string[] }) {
-  const all = names.join(", ") || "Nobody wears a unit yet.";
+  const all = listed(names) || t("pin.nobody");
   if (names.length <= MANY) return <p>{all}</p>;
   return (
     <details class="everybody">
-      <summary>All {names.length} who are on duty</summary>
+      <summary>{t("pin.all_on_duty", { count: names.length })}</summary>
       {all}
     </details>
   );
 }
 
-const COMPASS: readonly [string, number][] = [
-  ["north", 0],
-  ["north-east", 45],
-  ["east", 90],
-  ["south-east", 135],
-  ["south", 180],
-  ["south-west", 225],
-  ["west", 270],
-  ["north-west", 315],
+const COMPASS: readonly [PlainKey, number][] = [
+  ["direction.n", 0],
+  ["direction.ne", 45],
+  ["direction.e", 90],
+  ["direction.se", 135],
+  ["direction.s", 180],
+  ["direction.sw", 225],
+  ["direction.w", 270],
+  ["direction.nw", 315],
 ];
 
 /** Two people were at the same place; nobody has to say where. */
@@ -178,10 +177,10 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
     once(() => attempt(api.setMeeting(meeting)).then((done) => done && putDown()));
   };
   return (
-    <form class="tool-panel" aria-label="They met" onSubmit={send}>
-      <h3>{nameOf(picture, unitId)} met</h3>
+    <form class="tool-panel" aria-label={t("pin.meeting")} onSubmit={send}>
+      <h3>{t("pin.meeting_of", { name: nameOf(picture, unitId) })}</h3>
       <label>
-        Whom
+        {t("pin.with")}
         <select
           name="other"
           required
@@ -197,7 +196,7 @@ export function MeetingPanel({ picture, unitId }: { picture: Picture; unitId: st
       </label>
       <WhenField set={null} />
       <WithinField startM={2} />
-      <PanelActions label="They met" />
+      <PanelActions label={t("pin.save")} />
     </form>
   );
 }
@@ -209,14 +208,14 @@ const AS_SET = ""; // the time that stands there already
 function WhenField({ set }: { set: number | null }) {
   return (
     <label>
-      When
+      {t("pin.when")}
       <select name="when">
         {set !== null && (
-          <option value={AS_SET}>{set === 0 ? "at the start" : clockTime(set)}</option>
+          <option value={AS_SET}>{set === 0 ? t("pin.at_start") : clockTime(set)}</option>
         )}
         {MINUTES_AGO.map((ago) => (
           <option key={ago} value={ago}>
-            {ago === 0 ? "now" : `${ago} min ago`}
+            {ago === 0 ? t("pin.now") : t("pin.ago", { time: minutes(ago * 60_000) })}
           </option>
         ))}
       </select>

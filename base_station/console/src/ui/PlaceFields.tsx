@@ -3,6 +3,8 @@ import { floor } from "../uiState";
 import type { Picture } from "../live/picture";
 import { floorsOf } from "../plan/floors";
 import { floorName } from "../format";
+import { length } from "../language/measures";
+import { t } from "../language/translate";
 
 /** Where on the plan: clicked, or typed by who has no pointer. */
 export function PlaceFields({ start }: { start?: Place }) {
@@ -10,10 +12,10 @@ export function PlaceFields({ start }: { start?: Place }) {
   return (
     <fieldset class="place">
       <legend>
-        {at === undefined ? "Click on the plan, or type:" : "Place (click to change it)"}
+        {t(at === undefined ? "pin.place_click" : "pin.place")}
       </legend>
-      <Metres name="north" label="North, m" value={at?.north_m} />
-      <Metres name="east" label="East, m" value={at?.east_m} />
+      <Metres name="north" label={t("pin.north", { unit: "m" })} value={at?.north_m} />
+      <Metres name="east" label={t("pin.east", { unit: "m" })} value={at?.east_m} />
     </fieldset>
   );
 }
@@ -48,9 +50,9 @@ export function FloorField({ picture, start }: FloorFieldProps) {
   const first = start === undefined ? shown : start;
   return (
     <label>
-      Floor
+      {t("pin.floor")}
       <select name="floor" defaultValue={String(first ?? "")}>
-        <option value="">not known</option>
+        <option value="">{t("pin.unknown")}</option>
         {floors.map((one) => (
           <option key={one} value={String(one)}>
             {floorName(one)}
@@ -68,11 +70,11 @@ export function WithinField({ startM }: { startM: number }) {
   const choices = [...new Set([...WITHIN_M, startM])].sort((a, b) => a - b);
   return (
     <label>
-      Sure to within
+      {t("pin.accuracy")}
       <select name="within" defaultValue={String(startM)}>
         {choices.map((metres) => (
           <option key={metres} value={metres}>
-            {metres} m
+            {length(metres, metres < 1 ? 1 : 0)}
           </option>
         ))}
       </select>

@@ -16,10 +16,16 @@ import {
 import { blobOf } from "../plan/floorPicture";
 import type { Plan } from "../wire";
 import "../styles/setup.css";
+import { number } from "../language/measures";
+import { type PlainKey, t } from "../language/translate";
 import { DrawingPaper } from "./DrawingPaper";
 import { SendPlan } from "./SendPlan";
 
-const KINDS: Record<LineKind, string> = { wall: "Wall", outline: "Outline", stairs: "Stairs" };
+const KINDS: Record<LineKind, PlainKey> = {
+  wall: "drawing.wall",
+  outline: "drawing.outline",
+  stairs: "drawing.stairs",
+};
 
 const MOST_ZOOM = 8;
 
@@ -69,9 +75,9 @@ export function PlanDrawing({ picture, shown, name }: Props) {
   };
   const isEmpty = picture === null && drawn.length === 0;
   return (
-    <section class="plan-drawing" aria-label="Drawing of the plan">
+    <section class="plan-drawing" aria-label={t("drawing.title")}>
       <Fields given={given} isScaled={empty !== null} down_m={down_m} />
-      <div class="row" role="group" aria-label="What is drawn">
+      <div class="row" role="group" aria-label={t("drawing.what")}>
         {(Object.keys(KINDS) as LineKind[]).map((kind) => (
           <button
             key={kind}
@@ -80,20 +86,20 @@ export function PlanDrawing({ picture, shown, name }: Props) {
             disabled={scale === null}
             onClick={() => endLine(kind)}
           >
-            {KINDS[kind]}
+            {t(KINDS[kind])}
           </button>
         ))}
         <button type="button" disabled={begun.value.points.length === 0} onClick={() => endLine(begun.value.kind)}>
-          End line
+          {t("drawing.end_line")}
         </button>
         <button type="button" onClick={undo}>
-          Undo
+          {t("par.undo")}
         </button>
         <button type="button" disabled={zoom.value === MOST_ZOOM} onClick={() => (zoom.value *= 2)}>
-          Larger
+          {t("drawing.larger")}
         </button>
         <button type="button" disabled={zoom.value === 1} onClick={() => (zoom.value /= 2)}>
-          Smaller
+          {t("drawing.smaller")}
         </button>
         {scale !== null && !isEmpty && (
           <SendPlan
@@ -138,14 +144,14 @@ function scaleOf([one, other]: readonly Pixel[], given: Given): Scale | null {
 }
 
 function hint([one, other]: readonly Pixel[], scale: Scale | null, isPaper: boolean): string {
-  if (isPaper) return "Click the corners of walls one after the other. Leave gaps for doors.";
-  if (one === undefined) return "Click a corner that every floor has, such as one of the stairwell.";
-  if (other === undefined) return "Click a second point far from it, whose distance you know.";
+  if (isPaper) return t("drawing.hint_walls");
+  if (one === undefined) return t("drawing.hint_first");
+  if (other === undefined) return t("drawing.hint_second");
   if (Math.hypot(other.x - one.x, other.y - one.y) < LEAST_PX) {
-    return "The two points are too near to each other: press Undo, and take one farther away.";
+    return t("drawing.hint_near");
   }
-  if (scale === null) return "Write the distance between the two points, in metres.";
-  return `1 m is ${(1 / metresPerPixel(scale)).toFixed(1)} pixels. The plan can be set, or walls drawn first.`;
+  if (scale === null) return t("drawing.hint_distance");
+  return t("drawing.hint_scale", { pixels: number(1 / metresPerPixel(scale), 1) });
 }
 
 interface FieldsProps {
@@ -170,18 +176,18 @@ function Fields({ given, isScaled, down_m }: FieldsProps) {
   return (
     <>
       <div class="row">
-        {!isScaled && field("length", "Distance, m", { min: 0, autofocus: true })}
-        {field("floor", "Floor (0: ground)", { step: 1, min: -1000, max: 1000 })}
-        {field("up", "Height of the floor, m", { placeholder: String(-down_m) })}
+        {!isScaled && field("length", t("drawing.distance"), { min: 0, autofocus: true })}
+        {field("floor", t("drawing.floor"), { step: 1, min: -1000, max: 1000 })}
+        {field("up", t("drawing.height"), { placeholder: String(-down_m) })}
       </div>
       {!isScaled && (
         <details>
-          <summary>Where the first point lies on the plan</summary>
+          <summary>{t("drawing.first_point")}</summary>
           <div class="row">
-            {field("east", "East, m", {})}
-            {field("north", "North, m", {})}
+            {field("east", t("drawing.east"), {})}
+            {field("north", t("drawing.north"), {})}
           </div>
-          <p class="quiet">Zero where it is the same corner on each floor. Up on the picture is north on the plan.</p>
+          <p class="quiet">{t("drawing.first_hint")}</p>
         </details>
       )}
     </>

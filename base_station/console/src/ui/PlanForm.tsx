@@ -27,11 +27,11 @@ export function PlanForm({ shown }: { shown: Plan | null }) {
     <>
       <p>
         {shown === null
-          ? "There is no plan; people are shown on a metre grid."
-          : `Shown is ${contents(shown)}.`}
+          ? t("plan_form.none")
+          : t("plan_form.shown", { plan: contents(shown) })}
       </p>
       <label class="row">
-        New plan: image, PDF, DXF, IMDF or GeoJSON
+        {t("plan_form.new")}
         <input
           type="file"
           accept=".geojson,.json,application/geo+json,.zip,.imdf,.dxf,.pdf,.png,.jpg,.jpeg,.webp"
@@ -47,19 +47,19 @@ export function PlanForm({ shown }: { shown: Plan | null }) {
             byHand.value = !byHand.value;
           }}
         >
-          Draw walls
+          {t("plan_form.draw")}
         </button>
       </p>
       {chosen.value !== null && (
         <div class="row">
-          <span>{t("draft.contents", { contents: contents(chosen.value) })}</span>
+          <span>{t("plan_form.file", { plan: contents(chosen.value) })}</span>
           <SendPlan plan={chosen.value} replaces={shown !== null} />
         </div>
       )}
       {drawing.value !== null && (
         <DraftPlan file={drawing.value} shown={shown} done={() => (drawing.value = null)} />
       )}
-      {byHand.value && <PlanDrawing picture={null} shown={shown} name="Drawn by hand" />}
+      {byHand.value && <PlanDrawing picture={null} shown={shown} name={t("plan_form.by_hand")} />}
     </>
   );
 }
@@ -75,5 +75,5 @@ function parsed(text: string): Partial<Plan> {
   } catch {
     // Said below, as of any other file that is none.
   }
-  throw new ApiError("This file is no GeoJSON.", 0);
+  throw new ApiError(t("plan_form.not_geojson"), 0);
 }

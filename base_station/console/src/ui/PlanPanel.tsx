@@ -10,6 +10,7 @@ import { PlanMap, type PlanEvents } from "../plan/map";
 import type { Standing } from "../plan/pins";
 import { siteCoordinate } from "../plan/site";
 import { click, clicked, take, tool, wantsPlaces, type Place } from "../plan/tools";
+import { t } from "../language/translate";
 import { Edges } from "./Edges";
 import { Floors } from "./Floors";
 import { ErrorBoundary } from "./ErrorBoundary";
@@ -41,11 +42,11 @@ export function PlanPanel({ picture }: { picture: Picture }) {
   });
 
   return (
-    <section class="plan" aria-label="Plan">
-      <ErrorBoundary what="The tools of the plan">
+    <section class="plan" aria-label={t("plan_view.title")}>
+      <ErrorBoundary what={t("plan_view.tools")}>
         <PlanTools picture={picture} />
       </ErrorBoundary>
-      <ErrorBoundary what="The list of floors">
+      <ErrorBoundary what={t("plan_view.floors")}>
         <Floors picture={picture} />
       </ErrorBoundary>
       <Damage picture={picture} />
@@ -54,28 +55,28 @@ export function PlanPanel({ picture }: { picture: Picture }) {
         ref={target}
         tabIndex={0}
         role="application"
-        aria-label="Plan of the site. The list of people says the same in words."
-        aria-description="Arrow keys move it, plus and minus zoom, Escape goes back to who is chosen in the list."
+        aria-label={t("plan_view.map")}
+        aria-description={t("plan_view.keys")}
         onKeyDown={({ key }) => key === "Escape" && tool.peek() === null && backToCard()}
       />
       <div class="zoom">
-        <button type="button" aria-label="Zoom in" onClick={() => map.current?.zoom(1)}>
+        <button type="button" aria-label={t("plan_view.zoom_in")} onClick={() => map.current?.zoom(1)}>
           +
         </button>
-        <button type="button" aria-label="Zoom out" onClick={() => map.current?.zoom(-1)}>
+        <button type="button" aria-label={t("plan_view.zoom_out")} onClick={() => map.current?.zoom(-1)}>
           −
         </button>
         <button type="button" onClick={() => map.current?.fit()}>
-          Fit
+          {t("plan_view.fit")}
         </button>
       </div>
-      <ErrorBoundary what="The arrows at the edge of the plan">
+      <ErrorBoundary what={t("plan_view.edges")}>
         <Edges picture={picture} marks={outside} />
       </ErrorBoundary>
       <div class="north" aria-hidden="true">
-        N
+        {t("plan_view.north")}
       </div>
-      <ErrorBoundary what="This tool of the plan">
+      <ErrorBoundary what={t("plan_view.tool")}>
         <ToolPanel picture={picture} />
       </ErrorBoundary>
     </section>
@@ -128,7 +129,7 @@ function moved(picture: Picture, standing: Standing, place: Place): Promise<obje
   }
   const pin = picture.pins.peek().find((one) => one.pin_id === standing.id);
   if (pin === undefined || pin.kind !== "place") {
-    notice.value = "This pin belongs to a start of several people: remove it and set another.";
+    notice.value = t("plan_view.of_start");
     return Promise.resolve(null);
   }
   return api.movePin(pin.pin_id, { unit_id: pin.unit_id, ...place });

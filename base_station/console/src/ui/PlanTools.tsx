@@ -4,6 +4,8 @@ import { mayAct, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { dialog } from "../uiState";
 import { putDown, toggle, tool, type Tool } from "../plan/tools";
+import { listed } from "../language/measures";
+import { t } from "../language/translate";
 import { AnchorPanel } from "./AnchorPanel";
 import { BeaconPanel } from "./BeaconPanel";
 import { Icon } from "./Icon";
@@ -17,26 +19,31 @@ export function PlanTools({ picture }: { picture: Picture }) {
   const beacons = picture.beacons.value.length;
   const conflicts = pins.filter((pin) => pin.state === "conflict").length;
   return (
-    <div class="plan-tools" role="group" aria-label="On the plan">
+    <div class="plan-tools" role="group" aria-label={t("plan_tools.group")}>
       {mayAct.value && (
         <>
-          <ToolButton tool={{ kind: "start" }}>All start here</ToolButton>
-          <ToolButton tool={{ kind: "beacon" }}>Beacon</ToolButton>
+          <ToolButton tool={{ kind: "start" }}>{t("plan_tools.start")}</ToolButton>
+          <ToolButton tool={{ kind: "beacon" }}>{t("plan_tools.beacon")}</ToolButton>
         </>
       )}
-      <ToolButton tool={{ kind: "trails" }}>Trails</ToolButton>
+      <ToolButton tool={{ kind: "trails" }}>{t("plan_tools.trails")}</ToolButton>
       {pins.length + beacons > 0 && (
         <ToolButton tool={{ kind: "pins" }} alarmed={conflicts > 0}>
-          Pins {pins.length}
-          {conflicts > 0 && `, ${conflicts} in conflict`}
-          {beacons > 0 && `, beacons ${beacons}`}
+          {listed(pinWords(pins.length, conflicts, beacons))}
         </ToolButton>
       )}
       {picture.ready.value && picture.plan.value === null && (
-        <p class="quiet">No plan: people are shown on a metre grid. A plan is loaded under Site.</p>
+        <p class="quiet">{t("plan_tools.no_plan")}</p>
       )}
     </div>
   );
+}
+
+function pinWords(pins: number, conflicts: number, beacons: number): string[] {
+  const words = [t("plan_tools.pins", { count: pins })];
+  if (conflicts > 0) words.push(t("plan_tools.conflicts", { count: conflicts }));
+  if (beacons > 0) words.push(t("plan_tools.beacons", { count: beacons }));
+  return words;
 }
 
 interface ButtonProps {

@@ -2,6 +2,7 @@ import { attempt, live, mayAct } from "../sessions";
 import * as api from "../api";
 import type { RecordingView } from "../wire";
 import { bytes } from "../format";
+import { t } from "../language/translate";
 
 const HOUR_MS = 3_600_000;
 
@@ -16,7 +17,7 @@ export function Recording({ unitId }: { unitId: string }) {
     <>
       <button
         type="button"
-        aria-label={`Fetch the recording of ${unitId}`}
+        aria-label={t("recording.fetch_of", { unit: unitId })}
         onClick={() => {
           const incident = picture.incident.peek();
           const wanted =
@@ -26,7 +27,7 @@ export function Recording({ unitId }: { unitId: string }) {
           void attempt(api.fetchRecording(unitId, wanted));
         }}
       >
-        Fetch
+        {t("recording.fetch")}
       </button>
       {pull !== undefined && <small> {outcome(pull)}</small>}
     </>
@@ -37,8 +38,8 @@ export function Recording({ unitId }: { unitId: string }) {
 export function Recordings({ pulls }: { pulls: readonly RecordingView[] }) {
   if (pulls.length === 0) return null;
   return (
-    <section aria-label="Raw recordings">
-      <h3>Raw recordings</h3>
+    <section aria-label={t("recording.title")}>
+      <h3>{t("recording.title")}</h3>
       <ul class="recordings">
         {pulls.map((pull) => (
           <li key={pull.fetch_id}>
@@ -56,18 +57,19 @@ function UnderWay({ pull }: { pull: RecordingView }) {
   return (
     <span class="under-way">
       <label>
-        {pull.state}
-        {known && `, ${bytes(pull.done_bytes)} of ${bytes(pull.total_bytes)}`}
+        {known
+          ? t("recording.progress", { state: pull.state, done: bytes(pull.done_bytes), total: bytes(pull.total_bytes) })
+          : pull.state}
         <progress {...(known ? { value: pull.done_bytes, max: pull.total_bytes } : {})} />
       </label>
       {pull.problem !== "" && <small>{pull.problem}</small>}
       {mayAct.value && (
         <button
           type="button"
-          aria-label={`Stop the recording of ${pull.unit_id}`}
+          aria-label={t("recording.stop_of", { unit: pull.unit_id })}
           onClick={() => void attempt(api.stopRecording(pull.fetch_id))}
         >
-          Stop
+          {t("recording.stop")}
         </button>
       )}
     </span>
@@ -79,5 +81,5 @@ function isOver(pull: RecordingView): boolean {
 }
 
 function outcome(pull: RecordingView): string {
-  return pull.state === "done" ? `held here, ${bytes(pull.total_bytes)}` : pull.problem;
+  return pull.state === "done" ? t("recording.stored", { size: bytes(pull.total_bytes) }) : pull.problem;
 }

@@ -1,6 +1,7 @@
 import type { Signal } from "@preact/signals";
 import { changeOf } from "../plan/anchor";
 import type { AnchorView } from "../wire";
+import { t } from "../language/translate";
 import { Confirm } from "./Confirm";
 
 interface Props {
@@ -15,8 +16,8 @@ export function ReplacePlace({ shown, next, onYes }: Props) {
   if (asked === null) return null;
   return (
     <Confirm
-      question={`${changeOf(shown, asked)} Replace the place for everybody?`}
-      yes="Yes, replace place"
+      question={t("site.replace_question", { change: changeOf(shown, asked) })}
+      yes={t("site.replace_yes")}
       onYes={() => {
         next.value = null;
         onYes(asked);

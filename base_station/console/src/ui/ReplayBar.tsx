@@ -17,32 +17,34 @@ interface Props {
 export function ReplayBar({ replay, live }: Props) {
   const state = replay.session.picture.replay.value;
   return (
-    <section class="replay-bar" aria-label="Replay">
-      <strong class="replay-word">REPLAY</strong>
+    <section class="replay-bar" aria-label={t("replay.title")}>
+      <strong class="replay-word">{t("replay.word")}</strong>
       <span class="replay-what">
-        {replay.incident.name}, {dateAndTime(replay.incident.opened_ms)}{" "}
-        {zone(replay.incident.opened_ms)}. This is the past.
+        {t("replay.what", {
+          incident: replay.incident.name,
+          time: dateAndTime(replay.incident.opened_ms),
+          zone: zone(replay.incident.opened_ms),
+        })}
       </span>
       {state && <Flaws flaws={state.flaws} />}
       {state?.gap && <Gap gap={state.gap} startMs={state.start_ms} />}
       <button
         type="button"
         class="about-positions"
-        title={t("incident.accuracy")}
         onClick={() => assess(replay.incident)}
       >
-        {t("incident.accuracy")}
+        {t("replay.accuracy")}
       </button>
       {besideLive.value && liveIsPast.value && (
         <button type="button" class="primary" onClick={stopReplay}>
-          Back to the first replay
+          {t("replay.first")}
         </button>
       )}
       {besideLive.value && !liveIsPast.value && (
         <>
           <LiveAlarms live={live} />
           <button type="button" class="primary" onClick={stopReplay}>
-            Back to live
+            {t("replay.live")}
           </button>
           <LiveProblems live={live} />
         </>
@@ -58,7 +60,7 @@ function Flaws({ flaws }: { flaws: readonly string[] }) {
   if (flaws.length === 0) return null;
   return (
     <button type="button" class="flaws" title={flaws.join("\n")} onClick={() => openDialog("flaws")}>
-      <Icon name="alarm" /> Not all is as it was: {flaws.length}
+      <Icon name="alarm" /> {t("replay.flaws", { count: flaws.length })}
     </button>
   );
 }
@@ -67,19 +69,19 @@ function Flaws({ flaws }: { flaws: readonly string[] }) {
 function Gap({ gap, startMs }: { gap: GapView; startMs: number }) {
   return (
     <span class="replay-live alarmed" role="alert">
-      <Icon name="linkLost" /> No record from {timeSince(startMs, gap.from_ms)} to{" "}
-      {timeSince(startMs, gap.until_ms)}
-      <span class="gap-shown">The last positions before it are shown.</span>
+      <Icon name="linkLost" />{" "}
+      {t("replay.gap", { from: timeSince(startMs, gap.from_ms), until: timeSince(startMs, gap.until_ms) })}
+      <span class="gap-shown">{t("replay.gap_shown")}</span>
     </span>
   );
 }
 
 function LiveAlarms({ live }: { live: Picture }) {
   const open = live.openAlarms.value.length;
-  if (open === 0) return <span class="replay-live">Live now: no open alarms</span>;
+  if (open === 0) return <span class="replay-live">{t("replay.no_alarms")}</span>;
   return (
     <span class="replay-live alarmed" role="alert">
-      <Icon name="alarm" /> Live now: {open} open {open === 1 ? "alarm" : "alarms"}
+      <Icon name="alarm" /> {t("replay.alarms", { count: open })}
     </span>
   );
 }
@@ -91,7 +93,7 @@ function LiveProblems({ live }: { live: Picture }) {
   if (first === undefined) return null;
   return (
     <span class="replay-live alarmed" role="alert">
-      <Icon name="alarm" /> Station: {first}
+      <Icon name="alarm" /> {t("replay.station", { problem: first })}
       {more.length > 0 && ` +${more.length}`}
     </span>
   );

@@ -17,6 +17,7 @@ import {
 import { displayName, nameAmong } from "../live/urgency";
 import type { UnitView } from "../wire";
 import { clockTime } from "../format";
+import { t } from "../language/translate";
 
 interface Props {
   unit: UnitView;
@@ -36,8 +37,8 @@ function Ways({ unit, picture }: Props) {
   if (now?.unitId !== unitId) return null;
   const drawn = drawnRoute(now);
   return (
-    <section class="rescue" aria-label={`Ways to ${displayName(unit)}`}>
-      <p class="rescue-head">Nearest by way</p>
+    <section class="rescue" aria-label={t("rescue.ways", { name: displayName(unit) })}>
+      <p class="rescue-head">{t("rescue.nearest")}</p>
       {now.fault !== "" && <p class="quiet">{now.fault}</p>}
       <ul>
         {now.routes.map((route) => (
@@ -52,12 +53,12 @@ function Ways({ unit, picture }: Props) {
       </ul>
       <p class="rescue-others">
         <label>
-          Another rescuer
+          {t("rescue.another")}
           <select
             value={now.rescuerId ?? ""}
             onChange={(event) => chooseRescuer(event.currentTarget.value || null)}
           >
-            <option value="">nearest</option>
+            <option value="">{t("rescue.nearest_one")}</option>
             {others(picture.allUnits(), unitId).map((one) => (
               <option key={one.unit_id} value={one.unit_id}>
                 {nameAmong(one, picture.allUnits())}
@@ -91,7 +92,7 @@ function Way({ route, unitId, drawn, picture }: WayProps) {
         type="button"
         class="way"
         aria-pressed={drawn}
-        title="Show this way on the plan"
+        title={t("rescue.show")}
         onClick={() => chooseRescuer(route.unit_id)}
       >
         <strong>{name}</strong> <span class="way-length">{wayWords(route)}</span>
@@ -100,22 +101,22 @@ function Way({ route, unitId, drawn, picture }: WayProps) {
       {mayAct.value && guide === undefined && (
         <button
           type="button"
-          aria-label={`Send ${name}`}
+          aria-label={t("rescue.send_name", { name })}
           onClick={() => done(api.guide(unitId, route.unit_id))}
         >
-          Send
+          {t("rescue.send")}
         </button>
       )}
       {guide !== undefined && (
         <p class="guided">
-          Sent {clockTime(guide.sent_ms)}: {guide.text}{" "}
+          {t("rescue.sent", { time: clockTime(guide.sent_ms), text: guide.text })}{" "}
           {mayAct.value && (
             <button
               type="button"
-              aria-label={`End guidance of ${name}`}
+              aria-label={t("rescue.end_of", { name })}
               onClick={() => done(api.endGuide(route.unit_id))}
             >
-              End
+              {t("rescue.end")}
             </button>
           )}
         </p>
@@ -128,13 +129,13 @@ function Way({ route, unitId, drawn, picture }: WayProps) {
 function SendRic({ unitId, picture }: { unitId: string; picture: Picture }) {
   const crew = ricOf(picture.allUnits(), unitId);
   if (crew.length === 0) {
-    return <span class="quiet">No RIC: give its members a crew named RIC under People.</span>;
+    return <span class="quiet">{t("rescue.no_ric")}</span>;
   }
   const send = () =>
     crew.forEach((one) => void attempt(api.guide(unitId, one.unit_id)).then(askAgain));
   return (
     <button type="button" class="primary" onClick={send}>
-      Send RIC ({crew.length})
+      {t("rescue.send_ric", { count: crew.length })}
     </button>
   );
 }

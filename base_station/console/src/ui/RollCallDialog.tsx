@@ -5,8 +5,10 @@ import { needsOf } from "../live/alarms";
 import { confirmationWords, crewsOnDuty, type CrewOnDuty, type OnDuty } from "../live/duty";
 import { displayName } from "../live/urgency";
 import { confirmPar } from "../undo";
-import type { UnitView } from "../wire";
+import type { DutyView, UnitView } from "../wire";
 import { alarmLabel, minutes } from "../format";
+import { listed } from "../language/measures";
+import { t } from "../language/translate";
 import { ByRadio } from "./ByRadio";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -22,24 +24,22 @@ export function RollCallDialog() {
   const incident = picture.incident.value;
   const crews = crewsOnDuty(picture.allUnits(), incident, picture.nowMs.value);
   return (
-    <Dialog title="Roll call (PAR)" wide>
+    <Dialog title={t("par.title")} wide>
       {crews.length === 0 && (
-        <p>Nobody is on duty: open an incident, and say in Units who wears which unit.</p>
+        <p>{t("par.nobody")}</p>
       )}
       {mayAct.value && crews.length > 0 && (
         <p class="row roll-all">
-          <span>
-            Confirm each member who has answered by radio. Nothing that a unit measures confirms a PAR.
-          </span>
+          <span>{t("par.hint")}</span>
           <button type="button" onClick={() => openDialog("par_request")}>
-            Send PAR request
+            {t("par.send")}
           </button>
           <ByRadio
-            label="Confirm all"
+            label={t("par.confirm_all")}
             members={unitsIn(crews)}
-            question="Has everybody answered by radio?"
+            question={t("par.everybody_question")}
             always
-            onConfirm={() => void confirmPar({ everyone: true }, "everybody")}
+            onConfirm={() => void confirmPar({ everyone: true }, t("par.everybody"))}
           />
         </p>
       )}
@@ -60,19 +60,19 @@ interface CrewProps {
 
 function Crew({ crew, place, picture }: CrewProps) {
   const steady = useGuardedPress(place);
-  const name = crew.crew === "" ? "Without a crew" : crew.crew;
+  const name = crew.crew === "" ? t("par.no_crew") : crew.crew;
   const all = () => void confirmPar({ crew: crew.crew }, name);
   return (
     <section class={`roll-crew ${crew.par.state}`} aria-label={name}>
       <header>
         <h3>
-          {name} <span class="quiet">{crew.people.length} on duty</span>
+          {name} <span class="quiet">{t("par.on_duty", { count: crew.people.length })}</span>
         </h3>
         {mayAct.value && crew.crew !== "" && crew.people.length > 1 && (
           <ByRadio
-            label={`${name}: confirm all`}
+            label={t("par.crew_confirm_all", { crew: name })}
             members={unitsIn([crew])}
-            question="Have all answered by radio?"
+            question={t("par.all_question")}
             onConfirm={steady(all)}
           />
         )}
@@ -98,34 +98,29 @@ function Row({ one, place, picture }: { one: OnDuty; place: number; picture: Sho
         {needs.length > 0 && (
           <span class="in-need">
             <Icon name="alarm" />
-            {needs.map(alarmLabel).join(", ")}
+            {listed(needs.map(alarmLabel))}
           </span>
         )}
       </span>
       <ParMark unit={unit} picture={picture} brief />
       <span class="quiet roll-words">
-        {confirmationWords(duty)}
-        {!duty.located && ", not located"}
-        {duty.rest_since_ms !== null &&
-          `, resting for ${minutes(picture.nowMs.value - duty.rest_since_ms)}`}
-        {duty.work_since_ms !== null &&
-          `, at work for ${minutes(picture.nowMs.value - duty.work_since_ms)}`}
+        {listed(dutyWords(duty, picture.nowMs.value))}
       </span>
       {mayAct.value && (
         <span class="roll-acts">
           {duty.entry_id !== "" && (
             <ConfirmButton
-              label="Undo"
-              about={`PAR of ${name} by radio`}
-              question={`PAR of ${name} counts as not answered by radio?`}
+              label={t("par.undo")}
+              about={t("par.undo_about", { name })}
+              question={t("par.undo_question", { name })}
               onConfirm={() => void attempt(api.undoCheckIn(duty.entry_id, unit.unit_id))}
             />
           )}
           <ByRadio
-            label="Confirm by radio"
+            label={t("par.confirm")}
             about={name}
             members={[unit]}
-            question={`Has ${name} answered by radio?`}
+            question={t("par.question", { name })}
             kind="primary tick"
             onConfirm={steady(() => void confirmPar({ unit_id: unit.unit_id }, name))}
           />
@@ -133,6 +128,14 @@ function Row({ one, place, picture }: { one: OnDuty; place: number; picture: Sho
       )}
     </li>
   );
+}
+
+function dutyWords(duty: DutyView, nowMs: number): string[] {
+  const words = [confirmationWords(duty)];
+  if (!duty.located) words.push(t("par.not_located"));
+  if (duty.rest_since_ms !== null) words.push(t("par.rehab_for", { time: minutes(nowMs - duty.rest_since_ms) }));
+  if (duty.work_since_ms !== null) words.push(t("par.work_for", { time: minutes(nowMs - duty.work_since_ms) }));
+  return words;
 }
 
 function unitsIn(crews: readonly CrewOnDuty[]): UnitView[] {

@@ -1,6 +1,7 @@
 import { setAnchor, setPlan } from "../api";
 import { attempt, namedIncident } from "../sessions";
 import { dialog } from "../uiState";
+import { t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 
 interface Props {
@@ -14,10 +15,10 @@ interface Props {
 export function SendPlan({ plan, replaces, place }: Props) {
   const send = () => void attempt(sent(plan, place).then(() => (dialog.value = null)));
   return replaces ? (
-    <ConfirmButton label="Replace plan" question="Replace the plan for everybody?" onConfirm={send} />
+    <ConfirmButton label={t("site.replace_plan")} question={t("site.replace_plan_question")} onConfirm={send} />
   ) : (
     <button type="button" class="primary" onClick={send}>
-      Set plan
+      {t("site.set_plan")}
     </button>
   );
 }

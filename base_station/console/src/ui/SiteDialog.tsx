@@ -18,12 +18,12 @@ const DEGREES = 180 / Math.PI;
 export function SiteDialog() {
   const picture = live.value?.picture;
   return (
-    <Dialog title="Site" wide>
-      <h3>Plan</h3>
+    <Dialog title={t("site.title")} wide>
+      <h3>{t("site.plan")}</h3>
       <PlanForm shown={picture?.plan.value ?? null} />
-      <h3>Base map</h3>
+      <h3>{t("site.base_map")}</h3>
       <BaseMapForm />
-      <h3>{t("anchor.title")}</h3>
+      <h3>{t("site.place")}</h3>
       <p>
         <button
           type="button"
@@ -32,9 +32,9 @@ export function SiteDialog() {
             take({ kind: "anchor" });
           }}
         >
-          {t("anchor.align")}
+          {t("site.align")}
         </button>{" "}
-        Without a plan, the first good fix of a unit does it.
+        {t("site.by_fix")}
       </p>
       <AnchorForm anchor={picture?.anchor.value ?? null} />
     </Dialog>
@@ -59,20 +59,20 @@ function AnchorForm({ anchor }: { anchor: AnchorView | null }) {
     >
       <p class="whole">
         {anchor === null
-          ? "Nobody has said where the plan lies."
-          : `The plan’s origin lies at ${placeWords(anchor)}.`}
+          ? t("site.nowhere")
+          : t("site.at", { place: placeWords(anchor) })}
       </p>
-      <NumberField name="lat" label="Latitude of the plan’s origin, °" value={anchor?.lat_deg} />
-      <NumberField name="lon" label="Longitude, °" value={anchor?.lon_deg} />
-      <NumberField name="height" label="Height, m" value={anchor?.height_m ?? 0} />
+      <NumberField name="lat" label={t("site.latitude")} value={anchor?.lat_deg} />
+      <NumberField name="lon" label={t("site.longitude")} value={anchor?.lon_deg} />
+      <NumberField name="height" label={t("site.height")} value={anchor?.height_m ?? 0} />
       <NumberField
         name="turn"
-        label="True heading of the plan’s north, °"
+        label={t("site.heading")}
         value={(anchor?.plan_rotation_rad ?? 0) * DEGREES}
       />
       {asked.value === null || anchor === null ? (
         <button class="primary" ref={button}>
-          {t("anchor.save")}
+          {t("site.save")}
         </button>
       ) : (
         <ReplacePlace shown={anchor} next={asked} onYes={send} />

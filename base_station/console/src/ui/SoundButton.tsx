@@ -1,16 +1,17 @@
 import { soundBlocked, soundOn, switchSound } from "../sound";
+import { t } from "../language/translate";
 import { Icon } from "./Icon";
 
 /** Whether alarms are heard at this console. */
 export function SoundButton() {
   const heard = soundOn.value && !soundBlocked.value;
-  const word = !soundOn.value ? "Sound off" : heard ? "Sound on" : "No sound yet";
+  const word = t(!soundOn.value ? "sound.off" : heard ? "sound.on" : "sound.blocked");
   return (
     <button
       type="button"
       class={`sound ${heard ? "" : "silent"}`}
       aria-pressed={heard}
-      title={heard ? "Alarms are heard" : "Press to hear alarms"}
+      title={t(heard ? "sound.heard" : "sound.press")}
       onClick={() => switchSound(!heard)}
     >
       <Icon name={heard ? "bell" : "bellOff"} /> {word}

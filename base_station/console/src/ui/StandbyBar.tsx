@@ -3,6 +3,8 @@ import * as api from "../api";
 import { transferUrl } from "../live/loginTransfer";
 import type { Picture } from "../live/picture";
 import type { StandbyView } from "../wire";
+import { share as percent } from "../language/measures";
+import { t } from "../language/translate";
 import { ConfirmButton } from "./ConfirmButton";
 import { Icon } from "./Icon";
 
@@ -13,14 +15,14 @@ export function StandbyBar({ picture }: { picture: Picture }) {
   const standby = picture.health.value?.standby ?? null;
   if (standby === null || standby.role === "active") return null;
   return (
-    <section class="standby-bar" aria-label="Standby">
+    <section class="standby-bar" aria-label={t("standby.title")}>
       <Icon name="linkGood" />
-      <strong>{standby.station} is the standby.</strong>
+      <strong>{t("standby.is_standby", { station: standby.station })}</strong>
       <span>
         {standby.role === "waiting"
-          ? "It waits for the other station and does not lead."
-          : `${standby.other} leads. Here people can look; things are changed there.`}
-        {!standby.in_step && " It has not caught up yet: what is shown may be old."}
+          ? t("standby.waits")
+          : t("standby.other_leads", { other: standby.other })}
+        {!standby.in_step && ` ${t("standby.behind")}`}
       </span>
       <OtherConsole standby={standby} />
       {user.value !== null && user.value.role !== "viewer" && <TakeOver standby={standby} />}
@@ -31,13 +33,10 @@ export function StandbyBar({ picture }: { picture: Picture }) {
 /** After a crash without a saved state: nobody may take what was last stored for what is now. */
 function ReadingBar({ share }: { share: number }) {
   return (
-    <section class="standby-bar" aria-label="Reading the log">
+    <section class="standby-bar" aria-label={t("standby.reading")}>
       <Icon name="linkGood" />
-      <strong>The station is reading its log: {Math.round(100 * share)} %.</strong>
-      <span>
-        This is what was last stored: nothing here is live, and nothing can be changed yet. Units go on
-        by themselves, and what they say meanwhile is fetched.
-      </span>
+      <strong>{t("standby.reading_share", { share: percent(share) })}</strong>
+      <span>{t("standby.reading_hint")}</span>
     </section>
   );
 }
@@ -46,14 +45,14 @@ function ReadingBar({ share }: { share: number }) {
 export function OtherConsole({ standby }: { standby: StandbyView }) {
   if (!/^https?:/.test(standby.other_url)) return null;
   const way = transferUrl(standby.station, standby.other_url);
-  return <a href={way}>Open the console of {standby.other}</a>;
+  return <a href={way}>{t("standby.open_other", { other: standby.other })}</a>;
 }
 
 function TakeOver({ standby }: { standby: StandbyView }) {
   return (
     <ConfirmButton
-      label="Take over"
-      question={`${standby.station} leads from now on.`}
+      label={t("standby.take_over")}
+      question={t("standby.take_over_question", { station: standby.station })}
       onConfirm={() => void attempt(api.takeOver())}
     />
   );

@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { clockTime, duration } from "../format";
 import { resume } from "../sessions";
+import { t } from "../language/translate";
 import { Icon } from "./Icon";
 
 const TRY_AGAIN_MS = 3_000;
@@ -19,18 +20,16 @@ export function StationAway() {
     <main class="login">
       <div class="away">
         <h1>
-          <Icon name="linkLost" /> Station away
+          <Icon name="linkLost" /> {t("away.title")}
         </h1>
         <p role="alert">
-          The base station does not answer at {location.host}. Nothing is shown, because nothing that this page knows
-          is current. Use the voice radio.
+          {t("away.hint", { host: location.host })}
         </p>
         <p>
-          Tried since {clockTime(since.value)}, for {duration(now.value - since.value)}. The console comes by itself
-          once the station answers.
+          {t("away.tried", { time: clockTime(since.value), duration: duration(now.value - since.value) })}
         </p>
         <button type="button" class="primary" onClick={() => void resume()}>
-          Try again now
+          {t("away.again")}
         </button>
       </div>
     </main>

@@ -19,6 +19,7 @@ import {
   type Timeline,
 } from "../timeline/series";
 import { dialogUnit } from "../uiState";
+import { t } from "../language/translate";
 import { Dialog } from "./Dialog";
 
 const WITHOUT_INCIDENT_MS = 3_600_000;
@@ -30,7 +31,7 @@ export function TimelineDialog() {
   const unit = unitId === null ? undefined : picture.value?.unit(unitId)?.peek();
   if (unitId === null || unit === undefined) return null;
   return (
-    <Dialog title={`Timeline of ${displayName(unit)}`} wide>
+    <Dialog title={t("timeline.title", { name: displayName(unit) })} wide>
       <UnitTimeline unitId={unitId} />
     </Dialog>
   );
@@ -74,11 +75,9 @@ export function UnitTimeline({ unitId, only }: UnitTimelineProps) {
         again={only === undefined ? () => show((whole.value = wholeSpan())) : null}
       />
       <p class="quiet">
-        {timeSince(whole.value.fromMs, shown.value.fromMs)} to{" "}
-        {timeSince(whole.value.fromMs, shown.value.untilMs)}, {date(shown.value.fromMs)}.
-        Grey: no radio contact. Draw over a line to zoom in.
-        {isReplay() && " Press on a line to go there in the replay."}
-        <span role="status">{asking.value && " The station reads its log …"}</span>
+        {spanWords(whole.value, shown.value)} {t("timeline.hint")}
+        {isReplay() && ` ${t("timeline.hint_replay")}`}
+        <span role="status">{asking.value && ` ${t("timeline.reading")}`}</span>
       </p>
       {timeline.value?.defects.map((defect) => (
         <p key={defect} class="warned">
@@ -95,6 +94,11 @@ export function UnitTimeline({ unitId, only }: UnitTimelineProps) {
       )}
     </div>
   );
+}
+
+function spanWords(whole: Span, shown: Span): string {
+  const [from, until] = [shown.fromMs, shown.untilMs].map((ms) => timeSince(whole.fromMs, ms));
+  return t("timeline.span", { from: from ?? "", until: until ?? "", date: date(shown.fromMs) });
 }
 
 /** Of the replay, of the incident that runs, or the last hour. */
@@ -137,13 +141,13 @@ function Steps({ whole, shown, show, again }: StepsProps) {
     </button>
   );
   return (
-    <div class="row" role="group" aria-label="Time shown">
-      {step("Earlier", shown.fromMs <= whole.fromMs, () => show(moved(shown, -1, whole)))}
-      {step("Later", shown.untilMs >= whole.untilMs, () => show(moved(shown, 1, whole)))}
-      {step("Zoom in", false, () => show(zoomed(shown, 0.5, whole)))}
-      {step("Zoom out", isWhole, () => show(zoomed(shown, 2, whole)))}
-      {step("All of it", isWhole, () => show(whole))}
-      {!isReplay() && again !== null && step("Until now", false, again)}
+    <div class="row" role="group" aria-label={t("timeline.time")}>
+      {step(t("timeline.earlier"), shown.fromMs <= whole.fromMs, () => show(moved(shown, -1, whole)))}
+      {step(t("timeline.later"), shown.untilMs >= whole.untilMs, () => show(moved(shown, 1, whole)))}
+      {step(t("timeline.zoom_in"), false, () => show(zoomed(shown, 0.5, whole)))}
+      {step(t("timeline.zoom_out"), isWhole, () => show(zoomed(shown, 2, whole)))}
+      {step(t("timeline.all"), isWhole, () => show(whole))}
+      {!isReplay() && again !== null && step(t("timeline.until_now"), false, again)}
     </div>
   );
 }
@@ -160,7 +164,7 @@ function Moment({ timeline, lookedAt }: LookProps) {
   return (
     <div class="row moment">
       <label class="long">
-        Values at {timeSince(fromMs, atMs)}
+        {t("timeline.values_at", { time: timeSince(fromMs, atMs) })}
         <input
           type="range"
           min={fromMs}
@@ -173,7 +177,7 @@ function Moment({ timeline, lookedAt }: LookProps) {
       </label>
       {isReplay() && (
         <button type="button" onClick={() => seek(atMs)}>
-          Replay from here
+          {t("timeline.replay")}
         </button>
       )}
     </div>
@@ -220,12 +224,15 @@ function Lines({ timeline, lookedAt, zoom }: LinesProps) {
   return (
     <>
       {STRIPS.map((strip, number) => (
-        <section key={strip.column} class="timeline-strip" aria-label={strip.title}>
+        <section key={strip.column} class="timeline-strip" aria-label={t(strip.title)}>
           <Reading strip={strip} timeline={timeline} atMs={momentOf(timeline, lookedAt)} />
           <div
             class="timeline-line"
             role="img"
-            aria-label={`${strip.title}: ${extremes(strip, timeline) ?? "no values"}`}
+            aria-label={t("timeline.strip", {
+              title: t(strip.title),
+              values: extremes(strip, timeline) ?? t("timeline.no_values"),
+            })}
             ref={(place) => {
               if (place !== null) places.current[number] = place;
             }}
@@ -247,8 +254,8 @@ function Reading({ strip, timeline, atMs }: ReadingProps) {
   const isEmpty = timeline[strip.column].t_ms.length === 0;
   return (
     <h3>
-      {strip.title}{" "}
-      <output>{value === null ? (isEmpty ? "no values" : "not known") : strip.text(value, timeline)}</output>
+      {t(strip.title)}{" "}
+      <output>{value === null ? t(isEmpty ? "timeline.no_values" : "timeline.unknown") : strip.text(value, timeline)}</output>
     </h3>
   );
 }

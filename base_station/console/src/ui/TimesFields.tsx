@@ -1,11 +1,12 @@
 import type * as api from "../api";
+import { t } from "../language/translate";
 
 /** The PAR interval and the work limit of an incident. */
 export function TimesFields({ times }: { times: api.Times }) {
   return (
     <>
-      <MinutesField name="par" label="Roll call every, min" valueS={times.par_interval_s} />
-      <MinutesField name="work" label="Rest after, min" valueS={times.work_limit_s} />
+      <MinutesField name="par" label={t("par.every")} valueS={times.par_interval_s} />
+      <MinutesField name="work" label={t("par.work_limit")} valueS={times.work_limit_s} />
     </>
   );
 }

@@ -8,8 +8,8 @@ import { PanelActions } from "./PanelActions";
 export function TrailsPanel() {
   const ofChosen = selectedUnit.value === null ? "" : "of-chosen";
   return (
-    <section class="tool-panel trails" aria-label="Trails">
-      <h3>Trails</h3>
+    <section class="tool-panel trails" aria-label={t("trail.title")}>
+      <h3>{t("trail.title")}</h3>
       {KINDS.map((kind) => (
         <label key={kind}>
           <input
@@ -19,14 +19,12 @@ export function TrailsPanel() {
           />
           <span class={`trail-line ${kind} ${ofChosen}`} aria-hidden="true" />
           {t(`trail.${kind}`)}
-          {loadingKinds.value.has(kind) && <small> is worked out …</small>}
+          {loadingKinds.value.has(kind) && <small> {t("trail.loading")}</small>}
         </label>
       ))}
       <ImportsShown />
       <p class="quiet">
-        {selectedUnit.value === null
-          ? "The last five minutes. Choose a person to compare all of that person’s."
-          : "The chosen person’s from the beginning, where more than the first is drawn."}
+        {t(selectedUnit.value === null ? "trail.hint_all" : "trail.hint_chosen")}
       </p>
       <PanelActions />
     </section>

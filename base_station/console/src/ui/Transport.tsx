@@ -3,7 +3,9 @@ import { steer, type Replay } from "../sessions";
 import * as api from "../api";
 import { eachRaising, LEAD_MS, nextAlarmMs, previousAlarmMs, within } from "../live/replaying";
 import type { ReplayView } from "../wire";
-import { countdown, timeSince } from "../format";
+import { countdown, duration, timeSince } from "../format";
+import { t } from "../language/translate";
+import { alarmText } from "../live/alarmText";
 import { Icon, type IconName } from "./Icon";
 import { useChosen } from "./useChosen";
 import { useLoaded } from "./useLoaded";
@@ -26,23 +28,21 @@ export function Transport({ replay, state }: Props) {
   const jump = (ms: number | null) => (ms === null ? undefined : () => seek(ms));
   return (
     <div class="transport">
-      <Step icon="back" word="Alarm before" shown="Alarm" go={jump(previousAlarmMs(alarms, at))} />
-      <Step icon="back" word="Back 10 s" shown="10 s" go={jump(at - STEP_MS)} />
+      <Step icon="back" word={t("transport.alarm_before")} shown={t("transport.alarm")} go={jump(previousAlarmMs(alarms, at))} />
+      <Step icon="back" word={t("transport.back", { time: duration(STEP_MS) })} shown={duration(STEP_MS)} go={jump(at - STEP_MS)} />
       <Step
         icon={playing ? "pause" : "play"}
-        word={playing ? "Pause" : "Play"}
+        word={t(playing ? "transport.pause" : "transport.play")}
         go={() => change({ playing: !playing })}
       />
-      <Step icon="forth" word="On 10 s" shown="10 s" go={jump(at + STEP_MS)} />
-      <Step icon="forth" word="Next alarm" shown="Alarm" go={jump(nextAlarmMs(alarms, at))} />
+      <Step icon="forth" word={t("transport.on", { time: duration(STEP_MS) })} shown={duration(STEP_MS)} go={jump(at + STEP_MS)} />
+      <Step icon="forth" word={t("transport.next_alarm")} shown={t("transport.alarm")} go={jump(nextAlarmMs(alarms, at))} />
       <SeekBar state={state} alarms={alarms} seek={seek} />
       <span class="going" role="status">
-        {state.seeking ? `Going to ${timeSince(start, at)} …` : ""}
+        {state.seeking ? t("transport.going", { time: timeSince(start, at) }) : ""}
       </span>
       {!state.seeking && (
-        <span>
-          {countdown(at - start)} of {countdown(end - start)}
-        </span>
+        <span>{t("transport.progress", { at: countdown(at - start), all: countdown(end - start) })}</span>
       )}
       <GoTo alarms={alarms} sinceMs={start} seek={seek} />
       <Speed state={state} choose={(speed) => change({ speed })} />
@@ -82,14 +82,14 @@ function GoTo({ alarms, sinceMs, seek }: SeekProps & { sinceMs: number }) {
   return (
     <select
       class="go-to"
-      aria-label="Go to an alarm"
+      aria-label={t("transport.go_to")}
       disabled={alarms.length === 0}
       {...chosen}
     >
-      <option value="">{alarms.length === 0 ? "No alarms" : `${alarms.length} alarms …`}</option>
+      <option value="">{alarms.length === 0 ? t("transport.no_alarms") : t("transport.alarms", { count: alarms.length })}</option>
       {alarms.map((alarm) => (
         <option key={keyOf(alarm)} value={alarm.raised_ms}>
-          {timeSince(sinceMs, alarm.raised_ms)} {alarm.text}
+          {timeSince(sinceMs, alarm.raised_ms)} {alarmText(alarm)}
         </option>
       ))}
     </select>
@@ -100,7 +100,7 @@ function Speed({ state, choose }: { state: ReplayView; choose: (speed: number) =
   const speeds = [...new Set([...SPEEDS, state.speed])].sort((a, b) => a - b);
   return (
     <select
-      aria-label="Speed"
+      aria-label={t("transport.speed")}
       value={String(state.speed)}
       onChange={(event) => choose(Number(event.currentTarget.value))}
     >
@@ -133,7 +133,7 @@ function SeekBar({ state, alarms, seek }: SeekProps & { state: ReplayView }) {
       </svg>
       <input
         type="range"
-        aria-label="Time of the incident"
+        aria-label={t("transport.time")}
         aria-valuetext={timeSince(state.start_ms, shown)}
         min={start}
         max={end}

@@ -1,6 +1,7 @@
 import type { ReadonlySignal } from "@preact/signals";
 import type { Picture } from "../live/picture";
 import { arrange, isCasualty } from "../live/urgency";
+import { t } from "../language/translate";
 import { PeopleGroups } from "./PeopleGroups";
 
 interface Props {
@@ -16,7 +17,5 @@ export function Unassigned({ picture, second, brief }: Props) {
   if (units.length === 0) return null;
   const places = arrange([], units, picture.alarms.value, picture.nowMs.peek(), false);
   const down = places.filter(isCasualty).length;
-  return <PeopleGroups groups={[{ crew: UNASSIGNED, places, down }]} brief={brief} picture={picture} />;
+  return <PeopleGroups groups={[{ crew: t("wall.unassigned"), places, down }]} brief={brief} picture={picture} />;
 }
-
-const UNASSIGNED = "Unassigned";

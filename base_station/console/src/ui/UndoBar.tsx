@@ -1,5 +1,6 @@
 import { mayAct } from "../sessions";
 import { undoable, undoNow } from "../undo";
+import { t } from "../language/translate";
 
 /** What was just entered by radio, with the press that undoes it; in a dialog it stands in it. */
 export function UndoBar() {
@@ -10,7 +11,7 @@ export function UndoBar() {
         <>
           <span>{one.words}</span>
           <button type="button" onClick={() => undoNow(one)}>
-            Undo
+            {t("par.undo")}
           </button>
         </>
       )}

@@ -1,6 +1,7 @@
 import { useSignal } from "@preact/signals";
 import { attempt, live } from "../sessions";
 import * as api from "../api";
+import { rich, t } from "../language/translate";
 import { useSinglePress } from "./useGuardedPress";
 import { fields } from "./useLoaded";
 
@@ -18,10 +19,10 @@ export function UnitTokens() {
   };
   return (
     <details>
-      <summary>A unit that posts samples without an enrolment</summary>
+      <summary>{t("units.post")}</summary>
       <form class="row" onSubmit={(event) => make(fields(event)["posting"] ?? "")}>
         <label>
-          Posting unit
+          {t("units.posting")}
           <select name="posting" required>
             {units.map((unitId) => (
               <option key={unitId} value={unitId}>
@@ -30,11 +31,14 @@ export function UnitTokens() {
             ))}
           </select>
         </label>
-        <button>Make token</button>
+        <button>{t("units.make_token")}</button>
       </form>
       {made.value !== null && (
         <p role="status">
-          Token of <strong>{made.value.unitId}</strong>, shown this once: <code>{made.value.token}</code>
+          {rich("units.token", {
+            unit: <strong>{made.value.unitId}</strong>,
+            token: <code>{made.value.token}</code>,
+          })}
         </p>
       )}
     </details>

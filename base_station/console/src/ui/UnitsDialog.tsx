@@ -21,11 +21,11 @@ export function UnitsDialog() {
   const picture = live.value?.picture;
   const ids = picture?.unitIds.value ?? [];
   return (
-    <Dialog title="Units and who wears them" wide>
+    <Dialog title={t("units.title")} wide>
       {user.value?.role === "administrator" && (
         <p class="row">
           <button type="button" onClick={() => openDialog("enrolments")}>
-            Enrolments
+            {t("units.enrolments")}
           </button>
         </p>
       )}
@@ -33,15 +33,15 @@ export function UnitsDialog() {
       <table class="units stacked">
         <Columns
           names={[
-            "Unit",
-            "Link",
-            "Clock",
-            "GPS",
-            "Worn by",
-            "Sensors",
-            "Calibration",
-            "Positions a second",
-            "Raw recording",
+            t("units.unit"),
+            t("units.link"),
+            t("units.clock"),
+            t("units.gps"),
+            t("units.assigned"),
+            t("units.sensors"),
+            t("units.calibration"),
+            t("units.rate"),
+            t("units.recording"),
           ]}
         />
         <tbody>
@@ -62,7 +62,7 @@ export function UnitsDialog() {
         </tbody>
       </table>
       {ids.length === 0 && (
-        <p class="quiet">None yet. One that is switched on appears here by itself.</p>
+        <p class="quiet">{t("units.none")}</p>
       )}
     </Dialog>
   );
@@ -86,34 +86,34 @@ function UnitRow({ unit, people, calibration }: RowProps) {
         {linkText(unit)}
         {unit.cloned && <small class="warned"> {t("member.duplicate")}</small>}
       </td>
-      <td data-label="Clock">
+      <td data-label={t("units.clock")}>
         <UnitClock clock={unit.clock} />
       </td>
-      <td data-label="GPS">{gpsText(unit.gps)}</td>
-      <td data-label="Worn by">
+      <td data-label={t("units.gps")}>{gpsText(unit.gps)}</td>
+      <td data-label={t("units.assigned")}>
         {unit.registered ? <Wearer unit={unit} people={people} /> : <Register unit={unit} />}
       </td>
-      <td data-label="Sensors">
+      <td data-label={t("units.sensors")}>
         <Sensors sensors={unit.sensors} tracker={unit.tracker} />
       </td>
-      <td data-label="Calibration">
+      <td data-label={t("units.calibration")}>
         <Calibration unit={unit} calibration={calibration} />
       </td>
-      <td data-label="Positions a second">{unit.registered && <Rate unitId={unit.unit_id} />}</td>
-      <td data-label="Raw recording">{unit.registered && <Recording unitId={unit.unit_id} />}</td>
+      <td data-label={t("units.rate")}>{unit.registered && <Rate unitId={unit.unit_id} />}</td>
+      <td data-label={t("units.recording")}>{unit.registered && <Recording unitId={unit.unit_id} />}</td>
     </tr>
   );
 }
 
 /** By which the unit names its black box; nothing that is shown here goes by it. */
 function UnitClock({ clock }: { clock: ClockView | null }) {
-  if (clock === null) return <>not known</>;
+  if (clock === null) return <>{t("units.unknown")}</>;
   return <span class={isClockWrong(clock) ? "warned" : ""}>{clockOffset(clock)}</span>;
 }
 
 /** Where its wearer has each, and what makes positions of their samples. */
 function Sensors({ sensors, tracker }: { sensors: readonly WornSensorView[]; tracker: string }) {
-  if (tracker === "") return <>not known</>;
+  if (tracker === "") return <>{t("units.unknown")}</>;
   return (
     <ul class="worn-sensors">
       {sensors.map((one) => (
@@ -134,7 +134,7 @@ function Calibration({ unit, calibration }: { unit: UnitView; calibration: strin
     .find((alarm) => alarm?.rule === "calibration");
   return (
     <>
-      {calibration === "" ? "none" : calibration}
+      {calibration === "" ? t("units.no_calibration") : calibration}
       {warning && <small class="warned"> {alarmLabel(warning)}</small>}
     </>
   );
@@ -149,7 +149,7 @@ function CheckAtStart({ preflight }: { preflight: PreflightView | null }) {
 
 function Rate({ unitId }: { unitId: string }) {
   const asked = useSignal("");
-  const done = useDone(`${asked.value} are asked for.`);
+  const done = useDone(t("units.rate_asked", { rate: asked.value }));
   const chosen = useChosen("", (rateHz) => {
     if (rateHz === "") return;
     done.unsay();
@@ -161,8 +161,8 @@ function Rate({ unitId }: { unitId: string }) {
   });
   return (
     <>
-      <select aria-label={`Positions a second of ${unitId}`} {...chosen}>
-        <option value="">as it is</option>
+      <select aria-label={t("units.rate_of", { unit: unitId })} {...chosen}>
+        <option value="">{t("units.default")}</option>
         {RATES_HZ.map((rateHz) => (
           <option key={rateHz} value={rateHz}>
             {rateHz}
@@ -180,7 +180,7 @@ function Register({ unit }: { unit: UnitView }) {
       type="button"
       onClick={() => void attempt(api.registerUnit(unit.unit_id, unit.label || unit.unit_id))}
     >
-      Register as ours
+      {t("units.register")}
     </button>
   );
 }
@@ -196,14 +196,14 @@ function RegisterForm() {
       }}
     >
       <label>
-        Unit id
+        {t("units.id")}
         <input name="unit_id" required maxLength={64} />
       </label>
       <label>
-        Label
+        {t("units.label")}
         <input name="label" maxLength={64} />
       </label>
-      <button class="primary">Register unit</button>
+      <button class="primary">{t("units.register")}</button>
     </form>
   );
 }

@@ -1,5 +1,6 @@
 import { attempt, user as me } from "../sessions";
 import * as api from "../api";
+import { t } from "../language/translate";
 import { Columns } from "./Columns";
 import { ConfirmButton } from "./ConfirmButton";
 import { Dialog } from "./Dialog";
@@ -12,10 +13,10 @@ import { Waiting } from "./Waiting";
 export function UsersDialog() {
   const [users, again] = useLoaded(api.users);
   return (
-    <Dialog title="Users" wide>
+    <Dialog title={t("users.title")} wide>
       <NewUser done={again} />
       <table class="stacked">
-        <Columns names={["User", "Role", "New password", "Logged in"]} spoken="Remove" />
+        <Columns names={[t("users.user"), t("users.role"), t("users.new_password"), t("users.logged_in")]} spoken={t("users.remove")} />
         <tbody>
           {(users.value ?? []).map((user) => (
             <UserRow key={user.username} user={user} done={again} />
@@ -39,22 +40,22 @@ function NewUser({ done }: { done: () => void }) {
       }}
     >
       <label>
-        Name
+        {t("users.name")}
         <input name="username" required maxLength={80} autocomplete="off" />
       </label>
       <label>
-        Password, at least 10 characters
+        {t("users.password")}
         <input name="password" type="password" required minLength={10} autocomplete="new-password" />
       </label>
       <label>
-        Role
+        {t("users.role")}
         <select name="role">
           {api.ROLES.map((role) => (
             <option key={role}>{role}</option>
           ))}
         </select>
       </label>
-      <button class="primary">Add user</button>
+      <button class="primary">{t("users.add")}</button>
     </form>
   );
 }
@@ -64,21 +65,21 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
   const role = useChosen(user.role, (chosen) => {
     void attempt(api.changeUser(username, { role: chosen as api.Role })).then(done);
   });
-  const set = useDone("Set.");
+  const set = useDone(t("users.done"));
   return (
     <tr>
       <th scope="row">
         {username}
-        {username === me.value?.username && <small> (you)</small>}
+        {username === me.value?.username && <small> {t("users.you")}</small>}
       </th>
-      <td data-label="Role">
-        <select aria-label={`Role of ${username}`} {...role}>
+      <td data-label={t("users.role")}>
+        <select aria-label={t("users.role_of", { name: username })} {...role}>
           {api.ROLES.map((role) => (
             <option key={role}>{role}</option>
           ))}
         </select>
       </td>
-      <td data-label="New password">
+      <td data-label={t("users.new_password")}>
         <form
           class="inline"
           onInput={set.unsay}
@@ -95,27 +96,27 @@ function UserRow({ user, done }: { user: api.User; done: () => void }) {
             required
             minLength={10}
             autocomplete="new-password"
-            aria-label={`New password of ${username}`}
+            aria-label={t("users.new_password_of", { name: username })}
           />
-          <button>Set</button>
+          <button>{t("users.set")}</button>
           {set.words}
         </form>
       </td>
-      <td data-label="Logged in">
+      <td data-label={t("users.logged_in")}>
         {user.sessions === 0 ? (
-          "no"
+          t("users.no")
         ) : (
           <ConfirmButton
-            label={`End ${user.sessions} ${user.sessions === 1 ? "session" : "sessions"}`}
-            question={`${username} has to log in again.`}
+            label={t("users.end", { count: user.sessions })}
+            question={t("users.end_question", { name: username })}
             onConfirm={() => void attempt(api.endSessions(username)).then(done)}
           />
         )}
       </td>
       <td>
         <ConfirmButton
-          label="Remove"
-          question={`${username} can never log in again.`}
+          label={t("users.remove")}
+          question={t("users.remove_question", { name: username })}
           onConfirm={() => void attempt(api.removeUser(username)).then(done)}
         />
       </td>

@@ -1,11 +1,12 @@
 import { unanswered } from "../http";
+import { t } from "../language/translate";
 
 /** In the place of a list that the station has not given yet: an empty one would look as if there were
  * nothing. */
 export function Waiting() {
   return (
     <p class="quiet" role="status">
-      Asking the station …
+      {t("waiting.asking")}
     </p>
   );
 }
@@ -14,7 +15,7 @@ export function Waiting() {
 export function Sending() {
   return (
     <span class="sending" role="status">
-      {unanswered.value > 0 && "Sending …"}
+      {unanswered.value > 0 && t("waiting.sending")}
     </span>
   );
 }

@@ -6,6 +6,7 @@ import { headcountOf } from "../live/headcount";
 import type { Picture } from "../live/picture";
 import { arrange, displayName, urgencyOf, type Place } from "../live/urgency";
 import type { UnitView } from "../wire";
+import { t } from "../language/translate";
 import { Icon } from "./Icon";
 import { whatOrWhere } from "./Line";
 import { ParClock } from "./ParClock";
@@ -23,15 +24,15 @@ export function Wall({ picture }: { picture: Picture }) {
   return (
     <main class="wall">
       <header>
-        <h1>{picture.incident.value?.name ?? "No incident open"}</h1>
-        <span>{counts.parts.inside} inside</span>
+        <h1>{picture.incident.value?.name ?? t("wall.no_incident")}</h1>
+        <span>{t("wall.inside", { count: counts.parts.inside })}</span>
         <ParClock picture={picture} />
         <time>{clockTime(picture.nowMs.value)}</time>
         <button type="button" onClick={() => (wall.value = "off")}>
-          Leave wall
+          {t("wall.leave")}
         </button>
       </header>
-      <ul class="wall-people" ref={list} aria-label="People">
+      <ul class="wall-people" ref={list} aria-label={t("wall.people")}>
         {places.slice(0, room).map((place) => (
           <Row key={place.unitId} place={place} picture={picture} />
         ))}
@@ -64,8 +65,8 @@ function inNeedElsewhere(picture: Picture): UnitView[] {
 /** What is the matter; of another ground not the place, but the incident. */
 function wordsOf(unit: UnitView, picture: Picture): string {
   if (picture.isShown(unit.unit_id)) return whatOrWhere(unit, picture);
-  const name = picture.otherIncidentOf(unit.unit_id)?.name ?? "Unassigned";
-  return `${name}: ${whatOrWhere(unit, picture)}`;
+  const name = picture.otherIncidentOf(unit.unit_id)?.name ?? t("wall.unassigned");
+  return t("wall.elsewhere", { incident: name, words: whatOrWhere(unit, picture) });
 }
 
 function floorOf({ position }: UnitView): string {
@@ -75,7 +76,8 @@ function floorOf({ position }: UnitView): string {
 /** Whom the wall has no room for; the most urgent stand above. */
 function moreWords(left: readonly Place[]): string {
   const inNeed = left.filter(({ urgency }) => urgency !== "normal").length;
-  return `+${left.length} more, ${inNeed === 0 ? "none in need" : `${inNeed} of them in need`}`;
+  const count = left.length;
+  return inNeed === 0 ? t("wall.more_well", { count }) : t("wall.more", { count, needing: inNeed });
 }
 
 /** How many rows there is room for. */

@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import { attempt, live } from "../sessions";
 import * as api from "../api";
 import type { UnitView } from "../wire";
+import { t } from "../language/translate";
 import { useChosen } from "./useChosen";
 import { useLoaded } from "./useLoaded";
 
@@ -19,16 +20,15 @@ export function Wearer({ unit, people }: { unit: UnitView; people: readonly api.
   const listed = isAsked.value ? all : all.filter((person) => person.person_id === wornBy);
   return (
     <select
-      aria-label={`Who wears ${unit.unit_id}`}
+      aria-label={t("units.wearer_of", { unit: unit.unit_id })}
       {...chosen}
       onFocus={ask}
       onPointerEnter={ask}
     >
-      <option value="">nobody</option>
+      <option value="">{t("units.unassigned")}</option>
       {listed.map((person) => (
         <option key={person.person_id} value={person.person_id}>
-          {nameAndCrew(person)}
-          {wornElsewhere(person.person_id, unit.unit_id)}
+          {nameAndUnit(person, unit.unit_id)}
         </option>
       ))}
     </select>
@@ -38,14 +38,15 @@ export function Wearer({ unit, people }: { unit: UnitView; people: readonly api.
 type Named = Pick<api.Person, "person_id" | "name" | "crew">;
 
 function nameAndCrew({ name, crew }: Named): string {
-  return crew === "" ? name : `${name} (${crew})`;
+  return crew === "" ? name : t("units.with_crew", { name, crew });
 }
 
-/** Whoever is given another unit wears the one before no more: ", wears FF-02". */
-function wornElsewhere(personId: string, unitId: string): string {
+/** Whoever is given another unit wears the one before no more: "Ana (Engine 1), wears FF-02". */
+function nameAndUnit(named: Named, unitId: string): string {
+  const name = nameAndCrew(named);
   const units = live.peek()?.picture.unitsOfAll() ?? [];
-  const other = units.find(({ unit_id, person }) => unit_id !== unitId && person?.person_id === personId);
-  return other === undefined ? "" : `, wears ${other.label || other.unit_id}`;
+  const other = units.find(({ unit_id, person }) => unit_id !== unitId && person?.person_id === named.person_id);
+  return other === undefined ? name : t("units.wears", { name, unit: other.label || other.unit_id });
 }
 
 /** On the card of a unit that nobody wears yet. */
@@ -53,7 +54,7 @@ export function AskWearer({ unit }: { unit: UnitView }) {
   const [people] = useLoaded(api.people);
   return (
     <label class="ask-wearer">
-      Who wears it? <Wearer unit={unit} people={people.value ?? []} />
+      {t("units.assign")} <Wearer unit={unit} people={people.value ?? []} />
     </label>
   );
 }

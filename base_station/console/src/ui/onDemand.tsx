@@ -3,6 +3,7 @@ import type { FunctionComponent } from "preact";
 import { useEffect } from "preact/hooks";
 import { ApiError } from "../http";
 import { attempt } from "../sessions";
+import { t } from "../language/translate";
 import { Waiting } from "./Waiting";
 
 /** A part of the page that is fetched when it is opened first: what is needed in a hurry loads without it. */
@@ -13,7 +14,7 @@ export function onDemand<Props extends object>(
     const loaded = useSignal<{ part: FunctionComponent<Props> } | null>(null);
     useEffect(() => {
       const fetched = load().catch(() => {
-        throw new ApiError("This part of the page did not load. Reload the page.", 0);
+        throw new ApiError(t("common.not_loaded"), 0);
       });
       void attempt(fetched).then((part) => {
         if (part !== null) loaded.value = { part };

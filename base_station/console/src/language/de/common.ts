@@ -13,4 +13,5 @@ export const common: Part<"common"> = {
   hint: "{what}. {action}",
   name: "Name",
   cannot_show: "{what} kann nicht angezeigt werden: {problem}",
+  not_loaded: "Dieser Teil der Seite wurde nicht geladen. Laden Sie die Seite neu.",
 };

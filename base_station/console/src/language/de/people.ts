@@ -85,7 +85,7 @@ export const list: Part<"list"> = {
   board: "Übersichtstafel",
 };
 
-export const par: Part<"par"> = {
+export const confirmation: Part<"confirmation"> = {
   not_yet_confirmed: "noch nicht bestätigt",
   confirmed_by_unit: "um {time} mit eigenem Gerät bestätigt",
   confirmed_by_radio: "um {time} über Funk bestätigt, eingetragen von {who}",

@@ -96,6 +96,10 @@ export const trail: Part<"trail"> = {
   fused: "Live-Spur",
   raw: "Nur Koppelnavigation",
   smoothed: "Nachbearbeitet",
+  title: "Spuren",
+  loading: "wird berechnet …",
+  hint_all: "Die letzten fünf Minuten. Wählen Sie eine Person, um alle ihre Spuren zu vergleichen.",
+  hint_chosen: "Die der gewählten Person von Anfang an, wenn mehr als die erste gezeichnet ist.",
 };
 
 export const mark: Part<"mark"> = {

@@ -12,4 +12,5 @@ export const common = {
   hint: "{what}. {action}",
   name: "Name",
   cannot_show: "{what} cannot be shown: {problem}",
+  not_loaded: "This part of the page did not load. Reload the page.",
 } as const;

@@ -1,33 +1,40 @@
 /** English: the catalogue that the others are measured by. */
 import { role, account, token, audit, scope, login } from "./account";
+import { alarm_list, alarm_reason } from "./alarm_list";
 import { alarm_text, alarm_label, tracker_reason, fix_fault, alarm_subject, alarm_now } from "./alarm_texts";
 import { alarm, closing } from "./alarms";
 import { assessment } from "./assessment";
 import { audit_action, audit_field, audit_value } from "./audit";
 import { common } from "./common";
 import { dispatch } from "./dispatch";
-import { alarm_list, alarm_reason } from "./alarm_list";
 import { display, language_name, shortcut } from "./display";
 import { frame } from "./frame";
-import { incident } from "./incidents";
 import { imports } from "./imports";
+import { incident } from "./incidents";
+import { menu, open_replays, map_picker, recording, units, users, site } from "./manage";
 import { measure } from "./measure";
 import { activity, posture, mobility, link, heat, battery, member, worn, tracker } from "./member";
 import { order, delivery } from "./orders";
-import { board, radio, headcount, card, fact, list, par } from "./people";
+import { past } from "./past";
+import { board, radio, headcount, card, fact, list, confirmation } from "./people";
 import { anchor, base_map, beacon, plan, compass, trail, mark } from "./plan";
+import { plan_tools, plan_view, plan_form, drawing, pin, direction } from "./plan_tools";
 import { radio_audio } from "./radio_audio";
-import { replay } from "./replay";
+import { replay, transport, timeline, crossing } from "./replay";
 import { route } from "./rescue";
+import { people_list, person, people_import, par, rescue } from "./roster";
 import { crew, enrolment, draft, erase } from "./setup";
 import { station, forwarder, health, connection, systems } from "./station";
+import { sound, standby, away, waiting, wall } from "./stations";
 
 export const en = {
   account,
   activity,
   alarm,
   alarm_label,
+  alarm_list,
   alarm_now,
+  alarm_reason,
   alarm_subject,
   alarm_text,
   anchor,
@@ -36,9 +43,8 @@ export const en = {
   audit_action,
   audit_field,
   audit_value,
+  away,
   base_map,
-  alarm_list,
-  alarm_reason,
   battery,
   beacon,
   board,
@@ -46,12 +52,16 @@ export const en = {
   closing,
   common,
   compass,
+  confirmation,
   connection,
   crew,
+  crossing,
   delivery,
+  direction,
   dispatch,
   display,
   draft,
+  drawing,
   enrolment,
   erase,
   fact,
@@ -67,26 +77,48 @@ export const en = {
   link,
   list,
   login,
+  map_picker,
   mark,
   measure,
   member,
+  menu,
   mobility,
+  open_replays,
   order,
   par,
+  past,
+  people_import,
+  people_list,
+  person,
+  pin,
   plan,
+  plan_form,
+  plan_tools,
+  plan_view,
   posture,
   radio,
   radio_audio,
+  recording,
   replay,
+  rescue,
   role,
   route,
   scope,
   shortcut,
+  site,
+  sound,
+  standby,
   station,
   systems,
+  timeline,
   token,
   tracker,
   tracker_reason,
   trail,
+  transport,
+  units,
+  users,
+  waiting,
+  wall,
   worn,
 };

@@ -84,7 +84,7 @@ export const list = {
   board: "Board",
 } as const;
 
-export const par = {
+export const confirmation = {
   not_yet_confirmed: "not yet confirmed",
   confirmed_by_unit: "confirmed {time} by own unit",
   confirmed_by_radio: "confirmed {time} by radio, entered by {who}",

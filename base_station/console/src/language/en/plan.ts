@@ -93,6 +93,10 @@ export const trail = {
   fused: "Live track",
   raw: "Dead-reckoning only",
   smoothed: "Post-processed",
+  title: "Trails",
+  loading: "is worked out …",
+  hint_all: "The last five minutes. Choose a person to compare all of that person’s.",
+  hint_chosen: "The chosen person’s from the beginning, where more than the first is drawn.",
 } as const;
 
 export const mark = {

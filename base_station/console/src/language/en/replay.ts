@@ -1,6 +1,68 @@
-/** Replays of incidents. */
+/** Replays, timelines and the reasons of alarms. */
 export const replay = {
-  flaws: "Not all of this replay is as it was",
-  flaws_hint: "A replay goes on behind what is missing. What was shown then is in the log.",
-  ended: "The station has ended this replay.",
+  title: "Replay",
+  word: "REPLAY",
+  what: "{incident}, {time} {zone}. Recorded, not live.",
+  accuracy: "Accuracy report",
+  first: "Back to the first replay",
+  live: "Back to live",
+  flaws: "Not all is as it was: {count, number}",
+  gap: "No record from {from} to {until}",
+  gap_shown: "The last positions before it are shown.",
+  no_alarms: "Live now: no open alarms",
+  alarms: "{count, plural, one {Live now: # open alarm} other {Live now: # open alarms}}",
+  station: "Station: {problem}",
+} as const;
+
+export const transport = {
+  alarm_before: "Alarm before",
+  alarm: "Alarm",
+  back: "Back {time}",
+  pause: "Pause",
+  play: "Play",
+  on: "On {time}",
+  next_alarm: "Next alarm",
+  going: "Going to {time} …",
+  progress: "{at} of {all}",
+  go_to: "Go to an alarm",
+  no_alarms: "No alarms",
+  alarms: "{count, plural, one {# alarm …} other {# alarms …}}",
+  speed: "Speed",
+  time: "Time of the incident",
+} as const;
+
+export const timeline = {
+  title: "Timeline of {name}",
+  span: "{from} to {until}, {date}.",
+  hint: "Grey: no radio contact. Draw over a line to zoom in.",
+  hint_replay: "Press on a line to go there in the replay.",
+  reading: "The station reads its log …",
+  time: "Time shown",
+  earlier: "Earlier",
+  later: "Later",
+  zoom_in: "Zoom in",
+  zoom_out: "Zoom out",
+  all: "All of it",
+  until_now: "Until now",
+  values_at: "Values at {time}",
+  replay: "Replay from here",
+  strip: "{title}: {values}",
+  no_values: "no values",
+  unknown: "not known",
+  temperature_degc: "Temperature",
+  height_m: "Height",
+  floor: "Floor",
+  activity: "Activity",
+  battery: "Battery",
+  position_error_m: "Stated position error (DRMS)",
+  silence_s: "Link: time without a message",
+  range: "{low} to {high}",
+} as const;
+
+export const crossing = {
+  sentence: "At {time} {series} was {value}, beyond the threshold “{threshold}” ({limit}).",
+  motionless_s: "time without motion",
+  temperature_degc: "temperature",
+  battery: "battery",
+  threshold: "{name} {value}",
 } as const;

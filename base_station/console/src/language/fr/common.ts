@@ -13,4 +13,5 @@ export const common: Part<"common"> = {
   hint: "{what}. {action}",
   name: "Nom",
   cannot_show: "{what}\u00a0: affichage impossible ({problem})",
+  not_loaded: "Cette partie de la page n’a pas été chargée. Rechargez la page.",
 };

@@ -85,7 +85,7 @@ export const list: Part<"list"> = {
   board: "Tableau",
 };
 
-export const par: Part<"par"> = {
+export const confirmation: Part<"confirmation"> = {
   not_yet_confirmed: "pas encore confirmé",
   confirmed_by_unit: "confirmé à {time} par son appareil",
   confirmed_by_radio: "confirmé à {time} par radio, saisi par {who}",

@@ -96,6 +96,10 @@ export const trail: Part<"trail"> = {
   fused: "Trace en direct",
   raw: "À l’estime seulement",
   smoothed: "Post-traitée",
+  title: "Traces",
+  loading: "calcul en cours …",
+  hint_all: "Les cinq dernières minutes. Choisissez une personne pour comparer toutes ses traces.",
+  hint_chosen: "Celles de la personne choisie depuis le début, si d’autres que la première sont dessinées.",
 };
 
 export const mark: Part<"mark"> = {

@@ -1,0 +1,117 @@
+"""The console in German and French, and in imperial units with American floors."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.e2e import scenes
+from tests.e2e.console_files import CONSOLE
+from tests.e2e.console_page import barriers
+from tests.e2e.looks import flaws
+from tests.e2e.stage import Stage
+
+LANGUAGES = CONSOLE / "src/language"
+TEXT = re.compile(r'^  (\w+):\s+"((?:[^"\\]|\\.)*)",$', re.MULTILINE)
+PART = re.compile(r"^export const (\w+)\b[^=]*= \{$(.*?)^\}", re.MULTILINE | re.DOTALL)
+
+SHOWN_TEXTS = """
+() => {
+  const texts = new Set();
+  const root = document.body;
+  const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) texts.add(walker.currentNode.textContent.trim());
+  for (const one of root.querySelectorAll("*"))
+    for (const name of ["aria-label", "title", "placeholder", "data-label", "label"])
+      if (one.hasAttribute(name)) texts.add(one.getAttribute(name).trim());
+  return [...texts];
+}
+"""
+
+
+def catalogue(language: str) -> dict[tuple[str, str], str]:
+    """Messages by part and key."""
+    sources = [file.read_text(encoding="utf-8") for file in (LANGUAGES / language).glob("*.ts")]
+    return {
+        (part, key): text.replace("\\u00a0", "\u00a0")
+        for source in sources
+        for part, texts in PART.findall(source)
+        for key, text in TEXT.findall(texts)
+    }
+
+
+def english_only(language: str) -> set[str]:
+    """English texts that this language has other words for, and that stand nowhere in it."""
+    english, other = catalogue("en"), catalogue(language)
+    assert len(english) > 500, "the catalogue is read"
+    assert english.keys() == other.keys()
+    others = set(other.values())
+    return {text for text in english.values() if "{" not in text and text not in others}
+
+
+def english_on(page: Page, language: str) -> set[str]:
+    return set(page.evaluate(SHOWN_TEXTS)) & english_only(language)
+
+
+def open_dialogs(page: Page) -> list[Locator]:
+    """What opens a dialog of the main screen, whatever its words: orders and the menu's entries."""
+    orders = page.locator(".command-bar > button")
+    entries = page.locator("#menu button")
+    return [*orders.all(), *entries.all()]
+
+
+@pytest.mark.parametrize(("locale", "language"), [("de-DE", "de"), ("fr-FR", "fr")])
+def test_the_console_is_whole_in_the_language_of_the_browser(
+    stage: Stage, tmp_path: Path, locale: str, language: str
+) -> None:
+    page, _ = stage.open(scenes.bad_minute(), locale=locale)
+    expect(page.locator("html")).to_have_attribute("lang", language)
+    page.set_viewport_size({"width": 1440, "height": 900})
+    page.locator(".card").first.click()
+    page.screenshot(path=tmp_path / "main.png")
+    assert flaws(page) == []
+    assert barriers(page) == []
+    assert english_on(page, language) == set()
+    page.set_viewport_size({"width": 844, "height": 390})
+    page.screenshot(path=tmp_path / "low.png")
+    assert flaws(page) == []
+    page.set_viewport_size({"width": 1440, "height": 900})
+    for number, opens in enumerate(open_dialogs(page)):
+        opens.click()
+        dialog = page.get_by_role("dialog")
+        dialog.wait_for()
+        page.screenshot(path=tmp_path / f"dialog-{number}.png")
+        assert flaws(page) == []
+        assert barriers(page) == []
+        assert english_on(page, language) == set()
+        assert dialog.evaluate("one => one.scrollWidth <= one.clientWidth")
+        page.keyboard.press("Escape")
+        expect(page.locator("dialog")).to_have_count(0)
+
+
+def test_a_chosen_language_comes_at_once_and_is_kept(stage: Stage) -> None:
+    page, _ = stage.open(scenes.quiet())
+    page.locator("#menu").get_by_role("button", name="Display").click()
+    page.get_by_role("radio", name="Deutsch").check()
+    expect(page.get_by_role("dialog", name="Anzeige")).to_be_visible()
+    expect(page.locator("html")).to_have_attribute("lang", "de")
+    page.reload()
+    expect(page.get_by_role("heading", level=1)).to_be_visible()
+    expect(page.locator("#menu").get_by_role("button", name="Anzeige")).to_be_visible()
+
+
+def test_feet_fahrenheit_and_american_floors(stage: Stage, tmp_path: Path) -> None:
+    kept = {"muster-units": "imperial", "muster-floors": "american"}
+    page, _ = stage.open(scenes.bad_minute(), kept=kept)
+    page.screenshot(path=tmp_path / "imperial.png")
+    people = page.locator(".people-list")
+    expect(people).to_contain_text(re.compile(r"±\s\d+\sft"))
+    expect(people).to_contain_text("°F")
+    expect(people).to_contain_text("1st floor")
+    expect(page.locator(".ol-scale-line")).to_contain_text("ft")
+    for metric in (re.compile(r"\d\sm\b"), "°C", "ground floor"):
+        expect(people).not_to_contain_text(metric)
+    assert flaws(page) == []
