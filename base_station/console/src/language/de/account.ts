@@ -56,7 +56,7 @@ export const scope: Part<"scope"> = {
   incidents: "Einsätze",
   live: "Live",
   people: "Personen",
-  pins: "Fixpunkte",
+  pins: "Pins",
   radio: "Funk",
   recordings: "Aufzeichnungen",
   replays: "Wiedergaben",

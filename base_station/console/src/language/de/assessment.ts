@@ -1,10 +1,10 @@
 import type { Part } from "../catalogue";
 
 export const assessment: Part<"assessment"> = {
-  title: "Genauigkeitsbericht: {incident}",
+  title: "Genauigkeit: {incident}",
   all_incidents: "Alle Einsätze",
   late:
-    "Das Journal eines Geräts oder ein Fixpunkt hat seither mehr über diesen Einsatz gemeldet. Die Station berechnet ihn neu, sobald eine halbe Minute lang nichts mehr gekommen ist: Öffnen Sie ihn dann noch einmal.",
+    "Das Journal eines Geräts oder ein Pin hat seither mehr über diesen Einsatz gemeldet. Die Station berechnet ihn neu, sobald eine halbe Minute lang nichts mehr gekommen ist: Öffnen Sie ihn dann noch einmal.",
   waiting: "Die Station berechnet ihn. Das kann einige Sekunden dauern …",
   failed: "Die Station konnte ihn nicht berechnen.",
   nobody: "In diesem Einsatz wurde von niemandem eine Position gezeigt.",
@@ -28,7 +28,7 @@ export const assessment: Part<"assessment"> = {
   walked: "Gegangen",
   closure: "Koppelnavigation verfehlte den Anfang um",
   jumps: "Sprünge, als GPS wiederkam",
-  pins: "Abstand von Fixpunkten",
+  pins: "Abstand von Pins",
   not_used: "GPS und Baken nicht verwendet",
   checks: "Weitere Hinweise auf die Genauigkeit",
   ce: "Kreisfehler: Die Hälfte oder 95 % der Orte auf dem Plan lagen nicht weiter daneben",
@@ -39,7 +39,7 @@ export const assessment: Part<"assessment"> = {
   since: "{distance} nach Nachbearbeitung ({sigmas} σ)",
   wrong_floor: "falsches Geschoss",
   unused: "nicht verwendet",
-  pin: "Fixpunkt",
+  pin: "Pin",
   pin_words: "{pin}: {words}",
   closure_share: "{distance} ({share})",
 };

@@ -36,7 +36,7 @@ export const map_picker: Part<"map_picker"> = {
 
 export const recording: Part<"recording"> = {
   fetch: "Aufzeichnung laden",
-  fetch_of: "Aufzeichnung von {unit} laden",
+  fetch_of: "Aufzeichnung laden: {unit}",
   title: "Rohaufzeichnungen",
   progress: "{state}, {done} von {total}",
   stop: "Anhalten",

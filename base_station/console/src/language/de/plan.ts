@@ -65,7 +65,7 @@ export const plan: Part<"plan"> = {
   colours: "Die Farben des Plans",
   scale: "Der Maßstab des Plans",
   building: "Das Gebäude",
-  pins: "Die Fixpunkte auf dem Plan",
+  pins: "Die Pins auf dem Plan",
   trails: "Die Spuren auf dem Plan",
   way: "Der Weg auf dem Plan",
   others: "Andere Kräfte auf dem Plan",
@@ -103,7 +103,7 @@ export const trail: Part<"trail"> = {
 };
 
 export const mark: Part<"mark"> = {
-  pin: "Fixpunkt: {name}, {when}",
+  pin: "Pin: {name}, {when}",
   start: "Start",
   emergency: "NOTFALL {name}",
   other_team: "{name} ({source})",

@@ -65,7 +65,7 @@ export const scope: Part<"scope"> = {
   standby: "station de secours",
   tokens: "jetons",
   tracks: "traces",
-  units: "appareils",
+  units: "boîtiers",
   users: "utilisateurs",
 };
 

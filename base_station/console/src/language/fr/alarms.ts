@@ -22,8 +22,8 @@ export const alarm: Part<"alarm"> = {
   no_threshold:
     "Aucune mesure n’a franchi de seuil\u00a0: un bouton, un événement ou un silence l’a déclenchée.",
   thresholds: "Seuils à ce moment\u00a0: {thresholds}.",
-  unit_unassigned: "personne ne porte cet appareil maintenant",
-  unit_of: "l’appareil est porté par {name} maintenant",
+  unit_unassigned: "personne ne porte ce boîtier maintenant",
+  unit_of: "le boîtier est porté par {name} maintenant",
   by_other: "(porteur précédent)",
   of_person: "Alarmes en cours de cette personne",
   now: "maintenant {value}",
@@ -32,9 +32,9 @@ export const alarm: Part<"alarm"> = {
   flood_at: "{what} à {time}",
   flood_from: "{what} de {from} à {to}",
   flood_par: "{count, number} PAR en retard",
-  flood_off: "{count, number} appareils ont été éteints",
-  flood_link: "{count, number} appareils ont perdu la liaison",
-  flood_other: "{count, number} appareils\u00a0: {alarm},",
+  flood_off: "{count, number} boîtiers ont été éteints",
+  flood_link: "{count, number} boîtiers ont perdu la liaison",
+  flood_other: "{count, number} boîtiers\u00a0: {alarm},",
   of_incident: "{incident}\u00a0: {text}",
 };
 

@@ -4,7 +4,7 @@ export const assessment: Part<"assessment"> = {
   title: "Rapport de précision\u00a0: {incident}",
   all_incidents: "Toutes les interventions",
   late:
-    "Le journal d’un appareil ou un repère en a appris davantage depuis sur cette intervention. La station recalcule quand rien n’arrive plus pendant une demi-minute\u00a0: rouvrez alors ce rapport.",
+    "Le journal d’un boîtier ou un repère en a appris davantage depuis sur cette intervention. La station recalcule quand rien n’arrive plus pendant une demi-minute\u00a0: rouvrez alors ce rapport.",
   waiting: "La station calcule. Cela peut prendre quelques secondes …",
   failed: "La station n’a pas pu le calculer.",
   nobody: "Aucune position n’a été montrée dans cette intervention.",

@@ -12,6 +12,6 @@ export const frame: Part<"frame"> = {
   plan: "Le plan",
   dialog: "Cette fenêtre",
   pass_device: "Muster complète un détecteur d’immobilité (PASS) certifié et ne le remplace jamais.",
-  temperatures: "Les températures sont celles de l’environnement de l’appareil, pas de la personne.",
+  temperatures: "Les températures sont celles de l’environnement du boîtier, pas de la personne.",
   message: "Un message de la station",
 };

@@ -18,7 +18,7 @@ export const incident: Part<"incident"> = {
   replay_of: "Relecture\u00a0: {incident}",
   accuracy: "Précision",
   erase_warning: "Qui était là et où est effacé.",
-  none: "Aucune pour l’instant. Les messages des appareils sont conservés malgré tout.",
+  none: "Aucune pour l’instant. Les messages des boîtiers sont conservés malgré tout.",
   older: "Interventions plus anciennes",
   dispatches: "Départs",
   from_dispatch: "Du centre d’appel",
@@ -47,7 +47,7 @@ export const incident: Part<"incident"> = {
   open_another: "Ouvrir une autre intervention",
   goes_on:
     "{incident} continue en parallèle\u00a0; pour y mettre fin, clôturez-la d’abord. La nouvelle intervention n’a encore personne ni plan\u00a0: affectez-lui des équipes ici.",
-  whom: "Équipe ou appareil d’une autre intervention, ou sans intervention",
+  whom: "Équipe ou boîtier d’une autre intervention, ou sans intervention",
   nobody_elsewhere: "personne n’est ailleurs",
   choose: "choisir",
   assign_hint: "Le PAR des personnes affectées est à confirmer ici, et leur parcours recommence.",

@@ -64,7 +64,7 @@ export const member: Part<"member"> = {
   recognised: "reconnu",
   was_inside: "Était à l’intérieur",
   inside_for: "À l’intérieur depuis",
-  duplicate: "deux appareils émettent sous ce nom, l’un est masqué",
+  duplicate: "deux boîtiers émettent sous ce nom, l’un est masqué",
   gps_none: "pas encore de position",
   gps_used: "utilisé",
   gps_unused: "non utilisé\u00a0: {reason}",

@@ -13,23 +13,23 @@ export const crew: Part<"crew"> = {
 
 export const enrolment: Part<"enrolment"> = {
   title: "Enrôlements",
-  unit: "Appareil",
+  unit: "Boîtier",
   until: "Enrôlé jusqu’au",
   renew: "Renouveler",
   renew_question:
-    "{unit} reçoit un nouveau certificat, et l’ancien reste valable jusqu’à sa fin. Un appareil perdu est révoqué à la place.",
-  none: "Aucun appareil n’est encore enrôlé.",
-  unit_id: "Identifiant de l’appareil",
-  enrol: "Enrôler l’appareil",
+    "{unit} reçoit un nouveau certificat, et l’ancien reste valable jusqu’à sa fin. Un boîtier perdu est révoqué à la place.",
+  none: "Aucun boîtier n’est encore enrôlé.",
+  unit_id: "Identifiant du boîtier",
+  enrol: "Enrôler le boîtier",
   of: "Enrôlement de {unit}",
   made:
-    "Enrôlement de {unit}, valable jusqu’au {time}. Il n’est montré que cette fois, et qui le possède est {name}\u00a0: photographiez-le pour cet appareil seulement, et n’en gardez pas de copie.",
+    "Enrôlement de {unit}, valable jusqu’au {time}. Il n’est montré que cette fois, et qui le possède est {name}\u00a0: photographiez-le pour ce boîtier seulement, et n’en gardez pas de copie.",
   save: "Enregistrer en fichier",
-  carry: "Portez-le sur l’appareil et effacez-le ici. Là-bas\u00a0: {command}",
-  photo: "Avec une photo du code, sur l’appareil\u00a0: {command}",
-  as_text: "En texte, à enregistrer en fichier sur l’appareil",
+  carry: "Portez-le sur le boîtier et effacez-le ici. Là-bas\u00a0: {command}",
+  photo: "Avec une photo du code, sur le boîtier\u00a0: {command}",
+  as_text: "En texte, à enregistrer en fichier sur le boîtier",
   done: "Terminé",
-  done_question: "Il ne pourra plus être montré. L’appareil l’a-t-il\u00a0?",
+  done_question: "Il ne pourra plus être montré. Le boîtier l’a-t-il\u00a0?",
   done_yes: "Oui, il l’a",
   qr_code: "Code QR de l’enrôlement de {unit}",
 };

@@ -23,7 +23,7 @@ export const health: Part<"health"> = {
   messages_per_s: "Messages par seconde",
   undecodable: "Messages illisibles",
   duplicates: "Doublons",
-  unknown_units: "Appareils inconnus",
+  unknown_units: "Boîtiers inconnus",
   recorded: "Enregistré",
   disk_free: "Espace disque libre",
 };
