@@ -9,6 +9,7 @@ from shared.command_line import COMMANDS, run
 BENCHES = {
     "activity": "tests.bench.tracker.activity:bench_activity",
     "aids": "tests.bench.tracker.aiding_sensors:bench_aids",
+    "archive": "tests.bench.archive.command:bench_archive",
     "backfill": "tests.bench.backfill:bench_backfill",
     "bus": "tests.bench.bus.command:bench_bus",
     "console": "tests.bench.console.command:bench_console",

@@ -7,7 +7,6 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
-from typing import Any
 
 import pytest
 from sqlalchemy import select
@@ -16,7 +15,7 @@ from typer.testing import CliRunner, Result
 from base_station.app.archive_sources import open_archived_log, open_copier
 from base_station.app.factories import project_whole_log
 from base_station.archive.entry import CONSOLE_NAME, ENTRY_NAME, LOG_NAME, require_entry
-from base_station.archive.store import ArchiveStore, open_store
+from base_station.archive.store import open_store
 from base_station.cli import app
 from base_station.engine.feed import LogFeed
 from base_station.replay.recorded_player import RecordedPlayer
@@ -35,6 +34,7 @@ from tests.golden.test_recorded_console import people, shown_at
 from tests.integration.test_incident_file import PEOPLE
 from tests.rig.bucket_server import ADDRESS, BucketServer, bucket_server
 from tests.rig.console_log import with_console
+from tests.rig.counting_store import CountingStore
 from tests.rig.live_station import Screen, make_pipeline
 from tests.rig.round_walk import PLAN, Walk
 from tests.rig.station_script import START_NS, Script
@@ -110,31 +110,6 @@ def refusal(*arguments: str | Path) -> str:
     result = muster(*arguments)
     assert isinstance(result.exception, ArchiveError | UserError | ConfigError), result
     return str(result.exception)
-
-
-class CountingStore:
-    """Counts what is asked of an archive."""
-
-    def __init__(self, store: ArchiveStore) -> None:
-        self._store = store
-        self.requests = self.bytes = 0
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._store, name)
-
-    def read_all(self, name: str) -> bytes | None:
-        data = self._store.read_all(name)
-        self._count(data or b"")
-        return data
-
-    def read(self, name: str, begin: int, end: int) -> bytes:
-        data = self._store.read(name, begin, end)
-        self._count(data)
-        return data
-
-    def _count(self, data: bytes) -> None:
-        self.requests += 1
-        self.bytes += len(data)
 
 
 @pytest.mark.slow

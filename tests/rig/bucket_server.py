@@ -8,12 +8,11 @@ from __future__ import annotations
 import json
 import secrets
 import shutil
-import socket
 import subprocess
 import sys
 import sysconfig
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -22,6 +21,7 @@ import obstore
 from obstore.exceptions import BaseError
 from obstore.store import S3Store
 
+from tests.rig.lossy_link import Namespace
 from tests.rig.station_process import free_port
 from tests.rig.waiting import until
 
@@ -38,9 +38,10 @@ os.execv(sys.argv[1], sys.argv[1:])
 class BucketServer:
     """``environment`` gives who asks: everything is allowed to ``owner``, reading to ``reader``."""
 
-    def __init__(self, folder: Path, host: str = "127.0.0.1", beginning: tuple[str, ...] = ()):
-        """``beginning``: of the command, such as ``ip netns exec NAME``."""
-        self._folder, self._host, self._beginning = folder, host, beginning
+    def __init__(self, folder: Path, namespace: Namespace | None = None) -> None:
+        """``namespace``: the network in which it listens; None: this machine's loopback."""
+        self._folder, self._namespace = folder, namespace
+        self._host = "127.0.0.1" if namespace is None else namespace.address
         self._ports = {f"{part}{grpc}": free_port() for part in _PARTS for grpc in ("", ".grpc")}
         self._secrets = {name: secrets.token_hex(16) for name in ("owner", "reader")}
         self._running: subprocess.Popen[bytes] | None = None
@@ -78,7 +79,8 @@ class BucketServer:
             for word in (flag, str(port))
         ]
         command = (
-            *(*self._beginning, sys.executable, "-c", _END_WITH_PARENT, str(program), "server"),
+            *(() if self._namespace is None else self._namespace.inside()),
+            *(sys.executable, "-c", _END_WITH_PARENT, str(program), "server"),
             *("-dir", str(self._folder / "data"), "-ip", self._host, "-ip.bind", self._host),
             *("-filer", "-s3", "-s3.config", str(self._folder / "s3.json"), *flags),
             *(
@@ -94,8 +96,12 @@ class BucketServer:
             self._running = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=output, stderr=output
             )
-        until(self._answers, f"the S3 server answers; {self._folder / 'output.txt'} has its words")
-        until(self._has_bucket, "the server takes files")
+        answers, has_bucket = self._answers, self._has_bucket
+        if self._namespace is None:
+            until(answers, f"the S3 server answers; {self._folder / 'output.txt'} has its words")
+            until(has_bucket, "the server takes files")
+        else:  # the first file makes the bucket
+            until(lambda: self._from_inside(answers), "the S3 server answers")
 
     def stop(self) -> None:
         if self._running is not None:
@@ -103,9 +109,11 @@ class BucketServer:
             self._running.wait()
             self._running = None
 
+    def _from_inside(self, ask: Callable[[], bool]) -> bool:
+        assert self._namespace is not None
+        return self._namespace.call(ask)
+
     def _answers(self) -> bool:
-        if self._beginning:
-            return self._listens_elsewhere()
         try:
             return httpx.get(f"{self.endpoint}/healthz").status_code == httpx.codes.OK
         except httpx.HTTPError:
@@ -124,13 +132,6 @@ class BucketServer:
         try:
             obstore.put(bucket, "ready", b"")
         except BaseError:
-            return False
-        return True
-
-    def _listens_elsewhere(self) -> bool:
-        try:
-            socket.create_connection((self._host, self._ports["s3"]), 1.0).close()
-        except OSError:
             return False
         return True
 

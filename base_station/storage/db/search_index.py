@@ -9,13 +9,15 @@ from __future__ import annotations
 import heapq
 import re
 import unicodedata
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 
 import msgspec
 from sqlalchemy import ColumnElement, and_, case, delete, exists, func, insert, or_, select
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, aliased
 
 from base_station.core.person_references import references_in, with_names
+from base_station.storage.db.members import members_of
 from base_station.storage.db.models import (
     AlarmRow,
     Assignment,
@@ -99,8 +101,17 @@ def _texts(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
 
 def _people(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
     """Who wore a unit in them."""
+    # A unit has one wearer at a time: whoever wore it when its membership began, and who came
+    # later.  Else every assignment of before would be gone through.
+    before = aliased(Assignment)
+    first_ns = (
+        select(func.max(before.from_ns))
+        .where(before.unit_id == IncidentMember.unit_id, before.from_ns <= IncidentMember.from_ns)
+        .scalar_subquery()
+    )
     during = and_(
         Assignment.unit_id == IncidentMember.unit_id,
+        Assignment.from_ns >= func.coalesce(first_ns, 0),
         Assignment.from_ns < func.coalesce(IncidentMember.until_ns, FOREVER_NS),
         func.coalesce(Assignment.until_ns, FOREVER_NS) > IncidentMember.from_ns,
     )
@@ -151,19 +162,21 @@ def _everybody(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]
 
 def _alarms(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
     """Rules that raised an alarm of a member, or of the station, while they were open."""
-    was_member = exists().where(
-        IncidentMember.incident_id == IncidentRow.incident_id,
-        IncidentMember.unit_id == AlarmRow.unit_id,
-        IncidentMember.from_ns <= AlarmRow.raised_ns,
-        func.coalesce(IncidentMember.until_ns, FOREVER_NS) >= AlarmRow.raised_ns,
-    )
-    raised = and_(
-        AlarmRow.raised_ns >= IncidentRow.opened_ns,
-        AlarmRow.raised_ns < func.coalesce(IncidentRow.closed_ns, FOREVER_NS),
-        or_(~IncidentRow.has_members, AlarmRow.unit_id == "", was_member),
-    )
-    rules = select(IncidentRow.incident_id, AlarmRow.rule).join(AlarmRow, raised).distinct()
-    wanted = rules.where(IncidentRow.incident_id.in_(incident_ids))
-    for incident_id, rule in session.execute(wanted):
-        yield incident_id, ALARM, rule
-        yield from ((incident_id, WORD, word) for word in words_of(rule))
+    of_these = IncidentRow.incident_id.in_(incident_ids)
+    incidents = session.scalars(select(IncidentRow).where(of_these)).all()
+    windows = {one.incident_id: members_of(session, one) for one in incidents}
+    first_ns = min((one.window.from_ns for one in windows.values()), default=0)
+    last_ns = max((one.window.until_ns for one in windows.values()), default=0)
+    raised = session.execute(  # once for all: a search for each would be as long as the table
+        select(AlarmRow.raised_ns, AlarmRow.unit_id, AlarmRow.rule)
+        .where(AlarmRow.raised_ns >= first_ns, AlarmRow.raised_ns < last_ns)
+        .order_by(AlarmRow.raised_ns)
+    ).all()
+    times_ns = [one.raised_ns for one in raised]
+    for incident_id, members in windows.items():
+        begin = bisect_left(times_ns, members.window.from_ns)
+        end = bisect_left(times_ns, members.window.until_ns)
+        for raised_ns, unit_id, rule in raised[begin:end]:
+            if not unit_id or members.has(unit_id, raised_ns):
+                yield incident_id, ALARM, rule
+                yield from ((incident_id, WORD, word) for word in words_of(rule))

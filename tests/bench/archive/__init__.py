@@ -1,0 +1,1 @@
+"""Cost of post-processing for a station that is at work."""
