@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from datetime import UTC, datetime, timedelta
+from urllib.parse import parse_qs, urlsplit
 
 import msgspec
 import pytest
@@ -64,6 +65,16 @@ def test_an_incident_begins_with_the_times_that_the_station_has(stage: Stage) ->
         "par_interval_s": 900,
         "work_limit_s": 1800,
     }
+
+
+def test_incidents_are_searched_for_by_words(stage: Stage) -> None:
+    page, _ = stage.open(scenes.quiet())
+    dialog = menu(page, "Incidents")
+    dialog.get_by_role("searchbox", name="Place, person or alarm").fill(" mayday &lane ")
+    with page.expect_request(re.compile("/incidents\\?")) as sent:
+        dialog.get_by_role("button", name="Search").click()
+    assert parse_qs(urlsplit(sent.value.url).query)["text"] == ["mayday &lane"]
+    expect(dialog.get_by_role("table", name="Incidents with: mayday &lane")).to_be_visible()
 
 
 def test_times_that_are_no_whole_minutes_stay_as_they_are(stage: Stage) -> None:

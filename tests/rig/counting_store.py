@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,6 +15,7 @@ class CountingStore:
     def __init__(self, store: ArchiveStore) -> None:
         self._store = store
         self.requests = self.bytes = 0  # of what was read
+        self.waited_s = 0.0
 
     @property
     def address(self) -> str:
@@ -27,13 +29,15 @@ class CountingStore:
         return self._store.size(name)
 
     def read_all(self, name: str) -> bytes | None:
+        begun_s = time.perf_counter()
         data = self._store.read_all(name)
-        self._count(data or b"")
+        self._count(data or b"", begun_s)
         return data
 
     def read(self, name: str, begin: int, end: int) -> bytes:
+        begun_s = time.perf_counter()
         data = self._store.read(name, begin, end)
-        self._count(data)
+        self._count(data, begun_s)
         return data
 
     def names(self, beginning: str = "") -> Sequence[str]:
@@ -43,6 +47,7 @@ class CountingStore:
     def remove(self, name: str) -> None:
         self._store.remove(name)
 
-    def _count(self, data: bytes) -> None:
+    def _count(self, data: bytes, begun_s: float) -> None:
+        self.waited_s += time.perf_counter() - begun_s
         self.requests += 1
         self.bytes += len(data)

@@ -121,8 +121,8 @@ export const assign = (unitId: string, personId: string) =>
   act<void>("POST", "/assignments", { unit_id: unitId, person_id: personId });
 export const unassign = (unitId: string) => call<void>("DELETE", `/assignments/${id(unitId)}`);
 
-export const incidents = (untilMs?: number) =>
-  call<Incident[]>("GET", `/incidents${page(untilMs)}`);
+export const incidents = (untilMs?: number, text = "") =>
+  call<Incident[]>("GET", `/incidents${page(untilMs)}&text=${encodeURIComponent(text)}`);
 export const incident = (incidentId: string) =>
   call<Incident>("GET", `/incidents/${id(incidentId)}`);
 export const openIncident = (name: string, times: Partial<Times>, dispatchNumber?: string) => {

@@ -11,7 +11,15 @@ from sqlalchemy.orm import Session
 from base_station.storage.db.database import Database
 from base_station.storage.db.models import IncidentRow, PersonRow, SearchTerm
 from base_station.storage.db.pages import newest
-from base_station.storage.db.search_index import ALARM, PERSON, WORD, index, outdated, words_of
+from base_station.storage.db.search_index import (
+    ALARM,
+    AT_ONCE,
+    PERSON,
+    WORD,
+    index,
+    outdated,
+    words_of,
+)
 from base_station.storage.db.window import EVER, Window
 
 _LAST = "\U0010ffff"  # behind whatever may follow the beginning of a word
@@ -62,9 +70,9 @@ class IncidentSearch:
         """Bring the index up to date; gives the number of incidents that were indexed."""
         with self._store.read() as session:
             changed = outdated(session)
-        if changed:
+        for begin in range(0, len(changed), AT_ONCE):
             with self._store.write(is_kept=False) as session:
-                index(session, changed)
+                index(session, changed[begin : begin + AT_ONCE])
         return len(changed)
 
 

@@ -31,7 +31,7 @@ from base_station.storage.db.window import FOREVER_NS
 from shared.messages.station import NoteDispatch
 
 WORD, PERSON, ALARM = "word", "person", "alarm"
-_AT_ONCE = 500  # incidents
+AT_ONCE = 200  # incidents
 _WORDS = re.compile(r"\w+")
 _REPORTS = msgspec.json.Decoder(NoteDispatch)
 _Term = tuple[str, str, str]  # incident, kind, value
@@ -63,24 +63,23 @@ def outdated(session: Session) -> Sequence[str]:
 
 
 def index(session: Session, incident_ids: Sequence[str]) -> None:
-    """Index these incidents anew."""
-    for begin in range(0, len(incident_ids), _AT_ONCE):
-        some = incident_ids[begin : begin + _AT_ONCE]
-        for table in (SearchTerm, IndexedIncident):
-            session.execute(delete(table).where(table.incident_id.in_(some)))
-        known = select(IncidentRow.incident_id, newest_known_ns())
-        session.execute(
-            insert(IndexedIncident).from_select(
-                ["incident_id", "known_ns"], known.where(IncidentRow.incident_id.in_(some))
-            )
+    """Index these incidents anew: at most ``AT_ONCE``, for others wait for the transaction."""
+    for table in (SearchTerm, IndexedIncident):
+        session.execute(delete(table).where(table.incident_id.in_(incident_ids)))
+    known = select(IncidentRow.incident_id, newest_known_ns())
+    session.execute(
+        insert(IndexedIncident).from_select(
+            ["incident_id", "known_ns"], known.where(IncidentRow.incident_id.in_(incident_ids))
         )
-        terms = {*_texts(session, some), *_people(session, some), *_alarms(session, some)}
-        rows = [
-            {"incident_id": incident_id, "kind": kind, "value": value}
-            for incident_id, kind, value in terms
-        ]
-        if rows:
-            session.execute(insert(SearchTerm), rows)
+    )
+    found = _texts, _people, _alarms
+    terms = {term for terms_of in found for term in terms_of(session, incident_ids)}
+    rows = [
+        {"incident_id": incident_id, "kind": kind, "value": value}
+        for incident_id, kind, value in sorted(terms)
+    ]
+    if rows:
+        session.connection().execute(insert(SearchTerm), rows)  # many: without objects
 
 
 def _texts(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:

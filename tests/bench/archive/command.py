@@ -115,11 +115,12 @@ def _tables(figures: ArchiveFigures) -> list[Table]:
         f"first picture: {figures.units} units, {figures.minutes:g} min, "
         f"{figures.archived_mb:.1f} MB archived; 20 ms each way, 50 Mbit/s"
     )
-    pictures = Table("second", "took", "requests", "kB", "units", title=title)
+    pictures = Table("second", "took", "of it waited", "requests", "kB", "units", title=title)
     for shown in figures.pictures:
         pictures.add_row(
             f"{shown.second:.0f}",
             f"{shown.took_s:.2f} s",
+            f"{shown.waited_s:.2f} s",
             str(shown.requests),
             f"{shown.kilobytes:.0f}",
             str(shown.units),

@@ -26,6 +26,7 @@ from tests.rig.live_station import Screen
 class Picture(msgspec.Struct, frozen=True):
     second: float  # of the incident
     took_s: float  # from the wish until the picture is whole
+    waited_s: float  # of that, for the archive
     requests: int
     kilobytes: float
     units: int
@@ -46,7 +47,12 @@ def picture(address: str, incident_id: str, part: float) -> Picture:
         shown, _ = player.snapshot(ReplayView(incident_id, 0, 0, 0, 1.0, playing=False))
         took_s = time.perf_counter() - begun_s
         return Picture(
-            part * long_ns / 1e9, took_s, store.requests, store.bytes / 1e3, len(shown.units)
+            part * long_ns / 1e9,
+            took_s,
+            store.waited_s,
+            store.requests,
+            store.bytes / 1e3,
+            len(shown.units),
         )
 
 

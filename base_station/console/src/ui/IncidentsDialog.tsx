@@ -36,7 +36,11 @@ const COLUMNS = [
 ] as const;
 
 export function IncidentsDialog() {
-  const { entries, loaded, older, again } = usePages(api.incidents, (one) => one.opened_ms);
+  const sought = useSignal(""); // words
+  const { entries, loaded, older, again } = usePages(
+    (untilMs) => api.incidents(untilMs, sought.peek()),
+    (one) => one.opened_ms,
+  );
   const [formats] = useLoaded(api.exportFormats);
   const open = live.value?.picture.incident.value ?? null;
   const forgets = user.value?.role === "administrator" && !liveIsPast.value;
@@ -59,8 +63,16 @@ export function IncidentsDialog() {
       {entries.value.length > 0 && (
         <p class="quiet">{t("incident.times_zone", { zone: zone(Date.now()) })}</p>
       )}
+      <SearchForm
+        search={(text) => {
+          sought.value = text;
+          again();
+        }}
+      />
       <table class="stacked">
-        <caption>{t("incident.past")}</caption>
+        <caption>
+          {sought.value === "" ? t("incident.past") : t("incident.found", { words: sought.value })}
+        </caption>
         <Columns names={columns} />
         <tbody>
           {entries.value.map((incident) => (
@@ -127,7 +139,7 @@ export function IncidentsDialog() {
       </table>
       {!loaded.value && <Waiting />}
       {loaded.value && entries.value.length === 0 && (
-        <p class="quiet">{t("incident.none")}</p>
+        <p class="quiet">{t(sought.value === "" ? "incident.none" : "incident.none_found")}</p>
       )}
       {older && (
         <button type="button" onClick={older}>
@@ -136,6 +148,19 @@ export function IncidentsDialog() {
       )}
       <OpenReplays incidents={entries.value} />
     </Dialog>
+  );
+}
+
+/** Finds incidents by words; none: all of them. */
+function SearchForm({ search }: { search: (text: string) => void }) {
+  return (
+    <form class="row" role="search" onSubmit={(event) => search(fields(event)["text"] ?? "")}>
+      <label>
+        {t("incident.search_label")}
+        <input type="search" name="text" maxLength={200} />
+      </label>
+      <button>{t("incident.search")}</button>
+    </form>
   );
 }
 
