@@ -12,7 +12,7 @@ import subprocess
 import time
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Thread
 from typing import IO
 
@@ -47,11 +47,11 @@ class Sound:
 
 
 def sounds_of(config: RadioConfig) -> Iterator[Sound]:
-    """Endless for a device; of others until they end.  Raises SourceError."""
+    """Endless for a device and a file; a stream until it ends.  Raises SourceError."""
     if config.is_device:
         return _device_sounds(config.source.removeprefix(DEVICE))
     if config.is_file and not config.source.endswith(".sdp"):
-        return _paced(_stream_sounds(config.source.removeprefix(FILE), "file"), ahead_s=0.0)
+        return _paced(_repeated(config.source.removeprefix(FILE)), ahead_s=0.0)
     protocols = f"file,{_PROTOCOLS}" if config.is_file else _PROTOCOLS
     url = config.source.removeprefix(FILE)
     return _paced(_stream_sounds(url, protocols), ahead_s=_MOST_AHEAD_S)
@@ -96,7 +96,7 @@ def _last_words(stderr: IO[bytes]) -> deque[str]:
 
 
 def _stream_sounds(url: str, protocols: str) -> Iterator[Sound]:
-    options = {"protocol_whitelist": protocols, "fflags": "nobuffer", "probesize": "65536"}
+    options = {"protocol_whitelist": protocols, "probesize": "65536"}
     try:
         with av.open(url, timeout=(_OPEN_S, _READ_S), container_options=options) as container:
             if not container.streams.audio:
@@ -125,7 +125,18 @@ def _decoded(container: av.container.InputContainer) -> Iterator[Sound]:
                 pcm = bytes(frame.planes[0])[: frame.samples * BYTES_PER_SAMPLE]
                 expected_s = start_s + frame.samples / SAMPLE_HZ
                 yield Sound(pcm, start_s, received_ns)
-    raise SourceError("the stream ended")
+
+
+def _repeated(path: str) -> Iterator[Sound]:
+    """On one time axis over all rounds."""
+    begin_s = end_s = 0.0
+    while True:
+        for sound in _stream_sounds(path, "file"):
+            yield replace(sound, start_s=begin_s + sound.start_s)
+            end_s = begin_s + sound.start_s + len(sound.pcm) / BYTES_PER_S
+        if end_s == begin_s:
+            raise SourceError("there is no audio in the file")
+        begin_s = end_s
 
 
 def _paced(sounds: Iterator[Sound], ahead_s: float) -> Iterator[Sound]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+import wave
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
@@ -135,6 +136,30 @@ def test_a_sound_device_is_recorded_at_its_time(
         ended.set()
         channel.close()
     assert largest_drift_s(log, begin_ns, voice_until_ns(log)) < DRIFT_MAX_S
+
+
+def test_a_file_is_played_again_and_again_in_real_time(tmp_path: Path) -> None:
+    """Of two seconds, from an even one on: the pattern goes on over the rounds."""
+    path = tmp_path / "exercise.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, 2, SAMPLE_HZ, 0, "NONE", ""))
+        file.writeframes(tone_pattern(0, 0, 2 * SAMPLE_HZ, SAMPLE_HZ).tobytes())
+    log = RadioLog(tmp_path / "radio")
+    config = RadioConfig(f"file:{path}")
+    channel = RadioChannel(NAME, config, log.folder / NAME, SystemClock())
+    channel.start()
+    try:
+        until(lambda: recorded_for(log, time.time_ns(), -3.0), "the first voice")
+        (begin_ns, _), *_ = log.spans(NAME, 0, time.time_ns()).recorded
+        until(lambda: recorded_for(log, begin_ns, 8.0), "some rounds")
+        assert voice_until_ns(log) < time.time_ns()
+    finally:
+        channel.close()
+    spans = log.spans(NAME, 0, time.time_ns())
+    assert len(spans.recorded) == 1
+    found = onsets_s(decoded(log.audio(NAME, begin_ns, voice_until_ns(log))), SAMPLE_HZ)
+    assert np.allclose(np.diff(found), 2.0, atol=DRIFT_MAX_S)
+    assert len(found) >= 4
 
 
 def test_what_cannot_be_recorded_is_told(tmp_path: Path) -> None:
