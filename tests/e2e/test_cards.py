@@ -94,7 +94,7 @@ def test_what_can_be_done_stays_in_sight_however_low_the_screen(stage: Stage) ->
 def test_who_is_overdue_is_said_to_be_so_once(stage: Stage) -> None:
     page, station = stage.open(scenes.overdue())
     card = page.locator(".card", has_text=scenes.NAMES[0])
-    expect(card).to_contain_text(re.compile(r"PAR \d+:\d+ over"))
+    expect(card).to_contain_text(re.compile(r"PAR overdue \d+:\d+"))
     expect(card.get_by_label("Open alarms of this person")).to_have_count(0)
     heard = scenes.unit(0).duty
     late = station.picture.units[0]
