@@ -12,6 +12,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 
+import msgspec
+
 from base_station.core.checkpoint import Checkpoint, read_checkpoint
 from base_station.core.events import Output, Received, StationEvent, event_of, is_decision
 from base_station.core.pipeline import StationPipeline
@@ -19,6 +21,7 @@ from base_station.replay.unrecorded import LONGEST_NS, RecordGap, UnrecordedTime
 from base_station.storage.checkpoints import Checkpoints, SavedState
 from shared.codec import encode
 from shared.messages import AlarmChange, FusedPosition
+from shared.messages.alarm import NO_PARAMETERS
 
 Record = tuple[int, str, bytes]  # station time, key, payload
 OpenLog = Callable[[int], Iterable[Record]]  # from a station time on, in the order of writing
@@ -199,7 +202,9 @@ class Comparison:
         event = event_of(*record)
         if isinstance(event, Received) and isinstance(event.message, Decision):
             again = self._replayed.popleft() if self._replayed else None
-            is_same = again is not None and encode(again) == record[2]
+            is_same = again is not None and (
+                encode(again) == record[2] or _is_older(event.message, again)
+            )
             return None if is_same else Difference(event.message, again)
         self._replayed += [o for o in self._pipeline.step(event) if isinstance(o, Decision)]
         return None
@@ -207,6 +212,25 @@ class Comparison:
     def rest(self) -> Iterator[Difference]:
         """Decisions that were not logged."""
         return (Difference(None, again) for again in self._replayed)
+
+
+def _is_older(logged: Decision, again: Decision) -> bool:
+    """Whether it is the same decision, logged by a version whose alarms had no code: they had other
+    words, no parameters, no reason and no peak, and the note stood behind the name.
+    """
+    if not isinstance(logged, AlarmChange) or not isinstance(again, AlarmChange) or logged.code:
+        return False
+    as_older = msgspec.structs.replace(
+        again,
+        text=logged.text,
+        by=f"{again.by}: {again.note}" if again.note else again.by,
+        code="",
+        parameters=NO_PARAMETERS,
+        reason="",
+        note="",
+        peak=None,
+    )
+    return as_older == logged
 
 
 def compare(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[Difference]:

@@ -24,6 +24,7 @@ NAMES = (
     "Wolfeschlegelsteinhausenbergerdorff",
     "Li Na",
 )
+ROLE = "Search"
 CREWS = ("Engine 1", "Engine 2", "Rescue 3", "Hazardous Materials Response Team 12", "Ladder 4")
 HEALTH = wire.HealthView((), 120_431, 0, 0, 81_000_000, 40_000_000_000, 210.0, insecure=False)
 INCIDENT = wire.IncidentView(
@@ -41,7 +42,7 @@ def person(index: int) -> wire.PersonView:
     name = NAMES[index % len(NAMES)]
     if index >= len(NAMES):
         name = f"{name} {index // len(NAMES) + 1}"
-    return wire.PersonView(f"p{index}", name, CREWS[index % len(CREWS)], "Search", None)
+    return wire.PersonView(f"p{index}", name, CREWS[index % len(CREWS)], ROLE, None)
 
 
 def position(index: int, age_ms: int = 400) -> wire.PositionView:
@@ -665,7 +666,7 @@ PEOPLE = [
         "person_id": f"p{index}",
         "name": name,
         "crew": CREWS[index % len(CREWS)],
-        "role": "Search",
+        "role": ROLE,
         "photo_url": None,
     }
     for index, name in enumerate(NAMES)

@@ -121,7 +121,7 @@ def test_a_replay_lists_the_alarms_of_its_incident_and_each_time_leads_there(
     answers = {**ANSWERS, f"{PAST}/alarms": LIVES}
     page, _ = stage.open(scenes.quiet(), answers=answers, timezone="UTC")
     menu(page, "Incidents").get_by_role("button", name=f"Replay {scenes.INCIDENT.name}").click()
-    expect(page.get_by_role("region", name="Replay")).to_contain_text("This is the past")
+    expect(page.get_by_role("region", name="Replay")).to_contain_text("Recorded, not live")
     strip(page).get_by_role("button", name="All alarms").click()
     ended = page.locator(".alarm-life.resolved")
     expect(ended.get_by_role("button", name="Resolve")).to_have_count(0)

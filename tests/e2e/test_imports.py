@@ -82,7 +82,7 @@ def test_a_track_and_a_photograph_are_on_the_plan_of_a_replay(stage: Stage, tmp_
 def test_files_are_brought_in_and_taken_out_of_the_list(stage: Stage, tmp_path: Path) -> None:
     page, station = stage.open(scenes.quiet(), answers=answers())
     dialog = menu(page, "Incidents")
-    dialog.get_by_role("button", name=f"Brought into {scenes.INCIDENT.name}").click()
+    dialog.get_by_role("button", name=f"Brought in: {scenes.INCIDENT.name}").click()
     listing = page.get_by_role("dialog", name=f"Brought into {scenes.INCIDENT.name}")
     expect(listing.get_by_role("link", name="drone.gpx")).to_be_visible()
     expect(listing).to_contain_text("2 points without a place or a time are left out")

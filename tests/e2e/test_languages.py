@@ -53,7 +53,7 @@ def english_only(language: str) -> set[str]:
 
 
 def english_on(page: Page, language: str) -> set[str]:
-    return set(page.evaluate(SHOWN_TEXTS)) & english_only(language)
+    return (set(page.evaluate(SHOWN_TEXTS)) & english_only(language)) - {scenes.ROLE}
 
 
 def open_dialogs(page: Page) -> list[Locator]:

@@ -159,7 +159,8 @@ async def test_an_alarm_that_was_raised_anew_is_not_dealt_with_as_it_was_seen_be
     path = f"/alarms/{seen['alarm_id']}"
     refused = await commander.post(f"{path}/{what}", json=as_seen)
     assert refused.status_code == 409
-    assert "raised anew since you saw it, look again: 170 °C" in refused.json()["detail"]
+    detail = refused.json()["detail"]
+    assert "raised anew since you saw it, look again: FF-01: equipment at 170 °C" in detail
     (now,) = (await commander.get("/alarms")).json()
     assert now["last_raised_ms"] - now["raised_ms"] == 5_000
     as_seen = {"last_raised_ms": now["last_raised_ms"]}
@@ -222,7 +223,8 @@ async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
     raisings = {one["rule"]: one["raisings"] for one in told}
     assert [one["t_ms"] for one in raisings["mayday"]] == [pressed_ms, again_ms]
     assert [one["t_ms"] for one in raisings["heat"]] == [first_ms, worse_ms]
-    assert [one["text"][:6] for one in raisings["heat"]] == ["120 °C", "170 °C"], "as it was said"
+    at_first, worse = (one["text"] for one in raisings["heat"])
+    assert ("at 120 °C" in at_first, "at 170 °C" in worse) == (True, True), "as it was said"
 
 
 @pytest.mark.parametrize("part", ["log", "apart engine-2", "flood FF-01@tracker"])

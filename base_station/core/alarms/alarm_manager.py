@@ -124,7 +124,8 @@ class AlarmManager:
             return alarm
         if alarm.state is AlarmState.ACKNOWLEDGED:
             return f"{alarm.by} has acknowledged it already"
-        alarm.state, alarm.by, alarm.changed_ns = AlarmState.ACKNOWLEDGED, by, state.t_ns
+        alarm.state, alarm.by = AlarmState.ACKNOWLEDGED, by
+        alarm.mark_changed(state.t_ns)
         return alarm
 
     def resolve(self, state: StationState, by: str, action: ResolveAlarm) -> Alarm | str:
@@ -164,7 +165,7 @@ class AlarmManager:
             return self._raise(state, key, rule.name, unit_id, verdict)
         if not current.is_open:
             return None
-        current.peak = _worst(current.peak, verdict)
+        current.worst = _worst(current.worst, verdict)
         return _move_level(state, rule, current, verdict)
 
     def _raise(
@@ -186,6 +187,7 @@ class AlarmManager:
             changed_ns=state.t_ns,
             code=finding.code,
             parameters=finding.parameters,
+            worst=finding.measured,
             peak=finding.measured,
         )
         state.alarms[key] = alarm
@@ -197,10 +199,10 @@ def _station_fault(state: StationState, part: str, text: str) -> Finding:
     return Finding(part, WARNING, "station-fault", parameters, seen_ns=state.t_ns)
 
 
-def _worst(peak: float | None, finding: Finding) -> float | None:
-    if peak is None or finding.measured is None:
-        return finding.measured if peak is None else peak
-    return (min if finding.is_low else max)(peak, finding.measured)
+def _worst(so_far: float | None, finding: Finding) -> float | None:
+    if so_far is None or finding.measured is None:
+        return finding.measured if so_far is None else so_far
+    return (min if finding.is_low else max)(so_far, finding.measured)
 
 
 def _new_id(state: StationState, of: str) -> str:
@@ -268,14 +270,15 @@ def _move_level(
     alarm.level, alarm.priority = finding.level, finding.priority
     _take_sentence(alarm, finding)
     alarm.latched = alarm.latched or finding.latched
-    alarm.changed_ns = state.t_ns
+    alarm.mark_changed(state.t_ns)
     return alarm
 
 
 def _raise_anew(state: StationState, alarm: Alarm, finding: Finding) -> Alarm:
     alarm.state, alarm.by = AlarmState.RAISED, ""
     _take_sentence(alarm, finding)
-    alarm.changed_ns = alarm.last_raised_ns = state.t_ns
+    alarm.last_raised_ns = state.t_ns
+    alarm.mark_changed(state.t_ns)
     return alarm
 
 
@@ -310,7 +313,8 @@ def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> 
 
 
 def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
-    alarm.state, alarm.by, alarm.changed_ns = AlarmState.RESOLVED, by, state.t_ns
+    alarm.state, alarm.by = AlarmState.RESOLVED, by
+    alarm.mark_changed(state.t_ns)
     as_it_ended = msgspec.structs.replace(alarm)  # what is found later changes the newest alone
     state.history = [*state.history[1 - HISTORY :], as_it_ended]
     return alarm

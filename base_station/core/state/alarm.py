@@ -31,11 +31,15 @@ class Alarm(msgspec.Struct):
     parameters: AlarmParameters = NO_PARAMETERS
     reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
     note: str = ""  # the user's words about it
-    peak: float | None = None  # worst value so far of what its rule measures
+    worst: float | None = None  # value so far of what its rule measures
+    peak: float | None = None  # ``worst`` at the last change, as it is logged and shown
 
     @property
     def is_open(self) -> bool:
         return self.state is not AlarmState.RESOLVED
+
+    def mark_changed(self, t_ns: int) -> None:
+        self.changed_ns, self.peak = t_ns, self.worst
 
     def change(self, header: Header) -> AlarmChange:
         """Message of the alarm as it is now."""

@@ -39,6 +39,7 @@ def test_names_are_put_in_live_stored_and_recorded() -> None:
         alarm_id="no-motion:FF-01:5", rule="no-motion", unit_id="FF-01", priority=1, state="raised",
         level="alarm", text=CHANGE.text, by="", raised_ns=5, last_raised_ns=5, changed_ns=5,
         code="no-motion", parameters=msgspec.json.encode(CHANGE.parameters).decode(),
+        reason="", note="",
     )  # fmt: skip
     stored = alarm_view(row, people)
     assert (stored.code, stored.parameters) == ("no-motion", shown)

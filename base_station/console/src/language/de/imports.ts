@@ -3,7 +3,7 @@ import type { Part } from "../catalogue";
 export const imports: Part<"imports"> = {
   title: "Eingebracht in {incident}",
   open: "Eingebracht …",
-  open_about: "Eingebracht in {incident}",
+  open_about: "Eingebracht: {incident}",
   none: "Noch nichts: eine Spur als GPX oder KML, ein Foto mit Ort und Zeit oder der Einsatz einer anderen Station (MCAP).",
   list: "Eingebrachte Dateien",
   file: "Datei",

@@ -2,7 +2,7 @@
 export const imports = {
   title: "Brought into {incident}",
   open: "Brought in…",
-  open_about: "Brought into {incident}",
+  open_about: "Brought in: {incident}",
   none: "Nothing yet: a GPX or KML track, a photograph with a place and a time, or the incident of another station (MCAP).",
   list: "Files that were brought in",
   file: "File",

@@ -3,7 +3,7 @@ import type { Part } from "../catalogue";
 export const imports: Part<"imports"> = {
   title: "Versé dans {incident}",
   open: "Versé…",
-  open_about: "Versé dans {incident}",
+  open_about: "Versé\u00a0: {incident}",
   none: "Rien encore\u00a0: une trace GPX ou KML, une photo avec lieu et heure, ou l’intervention d’une autre station (MCAP).",
   list: "Fichiers versés",
   file: "Fichier",
