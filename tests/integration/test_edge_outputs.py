@@ -148,7 +148,7 @@ def test_a_mayday_that_is_acknowledged_in_an_outage_is_played_once_after_it(
 
 def test_who_has_fallen_is_told_that_the_alarm_is_dealt_with(browser, shown, started) -> None:
     agent = started("terminal:FF-01", source="simulated:goes-down")
-    until(lambda: any("fallen" in text for text in shown.alarms.values()), "the alarm")
+    until(lambda: any("possible fall" in text for text in shown.alarms.values()), "the alarm")
     alarm = next(one for one in browser.call("GET", "/alarms") if one["rule"] == "fall")
     seen = {"last_raised_ms": alarm["last_raised_ms"]}
     browser.call("POST", f"/alarms/{alarm['alarm_id']}/acknowledge", json=seen)
@@ -164,7 +164,7 @@ def test_who_has_fallen_is_told_that_the_alarm_is_dealt_with(browser, shown, sta
     resolved = browser.call("GET", f"/alarms/{alarm['alarm_id']}")
     assert [one["state"] for one in resolved["changes"]] == ["raised", "acknowledged", "resolved"]
     assert (resolved["reason"], resolved["note"]) == ("found_and_helped", "at the stairs")
-    until(lambda: any("not moved" in text for text in shown.alarms.values()), "no motion")
+    until(lambda: any("no motion" in text for text in shown.alarms.values()), "no motion")
     (still,) = (one for one in browser.call("GET", "/alarms") if one["rule"] == "no-motion")
     assert still["peak"] >= 20.0, "seconds without motion, from the pre-alert on"
     assert agent.stop() == 0
