@@ -21,6 +21,9 @@ _MESSAGE = struct.Struct("<BIQ")  # opcode, subscription, log time
 _TIME = struct.Struct("<BQ")
 _STATE = struct.Struct("<BBQf?I")  # opcode, status, time, speed, did seek, length of the request id
 _REQUEST = struct.Struct("<BBf?QI")  # opcode, command, speed, seeks, time, length of the request id
+# The library announces a channel just before it takes subscriptions to it (foxglove-sdk 0.30), and
+# drops one that comes in between.  The application is beyond a network, and is never that quick.
+_NETWORK_S = 0.02
 PLAY, PAUSE = 0, 1
 PLAYING, PAUSED, _, ENDED = range(4)
 
@@ -96,6 +99,7 @@ class FoxgloveClient:
         elif message["op"] == "advertise":
             new = {channel["id"]: channel for channel in message["channels"]}
             self.received.channels |= new
+            time.sleep(_NETWORK_S)
             subscriptions = [{"id": number, "channelId": number} for number in new]
             self._socket.send(json.dumps({"op": "subscribe", "subscriptions": subscriptions}))
 
