@@ -88,7 +88,8 @@ async def test_head_is_answered_wherever_get_is(station: DeskStation) -> None:
             assert head.status_code == get.status_code, path
             assert head.content == b"", path
             assert head.headers["content-type"] == get.headers["content-type"], path
-            assert head.headers["content-length"] == get.headers["content-length"], path
+            if path != "/metrics":  # whose numbers have other digits by then
+                assert head.headers["content-length"] == get.headers["content-length"], path
 
 
 async def test_a_method_that_is_not_answered_is_told_those_that_are(station: DeskStation) -> None:
