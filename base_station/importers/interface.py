@@ -18,7 +18,7 @@ MOST_TRACKS = 10_000
 
 
 class ImportOptions(msgspec.Struct, frozen=True):
-    """What the person who brings a file in knows of the clock that made it."""
+    """Corrections of the clock that made a file, as the person who brings it in gives them."""
 
     file_name: str  # as it was called where it comes from
     incident_id: str  # of the incident that it is brought into

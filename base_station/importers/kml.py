@@ -40,7 +40,7 @@ def read_kml(path: Path, _: ImportOptions) -> ImportedContent:
 
 
 class _Placemark:
-    """What was read of the placemark so far."""
+    """The placemark, as far as it is read."""
 
     def __init__(self) -> None:
         self.name = ""

@@ -35,7 +35,7 @@ _HOW = "at the other station write it with: muster base export INCIDENT incident
 
 
 def read_station_incident(path: Path, options: ImportOptions) -> ImportedContent:
-    """What of it can be read.  Raises UserError where it is no incident of another station, or
+    """The readable part of it.  Raises UserError where it is no incident of another station, or
     nobody of it has a place on the Earth.
     """
     whole = read_incident_file(path)

@@ -71,13 +71,13 @@ class RadioChannel:
         self._worker.start()
 
     def close(self) -> None:
-        """What has come is on the disk, where that answers."""
+        """Put all packets so far on the disk, where that answers."""
         self._worker.stop()
         if self._worker.join(_ENDS_WITHIN_S) and self._writer is not None:
             self._writer.close()
 
     def end_segment(self) -> None:
-        """What was recorded so far is in complete segments."""
+        """Complete the segments of all that is recorded so far."""
         with self._writing:
             if self._writer is not None:
                 self._writer.end_segment()

@@ -40,7 +40,7 @@ def spans_of(packets: Iterable[Packet]) -> ChannelSpans:
 
 
 def joined(parts: Iterable[ChannelSpans]) -> ChannelSpans:
-    """Of parts that follow each other in time."""
+    """Spans of parts that follow each other in time."""
     recorded: list[Span] = []
     voice: list[Span] = []
     for part in parts:

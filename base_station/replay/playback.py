@@ -215,7 +215,7 @@ class Comparison:
 
 
 def _is_older(logged: Decision, again: Decision) -> bool:
-    """Whether it is the same decision, logged by a version whose alarms had no code: they had other
+    """True for the same decision, logged by a version whose alarms had no code: they had other
     words, no parameters, no reason and no peak, and the note stood behind the name.
     """
     if not isinstance(logged, AlarmChange) or not isinstance(again, AlarmChange) or logged.code:

@@ -131,7 +131,7 @@ def test_it_finds_what_it_looks_for(rule: AlarmRule) -> None:
     assert verdict.seen_ns <= T_NS
 
 
-def test_sentences_take_what_they_say_from_the_parameters() -> None:
+def test_sentences_are_made_of_their_parameters() -> None:
     full = AlarmParameters(
         member="Ana", member_before="Bo", unit_id="FF-01", duration_s=61.0, temperature_degc=120.0,
         heat_fraction=0.5, battery_fraction=0.1, radius_m=40.0, reasons=("no-stance", "stuck"),

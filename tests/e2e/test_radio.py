@@ -128,7 +128,7 @@ def test_a_replay_without_radio_has_no_player(stage: Stage) -> None:
     expect(player(page)).to_have_count(0)
 
 
-def test_the_radio_of_an_alarm_is_heard_from_ten_seconds_before(stage: Stage) -> None:
+def test_the_radio_of_an_alarm_plays_from_ten_seconds_before(stage: Stage) -> None:
     raised_ms = START_MS + 60_000
     traces = ("motionless_s", "temperature_degc", "battery_level", "height_m", "stated_error_m")
     explanation: dict[str, object] = {

@@ -32,7 +32,7 @@ def two(tmp_path: Path, closing: ExitStack) -> TwoStations:
     return two
 
 
-def tell_story(two: TwoStations) -> tuple[str, bytes]:
+def record_incident(two: TwoStations) -> tuple[str, bytes]:
     """Id and photo of the one who is to be forgotten."""
     at = two.first
     person_id = str(at.post("/people", {"name": NAME, "crew": "Engine 1"})["person_id"])
@@ -102,7 +102,7 @@ def end_and_compare(two: TwoStations, photo: bytes, ends_first: Station) -> None
 
 
 def test_both_forget_and_their_logs_stay_the_same(two: TwoStations) -> None:
-    person_id, photo = tell_story(two)
+    person_id, photo = record_incident(two)
     two.first.post(f"/people/{person_id}/forget", {"name": NAME})
     wait_until("both have forgotten", lambda: done(two.first) and done(two.second))
     assert left_of(two.second, photo) == []
@@ -113,7 +113,7 @@ def test_both_forget_and_their_logs_stay_the_same(two: TwoStations) -> None:
 def test_one_that_was_off_and_leads_by_now_forgets_and_the_first_what_it_had_from_there(
     two: TwoStations,
 ) -> None:
-    person_id, photo = tell_story(two)
+    person_id, photo = record_incident(two)
     two.second.kill()
     two.first.post(f"/people/{person_id}/forget", {"name": NAME})
     wait_until("the first has forgotten", lambda: done(two.first))

@@ -19,7 +19,7 @@ CREWS = {"anna": "Engine 1", "bert": "Engine 2"}
 EVERYONE = {"everyone": True}
 
 
-def tell_story(at: Station) -> tuple[str, str]:
+def record_incident(at: Station) -> tuple[str, str]:
     """Ids of two open incidents: with anna, whose PAR is confirmed, and with bert, on a plan."""
     api = at.logged_in()
     for unit_id, crew in CREWS.items():
@@ -85,7 +85,7 @@ def test_a_takeover_keeps_both_incidents_with_their_people_par_clocks_and_plans(
     for unit_id in CREWS:
         two.start_unit(unit_id, two.first)
     two.wait_heard(two.first)
-    lane, harbour = tell_story(two.first)
+    lane, harbour = record_incident(two.first)
     kept = take_over(two, two.first, two.second)
     assert [one["incident_id"] for one in kept["incidents"]] == [lane, harbour]
     assert [one["par_interval_s"] for one in kept["incidents"]] == [600, 1200]

@@ -50,7 +50,7 @@ def station(station: DeskStation, tmp_path: Path) -> DeskStation:
     return station
 
 
-async def test_it_tells_when_a_channel_was_recorded_and_had_voice(station: DeskStation) -> None:
+async def test_spans_of_recording_and_voice_are_listed_by_channel(station: DeskStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         answer = await viewer.get(ADDRESS)
         assert answer.json() == {
@@ -67,7 +67,7 @@ async def test_it_tells_when_a_channel_was_recorded_and_had_voice(station: DeskS
         assert (await viewer.get("/incidents/none/radio")).status_code == 404
 
 
-async def test_a_window_is_given_in_ranges_and_the_audit_names_who_heard_it(
+async def test_a_window_is_given_in_ranges_and_the_audit_names_the_listener(
     station: DeskStation,
 ) -> None:
     window = {"from_ms": OPENED_MS + 5_000, "length_ms": 20_000}

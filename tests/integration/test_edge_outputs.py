@@ -146,7 +146,7 @@ def test_a_mayday_that_is_acknowledged_in_an_outage_is_played_once_after_it(
     assert agent.stop() == 0
 
 
-def test_who_has_fallen_is_told_that_the_alarm_is_dealt_with(browser, shown, started) -> None:
+def test_a_wearer_who_fell_is_notified_of_the_acknowledgement(browser, shown, started) -> None:
     agent = started("terminal:FF-01", source="simulated:goes-down")
     until(lambda: any("possible fall" in text for text in shown.alarms.values()), "the alarm")
     alarm = next(one for one in browser.call("GET", "/alarms") if one["rule"] == "fall")

@@ -162,7 +162,7 @@ def test_a_file_is_played_again_and_again_in_real_time(tmp_path: Path) -> None:
     assert len(found) >= 4
 
 
-def test_what_cannot_be_recorded_is_told(tmp_path: Path) -> None:
+def test_a_source_that_cannot_be_recorded_is_reported(tmp_path: Path) -> None:
     channel = RadioChannel(
         NAME, RadioConfig("device:there-is-none"), tmp_path / NAME, SystemClock()
     )

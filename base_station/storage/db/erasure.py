@@ -68,7 +68,7 @@ def forget_in(session: Session, erasure: Erasure) -> None:
 
 
 def _imports(session: Session, erasure: Erasure) -> None:
-    """What was brought into an incident that is forgotten; else names in the names of files."""
+    """Erase imports of a forgotten incident; of the others, people in the names of files."""
     if erasure.incident_id:
         session.execute(delete(ImportRow).where(ImportRow.incident_id == erasure.incident_id))
         of_it = AuditEntry.detail.contains(f'"{erasure.incident_id}"', autoescape=True)

@@ -17,25 +17,25 @@ export function alarmCurrentValue(
   if (alarm.level === format.SWITCHED_OFF || isOfAnother(alarm, unit)) return "";
   const counted = (fromMs: number | null, inWords: (ms: number) => string) =>
     fromMs === null || silent ? "" : t("alarm.now", { value: inWords(nowMs - fromMs) });
-  const told = (value: string) =>
+  const withValue = (value: string) =>
     t(unit.link === "live" && !silent ? "alarm.now" : "alarm.last", { value });
   switch (alarm.rule) {
     case "heat":
     case "heat-dose": {
       if (unit.ambient_degc === null) return "";
       const used = format.percent(unit.heat_used); // as the words say it: of the heat budget
-      if (alarm.rule === "heat-dose") return told(used);
-      return told(listed([format.temperature(unit.ambient_degc), used]));
+      if (alarm.rule === "heat-dose") return withValue(used);
+      return withValue(listed([format.temperature(unit.ambient_degc), used]));
     }
     case "battery": {
       const part = unit.status?.battery ?? null;
-      return part === null ? "" : told(format.percent(part));
+      return part === null ? "" : withValue(format.percent(part));
     }
     case "no-motion": {
       const stillS = unit.status?.motionless_s ?? null;
       if (stillS === null) return "";
       if (stillS < format.MOTIONLESS_SHOWN_S) return t("alarm.has_moved");
-      return told(format.duration(stillS * 1000));
+      return withValue(format.duration(stillS * 1000));
     }
     case "link-lost":
       return counted(unit.last_heard_ms, format.duration);

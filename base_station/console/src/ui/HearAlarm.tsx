@@ -16,7 +16,7 @@ export function HearAlarm({ raisedMs }: { raisedMs: number }) {
 
 function Channels({ incidentId, fromMs }: { incidentId: string; fromMs: number }) {
   const loaded = useRadio(incidentId);
-  const heard = useSignal("");
+  const channel = useSignal("");
   if (loaded.value === null) return null;
   const { from_ms: beginMs, channels } = loaded.value;
   const startMs = Math.round(Math.max(fromMs, beginMs));
@@ -26,12 +26,12 @@ function Channels({ incidentId, fromMs }: { incidentId: string; fromMs: number }
   return (
     <>
       {there.map(({ name }) => (
-        <button type="button" key={name} onClick={() => (heard.value = name)}>
+        <button type="button" key={name} onClick={() => (channel.value = name)}>
           {t("radio_audio.hear", { channel: name })}
         </button>
       ))}
-      {heard.value !== "" && (
-        <audio controls autoplay src={api.radioPath(incidentId, heard.value, startMs, LENGTH_MS)} />
+      {channel.value !== "" && (
+        <audio controls autoplay src={api.radioPath(incidentId, channel.value, startMs, LENGTH_MS)} />
       )}
     </>
   );

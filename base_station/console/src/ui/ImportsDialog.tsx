@@ -123,7 +123,7 @@ function FileName({ file, incidentId }: { file: ImportedFile; incidentId: string
 function AddForm({ incidentId, done }: { incidentId: string; done: () => void }) {
   const once = useSinglePress();
   const isBusy = useSignal(false);
-  const said = useDone(t("imports.done"));
+  const notice = useDone(t("imports.done"));
   const add = async (files: readonly File[], clock: ClockOfFile) => {
     isBusy.value = true;
     let added = 0;
@@ -131,13 +131,13 @@ function AddForm({ incidentId, done }: { incidentId: string; done: () => void })
       if ((await attempt(importFile(incidentId, file, clock))) !== null) added += 1;
     }
     isBusy.value = false;
-    if (added === files.length) said.say();
+    if (added === files.length) notice.say();
     if (added > 0) done();
   };
   return (
     <form
       class="row"
-      onInput={said.unsay}
+      onInput={notice.unsay}
       onSubmit={(event) => {
         event.preventDefault();
         const form = new FormData(event.currentTarget);
@@ -165,7 +165,7 @@ function AddForm({ incidentId, done }: { incidentId: string; done: () => void })
       <button class="primary" disabled={isBusy.value}>
         {isBusy.value ? t("imports.busy") : t("imports.add")}
       </button>
-      {said.words}
+      {notice.words}
     </form>
   );
 }

@@ -150,7 +150,7 @@ def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
     assert "at most 512" in refusal(path)
 
 
-def test_parts_of_a_log_and_recordings_of_units_are_told_from_incidents(tmp_path: Path) -> None:
+def test_parts_of_a_log_and_recordings_of_units_are_refused(tmp_path: Path) -> None:
     script = Script()
     script.register("FF-01")
     for number in range(2):

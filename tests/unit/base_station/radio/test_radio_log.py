@@ -46,7 +46,7 @@ def seconds(spans: tuple[tuple[int, int], ...]) -> list[tuple[float, float]]:
     return [(round((a - T0_NS) / NS_PER_S, 2), round((b - T0_NS) / NS_PER_S, 2)) for a, b in spans]
 
 
-def test_spans_tell_what_was_recorded_and_where_voice_is(tmp_path: Path) -> None:
+def test_spans_of_recording_and_of_voice(tmp_path: Path) -> None:
     log = written(tmp_path, [*silent(0.0, 1.2), *spoken(1.2), *silent(1.32, 2.52), *spoken(9.0)])
     spans = log.spans(NAME, T0_NS, T0_NS + 60 * NS_PER_S)
     assert log.channels() == (NAME,)

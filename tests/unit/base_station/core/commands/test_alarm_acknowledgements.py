@@ -73,7 +73,7 @@ def test_it_ends_with_the_alarm(how: str) -> None:
     assert (over.is_open, over.deliveries[U].reason) == (False, ALARM_OVER)
 
 
-def test_an_alarm_of_a_former_wearer_and_one_about_the_unit_are_told_to_nobody() -> None:
+def test_an_alarm_of_a_former_wearer_or_about_the_unit_makes_no_command() -> None:
     script = fallen()
     script.now_s += 5.0
     script.act(Unassign(U))
