@@ -14,12 +14,13 @@ from pathlib import Path
 import pytest
 from alembic import command
 from alembic.script import ScriptDirectory
-from sqlalchemy import inspect, text
+from sqlalchemy import text
 
 from base_station.accounts.principals import Principal, Role
 from base_station.storage.db.accounts import Accounts
-from base_station.storage.db.alembic_migration import alembic_config
+from base_station.storage.db.alembic_migration import alembic_config, upgrade
 from base_station.storage.db.copying import copy_database, known_segments
+from base_station.storage.db.engines import file_engine
 from base_station.storage.db.migrate import newest_revision
 from base_station.storage.db.models import Base, PersonRow
 from base_station.storage.db.projection import SqlProjection
@@ -49,15 +50,42 @@ def store(path: Path) -> Iterator[Store]:
         yield store
 
 
-def test_an_empty_file_is_migrated_to_what_the_models_say(store: Store) -> None:
-    assert set(inspect(store.engine).get_table_names()) == {
-        *Base.metadata.tables,
-        "alembic_version",
-    }
-    with store.engine.connect() as connection:
+def test_a_new_file_has_what_the_migrations_make(path: Path, store: Store) -> None:
+    """And both are what the models say."""
+    migrated = file_engine(path.with_name("migrated.sqlite"))
+    with migrated.begin() as connection:
+        upgrade(connection)
+    with migrated.connect() as connection:
         config = alembic_config(connection)
         command.check(config)  # raises where models and migrations differ
     assert newest_revision() == ScriptDirectory.from_config(config).get_current_head()
+    created = schema_of(path)
+    assert created.keys() == {*Base.metadata.tables, "alembic_version", "sqlite_sequence"}
+    assert created == schema_of(path.with_name("migrated.sqlite"))
+    with store.read() as session:
+        revision = session.connection().exec_driver_sql("SELECT version_num FROM alembic_version")
+        assert revision.scalar() == newest_revision()
+
+
+def schema_of(path: Path) -> dict[str, tuple[object, ...]]:
+    """Columns without their order, indices and foreign keys, by table."""
+    with closing(sqlite3.connect(path)) as database:
+
+        def rows(pragma: str, of: str) -> list[tuple[object, ...]]:
+            return database.execute(f"PRAGMA {pragma}({of})").fetchall()
+
+        names = database.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
+        return {
+            name: (
+                sorted(column[1:] for column in rows("table_info", name)),
+                sorted(
+                    (*index[1:], *(column[2] for column in rows("index_info", str(index[1]))))
+                    for index in rows("index_list", name)
+                ),
+                sorted(key[2:] for key in rows("foreign_key_list", name)),
+            )
+            for (name,) in names
+        }
 
 
 def test_a_database_of_this_programs_schema_is_opened_without_alembic(

@@ -244,7 +244,7 @@ class DeskStation:
 
 @cache
 def _new_database() -> bytes:
-    """Made by the migrations, once for all tests of a process."""
+    """Made once for all tests of a process."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "station.sqlite"
         Store(path).close()

@@ -84,8 +84,9 @@ def put_rows(store: Database, tables: Mapping[str, Sequence[Row]]) -> None:
     with store.write() as session:
         for table in _TABLES:
             columns = {column.key for column in table.__table__.columns}
-            for row in tables.get(table.__tablename__, ()):
-                known = {name: value for name, value in row.items() if name in columns}
-                session.execute(
-                    insert_into(session, table).values(**known).on_conflict_do_nothing()
-                )
+            rows = [
+                {name: value for name, value in row.items() if name in columns}
+                for row in tables.get(table.__tablename__, ())
+            ]
+            if rows:
+                session.execute(insert_into(session, table).on_conflict_do_nothing(), rows)
