@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from threading import Lock
 
@@ -31,8 +31,16 @@ logger = logging.getLogger(__name__)
 class ReportIntake:
     """``open`` it with the bus; ``keep_summaries`` now and then, from any thread."""
 
-    def __init__(self, tables: DepartmentTables, picture: LivePicture, clock: Clock) -> None:
+    def __init__(
+        self,
+        tables: DepartmentTables,
+        picture: LivePicture,
+        clock: Clock,
+        on_stored: Callable[[], None],
+    ) -> None:
+        """``on_stored``: called when events are in the tables, from any thread."""
         self._tables, self._picture, self._clock = tables, picture, clock
+        self._on_stored = on_stored
         self._fault_log = LogOnChange(logger, "what stations report is not stored")
         self._lock = Lock()  # guards what follows
         self._people: dict[tuple[str, str], KnownPerson] = {}
@@ -96,6 +104,7 @@ class ReportIntake:
             yield pack(EventReceipt(batch.epoch, 0, f"the department does not store it: {error}"))
         else:
             self._fault_log.note_success()
+            self._on_stored()
             yield pack(EventReceipt(batch.epoch, reported.last_seq))
 
     def keep_summaries(self) -> None:

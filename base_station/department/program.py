@@ -14,6 +14,7 @@ from base_station.department.api import DepartmentServices, create_department_ap
 from base_station.department.config import DepartmentServerConfig
 from base_station.department.intake import ReportIntake
 from base_station.department.live_picture import LivePicture
+from base_station.department.standing import StandingReports
 from base_station.department.views import DepartmentViews
 from base_station.security.pki.expiry import ExpiryWatch
 from base_station.security.pki.folder import PkiFolder
@@ -51,7 +52,10 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
         store = closing.enter_context(_open_database(config, folder))
         accounts, records = Accounts(store, clock), Records(store, clock)
         tables, picture = DepartmentTables(store), LivePicture()
-        intake = ReportIntake(tables, picture, clock)
+        standing = StandingReports(tables)
+        standing.start()
+        closing.callback(standing.close)
+        intake = ReportIntake(tables, picture, clock, standing.wake)
         router = RouterProcess(folder.path, config.bus.listen)
         closing.callback(router.close)
         router.wait_open()
@@ -68,7 +72,9 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
             for part in (router, expiry, presence):
                 yield from part.problems()
 
-        views = DepartmentViews(picture, tables, intake, clock, lambda: _enrolled(pki), problems)
+        views = DepartmentViews(
+            picture, tables, standing, intake, clock, lambda: _enrolled(pki), problems
+        )
         services = DepartmentServices(
             accounts=accounts,
             records=records,

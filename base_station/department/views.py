@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ from base_station.department.live_picture import (
     StationPicture,
     is_overdue,
 )
+from base_station.department.standing import StandingReports
 from base_station.department_wire import PersonSummary
 from base_station.storage.db.department_models import ReportedAlarm, ReportedIncident
 from base_station.storage.db.department_tables import DepartmentTables
@@ -32,8 +33,6 @@ from base_station.storage.db.known_people import shown_text
 from base_station.views.answer import to_ms
 from shared.clock import NS_PER_MS, Clock
 
-_INCIDENTS_SHOWN = 200
-_ALARMS_SHOWN = 200
 _MS_PER_S = 1000.0
 _NO_COUNTS = IncidentCounts()
 
@@ -47,12 +46,13 @@ class PeopleQuery(NamedTuple):
 
 
 class DepartmentViews:
-    """Thread-safe.  Raises StoreError where the tables cannot be read."""
+    """Thread-safe.  What changes by itself comes from memory, also while the database is away."""
 
     def __init__(
         self,
         picture: LivePicture,
         tables: DepartmentTables,
+        standing: StandingReports,
         intake: ReportIntake,
         clock: Clock,
         enrolled: Callable[[], Collection[str]],
@@ -60,23 +60,23 @@ class DepartmentViews:
     ) -> None:
         """``enrolled``: stations with a certificate; ``problems``: of the department itself."""
         self._picture, self._tables, self._intake = picture, tables, intake
+        self._standing = standing
         self._clock, self._enrolled, self._problems = clock, enrolled, problems
 
     def overview(self) -> DepartmentView:
-        pictures = self._picture.all()
-        alarms, open_alarms = self._tables.open_alarms(_ALARMS_SHOWN)
-        incidents = self._tables.incidents(_INCIDENTS_SHOWN)
-        stations = tuple(self._stations(pictures))
+        pictures, standing = self._picture.all(), self._standing.current
+        stations = tuple(self._stations(pictures, standing.missing))
         return DepartmentView(
             now_ms=to_ms(self._clock.utc_ns()),
             stations=stations,
             incidents=tuple(
-                _incident_view(one, pictures.get(one.station, ())) for one in incidents
+                _incident_view(one, pictures.get(one.station, ()))
+                for one in (*_not_stored(standing.incidents, pictures), *standing.incidents)
             ),
-            alarms=tuple(self._alarm_view(one, pictures) for one in alarms),
-            open_alarms=open_alarms,
+            alarms=tuple(self._alarm_view(one, pictures) for one in standing.alarms),
+            open_alarms=standing.open_alarms,
             people=sum(one.people for one in stations),
-            problems=(*self._problems(), *self._problems_of(pictures)),
+            problems=(*self._problems(), *self._problems_of(pictures, standing.missing)),
         )
 
     def people(self, wanted: PeopleQuery) -> DepartmentPeopleView:
@@ -101,7 +101,7 @@ class DepartmentViews:
         )
 
     def events(self, before: int | None, limit: int) -> tuple[DepartmentEventView, ...]:
-        """In the order of arrival, the newest first."""
+        """In the order of arrival, the newest first.  Raises StoreError."""
         return tuple(
             DepartmentEventView(
                 number=row.number,
@@ -122,9 +122,8 @@ class DepartmentViews:
                 yield from pictures
 
     def _stations(
-        self, pictures: dict[str, Sequence[StationPicture]]
+        self, pictures: Mapping[str, Sequence[StationPicture]], missing: Mapping[str, int]
     ) -> Iterator[ReportingStationView]:
-        missing = self._tables.missing()
         for name in sorted({*self._enrolled(), *pictures}):
             shown = pictures.get(name, ())
             newest = max(shown, key=lambda one: one.received_ns, default=None)
@@ -152,7 +151,9 @@ class DepartmentViews:
     def _silent_ns(self, picture: StationPicture) -> int:
         return picture.silent_ns(self._clock.utc_ns(), self._clock.monotonic_ns())
 
-    def _problems_of(self, pictures: dict[str, Sequence[StationPicture]]) -> Iterator[str]:
+    def _problems_of(
+        self, pictures: Mapping[str, Sequence[StationPicture]], missing: Mapping[str, int]
+    ) -> Iterator[str]:
         if problem := self._intake.problem:
             yield problem
         for name, ones in sorted(pictures.items()):
@@ -165,7 +166,7 @@ class DepartmentViews:
             newest = max(ones, key=lambda one: one.received_ns)
             if abs(newest.offset_ms) > CLOCK_LIMIT_MS:
                 yield _clock_problem(name, newest.offset_ms)
-        for name, count in sorted(self._tables.missing().items()):
+        for name, count in sorted(missing.items()):
             yield (
                 f"{count} events of {name} are not here: this department's database is older than "
                 "what it has acknowledged. The station's own log has them"
@@ -213,7 +214,7 @@ class DepartmentViews:
         )
 
     def _alarm_view(
-        self, alarm: ReportedAlarm, pictures: dict[str, Sequence[StationPicture]]
+        self, alarm: ReportedAlarm, pictures: Mapping[str, Sequence[StationPicture]]
     ) -> DepartmentAlarmView:
         people = partial(self._intake.person, alarm.station)
         wearers = (
@@ -236,6 +237,27 @@ class DepartmentViews:
             raised_ms=alarm.raised_ms - alarm.offset_ms,
             changed_ms=alarm.changed_ms - alarm.offset_ms,
         )
+
+
+def _not_stored(
+    stored: Iterable[ReportedIncident], pictures: Mapping[str, Sequence[StationPicture]]
+) -> Iterator[ReportedIncident]:
+    """Open incidents of summaries whose events wait for the database."""
+    known = {(one.station, one.incident_id) for one in stored}
+    for station, ones in pictures.items():
+        for picture in ones:
+            for incident in picture.summary.incidents:
+                key = (station, incident.incident_id)
+                if key not in known:
+                    known.add(key)
+                    yield ReportedIncident(
+                        station=station,
+                        incident_id=incident.incident_id,
+                        name=incident.name,
+                        opened_ms=incident.opened_ms,
+                        closed_ms=None,
+                        offset_ms=picture.offset_ms,
+                    )
 
 
 def _incident_view(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
@@ -33,40 +32,17 @@ from base_station.storage.projection import Projection
 from shared.clock import NS_PER_S, ManualClock
 from shared.errors import UserError
 from shared.messages.station import OpenIncident, RegisterUnit
-from tests.rig.database_server import DatabaseServer, database_server
+from tests.contracts.conftest import DATABASE_KINDS, NewDatabase
+from tests.rig.database_server import DatabaseServer
 from tests.rig.projected_story import STORY, acted, fused
 from tests.rig.quick_hash import QUICK_HASH
 from tests.rig.waiting import until
 
 ALL = Window(0, FOREVER_NS)
-KINDS = ("file", "server")
-New = Callable[[], Database]
-
-
-@pytest.fixture(scope="module")
-def server() -> Iterator[DatabaseServer]:
-    with database_server() as server:
-        yield server
-
-
-@pytest.fixture(params=KINDS)
-def new(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[New]:
-    """Opens another empty database of one kind each time."""
-    with ExitStack() as closing:
-
-        def made() -> Database:
-            if request.param == "file":
-                name = f"{len(list(tmp_path.iterdir()))}.sqlite"
-                return closing.enter_context(Store(tmp_path / name))
-            server: DatabaseServer = request.getfixturevalue("server")
-            address = server.new_database(tmp_path)
-            return closing.enter_context(ServerStore(address, is_station=True))
-
-        yield made
 
 
 @pytest.fixture
-def store(new: New) -> Database:
+def store(new: NewDatabase) -> Database:
     return new()
 
 
@@ -270,7 +246,7 @@ def test_a_person_is_forgotten_and_the_database_made_compact(
 
 
 def test_one_station_copies_the_other_s_users_people_and_audit(
-    new: New, clock: ManualClock
+    new: NewDatabase, clock: ManualClock
 ) -> None:
     active, standby = new(), new()
     Accounts(active, clock, QUICK_HASH).add_user("ada", "a long password", Role.COMMANDER)
@@ -286,7 +262,7 @@ def test_one_station_copies_the_other_s_users_people_and_audit(
     assert other.take_back(one.read()) == ()
 
 
-@pytest.mark.parametrize("to", KINDS)
+@pytest.mark.parametrize("to", DATABASE_KINDS)
 def test_a_copy_of_all_tables_has_all_of_them_and_goes_on(
     store: Database,
     to: str,

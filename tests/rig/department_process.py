@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import sqlite3
 from collections.abc import Sequence
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+from sqlalchemy import select
+
+from base_station.storage.db.department_models import ReportedEvent
+from base_station.storage.db.opening import open_database
 from tests.rig import processes
 from tests.rig.console_client import Api
 from tests.rig.first_login import first_login
@@ -26,11 +28,13 @@ class DepartmentProcess:
         http_port: int,
         launch: Launch,
         network: Namespace | None = None,
+        settings: Path | None = None,
     ) -> None:
         self._data, self._launch, self._network = data, launch, network
         self._arguments: Sequence[str] = (
             *("serve", "--data", str(data), "--listen", listen),
             *("--http", f"127.0.0.1:{http_port}"),
+            *(() if settings is None else ("--config", str(settings))),
         )
         self._url = f"http://127.0.0.1:{http_port}"
         self._output = data.with_suffix(".txt")
@@ -66,9 +70,9 @@ class DepartmentProcess:
 
     def alarm_events(self) -> list[str]:
         """Ids of the alarm events in its tables, in the order of arrival."""
-        wanted = "SELECT event_id FROM department_events WHERE kind = 'alarm' ORDER BY number"
-        with closing(sqlite3.connect(self._data / "station.sqlite")) as database:
-            return [event_id for (event_id,) in database.execute(wanted)]
+        wanted = select(ReportedEvent.event_id).filter_by(kind="alarm").order_by("number")
+        with open_database(self._data / "station.sqlite") as store, store.read() as session:
+            return list(session.scalars(wanted))
 
     def memory_mb(self) -> float:
         """With the bus's router beside it."""

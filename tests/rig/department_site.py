@@ -38,7 +38,7 @@ class DepartmentSite:
 
     def open(self) -> None:
         self.picture = LivePicture()
-        self.intake = ReportIntake(self.tables, self.picture, SystemClock())
+        self.intake = ReportIntake(self.tables, self.picture, SystemClock(), lambda: None)
         router = Router(self._folder, self._listen)
         self._open.callback(router.close)
         self.bus = ZenohBus(station_endpoint(self._folder, self._listen))

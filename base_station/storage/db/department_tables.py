@@ -165,8 +165,9 @@ def _insert_event(
         "received_ns": received_ns,
         "body": b"" if has_name else bytes(event.body),
     }
-    done = session.execute(insert_into(session, ReportedEvent).values(row).on_conflict_do_nothing())
-    return bool(done.rowcount)  # type: ignore[attr-defined]  # of an insert it has one
+    insert = insert_into(session, ReportedEvent).values(row).on_conflict_do_nothing()
+    # A server's ``rowcount`` does not say whether there was a conflict.
+    return session.scalar(insert.returning(ReportedEvent.number)) is not None
 
 
 def _apply(session: Session, station: str, body: EventBody | None, offset_ms: int) -> None:

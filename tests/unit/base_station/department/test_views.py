@@ -11,6 +11,7 @@ import pytest
 
 from base_station.department.intake import ReportIntake
 from base_station.department.live_picture import LivePicture
+from base_station.department.standing import StandingReports
 from base_station.department.views import DepartmentViews, PeopleQuery
 from base_station.department_wire import (
     AlarmEvent,
@@ -18,6 +19,7 @@ from base_station.department_wire import (
     EventBatch,
     EventReceipt,
     IncidentEvent,
+    IncidentSummary,
     PersonEvent,
     PersonSummary,
     PlaceSummary,
@@ -42,9 +44,16 @@ class Department:
 
     def start(self) -> None:
         self.picture, self.tables = LivePicture(), DepartmentTables(self.store)
-        self.intake = ReportIntake(self.tables, self.picture, self.clock)
+        self.standing = StandingReports(self.tables)
+        self.intake = ReportIntake(self.tables, self.picture, self.clock, self.standing.read)
         self.views = DepartmentViews(
-            self.picture, self.tables, self.intake, self.clock, lambda: ["engine-7"], lambda: ()
+            self.picture,
+            self.tables,
+            self.standing,
+            self.intake,
+            self.clock,
+            lambda: ["engine-7"],
+            lambda: (),
         )
 
     def person(self, unit_id: str, **changes: Any) -> PersonSummary:
@@ -60,7 +69,12 @@ class Department:
 
     def summary(self, *people: PersonSummary, epoch: int = 1, ahead_ms: int = 0) -> bytes:
         host = f"host-{epoch}"
-        return pack(Summary(epoch, self.now_ms + ahead_ms, host, "", (), people, (), 0))
+        now_ms = self.now_ms + ahead_ms
+        incidents = tuple(
+            IncidentSummary(one, f"Incident {one}", now_ms)
+            for one in sorted({one.incident_id for one in people} - {""})
+        )
+        return pack(Summary(epoch, now_ms, host, "", incidents, people, (), 0))
 
     def show(self, *people: PersonSummary, **changes: int) -> None:
         self.intake.take_summary(
@@ -167,5 +181,9 @@ def test_what_cannot_be_read_or_stored_gets_no_receipt_of_storage(department: De
     department.store.hangs = lambda: True
     refused = department.send(PersonEvent("p1", "Anna", "", ""))
     assert (refused.stored_seq, refused.refusal != "") == (0, True)
+    department.show(department.person("FF-01", mayday=True))
+    view = department.views.overview()  # what summaries have is shown all the same
+    ((name, maydays),) = [(one.name, one.maydays) for one in view.incidents]
+    assert (name, maydays, len(view.problems)) == ("Incident i1", 1, 1)
     department.store.hangs = lambda: False
     assert department.send(PersonEvent("p1", "Anna", "", "")).stored_seq == 1

@@ -1,9 +1,8 @@
-"""Events of stations are stored once, in whichever order and however often they come."""
+"""Events of stations are stored once, in whichever order and however often they come, in a file
+and on a server.
+"""
 
 from __future__ import annotations
-
-from collections.abc import Iterator
-from pathlib import Path
 
 import msgspec
 import pytest
@@ -17,20 +16,20 @@ from base_station.department_wire import (
     PersonEvent,
     pack,
 )
+from base_station.storage.db.database import Database
 from base_station.storage.db.department_models import DepartmentSchema
 from base_station.storage.db.department_tables import DepartmentTables, Reported
-from base_station.storage.db.store import Store
 from shared.errors import StoreError, WireError
+from tests.contracts.conftest import NewDatabase
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    with Store(tmp_path / "station.sqlite") as store:
-        yield store
+def store(new: NewDatabase) -> Database:
+    return new()
 
 
 @pytest.fixture
-def tables(store: Store) -> DepartmentTables:
+def tables(store: Database) -> DepartmentTables:
     return DepartmentTables(store)
 
 
@@ -109,7 +108,7 @@ def test_an_event_of_a_newer_station_is_kept_and_a_damaged_one_stores_nothing(
     assert [one.event_id for one in tables.events(None, 10)] == ["a"]
 
 
-def test_tables_of_a_newer_program_are_refused(store: Store, tables: DepartmentTables) -> None:
+def test_tables_of_a_newer_program_are_refused(store: Database, tables: DepartmentTables) -> None:
     with store.write() as session:
         session.merge(DepartmentSchema(version=1)).version = 2
     with pytest.raises(StoreError, match="a newer Muster made them"):
