@@ -2,7 +2,7 @@
 
 While an incident is open, each wearer of a unit is to be confirmed again and again: by the button
 of the own unit, or by radio, which an operator enters at the console.  Assigning a unit or opening
-an incident confirms nobody, and neither does any measurement.
+an incident confirms no member, and neither does any measurement.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from shared.messages.station import (
     UndoConfirmation,
 )
 
-ANSWER_NS = 180 * NS_PER_S  # for a roll call that somebody asks for, or an evacuation (ours)
+ANSWER_NS = 180 * NS_PER_S  # to answer a PAR request or an evacuation (ours)
 SHORTEST_S, LONGEST_S = 30.0, 12 * 3600.0
 PAR_REQUESTS = frozenset({CommandKind.PAR_REQUEST, CommandKind.EVACUATE})  # to be answered
 
@@ -106,7 +106,7 @@ def undo(state: StationState, action: UndoConfirmation) -> list[UnitState]:
 
 
 def ask(state: StationState, command: SentCommand) -> Iterator[UnitState]:
-    """After a roll call or an evacuation: who was told is to be heard from soon."""
+    """After a PAR request or an evacuation: the PAR of each recipient is due soon."""
     if command.kind not in PAR_REQUESTS:
         return
     for unit_id in command.deliveries:
@@ -125,8 +125,9 @@ def record_answer(
     by: str,
     answered_ns: int | None,
 ) -> list[UnitState]:
-    """A person answered a command, at some time since it was given, where nobody can tell when as
-    long ago as that; who has heard of an evacuation is not out by that.
+    """Confirm the PAR of a wearer who answered a PAR request.  An answer of unknown time counts
+    from the time of the request.  The answer to an evacuation confirms nothing: the wearer may
+    still be inside.
     """
     if command.kind is not CommandKind.PAR_REQUEST or unit.duty is None:
         return []

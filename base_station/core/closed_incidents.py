@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from base_station.core.state import Incident, StationState, UnitState
 
-KEPT = 50  # closed ones, newest last; of what comes later of older ones only the log tells
+KEPT = 50  # closed ones, newest last; late data of older ones is only in the log
 
 
 def add_closed_incident(state: StationState, incident: Incident) -> None:
@@ -18,7 +18,7 @@ def closed_incidents_at(state: StationState, t_ns: int) -> list[Incident]:
 
 
 def last_closed_ns(state: StationState, site_id: str) -> int:
-    """When the last incident on this site was closed; 0: none was."""
+    """Time at which the last incident on this site was closed; 0: none was."""
     past = [one for one in state.closed_incidents if one.site_id == site_id]
     return max((one.closed_ns or 0 for one in past), default=0)
 

@@ -146,7 +146,7 @@ def event_of(t_ns: int, key: str, payload: bytes) -> StationEvent:
         message = decode(channel, payload)
     except WireError as error:
         return _rejected(t_ns, key, payload, str(error))
-    except Exception as error:  # noqa: BLE001  # a mistake of ours must not cost what was said
+    except Exception as error:  # noqa: BLE001  # a bug of the decoder must not lose the message
         return _rejected(t_ns, key, payload, f"{DECODER_FAILED}: {error!r}")
     speaker = STATION_ID if channel.direction is DOWN else unit_id
     if message.header.unit_id != speaker:

@@ -17,7 +17,7 @@ from shared.messages import OperatorAction
 from shared.messages.pins import SetMeeting, SetPin, StartTogether
 from shared.messages.station import Action, OpenIncident, SendCommand
 
-KEPT = 1000  # requests; whoever has had no answer asks again within minutes
+KEPT = 1000  # requests; a client without an answer repeats its request within minutes
 KEY_DIGITS = 16  # of a row's id
 _DIGEST = "[0-9a-f]{32}"
 _ACTION_ID = re.compile(rf"({_DIGEST})\.({_DIGEST})\.{_DIGEST}")

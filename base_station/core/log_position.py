@@ -14,8 +14,8 @@ Record = tuple[int, str, bytes]  # station time, key, payload
 class LogPosition(NamedTuple):
     """Behind an event: its time, and how many events had that time so far.
 
-    Only events count.  What a station decides follows from them, and is made again by whoever
-    steps them.
+    Only events count.  Decisions of a station follow from them, and are made again when they are
+    stepped.
     """
 
     t_ns: int

@@ -312,8 +312,8 @@ def _site_of_place(state: StationState, action: PinAction) -> str | None:
 
 
 def _is_first_known_place(site: SiteState) -> bool:
-    """True if a place that is said now is the first one that is said on a plan, of which nobody
-    knows where it lies: people are where satellites have them.
+    """True if a place reported now is the first one on a plan that has not been placed on the
+    Earth: so far the positions of people there come from satellites alone.
     """
     pinned = any(pin.kind in {"place", "start"} for pin in site.pins.values())
     is_known = site.start_set or pinned or bool(site.beacons)

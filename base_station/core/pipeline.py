@@ -1,7 +1,7 @@
 """The station's pure core: an event in, what follows from it out.
 
-Live and replay step the very same pipeline.  It has no clock (time comes with the events), asks
-nobody anything, and numbers its own outputs, so that the same events give the same outputs.
+Live and replay step the very same pipeline.  It has no clock (time comes with the events), reads
+no other source, and numbers its own outputs, so that the same events give the same outputs.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ from shared.messages import (
     UnitEvent,
 )
 
-MAX_UNREGISTERED = 200  # units that nobody registered: more are counted only
+MAX_UNREGISTERED = 200  # units that are not registered: more are counted only
 LOCATION_MESSAGES = Position | GpsFix | Sighting
 _APPLIED_WHEN_LATE = UnitEvent | CommandReply | Sighting | GpsFix
 _DEFERRABLE = frozenset(
@@ -97,7 +97,7 @@ class UnitMessages:
         return update.outputs
 
     def apply(self, update: MessageUpdate) -> bool:
-        """Apply what it says of now, or of an earlier time."""
+        """Apply a message about now, or about an earlier time."""
         state, unit, message = update.state, update.unit, update.message
         if update.is_of_agent and isinstance(message, Status):
             update.sender.status, update.sender.status_ns = message, state.t_ns
@@ -159,7 +159,7 @@ class UnitMessages:
 
 
 def admit(update: MessageUpdate) -> bool:
-    """Find the unit and the sender; units that nobody registered are kept up to a number."""
+    """Find the unit and the sender; units that are not registered are kept up to a number."""
     state, unit_id = update.state, update.event.unit_id
     state.counts.messages += 1
     unit = state.units.get(unit_id)
@@ -237,7 +237,7 @@ def note_change(update: MessageUpdate) -> bool:
 
 
 def _unregistered_unit(state: StationState, unit_id: str) -> UnitState | None:
-    """A unit that nobody registered: shown, and not used; None where there are too many."""
+    """A unit that is not registered: shown, and not used; None where there are too many."""
     if sum(not unit.registered for unit in state.units.values()) >= MAX_UNREGISTERED:
         return None
     return state.add_unit(unit_id)

@@ -49,7 +49,7 @@ class ActionQueue:
         self.not_before_ns = 0
 
     def put(self, by: str, action: Action, action_id: str) -> Future[ActionResult]:
-        """Queue an action; ``OperatorGate.submit`` says what the future gives."""
+        """Queue an action; ``OperatorGate.submit`` describes the future."""
         future: Future[ActionResult] = Future()
         self._waiting.append((by, action, action_id, future))
         return future

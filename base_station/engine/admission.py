@@ -16,8 +16,8 @@ class Admission(Enum):
     IGNORE = "leave"  # it is not logged
     DUPLICATE = "repeated"  # it is in the log, live or out of the unit's journal
     ACCEPT = "keep"
-    ACCEPT_URGENT = "urgent"  # keep it, and bring it to the disk before anybody hears of it
-    FORGED = "forged"  # somebody speaks as the station
+    ACCEPT_URGENT = "urgent"  # keep it, and flush it to the disk before its effects are published
+    FORGED = "forged"  # a sender claims to be the station
     RESTART_STORM = "wild"  # of a program that starts again and again, as none does
 
 

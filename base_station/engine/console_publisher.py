@@ -38,7 +38,7 @@ from base_station.views.wire import Delta, ReplayView, Snapshot
 from shared.clock import NS_PER_MS
 from shared.messages import AlarmChange, FusedPosition
 
-TRAILS_PER_DELTA = 8  # trails whose past was filled in are told whole: so many with one delta
+TRAILS_PER_DELTA = 8  # backfilled trails are published whole: so many with one delta
 
 
 class ConsolePublisher:
@@ -58,14 +58,14 @@ class ConsolePublisher:
         self._units: dict[str, None] = {}  # an ordered set
         self._deferred_units: dict[
             str, None
-        ] = {}  # told with the station's health, or when touched
+        ] = {}  # published with the station's health, or when touched
         self._alarms: list[AlarmChange] = []
         self._commands: dict[str, None] = {}
-        self._backfilled: dict[str, None] = {}  # since trails were last told
-        self._trails_due: dict[str, None] = {}  # filled trails that are to be told now
+        self._backfilled: dict[str, None] = {}  # since trails were last published
+        self._trails_due: dict[str, None] = {}  # backfilled trails that are to be published now
         self._pins_changed = False
         self._external_changed = False
-        self._names_erased = False  # somebody, since consoles were told everything
+        self._names_erased = False  # of a person, since the last snapshot for consoles
         self._frame = self._frame_now()
 
     def mark_changed(self, outputs: Sequence[Output]) -> None:

@@ -40,7 +40,7 @@ class ConsoleRecorder:
         """Call it again and again; ``at_once``: behind an operator's action."""
         if not self._is_wanted:
             return
-        if self._log.is_behind:  # the room in memory is for what nobody can make again
+        if self._log.is_behind:  # the room in memory is for events, which cannot be made again
             self._keyframe_due_ns = 0
             return
         t_ns = self._pipeline.state.t_ns

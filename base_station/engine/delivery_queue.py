@@ -28,7 +28,7 @@ class DeliveryQueue:
         self._waiting: deque[_Waiting] = deque()
 
     def put(self, messages: Sequence[tuple[str, bytes]]) -> Future[DeliveryResult]:
-        """Queue messages; ``EngineGate.deliver`` says what the future gives."""
+        """Queue messages; ``EngineGate.deliver`` describes the future."""
         future: Future[DeliveryResult] = Future()
         self._waiting.append((messages, future))
         return future

@@ -48,9 +48,9 @@ from shared.worker import Worker
 
 TICK_NS = NS_PER_S
 SOONER_TICK_NS = TICK_NS // 4  # at most, where links come and go all the time
-STALLED_NS = 5 * NS_PER_S  # between two turns: nobody let the station run
+STALLED_NS = 5 * NS_PER_S  # between two turns: the machine did not let the station run
 RECEIVE_FIRST_NS = 2 * NS_PER_S  # then, until its links are back
-DELTA_NS = NS_PER_S // 10  # twice as often as units say where they are
+DELTA_NS = NS_PER_S // 10  # twice as often as units send positions
 URGENT_SOONER_NS = DELTA_NS // 2  # alarms and commands wait for half of that
 DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
 CHECKPOINT_NS = 15 * NS_PER_S  # what a restart steps at most; at 1,000 events/s a second's work
@@ -108,7 +108,7 @@ class StationEngine:
             maxlen=_EXTERNAL_WAITING
         )
         self._snapshot_requests: deque[Callable[[Snapshot, Trails], None]] = deque()
-        self._unlinked: frozenset[str] = frozenset()  # as was told last
+        self._unlinked: frozenset[str] = frozenset()  # as reported last
         self._receives_first = False
         self._worker = Worker(
             "station-drive",
@@ -182,7 +182,7 @@ class StationEngine:
         return self._write_ahead.log_position
 
     def rebuild(self, records: Iterable[Record], after: tuple[int, int] = (0, 0)) -> int:
-        """Step what a log says happened; gives the number of events stepped.
+        """Step the events of a log; gives the number of events stepped.
 
         ``after`` is the place (time, events at that time) of the checkpoint with which the
         pipeline was made.
@@ -226,7 +226,7 @@ class StationEngine:
                     self._admit(t_ns, key, payload)
             except Exception as error:  # noqa: BLE001  # costs this record, not those behind it
                 self._health.report_bug("drive", error)
-        if not follows:  # of half a log nobody can tell what an action does
+        if not follows:  # on half a log the effect of an action is unknown
             self._take_actions()
             self._take_external()
             self._deliveries.admit_waiting(self._admit)
@@ -240,7 +240,7 @@ class StationEngine:
         self._flush_urgent()
         sooner_ns = URGENT_SOONER_NS if self._publisher.is_urgent else 0
         if now_ns >= due.delta_ns - sooner_ns:
-            due.delta_ns = now_ns + DELTA_NS  # where it cannot be told, too
+            due.delta_ns = now_ns + DELTA_NS  # where it cannot be published, too
             before_ns = time.thread_time_ns()
             self._publish()
             spent_ns = time.thread_time_ns() - before_ns
@@ -257,7 +257,7 @@ class StationEngine:
         due, unlinked = self._due, self._ports.unlinked()
         last_run_ns, self._last_run_ns = self._last_run_ns, now_ns
         if now_ns - last_run_ns > STALLED_NS and not self._receives_first:
-            # Else everybody would be lost, of whom nothing could be heard.
+            # Else all units would be lost: their messages could not be received meanwhile.
             due.tick_ns = due.sooner_tick_ns = now_ns + RECEIVE_FIRST_NS
             self._receives_first = True  # once: time goes on, however slow each turn is
         is_due = now_ns >= due.tick_ns
@@ -283,10 +283,10 @@ class StationEngine:
         elif admission is Admission.DUPLICATE:
             self._repeated += 1
         elif admission is Admission.FORGED:
-            text = f"Somebody on the bus speaks as the station ({key}): not believed"
+            text = f"A sender on the bus claims to be the station ({key}): rejected"
             self._health.report("bus", text)
         elif admission is Admission.RESTART_STORM:
-            text = f"More starts of a unit's program are said than can be ({key}): left out"
+            text = f"A unit's program starts more often than any does ({key}): left out"
             self._health.report("bus", text)
         return admission
 

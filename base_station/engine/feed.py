@@ -62,8 +62,8 @@ class LiveFeed:
 
     @property
     def late_waits(self) -> bool:
-        """True if anything that was delivered may not be in the log yet: it waits here, or whoever
-        took it has not come for more.
+        """True if anything that was delivered may not be in the log yet: it waits here, or the
+        engine took it and has not come for more.
         """
         return self._late_pending
 
@@ -163,7 +163,7 @@ class LogFeed:
         on_damage: Callable[[str], object] = lambda _: None,
     ) -> None:
         """``flush`` brings what is still in memory to the disk (``Recorder.flush``); ``on_damage``
-        hears in words of each part that cannot be read.
+        receives a sentence about each part that cannot be read.
         """
         self._folder = folder
         self._flush = flush
@@ -175,7 +175,7 @@ class LogFeed:
         return log_id_of(segment_paths(self._folder))
 
     def noting(self, on_damage: Callable[[str], object]) -> LogFeed:
-        """The same log, of whose damage somebody else hears."""
+        """The same log, with another callback for damage."""
         return LogFeed(self._folder, self._flush, on_damage)
 
     def records(
@@ -203,7 +203,7 @@ class LogFeed:
         )
 
     def watch(self) -> Callable[[], bool]:
-        """Gives what tells whether a segment of now has been written anew since, or is gone."""
+        """Gives a function: True if a segment of now has been written anew since, or is gone."""
         now = self._files()
         return lambda: not now <= self._files()
 

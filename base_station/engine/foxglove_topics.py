@@ -34,9 +34,9 @@ class FoxgloveTopics:
 
     def __init__(self) -> None:
         self._last_second: dict[str, int] = {}
-        self._building: tuple[Plan, Anchor] | None = None  # that is told of, or was last
+        self._building: tuple[Plan, Anchor] | None = None  # that is logged now, or was last
         self._placing: Iterator[bytes] = iter(())  # it, on the Earth, step by step
-        self._plan = b""  # as it is told; empty: not all of it is placed yet
+        self._plan = b""  # as it is logged; empty: not all of it is placed yet
         self._plan_logged_ns = 0
 
     def of(
@@ -44,7 +44,7 @@ class FoxgloveTopics:
     ) -> tuple[str, bytes] | None:
         """``(topic, payload)``; None where there is nothing to show.
 
-        A unit's place is said once a second, and where the site has an anchor.
+        A unit's place is logged once a second, and where the site has an anchor.
         """
         if isinstance(decision, FusedPosition):
             return self._location_of(decision, anchor)
@@ -60,7 +60,7 @@ class FoxgloveTopics:
 
     def plan(self, plan: Plan | None, anchor: Anchor | None, t_ns: int) -> tuple[str, bytes] | None:
         """The building on the Earth, where it is known: when it changes, and again now and then.
-        A large one is placed bit by bit, with every call some: whoever asks steps everybody.
+        A large one is placed bit by bit, with every call some: the caller's thread is the engine's.
         """
         if plan is None or anchor is None:
             return None
@@ -101,8 +101,8 @@ def _plan_in_wgs84(plan: Plan, anchor: Anchor) -> Iterator[bytes]:
 
 
 def _to_geodetic(coordinates: Any, into: list[Any], anchor: Anchor) -> Iterator[int]:
-    """Add one ``[east_m, north_m, ...]``, or lists of such to any depth, as ``[lon, lat]``; tells
-    of each point.
+    """Add one ``[east_m, north_m, ...]``, or lists of such to any depth, as ``[lon, lat]``; yields
+    for each point.
     """
     if coordinates and isinstance(coordinates[0], int | float):
         lat_deg, lon_deg, _ = anchor.to_geodetic(coordinates[1], coordinates[0], 0.0)

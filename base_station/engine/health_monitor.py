@@ -38,7 +38,7 @@ class HealthMonitor:
         """Keep a bug in one event's handling from ending the station."""
         try:
             yield
-        except Exception as error:  # noqa: BLE001  # told, and the station goes on
+        except Exception as error:  # noqa: BLE001  # reported, and the station goes on
             self.report_bug(part, error)
 
     def report_bug(self, part: str, error: Exception) -> None:
@@ -75,5 +75,5 @@ class HealthMonitor:
 
 
 def _without_numbers(text: str) -> str:
-    """Whatever is counted in it: what is worse now than it was is told, and not every number."""
+    """The text without its counts: another problem is reported, and not every new number."""
     return _NUMBER.sub("", text)

@@ -1,7 +1,7 @@
 """Ports of the engine: the feed and the log it works with, and its ways to consoles and operators.
 
 The engine (or a replay) is the only thread that touches the live state.  It calls everything here
-in that thread unless a method says otherwise, so an implementation takes what it is given and
+in that thread unless a method states otherwise, so an implementation takes what it is given and
 returns at once: a queue and a thread or loop of its own do the slow part.
 """
 
@@ -131,8 +131,8 @@ class OperatorGate(Protocol):
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
         """From any thread.  The future is done once the action is in the log and in the live
         state; it carries ``StoreError`` where the station is stopping.  With an ``action_id`` of a
-        client's (``core.idempotency``) it tells what was done with that client's key, now or
-        before.
+        client's (``core.idempotency``) the result is that of the first request with that client's
+        key, now or before.
         """
         ...
 
@@ -168,7 +168,7 @@ class EnginePorts:
     checkpoints: Checkpoints
     people: PersonLookup  # who the person ids stand for
     facts: Callable[[], StationFacts]  # asked once a second; messages a second are filled in
-    # Hears once a second what is there of each linked unit, and whether it may not be on the disk.
+    # Receives once a second what has come of each linked unit, and if it may not be on the disk.
     report: Callable[[Report, bool], None]
     linked: Callable[[], frozenset[str]]  # units whose link is there
     unlinked: Callable[[], frozenset[str]]  # whose link was there and is gone

@@ -21,7 +21,7 @@ from shared.channels import tracked_unit
 from shared.clock import NS_PER_S
 from shared.messages import STATION_ID, AlarmChange, FusedPosition, OperatorAction, UnitDescription
 
-LAST_MESSAGE_STEP_NS = 5 * NS_PER_S  # the store follows when units were heard in such steps
+LAST_MESSAGE_STEP_NS = 5 * NS_PER_S  # the times of units' last messages are stored in such steps
 
 
 class Projector:
@@ -111,6 +111,6 @@ class Projector:
 
 
 def _at_station_time(action: OperatorAction, t_ns: int) -> OperatorAction:
-    """A projection may hold actions of different times, so each says its own."""
+    """A projection may hold actions of different times, so each carries its own."""
     header = msgspec.structs.replace(action.header, t_utc_ns=t_ns)
     return msgspec.structs.replace(action, header=header)

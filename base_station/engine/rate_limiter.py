@@ -17,10 +17,10 @@ BURST_S = 1.0  # so much may come at once: what a link has held up
 _REPORT_AFTER_NS = 3 * NS_PER_S  # of being beyond it: one burst is no matter
 _PAUSE_NS = 2 * NS_PER_S  # without any that is too much: it begins anew
 _OVER_AFTER_NS = 30 * NS_PER_S
-_MOST_SENDERS = 2000  # that are told apart; on a bus without certificates there may be any number
+_MOST_SENDERS = 2000  # that are kept apart; on a bus without certificates there may be any number
 _PART = "flood "  # and whose
 _TEXT = (
-    f"{{0}} says more than any unit does (over {MESSAGES_HZ} messages or {BYTES_PER_S / 1e6:g} MB "
+    f"{{0}} sends more than any unit does (over {MESSAGES_HZ} messages or {BYTES_PER_S / 1e6:g} MB "
     "a second): what is too much is dropped. Switch it off, or revoke it: muster pki revoke {0}"
 )
 
@@ -50,7 +50,7 @@ class SenderRateLimiter:
         """Callback for a bus, from one thread at a time; ``muster/v1/SENDER/...``."""
         parts = key.split("/", 3)
         what = parts[-1]
-        if what.startswith("command/"):  # said to a unit, not by it
+        if what.startswith("command/"):  # sent to a unit, not by it
             self._offer(key, payload)
             return
         now_ns = self._clock.monotonic_ns()
@@ -66,8 +66,8 @@ class SenderRateLimiter:
     def changes(self, known: Mapping[str, str]) -> Iterator[ReportProblem]:
         """Reports on senders that exceed their share now, or have long been well again; one thread.
 
-        ``known``: the problems that stand reported, by part.  What an earlier run of the program
-        told, or the other of two stations, ends here too.
+        ``known``: the problems that stand reported, by part.  Reports of an earlier run of the
+        program, or of the other of two stations, end here too.
         """
         now_ns = self._clock.monotonic_ns()
         for sender_id in [one.removeprefix(_PART) for one in list(known) if one.startswith(_PART)]:

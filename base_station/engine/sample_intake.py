@@ -75,7 +75,7 @@ class SampleIntake:
         """Log and publish batches of one run of the unit, in their order.
 
         A batch is the same where run and sequence number are: it is kept once.  Raises UserError
-        where the unit has started too often, ConfigError where the sample rate cannot be told, and
+        where the unit has started too often, ConfigError where the sample rate is unknown, and
         StoreError where the samples are not on the disk: they are to be posted again.
         """
         unit = self._unit(unit_id)

@@ -17,8 +17,8 @@ class SteadyClock:
 
     It follows the machine's UTC forwards; when that is set back, it goes on at the rate of
     monotonic time until the other has caught up.  While it is held it goes on likewise when the
-    machine's is set far forward: nobody is to be taken for missing since yesterday because
-    somebody set a clock.  From any thread.
+    machine's is set far forward: else members would count as missing since yesterday because a
+    clock was set.  From any thread.
     """
 
     def __init__(self, clock: Clock, not_before_ns: int = 0) -> None:
@@ -33,7 +33,7 @@ class SteadyClock:
         self._is_held = is_held
 
     def not_before(self, utc_ns: int) -> None:
-        """Another clock has said ``utc_ns``: go on from there."""
+        """Another clock has reached ``utc_ns``: go on from there."""
         with self._lock:
             self._offset_ns = max(self._offset_ns, utc_ns - self._clock.monotonic_ns())
 

@@ -46,7 +46,7 @@ class TrailEncoder:
 
 class _EncodedTrail:
     def __init__(self) -> None:
-        self._steps: list[TrailStep] = []  # what ``_text`` says
+        self._steps: list[TrailStep] = []  # contents of ``_text``
         self._text = bytearray()  # their points, with a comma between two
 
     def whole(self) -> msgspec.Raw:

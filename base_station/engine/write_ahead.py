@@ -24,7 +24,7 @@ _KEYS = {FusedPosition: FUSED.key(STATION_ID), AlarmChange: ALARM.key(STATION_ID
 
 
 class WriteAhead:
-    """``append_and_apply`` events; publishers and projector are told what follows from them."""
+    """``append_and_apply`` events; publishers and projector receive their outputs."""
 
     def __init__(
         self,
@@ -41,7 +41,7 @@ class WriteAhead:
         self._health = health
         self._foxglove = FoxgloveTopics()
         self._events_at_t = 0  # stepped at the pipeline's present time
-        self._urgent = False  # something was written that must be on the disk before it is told
+        self._urgent = False  # a record was written that must be on disk before it is published
 
     @property
     def log_position(self) -> tuple[int, int]:
@@ -49,7 +49,7 @@ class WriteAhead:
         return self._pipeline.state.t_ns, self._events_at_t
 
     def rebuild(self, records: Iterable[Record], after: tuple[int, int]) -> int:
-        """Step what a log says happened after a place; gives the number of events stepped.
+        """Step the events of a log after a place; gives the number of events stepped.
 
         Decisions that a crash kept from the log are written to it now.
         """

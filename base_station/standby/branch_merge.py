@@ -172,7 +172,7 @@ def _persons_action(payload: bytes) -> OperatorAction | None:
 
 
 def _in_words(done: OperatorAction) -> str:
-    """What was given with it: a note whole, of a drawing its beginning."""
+    """Text of the action with its fields: a note whole, of a drawing its beginning."""
     action = done.action
     left_out = _NAMES if isinstance(action, Assign) else ()
     fields = (name for name in action.__struct_fields__ if name not in left_out)

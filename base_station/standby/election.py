@@ -1,8 +1,8 @@
 """Leader election between two stations.  Pure: time and heartbeats come in, a decision comes out.
 
-A station leads for as long as it is heard (its lease).  Two stations cannot tell a dead one from a
-cut cable, so the units are asked in a way: who hears none of them, while the other one had some, is
-probably the one that is cut off, and waits for a person.
+A station leads for as long as its heartbeats arrive (its lease).  A station cannot distinguish a
+dead partner from a cut cable, so messages of units decide: a station that receives none, while the
+other one had units, is probably cut off, and waits for a person.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from shared.clock import NS_PER_S
 Decision = Literal["stay", "follow", "lead", "step back"]
 LACKING_LEASES = 20  # that a standby waits for one of which it has not got everything
 _TOKEN_GONE_SHARE = 0.5  # of the lease: the token is gone as well, so it is no matter of lost beats
-_ON_THE_WAY_NS = NS_PER_S // 2  # what was said before a cable was cut has come by then
-_GREETING_LEASES = 5  # that a station waits at most for one that listens, to hear from it
+_ON_THE_WAY_NS = NS_PER_S // 2  # messages from before a cable was cut have come by then
+_GREETING_LEASES = 5  # that a station waits at most for a heartbeat of one whose router listens
 _LACKING_NS = 30 * NS_PER_S  # of the other one's log: more is not the last moments
-_OPENING_NS = NS_PER_S  # that a router listens to nobody when it opens again
-_WITNESS_NS = NS_PER_S  # a cable that is whole again may bring a unit's word before the station's
+_OPENING_NS = NS_PER_S  # that a router takes no connection when it opens again
+_WITNESS_NS = NS_PER_S  # a cable that is whole again may bring a unit's message before a heartbeat
 
 
 class LocalStatus(NamedTuple):
-    """How this station stands at the moment."""
+    """State of this station at the moment, for the election."""
 
     station: str
     preferred: bool
@@ -32,12 +32,12 @@ class LocalStatus(NamedTuple):
     place: LogPosition
     stepped: LogPosition  # its disk may have less of the other one's log
     units: int  # that are linked with either router, as far as it knows
-    unit_received_ns: int  # when a unit last said anything; monotonic
+    unit_received_ns: int  # time of the last message of any unit; monotonic
     other_listens: bool = False  # the other one's router takes connections
 
 
 class Election:
-    """``receive`` what the other one says, then ``decide``, several times a second."""
+    """``receive`` the other one's heartbeats, then ``decide``, several times a second."""
 
     def __init__(self, lease_ns: int, now_ns: int) -> None:
         self._lease_ns = lease_ns
@@ -46,18 +46,18 @@ class Election:
         self._received_ns = 0
         self._token_there = False
         self._listened_ns: int | None = None  # when the other one's router last did
-        self._witness_ns: int | None = None  # since when a unit is heard, and not the other
+        self._witness_ns: int | None = None  # since when units send, and the other station does not
         self.lacks_log = False  # much of the other one's; people's actions may be in that
         self.role: Role = "waiting"
 
     @property
     def other(self) -> PeerHeartbeat | None:
-        """What the other station said last, however long ago."""
+        """Last heartbeat of the other station, however long ago."""
         return self._other
 
     @property
     def is_undecided(self) -> bool:
-        """Which of the two is cut off: the other one had no units."""
+        """True if units do not show which of the two is cut off: the other one had none."""
         return self._other is not None and self._other.units == 0
 
     def receive(self, beat: PeerHeartbeat, now_ns: int) -> None:
@@ -70,14 +70,14 @@ class Election:
         self._token_there = there
 
     def is_there(self, now_ns: int) -> bool:
-        """True if the other station is heard."""
+        """True if heartbeats of the other station arrive."""
         if self._other is None:
             return False
         patience_ns = self._lease_ns * (1.0 if self._token_there else _TOKEN_GONE_SHARE)
         return now_ns - self._received_ns < patience_ns
 
     def is_cut_off(self, now_ns: int) -> bool:
-        """This standby hears neither the active station nor a unit, though that one had some."""
+        """This standby receives neither the active station nor a unit, though that one had some."""
         alone = self.role == "standby" and not self.is_there(now_ns)
         return alone and not self._has_witness(now_ns)
 
@@ -122,7 +122,7 @@ class Election:
 
     def _is_awaited(self, now_ns: int) -> bool:
         """True if the other station may only be out of reach while the routers link again, or has
-        what nobody else has and may come back with it.
+        events that this one lacks and may come back with them.
         """
         silent_ns = now_ns - self._received_ns
         if self.lacks_log and silent_ns < LACKING_LEASES * self._lease_ns:

@@ -1,4 +1,4 @@
-"""This station as one of two: says that it is there, hears the other, and takes its place.
+"""This station as one of two: sends heartbeats, receives the other's, and takes its place.
 
 A thread looks several times a second.  Whatever changes who leads is decided there, and by
 ``Election`` alone.
@@ -43,7 +43,7 @@ _STEP_S = 5.0  # that the drive may take for what was delivered
 
 @dataclass(frozen=True)
 class HaDependencies:
-    """What a pair works with."""
+    """Dependencies of one station of a pair."""
 
     bus: Bus
     log: SharedLog
@@ -92,7 +92,7 @@ class HaController:
         self._worker.start()
 
     def close(self) -> None:
-        """When the drive has ended: what it has still written goes to the other one."""
+        """Call it when the drive has ended: the last records still go to the other station."""
         self._worker.close()
         if self.leads:
             self.copy.drain()
@@ -114,7 +114,7 @@ class HaController:
         return self._follower.in_step
 
     def refusal(self) -> str | None:
-        """Why nothing can be done here; None: this station leads."""
+        """Reason why nothing can be done here; None: this station leads."""
         if self.leads:
             return None
         other = self._election.other
@@ -124,25 +124,25 @@ class HaController:
         return "this station does not lead yet; try again in some seconds"
 
     def followed(self) -> str | None:
-        """The active station, where that is another one and it is heard."""
+        """The active station, where that is another one and its heartbeats arrive."""
         other = self._election.other
         if self.leads or other is None or other.role != "active":
             return None
         return self.other_there()
 
     def other_there(self) -> str | None:
-        """The other station, while it is heard."""
+        """The other station, while its heartbeats arrive."""
         other = self._election.other
         there = self._election.is_there(self._around.clock.monotonic_ns())
         return other.station if other is not None and there else None
 
     def others_run(self) -> int:
-        """Run of its program that the other station is in, as last heard."""
+        """Run of its program that the other station is in, by its last heartbeat."""
         other = self._election.other
         return other.run if other is not None else 0
 
     def take_over(self) -> None:
-        """A person wants this station to lead, whatever it hears; soon."""
+        """A person wants this station to lead, whatever it receives; soon."""
         self._by_hand.set()
         self._worker.wake()
 
@@ -164,7 +164,7 @@ class HaController:
             in_step=in_step,
         )
 
-    # ---- what is heard
+    # ---- received messages
 
     def _note_beat(self, beat: PeerHeartbeat) -> None:
         """The time at a standby is that of the station that leads."""
@@ -212,7 +212,7 @@ class HaController:
         self._publish_beat()
 
     def _lead(self) -> None:
-        """Everything that was fetched is stepped, then the take-over, then what the bus says."""
+        """Step all fetched events, then the take-over, then the messages of the bus."""
         around, other = self._around, self._election.other
         self._follower.stop_following()
         around.log.follows = around.log.is_cut_short = (
@@ -252,7 +252,7 @@ class HaController:
         )
 
     def _publish_beat(self) -> None:
-        """A station that leads and writes no log, though it should every second, says nothing."""
+        """No beat comes from a station that leads and writes no log, as it should every second."""
         if self._ends or self._is_stuck():
             return
         me = self._me()
@@ -288,22 +288,22 @@ class HaController:
         elif self._election.is_cut_off(now_ns):
             assert other is not None
             found.append(
-                f"Neither {other.station} nor any unit is heard: this station is probably cut off. "
-                "It takes over as soon as it hears a unit, or by hand"
+                f"No message of {other.station} or of any unit arrives: this station is probably "
+                "cut off. It takes over as soon as it receives a unit, or by hand"
             )
         elif self.followed() is None and self._around.log.place == START:
             found.append(
-                "No active station is heard, and this new standby has nothing yet: it waits"
+                "No active station is reachable, and this new standby has nothing yet: it waits"
             )
         elif self.followed() is None and self._election.lacks_log:
             assert other is not None
             found.append(
-                f"{other.station} is not heard, and this standby has not got everything of it: it "
-                f"waits {LACKING_LEASES * self._config.lease_s:.0f} s for it to come back, and "
+                f"{other.station} is not reachable, and this standby has not got everything of it: "
+                f"it waits {LACKING_LEASES * self._config.lease_s:.0f} s for it to come back, and "
                 "takes over then, or by hand"
             )
         elif self.followed() is None:
-            found.append("No active station is heard: this one takes over in some seconds")
+            found.append("No active station is reachable: this one takes over in some seconds")
         elif self._around.log.is_cut_short or self._around.log.problem:
             found.append(
                 "The disk of this standby does not take the log: free or mend it; what is missing "

@@ -1,4 +1,4 @@
-"""Fetches the active station's log, and says how far this one has it on its disk."""
+"""Fetches the active station's log, and reports how far this one has it on its disk."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Leader(NamedTuple):
 
 
 class LogFollower:
-    """``follow`` a leader, or nobody; from any thread."""
+    """``follow`` a leader, or none; from any thread."""
 
     def __init__(
         self,
@@ -48,7 +48,7 @@ class LogFollower:
         feed: StandbyFeed,
         on_parting: Callable[[LogPosition], None],
     ) -> None:
-        """``on_parting`` is told once where this log has to be cut before it can go on."""
+        """``on_parting`` is called once with the place where this log is to be cut."""
         self._station = station
         self._bus = bus
         self._log = log
@@ -79,7 +79,7 @@ class LogFollower:
             self._changed.notify_all()
 
     def stop_following(self) -> None:
-        """When it returns, nothing more is delivered, whatever is still asked."""
+        """Stop: when it returns, nothing more is delivered, whatever is still asked."""
         self.follow(None)
         with self._delivering:
             pass
@@ -164,7 +164,7 @@ class LogFollower:
     # ---- confirming
 
     def _confirm(self) -> float:
-        """What stands in a log that went its own way says nothing of the leader's."""
+        """Report the durable place, only while this log is the same as the leader's."""
         with self._changed:
             self._changed.wait_for(self._has_same_log)
             leader = self._leader

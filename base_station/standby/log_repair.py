@@ -44,7 +44,7 @@ class SharedLogFiles(Protocol):
 
 
 class EventServer(RpcServer):
-    """Serves ``events``: what stands behind a place in this station's log, whoever leads."""
+    """Serves ``events``: this station's log behind a place, whichever station leads."""
 
     def __init__(self, station: str, bus: Bus, disk: LogFeed) -> None:
         self._disk = DiskReader(disk)
@@ -67,7 +67,7 @@ class LogRepair:
         other: Callable[[], str | None],
         on_mended: Callable[[int], None],
     ) -> None:
-        """``on_mended`` hears up to which time a segment goes that is whole again."""
+        """``on_mended`` receives the end time of a segment that is whole again."""
         self._on_mended = on_mended
         self._bus = bus
         self._files = files
@@ -88,10 +88,10 @@ class LogRepair:
         known = {one for before, one in pairwise([None, *paths]) if before not in damaged}
         path = min(damaged & known, key=lambda one: (self._tries[one], one), default=None)
         if path is None:
-            return  # somebody has moved it away
+            return  # a person has moved it away
         behind = _first_event(paths[paths.index(path) + 1 :])
         if behind is None:
-            return  # nobody can tell yet where it ends
+            return  # its end is not known yet
         self._tries[path] += 1
         before = _last_place(paths[: paths.index(path)])
         filling = MissingRecordMerger(self._events(station, before, stop), behind)

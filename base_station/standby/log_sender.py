@@ -18,7 +18,7 @@ logger = logging.getLogger(__name__)
 _BATCH_BYTES = 512 * 1024
 _FROM_DISK = 2000  # events in a batch
 _WAIT_S = 0.3  # for something to say
-_GATHER_S = 0.01  # what comes in quick succession is said together
+_GATHER_S = 0.01  # events in quick succession are sent together
 
 
 class DiskReader:
@@ -57,7 +57,7 @@ class LogSender(RpcServer):
             yield pack(LogAncestry(self._log.log_id, self._log.take_overs, self._log.place))
 
     def _records(self, _key: str, parameters: str, _payload: bytes) -> Iterator[bytes]:
-        """What stands behind ``t`` and ``n``; waits a moment for it.  Nothing of a standby."""
+        """Events behind ``t`` and ``n``; waits a moment for them.  None of a standby."""
         if not self._leads():
             return
         place = place_of(parameters)

@@ -73,7 +73,7 @@ def _move(path: Path, target: Path) -> None:
 
 
 def parts(data: Path) -> list[str]:
-    """Names of what was set aside, and the active station has not heard of, oldest first."""
+    """Names of the parts that the active station has not merged, oldest first."""
     folder = data / APART
     if not folder.is_dir():
         return []
@@ -113,7 +113,7 @@ def _end_ns(path: Path) -> int:
 
 
 def _kept(paths: list[Path], place: LogPosition) -> Iterator[Record]:
-    """What stands up to the place, with what was decided from it."""
+    """Events up to the place, with the decisions from them."""
     here = START
     for path in paths:
         with SegmentReader(path) as reader:

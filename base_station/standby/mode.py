@@ -33,7 +33,7 @@ from shared.worker import Worker
 
 @dataclass(frozen=True)
 class Parts:
-    """What the rest of the station is made of."""
+    """Parts of the rest of the station."""
 
     data: Path
     bus: Bus
@@ -56,14 +56,14 @@ class Parts:
 
 class PeerFeed(Feed, Protocol):
     def offer(self, key: str, payload: bytes) -> None:
-        """What the bus calls."""
+        """Callback for the bus."""
         ...
 
     def close(self) -> None: ...
 
 
 class HaMode(Protocol):
-    """How a station stands to another one.  ``log`` and ``feed`` go to the drive."""
+    """Relation of a station to another one.  ``log`` and ``feed`` go to the drive."""
 
     @property
     def log(self) -> Log: ...
@@ -78,15 +78,15 @@ class HaMode(Protocol):
 
     @property
     def ha_status(self) -> HaStatus | None:
-        """What the API knows of it."""
+        """Status for the API."""
         ...
 
     def gate_to(self, drive: EngineGate) -> EngineGate:
-        """What stands before the drive."""
+        """Gate before the drive."""
         ...
 
     def may_forget(self) -> bool:
-        """True if units may forget what the report before the last one told of."""
+        """True if units may delete the messages of the report before the last one."""
         ...
 
     def note_report(self) -> None:
@@ -98,11 +98,11 @@ class HaMode(Protocol):
         ...
 
     def begin(self, place: tuple[int, int], state: StationState) -> None:
-        """What the log says, before anything is added to it."""
+        """State of the log, before anything is added to it."""
         ...
 
     def start(self, gate: EngineGate, closing: ExitStack) -> None:
-        """When the drive runs.  ``closing`` ends it."""
+        """Call it when the drive runs.  ``closing`` ends it."""
         ...
 
 

@@ -31,8 +31,8 @@ class PeerMonitor:
         on_beat: Callable[[PeerHeartbeat], None],
         on_have: Callable[[LogPosition], None],
     ) -> None:
-        """``run``: of this station's program.  ``election`` hears of the other one, and
-        so does ``on_beat``; ``on_have`` is told how far a follower of this log has it.
+        """``run``: of this station's program.  ``election`` and ``on_beat`` receive the other's
+        heartbeats, ``on_have`` the place up to which a follower of this log has it.
         """
         self._station = station
         self._run = run
@@ -42,7 +42,7 @@ class PeerMonitor:
         self._on_have = on_have
         self._units: set[str] = set()
         self._stranger = ""
-        self._stranger_ns = 0  # when it was last heard
+        self._stranger_ns = 0  # time of its last heartbeat
         self._declared = [
             bus.subscribe(f"{STATIONS_ROOT}/*/beat", self._receive_beat),
             bus.subscribe(f"{STATIONS_ROOT}/*/have", self._receive_have),
@@ -52,12 +52,12 @@ class PeerMonitor:
 
     @property
     def units(self) -> int:
-        """How many are linked with either router, as far as is known here."""
+        """Number of units that are linked with either router, as far as is known here."""
         return len(self._units)
 
     @property
     def stranger(self) -> str:
-        """Why a station that is heard is no partner, as a sentence for a person; else empty."""
+        """Reason why a station is no partner, as a sentence for a person; empty: none is there."""
         is_recent = self._clock.monotonic_ns() - self._stranger_ns < _STRANGER_TIMEOUT_NS
         return self._stranger if is_recent else ""
 

@@ -1,7 +1,7 @@
 """Protocol between two stations: messages and bus keys.
 
-Nobody but stations may say or hear anything under these keys (``security.pki.access``); they
-lie outside ``muster/v1``, so no subscription to that tree brings them.
+Only stations may publish or subscribe under these keys (``security.pki.access``); they lie outside
+``muster/v1``, so no subscription to that tree brings them.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ W = TypeVar("W")
 
 
 class PeerHeartbeat(msgspec.Struct, frozen=True):
-    """Said several times a second: who is there, and as what."""
+    """Heartbeat, sent several times a second: the station and its role."""
 
     station: str
     protocol: int
@@ -44,7 +44,7 @@ class ReplicationAck(msgspec.Struct, frozen=True):
 
 
 class LogAncestry(msgspec.Struct, frozen=True):
-    """Where a station's log comes from."""
+    """Origin of a station's log."""
 
     log_id: int  # the time of its first event; 0: it is empty
     take_overs: tuple[TakeOver, ...]
@@ -70,4 +70,4 @@ def unpack(payload: bytes, kind: type[W]) -> W:
     try:
         return msgspec.msgpack.decode(payload, type=kind)
     except msgspec.MsgspecError as error:
-        raise WireError(f"another station says what makes no sense: {error}") from error
+        raise WireError(f"message of another station cannot be read: {error}") from error

@@ -1,6 +1,6 @@
 """Remote procedure calls between two stations: questions under their keys, asked in rounds.
 
-An answer travels in pieces: no router has to take a larger message from anybody than units send,
+An answer travels in pieces: no router has to take larger messages than those that units send,
 and what a unit leaves unfinished there is bounded beside a standby as well.
 """
 
@@ -32,7 +32,7 @@ class RpcServer:
 def ask(
     bus: Bus, station: str, what: str, payload: bytes = b"", timeout_s: float = _TIMEOUT_S
 ) -> Iterator[bytes]:
-    """What the station answers; nothing where it is not there, or has nothing to say."""
+    """Answers of the station; none where it is not there, or has none."""
     pieces: list[bytes] = []
     for piece in bus.query(key_of(station, what), payload, timeout_s):
         pieces.append(piece[1:])

@@ -42,7 +42,7 @@ class SharedLog:
         self._log_id = 0
 
     def begin(self, place: LogPosition, log_id: int, take_overs: Sequence[TakeOver]) -> None:
-        """Before anything is written: what the log says so far."""
+        """State of the log so far, before anything is written."""
         self._first = self._durable = self._offered = place
         self._log_id = log_id
         self._take_overs = list(take_overs)

@@ -24,7 +24,7 @@ class StaleState:
 
     def can_be_made_good(self, *, leads: bool, spared: bool, in_incident: bool) -> bool:
         """True if to start again and step it: a standby at once, one that leads when the other
-        can take over (``spared``) and nobody is in action.
+        can take over (``spared``) and no incident is open.
         """
         return self.is_stale and (not leads or (spared and not in_incident))
 

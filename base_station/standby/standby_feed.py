@@ -14,16 +14,16 @@ from shared.errors import UnknownChannelError
 
 _FOLLOWED_BYTES = 16 * 1024 * 1024
 _FOLLOWED_AT_ONCE = 500  # a long log to catch up with holds up neither consoles nor the end
-_KEPT_NS = 30 * NS_PER_S  # of what the bus says, for when the other station dies
+_KEPT_NS = 30 * NS_PER_S  # of messages of the bus, for when the other station dies
 _KEPT_BYTES = 16 * 1024 * 1024
 
 
 class StandbyFeed:
     """A ``Feed``.  Any thread may ``offer`` and ``deliver``, one at a time may ``take``.
 
-    A standby hears the bus too.  The last of it is kept, and comes when it leads as what was
-    fetched later: what the other station has said before it died is then left out by the drive,
-    like anything that came twice.
+    A standby receives the bus too.  Its last messages are kept, and come when the standby leads,
+    behind the fetched events: messages that the other station logged before it died are then left
+    out by the drive, like all that came twice.
     """
 
     def __init__(self, live: LiveFeed, clock: Clock) -> None:
@@ -34,7 +34,7 @@ class StandbyFeed:
         self._followed_bytes = 0
         self._kept: deque[tuple[int, str, bytes]] = deque()  # monotonic time, key, payload
         self._kept_bytes = 0
-        self.unit_received_ns = 0  # when a unit last said anything; monotonic
+        self.unit_received_ns = 0  # time of the last message of any unit; monotonic
         self._lead_requested = False
         self._woken = False
         self._closed = False
@@ -51,7 +51,7 @@ class StandbyFeed:
         return len(self._followed)
 
     def offer(self, key: str, payload: bytes) -> None:
-        """What the bus calls."""
+        """Callback for the bus."""
         with self._changed:
             if self._follows:
                 self._keep(key, payload)
@@ -92,7 +92,7 @@ class StandbyFeed:
         self._live.wake()
 
     def close(self) -> None:
-        """Nobody takes any more."""
+        """No more is taken."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()

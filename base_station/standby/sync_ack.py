@@ -22,7 +22,7 @@ _BEHIND_NS = 2 * NS_PER_S
 _GOODBYE_NS = 2 * NS_PER_S
 _LOOK_S = 0.02
 _MOST_MARKS = 1000
-_STANDBY_TIMEOUT_NS = 3 * NS_PER_S  # nothing was heard from it
+_STANDBY_TIMEOUT_NS = 3 * NS_PER_S  # without an acknowledgement of it
 
 Result = TypeVar("Result")
 
@@ -34,7 +34,7 @@ class _Waiting(NamedTuple):
 
 
 class ReplicaProgress:
-    """How far the standby has this station's log on its disk.  From any thread."""
+    """Place up to which the standby has this station's log on its disk.  From any thread."""
 
     def __init__(self, clock: Clock, place: Callable[[], LogPosition], confirm_s: float) -> None:
         self._clock = clock
@@ -50,7 +50,7 @@ class ReplicaProgress:
         self._reported = (START, START)  # places at the last two reports
 
     def note(self, place: LogPosition) -> None:
-        """The standby says what it has; less than before where another machine took its place."""
+        """The standby acknowledges a place; an earlier one where another machine replaced it."""
         with self._lock:
             self._has = place
             self._received_ns = self._clock.monotonic_ns()
@@ -64,7 +64,7 @@ class ReplicaProgress:
             self._marks.append((now_ns, self._place()))
             while self._marks and self._marks[0][1] <= self._has:
                 self._marks.popleft()
-            if len(self._marks) > _MOST_MARKS:  # nobody comes for hours: the first one matters
+            if len(self._marks) > _MOST_MARKS:  # no standby for hours: the first one matters
                 self._marks = deque(list(self._marks)[::2])
             ready = self._take_ready()
             alone = [one for one in self._waiting if now_ns >= one.until_ns]
@@ -85,12 +85,12 @@ class ReplicaProgress:
         return oldest_ns is not None and self._clock.monotonic_ns() - oldest_ns > _BEHIND_NS
 
     def note_report_received(self) -> None:
-        """The station says what it has of the units' messages."""
+        """The station reports to units which of their messages it has."""
         with self._lock:
             self._reported = self._reported[1], self._place()
 
     def previous_report_is_durable(self) -> bool:
-        """True if what the report before the last one told of is on the standby's disk too."""
+        """True if the messages of the report before the last one are on the standby's disk too."""
         with self._lock:
             return START < self._reported[0] <= self._has
 
@@ -111,7 +111,7 @@ class ReplicaProgress:
             time.sleep(_LOOK_S)
 
     def close(self) -> None:
-        """Nobody is left waiting."""
+        """Confirm all that still wait."""
         with self._lock:
             left = list(self._waiting)
             self._waiting.clear()

@@ -25,7 +25,7 @@ from base_station.storage.db.replicated_tables import ReplicatedTables
 from shared.bus import Bus
 
 _AUDIT_ENTRIES = 500
-_FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as base_station.privacy.erasure_service says it
+_FORGOTTEN = ("ForgotPerson", "ForgotIncident")  # as in base_station.privacy.erasure_service
 
 
 class TableServer(RpcServer):
@@ -90,14 +90,15 @@ class TableReplication:
         on_dropped: Callable[[str], None],
         on_taken_back: Callable[[str], None],
     ) -> None:
-        """``leader``: whom to copy from, where that is another; ``other``: whose audit to add,
-        when this station's log has ``caught_up``: what it tells to forget must be there.
-        ``others_run`` tells whether its program has started again, perhaps on another machine.
+        """``leader``: station to copy from, where that is another; ``other``: station whose audit
+        to add, when this log has ``caught_up``: data that it orders to forget must be there.
+        ``others_run``: run of its program; another one where it started again, perhaps on another
+        machine.
 
-        ``on_people`` is told when people or photos may have changed, ``on_forgotten`` of a person
-        or an incident ("person ID") that the other station has forgotten, and again if that cannot
-        be noted, ``on_dropped`` in a sentence of what was only here,
-        ``on_taken_back`` of what this one had lost.
+        ``on_people`` is called when people or photos may have changed, ``on_forgotten`` with a
+        person or an incident ("person ID") that the other station has forgotten, and again if that
+        cannot be noted, ``on_dropped`` with a sentence about rows that were only here,
+        ``on_taken_back`` with one about rows that this one had lost.
         """
         self._bus = bus
         self._tables = tables
@@ -145,7 +146,7 @@ class TableReplication:
             self._on_people()
 
     def _take_from_standby(self, other: str, stop: Event) -> None:
-        """Where nobody else leads."""
+        """Take rows from the standby, where no other station leads."""
         rows_bytes = self._ask(other, "all", self._standby_digest)
         if rows_bytes is None:
             return

@@ -237,7 +237,7 @@ def bad_minute(count: int = 5) -> wire.Snapshot:
         last_heard_ms=NOW_MS - 71_000,
         status_ms=NOW_MS - 72_000,
         position=position(3, 71_000),
-        trust=wire.TrustView("red", "not heard: shown where it was known last"),
+        trust=wire.TrustView("red", "no message: shown at its last known position"),
     )
     stranger = msgspec.structs.replace(
         unit(count), registered=False, person=None, position=None, duty=None, status=None
@@ -392,7 +392,7 @@ def switched_off() -> wire.Snapshot:
             last_heard_ms=NOW_MS - 10 * MINUTE_MS,
             status_ms=NOW_MS - 10 * MINUTE_MS,
             position=position(index, 10 * MINUTE_MS),
-            trust=wire.TrustView("red", "not heard: shown where it was known last"),
+            trust=wire.TrustView("red", "no message: shown at its last known position"),
         )
     off = alarm(0, "link-lost", 3, "Astrid Lindqvist's unit was switched off", 600)
     off = msgspec.structs.replace(off, level="switched off")
@@ -729,7 +729,7 @@ ASSESSMENT = {
                 "green_s": 168.0,
                 "amber_s": 35.0,
                 "red_s": 4.0,
-                "causes": [["not heard", 35.0], ["place only roughly known", 12.0]],
+                "causes": [["no message", 35.0], ["place only roughly known", 12.0]],
             },
             "pin_residuals": [],
             "loop_closure_m": 1.5,

@@ -146,7 +146,7 @@ def test_how_good_positions_were_is_read_on_a_phone(stage: Stage) -> None:
     page.get_by_role("button", name="Menu").click()
     menu(page, "Incidents").get_by_role("button", name="Accuracy report").click()
     dialog = page.get_by_role("dialog", name="Accuracy report")
-    expect(dialog).to_contain_text("not heard 35 s")
+    expect(dialog).to_contain_text("no message 35 s")
     assert dialog.evaluate("shown => shown.scrollWidth - shown.clientWidth") <= 0
     label = "one => getComputedStyle(one, '::before').content"
     assert dialog.get_by_role("cell", name="151 m").evaluate(label) == '"Walked "'

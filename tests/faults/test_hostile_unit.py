@@ -105,9 +105,9 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scene]:
 @pytest.mark.parametrize(
     ("say", "told"),
     [
-        (say_position, "evil says more than any unit does"),
-        (say_another_boot, "More starts of a unit's program"),
-        (say_any_time, "evil says more than any unit does"),
+        (say_position, "evil sends more than any unit does"),
+        (say_another_boot, "A unit's program starts more often"),
+        (say_any_time, "evil sends more than any unit does"),
         (say_16_mb, ""),
     ],
 )

@@ -84,7 +84,7 @@ class AlarmManager:
                     )
                 continue
             if verdict is None:
-                if current is not None:  # what nobody can say has not stayed so
+                if current is not None:  # the rule cannot judge: no condition has lasted
                     current.clear_since_ns = current.lower_since_ns = None
                 continue
             if isinstance(verdict, Finding) and current is not None:
@@ -287,8 +287,8 @@ def _take_sentence(alarm: Alarm, finding: Finding) -> None:
 
 
 def _is_new_occurrence(alarm: Alarm, finding: Finding) -> bool:
-    """Somebody has acknowledged the mayday, the fall, the silence; and now there is another one.
-    Or it says something else: whoever wears the unit now, or a fault beyond those that are kept.
+    """True if an acknowledged emergency occurred again, or if the text of a latched alarm changed:
+    another wearer, or a fault beyond those that are kept.
     """
     if finding.onset_ns <= alarm.changed_ns:
         return False

@@ -30,7 +30,7 @@ class GpsUnused:
         if gps is None or gps.t_ns < unit.began_ns:
             return None
         if gps.faulty_since_ns is None:
-            return Clear(gps.t_ns, "what the receiver says can be true again")
+            return Clear(gps.t_ns, "the positions of the receiver are plausible again")
         if gps.t_ns - gps.faulty_since_ns < self.after_s * NS_PER_S:
             return None
         return Finding(

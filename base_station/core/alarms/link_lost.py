@@ -1,4 +1,4 @@
-"""No message of a unit for too long.  It tells nothing about the wearer."""
+"""No message of a unit for too long.  It gives no information about the wearer."""
 
 from __future__ import annotations
 

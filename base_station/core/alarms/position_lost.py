@@ -1,4 +1,4 @@
-"""For a while nobody has known where a wearer is to better than a house."""
+"""For a while the position of a wearer has been known no better than to a house."""
 
 from __future__ import annotations
 

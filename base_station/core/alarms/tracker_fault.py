@@ -1,6 +1,6 @@
-"""The agent that tracks for a unit says that something of its own fails, as its disk.
+"""The agent that tracks for a unit reports a fault of its own, such as of its disk.
 
-The unit is well: who stands before it looks in vain.
+The unit itself is well: nothing is to be repaired there.
 """
 
 from __future__ import annotations

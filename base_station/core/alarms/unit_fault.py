@@ -1,4 +1,4 @@
-"""A unit says that a sensor or its storage fails."""
+"""A unit reports a fault of a sensor or of its storage."""
 
 from __future__ import annotations
 

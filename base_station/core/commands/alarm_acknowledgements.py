@@ -1,4 +1,4 @@
-"""Alarm acknowledged: the unit notifies its wearer that somebody at the station deals with it.
+"""Alarm acknowledged: the unit notifies its wearer that an operator deals with the alarm.
 
 It follows from the acknowledgement of an alarm about the wearer, and waits for the link as an order
 does.  It ends with that alarm, and where the alarm is raised anew.  A mayday has a command of its
@@ -15,7 +15,7 @@ from shared.clock import NS_PER_S
 from shared.messages import AlarmState, CommandKind
 
 # Alarms about the wearer's own condition.  A PAR and the work limit ask something of the wearer:
-# whoever deals with them speaks to the wearer anyway.
+# the operator who deals with them speaks to the wearer anyway.
 RULES_ABOUT_WEARER = frozenset({"fall", "no-motion", "heat", "heat-dose"})
 ALARM_OVER = "the alarm is over, or was raised anew"
 _LASTS_NS = 3_600 * NS_PER_S  # later it would be of no use to the wearer

@@ -32,7 +32,7 @@ _NOT_RECEIVED: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 
 
 def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
-    """Create a command.  Raises UserError where it makes no sense or reaches nobody."""
+    """Create a command.  Raises UserError where it makes no sense or has no recipient."""
     _check(state, action)
     recipients = _recipients(state, action)
     command = SentCommand(
@@ -77,7 +77,7 @@ def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand
         raise UserError(f"no command {action.command_id} to {action.unit_id}")
     command, delivery = found
     if not command.notifies_wearer:
-        raise UserError("such a command concerns the unit alone: nobody answers it by radio")
+        raise UserError("such a command concerns the unit alone: it is not answered by radio")
     if delivery.acknowledged_ns is not None:
         raise UserError(f"{delivery.acknowledged_by} has acknowledged it already")
     _acknowledge(delivery, state.t_ns, "radio", by)
@@ -85,8 +85,8 @@ def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand
 
 
 def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
-    """It waits again for the members whose answers were entered by radio; None: for nobody.  Their
-    units may know that it was over: it is sent again.
+    """Wait again for the members whose answers were entered by radio; None: there are none.  Their
+    units may have received the end of the command: it is sent again.
 
     Raises UserError where the incident of the command is closed.
     """
@@ -108,8 +108,8 @@ def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
 
 
 def withdraw(state: StationState, incident_id: str) -> Iterator[SentCommand]:
-    """The orders of an incident end with it: the unit of a member who comes to the next one is not
-    told of them.  How often a unit sends its position is no order to a member, and stays.
+    """End the orders of an incident with it: they are not sent to the unit of a member who comes
+    to the next one.  The position rate of a unit is no order to a member, and stays.
     """
     incident = state.incidents[incident_id]
     for command in state.commands.values():
@@ -247,7 +247,7 @@ def _check(state: StationState, action: SendCommand) -> None:
     if action.kind is CommandKind.UNKNOWN:
         raise UserError("this station does not know this kind of command")
     if action.kind in OF_STATION:
-        raise UserError("the station sends this by itself; nobody orders it")
+        raise UserError("the station sends this by itself; it cannot be ordered")
     if action.kind is CommandKind.TEXT and not action.text.strip():
         raise UserError("a message needs a text")
     if not (math.isfinite(action.lasts_s) and 0.0 < action.lasts_s <= 86_400.0):
@@ -266,8 +266,8 @@ def _is_open_order(command: SentCommand) -> bool:
 
 
 def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
-    """Everyone is whoever wears a unit, and every unit of ours that was heard and not switched off
-    since; of the named incident, or of none and all.
+    """Recipients of a command.  Everyone: all wearers, and all registered units that have sent a
+    message and were not switched off since; of the named incident, or else of all.
     """
     ours = [
         unit
@@ -288,7 +288,7 @@ def _recipients(state: StationState, action: SendCommand) -> list[UnitState]:
         recipients = (
             action.unit_id or action.crew or ("the crew" if action.person_ids else "everyone")
         )
-        raise UserError(f"no registered unit can be told: {recipients}")
+        raise UserError(f"no registered unit can receive this: {recipients}")
     return found
 
 

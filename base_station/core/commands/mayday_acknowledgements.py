@@ -1,4 +1,4 @@
-"""Mayday acknowledged: the unit notifies its wearer that somebody at the station knows of the call.
+"""Mayday acknowledged: the unit notifies its wearer that an operator has seen the call.
 
 It follows from the acknowledgement of the alarm, and waits for the link as an order does.  It is of
 one call: one that is cancelled or followed by another ends it, at the station and in the unit.

@@ -1,4 +1,4 @@
-"""Ends of orders: a unit is told that an order is over of which it may still notify its wearer.
+"""Ends of orders: sent to a unit that may still notify its wearer of an order that is over.
 
 An order is over for a unit when its answer by radio was entered, or when its incident was closed.
 What the wearer has answered, and what has expired, the unit knows by itself.
@@ -16,7 +16,7 @@ WITHDRAWN = "its incident was closed"
 
 
 def is_owed(command: SentCommand, delivery: Delivery, t_ns: int) -> bool:
-    """True if the unit is still to be told that the order is over."""
+    """True if the end of the order is still to be sent to the unit."""
     is_over = delivery.acknowledged_via == "radio" or delivery.reason == WITHDRAWN
     may_notify = delivery.sent_ns is not None and delivery.refused_ns is None
     is_answered = delivery.ended_ns is not None

@@ -27,7 +27,7 @@ from base_station.site.storeys import storey_of
 from shared.clock import NS_PER_S
 
 NEAR_NS = 5 * NS_PER_S  # a pin may be so far ahead of the unit's last position
-MIN_STD_M = 0.05  # nobody knows a place better
+MIN_STD_M = 0.05  # no place is known better
 
 
 def evidence_of_site(
@@ -120,7 +120,7 @@ def place_at(site: SiteState, pin: Pin, t_ns: int) -> PositionConstraint | str:
     """
     beacon = site.beacons.get(pin.other_id) if pin.other_id else None
     if pin.other_id and beacon is None:
-        return f"nobody has said where {pin.kind} {pin.other_id} hangs"
+        return f"the place of {pin.kind} {pin.other_id} has not been set"
     at: Pin | Beacon = beacon or pin
     assert at.north_m is not None
     assert at.east_m is not None

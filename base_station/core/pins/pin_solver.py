@@ -42,9 +42,9 @@ from shared.clock import NS_PER_S
 
 Floats = NDArray[np.float64]
 
-AHEAD_NS = NS_PER_S // 2  # nobody gets far meanwhile
-SAME_TIME_S = 1.0  # as people say it
-MEETING_MOST_M = 50.0  # somebody known no better than this tells nothing about another
+AHEAD_NS = NS_PER_S // 2  # no wearer gets far meanwhile
+SAME_TIME_S = 1.0  # people report times no more exactly
+MEETING_MOST_M = 50.0  # a partner whose position is known no better than this constrains nothing
 
 
 @dataclass(frozen=True)
@@ -236,7 +236,7 @@ def _met(
     row = int(np.searchsorted(path.t_ns, there_ns).clip(0, len(path.t_ns) - 1))
     spread_m = max(float(path.std_north_m[row]), float(path.std_east_m[row]))
     if spread_m > MEETING_MOST_M:
-        return f"nobody knows well enough where {other_id} was"
+        return f"the position of {other_id} was not known well enough"
     return PositionConstraint(
         name=pin.pin_id,
         t_ns=t_ns,
@@ -272,7 +272,7 @@ def _verdict_of(site: SiteState, pin_id: str, unit_id: str, verdict: Verdict) ->
     away, end = f"{verdict.residual_m:.0f} m from", f"kept, and not used{of}"
     if verdict.above_m:
         away = f"{verdict.residual_m:.0f} m {'above' if verdict.above_m > 0.0 else 'below'}"
-        end += " unless another pin says so too"
+        end += " unless another pin confirms it"
     text = f"{away} where {against} lead: {verdict.sigmas:.0f} times what is to be expected; {end}"
     return PinVerdict("conflict", verdict.residual_m, verdict.sigmas, text)
 

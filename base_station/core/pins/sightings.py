@@ -17,10 +17,10 @@ from base_station.core.state.pin import Pin, PinKind, reach_std_m
 from shared.clock import NS_PER_S
 from shared.messages import Sighting, SightingKind
 
-MAX_SIGHTINGS = MAX_PINS - 200  # what people say has room beside what units see
+MAX_SIGHTINGS = MAX_PINS - 200  # reports of people have room beside sightings of units
 SAME_VISIT_NS = 20 * NS_PER_S  # sightings closer in time than this are one
 MIN_IMPROVEMENT = 0.7  # of the standard deviation before: worth solving the past again
-REACH_M = 3.0  # of a beacon that nobody has placed yet
+REACH_M = 3.0  # of a beacon that is not placed yet
 TAG_REACH_M = 0.5  # of an arm
 MEETING_REACH_M = 3.0
 FURTHEST_M = 100.0

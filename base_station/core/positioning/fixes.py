@@ -16,9 +16,9 @@ from shared.geo import anchor_through
 from shared.messages import GpsFix
 
 FUTURE_NS = NS_PER_S  # a fix may be this much ahead of the station's idea of the unit's clock
-FAR_FIXES = 10  # in a row that nobody's contradicts: it was the first one that was wrong
+FAR_FIXES = 10  # in a row that no other unit's fix contradicts: the first one was wrong
 BEFORE_SITE = "of before it came to this incident"
-STAYS_M = 5.0  # walked by what stays where it is: nobody carries it about
+STAYS_M = 5.0  # walked by a unit that stays where it is: it is not carried about
 
 
 LATE_NS = 5 * NS_PER_S  # a fix of so long ago came out of a journal
@@ -53,7 +53,7 @@ def place_fix(
     if fix.header.boot_id != boot.boot_id:
         return FixVerdict(False, "from an earlier run of the unit")
     if not boot.is_placed:
-        return FixVerdict(False, "of a time that nothing else has told yet")
+        return FixVerdict(False, "of a time that no other message has placed yet")
     t_ns = boot.station_ns(fix.header.t_mono_ns)
     if not unit.site_ns <= t_ns <= state.t_ns + FUTURE_NS:
         is_early = t_ns < unit.site_ns

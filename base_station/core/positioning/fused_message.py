@@ -37,7 +37,7 @@ def fused_message(
         sure = floor_probability(storeys, floor, estimate.down_m, std_down_m)
     quality, reason = estimate.quality, estimate.quality_reason
     if site.plan is not site.placed_plan and quality is not LOST:
-        quality, reason = DEGRADED, "nobody has said where the plan lies"
+        quality, reason = DEGRADED, "the plan is not placed"
     return FusedPosition(  # by place: every position comes through here
         header,
         unit.unit_id,

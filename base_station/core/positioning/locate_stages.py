@@ -44,7 +44,7 @@ def find_floor(update: LocationUpdate) -> None:
 
 
 def find_earlier_floor(update: LocationUpdate) -> None:
-    """Find the floor at an earlier time, where nothing tells the floor before it."""
+    """Find the floor at an earlier time, where the floor before it is unknown."""
     _make_messages(update, None, None)
 
 

@@ -287,7 +287,7 @@ class Positioning:
         return partners - {unit.unit_id}
 
     def keep_sites(self, state: StationState) -> None:
-        """Let go of sites on which nobody is, and no incident."""
+        """Let go of sites that have neither units nor an incident."""
         used = {OWN_SITE_ID, *(unit.site_id for unit in state.units.values())}
         used |= {incident.site_id for incident in state.incidents.values()}
         for site_id in state.sites.keys() - used:

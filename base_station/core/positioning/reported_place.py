@@ -40,7 +40,7 @@ def apply_reported_place(
     floor = location_of(site, pin).floor
     if floor is None:
         return reported
-    if place.down_m is None:  # nobody knows how high that is
+    if place.down_m is None:  # the height of that floor is unknown
         return msgspec.structs.replace(reported, floor=floor, floor_probability=None)
     storeys = site.storeys_at(place.north_m, place.east_m)
     return msgspec.structs.replace(

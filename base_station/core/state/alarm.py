@@ -21,7 +21,7 @@ class Alarm(msgspec.Struct):
     by: str
     latched: bool  # only a person resolves it
     raised_ns: int
-    about: int | str | None  # as its ``Finding`` says; None: its rule finds one at a time
+    about: int | str | None  # as in its ``Finding``; None: its rule finds one at a time
     last_raised_ns: int  # at first, or anew: it got worse, or happened again
     changed_ns: int
     resolved_while_active: bool = False  # resolved by a person while the condition went on

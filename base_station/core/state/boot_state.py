@@ -38,7 +38,7 @@ class BootState(msgspec.Struct):
 
     @property
     def is_placed(self) -> bool:
-        """True if its times can be told in station time."""
+        """True if its times can be converted to station time."""
         return self.min_offset_t_ns != 0
 
     @property
@@ -50,8 +50,8 @@ class BootState(msgspec.Struct):
         return t_mono_ns + self.offset_ns
 
     def note(self, t_ns: int, header: Header) -> bool:
-        """Judge the clock by a message, and say whether it is of now, neither held up nor said
-        again: its unit is there.
+        """Judge the clock by a message.  True if the message is live, neither delayed nor repeated:
+        its unit is there.
         """
         slower_ns = t_ns - header.t_mono_ns - self._bound_clock(t_ns, header)
         if slower_ns > LIVE_WITHIN_NS:
@@ -104,8 +104,8 @@ def captured_ns(boots: Iterable[BootState], header: Header, now_ns: int) -> int 
 
 
 def event_time_ns(boots: Iterable[BootState], header: Header, now_ns: int) -> int | None:
-    """The same, and of a run of which nothing came live as its unit itself knew the station's time;
-    None where nobody can tell.
+    """The same; of a run of which nothing came live, by the unit's own estimate of station time.
+    None: the time is unknown.
     """
     known_ns = captured_ns(boots, header, now_ns)
     if known_ns is None and header.utc_std_s > 0.0:

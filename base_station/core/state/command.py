@@ -62,7 +62,7 @@ class SentCommand(msgspec.Struct):
 
     @property
     def asks_wearer(self) -> bool:
-        """True if it is done only when somebody has acknowledged it."""
+        """True if it is done only when the wearer has acknowledged it."""
         return self.kind in ASKS_WEARER
 
     @property

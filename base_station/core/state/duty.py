@@ -17,7 +17,7 @@ CONFIRMATIONS_KEPT = 20  # at hand, to be undone; the log has all of them
 
 
 class ParConfirmation(msgspec.Struct, frozen=True):
-    """One PAR answer: by the member's own unit, or by radio, which somebody entered."""
+    """One PAR answer: by the member's own unit, or by radio, which an operator entered."""
 
     t_ns: int  # at which the member was well
     source: Source

@@ -14,8 +14,8 @@ class Incident(msgspec.Struct, frozen=True):
     name: str
     opened_ns: int
     closed_ns: int | None = None
-    par_interval_s: float = PAR_INTERVAL_S  # everybody is to be heard from this often
-    work_limit_s: float = WORK_LIMIT_S  # of work, after which somebody should rest
+    par_interval_s: float = PAR_INTERVAL_S  # each member is to be confirmed this often
+    work_limit_s: float = WORK_LIMIT_S  # of work, after which a member should rest
     site_id: str = OWN_SITE_ID  # its ground
     dispatch: NoteDispatch | None = None  # newest report of the dispatch from which it was opened
 
@@ -25,7 +25,7 @@ class Incident(msgspec.Struct, frozen=True):
 
 
 class Dispatch(msgspec.Struct, frozen=True):
-    """What the dispatch centre has reported of an incident that is not opened here."""
+    """Report of the dispatch centre about an incident that is not opened here."""
 
     report: NoteDispatch  # the newest
     received_ns: int  # station time of the first report

@@ -11,8 +11,8 @@ from shared.channels import GPS, Channel
 from shared.clock import NS_PER_S
 from shared.messages import Header
 
-MESSAGES_HZ = 400  # a unit says some fifty
-ALERTS_HZ = 20  # of their own: a mayday comes through whatever else its unit says
+MESSAGES_HZ = 400  # a unit sends some fifty
+ALERTS_HZ = 20  # of their own: a mayday comes through whatever else its unit sends
 BYTES_PER_S = 1_000_000
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0
@@ -20,7 +20,7 @@ BOOTS_KEPT = (
     1000  # runs of a unit's program of which it is known what came; older ones are not fetched
 )
 STARTS_KEPT = 16
-RESTART_STORM_NS = 60 * NS_PER_S  # more starts than that in such a time are nobody's program
+RESTART_STORM_NS = 60 * NS_PER_S  # no program starts more often than that in such a time
 MIN_OVERLAP_NS = 5 * NS_PER_S  # two runs there at once for so long are two machines
 
 Link = Literal["live", "stale", "lost", "never"]
@@ -34,10 +34,10 @@ class MessageStream(msgspec.Struct):
     boots: list[BootState] = msgspec.field(default_factory=list)  # the running one last
     last_message_ns: int | None = None
     latest_mono_ns: dict[str, int] = msgspec.field(default_factory=dict)  # by channel, this boot
-    stopped_ns: int | None = None  # said goodbye in an orderly way
+    stopped_ns: int | None = None  # ended in an orderly way, with a goodbye
     duplicates: int = 0
     starts_ns: list[int] = msgspec.field(default_factory=list)  # of the last runs that came live
-    is_unlinked: bool = False  # its link is gone, and nothing was heard since
+    is_unlinked: bool = False  # its link is gone, and nothing was received since
 
     def link_at(self, t_ns: int) -> Link:
         if self.last_message_ns is None:
@@ -63,7 +63,7 @@ class MessageStream(msgspec.Struct):
         latest_mono_ns = self.latest_mono_ns.get(channel.name, -1)
         if boot is not self.boots[-1] or (
             header.t_mono_ns < latest_mono_ns and header.seq < boot.seen.lasts[-1]
-        ):  # one that is said last of all is new: the clock was wrong before
+        ):  # the message of the highest number is new: the clock was wrong before
             return "old"
         self.latest_mono_ns[channel.name] = header.t_mono_ns
         if header.seq == boot.seen.lasts[-1]:  # a goodbye is an alert and overtakes what is not
@@ -87,8 +87,8 @@ class MessageStream(msgspec.Struct):
             boot.seen.discard(seq)
 
     def accept_backfilled(self, boot_id: int, seq: int) -> Freshness:
-        """Note that a message came out of the unit's journal, or one that cannot be read; it says
-        nothing of the present.
+        """Note a message out of the unit's journal, or one that cannot be read; it does not show
+        that the unit is there now.
         """
         boot = self._known_boot(boot_id)
         if boot is None:

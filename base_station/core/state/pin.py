@@ -1,6 +1,6 @@
 """Pins: places of a wearer that people or beacons report, and the verdict on each.
 
-A pin is kept as it was set, whatever the rest says; ``PinVerdict`` says what it is worth.
+A pin is kept as it was set, whatever other data shows; ``PinVerdict`` rates it.
 """
 
 from __future__ import annotations

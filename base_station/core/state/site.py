@@ -21,12 +21,12 @@ class SiteState(msgspec.Struct):
 
     plan: Plan | None = None
     anchor: Anchor | None = None
-    anchor_by_gps: bool = False  # nobody said where the frame lies; the first good fix did
+    anchor_by_gps: bool = False  # no person placed the frame; the first good fix did
     fixes_anchor: Anchor | None = None  # as it was when a fix was taken last
     far_fixes: int = 0  # in a row, too far from there to be of this site
     common_mode_error: CommonModeError = msgspec.field(default_factory=CommonModeError)
     barometers: Barometers = msgspec.field(default_factory=Barometers)
-    start_set: bool = False  # somebody said where a unit began
+    start_set: bool = False  # a person set where a unit began
     pins: dict[str, Pin] = msgspec.field(default_factory=dict)  # in the order of setting
     pin_verdicts: dict[str, PinVerdict] = msgspec.field(default_factory=dict)
     beacons: dict[str, Beacon] = msgspec.field(default_factory=dict)
@@ -36,8 +36,8 @@ class SiteState(msgspec.Struct):
 
     @property
     def placed_plan(self) -> Plan | None:
-        """The plan, unless nobody knows where on it people are: they are where the first fix put
-        the frame, before there was any.
+        """The plan; None: it is not placed.  Then the first fix put the frame, before there was a
+        plan, and positions of people on it are unknown.
         """
         return None if self.anchor_by_gps else self.plan
 

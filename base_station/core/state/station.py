@@ -67,7 +67,7 @@ class StationState(msgspec.Struct):
     counts: Counts = msgspec.field(default_factory=Counts)
 
     def sender(self, unit_id: str) -> UnitState | None:
-        """A unit, or the agent that tracks for one; None: it was never heard."""
+        """A unit, or the agent that tracks for one; None: no message of it has ever come."""
         unit = self.units.get(unit_id)
         if unit is not None:  # nearly always
             return unit

@@ -20,8 +20,8 @@ from shared.messages import FusedPosition
 TRAIL_POINTS = 900  # a unit's trail in the console, at most; the log has all of it
 TRAIL_STEP_M = 0.5
 TRAIL_STEP_NS = NS_PER_S
-TRAIL_REST_NS = 15 * NS_PER_S  # somebody standing still leaves a point this often
-TRAIL_GAP_NS = 20 * NS_PER_S  # over more than this nobody knows the way
+TRAIL_REST_NS = 15 * NS_PER_S  # a wearer who stands still leaves a point this often
+TRAIL_GAP_NS = 20 * NS_PER_S  # over more than this the way is unknown
 TOLERANCE_M = 0.5  # of thinning, at first; doubled while too many points are left
 RECENT_POINTS = 300  # five minutes of walking
 OLDER_POINTS = 500  # at most, of all that was before
@@ -33,7 +33,7 @@ class TrailStep(msgspec.Struct, frozen=True, array_like=True, gc=False):
     north_m: float
     east_m: float
     floor: int | None
-    after_gap: bool = False  # nothing tells the way from the step before
+    after_gap: bool = False  # the way from the step before is unknown
 
 
 def extend_trail(trail: list[TrailStep], fused: FusedPosition) -> bool:
@@ -84,8 +84,8 @@ def bound(trail: list[TrailStep]) -> None:
 
 
 def _thinned(trail: list[TrailStep]) -> list[TrailStep]:
-    """At most ``RECENT_POINTS`` and ``OLDER_POINTS``.  Where the floor changes and where nothing
-    was heard stays; of so many of these that they are too many by themselves, the oldest go.
+    """At most ``RECENT_POINTS`` and ``OLDER_POINTS``.  Changes of the floor and ends of gaps stay;
+    of so many of these that they are too many by themselves, the oldest go.
     """
     older, recent = trail[:-RECENT_POINTS], trail[-RECENT_POINTS:]
     tolerance_m = TOLERANCE_M

@@ -25,7 +25,7 @@ from shared.messages import (
     UnitDescription,
 )
 
-STILL_NS = 300 * NS_PER_S  # after so long at the latest it is told who does not move
+STILL_NS = 300 * NS_PER_S  # after so long at the latest a wearer who does not move is published
 
 
 class Fault(msgspec.Struct, frozen=True):
@@ -65,7 +65,7 @@ class UnitState(MessageStream):
     mayday: MaydayCall = msgspec.field(default_factory=MaydayCall)
     fall: UnitAlert = msgspec.field(default_factory=UnitAlert)
     fault: Fault | None = None
-    duty: Duty | None = None  # somebody wears it and an incident is open
+    duty: Duty | None = None  # it has a wearer, and an incident is open
     off_duty_ns: int = 0  # when that was last over
     tracker: UnitState | None = None  # what is known of its tracking agent as a sender
     gps: GpsUse | None = None
@@ -118,12 +118,12 @@ class UnitState(MessageStream):
 
     @property
     def began_ns(self) -> int:
-        """Begin of the run of its program that is shown; what was before says nothing of now."""
+        """Begin of the run of its program that is shown; older data is not about the present."""
         return self.boots[-1].first_live_ns if self.boots else 0
 
     @property
     def is_tracked_remotely(self) -> bool:
-        """It says itself that it does not track; nobody may do it for another unit."""
+        """It reports itself that it does not track; no other unit may be tracked for."""
         return self.description is not None and self.description.tracker == NO_TRACKER
 
     @property
@@ -142,7 +142,7 @@ class UnitState(MessageStream):
         return self.path_boot_of(position) or boots[-1]
 
     def path_boot_of(self, position: Position) -> BootState | None:
-        """The run that said this position; None: nobody knows it."""
+        """The boot that reported this position; None: unknown."""
         boot_id = position.header.boot_id
         return next((one for one in reversed(self._path_boots) if one.boot_id == boot_id), None)
 
@@ -178,7 +178,7 @@ class UnitState(MessageStream):
 
     @property
     def shown_status_ns(self) -> int:
-        """When the status that is shown came."""
+        """Time of receipt of the status that is shown."""
         agent = self.tracker
         return agent.status_ns if self.status is None and agent is not None else self.status_ns
 

@@ -12,7 +12,7 @@ class UnitAlert(msgspec.Struct):
 
     t_ns: int | None = None  # station time of receipt; None: there was none
     event_ns: int = 0  # when the unit raised it
-    is_dated: bool = True  # else nobody can tell when that was
+    is_dated: bool = True  # else that time is unknown
 
     @property
     def dated_ns(self) -> int | None:
@@ -27,7 +27,7 @@ class UnitAlert(msgspec.Struct):
 class MaydayCall(UnitAlert):
     """Last press of the mayday button, and its cancellation."""
 
-    boot_id: int = 0  # of the message that told of the press
+    boot_id: int = 0  # of the message that reported the press
     seq: int = 0
     cancelled_ns: int | None = None  # since then
     cancelled_event_ns: int = 0
@@ -38,7 +38,7 @@ class MaydayCall(UnitAlert):
         return self.t_ns is not None and self.cancelled_ns is None
 
     def press(self, header: Header, t_ns: int, event_ns: int, *, is_dated: bool = True) -> None:
-        """Note a press that the message with this header tells of."""
+        """Note a press that the message with this header reports."""
         self.note(t_ns, event_ns, is_dated=is_dated)
         self.boot_id, self.seq, self.cancelled_ns = header.boot_id, header.seq, None
 

@@ -8,7 +8,7 @@ import msgspec
 
 from base_station.core.person_references import reference_to
 
-ERASED_TEXT = "(forgotten)"  # in place of what was said of a person
+ERASED_TEXT = "(forgotten)"  # in place of a text about a person
 WEARERS_KEPT = 20  # of a unit, beside those whom an alarm may be about; the log has all of them
 
 
@@ -38,16 +38,16 @@ class UnitWearer(msgspec.Struct):
     """Present and former wearers."""
 
     person: Person | None = None
-    since_ns: int = 0  # worn by that person, or by nobody
+    since_ns: int = 0  # begin of the wearing by that person, or of not being worn
     former: list[FormerWearer] = msgspec.field(default_factory=list)  # oldest first
 
     @property
     def person_id(self) -> str | None:
-        """Id of the present wearer; None: nobody wears the unit."""
+        """Id of the present wearer; None: the unit is not worn."""
         return None if self.person is None else self.person.person_id
 
     def from_ns(self, t_ns: int | None) -> int | None:
-        """Begin of the wearing of that time, 0: nobody wore it; names one wearing of this unit.
+        """Begin of the wearing of that time, 0: it was not worn; names one wearing of this unit.
         None: the time is unknown.
         """
         if t_ns is None:
@@ -58,7 +58,7 @@ class UnitWearer(msgspec.Struct):
         return worn.from_ns if worn else 0
 
     def former_at(self, t_ns: int) -> FormerWearer | None:
-        """Former wearer of that time; None: nobody wore it."""
+        """Former wearer of that time; None: it was not worn."""
         worn = [one for one in self.former if one.from_ns <= t_ns < one.until_ns]
         return worn[-1] if worn else None
 

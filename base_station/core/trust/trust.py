@@ -41,8 +41,8 @@ def trust_of(unit: UnitState, conflicts: int) -> Trust:
 
 
 def update_trust_tallies(state: StationState) -> None:
-    """Time went by for the lights of all that are in an open incident and were heard; one that was
-    switched off in order has none.
+    """Add the time since the last call to the tallies of all units that are in an open incident
+    and have a wearer or a position; a unit that was switched off in order has no light.
     """
     lasted_s = (state.t_ns - state.trust_ns) / NS_PER_S
     state.trust_ns = state.t_ns
@@ -107,7 +107,7 @@ def _amber_causes(unit: UnitState, conflicts: int) -> Iterator[Trust]:
 
 
 def _no_contact(level: Level) -> Trust:
-    return Trust(level, "not heard: shown where it was known last", "not heard")
+    return Trust(level, "no message: shown at its last known position", "no message")
 
 
 def _imprecise(level: Level, within_m: float) -> Trust:

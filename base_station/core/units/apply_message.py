@@ -49,7 +49,7 @@ def _apply_position(unit: UnitState, position: Position, t_ns: int) -> None:
 
 
 def _apply_status(unit: UnitState, status: Status, t_ns: int) -> None:
-    """A press and its taking back are alerts, which overtake what the unit said before them."""
+    """A press and its cancellation are alerts, which overtake earlier messages of the unit."""
     unit.status, unit.status_ns = status, t_ns
     mayday = unit.mayday
     if status.mayday == mayday.is_active:
@@ -73,8 +73,8 @@ def _apply_temperature(unit: UnitState, temperature: Temperature, t_ns: int) -> 
 def apply_late_temperature(
     unit: UnitState, temperature: Temperature, since_ns: int, t_ns: int
 ) -> None:
-    """Out of the journal: it says nothing of now, and what the equipment took at its time counts
-    from ``since_ns`` on.
+    """Out of the journal: it is not about the present, and the dose of the equipment at its time
+    counts from ``since_ns`` on.
     """
     header = temperature.header
     event_ns = event_time_ns(unit.boots, header, t_ns)
@@ -94,7 +94,7 @@ def _apply_event(unit: UnitState, event: UnitEvent, t_ns: int) -> None:
     mayday = unit.mayday
     match event.kind:
         case EventKind.MAYDAY:
-            # Of one that stands a status may have told before, where the radio lost the press.
+            # A status may have reported an active call before, where the radio lost the press.
             worn_from_ns = unit.wearer.from_ns(mayday.event_ns)
             stands = mayday.is_active and unit.wearer.from_ns(event_ns) == worn_from_ns
             if not stands or event_ns > mayday.event_ns:

@@ -8,7 +8,7 @@ assumed for it stays, and late readings in it change nothing.
 
 Classes after NIST Technical Note 1474 (Donnelly et al.): I to 100 degC for 25 min, II to 160 degC
 for 15 min, III to 260 degC for 5 min, IV above for less than 1 min.  Below 60 degC (ours)
-nothing counts.  It says nothing of the wearer's own condition.
+nothing counts.  It is no measure of the wearer's own condition.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def restart_intervals(intervals: list[ExposureInterval]) -> None:
 
 
 def _place(intervals: list[ExposureInterval], new: ExposureInterval) -> int:
-    """Before what its run told later, else behind all of that."""
+    """Row for a new interval: before the later ones of its run, else behind all of that run."""
     rows = [row for row, one in enumerate(intervals) if one.boot_id == new.boot_id]
     later = (row for row in rows if intervals[row].first_ns > new.last_ns)
     return next(later, rows[-1] + 1 if rows else 0)

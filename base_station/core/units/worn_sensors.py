@@ -8,7 +8,7 @@ from shared.messages import UnitDescription
 
 
 class DescribedSensor(msgspec.Struct, frozen=True):
-    """What tables and consoles have of a sensor."""
+    """Description of a sensor, as tables and consoles have it."""
 
     name: str  # in the unit; empty: its only one
     place: str  # part of the body, such as left_foot; empty: unknown

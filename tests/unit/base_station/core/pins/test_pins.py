@@ -362,7 +362,7 @@ def test_encounter_with_an_uncertain_place_changes_little() -> None:
     assert after is not None
     assert sharp is not None
     assert vague.std_north_m < 50.0 < vague.std_east_m
-    assert verdicts["m"].text == "nobody knows well enough where FF-02 was"
+    assert verdicts["m"].text == "the position of FF-02 was not known well enough"
     assert (after.north_m, after.east_m) == (before.north_m, before.east_m)
     assert sharp.std_east_m < 0.1 * vague.std_east_m, "who is known well tells where the other is"
 

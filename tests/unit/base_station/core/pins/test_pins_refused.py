@@ -85,7 +85,7 @@ def test_bad_meetings_are_refused_with_a_sentence(
 @pytest.mark.parametrize(
     ("action", "sentence"),
     [
-        (StartTogether("s", (), 0, 1.0, 1.0, 1.0, None, None, 0.3, ""), "nobody to place"),
+        (StartTogether("s", (), 0, 1.0, 1.0, 1.0, None, None, 0.3, ""), "no unit to place"),
         (
             StartTogether("s", ("FF-01", "nobody"), 0, 1.0, 1.0, 1.0, None, None, 0.3, ""),
             "no registered unit",

@@ -71,7 +71,7 @@ def _on_plan(there_m: tuple[float, float]) -> tuple[float, float]:
 
 
 START = StartTogether("s", (A, B), 0, *ENGINE_M, 0.5, 0, None, 0.3, "")
-ADRIFT = "nobody has said where the plan lies"
+ADRIFT = "the plan is not placed"
 
 
 @pytest.fixture

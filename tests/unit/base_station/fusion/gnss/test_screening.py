@@ -222,7 +222,7 @@ def test_a_fix_before_any_other_word_of_its_unit_may_be_of_the_future(script: Sc
     script.wait(5, lambda: script.position(U, 0.0, 0.0))
     script.gps(U, 52.0, 4.0)
     script.wait(20, lambda: script.position(U, 0.0, 0.0))
-    assert not_used(script) == {"of a time that nothing else has told yet": 1}
+    assert not_used(script) == {"of a time that no other message has placed yet": 1}
     assert script.fused[-1].since_gps_s == 20.0
 
 
