@@ -28,7 +28,7 @@ def assign(state: StationState, action: AssignIncident) -> Iterator[UnitState]:
     where a unit or the incident is unknown, before anything is changed.
     """
     if not action.unit_ids:
-        raise UserError("no unit to assign: name at least one")
+        raise UserError("no unit to assign: name at least one unit")
     units = [state.registered_unit(one) for one in dict.fromkeys(action.unit_ids)]
     incident = state.named_incident(action.incident_id) if action.incident_id else None
     for unit in units:

@@ -87,7 +87,7 @@ class Projector:
             tracks=tuple(self._tracks),
             actions=tuple(self._actions),
             descriptions=tuple(self._descriptions),
-            heard=tuple(self._last_messages.items()),
+            last_messages=tuple(self._last_messages.items()),
             news=tuple(self._news),
             opened=tuple(self._opened),
             memberships=tuple(self._memberships),

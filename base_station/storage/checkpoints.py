@@ -2,8 +2,8 @@
 replay has to step the whole log.
 
 They are a cache: a file that is torn, of another version of the program or missing only costs
-time.  What the parts of the state look like inside is known to nobody here, so any other program
-text counts as another version.
+time.  The structure of the parts of the state is unknown here, so any other program text counts as
+another version.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ class _File(msgspec.Struct, frozen=True, array_like=True):
 class Checkpoints:
     """A folder of checkpoints, named by their times; from any thread."""
 
-    def __init__(self, folder: Path, tell: Callable[[str], None] = lambda _: None) -> None:
-        """``tell`` hears in words when ``save_if_it_can`` cannot."""
+    def __init__(self, folder: Path, report: Callable[[str], None] = lambda _: None) -> None:
+        """``report`` receives a sentence when ``save_if_it_can`` cannot save."""
         self._folder = folder
-        self._tell = tell
+        self._report = report
         self._changing = Lock()
         self._program = _program()
         self._useless: set[Path] = set()  # torn, or of another version of the program
-        self.is_refused = False  # the disk does not take more: whoever can do without saves none
+        self.is_refused = False  # the disk takes no more: save none that is not needed
         make_folder(folder)
 
     def save(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
@@ -80,12 +80,12 @@ class Checkpoints:
             self._thin_out()
 
     def save_if_it_can(self, t_ns: int, events_at_t: int, pipeline: bytes) -> None:
-        """Where the disk does not take it, it is told and nothing more is to be saved."""
+        """Save; a disk that does not take it is reported, and nothing more is to be saved."""
         try:
             self.save(t_ns, events_at_t, pipeline)
         except OSError as error:
             self.is_refused = True
-            self._tell(f"to go back in the past takes long: no state can be saved ({error})")
+            self._report(f"to go back in the past takes long: no state can be saved ({error})")
 
     def clear(self) -> None:
         """Remove all of them: a restart steps the whole log."""

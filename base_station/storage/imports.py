@@ -1,7 +1,7 @@
 """Files that were brought into incidents: each as it came, beside what was read of it.
 
-The log says which ones belong to an incident (``ImportFile``), with the hash of each; a second
-station has that from the log, and not the file.
+The log has the list of those that belong to an incident (``ImportFile``), with the hash of each; a
+second station has that from the log, and not the file.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class ImportedTrack(msgspec.Struct, frozen=True):
 
 
 class ImportSummary(msgspec.Struct, frozen=True):
-    """What a list of imports says of a file."""
+    """Summary of a file, for a list of imports."""
 
     tracks: int
     names: tuple[str, ...]  # of the first tracks
@@ -96,7 +96,7 @@ class ImportFolder:
 
     @contextmanager
     def incoming(self) -> Iterator[Path]:
-        """Where a file is put while it comes; nothing of it is left there afterwards.
+        """Path for a file while it comes; nothing of it is left there afterwards.
 
         Raises StoreError where the disk takes no more.
         """
@@ -203,7 +203,7 @@ class ImportFolder:
 
 
 def _remove_left(folder: Path) -> None:
-    """What came when a station or a command was killed."""
+    """Remove files whose station or command was killed while they came."""
     for path in folder.iterdir():
         if time.time() - path.stat().st_mtime > _LEFT_AFTER_S:
             path.unlink(missing_ok=True)

@@ -1,7 +1,7 @@
 """Integrity check of the log's segments: a disk may return other bytes than were written.
 
-What was whole when it was looked at may not be later, so all of it is looked at again now and then,
-and at once where somebody who reads it meets damage.
+A segment that was whole may be damaged later, so each is checked again now and then, and at once
+where a reader meets damage.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _AGAIN_LOOKS = 720  # with nothing left to look at: an hour of a station's house
 
 
 class IntegrityChecker:
-    """Reads the segments that nobody writes, one a look, round after round; from any thread."""
+    """Reads the complete segments, one a look, round after round; from any thread."""
 
     def __init__(self, remedy: str) -> None:
         """``remedy``: what becomes of a damaged one, for a person."""
@@ -63,7 +63,7 @@ class IntegrityChecker:
             damage = str(error)
         if damage:
             self.note_damaged(path, damage)
-        else:  # somebody may have put it back from a backup
+        else:  # it may have been put back from a backup
             self.note_mended(path, again=False)
 
     def note_damaged(self, path: Path, damage: str, *, is_cut: bool = False) -> None:
@@ -77,7 +77,7 @@ class IntegrityChecker:
             _log.error("the log is damaged: %s", damage)
 
     def note_lacks(self, folder: Path, lacks: Iterable[LogGap]) -> None:
-        """What was lost while nobody looked."""
+        """Note gaps of the log that were found at the start."""
         for lack in lacks:
             _log.error("the log lacks something: %s", lack)
             with self._lock:
@@ -104,7 +104,7 @@ class IntegrityChecker:
             return any(lack.covers(t_ns) for lack in self._lacks.values())
 
     def recheck(self, what: str) -> None:
-        """Somebody who reads the log has met this damage."""
+        """A reader of the log has met this damage."""
         with self._lock:
             if not any(path.name in what for path in self._damaged):
                 self._begin_again(set(self._damaged))

@@ -68,10 +68,10 @@ class JobList(Generic[J]):
                 is_new = not any(job is one for one in under_way)
                 over = [one for one in self._all if one.state.is_over]
                 wanted = [*over[1 - _KEPT :], *under_way, job] if is_new else self._all
-                said = msgspec.json.encode(wanted)
+                content = msgspec.json.encode(wanted)
             if is_new:
                 try:
-                    write_atomically(self._path, said)
+                    write_atomically(self._path, content)
                 except StoreError as error:
                     raise StoreError(
                         f"what was asked for cannot be kept, so nothing is done: {error}"
@@ -109,9 +109,9 @@ class JobList(Generic[J]):
         """Write the file, where the disk takes it."""
         with self._saving:
             with self._lock:
-                said = msgspec.json.encode(self._all)
+                content = msgspec.json.encode(self._all)
             with suppress(StoreError):
-                write_atomically(self._path, said)
+                write_atomically(self._path, content)
 
 
 class JobQueue(JobList[J]):

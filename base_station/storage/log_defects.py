@@ -34,8 +34,8 @@ class LogDefects:
         on_defect: Callable[[str], None] = lambda _: None,
     ) -> None:
         """``known``: what the database knows of the segments.  ``is_written``: a station writes
-        the newest one.  ``from_ns``: nobody reads what ends before it.  ``until_ns``: what was lost
-        of later times is no flaw.  ``on_defect`` hears of each flaw.
+        the newest one.  ``from_ns``: segments that end before it are not read.  ``until_ns``: later
+        losses are no flaw.  ``on_defect`` receives each flaw.
         """
         self._log = log
         self._known = known
@@ -60,7 +60,7 @@ class LogDefects:
         return True
 
     def note_damage(self, what: str) -> bool:
-        """That somebody who read the log has come by."""
+        """Note damage that a reader of the log has met; True if it is new."""
         is_part = LEFT_OUT not in what
         return self.note(f"a part of the log cannot be read: {what}" if is_part else what)
 

@@ -17,7 +17,7 @@ _KILLED_NS = 2 * NS_PER_S  # of the newest segment, which a kill may cost: it wa
 
 @dataclass(frozen=True, slots=True)
 class KnownSegment:
-    """As it was when the database last heard of it."""
+    """A segment, as last recorded in the database."""
 
     name: str
     first_ns: int
@@ -35,7 +35,7 @@ class LogGap:
     from_ns: int
     until_ns: int
     kept: int = 0  # messages of it
-    of: int = 0  # 0: nobody knows
+    of: int = 0  # 0: unknown
     is_file_missing: bool = False  # the file itself
     is_newest: bool = False  # the table is some seconds behind, so it may have gone on
 
@@ -54,7 +54,7 @@ class LogGap:
 
 
 def times_of(from_ns: int, until_ns: int) -> str:
-    """0: nobody knows."""
+    """Time span of a gap, in words; 0: unknown."""
     since = f" from {_utc(from_ns)}" if from_ns else ""
     until = f" until {_utc(until_ns)}" if until_ns else ""
     return f"what happened{since}{until}"

@@ -20,7 +20,7 @@ _FILE = 0o600
 
 @contextmanager
 def new_folder(folder: Path) -> Iterator[None]:
-    """Where it is there already it is not made; where the block fails nothing is left of it."""
+    """Make a new folder; raises where it is there already, and removes it if the block fails."""
     try:
         make_folder(folder.parent, _FOLDER)
         make_new_folder(folder, _FOLDER)

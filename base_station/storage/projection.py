@@ -11,8 +11,8 @@ from shared.messages import AlarmChange, FusedPosition, OperatorAction, UnitDesc
 
 
 class Projection(msgspec.Struct, frozen=True):
-    """What one step of the drive changes in the queryable store; every part is idempotent, so
-    that a log may be projected again.
+    """Changes of the queryable store by one step of the drive; every part is idempotent, so that a
+    log may be projected again.
     """
 
     t_ns: int  # station time
@@ -20,7 +20,7 @@ class Projection(msgspec.Struct, frozen=True):
     tracks: tuple[FusedPosition, ...] = ()  # at most one a second and unit
     actions: tuple[OperatorAction, ...] = ()  # that were accepted
     descriptions: tuple[UnitDescription, ...] = ()
-    heard: tuple[tuple[str, int], ...] = ()  # (unit id, station time), every five seconds or so
+    last_messages: tuple[tuple[str, int], ...] = ()  # (unit id, station time), every 5 s or so
     news: tuple[str, ...] = ()  # closed incidents of whose time more is known
     opened: tuple[tuple[str, str], ...] = ()  # (incident id, id of its site)
     # (unit id, incident id, station time) of coming to an incident; empty: of leaving it
@@ -36,11 +36,11 @@ class ProjectionSink(Protocol):
     """The SQL store's writer."""
 
     def project(self, projection: Projection) -> None:
-        """Never raises for a store that fails: it says so in ``problem`` and tries again."""
+        """Never raises for a store that fails: ``problem`` reports it, and it is tried again."""
         ...
 
     def problem(self) -> str:
-        """Why the store is not keeping up, as a sentence for a person; empty: all is well."""
+        """Reason why the store is behind, as a sentence for a person; empty: all is well."""
         ...
 
 
@@ -54,8 +54,8 @@ class ProjectedTables(Protocol):
         ...
 
     def hasten(self) -> Callable[[], bool]:
-        """Have what was decided before this call written now, without waiting; gives what tells
-        whether that is over: it is in the tables, or the database does not take it.
+        """Have decisions before this call written now, without waiting.  Gives a function: True if
+        that is over: they are in the tables, or the database does not take them.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""The always-on recorder: everything that the station hears and decides goes through here first.
+"""The always-on recorder: all messages and decisions of the station go through here first.
 
 A thread of its own writes, so that a slow disk does not hold up the live picture.  What must
 not be lost (alarms, actions, alerts) is waited for.
@@ -37,7 +37,7 @@ logger = logging.getLogger(__name__)
 
 LOG_FOLDER = "log"
 _TURN_S = 0.05
-_LONGEST_WAIT_S = 2.0  # for the disk, by whoever writes something urgent
+_LONGEST_WAIT_S = 2.0  # for the disk, by the writer of an urgent record
 _HUNG_WAIT_S = 0.2  # as long as a disk takes that has just come back
 _LOOK_AT_DISK_EVERY_NS = 5 * NS_PER_S
 _STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk is slow, or hangs
@@ -49,7 +49,7 @@ _ACTIONS_SHARE = 1.5  # and what people do
 _TAKES_NOTHING = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)  # of a full disk, or a
 # failed one that the system has made read-only
 
-SegmentHandler = Callable[[SegmentInfo, str], None]  # a segment, and what recovery said of it
+SegmentHandler = Callable[[SegmentInfo, str], None]  # a segment, and the note of its recovery
 
 
 def _share_of(key: str) -> float:
@@ -80,14 +80,14 @@ def _clock_time(t_ns: int) -> str:
 
 
 def _ignore(_: SegmentInfo, __: str) -> None:
-    """Nobody keeps a list of segments."""
+    """For a recorder without a list of segments."""
 
 
 class Recorder:
     """Holds the data folder from making until ``close``; one station a folder.
 
     ``write`` and ``flush`` may be called from any thread; records are kept in the order of the
-    calls.  Neither raises for the disk: ``problem`` tells what is wrong, records wait in
+    calls.  Neither raises for the disk: ``problem`` describes it, records wait in
     memory meanwhile, and what memory cannot hold is refused and counted in ``lost``.
     """
 
@@ -106,7 +106,7 @@ class Recorder:
         """
         self._clock = clock
         self._on_segment = on_segment
-        self.rewriting = Lock()  # held by whoever exchanges a complete segment
+        self.rewriting = Lock()  # held while a complete segment is exchanged
         policy = policy or SegmentPolicy()
         self._waiting_max = policy.waiting_bytes_max
         self.folder = data / LOG_FOLDER
@@ -195,11 +195,11 @@ class Recorder:
 
     @property
     def problem(self) -> str:
-        """What is wrong with the log, as a sentence for a person; empty: nothing."""
+        """Problem of the log, as a sentence for a person; empty: none."""
         if self._failure:
             return self._failure
         missing = ""
-        if self.lost:  # said until the station starts anew
+        if self.lost:  # reported until the station starts anew
             missing = (
                 f"the disk did not keep up: {self.lost} records are missing in the log, from "
                 f"{_clock_time(self._refused_from_ns)} to {_clock_time(self._refused_until_ns)} UTC"
@@ -229,21 +229,21 @@ class Recorder:
 
     @property
     def not_kept(self) -> str:
-        """What would be missing if the station ended now, as a sentence for a person; empty: the
-        disk answers, and has everything soon.
+        """Loss if the station ended now, as a sentence for a person; empty: the disk answers, and
+        has everything soon.
         """
         if not self.hangs:
             return ""
         return (
             f"{self._written - self._on_disk} records are not safely in the log {self.folder}, "
-            f"which has not been written for {self._turn_ns / NS_PER_S:.0f} s; what units said "
-            "comes again from their journals, what people did meanwhile may be lost"
+            f"which has not been written for {self._turn_ns / NS_PER_S:.0f} s; messages of "
+            "units come again from their journals, actions of people meanwhile may be lost"
         )
 
     @property
     def refuses(self) -> bool:
         """True if memory is full of what the disk does not take.  For alerts, and for what people
-        do, of which nobody else has a copy, there is some room left then.
+        do, of which there is no other copy, there is some room left then.
         """
         return bool(self._failure) or self._waiting_bytes > self._waiting_max
 
@@ -271,7 +271,7 @@ class Recorder:
         return sum(segment.size_bytes for segment in self.segments())
 
     def segments(self) -> tuple[SegmentInfo, ...]:
-        """What the log consists of, in order; the last one may be open."""
+        """Segments of the log, in order; the last one may be open."""
         current = self._writer.current()
         return (*self._segments, *([] if current is None else [current]))
 
@@ -297,7 +297,7 @@ class Recorder:
 
     @property
     def _turn_ns(self) -> int:
-        """How long the thread has been at its present turn."""
+        """Duration so far of the thread's present turn."""
         return self._clock.monotonic_ns() - self._turned_ns
 
     # ---- in the thread
@@ -332,10 +332,10 @@ class Recorder:
         self._taken += len(records)
         if ending:
             self._writer.end_segment()
-            self._tell_flushed(flushes)
+            self._note_flushed(flushes)
         elif flushes > self._flushes_done:
             self._writer.flush()
-            self._tell_flushed(flushes)
+            self._note_flushed(flushes)
         else:  # log time goes on although nothing comes
             self._writer.advance(self._last_t_ns + now_ns - self._received_ns)
         self._unwritten_bytes = self._writer.waiting_bytes if self._writer.problem else 0
@@ -343,7 +343,7 @@ class Recorder:
             self._on_disk = self._taken
         if now_ns - self._looked_ns >= _LOOK_AT_DISK_EVERY_NS:
             self._looked_ns = now_ns
-            with suppress(OSError):  # of a disk that fails, what is written tells
+            with suppress(OSError):  # a failing disk is reported by the writer
                 self._disk_free_bytes = shutil.disk_usage(self.folder).free
 
     def _take(self) -> tuple[list[LogRecord], int, bool]:
@@ -357,7 +357,7 @@ class Recorder:
             ending, self._ending = self._ending, False
             return records, self._flushes_asked, ending
 
-    def _tell_flushed(self, flushes: int) -> None:
+    def _note_flushed(self, flushes: int) -> None:
         with self._news:
             self._flushes_done = flushes
             self._news.notify_all()
@@ -365,9 +365,9 @@ class Recorder:
     def _segment_closed(self, info: SegmentInfo) -> None:
         with self._news:
             self._segments = (*self._segments, info)
-        self._tell(info, "")
+        self._report_segment(info, "")
 
-    def _tell(self, info: SegmentInfo, note: str) -> None:
+    def _report_segment(self, info: SegmentInfo, note: str) -> None:
         try:
             self._on_segment(info, note)
         except Exception:
@@ -380,5 +380,5 @@ class Recorder:
         for path in own:
             with SegmentReader(path) as reader:
                 segments.append(reader.info())
-            self._tell(segments[-1], notes.get(path, ""))
+            self._report_segment(segments[-1], notes.get(path, ""))
         return tuple(segments)

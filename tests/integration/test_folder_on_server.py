@@ -205,7 +205,7 @@ def test_settings_that_name_another_database_than_the_folder_has_are_refused(
     with pytest.raises(StoreError, match=r"is empty, and the tables.*pg_dump"):
         start(moved, server.new_database(tmp_path))
     (moved / NOTE).write_text("{")
-    with pytest.raises(StoreError, match="it tells where the database is"):
+    with pytest.raises(StoreError, match="it has the database's address"):
         open_database(moved / "station.sqlite")
 
 

@@ -107,7 +107,7 @@ class DeskDrive:
                     news=tuple(
                         one.incident_id for one in outputs if isinstance(one, ClosedIncidentChanged)
                     ),
-                    heard=((message.header.unit_id, t_ns),)
+                    last_messages=((message.header.unit_id, t_ns),)
                     if message.header.unit_id != STATION_ID
                     else (),
                 )

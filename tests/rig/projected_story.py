@@ -48,8 +48,10 @@ STORY = (
     acted(1, RegisterUnit("FF-01", "one"), RegisterUnit("FF-02", "two")),
     acted(2, OpenIncident("i-1", "Kitchen")),
     acted(3, Assign("FF-01", "p-1", "Ada", "A", "")),
-    Projection(5 * NS_PER_S, alarms=(alarm(5, AlarmState.RAISED),), heard=(("FF-01", 5),)),
-    Projection(6 * NS_PER_S, tracks=(fused(5.2, 1.0), fused(6.2, 2.0)), heard=(("FF-03", 6),)),
+    Projection(5 * NS_PER_S, alarms=(alarm(5, AlarmState.RAISED),), last_messages=(("FF-01", 5),)),
+    Projection(
+        6 * NS_PER_S, tracks=(fused(5.2, 1.0), fused(6.2, 2.0)), last_messages=(("FF-03", 6),)
+    ),
     acted(7, Assign("FF-02", "p-1", "Ada", "A", "")),
     Projection(8 * NS_PER_S, alarms=(alarm(8, AlarmState.ACKNOWLEDGED, "mia"),)),
     acted(9, Unassign("FF-02")),

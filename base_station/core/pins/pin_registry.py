@@ -132,7 +132,7 @@ def _place_pin(state: StationState, by: str, action: SetPin) -> Pin:
 def _start_pins(state: StationState, by: str, action: StartTogether) -> list[Pin]:
     """Pins of a common start position, for the units that were switched on after its time."""
     if not action.unit_ids:
-        raise UserError("no unit to place: name at least one")
+        raise UserError("no unit to place: name at least one unit")
     _check_place(state.site_of(action.unit_ids[0]), action)
     common = msgspec.structs.asdict(action)
     del common["pin_id"], common["unit_ids"], common["t_ns"]

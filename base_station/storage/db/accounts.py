@@ -5,9 +5,9 @@ the database cannot log in with it.
 
 Of two stations each has sessions of its own, and one table of users.  So what ends a user's
 sessions begins a new *generation* of them in that table: it ends those at the other station too,
-which copies it.  Nobody who gets a removed user's name gets that one's generation.  What is taken
-away is noted for good (``tombstones``), and of a role and a password the later one holds: what one
-station did while the other was off holds at both when they meet, whichever leads by then.
+which copies it.  A new user with the name of a removed one does not get that one's generation.
+Removals are noted for good (``tombstones``), and of a role and a password the later one holds:
+changes at one station while the other was off hold at both when they meet, whichever leads by then.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class Accounts:
     # ---- sessions
 
     def open_sessions(self) -> dict[str, int]:
-        """How many sessions each user has that has any."""
+        """Number of open sessions, by user; users without any are left out."""
         with self._store.read() as session:
             rows = session.execute(
                 select(LoginSession.username, func.count())

@@ -23,7 +23,7 @@ class Database(Protocol):
 
     @property
     def problem(self) -> str:
-        """What is wrong with the database, as a sentence for a person; empty: nothing."""
+        """Problem of the database, as a sentence for a person; empty: none."""
         ...
 
     @property
@@ -33,7 +33,7 @@ class Database(Protocol):
 
     @property
     def is_away(self) -> bool:
-        """True if it does not answer just now: nobody waits for it then."""
+        """True if it does not answer just now: calls fail at once then."""
         ...
 
     def read(self) -> AbstractContextManager[Session]:

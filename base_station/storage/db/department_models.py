@@ -40,7 +40,7 @@ class LastSummary(DepartmentBase):
 
 
 class ReportedStream(DepartmentBase):
-    """How far the events of one outbox of a station have come."""
+    """Progress of the events of one outbox of a station."""
 
     __tablename__ = "department_streams"
 

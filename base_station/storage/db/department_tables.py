@@ -39,11 +39,11 @@ _RESOLVED = "resolved"
 
 
 class Reported(NamedTuple):
-    """How far the events of a station's outbox have come."""
+    """Progress of the events of a station's outbox."""
 
     last_seq: int
     new: int  # of the batch, events that were not there
-    people: tuple[PersonEvent, ...]  # who was named, renamed or forgotten
+    people: tuple[PersonEvent, ...]  # people who were named, renamed or forgotten
 
 
 class DepartmentTables:
@@ -203,7 +203,7 @@ def _apply_alarm(session: Session, station: str, alarm: AlarmEvent, offset_ms: i
 def _apply_incident(
     session: Session, station: str, incident: IncidentEvent, offset_ms: int
 ) -> None:
-    """What is closed stays closed."""
+    """Apply an incident; a closed one stays closed."""
     found = session.get(ReportedIncident, (station, incident.incident_id))
     closed_ms = incident.closed_ms if found is None else found.closed_ms or incident.closed_ms
     session.merge(

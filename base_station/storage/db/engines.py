@@ -66,8 +66,10 @@ def writing(engine: Engine, changes: list[Statement]) -> Engine:
 
 
 def make_private(path: Path) -> None:
-    """Where there is no database yet; what SQLite puts beside one has its mode and owner."""
-    with suppress(OSError):  # it is there; or SQLite says in a moment why it cannot be
+    """Create an empty private file where there is no database yet; SQLite gives its mode and owner
+    to the files beside it.
+    """
+    with suppress(OSError):  # it is there; or SQLite gives the reason in a moment
         os.close(open_own(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
 
 
@@ -79,7 +81,7 @@ def code_of(error: BaseException) -> int:
 def _configured(engine: Engine, pragmas: tuple[str, ...]) -> Engine:
     @event.listens_for(engine, "connect")
     def configure(connection: Any, _record: object) -> None:
-        # The driver must not begin transactions by itself: ``begin`` below says how.
+        # The driver must not begin transactions by itself: ``begin`` below does.
         connection.isolation_level = None
         for pragma in pragmas:
             connection.execute(f"PRAGMA {pragma}")
@@ -99,7 +101,7 @@ def _configured(engine: Engine, pragmas: tuple[str, ...]) -> Engine:
     ) -> None:
         changes = connection.get_execution_options().get(_CHANGES)
         if changes is not None and statement.lstrip()[:7].upper().startswith(_CHANGING):
-            # Of many rows in one statement it says many, too, and they are one row of parameters.
+            # ``executemany`` is also true of many rows in one statement: one row of parameters.
             is_many = executemany and isinstance(parameters[0], tuple | dict | list)
             changes.append(Statement(statement, parameters, is_many))
 

@@ -26,7 +26,7 @@ _LAST = "\U0010ffff"  # behind whatever may follow the beginning of a word
 
 
 class IncidentQuery(msgspec.Struct, frozen=True):
-    """What all has to be true of an incident; empty: anything."""
+    """Conditions on an incident, all of which must hold; empty: any incident."""
 
     text: str = ""  # beginnings of words: of its name and dispatch, of people, of rules of alarms
     person: str = ""  # beginnings of words of one person's name, or the id
@@ -108,13 +108,13 @@ def _is_one_of(person_ids: Collection[str]) -> ColumnElement[bool]:
 
 
 def _names(session: Session) -> dict[str, set[str]]:
-    """Words of the names of whoever is or was on the roster, by id."""
+    """Words of the names of all who are or were on the roster, by id."""
     people = session.execute(select(PersonRow.person_id, PersonRow.name))
     return {person_id: words_of(name) for person_id, name in people}
 
 
 def _called(names: dict[str, set[str]], beginnings: set[str]) -> set[str]:
-    """Whoever has a name for each of the beginnings."""
+    """Ids of people with a word of the name for each of the beginnings."""
     return {
         person_id
         for person_id, words in names.items()

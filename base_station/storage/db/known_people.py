@@ -1,6 +1,6 @@
 """Directory of people by the person ids of the log: name, crew, role and photo, of the database.
 
-Kept in memory, for it is asked in the engine's thread whenever somebody is shown.
+Kept in memory, for the engine's thread reads it whenever a person is shown.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class KnownPerson(msgspec.Struct, frozen=True):
     photo_url: str | None = None
 
 
-PersonLookup = Callable[[str], KnownPerson]  # by person id; anybody is somebody
+PersonLookup = Callable[[str], KnownPerson]  # by person id; every id gives a person
 FORGOTTEN = KnownPerson(ERASED_TEXT)
 
 

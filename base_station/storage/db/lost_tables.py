@@ -52,7 +52,7 @@ def with_what_it_lost(session: Session, theirs: ReplicatedRows) -> ReplicatedRow
 
 
 def take_back(session: Session, standby: ReplicatedRows) -> tuple[str, ...]:
-    """What this station lost and ``standby`` has; who and what it is."""
+    """Take back rows that this station lost and ``standby`` has; gives their names."""
     lost = set(lost_tables(session))
     if not lost:
         return ()
@@ -90,6 +90,6 @@ def _added(
 
 
 def _is_administrator(row: Row) -> bool:
-    """Somebody who has logged in once, and knows the password."""
+    """True for an administrator who has logged in once, and so knows the password."""
     is_generated = row.get("password_ns", 0) == GENERATED_NS
     return not is_generated and bool(row["role"] == Role.ADMINISTRATOR.word)

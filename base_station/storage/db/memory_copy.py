@@ -145,7 +145,7 @@ class MemoryCopy:
 
     @contextmanager
     def kept_open(self) -> Iterator[bool]:
-        """For one reader; False where nobody reads here any more."""
+        """For one reader; False where it may not be read any more."""
         with self._lock:
             is_open = not self._is_left
             self._readers += is_open

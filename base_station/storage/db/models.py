@@ -56,7 +56,7 @@ class User(Base):
     username: Mapped[str] = mapped_column(primary_key=True)
     password_hash: Mapped[str]
     role: Mapped[str]
-    created_ns: Mapped[int]  # with the name: who it is; somebody else may have the name later
+    created_ns: Mapped[int]  # with the name, identifies the user; the name may be used again
     generation: Mapped[int] = mapped_column(server_default="0")  # of logins; older ones are over
     role_ns: Mapped[int] = mapped_column(server_default="0")  # since when; of two stations' the
     password_ns: Mapped[int] = mapped_column(server_default="0")  # later holds
@@ -73,7 +73,7 @@ class LoginSession(Base):
 
 
 class LoginTransferTicket(Base):
-    """Whoever shows it goes on at the other station as whom a session is for; once."""
+    """Ticket that continues a session at the other station, once."""
 
     __tablename__ = "hand_overs"
 
@@ -97,8 +97,8 @@ class ApiToken(Base):
 
 
 class Tombstone(Base):
-    """What was taken away for good (``tombstones``): a station that did not hear of it
-    when it was done does not bring it back.
+    """Mark of a row that was removed for good (``tombstones``): a station that was not connected
+    then does not bring it back.
     """
 
     __tablename__ = "ended"
@@ -173,13 +173,13 @@ class ArchivedRange(Base):
 
 
 class Unit(Base):
-    """A wearable that registered or was heard."""
+    """A wearable that is registered or has sent a message."""
 
     __tablename__ = "units"
 
     unit_id: Mapped[str] = mapped_column(primary_key=True)
     label: Mapped[str]
-    registered_ns: Mapped[int | None]  # None: heard, but not ours
+    registered_ns: Mapped[int | None]  # None: received, but not ours
     last_heard_ns: Mapped[int | None]
     software_version: Mapped[str]
     source: Mapped[str]
@@ -225,7 +225,7 @@ class DispatchRow(Base):
     __tablename__ = "dispatches"
 
     number: Mapped[str] = mapped_column(primary_key=True)
-    updated_ns: Mapped[int]  # when the dispatch centre changed it; 0: it has not said
+    updated_ns: Mapped[int]  # time of the change at the dispatch centre; 0: not reported
     report: Mapped[str]  # JSON of ``shared.messages.station.NoteDispatch``
 
 
@@ -307,7 +307,7 @@ class AlarmTransition(Base):
 
 
 class TrackPoint(Base):
-    """Where a unit was, at most once a second; NED metres about the site anchor."""
+    """Place of a unit, at most once a second; NED metres about the site anchor."""
 
     __tablename__ = "tracks"
     __table_args__ = {"postgresql_partition_by": "RANGE (t_s)"}  # noqa: RUF012  # as above
@@ -327,7 +327,7 @@ class TrackPoint(Base):
 
 
 class AnchorRow(Base):
-    """Where the incident frame lay on the Earth from then on."""
+    """Place of the incident frame on the Earth from a time on."""
 
     __tablename__ = "anchors"
 
@@ -352,7 +352,7 @@ class PlanRow(Base):
 
 
 class UnitStart(Base):
-    """Where a unit's own frame began, as a person said."""
+    """Place where a unit's own frame began, as set by a person."""
 
     __tablename__ = "starts"
 
@@ -377,7 +377,7 @@ class SmoothedIncident(Base):
 
 
 class IncidentTrails(Base):
-    """Where one unit was, as it is known afterwards (``base_station.storage.db.smoothed``)."""
+    """Trails of one unit, as known afterwards (``base_station.storage.db.smoothed``)."""
 
     __tablename__ = "incident_trails"
 
@@ -408,7 +408,7 @@ class IndexedIncident(Base):
 
 
 class SearchTerm(Base):
-    """A word by which an incident is found, whoever was in it, or a rule that raised an alarm."""
+    """A term by which an incident is found: a word, a person in it, or the rule of an alarm."""
 
     __tablename__ = "search_terms"
 

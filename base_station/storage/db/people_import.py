@@ -12,7 +12,7 @@ from base_station.storage.db.models import PersonRow
 
 class ListedPerson(NamedTuple):
     name: str
-    crew: str | None  # None: the list says nothing of it, and it stays
+    crew: str | None  # None: the list has no such column, and it stays
     role: str | None
 
 
@@ -33,7 +33,7 @@ def same_name(name: str) -> str:
 
 def import_steps(roster: Iterable[PersonRow], listed: Sequence[ListedPerson]) -> list[ImportStep]:
     """One step for each listed person, in their order; ambiguous where two of the roster have that
-    name.  ``listed`` has nobody twice.
+    name.  ``listed`` has no person twice.
     """
     known: dict[str, list[PersonRow]] = defaultdict(list)
     for person in roster:

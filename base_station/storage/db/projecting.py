@@ -67,11 +67,11 @@ _NEW_UNIT = {
 def project_into(session: Session, projections: Sequence[Projection]) -> int:
     """Write projections in their order; gives how many places no table can hold.
 
-    Where units were and when they were heard makes up nearly all of it and depends on nothing
-    else, so that goes in at the end, in one go.
+    Places of units and times of their last messages make up nearly all of it and depend on nothing
+    else, so these go in at the end, in one go.
     """
     tracks: list[FusedPosition] = []
-    heard: dict[str, int] = {}
+    last_messages: dict[str, int] = {}
     for projection in projections:
         for action in projection.actions:
             if not isinstance(action.action, ReportProblem):  # that is no person's doing
@@ -86,9 +86,9 @@ def project_into(session: Session, projections: Sequence[Projection]) -> int:
             touched = IncidentRow.incident_id.in_(projection.news)
             session.execute(update(IncidentRow).where(touched).values(late_data_ns=projection.t_ns))
         tracks += projection.tracks
-        heard.update(projection.heard)
+        last_messages.update(projection.last_messages)
     left_out = _tracks(session, tracks)
-    _heard(session, heard)
+    _last_messages(session, last_messages)
     return left_out
 
 
@@ -184,22 +184,22 @@ _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
 
 
 def _audit(session: Session, t_ns: int, done: OperatorAction) -> None:
-    said = msgspec.structs.asdict(done.action)
+    detail = msgspec.structs.asdict(done.action)
     match done.action:
         case SetPlan(geojson=geojson):
-            said = {"bytes": len(geojson), "incident_id": said["incident_id"]}
+            detail = {"bytes": len(geojson), "incident_id": detail["incident_id"]}
         case Assign(person_id=person_id, person_name=""):
-            said["person_name"] = reference_to(person_id)
+            detail["person_name"] = reference_to(person_id)
         case RemovePin(pin_id=pin_id):
-            said |= _whose_pin(session, pin_id)
+            detail |= _whose_pin(session, pin_id)
     _add(
         session, AuditEntry, entry_id=done.action_id, t_ns=t_ns, by=done.by,
-        action=type(done.action).__name__, detail=msgspec.json.encode(said).decode(),
+        action=type(done.action).__name__, detail=msgspec.json.encode(detail).decode(),
     )  # fmt: skip
 
 
 def _whose_pin(session: Session, pin_id: str) -> dict[str, object]:
-    """The units that a pin was about, as the audit told when it was set; they may be forgotten."""
+    """The units that a pin was about, from the audit of its setting; they may be forgotten."""
     group, _, of_group = pin_id.partition(":")
     if of_group:
         return {"unit_id": of_group}
@@ -207,13 +207,13 @@ def _whose_pin(session: Session, pin_id: str) -> dict[str, object]:
     of_this = AuditEntry.detail.contains(f'"pin_id":"{group}"', autoescape=True)
     newest = select(AuditEntry.detail).where(was_set, of_this).order_by(AuditEntry.number.desc())
     detail = session.scalars(newest.limit(1)).first()
-    told = {} if detail is None else msgspec.json.decode(detail)
-    return {name: told[name] for name in ("unit_id", "unit_ids", "other_unit_id") if name in told}
+    pin = {} if detail is None else msgspec.json.decode(detail)
+    return {name: pin[name] for name in ("unit_id", "unit_ids", "other_unit_id") if name in pin}
 
 
 def _alarm(session: Session, change: AlarmChange) -> None:
     t_ns, state = change.header.t_utc_ns, change.state.name.lower()
-    told = {
+    described = {
         "text": change.text,
         "by": change.by,
         "code": change.code,
@@ -228,7 +228,7 @@ def _alarm(session: Session, change: AlarmChange) -> None:
         "priority": change.priority,
         "state": state,
         "level": change.level,
-        **told,
+        **described,
         "raised_ns": change.raised_ns,
         "last_raised_ns": change.last_raised_ns,
         "changed_ns": t_ns,
@@ -242,7 +242,7 @@ def _alarm(session: Session, change: AlarmChange) -> None:
     )
     _add(
         session, AlarmTransition, alarm_id=change.alarm_id, t_ns=t_ns, state=state,
-        level=change.level, **told,
+        level=change.level, **described,
     )  # fmt: skip
 
 
@@ -277,9 +277,10 @@ def _tracks(session: Session, tracks: Sequence[FusedPosition]) -> int:
     return len(all_rows) - len(rows)
 
 
-def _heard(session: Session, heard: Mapping[str, int]) -> None:
+def _last_messages(session: Session, last_ns: Mapping[str, int]) -> None:
     rows = [
-        {"unit_id": unit_id, **_NEW_UNIT, "last_heard_ns": t_ns} for unit_id, t_ns in heard.items()
+        {"unit_id": unit_id, **_NEW_UNIT, "last_heard_ns": t_ns}
+        for unit_id, t_ns in last_ns.items()
     ]
     if rows:
         statement = insert_into(session, Unit)

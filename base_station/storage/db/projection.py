@@ -28,7 +28,7 @@ PERIOD_S = 0.5
 BATCH = 2_000
 MAX_PENDING = 100_000  # about an hour of twenty units; past it the log alone knows
 
-_NO_NUMBER = "where somebody was is no number"
+_NO_NUMBER = "a position is no number"
 
 _MISSED = "What was decided while the database did not answer is being brought into it from the log"
 
@@ -58,7 +58,7 @@ class SqlProjection:
         self._settled = 0  # of these, written or given up
         self._in_memory = 0  # of those pending, the first ones, that are in the copy in memory
         self._dropped = 0
-        self._wanted = False  # somebody waits for them
+        self._wanted = False  # a caller waits for them
         self._failure = ""
         self._drop_reason = ""
         self._failed_tries = 0
@@ -104,7 +104,7 @@ class SqlProjection:
         return self._marked
 
     def missing(self) -> Missing | None:
-        """What is to be projected again from the log, now that the database answers."""
+        """Decisions to project again from the log, now that the database answers."""
         with self._changed:
             if self._mark is None or not self._missed or self._failure or self._store.is_away:
                 return None
@@ -126,8 +126,8 @@ class SqlProjection:
             return self._done >= goal
 
     def hasten(self) -> Callable[[], bool]:
-        """Have what was decided before this call written now, without waiting; gives what tells
-        whether that is over.  Positions are not waited for: they come all the time.
+        """Have decisions before this call written now, without waiting.  Gives a function: True if
+        that is over.  Positions are not waited for: they come all the time.
         """
         with self._changed:
             return self._write_now(self._decided)
@@ -230,7 +230,7 @@ class SqlProjection:
                 self._marked = True
 
     def _clear_mark(self) -> None:
-        """Where nothing waits, and nothing is missing."""
+        """Clear the mark where nothing waits, and nothing is missing."""
         with self._changed:
             is_behind = bool(self._missed or self._pending)
         if self._mark is not None and self._marked and not is_behind:

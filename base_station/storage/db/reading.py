@@ -1,7 +1,7 @@
 """Reads a database and leaves its folder as it was, byte for byte and name for name.
 
 SQLite puts the index of its WAL beside a database that it reads, and leaves it there; in a folder
-that nobody may write to it cannot read it at all.
+without write permission it cannot read it at all.
 """
 
 from __future__ import annotations

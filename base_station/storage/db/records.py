@@ -153,15 +153,15 @@ class Records:
             return [TrackSample(*row) for row in session.execute(wanted)]
 
     def members_of(self, incident: IncidentRow) -> Members:
-        """Which units were in the incident, and when."""
+        """Units that were in the incident, with their times."""
         with self._store.read() as session:
             return members_of(session, incident)
 
     def tracks_of(
         self, incident: IncidentRow, every_s: int = 1
     ) -> Mapping[str, Sequence[TrackSample]]:
-        """What was shown of every unit while it was in the open incident; each is read when it is
-        asked for.
+        """Track that was shown of every unit while it was in the open incident; each is read when
+        it is asked for.
         """
         members = self.members_of(incident)
         units = [
@@ -292,7 +292,7 @@ class Records:
             return session.scalars(newest_first).first()
 
     def audit_entries(self, done: Window, limit: int | None = None) -> Sequence[AuditEntry]:
-        """What was done in the window, newest first (``pages.newest``)."""
+        """Actions in the window, newest first (``pages.newest``)."""
         wanted = select(AuditEntry).where(*_in(done, AuditEntry.t_ns))
         with self._store.read() as session:
             return newest(session, wanted, AuditEntry.t_ns, AuditEntry.number, limit)

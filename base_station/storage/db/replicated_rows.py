@@ -68,7 +68,7 @@ def end_what_ended(session: Session, ended: tuple[Row, ...]) -> bool:
 
 
 def without_ended(session: Session, rows: ReplicatedRows) -> ReplicatedRows:
-    """What is not over by what this station knows, and belongs to nothing that is."""
+    """Rows without a tombstone at this station, and which belong to no row that has one."""
     ended = set(session.scalars(select(Tombstone.what)))
 
     def left(table: type[Base], rows: tuple[Row, ...]) -> tuple[Row, ...]:

@@ -40,7 +40,7 @@ from base_station.storage.db.upserts import insert_into
 
 _REMOVED = "removed_ns"  # of an earlier version's rows there is none
 _NUMBER = "number"  # of an audit entry, at the station that is asked
-_SINCE = {"role_ns": 0, "password_ns": 0}  # as a station says that is of an earlier version
+_SINCE = {"role_ns": 0, "password_ns": 0}  # as sent by a station of an earlier version
 
 
 class ReplicatedTables:
@@ -101,8 +101,8 @@ class ReplicatedTables:
         return dropped
 
     def take_back(self, standby: ReplicatedRows) -> tuple[str, ...]:
-        """What this station lost with its database and the standby still has; who and what it is.
-        Pictures are asked for afterwards.
+        """Take back rows that this station lost with its database and the standby still has; gives
+        their names.  Pictures are asked for afterwards.
 
         What was entered here since stays as it is.  An administrator whom the station made itself,
         because it had no user, goes where there is another again.
@@ -121,8 +121,8 @@ class ReplicatedTables:
             return "base_map" in lost_tables(session) and not rows_of(session, BaseMap)
 
     def take_away(self, standby: ReplicatedRows) -> bool:
-        """What the standby took away while it could not be heard, and later roles and passwords;
-        nothing else of it.  Whether there was any.
+        """Apply removals that the standby made while it was not reachable, and later roles and
+        passwords; nothing else of it.  True if there was any.
         """
         with self._store.write() as session:
             some = end_what_ended(session, standby.ended)
@@ -201,7 +201,7 @@ class ReplicatedTables:
 def _with_the_later(session: Session, theirs: Row) -> Row:
     """Another station's row of a user with the later role and password of the two.
 
-    Both stations come to the same, whichever hears of the other first.  Where the passwords
+    Both stations come to the same, whichever receives the other's first.  Where the passwords
     differ, no login with the one that no longer holds stays.
     """
     user = session.get(User, theirs["username"])
@@ -236,7 +236,7 @@ def _replace(
 
 
 def _remove_people(session: Session, rows: tuple[Row, ...]) -> bool:
-    """Whoever was removed from the roster at the other station; whether anybody was."""
+    """Remove people who were removed from the roster at the other station; True if any were."""
     some = False
     for row in rows:
         person = session.get(PersonRow, row["person_id"])

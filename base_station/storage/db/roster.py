@@ -48,7 +48,7 @@ class Roster:
     # ---- names for what has ids, from memory: asked in the engine's thread, too
 
     def known(self, person_id: str) -> KnownPerson:
-        """Whoever is or was on the roster."""
+        """A person who is or was on the roster."""
         return person_lookup(self._known)(person_id)
 
     def known_people(self) -> dict[str, KnownPerson]:
@@ -72,13 +72,13 @@ class Roster:
         return tuple(one.person_id for one in self.people() if one.crew == name)
 
     def names_of(self, person_id: str) -> Collection[str]:
-        """How somebody is or was called, who may be in the roster no more."""
+        """Present and former names of a person, who may be in the roster no more."""
         with self._store.read() as session:
             return known_names(session, person_id)
 
     def add_person(self, name: str, crew: str, role: str, row_id: str = "") -> PersonRow:
-        """``row_id`` (``core.idempotency.row_id``): whoever was added with that key before is
-        the one.
+        """``row_id`` (``core.idempotency.row_id``): a person who was added with that key before is
+        returned.
         """
         person = self._new_row(row_id or secrets.token_hex(8), name, crew, role)
         with self._store.write() as session:
@@ -121,12 +121,12 @@ class Roster:
         return person
 
     def preview_import(self, listed: Sequence[ListedPerson]) -> list[ImportStep]:
-        """What ``import_people`` would do now."""
+        """Steps that ``import_people`` would take now."""
         with self._store.read() as session:
             return import_steps(_all_on_roster(session), listed)
 
     def import_people(self, listed: Sequence[ListedPerson]) -> list[ImportStep]:
-        """Add or change all of them, or nobody: UserError where a name stands for two people."""
+        """Add or change all of them, or none: UserError where a name stands for two people."""
         written: list[PersonRow] = []
         with self._store.write() as session:
             on_roster = _all_on_roster(session)
@@ -168,7 +168,7 @@ class Roster:
         return person
 
     def forget(self, person_id: str) -> None:
-        """Nobody is shown the name from now on; the row is deleted after that."""
+        """Hide the name from now on; the row is deleted after that."""
         self._known[person_id] = FORGOTTEN
 
     def photo(self, person_id: str) -> tuple[bytes, str] | None:
@@ -183,7 +183,7 @@ class Roster:
         return found[0], found[1]
 
     def read_again(self) -> None:
-        """Somebody else has changed people and photos."""
+        """Load people and photos again, after a change that was made elsewhere."""
         self._known = self._load_people()
 
     def registered_units(self) -> Sequence[str]:

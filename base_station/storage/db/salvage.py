@@ -42,12 +42,12 @@ _BY_HAND = (
 )
 _FROM_THE_OTHER = (
     "of two stations the other one has users, tokens, people and the base map too, and they come "
-    "back when it is heard; else"
+    "back when it is reachable; else"
 )
 
 
 def loss_of(tables: Collection[str], *, alone: bool) -> str:
-    """What a database that was made again lacks, and what to do, in words.  ``alone``: there is no
+    """Loss of a database that was made again, and what to do, in words.  ``alone``: there is no
     other station that has a copy.
     """
     lost = ", ".join(words for table, words in ONLY_HERE.items() if table in tables)
@@ -95,10 +95,10 @@ def open_live(path: Path, hangs: Callable[[], bool]) -> tuple[Store, Salvage | N
 
 
 def salvage_if_damaged(path: Path, patience_s: float = CHECK_S) -> Salvage | None:
-    """None where nothing is wrong with it, or the disk does not let anybody tell.
+    """Make a damaged database again.  None: it is whole, or the disk does not let it be checked.
 
-    ``patience_s``: how long the large tables are checked; what is wrong behind that is found by
-    who reads it.  Raises DiskFullError where the disk does not take the new file.
+    ``patience_s``: how long the large tables are checked; damage behind that is found when it is
+    read.  Raises DiskFullError where the disk does not take the new file.
     """
     salvaged = beside(path, SALVAGED)
     try:

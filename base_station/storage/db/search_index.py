@@ -1,7 +1,7 @@
 """Index by which incidents are found: words of the place, people, and alarms.
 
-It is made of the other tables when somebody searches: of what has changed since.  A person is in
-it by the id, whose name is in the roster alone.
+It is updated from the other tables at each search: from their changes since.  A person is in it by
+the id, whose name is in the roster alone.
 """
 
 from __future__ import annotations
@@ -99,9 +99,9 @@ def _texts(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
 
 
 def _people(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
-    """Who wore a unit in them."""
-    # A unit has one wearer at a time: whoever wore it when its membership began, and who came
-    # later.  Else every assignment of before would be gone through.
+    """People who wore a unit in them."""
+    # A unit has one wearer at a time: the wearer when its membership began, and later ones.  Else
+    # every earlier assignment would be gone through.
     before = aliased(Assignment)
     first_ns = (
         select(func.max(before.from_ns))
@@ -122,11 +122,11 @@ def _people(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
     )
     for incident_id, person_id in session.execute(members):
         yield incident_id, PERSON, person_id
-    yield from _everybody(session, incident_ids)
+    yield from _all_wearers(session, incident_ids)
 
 
-def _everybody(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
-    """Who wore a unit meanwhile, of incidents of an earlier version, in which everybody was."""
+def _all_wearers(session: Session, incident_ids: Sequence[str]) -> Iterator[_Term]:
+    """People who wore a unit meanwhile, of incidents of an earlier version, which had all units."""
     incidents = session.execute(
         select(IncidentRow.incident_id, IncidentRow.opened_ns, IncidentRow.closed_ns)
         .where(IncidentRow.incident_id.in_(incident_ids), ~IncidentRow.has_members)

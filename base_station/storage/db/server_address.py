@@ -1,8 +1,8 @@
 """Address of the PostgreSQL server that has a station's tables, and its note in the data folder.
 
-The note tells the commands that work on the folder where its database is.  Neither has a
-password: that comes from a file of its own, or from the environment as libpq reads it
-(``PGPASSWORD``, ``PGPASSFILE``).
+The commands that work on the folder read the note to find its database.  Neither has a password:
+that comes from a file of its own, or from the environment as libpq reads it (``PGPASSWORD``,
+``PGPASSFILE``).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class ServerAddress(msgspec.Struct, frozen=True):
         parts = urllib.parse.urlsplit(self.url)
         if parts.password is not None or "password" in urllib.parse.parse_qs(parts.query):
             raise ConfigError(
-                "database has a password in it, which whoever may read the settings sees: give it "
+                "database has a password in it, which all who may read the settings see: give it "
                 "in database_password_file, or as PGPASSWORD in the environment"
             )
         if parts.scheme != SCHEME or not parts.path.strip("/"):
@@ -68,7 +68,7 @@ def noted_server(database: Path) -> ServerAddress | None:
         return None
     except (OSError, msgspec.DecodeError, ConfigError) as error:
         raise StoreError(
-            f"{note} cannot be read ({error}): it tells where the database is; start the station "
+            f"{note} cannot be read ({error}): it has the database's address; start the station "
             "with its settings, which writes it again"
         ) from error
 

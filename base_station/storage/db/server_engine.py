@@ -97,7 +97,7 @@ def _without_nul(
     _context: object,
     _executemany: bool,  # SQLAlchemy's signature
 ) -> tuple[str, Any]:
-    """PostgreSQL's text has no NUL; one that somebody sent must not cost the rows beside it."""
+    """PostgreSQL's text has no NUL; one in a received text must not cost the rows beside it."""
     return statement, _storable(parameters)
 
 

@@ -33,7 +33,7 @@ _AWAY = ("08", "57P", "53300")
 
 
 def store_error(error: SQLAlchemyError, what: str) -> StoreError:
-    """``what`` was tried.  The reason never has a password: libpq tells none."""
+    """``what`` was tried.  The reason never has a password: libpq reports none."""
     cause = getattr(error, "orig", None) or error
     code = str(getattr(cause, "sqlstate", None) or "")
     reason = str(cause).strip().partition("\n")[0] or type(cause).__name__

@@ -1,7 +1,7 @@
 """The tables of a station on a PostgreSQL server.
 
-While the server is away nobody waits for it: whoever asks gets the reason at once, and one caller
-every two seconds tries whether it is back.
+While the server is away no caller waits for it: each gets the reason at once, and one caller every
+two seconds tries whether it is back.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _log = logging.getLogger(__name__)
 
 RETRY_S = 2.0  # between two looks whether the server is back
 TRY_S = 10.0  # one look takes less
-OLDEST_SERVER = 140_000  # as server_version_num says it: 14.0
+OLDEST_SERVER = 140_000  # in the form of server_version_num: 14.0
 _AWAY = (
     "people are shown and commanded as before, and the log has everything; logins, past incidents, "
     "users and people wait for the database; see that the server runs and can be reached"
@@ -98,7 +98,7 @@ class ServerStore:
             self._asking("the database did not take a change"),
             Session(self._engines.writing, expire_on_commit=False) as session,
         ):
-            session.connection()  # from here on nobody else changes anything
+            session.connection()  # from here on there is no other writer
             yield session
             session.commit()
             session.info[IN_MEMORY] = False

@@ -53,7 +53,7 @@ class SmoothedTracks:
         """In the place of what was made before, the assessment included; None: not assessed yet.
         ``known_ns``: the incident's news until then are in it.
 
-        False where it ``is_outdated`` by the time that nobody else writes: nothing is kept then.
+        False where it ``is_outdated`` once this is the only writer: nothing is kept then.
         """
         rows = [
             {

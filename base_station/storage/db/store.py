@@ -58,8 +58,8 @@ class Store:
         memory_fallback: bool = False,
         no_room_beside_damaged: str = "",
     ) -> None:
-        """``hangs``: whether the disk does not answer just now.  Nothing more is asked of it then:
-        whoever does would wait for it, whatever else there is to do, and could not be ended.
+        """``hangs``: whether the disk does not answer just now.  It is not used then: a caller
+        would wait for it, whatever else there is to do, and could not be ended.
 
         ``memory_fallback``: a disk that takes nothing does not keep it from opening.
         ``no_room_beside_damaged``: why the disk takes no other file in place of this one, which is
@@ -100,7 +100,7 @@ class Store:
 
     @property
     def unreadable(self) -> tuple[str, ...]:
-        """Tables of the damaged file that nobody can give back, while it is kept in memory."""
+        """Tables of the damaged file that cannot be restored, while it is kept in memory."""
         return self._memory.unreadable if self._memory is not None else ()
 
     @property
@@ -110,7 +110,7 @@ class Store:
 
     @property
     def problem(self) -> str:
-        """What is wrong with the database, as a sentence for a person; empty: nothing."""
+        """Problem of the database, as a sentence for a person; empty: none."""
         damage = f"The database is damaged: {self._damage}" if self._damage else ""
         return "; ".join(filter(None, (damage, self._disk_problem, self.loss)))
 
@@ -244,7 +244,7 @@ class Store:
         self._engine = self._memory.engine
 
     def _begun(self) -> tuple[Session, list[Statement]]:
-        """A session that nobody else writes beside.  Raises StoreError."""
+        """A session of the only writer.  Raises StoreError."""
         changes: list[Statement] = []
         session = Session(writing(self._engine, changes), expire_on_commit=False)
         try:
@@ -261,7 +261,7 @@ class Store:
         return session, changes
 
     def _not_taken(self, error: SQLAlchemyError) -> StoreError:
-        """What did not get in; from now on it is done in memory where the disk is why."""
+        """Error for a change that was not written; memory replaces a failing disk from now on."""
         cause = self._cause(error)
         if self._memory is None and self._memory_fallback and self._is_readable(error):
             before, self._reason = self._engine, cause
@@ -271,7 +271,7 @@ class Store:
         return StoreError(f"the database did not take a change: {cause}")
 
     def _commit_in_memory(self, error: SQLAlchemyError, changes: list[Statement]) -> None:
-        """What the disk did not take in the end.  Raises StoreError."""
+        """Make in memory the changes that the disk did not take at commit.  Raises StoreError."""
         was_in_memory = self.in_memory
         refusal = self._not_taken(error)
         if was_in_memory or self._memory is None:
@@ -282,7 +282,7 @@ class Store:
             raise refusal from error
 
     def _leave_memory_if_due(self) -> None:
-        """Nobody else changes anything meanwhile."""
+        """Go back from memory to the disk, if it is time.  The caller is the only writer."""
         memory, now_s = self._memory, time.monotonic()
         if memory is None or now_s - self._tried_s < _RETRY_S or self.hangs():
             return
@@ -307,7 +307,7 @@ class Store:
 
     @contextmanager
     def _alone(self) -> Iterator[None]:
-        """Nobody else changes anything."""
+        """Hold the right to write: there is no other writer."""
         self._require_disk()
         while not self._writing.acquire(timeout=_LOOK_S):
             self._require_disk()
@@ -329,8 +329,8 @@ class Store:
         if code in DAMAGE:
             self._damage = (
                 f"{cause}; stop the station and run 'muster base rebuild': it makes {self.path} "
-                "again from the log, keeps what can be read of users and people, and says what "
-                "cannot; or put it back from a backup"
+                "again from the log, keeps what can be read of users and people, and reports "
+                "what cannot; or put it back from a backup"
             )
             return self._damage
         if code in NO_ROOM:

@@ -1,4 +1,4 @@
-"""Which parts of the API a token is for."""
+"""Scopes of a token: the parts of the API that it is for."""
 
 from __future__ import annotations
 

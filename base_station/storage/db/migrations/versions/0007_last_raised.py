@@ -1,4 +1,4 @@
-"""When an alarm was raised last: at first, or anew."""
+"""Time at which an alarm was raised last: at first, or anew."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ depends_on = None
 def upgrade() -> None:
     last_raised = sa.Column("last_raised_ns", sa.BigInteger(), server_default="0", nullable=False)
     op.add_column("alarms", last_raised)
-    # Of what is stepped again the log tells when; of earlier ones this is as much as is known.
+    # Of alarms that are stepped again the log has the time; of earlier ones only this is known.
     op.execute("UPDATE alarms SET last_raised_ns = raised_ns")
 
 

@@ -1,4 +1,4 @@
-"""When more came to be known of a closed incident, and what its trails were made with."""
+"""Time of late data of a closed incident, and the data with which its trails were made."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was taken away for good, and since when a user has role and password: of two stations."""
+"""Tombstones, and since when a user has role and password: for replication of two stations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which log a segment is of.  An older program, whose segments do not say so, opens this
+"""Identity of the log of a segment.  An older program, whose segments do not carry it, opens this
 database no more: they would be left out of the log.
 """
 

@@ -1,4 +1,4 @@
-"""Who was removed from the roster keeps the name for incidents of before: the log has none."""
+"""Names of people removed from the roster, for earlier incidents: the log has no names."""
 
 from __future__ import annotations
 

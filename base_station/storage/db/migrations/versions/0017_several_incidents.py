@@ -1,6 +1,6 @@
-"""Who was in which incident, of several that are open at once, and on whose site a plan lies.
+"""Members of each incident, of several that are open at once, and the site of a plan.
 
-An incident of an earlier version has no members here: everybody was in it.
+An incident of an earlier version has no members here: everyone was in it.
 """
 
 from __future__ import annotations

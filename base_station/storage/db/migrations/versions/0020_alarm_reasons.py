@@ -1,4 +1,4 @@
-"""Why alarms were resolved, with the words of who did, and the worst that was measured meanwhile.
+"""Reasons why alarms were resolved, with a person's words, and the worst measured value meanwhile.
 
 Of alarms of an earlier version the words stand behind who resolved them.
 """
