@@ -58,7 +58,7 @@ Progress = Callable[[float], None]
 
 
 class IncidentInFile(msgspec.Struct, frozen=True):
-    """What a stand-alone file says of itself."""
+    """Header of a stand-alone file."""
 
     incident_id: str
     name: str
@@ -67,8 +67,8 @@ class IncidentInFile(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class IncidentFileSource:
-    """``name`` and ``people`` are as they are shown; ``report`` hears in words of what of the log
-    cannot be read, which the file says of itself, too.
+    """``name`` and ``people`` are as they are shown; ``report`` receives a sentence about each part
+    of the log that cannot be read, which is also written into the file.
     """
 
     log: LogFeed
@@ -172,7 +172,7 @@ class _AllKeys:
 
 
 class _Standing:
-    """What was set and still holds, each once."""
+    """Settings that still hold, each once."""
 
     def __init__(self) -> None:
         self._records: dict[tuple[str, str], LogRecord] = {}
@@ -215,7 +215,7 @@ def _what_it_sets(record: LogRecord) -> tuple[str, str] | None:
 
 
 def _action_of(record: LogRecord) -> Action | None:
-    """What a person did; None: it is of something else, or damaged."""
+    """Action of a person; None: another kind of record, or damaged."""
     if record[1] != _OPERATOR_KEY:
         return None
     event = event_of(*record)
@@ -242,6 +242,6 @@ def read_incident_file(path: Path) -> IncidentInFile | None:
         return IncidentInFile(about["incident_id"], about["name"], people)
     except (KeyError, msgspec.MsgspecError) as error:
         raise UserError(
-            f"{path} says that it is an incident of Muster, and cannot be read as one ({error}): "
-            "ask for it once more"
+            f"{path} is marked as an incident of Muster, and cannot be read as one ({error}): "
+            "get it once more"
         ) from error

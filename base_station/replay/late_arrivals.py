@@ -37,9 +37,9 @@ from shared.messages.station import OpenIncident
 Record = tuple[int, str, bytes]  # station time, key, payload
 Run = tuple[str, int]  # of a program: who spoke, and its boot
 
-CLOCK_REFERENCE_MESSAGES = 1000  # of a run: they tell how its clock stands; some minutes of them do
-_TELLING = frozenset({POSITION, GPS, SIGHTING})
-_LIVE = frozenset({STATUS, HEARTBEAT, DESCRIPTION})  # what says nothing of where anybody went
+CLOCK_REFERENCE_MESSAGES = 1000  # of a run: some minutes of them give the offset of its clock
+_LOCATING = frozenset({POSITION, GPS, SIGHTING})
+_LIVE = frozenset({STATUS, HEARTBEAT, DESCRIPTION})  # channels without positions
 
 
 def apply_late_arrivals(
@@ -68,10 +68,10 @@ def apply_late_arrivals(
 
 
 def _late(records: Iterable[Record]) -> dict[Run, list[Received]]:
-    """What came out of journals of where people were, by whose it is; each as it was said."""
+    """Messages about positions that came out of journals, by run, in the order of sending."""
     late: dict[Run, list[Received]] = {}
     for record in records:
-        if is_backfilled(record[1]) and _channel_of(record[1]) in _TELLING:
+        if is_backfilled(record[1]) and _channel_of(record[1]) in _LOCATING:
             event = event_of(*record)
             if isinstance(event, Received):
                 late.setdefault((event.unit_id, event.message.header.boot_id), []).append(event)
@@ -81,7 +81,7 @@ def _late(records: Iterable[Record]) -> dict[Run, list[Received]]:
 
 
 def _is_recorded(pipeline: StationPipeline, run: Run) -> bool:
-    """True if it was live before the incident was closed: its times can be told."""
+    """True if it was live before the incident was closed: its times are known."""
     sender_id, boot_id = run
     sender = pipeline.state.sender(sender_id)
     boots = () if sender is None else sender.boots
@@ -91,7 +91,7 @@ def _is_recorded(pipeline: StationPipeline, run: Run) -> bool:
 def _clock_reference_messages(
     records: Iterable[Record], runs: Collection[Run]
 ) -> dict[Run, list[Received]]:
-    """Those that came live of runs, in the order in which these were heard first."""
+    """Messages that came live, by run, in the order of the first message of each run."""
     words: dict[Run, list[Received]] = {}
     if not runs:
         return words
@@ -123,7 +123,7 @@ def _step_run(pipeline: StationPipeline, late: list[Received], closed_ns: int) -
 
 
 def _captured_ns(pipeline: StationPipeline, event: Received) -> int:
-    """When it was said; where nobody can tell, it is of now."""
+    """Capture time of a message; unknown: its time of receipt."""
     state = pipeline.state
     sender = state.sender(event.unit_id)
     known_ns = None
@@ -133,7 +133,7 @@ def _captured_ns(pipeline: StationPipeline, event: Received) -> int:
 
 
 def _debriefed(records: Iterable[Record]) -> Iterator[Received]:
-    """What was said of pins until the next incident was opened; then they are about that."""
+    """Actions on pins until the next incident was opened; later ones are about that."""
     key = OPERATOR.key(STATION_ID)
     for record in records:
         event = event_of(*record) if record[1] == key else None

@@ -16,6 +16,6 @@ class ReplayPipeline(StationPipeline):
     def step(self, event: StationEvent) -> list[Output]:
         try:
             return super().step(event)
-        except Exception:  # noqa: BLE001  # told, and the past goes on
+        except Exception:  # noqa: BLE001  # logged, and the past goes on
             _log.exception("an event of the log, at %d ns, cannot be stepped", event.t_ns)
             return []

@@ -16,7 +16,7 @@ class Player(Protocol):
 
     @property
     def gap(self) -> RecordGap | None:
-        """Where it stands in one."""
+        """Gap of the record at the present place; None: there is none."""
         ...
 
     @property

@@ -49,13 +49,13 @@ UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
 
 @dataclass(frozen=True)
 class Smoothed:
-    """What a smoother made of an incident."""
+    """Result of a smoother for an incident."""
 
     incident_id: str
     smoother: str
     made_ns: int
     tracks: Tracks  # by unit
-    is_kept: bool = True  # else it is worked out again when somebody asks
+    is_kept: bool = True  # else it is worked out again at each request
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class SolvedIncident:
 
     state: StationState
     solution: Solution
-    is_outdated: Callable[[], bool]  # somebody was forgotten since
+    is_outdated: Callable[[], bool]  # a person was forgotten since
 
 
 class PostProcessor:
@@ -99,7 +99,7 @@ class PostProcessor:
         return self._cached_or_made(incident, self._cached_trails, self.smooth)
 
     def smooth(self, incident: IncidentRow, on_progress: Progress = lambda _: None) -> Smoothed:
-        """Make it again from the log; ``on_progress`` hears the fraction done."""
+        """Make it again from the log; ``on_progress`` receives the fraction done."""
         return self._keep(incident, self.known(incident, on_progress), self._clock.utc_ns())
 
     def _keep(
@@ -125,7 +125,7 @@ class PostProcessor:
         self, incidents: Iterable[IncidentRow], shown: Callable[[IncidentRow], Tracks]
     ) -> None:
         """Smooth and assess an incident that closed lately and was not yet, or of which more is
-        known since, so that it is there when somebody asks; ``shown`` gives what was.
+        known since, so that it is there on request; ``shown`` gives the tracks shown live.
         """
         now_ns = self._clock.utc_ns()
         if now_ns < self._again_ns:
@@ -160,7 +160,7 @@ class PostProcessor:
         return now_ns - incident.closed_ns < LATELY_NS
 
     def is_newest(self, incident: IncidentRow) -> bool:
-        """True if what is said of it was made with all that came of it since it was closed; what is
+        """True if its result was made with all data that came since it was closed; a result that is
         not kept is always made anew.
         """
         return not self._store.has(incident.incident_id) or self._is_made(incident)
@@ -169,7 +169,7 @@ class PostProcessor:
         return self._store.has(incident.incident_id, _late_data_ns(incident))
 
     def _is_enough(self, incident: IncidentRow) -> bool:
-        """What is kept serves: nothing is newer, or a journal is still being read."""
+        """True if the kept result serves: no data is newer, or a journal is still being read."""
         is_quiet = abs(self._clock.utc_ns() - _late_data_ns(incident)) >= QUIET_NS
         return self._is_made(incident) or (not is_quiet and self._store.has(incident.incident_id))
 
@@ -182,8 +182,8 @@ class PostProcessor:
         )
 
     def assess(self, incident: IncidentRow, live: Tracks) -> IncidentReport:
-        """How good the positions were, as it was made when the incident had closed; ``live`` is
-        what was shown, by unit.
+        """Assessment of the positions, as it was made when the incident had closed; ``live``:
+        tracks that were shown, by unit.
         """
         return self._cached_or_made(
             incident, self._cached_report, lambda one: self._assess(one, live)
@@ -195,7 +195,7 @@ class PostProcessor:
         kept: Callable[[IncidentRow], Made | None],
         make: Callable[[IncidentRow], Made],
     ) -> Made:
-        """What is kept of a closed incident, or else made of it: whoever asks meanwhile waits."""
+        """Kept result of a closed incident, or else a new one: other callers wait meanwhile."""
         found = self._cached(incident, kept)
         if found is not None:
             return found
@@ -249,7 +249,7 @@ class PostProcessor:
         return PostProcessingResult(made_ns, smoothed, raw, report, is_kept)
 
     def _flaws(self) -> tuple[str, ...]:
-        """Why the log does not tell all of it."""
+        """Flaws of the log: reasons why the result may be incomplete."""
         while self._archive.look():
             pass
         return tuple(self._archive.flaws())
@@ -266,7 +266,7 @@ class PostProcessor:
             site_id = _site_id(state, incident.incident_id)
             site = state.sites[site_id]
             evidence = evidence_of_site(state, site_id, FloorGrid.of(site.placed_plan))
-            solution = Solution({}, {})  # nobody has been heard of yet
+            solution = Solution({}, {})  # no unit has sent anything yet
             if evidence:
                 solution = self._smoother.smooth(evidence, encounters_of(state, site))
             on_progress(1.0)
@@ -296,7 +296,7 @@ class PostProcessor:
 
 
 def _late_data_ns(incident: IncidentRow) -> int:
-    """When more came to be known of it, since it was closed; 0: nothing has."""
+    """Time of the newest data that came after it was closed; 0: there is none."""
     return incident.late_data_ns or 0  # a row that was not read from the table has none
 
 

@@ -10,7 +10,7 @@ from shared.messages import Header
 
 assert STATUS.stale_after_s is not None
 GAP_NS = round(STATUS.stale_after_s * NS_PER_S)  # without a message: no radio contact
-HEARD = (STATUS, TEMPERATURE, HEARTBEAT, EVENT, REPLY)  # channels that contact is judged by
+CONTACT_CHANNELS = (STATUS, TEMPERATURE, HEARTBEAT, EVENT, REPLY)  # they show contact
 
 
 class SentTimes:

@@ -23,7 +23,7 @@ def project_log(
 ) -> int:
     """Step a whole log through a new pipeline and write what it projects.
 
-    ``on_progress`` hears the station time reached.  Gives the number of records.
+    ``on_progress`` receives the station time reached.  Gives the number of records.
     """
     projector = Projector()
     next_ns, count, t_ns = 0, 0, 0

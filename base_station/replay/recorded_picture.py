@@ -84,7 +84,7 @@ class RecordedPicture:
     def delta(
         self, seq: int, now_ms: int, people: PersonLookup, replay: ReplayView, *, whole: bool
     ) -> Delta:
-        """What changed since the last one; ``now_ms``: later than the picture in a gap."""
+        """Changes since the last one; ``now_ms``: later than the picture in a gap."""
         apart = self._apart
         delta = Delta(
             seq=seq,
@@ -228,7 +228,7 @@ def _still_in(ids: Mapping[str, None], there: Mapping[str, object]) -> dict[str,
 
 def _aged(unit: UnitView, then_ms: int, now_ms: int) -> UnitView:
     """As it is shown where nothing is recorded of the time since, as live: its link and the region
-    of its position; where walls would end that, nobody works out.
+    of its position, which does not heed walls here.
     """
     if now_ms <= then_ms or unit.last_heard_ms is None:
         return unit

@@ -26,17 +26,17 @@ from shared.log_on_change import LogOnChange
 SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
 DELTA_S = 0.05
 LOOK_NS = 20 * NS_PER_MS  # of each turn goes into looking at the log for flaws
-WHOLE_NS = NS_PER_S  # live, consoles hear of the station and of trails that were filled as often
+WHOLE_NS = NS_PER_S  # live, consoles receive the station's health and backfilled trails as often
 GRACE_S = 2.0  # for its thread to end
-PAUSED_S = 1.0  # a console that hears nothing for longer believes its link dead
-MOST_FLAWS = 20  # that are said: with every change
+PAUSED_S = 1.0  # a console that receives nothing for longer believes its link dead
+MOST_FLAWS = 20  # that are published: with every change
 
 _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class ReplayWindow:
-    """What is replayed, in station time."""
+    """Window of a replay, in station time."""
 
     incident_id: str
     start_ns: int
@@ -64,7 +64,7 @@ class ReplaySession:
     ) -> None:
         """It plays from the window's beginning.  Raises UserError for an impossible speed.
 
-        The disk is left to the thread: while it hangs, whoever asks for a replay is not kept.
+        The disk is left to the thread: while it hangs, the caller does not wait.
         """
         self._window = window
         self._clock = clock
@@ -176,7 +176,7 @@ class ReplaySession:
     def _run(self) -> None:
         try:
             self._go_on()
-        except Exception:  # noqa: BLE001  # whoever watches hears no more, and is told it ended
+        except Exception:  # noqa: BLE001  # consoles get no more, and the end is logged
             _log.exception("the replay of %s broke off", self._window.incident_id)
             self._closed.set()
 
@@ -206,9 +206,9 @@ class ReplaySession:
         return looks
 
     def _checks_version(self) -> bool:
-        """A record more; False: it was checked, or so much is missing that nobody can tell."""
+        """A record more; False: the check is over, or too much is missing for it."""
         if self._recomputed is None:
-            return False  # what is played was decided then
+            return False  # the decisions of that time are played
         if self._version_check is None:
             self._archive.look()  # at its files
             self._version_check = self._recomputed.version_check(self._window.end_ns)
@@ -236,7 +236,7 @@ class ReplaySession:
         yield self._recomputing_player()
 
     def _follow_changes(self) -> None:
-        """Where somebody was forgotten since, it shows the past as the log has it now."""
+        """Show the past as the log has it now, where a person was forgotten since."""
         now_ns = self._clock.monotonic_ns()
         if now_ns - self._looked_ns < WHOLE_NS:
             return
@@ -251,7 +251,7 @@ class ReplaySession:
                 self._seek_ns = self._at_ns
 
     def _is_changed(self) -> bool:
-        """What cannot be looked at now is looked at again."""
+        """True if the log was changed; False also where it cannot be read now."""
         with self._trouble:
             return self._was_changed()
         return False
@@ -279,7 +279,7 @@ class ReplaySession:
             self._moved_ns = self._clock.monotonic_ns()  # the way there is not played
 
     def _publish_seeking(self) -> None:
-        """A long way: consoles see that somebody is there, and where it goes."""
+        """Show consoles that the replay is alive on a long way, and where it goes."""
         with self._lock:
             self._seeking = True
         self._player.publish(self.view(), whole=False)

@@ -1,7 +1,7 @@
 """Check that a replay decides as the live station did: another version of the program may not.
 
-Where somebody was forgotten, or records are missing, the same program decides otherwise, too: what
-follows tells nothing of it.
+Where a person was forgotten, or records are missing, the same program decides otherwise, too: the
+records behind that prove nothing.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ DIFFERS = (
 
 
 def decisions_differ(records: Iterable[Record], pipeline: StationPipeline) -> bool:
-    """True if anybody who looks on would see it, at the beginning of a log."""
+    """True if decisions at the beginning of a log differ visibly."""
     return any(_differences(islice(records, FIRST), pipeline))
 
 
@@ -60,7 +60,7 @@ class VersionCheck:
 
 
 def _differences(records: Iterable[Record], pipeline: StationPipeline) -> Iterator[bool]:
-    """For each record, whether anybody would see that something else is decided now."""
+    """For each record, whether the decision of now differs visibly."""
     comparison = Comparison(pipeline)
     for record in _comparable(records, pipeline):
         found = comparison.step(record)

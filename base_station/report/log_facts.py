@@ -13,7 +13,7 @@ import msgspec
 from base_station.core.events import Received, event_of
 from base_station.core.state.unit_heat import ExposureInterval
 from base_station.core.units import thermal_dose
-from base_station.replay.radio_contact import GAP_NS, HEARD, SentTimes
+from base_station.replay.radio_contact import CONTACT_CHANNELS, GAP_NS, SentTimes
 from base_station.report.contents import Interval, Series
 from shared.channels import (
     COMMAND,
@@ -68,7 +68,7 @@ def wanted_keys(unit_ids: Iterable[str]) -> Collection[str]:
     """Keys of the records that ``read_facts`` looks at."""
     keys = set[str]()
     for unit_id in unit_ids:
-        keys |= {channel.key(unit_id) for channel in (*HEARD, COMMAND)}
+        keys |= {channel.key(unit_id) for channel in (*CONTACT_CHANNELS, COMMAND)}
         keys |= {backfilled_key(unit_id, channel.suffix) for channel in _LATE}
     return keys
 

@@ -2,9 +2,9 @@
 
 Zenoh closes a link on which an answer waits for five seconds to be sent, and a queue of bulk data
 lets the keep-alives miss the lease of three: asked for too much, a thin link goes down before it
-has carried anything, again and again.  What it can carry nobody knows beforehand; so it is asked
-for little first, and for more as long as answers come quickly that bring about as much.  One that
-brings little is quick on any link.
+has carried anything, again and again.  Its capacity is not known beforehand; so little is asked for
+first, and more as long as answers come quickly that bring about as much.  An answer that brings
+little is quick on any link.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Fetches from the units' journals what the radio lost (protocol: docs/journal.md).
+"""Fetches messages that the radio lost from the units' journals (protocol: docs/journal.md).
 
-The drive says about once a second which sequence numbers it has (``report``); one thread asks all
+The drive reports about once a second the sequence numbers it has (``report``); one thread asks all
 the units for the rest, each one question at a time and by turns, a bounded number of them at once,
 and hands what comes to the feed as it comes.  Live data never stands behind it: what is asked for
 travels behind live data, and is handed over only while hardly anything waits there.
@@ -29,7 +29,7 @@ logger = logging.getLogger(__name__)
 
 AT_ONCE = 16  # units that are asked for a backlog; of each at most Pace's MOST_BYTES are asked
 _TIMEOUT_S = 10.0
-_MOST_CAME = 8  # times what was asked for; what a unit says beyond is not kept
+_MOST_CAME = 8  # times what was asked for; the rest of a longer answer is not kept
 _LEAST_KEPT_BYTES = 131_072  # of an answer, however little was asked for
 
 _URGENT = "urgent"  # a question for alerts alone
@@ -49,7 +49,7 @@ class _Request(NamedTuple):
 
 
 class _Input(NamedTuple):
-    """What has happened since the thread last looked."""
+    """Input of the thread since its last turn."""
 
     report: Report | None
     alerts_only: bool  # is to be fetched
@@ -67,7 +67,7 @@ class Backfill:
         clock: Clock,
         may_forget: Callable[[], bool] = lambda: True,
     ) -> None:
-        """``may_forget``: whether units may be told that what was reported is safe here."""
+        """``may_forget``: True if reported messages are durable here, and may be acknowledged."""
         self._bus = bus
         self._may_forget = may_forget
         self._deliver = deliver
@@ -213,7 +213,7 @@ class Backfill:
                 partial(self._note_reply, request),
                 urgent=question.urgent,
             )
-        except Exception as error:  # noqa: BLE001  # or nobody's journal is asked any more
+        except Exception as error:  # noqa: BLE001  # else no journal is asked any more
             logger.warning("the journal of %s cannot be asked: %s", unit_id, error)
             self._note_reply(request, None)
 
@@ -230,8 +230,8 @@ class Backfill:
 
 
 def _key_of(unit_id: str, boot_id: int, entry: JournalEntry) -> str:
-    """What does not say itself which message it is, has that in its key: else it would be missing
-    again whenever the station starts.
+    """Key of a fetched message.  One whose header does not identify it carries boot and number in
+    its key: else it would be missing again whenever the station starts.
     """
     header = header_of(entry.payload)
     name = None if header is None else (header.unit_id, header.boot_id, header.seq)

@@ -1,4 +1,4 @@
-"""Tells the units the station's time when they ask (see docs/clocks.md)."""
+"""Answers the units' requests for the station's time (see docs/clocks.md)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from shared.messages.clock import ClockAnswer
 
 
 class ClockServer:
-    """``clock`` gives station time; of two stations only the one that ``leads`` tells it."""
+    """``clock`` gives station time; of two stations only the one that ``leads`` answers."""
 
     def __init__(self, clock: Clock, leads: Callable[[], bool] = lambda: True) -> None:
         self._clock = clock

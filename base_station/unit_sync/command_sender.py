@@ -1,9 +1,9 @@
-"""Says commands to the units, again and again, until they answer or time is over.
+"""Sends commands to the units, again and again, until they answer or the command expires.
 
-The drive says once a second, and at once when there is a new one, which commands no unit has
-answered (``report``); a thread of this module puts them on the bus.  The station hears itself
-there like anybody else, and so the log has every time that a command was sent.  Nothing is sent
-towards a unit that is away: it is told as soon as it is back.
+The drive reports the unanswered commands once a second, and at once when there is a new one
+(``report``); a thread of this module publishes them on the bus.  The station receives its own
+messages there, and so the log has every time that a command was sent.  Nothing is sent to a unit
+that is away: it gets the command as soon as it is back.
 
 Names are put in on the way to the unit: the log has none.
 """
@@ -37,8 +37,8 @@ Offer = Callable[[str, bytes], None]  # takes key and payload
 
 
 def without_text_of_commands(offer: Offer) -> Offer:
-    """What goes to units has names in it, which do not belong in the log: there the action has the
-    text that the command was sent for.
+    """Commands to units have names in their texts, which do not belong in the log: there the action
+    has the text that the command was sent for.
     """
 
     def take(key: str, payload: bytes) -> None:
@@ -75,7 +75,7 @@ class CommandSender:
         self._worker.start()
 
     def report(self, orders: Sequence[Order]) -> None:
-        """Say what no unit has answered; what was said before is forgotten."""
+        """Replace the unanswered orders."""
         self._orders = orders
         self._worker.wake()
 
@@ -108,10 +108,10 @@ class CommandSender:
             self._fault_log.note_failure(failure)
 
     def _send(self, order: Order, before_ns: int | None, now_ns: int) -> int | None:
-        """When it was said last; None where it is not for now."""
+        """Send an order if it is due; gives the time of its last sending, None: never yet."""
         key = COMMAND.key(order.unit_id)
         if self._clock.utc_ns() >= order.expires_ns or not self._bus.is_heard(key):
-            return None  # what is forgotten here is said at once when the unit is back
+            return None  # without a last time, it is sent at once when the unit is back
         if before_ns is not None and now_ns - before_ns < _AGAIN_AFTER_NS:
             return before_ns
         self._bus.publish(key, encode(self._command(order)), COMMAND.qos)

@@ -6,7 +6,7 @@ from typing import Protocol
 
 
 class Disk(Protocol):
-    """Where what units say is kept."""
+    """Disk on which messages of units are kept."""
 
     @property
     def written(self) -> int:
@@ -30,6 +30,6 @@ class DurableAckGate:
         self._written = self._written[1], self._disk.written
 
     def previous_report_is_durable(self) -> bool:
-        """True if all that the report before the last one told of is on the disk."""
+        """True if all messages of the report before the last one are on the disk."""
         written = self._written[0]
         return written is not None and written <= self._disk.on_disk

@@ -38,7 +38,7 @@ _BRIDGED = 4  # messages that are there between two holes: a question more costs
 
 
 class Held(NamedTuple):
-    """What the station has of one boot of one unit."""
+    """Messages of one boot of one unit that the station has."""
 
     boot_id: int
     runs: tuple[Run, ...]
@@ -74,7 +74,7 @@ class _Boot:
         self.first = 1  # the oldest that the journal has
         self.newest = 0  # that is known of
         self._settled_to = 0  # a number up to here that is missing is lost, not under way
-        self.unanswered: int | None = None  # from here on it said nothing of alerts, asked last
+        self.unanswered: int | None = None  # alerts from here on were asked for last, in vain
         self.complete: deque[int] = deque(maxlen=_SAFE_REPORTS)
         self.acknowledged = 0
         self.acknowledge_due_ns = 0
@@ -90,7 +90,7 @@ class _Boot:
             self.complete.append(_union(self.held, self._evicted).complete_to(self.first))
 
     def note_fetched(self, run: Run) -> None:
-        """What the journal has of it came."""
+        """Note that all messages of the run that the journal has have come."""
         for one in (self._fetched, self._have, self._known):
             one.add_run(run)
 
@@ -107,7 +107,7 @@ class _Boot:
         return tuple(one for one in entries if one.seq not in self._have)
 
     def note_without_alert(self, run: Run) -> None:
-        """What alerts the journal has in it came."""
+        """Note that all alerts of the run that the journal has have come."""
         for one in (self._without_alert, self._known):
             one.add_run(run)
 
@@ -128,7 +128,7 @@ class _Boot:
         return Run(first, last)
 
     def start_over(self) -> None:
-        """What was fetched has not all come into the log."""
+        """Forget fetched messages: not all have come into the log."""
         self._fetched = SequenceSet()
         self._evicted = SequenceSet()
         self._without_alert = SequenceSet()
@@ -137,9 +137,9 @@ class _Boot:
         self.complete.clear()
 
     def may_have_alerts(self) -> Run | None:
-        """Where an alert may be missing.  One overtakes all but other alerts on its way, so what
-        is missing before any number that came is lost; and so is what has long been said, as the
-        last words of a run that ended out of reach.
+        """Range in which an alert may be missing.  An alert overtakes all but other alerts on its
+        way, so a missing number before any that came is lost; and so are numbers sent long ago,
+        such as the last ones of a run that ended out of reach.
         """
         last = max(self.held.lasts[-1], self._settled_to) if self.held.lasts else self.newest
         newest = self._known.newest_missing(self.first, self._answered_to(last))
@@ -164,7 +164,7 @@ class JournalClient:
         self._number_bytes = _NUMBER_BYTES
         self._came_bytes = 0  # in answer to the question that is being answered
         self._has_more = False  # perhaps, than the last index names
-        self._told = 0  # replies that make sense, to that question
+        self._valid_replies = 0  # to that question
         self._silent = False  # it did not answer, or nonsense: not before the next report again
         self._acknowledging: tuple[_Boot, int] | None = None
         self._alerts_only = False
@@ -189,7 +189,7 @@ class JournalClient:
             self._index_due_ns = 0
 
     def note_new_link(self) -> None:
-        """The unit was out of reach, and what its link carries now nobody knows."""
+        """The unit was out of reach, and the capacity of its link is unknown now."""
         self._pace, self._index_pace = AdaptiveChunkSize(), AdaptiveChunkSize()
 
     def start_over(self) -> None:
@@ -216,12 +216,12 @@ class JournalClient:
             if question.what == "index":
                 self._came_bytes += len(reply)
                 self._learn(index, now_ns, dict(question.parameters)["newest"])
-            self._told += 1
+            self._valid_replies += 1
             return None
         chunk = JournalChunk.from_bytes(reply)
         if not _answers(question, chunk):
             raise WireError(f"boot {chunk.boot_id:x} from {chunk.from_seq} was not asked for")
-        self._told += 1
+        self._valid_replies += 1
         boot = self._boots.setdefault(chunk.boot_id, _Boot())
         run, new = Run(chunk.from_seq, chunk.to_seq), boot.new(chunk.entries)
         if chunk.urgent_only:
@@ -236,12 +236,12 @@ class JournalClient:
 
     def end(self, question: Question, took_ns: int) -> None:
         """No more replies come to this question."""
-        told, self._told = self._told, 0
+        valid, self._valid_replies = self._valid_replies, 0
         came_bytes, self._came_bytes = self._came_bytes, 0
-        self._note_answered(question, told)
+        self._note_answered(question, valid)
         if question.what == "index":
             self._note_index(question, came_bytes, took_ns)
-        if not told:
+        if not valid:
             self._silent = True
             if question.what == "range":
                 self._pace.note_nothing()
@@ -275,11 +275,11 @@ class JournalClient:
             self._index_due_ns = self._reported_ns + _INDEX_MORE_NS
 
     def _learn(self, index: JournalIndex, now_ns: int, asked: int) -> None:
-        """Two machines under one name both answer.  Of runs that are older than what was asked for
-        an answer says nothing.
+        """Two machines under one name both answer.  An answer has nothing about runs older than
+        those that were asked for.
         """
         self._index_due_ns = now_ns + _INDEX_EVERY_NS
-        has_more, is_first = len(index.boots) >= asked, self._told == 0
+        has_more, is_first = len(index.boots) >= asked, self._valid_replies == 0
         self._has_more = has_more or (self._has_more and not is_first)
         before = self._indexed if has_more or not is_first else {}
         newest = index.boots[-BOOTS_KEPT:]
@@ -294,15 +294,15 @@ class JournalClient:
     def _newest_first(self) -> Iterator[tuple[int, _Boot]]:
         return ((boot_id, self._boots[boot_id]) for boot_id in reversed(self._indexed))
 
-    def _note_answered(self, question: Question, told: int) -> None:
-        """What a unit's disk does not take it says, and cannot give until later: what it wrote
-        before that is not to wait for it.  So where it said nothing about alerts, one question
-        about what is before these has its turn.
+    def _note_answered(self, question: Question, valid: int) -> None:
+        """A unit reports messages that its disk does not take, and can give them only later:
+        earlier messages must not wait for them.  So where a question for alerts had no answer, one
+        about earlier numbers has its turn.
         """
         asked = dict(question.parameters)
         boot = self._boots.get(asked["epoch"]) if "from" in asked else None
         if boot is not None:
-            boot.unanswered = None if told or question.what != "urgent" else asked["from"]
+            boot.unanswered = None if valid or question.what != "urgent" else asked["from"]
 
     def _ask_missing(self) -> Question | None:
         asked = self._ask_alerts()
@@ -322,7 +322,7 @@ class JournalClient:
         return None
 
     def _ask_piece(self) -> Question | None:
-        """What the wearer did last matters most, so the newest piece of the newest boot."""
+        """Ask for the newest piece of the newest boot: the wearer's last actions matter most."""
         total = self._pace.answer_bytes
         count = max(1, int(_PIECE_SHARE * total / self._number_bytes))
         for boot_id, boot in self._newest_first():

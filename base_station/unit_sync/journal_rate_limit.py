@@ -23,7 +23,7 @@ _REPORTED_AFTER_NS = 3 * NS_PER_S  # of waiting
 _OVER_AFTER_NS = 30 * NS_PER_S
 _PART = "journal share "  # and whose
 _TEXT = (
-    f"{{0}}'s journal brings more than a unit says in hours ({MESSAGES_AT_ONCE:,} messages, "
+    f"{{0}}'s journal brings more than a unit sends in hours ({MESSAGES_AT_ONCE:,} messages, "
     f"{BYTES_AT_ONCE / 1e6:.0f} MB or {ALERTS_AT_ONCE} alerts): the rest is fetched slowly. If it "
     "was not out of reach for long, switch it off, or revoke it: muster pki revoke {0}"
 )

@@ -103,7 +103,7 @@ def test_projecting_the_log_again_changes_nothing(store: Database, clock: Manual
 def test_who_asks_for_what_was_decided_waits_for_no_position(store: Database) -> None:
     projection = SqlProjection(store)
     with store.write():  # nothing else is written
-        projection.project(Projection(NS_PER_S, tracks=(fused(1.0, 1.0),), heard=(("FF-01", 1),)))
+        projection.project(Projection(NS_PER_S, tracks=(fused(1.0, 1.0),), last_messages=(("FF-01", 1),)))
         assert projection.hasten()()
         projection.project(acted(2, RegisterUnit("FF-01", "one")))
         is_over = projection.hasten()
@@ -176,8 +176,8 @@ def test_a_long_track_is_thinned_and_found_in_its_window(
     times_s = (*range(100, 110), *range(month_s, month_s + 10), 20 * month_s)
     tracks = tuple(fused(t_s + 0.5, float(t_s)) for t_s in times_s)
     with store.write() as session:
-        project_into(session, (Projection(1, tracks=tracks, heard=(("FF-01", 7),)),))
-        project_into(session, (Projection(2, tracks=tracks, heard=(("FF-01", 5),)),))
+        project_into(session, (Projection(1, tracks=tracks, last_messages=(("FF-01", 7),)),))
+        project_into(session, (Projection(2, tracks=tracks, last_messages=(("FF-01", 5),)),))
     records = Records(store, clock)
     assert [one.north_m for one in records.track("FF-01", ALL)] == list(map(float, times_s))
     window = Window(month_s * NS_PER_S, (month_s + 10) * NS_PER_S)

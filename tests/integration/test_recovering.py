@@ -98,7 +98,7 @@ def store_what_happened(disk: StationStorage, raised_before_s: float = 0.0) -> N
                 OperatorAction(header, f"a{number}", "ada", action)
                 for number, action in enumerate(actions)
             ),
-            heard=(("FF-01", t_ns),),
+            last_messages=(("FF-01", t_ns),),
             tracks=(said_by_bench.fused(header, "FF-01", north_m=3.0, east_m=4.0),),
             alarms=(
                 AlarmChange(

@@ -26,7 +26,7 @@ from base_station.storage.db.records import TrackSample
 from base_station.views.answer import Answer
 from shared.clock import NS_PER_S
 
-AWAY_M = 15.0  # somebody who was so far from the beginning
+AWAY_M = 15.0  # a wearer who was so far from the beginning
 BACK_M = 3.0  # and came so near to it again has closed a loop
 GAP_NS = 60 * NS_PER_S  # without a fix, after which the next one is a re-entry
 NEAR_NS = 5 * NS_PER_S  # half of what lies between two points of a trail, at most
@@ -36,7 +36,7 @@ Tracks = Mapping[str, Sequence[TrackSample]]
 
 
 class PinResidual(Answer, frozen=True):
-    """How far a pin lay from what was shown at its time, and lies from the smoothed trail."""
+    """Distance of a pin from the position shown at its time, and from the smoothed trail."""
 
     pin_id: str
     note: str
@@ -147,7 +147,7 @@ def _floor_probability(site: SiteState, live: Sequence[TrackSample]) -> float | 
 
 
 def _floor_right(live: Sequence[TrackSample], smoothed: Sequence[TrackSample]) -> float | None:
-    """How often the floor shown was the one that is known since."""
+    """Fraction of samples whose shown floor is the one of the smoothed trail; None: no floors."""
     with_floor = [one for one in live if one.floor is not None]
     right = []
     for one in with_floor:
@@ -265,7 +265,7 @@ def _reentry_jumps(
 
 
 def _at(samples: Sequence[TrackSample], t_ns: int) -> TrackSample | None:
-    """What was shown nearest to then, within a few seconds; of time 0 the first."""
+    """Sample nearest to a time, within a few seconds; of time 0 the first."""
     row = bisect_left(samples, t_ns, key=lambda one: one.t_ns)
     near = samples[max(row - 1, 0) : row + 1]
     nearest = min(near, key=lambda one: abs(one.t_ns - t_ns), default=None)

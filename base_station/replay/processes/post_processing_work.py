@@ -27,7 +27,7 @@ from shared.clock import Clock
 from shared.errors import MusterError
 
 _NICE = 9  # beyond that of all who look at the past
-_STEP = 0.01  # of progress that is told
+_STEP = 0.01  # of progress that is reported
 
 
 class StationTime:
@@ -53,7 +53,7 @@ def stand_back(line: FrameChannel) -> None:
 
 @contextmanager
 def bounded(job: PostProcessingJob, line: FrameChannel) -> Iterator[None]:
-    """Beyond so much memory it is told that it is not done, and why."""
+    """Limit the memory of the job; beyond it the job fails, and reports the reason."""
     before, most = resource.getrlimit(resource.RLIMIT_DATA)
     resource.setrlimit(resource.RLIMIT_DATA, (job.memory_mb * 1_000_000, most))
     try:

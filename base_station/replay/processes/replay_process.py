@@ -78,7 +78,7 @@ class ReplayProcess:
     ) -> None:
         """It plays from the window's beginning.  Raises UserError for an impossible speed.
 
-        Disk and process are left to a thread: whoever asks for a replay is not kept.
+        Disk and process are left to a thread: the caller does not wait.
         """
         self._place, self._window, self._sink = place, window, sink
         self._lock = threading.Lock()  # guards what follows
@@ -138,7 +138,7 @@ class ReplayProcess:
         self._thread.join(GRACE_S)
 
     def _give(self, command: Command, **changes: object) -> None:
-        """The view is as if it was followed already; what the process says of before is not."""
+        """Send a command.  The view changes at once; older views of the process are left out."""
         self._view = msgspec.structs.replace(self._view, **changes)
         self._commands += 1
         if self._line is None:
@@ -157,7 +157,7 @@ class ReplayProcess:
 
     def _send(self, command: Command) -> None:
         assert self._line is not None
-        with suppress(StoreError):  # the thread finds that it is over, and says so
+        with suppress(StoreError):  # the thread finds that it is over, and logs it
             self._line.send(command)
 
     # ---- in the thread
@@ -168,7 +168,7 @@ class ReplayProcess:
             if line is not None:
                 self._follow(line)
                 line.close()
-        except Exception:  # noqa: BLE001  # whoever watches hears no more, and is told it ended
+        except Exception:  # noqa: BLE001  # consoles get no more, and the end is logged
             _log.exception("the replay of %s broke off", self._window.incident_id)
         if not self._closed.is_set():
             _log.error(
@@ -219,7 +219,7 @@ class ReplayProcess:
             pass
 
     def _publish_loading(self, publisher: ConsolePublisher, *, is_due: bool) -> None:
-        """Consoles see that somebody is there."""
+        """Show consoles that the replay is alive."""
         view = self.view()
         if not is_due:
             publisher.publish_delta(replay=view)

@@ -107,7 +107,7 @@ class _ReplayWork:
     def _send(self, frame: DeltaFrame | SnapshotFrame | ViewFrame) -> None:
         try:
             self._line.send(frame)
-        except StoreError:  # nobody looks any more: who reads commands finds that, too
+        except StoreError:  # no console is connected any more: the reader of commands ends, too
             self._session.end()
 
     def _watch(self) -> None:

@@ -8,7 +8,7 @@ from base_station.replay.processes import wire
 from base_station.replay.processes.log_process import LogProcess
 from base_station.replay.timelines.unit_timeline import TimelineRequest, UnitTimeline
 
-TIMEOUT_S = 60.0  # a day of a hundred units is longer on a small machine: nobody waits so long
+TIMEOUT_S = 60.0  # a day of a hundred units takes longer on a small machine: too long for a user
 
 
 @dataclass(frozen=True)

@@ -119,7 +119,7 @@ class SnapshotFrame(msgspec.Struct, frozen=True, tag="picture"):
 
 
 class ViewFrame(msgspec.Struct, frozen=True, tag="view"):
-    """Where the replay stands after so many commands; before what it describes is shown."""
+    """View of the replay after so many commands; sent before the frames that it describes."""
 
     view: ReplayView
     commands: int
@@ -222,7 +222,7 @@ class FrameChannel:
         return None if length is None else self._bytes(_LENGTH.unpack(length)[0])
 
     def hang_up(self) -> None:
-        """Whoever reads at either end finds that the other one is gone."""
+        """Shut down: readers at both ends find that the other one is gone."""
         with suppress(OSError):  # it is
             self._end.shutdown(socket.SHUT_RDWR)
 

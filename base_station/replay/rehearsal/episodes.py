@@ -49,7 +49,7 @@ class EpisodeRecord:
 
 
 class EpisodeOutcome(StrEnum):
-    """What became of an episode under the rehearsed thresholds."""
+    """Outcome of an episode under the rehearsed thresholds."""
 
     SAME = "same"
     EARLIER = "earlier"

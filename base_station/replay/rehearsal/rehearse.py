@@ -63,7 +63,7 @@ class Rehearser:
         on_progress: Progress = lambda _: None,
     ) -> RehearsalReport:
         """Judge by the rules that ``points`` change, with each of them and with the thresholds of
-        then; ``on_progress`` hears the fraction done.
+        then; ``on_progress`` receives the fraction done.
 
         Raises UserError where no point is possible: its thresholds contradict those of the log.
         """
@@ -126,7 +126,7 @@ class Rehearser:
 
 
 class _Pass:
-    """What one incident has given."""
+    """Results of one incident."""
 
     def __init__(
         self, incident: RehearsedIncident, recorded: Rehearsal, rehearsals: Sequence[Rehearsal]

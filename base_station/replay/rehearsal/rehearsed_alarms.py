@@ -109,7 +109,7 @@ class RehearsalWatch:
 
 
 class _EndingRule:
-    """A rule whose findings end with their condition, whoever would have to resolve them."""
+    """A rule whose findings end with their condition, even latched ones."""
 
     def __init__(self, rule: AlarmRule) -> None:
         self._rule = rule

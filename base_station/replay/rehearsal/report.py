@@ -15,7 +15,7 @@ from shared.clock import NS_PER_MS, NS_PER_S
 
 class RehearsedIncident(msgspec.Struct, frozen=True):
     incident_id: str
-    worn_h: float  # added up over the units that somebody wore
+    worn_h: float  # added up over the units that were worn
     live_alarms: dict[str, int]  # by rule: raised at the time, and kept by the station
 
 
@@ -44,7 +44,7 @@ class LevelFigures(msgspec.Struct, frozen=True):
     missed: int
     added: int
     median_shift_s: float | None  # of those found by both; negative: earlier
-    recorded_per_hour: float | None  # of wear; None: nobody wore a unit
+    recorded_per_hour: float | None  # of wear; None: no unit was worn
     rehearsed_per_hour: float | None
 
 

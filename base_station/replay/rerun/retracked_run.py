@@ -225,7 +225,7 @@ def _clock_shift_ns(sample_ns: Sequence[int], recorded_ns: Sequence[int], estima
 
 def _turn_rad(pairs: Sequence[tuple[Position, Position]]) -> float:
     """Turn of the new frame by the ways from the first place, until some metres are walked; 0 where
-    nobody walked so far.  Least squares: the sum of rotated products has its angle.
+    the way is too short.  Least squares: the sum of rotated products has its angle.
     """
     (then, new), *_ = pairs
     cosine_m2 = sine_m2 = furthest_m = 0.0

@@ -13,7 +13,7 @@ import msgspec
 
 from base_station.core.events import Received, event_of
 from base_station.engine.feed import LogFeed
-from base_station.replay.radio_contact import GAP_NS, HEARD, SentTimes
+from base_station.replay.radio_contact import CONTACT_CHANNELS, GAP_NS, SentTimes
 from base_station.replay.timelines.downsampling import Column, MinMaxBuckets
 from base_station.storage.db.records import Records
 from base_station.storage.db.window import Window
@@ -68,10 +68,10 @@ def read_timeline(records: Records, log: LogFeed, request: TimelineRequest) -> U
 
 
 def _of_unit(log: LogFeed, request: TimelineRequest) -> Iterator[LogRecord]:
-    """What came within the span, then what a journal brought later."""
+    """Messages of the span, then those that a journal brought later."""
     unit_id, window = request.unit_id, request.window
     late = [backfilled_key(unit_id, channel.suffix) for channel in _JOURNALED]
-    live = [channel.key(unit_id) for channel in HEARD]
+    live = [channel.key(unit_id) for channel in CONTACT_CHANNELS]
     yield from log.records(window.from_ns, window.until_ns, _keys(live, late))
     yield from log.records(window.until_ns, window.until_ns + _LATE_NS, _keys(late))
 
@@ -95,7 +95,7 @@ class _Timeline:
         self._unit_id = request.unit_id
         self._window = window
         self._sent_times = SentTimes()
-        self._heard_ns = window.from_ns  # nothing is known of before
+        self._last_received_ns = window.from_ns  # nothing is known of before
         self._radio_gaps_ms: list[tuple[int, int]] = []
         self.height_m, self.floor, self.position_error_m = series(), series(), series()
         self._temperature_degc, self._activity = series(), series()
@@ -134,10 +134,10 @@ class _Timeline:
         )
 
     def _note_contact(self, t_ns: int) -> None:
-        self._silence_s.add(t_ns, (t_ns - self._heard_ns) / NS_PER_S)
+        self._silence_s.add(t_ns, (t_ns - self._last_received_ns) / NS_PER_S)
         self._note_gap(t_ns)
-        self._heard_ns = t_ns
+        self._last_received_ns = t_ns
 
     def _note_gap(self, t_ns: int) -> None:
-        if t_ns - self._heard_ns > GAP_NS:
-            self._radio_gaps_ms.append((self._heard_ns // NS_PER_MS, t_ns // NS_PER_MS))
+        if t_ns - self._last_received_ns > GAP_NS:
+            self._radio_gaps_ms.append((self._last_received_ns // NS_PER_MS, t_ns // NS_PER_MS))

@@ -1,7 +1,7 @@
-"""One pull of a unit's recording: what is asked next, and what becomes of the answers.
+"""One pull of a unit's recording: its next question, and the use of the answers.
 
-Every ``step`` asks the unit one question, so that whoever steps decides the pace.  What came is on
-the disk and is not asked for again, whichever of the two was ended in between.
+Every ``step`` asks the unit one question, so that the caller decides the pace.  Received parts are
+on the disk and are not asked for again, whichever of the two was ended in between.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Ask = Callable[[str, str], bytes | None]  # unit, question -> the answer, where 
 
 
 class TransferRequest(msgspec.Struct, frozen=True):
-    """What somebody asked for; times are station time."""
+    """Request for a part of a recording; times are station time."""
 
     unit_id: str
     from_ns: int

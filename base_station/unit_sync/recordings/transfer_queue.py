@@ -22,7 +22,7 @@ _REST_S = 0.5  # when no unit answers
 
 
 class Pull(msgspec.Struct):
-    """What was asked for, by whom, and how far it has got."""
+    """A requested transfer, with its user and its progress."""
 
     fetch_id: str
     by: str

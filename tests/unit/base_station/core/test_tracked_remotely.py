@@ -297,7 +297,7 @@ def test_database_gets_the_unit_and_no_agent(script: Remote) -> None:
     projector.note(event_of(*script.records[-1]), script.outputs)
     projection = projector.take(script.t_ns)
     assert projection is not None
-    assert dict(projection.heard).keys() == {U}
+    assert dict(projection.last_messages).keys() == {U}
     assert {one.header.unit_id for one in projection.descriptions} == {U}
 
 

@@ -39,7 +39,7 @@ def test_time_of_the_last_message_is_projected_in_steps() -> None:
         message = Temperature(Header("FF-01", 7, second + 1, t_ns), 20.0)
         projector.note(Received(t_ns, "FF-01", message), [UnitChanged("FF-01")])
         if (projection := projector.take(t_ns)) is not None:
-            projected_ns += [t_ns for _, t_ns in projection.heard]
+            projected_ns += [t_ns for _, t_ns in projection.last_messages]
     assert projected_ns == [T_NS, T_NS + LAST_MESSAGE_STEP_NS, T_NS + 2 * LAST_MESSAGE_STEP_NS]
 
 
