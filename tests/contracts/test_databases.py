@@ -103,7 +103,9 @@ def test_projecting_the_log_again_changes_nothing(store: Database, clock: Manual
 def test_who_asks_for_what_was_decided_waits_for_no_position(store: Database) -> None:
     projection = SqlProjection(store)
     with store.write():  # nothing else is written
-        projection.project(Projection(NS_PER_S, tracks=(fused(1.0, 1.0),), last_messages=(("FF-01", 1),)))
+        projection.project(
+            Projection(NS_PER_S, tracks=(fused(1.0, 1.0),), last_messages=(("FF-01", 1),))
+        )
         assert projection.hasten()()
         projection.project(acted(2, RegisterUnit("FF-01", "one")))
         is_over = projection.hasten()
