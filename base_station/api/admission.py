@@ -1,8 +1,8 @@
 """Admission of requests: slow ones take no thread from operator actions.
 
-All routes share the framework's forty threads.  Log-ins are worked on by threads of their own, of
-what reads much only some at a time, and whoever has tried too many passwords is refused before the
-request is read.  Uploads take turns in ``uploads``.
+All routes share the framework's forty threads.  Log-ins have threads of their own, only some large
+reads run at a time, and a client that has tried too many passwords is refused before its request is
+read.  Uploads take turns in ``uploads``.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class AdmissionMiddleware:
         await answer(scope, receive, send)
 
     async def _read_in_turn(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Releases its place when the response begins: a slow reader delays nobody else."""
+        """Releases its place when the response begins: a slow reader delays no other request."""
         await self._reading.acquire()
         held = True
 

@@ -1,5 +1,5 @@
-"""Limits of attempts.  By a clock that nobody sets: a machine whose time was put right
-locks nobody out, and lets nobody try anew.
+"""Limits of attempts, by the monotonic clock: setting the machine's time neither locks a user out
+nor makes the station forget attempts.
 """
 
 from __future__ import annotations

@@ -11,10 +11,10 @@ from typing import Any
 from base_station.security.networks import network_of
 
 MAX_CONNECTIONS = 2000
-MAX_ANONYMOUS = 1000  # all places together from which nobody is logged in
+MAX_ANONYMOUS = 1000  # all networks together from which no user is logged in
 MAX_PER_NETWORK = 500  # place: a proxy, or two hundred consoles behind one router
 MAX_PER_ANONYMOUS_NETWORK = (
-    100  # two dozen consoles behind one router, where nobody is logged in yet
+    100  # two dozen consoles behind one router, where no user is logged in yet
 )
 
 
@@ -22,8 +22,8 @@ class ConnectionLimitedSocket(socket.socket):
     """A listening socket.  Connections are counted from when they come in: over TLS it takes a
     while until one can ask anything, and all that while it takes memory.
 
-    Where strangers have all of theirs, the place that has most loses its oldest: whoever comes
-    with a browser gets in, however many hold connections and ask nothing.
+    Where all connections of anonymous networks are in use, the network that has most loses its
+    oldest: a browser gets in, however many connections are held without a request.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class ConnectionLimitedSocket(socket.socket):
         del self._networks[oldest]
         self._count_of[largest] -= 1
         with contextlib.suppress(OSError):  # it has just gone
-            oldest.shutdown(socket.SHUT_RDWR)  # its transport hears that and closes it
+            oldest.shutdown(socket.SHUT_RDWR)  # its transport closes it then
 
 
 def _max_per_network(*, known: bool) -> int:
@@ -84,7 +84,7 @@ def _max_per_network(*, known: bool) -> int:
 
 
 class KnownNetworks:
-    """Networks from which somebody is logged in, or was since the station started."""
+    """Networks from which a user is logged in, or was since the station started."""
 
     def __init__(self, max_size: int = 1000) -> None:
         self._max_size = max_size

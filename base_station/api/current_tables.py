@@ -1,7 +1,7 @@
-"""Reading after writing: who reads tables reads at least what was decided before the request.
+"""Reading after writing: a read of tables includes all that was decided before its request.
 
-An action is answered when it is decided and in the log; the database has it later.  So those wait
-who read from it, and only as long as they hold up nobody: without a thread, and not for ever.
+An action is answered when it is decided and in the log; the database has it later.  So reads wait
+for it, without a thread, which would delay other requests, and not for ever.
 """
 
 from __future__ import annotations

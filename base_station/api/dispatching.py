@@ -21,7 +21,7 @@ Outcome = Literal["offered", "updated", "unchanged", "outdated", "opened"]
 
 
 def take_report(station: Services, perform: IdempotentRequest, report: NoteDispatch) -> Outcome:
-    """Log a report where it tells something new, and open an incident where the settings say so."""
+    """Log a report that has something new, and open an incident if the settings ask for it."""
     known = known_dispatch(station.picture(), report.number)
     outcome: Outcome = "offered" if known is None else "updated"
     if known is not None:

@@ -44,7 +44,7 @@ class Guide(msgspec.Struct):
     has_alarm: bool  # of the member: with its end the guidance is over
     text: str = ""
     sent_ns: int = 0
-    manoeuvre: object = None  # that the piece tells
+    manoeuvre: object = None  # in the piece of text
     pending: object = None  # another one, as of the last look
 
 
@@ -110,7 +110,7 @@ Guiding = Annotated[Guidance, Depends(guidance_of)]
 
 
 def _advance(station: Services, snapshot: Snapshot, guide: Guide) -> None:
-    """Positions waver: another manoeuvre is told once two looks have found it."""
+    """Positions waver: another manoeuvre is sent once two looks have found it."""
     route = find_routes(station, guide.unit_id, guide.rescuer_id)[0]
     manoeuvre = _manoeuvre(route)
     if manoeuvre == guide.manoeuvre:

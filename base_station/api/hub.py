@@ -33,9 +33,9 @@ class Hub:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._source: LiveSource | None = None
         self._requested = False
-        # Of clients of each kind; read in the source's thread: for nobody nothing is encoded.
+        # True if clients of the kind are connected; read in the source's thread: else none encodes.
         self._has_plain = self._has_paced = False
-        self.health: HealthView | None = None  # as last said
+        self.health: HealthView | None = None  # as last published
         self.position_ages = PositionAges()
 
     def connect(self, loop: asyncio.AbstractEventLoop, source: LiveSource) -> None:

@@ -35,7 +35,7 @@ _EXIF_TRANSPOSITIONS: dict[
 
 
 def normalize_photo(upload: bytes) -> tuple[bytes, str]:
-    """A square JPEG and its hash.  Raises ConfigError, which says what is wrong with the upload."""
+    """A square JPEG and its hash.  Raises ConfigError with the fault of the upload."""
     if len(upload) > MAX_BYTES:
         raise ConfigError(f"the photo is larger than {MAX_BYTES // 1_000_000} MB")
     try:
@@ -53,7 +53,7 @@ def normalize_photo(upload: bytes) -> tuple[bytes, str]:
 
 def normalize_map(upload: bytes) -> tuple[bytes, str, tuple[int, int], float]:
     """A WebP no larger than ``MAP_SIDE_PX``, its hash, its width and height, and by how much it is
-    smaller than the upload.  Raises ConfigError, which says what is wrong with that.
+    smaller than the upload.  Raises ConfigError with the fault of the upload.
     """
     if len(upload) > MAX_MAP_BYTES:
         raise ConfigError(f"the map is larger than {MAX_MAP_BYTES // 1_000_000} MB")

@@ -19,8 +19,8 @@ class ClosingObstacles(msgspec.Struct, frozen=True):
     inside: tuple[UnitView, ...]
 
     def require_known(self, alarm_ids: Collection[str], unit_ids: Collection[str]) -> None:
-        """Problem 409 with their names where whoever closes the incident has not named them all;
-        with its ``despite_...`` members the request can be repeated.
+        """Problem 409 with their names where the request to close the incident does not name them
+        all; with its ``despite_...`` members the request can be repeated.
         """
         alarms = [one for one in self.alarms if one.alarm_id not in alarm_ids]
         inside = [one for one in self.inside if one.unit_id not in unit_ids]

@@ -23,10 +23,10 @@ _MAX_KNOWN = 1000
 class LoginThrottle:
     """Thread-safe.
 
-    What is refused here is not counted: who tries one name again and again locks out nobody else
-    of the same place, which may be all consoles behind one router.  Who has logged in from a place
-    before does so again while others try that name from elsewhere: only the limits of the place
-    hold.  How many tries are worked on in all is limited by ``LoginQueue``.
+    Attempts that are refused here are not counted: many attempts with one name do not lock out the
+    other users of the network, which may be all consoles behind one router.  A user who has logged
+    in from a network before can do so again while others try that name from elsewhere: only the
+    limits of the network hold.  ``LoginQueue`` limits the number of attempts in work.
     """
 
     def __init__(self, monotonic_s: Callable[[], float] = time.monotonic) -> None:
@@ -90,8 +90,8 @@ class LoginThrottle:
                 del self._known[next(iter(self._known))]
 
     def record_refusal(self, address: str) -> None:
-        """Count a ticket that was of no use.  Good ones are not counted: nobody guesses one, and
-        all consoles of a place go on at once.
+        """Count an invalid ticket.  Valid ones are not counted: they cannot be guessed, and all
+        consoles of a network use theirs at once.
         """
         with self._lock:
             self._per_network.record(network_of(address))

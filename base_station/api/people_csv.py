@@ -39,7 +39,7 @@ _BY_TITLE = {title: column for column, titles in _TITLES.items() for title in ti
 class CsvPerson(NamedTuple):
     line: int  # of the file, from 1
     name: str
-    crew: str | None  # None: the file says nothing of it
+    crew: str | None  # None: the file has no such column
     role: str | None
 
 
@@ -54,7 +54,7 @@ class PeopleFile(NamedTuple):
 
 
 def read_people(content: bytes) -> PeopleFile:
-    """Everybody of the file, and what is wrong with it; nobody is in both.
+    """People of the file, and its faulty lines; no line is in both.
 
     Raises UserError where the file as a whole is no such list.
     """
@@ -128,7 +128,7 @@ def _read_rows(rows: Iterator[tuple[int, list[str]]]) -> PeopleFile:
         else:
             people.append(person)
     if not people and not faults:
-        raise UserError("the file has a line of column names and nobody below it")
+        raise UserError("the file has a line of column names and no person below it")
     return PeopleFile(people, faults)
 
 

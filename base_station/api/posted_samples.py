@@ -88,7 +88,7 @@ def _sentences(error: ValidationError) -> Iterator[str]:
 def _raw(unit_id: str, boot_id: int, batch: SampleBatch) -> RawImu:
     t_ns = np.asarray(batch.t_ns, dtype=np.int64)
     return RawImu(
-        # A node posts when its last sample has come: by that the station tells its clock.
+        # A node posts when its last sample has come: that gives the offset of its clock.
         header=Header(unit_id, boot_id, batch.seq, int(t_ns[-1])),
         t_ns=t_ns,
         accel_mps2=_floats(batch.accel_mps2),

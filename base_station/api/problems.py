@@ -103,13 +103,13 @@ def handle_problems(app: FastAPI, allowed_methods: Callable[[str], str]) -> None
     @app.exception_handler(MusterError)
     async def failed(request: Request, error: MusterError) -> JSONResponse:
         status = _status_of(error)
-        if status >= 500:  # nobody's mistake but the station's
+        if status >= 500:  # a fault of the station
             _log.warning("%s %s: %s", request.method, request.url.path, error)
         return problem_response(status, str(error))
 
 
 class UnhandledErrorMiddleware:
-    """ASGI middleware: what nobody foresaw is answered like every problem, and logged.
+    """ASGI middleware: an unhandled error is answered like every problem, and logged.
 
     The framework's own handler stands outside of all other middleware, whose headers it misses.
     """
@@ -131,13 +131,13 @@ class UnhandledErrorMiddleware:
             if scope["type"] != "http" or started:
                 raise
             _log.error("%s %s failed", scope["method"], scope["path"], exc_info=error)
-            answer = problem_response(500, "The station made a mistake; its log says which.")
+            answer = problem_response(500, "The station has failed; see its log for the error.")
             await answer(scope, receive, send)
 
 
 class BodyTooLargeMiddleware:
     """ASGI middleware: a body that is larger than a route takes is answered like every problem,
-    whatever the limiter below says of it.
+    whatever the limiter below answers.
     """
 
     def __init__(self, app: ASGIApp) -> None:

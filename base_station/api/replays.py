@@ -17,7 +17,7 @@ from base_station.views.wire import ReplayView
 from shared.errors import UserError
 
 MAX_REPLAYS = 8
-UNWATCHED_S = 60.0  # a replay that nobody looks at ends
+UNWATCHED_S = 60.0  # a replay without a viewer ends
 
 
 class ReplayPlayer(LiveSource, Protocol):
@@ -52,8 +52,8 @@ class OpenReplay:
     hub: Hub
     player: ReplayPlayer
     begun_by: str  # a user; empty: the station itself
-    persistent: bool  # stays though nobody looks
-    last_watched_s: float  # when somebody last looked
+    persistent: bool  # stays without a viewer
+    last_watched_s: float  # time at which it last had a viewer
 
 
 class Replays:
@@ -109,7 +109,7 @@ class Replays:
         return closed is not None
 
     def close_unwatched(self) -> None:
-        """End those that broke off, or that nobody has looked at for a while; called often."""
+        """End those that broke off, or have had no viewer for a while; called often."""
         now_s = self._monotonic_s()
         for replay in self.all():
             if replay.player.is_over:

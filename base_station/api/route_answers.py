@@ -77,12 +77,12 @@ def _position(units: Mapping[str, UnitView], unit_id: str) -> PositionView:
         raise Problem(404, "There is no such unit.")
     position = units[unit_id].position
     if position is None:
-        raise Problem(409, f"Nobody knows where {unit_id} is: no position has come.")
+        raise Problem(409, f"The position of {unit_id} is unknown: none has come.")
     return position
 
 
 def rescuers(snapshot: Snapshot, unit_id: str) -> list[str]:
-    """Ids of the units whose wearers can go: located and heard, and not in danger themselves."""
+    """Ids of the units whose wearers can go: located, linked, and not in danger themselves."""
     in_danger = {
         alarm.unit_id
         for alarm in snapshot.alarms

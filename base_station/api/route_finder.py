@@ -46,7 +46,7 @@ class RouteFinder:
     ) -> tuple[Snapshot, dict[str, Route]]:
         """Known routes of the nearest rescuers to a unit, and the picture that they are of.
 
-        ``look`` gives the picture of now, ``rescuer_ids`` says of a picture who may go.
+        ``look`` gives the picture of now, ``rescuer_ids`` gives the units of a picture that may go.
         """
         with self._lock:
             if not self._has_kept(unit_id):
@@ -88,7 +88,7 @@ def _walked(snapshot: Snapshot, trails: Trails) -> list[WalkedTrail]:
 
 
 def _trail(unit: UnitView, position: PositionView, trails: Trails) -> WalkedTrail:
-    """Trail until now.  Of a position that came after a gap nothing tells the way."""
+    """Trail until now.  The way to a position after a gap is unknown."""
     raw = trails.get(unit.unit_id)
     points: Sequence[TrailPoint] = () if raw is None else _decode_trail(raw)
     now = TrailPoint(position.t_ms, position.north_m, position.east_m, position.floor)

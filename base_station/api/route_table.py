@@ -26,7 +26,7 @@ def check_query(connection: HTTPConnection) -> None:
     by it would not be done.
     """
     known = _query_parameters().get(connection.scope["endpoint"])
-    if known is None:  # the console's page, which is nobody's to filter
+    if known is None:  # the console's page, which has no filters
         return
     given = list(connection.query_params)
     wrong = [name for name in given if name not in known]

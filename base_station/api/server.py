@@ -27,7 +27,7 @@ from shared.log_on_change import LogOnChange
 _SHUTDOWN_GRACE_S = 5
 _HOUSEKEEPING_S = 5.0
 _BACKLOG = 512
-_ACCEPTS_PER_WAKEUP = 16  # before whoever has a connection is served again
+_ACCEPTS_PER_WAKEUP = 16  # before existing connections are served again
 _MAX_MESSAGE_BYTES = 4096  # over a WebSocket: all that is asked is a snapshot
 _REQUEST_TIMEOUT_S = 10.0  # the head of a request, and before it the greeting of TLS
 # A body comes at this rate at least, for a radio that loses much, or it is not waited for.
@@ -36,7 +36,7 @@ _MIN_BODY_BYTES_PER_S = 10_000.0
 
 
 _log = logging.getLogger(__name__)
-_SERVER_LOG = logging.getLogger("uvicorn.error")  # all that it says of requests
+_SERVER_LOG = logging.getLogger("uvicorn.error")  # all that it logs of requests
 
 
 class _Server(uvicorn.Server):
@@ -46,7 +46,7 @@ class _Server(uvicorn.Server):
         yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Listens by itself: uvicorn leaves whoever begins a greeting of TLS a minute for it."""
+        """Listens by itself: uvicorn allows a client a minute for its TLS handshake."""
         await super().startup(sockets=[])
         config = self.config
 
@@ -140,8 +140,8 @@ class ConsoleServer:
         on_stop: Callable[[], None] = lambda: None,
         is_known: Callable[[str], bool] = lambda _: True,
     ) -> None:
-        """``on_stop`` is called when it is told to stop, and again when it is told again.
-        ``is_known``: whether somebody is logged in from a place; all others have fewer connections.
+        """``on_stop`` is called at each request to stop.  ``is_known``: whether a user is logged in
+        from an address; all others have fewer connections.
 
         Raises ConfigError where the certificate or its key cannot be used.
         """

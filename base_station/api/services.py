@@ -50,7 +50,7 @@ ACTION_TIMEOUT_S = 10.0
 
 @dataclass(frozen=True, kw_only=True)
 class LoginServices:
-    """What logging in and the accounts need, at a station and at a department."""
+    """Services for logging in and for the accounts, at a station and at a department."""
 
     accounts: Accounts
     records: Records  # of which the audit
@@ -78,7 +78,7 @@ class Services(LoginServices):
     log: LogFeed | None = None  # None: a station without a log
     alarm_explainer: AlarmExplainer | None = None  # None: a station without a log
     radio: RadioLog | None = None  # None: a station without a log
-    pki: PkiFolder | None = None  # None: a station that enrols nobody
+    pki: PkiFolder | None = None  # None: a station that enrols no units
     intake: SampleIntake | None = None  # None: a station that only replays
     alerts: AlertIntake | None = None  # None: a station that only replays
     dispatch: DispatchConfig = field(default_factory=DispatchConfig)

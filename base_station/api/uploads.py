@@ -1,8 +1,8 @@
 """Turns of uploads: pictures and plans are read a few at a time, and no account holds up another.
 
 A body of 12 MB stays in memory until it is worked on.  All others wait at the sender's, whose TCP
-holds them back; accounts take turns.  A body that hardly comes keeps its turn for as long as
-nobody waits for it.
+holds them back; accounts take turns.  A slow body keeps its turn for as long as no other body
+waits.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class UploadTurns:
             self._grant()
 
     def _grant(self) -> None:
-        """Give the turns that are free; where somebody waits for one, end what is slow."""
+        """Give the turns that are free; where a body waits for one, end slow ones."""
         account = self._next_account()
         while account is not None and len(self._turns) < _MAX_TURNS:
             queue = self._waiting.pop(account)
@@ -116,7 +116,7 @@ class UploadTurns:
 
 
 class UploadRoute(APIRoute):
-    """Route of a router with large bodies: whoever has logged in is read, in turn."""
+    """Route of a router with large bodies: those of logged-in users are read, in turn."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         handle = super().get_route_handler()

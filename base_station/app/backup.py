@@ -51,7 +51,7 @@ class Backup:
 
 
 def back_up(data: Path, target: Path, on_progress: Callable[[float], None]) -> Backup:
-    """Bring ``target`` up to date with the station's folder ``data``; ``on_progress`` hears the
+    """Bring ``target`` up to date with the station's folder ``data``; ``on_progress`` receives the
     fraction done.
 
     The database is copied before the log, so it never knows more than the log does.  Raises
@@ -142,8 +142,8 @@ def _remove_taken_out(copy: DataFolder) -> None:
 
 
 def _rename_handed_over(source: DataFolder, copy: DataFolder) -> None:
-    """Renames what was set aside and was renamed when the other station had it.  Put under both
-    names it would be told once more, and under the old one nobody would forget what is in it.
+    """Renames what was set aside and was renamed when the other station had it.  Under both
+    names it would be handed over once more, and under the old one erasure would not reach it.
     """
     for handed_over in (source.path / APART).glob(f"*{MERGED_SUFFIX}"):
         now = copy.path / APART / handed_over.name
@@ -157,13 +157,13 @@ def _rename_handed_over(source: DataFolder, copy: DataFolder) -> None:
 def _size_of(path: Path) -> int:
     try:
         return path.stat().st_size
-    except OSError:  # to copy it tells of that
+    except OSError:  # reported when it is copied
         return 0
 
 
 def _copy_file(path: Path, copy: Path) -> bool:
-    """True where the disk gives all of it; else zeros stand in the copy, which whoever reads a
-    log takes for the damage that it is; of a file that it does not give at all there is none.
+    """True where the disk gives all of it; else zeros stand in the copy, which readers of a log
+    find as damage; of a file that it does not give at all there is none.
     """
     try:
         file = read_own(path)
@@ -205,8 +205,8 @@ def _is_unchanged(path: Path, target: Path) -> bool:
 
 @contextmanager
 def _part_of(target: Path) -> Iterator[Path]:
-    """Where a copy is made.  It gets its name when it is on the disk, until then an older one
-    stands there; where it does not come to that, nothing is left of it.
+    """Path on which a copy is made.  It gets its name when it is on the disk, until then an older
+    one stands there; after a failure nothing is left of it.
     """
     part = target.with_name(target.name + _PART)
     try:

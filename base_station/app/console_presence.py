@@ -49,7 +49,7 @@ class ConsolePresence(KeptAnnouncement):
         certificate = self._config.certificate
         try:
             return certificate is None or is_valid_for_host(certificate.read_bytes(), name)
-        except OSError:  # said where the certificate is used
+        except OSError:  # reported where the certificate is used
             return True
 
     def _wanted(self) -> ConsoleAnnouncement:

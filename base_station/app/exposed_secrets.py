@@ -1,5 +1,5 @@
 """Secrets of a station that others than its user could read: closed to them when it starts, and
-named until it ends, as somebody may have read them.
+named until it ends, as another user may have read them.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from base_station.storage.data_folder import DataFolder
 from shared.secret_files import ALL_BUT_OWNER, OTHERS, close_to_others, exposed
 
 _ADVICE = {
-    "authority.key": "with it anybody can be enrolled: if strangers use this machine, make a new "
-    "authority and enrol everybody anew",
+    "authority.key": "with it any unit can be enrolled: if strangers use this machine, make a new "
+    "authority and enrol all units anew",
     "station.key": "with it a machine can pose as this station: if strangers use this one, make a "
-    "new authority and enrol everybody anew",
+    "new authority and enrol all units anew",
     "first-login.txt": "give the administrator another password",
 }
 _OTHERWISE = "if strangers use this machine, make another key"

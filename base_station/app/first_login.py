@@ -16,9 +16,9 @@ def ensure_administrator(accounts: Accounts, note: Path | None) -> str | None:
     """The password of a new administrator, also written to ``note``, where the disk takes
     anything; None where users exist.
 
-    The note is on the disk before there is such a user: whoever switches the station off right
-    after its first start can still log in.  What has stood in a file and on a screen must be
-    changed before anything else is done with it; not where it ends with this run of the station.
+    The note is on the disk before there is such a user: a user can still log in after the station
+    was switched off right after its first start.  A password that has stood in a file and on a
+    screen must be changed first; not where it ends with this run of the station.
     Raises StoreError where the disk does not take it.
     """
     if accounts.users():
@@ -31,8 +31,8 @@ def ensure_administrator(accounts: Accounts, note: Path | None) -> str | None:
 
 
 def add_own_login(accounts: Accounts) -> tuple[str, str]:
-    """Name and password of an administrator more, of a copy of a station's accounts: whoever looks
-    at what was given to them has none there.
+    """Name and password of an additional administrator, in a copy of a station's accounts: the user
+    of a copied folder has no account there.
     """
     username, password = f"replay-{secrets.token_hex(2)}", _password()
     accounts.add_user(username, password, Role.ADMINISTRATOR)

@@ -74,7 +74,7 @@ def rebuild(
 ) -> int:
     """Make the projections of a folder again; no station may be running on it.
 
-    ``on_progress`` hears the fraction done, ``report`` what of a damaged database is lost.  Gives
+    ``on_progress`` receives the fraction done, ``report`` the losses of a damaged database.  Gives
     the number of log records.
     """
     folder = DataFolder(data)
@@ -217,11 +217,11 @@ def open_post_processing(
     report: Callable[[str], None],
     on_progress: Callable[[float], None],
 ) -> IncidentCommandContext:
-    """A past incident, beside a running station or without one; also of what somebody gave, such
-    as a file that has one incident, in the place of the id.
+    """A past incident, beside a running station or without one; in the place of the id also a
+    file that has one incident.
 
-    ``report`` hears in words of what of it cannot be read, ``on_progress`` the fraction done where
-    the log must be read first.
+    ``report`` receives a sentence about each part that cannot be read, ``on_progress`` the fraction
+    done where the log must be read first.
     """
     incident_id, data = named_incident(incident_id, data)
     offline_log = open_offline_log(data, incident_id, closing, report, on_progress, in_place=True)

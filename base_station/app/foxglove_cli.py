@@ -25,7 +25,7 @@ Insecure = Annotated[
     bool,
     typer.Option(
         "--insecure",
-        help="Accept connections from other machines: whoever reaches the port reads every "
+        help="Accept connections from other machines: all who reach the port read every "
         "position, without a login and without encryption.",
     ),
 ]

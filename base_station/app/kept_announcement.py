@@ -35,7 +35,7 @@ class KeptAnnouncement:
 
     @property
     def fault(self) -> str:
-        """Why it failed the last time; empty: it did not."""
+        """Reason of the last failure; empty: the last attempt did not fail."""
         return self._fault_log.fault
 
     def keep(

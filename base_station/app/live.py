@@ -63,7 +63,7 @@ from shared.service_manager import ServiceManager
 def run_station(
     config: StationConfig, announce: Announce, loading_router: Popen[str] | None = None
 ) -> None:
-    """The live station, until SIGINT or SIGTERM.  ``announce`` hears what a person must know;
+    """The live station, until SIGINT or SIGTERM.  ``announce`` receives lines for a person;
     ``loading_router`` becomes the bus's first router.
 
     Raises ConfigError where no alarm rule can have the thresholds of the settings, or there is no
@@ -76,18 +76,18 @@ def run_station(
     allow_many_files()
     manager = ServiceManager(os.environ)
 
-    def tell(line: str) -> None:
+    def show(line: str) -> None:
         announce(line)
         manager.working()
 
-    while (restart := _run_once(config, thresholds, tell, manager, loading_router)) is not None:
+    while (restart := _run_once(config, thresholds, show, manager, loading_router)) is not None:
         loading_router = None
         gc_tuning.unfreeze()
         if restart.cut_from is not None:
-            tell("what the other station does not have is set aside, and handed to it")
+            show("what the other station does not have is set aside, and handed to it")
             cut_log(config.data, restart.cut_from, lambda _: manager.working())
         if restart.is_repaired:
-            tell("what the disk had lost of the log is there again, and is stepped")
+            show("what the disk had lost of the log is there again, and is stepped")
             Checkpoints(DataFolder(config.data).checkpoints).clear()
 
 
@@ -106,8 +106,7 @@ def _run_once(
 class _Station:
     """The parts that know of each other, each made behind what it needs at once.
 
-    What it needs later it asks for then: who leads, say, of a side that hears of the drive when
-    that has begun.
+    Later needs are functions, such as who leads, of a side that gets the drive when that has begun.
     """
 
     def __init__(
@@ -282,7 +281,7 @@ class _Station:
             self._announce,
         )
 
-    # ---- what they ask and tell each other
+    # ---- callbacks between the parts
 
     def _on_replayed(self, place: tuple[int, int], state: StationState) -> None:
         """Takes the state that the log gives, before the engine runs."""
@@ -345,6 +344,6 @@ class _Station:
         self._engine.save_soon()
 
     def _erase_for_peer(self, what: str) -> None:
-        """The other station has forgotten this, and of who it is this one's log tells, too."""
+        """Forget a person or incident that the other station has forgotten: this log has it too."""
         kind, _, one = what.partition(" ")
         self._erasures.add(BY_OTHER_STATION, kind, one, told=True)

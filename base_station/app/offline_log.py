@@ -1,6 +1,6 @@
 """Offline log, for replay and export: a station's folder, its log alone, or files of that.
 
-It may be on a medium that nobody can write to, or of a station that nobody here has an account of.
+It may be on a read-only medium, or of a station whose accounts are unknown here.
 """
 
 from __future__ import annotations
@@ -97,8 +97,8 @@ def open_offline_log(
     """``in_place``: with the database that is there, where it can be written; else with a copy.
     ``decides_again``: it is looked whether this version decides otherwise than the station did.
 
-    A database that is missing, or older than the incident, is made of the log.  ``report`` hears in
-    words of that and of what cannot be read, ``on_progress`` the fraction done.
+    A database that is missing, or older than the incident, is made of the log.  ``report`` receives
+    sentences about that and about unreadable parts, ``on_progress`` the fraction done.
     """
     scratch = Path(closing.enter_context(TemporaryDirectory(prefix="muster-past-")))
     folder, left_out = _folder_with_log(path, scratch)
@@ -224,8 +224,8 @@ def _lacks_incident(store: Database, folder: DataFolder, incident_id: str) -> bo
 
 
 def named_incident(incident: str, data: Path) -> tuple[str, Path]:
-    """The incident's id and where it is, of what somebody names on a command line: an id in
-    ``data``, or a file that has one incident (``muster base export``, MCAP).
+    """The incident's id and its place, from an argument of a command line: an id in ``data``, or a
+    file that has one incident (``muster base export``, MCAP).
 
     Raises UserError where a file is no such one.
     """

@@ -1,4 +1,4 @@
-"""A re-run of an incident on what somebody gave: a folder, a backup, a log alone."""
+"""A re-run of an incident on a given folder, a backup, or a log alone."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ def init(
     typer.echo(f"{folder.path}: authority and certificate of {organisation}'s station")
     typer.echo(f"valid for: {', '.join(folder.registry().hosts)}")
     typer.echo(f"units will connect to {endpoint}; enrol one with `muster pki enroll UNIT`")
-    typer.echo(f"keep a copy of {folder.path} where nobody else reads it")
+    typer.echo(f"keep a copy of {folder.path} where no other person can read it")
 
 
 def _issuing(
@@ -107,7 +107,7 @@ app.command("enroll", help="Make a certificate for a unit, as one file or QR cod
     _issuing(lambda folder, *what: folder.enroll(*what))
 )
 app.command(
-    "renew", help="Make a new certificate for somebody enrolled; the old one works until it ends."
+    "renew", help="Make a new certificate for an enrolled name; the old one works until it ends."
 )(_issuing(lambda folder, *what: folder.renew(*what)))
 
 
@@ -194,7 +194,7 @@ def revoke(
 
 @app.command()
 def show(data: Data = _DATA) -> None:
-    """Who is enrolled, and until when."""
+    """List enrolled names with the ends of their certificates."""
     from datetime import UTC, datetime  # noqa: PLC0415
 
     from base_station.security.pki.expiry import EXPIRY_WARNING, about_to_expire  # noqa: PLC0415
@@ -219,9 +219,7 @@ def _station_hosts(given: list[str] | None, port: int) -> tuple[list[str], str]:
 def _holder(*chosen: bool) -> Holder:
     """``chosen``: the options --operator, --tracker and --department-station, in this order."""
     if sum(chosen) > 1:
-        raise typer.BadParameter(
-            "choose --operator, --tracker or --department-station, nobody is two of them"
-        )
+        raise typer.BadParameter("choose one of --operator, --tracker and --department-station")
     kinds = (Holder.OPERATOR, Holder.TRACKER, Holder.DEPARTMENT_STATION)
     return next((kind for kind, one in zip(kinds, chosen, strict=True) if one), Holder.UNIT)
 
@@ -229,7 +227,7 @@ def _holder(*chosen: bool) -> Holder:
 def _free_target(
     name: str, holder: Holder, out: Path | None, png: Path | None, *, qr: bool
 ) -> Path | None:
-    """Where the file goes; asked before a certificate is made that could not be handed over."""
+    """Path for the file; checked before a certificate is made that could not be handed over."""
     from shared.channels import tracker_id, validate_unit_id  # noqa: PLC0415
 
     validate_unit_id(name)

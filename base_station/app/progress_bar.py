@@ -8,18 +8,18 @@ from contextlib import ExitStack, contextmanager
 
 @contextmanager
 def progress_bar(what: str) -> Iterator[Callable[[float], None]]:
-    """Shown from when it is first told of until all is done."""
+    """Progress bar, shown from the first report until all is done."""
     from rich.progress import Progress  # noqa: PLC0415  # it takes its time, and may not be shown
 
     with ExitStack() as shown:
         progress = Progress(transient=True)
         task = progress.add_task(what, total=1.0)
 
-        def tell(done: float) -> None:
+        def report(done: float) -> None:
             if not progress.live.is_started:
                 shown.enter_context(progress)
             progress.update(task, completed=done)
             if done >= 1.0:
                 shown.close()
 
-        yield tell
+        yield report

@@ -45,8 +45,8 @@ def since(config: StationConfig, from_ns: int) -> tuple[int, int]:
 
 
 def pull(config: StationConfig, wanted: TransferRequest, show: Show) -> tuple[Path, str]:
-    """Pull a recording; ``show`` hears of every step.  Gives the folder in which it is, and what is
-    not there of it, as a sentence.
+    """Pull a recording; ``show`` is called at every step.  Gives its folder, and a sentence about
+    its missing parts.
 
     Raises MusterError, one sentence, where it comes to nothing.
     """

@@ -56,8 +56,8 @@ def run_replay_station(
 
     ``archive``: the incident is read there, and the folder is not asked.
     ``incident_id`` may be a file that has one incident.  A live station may be running on the
-    folder: the database is copied first.  ``on_progress`` hears the fraction done of reading the
-    log, where that must be.
+    folder: the database is copied first.  ``on_progress`` receives the fraction of the log read,
+    where that must be.
     """
     clock = SystemClock()
     with ExitStack() as closing:

@@ -55,7 +55,7 @@ def work(line: FrameChannel) -> None:
     """The job that comes first, until it is done or the line is closed."""
     encoded = line.receive()
     if encoded is None:
-        return  # nobody wants it any more
+        return  # it is not wanted any more
     job = read_job(encoded)
     flaws = _flaws_of(job)
 

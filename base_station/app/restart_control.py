@@ -46,7 +46,7 @@ class RestartControl:
         self.restart_if_stale()
 
     def restart_if_stale(self) -> None:
-        """Start anew where the live state is stale, and nobody is in action meanwhile."""
+        """Start anew where the live state is stale, and no incident is open meanwhile."""
         has_standby, in_incident = self._has_standby(), self._is_in_incident()
         if self.stale.can_be_made_good(
             leads=self._is_leader(), spared=has_standby, in_incident=in_incident

@@ -111,11 +111,11 @@ class Retracker:
                 if line.strip().isdecimal():
                     self._note(boot, int(line) - boot.from_ns, total_ns, on_progress)
             assert process.stderr is not None
-            said = process.stderr.read()
+            error_text = process.stderr.read().strip()
             process.wait()
         self._processes.discard(process)
         if process.returncode:
-            reason = said.strip().splitlines()[-1] if said.strip() else "it was ended"
+            reason = error_text.splitlines()[-1] if error_text else "it was ended"
             raise UserError(
                 f"the recording {boot.path} cannot be tracked: {reason.removeprefix('muster: ')}"
             )

@@ -26,7 +26,7 @@ def start_drive(
     recovery: AbstractContextManager[Watch],
     plans: PlanReader,
 ) -> StationEngine:
-    """A drive whose live state is what the log says; ``begin`` hears it before it runs."""
+    """A drive with the live state of the log; ``begin`` receives that before the drive runs."""
     pipeline = new_pipeline(saved.pipeline if saved else None, plans)
     drive = StationEngine(pipeline, ports)
     log_position = (saved.t_ns, saved.events_at_t) if saved else (0, 0)

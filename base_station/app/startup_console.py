@@ -48,8 +48,8 @@ def serve_while_recovering(
     """Gives a function for the records to be stepped to pass through, on their way from ``log``.
 
     Where that takes longer than a second, the application of ``make_application`` answers at the
-    console's address
-    and is told how far it is; ``announce`` says it every five seconds.  ``listening`` stays open.
+    console's address and receives the progress; ``announce`` prints it every five seconds.
+    ``listening`` stays open.
     """
     progress = _Progress(listening, http, make_application, announce)
     end_ns = max((segment.end_ns for segment in log), default=0)
@@ -126,7 +126,7 @@ class _StartupServer:
 def startup_application(
     config: StationConfig, disk: StationStorage
 ) -> tuple[ASGIApp, ReportProgress]:
-    """The application, and what hears how much of the log is read."""
+    """The application, and a function that takes the fraction of the log read."""
     hub = Hub()
     known = StoredSnapshotSource(disk.roster, disk.records, disk.clock, hub)
     services = Services(

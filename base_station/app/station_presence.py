@@ -1,7 +1,7 @@
 """Announcement of the station on its network, where that is asked for.
 
 A unit verifies the address that it connects to by the station's certificate.  So only addresses
-that the certificate stands for are announced; where it stands for none, the health page says so.
+that the certificate stands for are announced; where it stands for none, the health page shows it.
 """
 
 from __future__ import annotations

@@ -45,11 +45,11 @@ from shared.mcap_log import segment_number
 from shared.messages import STATION_ID
 
 _RESTORE = (
-    "What units said is fetched again from their journals; for the rest, restore the file from a "
-    "backup"
+    "Messages of units are fetched again from their journals; for the rest, restore the file from "
+    "a backup"
 )
 REPAIR_RETENTION = 12  # tries to forget: two minutes for what takes some seconds
-_MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is heard"
+_MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is reachable"
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class StationStorage:
             return ()
 
     def note_taken_back(self, what: str) -> None:
-        """What the database had lost with its file is there again."""
+        """Note that rows which the database had lost with its file are there again."""
         self.store.loss = ""
         self.records.audit(STATION_ID, "TookBackAccounts", what)
 
@@ -123,7 +123,7 @@ class StationStorage:
         erase_audio: EraseAudio,
     ) -> ErasureQueue:
         """``act`` has the running station forget what it holds in memory, ``save_soon`` save its
-        state, which forgetting has removed.  ``other_there``: the other one of two is heard.
+        state, which forgetting has removed.  ``other_there``: the other one of two is reachable.
         ``erase_audio``: as of ``ErasureService``.
         """
 

@@ -2,7 +2,7 @@
 
 A log without a saved state takes minutes to be read, and a commander needs to know meanwhile who
 was where, and when, and what had been raised.  The tables have that.  Nothing here is live: every
-unit counts as not heard, and nobody can change anything.
+unit counts as not linked, and no change is possible.
 """
 
 from __future__ import annotations
@@ -187,7 +187,7 @@ class StoredSnapshotSource:
         return PersonView(worn.person_id, *msgspec.structs.astuple(shown))
 
     def _incident(self, incident: models.IncidentRow) -> IncidentView:
-        """Nobody's check-in counts down while nothing is live."""
+        """Incident as stored; no PAR counts down while nothing is live."""
         name, opened_ms = self._roster.shown(incident.name), to_ms(incident.opened_ns)
         return IncidentView(incident.incident_id, name, opened_ms, None, 0.0, 0.0, 0.0)
 

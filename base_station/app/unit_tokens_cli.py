@@ -1,4 +1,4 @@
-"""``muster base unit-tokens``: which units post their samples, said at the station itself."""
+"""``muster base unit-tokens``: units that may post their samples, managed at the station."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``muster base users``: who may log in, said at the station itself."""
+"""``muster base users``: accounts that may log in, managed at the station itself."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def _run_copy(fd: int) -> NoReturn:
         os.nice(_NICE)
         work(FrameChannel(socket.socket(fileno=fd)))
         code = 0
-    except Exception:  # noqa: BLE001  # said here: there is nobody to hand it to
+    except Exception:  # noqa: BLE001  # logged here: there is no caller to raise it to
         _log.exception("a process that looks at the past broke off")
     finally:
         logging.shutdown()
@@ -62,7 +62,7 @@ def main() -> None:
     # What is to end the station may reach all of its processes; this one ends with the station.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for copies
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # no process waits for copies
     set_up_logging()
     _prefer_for_oom_kill()
     gc_tuning.configure()

@@ -46,7 +46,7 @@ async def test_a_mistake_of_the_station_is_answered_like_every_problem(
     async with station.client(Role.VIEWER) as viewer:
         answer = await viewer.get("/incidents")
     assert answer.status_code == 500
-    assert answer.json()["detail"] == "The station made a mistake; its log says which."
+    assert answer.json()["detail"] == "The station has failed; see its log for the error."
     assert answer.headers["content-type"] == "application/problem+json"
     assert answer.headers["cache-control"] == "no-store"
     assert answer.headers["x-content-type-options"] == "nosniff"

@@ -44,7 +44,7 @@ async def test_a_file_with_a_fault_adds_no_person(station: DeskStation) -> None:
         refused = await import_crews(client, f"{_CREWS};Engine 2\n")
         assert refused.status_code == 422
         assert refused.json()["detail"] == (
-            "nobody was added: line 2: Ada is the name of two people here; rename one of them "
+            "no person was added: line 2: Ada is the name of two people here; rename one of them "
             "first (the first of 2 faults)"
         )
         assert await crews(client) == {"Ada": ("", "")}

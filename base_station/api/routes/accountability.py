@@ -84,7 +84,7 @@ def list_on_duty(station: Station, _: Viewer, incident_id: Id | None = None) -> 
 
 @router.get("/accountability/usual")
 def usual_times(station: Station, _: Viewer) -> Times:
-    """With which an incident is opened where nobody says others."""
+    """Times with which an incident is opened where the request gives no others."""
     usual = station.accountability
     return Times(par_interval_s=usual.par_interval_s, work_limit_s=usual.work_limit_s)
 

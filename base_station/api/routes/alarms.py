@@ -63,7 +63,7 @@ class AlarmExplanationAnswer(Answer, frozen=True):
 
 
 class Acknowledgement(Form):
-    """Of the alarm as it was seen: what has been raised anew since nobody has seen."""
+    """Acknowledgement of an alarm as it was shown: one that was raised anew since stays."""
 
     last_raised_ms: Annotated[int, Field(gt=0, le=MAX_TIME_MS)]
 

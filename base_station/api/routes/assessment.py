@@ -18,7 +18,7 @@ router = APIRouter(tags=["incidents"])
 
 @router.get("/incidents/{incident_id}/assessment")
 def assess_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> IncidentReport:
-    """What was promised at the time, and how it stands up to what is known afterwards."""
+    """Compare the positions and errors shown at the time with those known afterwards."""
     incident = incident_or_404(station, incident_id)
     live = station.records.tracks_of(incident)
     post_processor = hindsight_of(station)

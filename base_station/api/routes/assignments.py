@@ -66,5 +66,5 @@ def assign(new: NewAssignment, station: Station, perform: Perform) -> None:
 
 @router.delete("/assignments/{unit_id}", status_code=204)
 def unassign(unit_id: UnitId, perform: Perform) -> None:
-    """Nobody wears this unit from now on."""
+    """This unit is not worn from now on."""
     perform(Unassign(unit_id))

@@ -27,7 +27,7 @@ class AuditEntryAnswer(BaseModel):
 
 
 class CarriedOut(BaseModel):
-    """What was done with an Idempotency-Key."""
+    """Action that was done with an Idempotency-Key."""
 
     action: str
     t_ms: int
@@ -51,7 +51,7 @@ def list_audit(
     when: Annotated[Window, Depends(window)],
     limit: Limit = 100,
 ) -> list[AuditEntryAnswer]:
-    """What was done in the window, newest first."""
+    """Actions in the window, newest first."""
     return [
         AuditEntryAnswer(
             entry_id=entry.entry_id,

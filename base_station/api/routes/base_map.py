@@ -1,4 +1,4 @@
-"""A picture of the ground about the site, given by an administrator; nobody else is asked."""
+"""A picture of the ground about the site, given by an administrator; no map server is used."""
 
 from __future__ import annotations
 

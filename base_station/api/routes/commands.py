@@ -47,7 +47,7 @@ class FloorTarget(Form):
 
 
 def _kind_of_target(target: object) -> object:
-    """The one key that says which it is; None where there is not just one."""
+    """The one key, which names the kind; None where there is not just one."""
     return next(iter(target)) if isinstance(target, dict) and len(target) == 1 else None
 
 

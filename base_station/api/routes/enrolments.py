@@ -26,7 +26,7 @@ from shared.tls import parse_certificate
 
 router = APIRouter(tags=["enrolments"])
 
-_ENROLS_NOBODY = "This station enrols nobody now: it only replays, or is still starting."
+_NO_ENROLMENTS = "This station enrols no units now: it only replays, or is still starting."
 _NO_AUTHORITY = (
     "This station has no certificate authority, so no unit can be enrolled: make one with "
     "`muster pki init`, and let the bus listen on tls/."
@@ -83,7 +83,7 @@ def add_enrolment(new: NewEnrolment, station: Station, who: Administrator) -> Sh
     with _as_refusal():
         issue = authority.renew if new.renew else authority.enroll
         enrolment = issue(new.unit_id, valid=timedelta(days=new.days))
-    # Before it is handed out: what cannot be entered is shown to nobody.
+    # Before it is handed out: without an audit entry it is not shown.
     action = "RenewedEnrolment" if new.renew else "MadeEnrolment"
     station.records.audit(who.username, action, f"of unit {new.unit_id}")
     certificate = parse_certificate(enrolment.identity.certificate, "certificate")
@@ -97,7 +97,7 @@ def add_enrolment(new: NewEnrolment, station: Station, who: Administrator) -> Sh
 
 def _authority(station: Services) -> PkiFolder:
     if station.pki is None:
-        raise UserError(_ENROLS_NOBODY)
+        raise UserError(_NO_ENROLMENTS)
     if not station.pki.path.exists():
         raise UserError(_NO_AUTHORITY)
     return station.pki

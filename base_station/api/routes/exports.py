@@ -66,8 +66,8 @@ async def export_incident(
     gzip: bool = False,
 ) -> Response:
     """``kind``: what was shown at the time, or the trails as they are known afterwards; ``only``:
-    units, people or crews, else everybody; ``gzip``: a compressed file, beside which the answer is
-    compressed on its way to whoever accepts that.
+    units, people or crews, else everyone; ``gzip``: a compressed file, beside which the answer is
+    compressed on its way to clients that accept that.
     """
     selection = TrackSelection(only, when.from_ns, when.until_ns)
     async with station.export_lock:
@@ -159,7 +159,7 @@ def _accepts_gzip(accept_encoding: str) -> bool:
 
 
 async def _in_turn(content: Iterator[bytes], lock: asyncio.Lock) -> AsyncIterator[bytes]:
-    """One part at a time of all that is exported is made; who takes it slowly holds up nobody."""
+    """Make one part at a time of all exports; a slow client delays no other."""
     while True:
         async with lock:
             part = await run_in_threadpool(next, content, None)

@@ -50,8 +50,8 @@ def list_forgettings(station: Station, _: Administrator) -> list[Progress]:
 def forget_person(
     person_id: Id, confirmation: PersonConfirmation, station: Station, who: Administrator
 ) -> Progress:
-    """Name, photo and everywhere the person was; goes on until it is done, whoever is started
-    again meanwhile.  Who was removed from the roster is known by every name of before.
+    """Forget name, photo and all positions of a person; goes on until it is done, over restarts
+    too.  A person who was removed from the roster is found by every former name.
     """
     _desk(station)
     person = station.roster.person(person_id)
@@ -72,7 +72,7 @@ def forget_person(
 def forget_incident(
     incident_id: Id, confirmation: NameConfirmation, station: Station, who: Administrator
 ) -> Progress:
-    """Who was there and where; its name, its times and that there were alarms stay."""
+    """Forget the people of an incident and their positions; its name, times and alarms stay."""
     _desk(station)
     incident = incident_or_404(station, incident_id)
     name = station.roster.shown(incident.name)
@@ -96,8 +96,8 @@ def accept_from_command(station: Services, by: str, kind: str, subject_id: str) 
 
 
 def _accept(station: Services, by: str, kind: str, subject_id: str) -> ErasureJob:
-    """What a person wears is unassigned: else what the unit goes on saying would be forgotten
-    never.
+    """Queue the job.  Units of a person are unassigned: else later messages of the unit would never
+    be forgotten.
     """
     desk = _desk(station)
     if kind == "person":

@@ -63,7 +63,7 @@ class IncidentAnswer(BaseModel):
 
 
 class Raising(Answer, frozen=True):
-    """What was said when an alarm was raised."""
+    """Text of an alarm when it was raised."""
 
     t_ms: int
     text: str
@@ -80,11 +80,11 @@ class NewIncident(Form):
     par_interval_s: Seconds | None = None  # None: as the station is configured
     work_limit_s: Seconds | None = None
     dispatch_number: DispatchNumberOrNone = ""  # of the dispatch from which it is opened
-    beside_others: bool = False  # although others are open; nobody is in it then at first
+    beside_others: bool = False  # although others are open; it has no members then at first
 
 
 class ClosingForm(Form):
-    """Over what the incident is closed knowingly: what has come up since nobody has seen."""
+    """Alarms and units over which the incident is closed knowingly; newer ones were not shown."""
 
     despite_alarm_ids: Annotated[tuple[AlarmIdText, ...], Field(max_length=MOST_NAMED)] = ()
     despite_unit_ids: Annotated[tuple[UnitIdText, ...], Field(max_length=MOST_NAMED)] = ()
@@ -205,7 +205,7 @@ def incident_alarms(
     when: Annotated[Window, Depends(window)],
     limit: Limit = 100,
 ) -> list[PastAlarm]:
-    """What was raised in the window while the incident was open, newest first."""
+    """Alarms that were raised in the window while the incident was open, newest first."""
     incident = incident_or_404(station, incident_id)
     was_open = window_of(incident)
     alarms = station.records.alarms(when.within(was_open), limit, incident)
@@ -247,7 +247,7 @@ def _past_alarm(
 def _is_raised_anew(
     before: models.AlarmTransition, now: models.AlarmTransition, levels: Sequence[str]
 ) -> bool:
-    """It happened again, or got worse; one that nobody had acknowledged may also have eased."""
+    """It happened again, or got worse; an unacknowledged one may also have eased."""
     known = before.level in levels and now.level in levels
     eased = known and levels.index(now.level) < levels.index(before.level)
     return now.state == "raised" and not eased

@@ -36,7 +36,7 @@ SEND_TIMEOUT_S = 20.0  # one message takes longer: the console is gone
 MOST_LAPSES = 30  # how often a console may fall behind
 CHECK_LOGIN_S = 2.0  # half a millisecond each
 CHECKED_WITHIN_S = 10.0  # else the disk hangs
-# Consoles that look on take no thread from whoever asks for something.
+# Consoles that only receive take no thread from requests.
 _CHECKING = ThreadPoolExecutor(4, thread_name_prefix="check-login")
 
 _log = logging.getLogger(__name__)
@@ -143,10 +143,8 @@ async def _listen(socket: WebSocket, client: Client) -> None:
 
 
 async def _keep_checking(socket: WebSocket, services: Services) -> None:
-    """A session that ended takes its WebSockets along; a disk that does not tell blinds nobody who
-    was let in.
-    """
-    trouble = LogOnChange(_log, "whether a console may look on cannot be seen")
+    """Close the WebSocket when its session ends; a disk that does not answer closes none."""
+    trouble = LogOnChange(_log, "the session of a console cannot be checked")
     while True:
         await asyncio.sleep(CHECK_LOGIN_S)
         with trouble:

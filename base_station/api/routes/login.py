@@ -40,7 +40,7 @@ def _me(principal: Principal, station: LoginServices) -> Me:
 
 
 class Ticket(BaseModel):
-    """For the other station's console; whoever has it goes on there as who asked for it."""
+    """For the other station's console; its holder goes on there as the user who requested it."""
 
     ticket: str
     lasts_s: int
@@ -124,7 +124,7 @@ def log_out(request: Request, response: Response, station: Logins) -> None:
 
 @router.post("/hand-over")
 def hand_over(request: Request, station: Logins, _: Viewer) -> Ticket:
-    """Consoles ask now and then, so that nobody need log in again when this station dies."""
+    """Consoles ask now and then, so that users need not log in again when this station dies."""
     ticket = station.accounts.hand_over(request.cookies.get(COOKIE, ""))
     if ticket is None:
         raise Problem(403, "A ticket is for who has logged in with a browser; a token holds there.")

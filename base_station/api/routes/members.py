@@ -22,7 +22,7 @@ class Member(Answer, frozen=True):
     """A unit in an incident, with who wears it."""
 
     unit_id: str
-    person_id: str | None  # None: nobody wears it
+    person_id: str | None  # None: it is not worn
     name: str
     crew: str
 
@@ -75,7 +75,7 @@ def _units_of(target: object, station: Services) -> tuple[str, ...]:
         one.unit_id for one in worn if everyone or (one.person and one.person.person_id in people)
     )
     if not units:
-        raise Problem(409, "Nobody of them wears a registered unit: assign a unit first.")
+        raise Problem(409, "None of them wears a registered unit: assign a unit first.")
     return units
 
 

@@ -84,8 +84,8 @@ def import_people(
     who: Commander,
     preview: bool = False,
 ) -> PeopleImport:
-    """People of a CSV file with the columns Name, Crew and Role: who is known by name is changed,
-    all others are added.  With a fault in any line nobody is (422).  It may be sent again.
+    """People of a CSV file with the columns Name, Crew and Role: those known by name are changed,
+    all others are added.  With a fault in any line none is (422).  It may be sent again.
     """
     try:
         listed, faults = read_people(csv)
@@ -121,11 +121,11 @@ def _ambiguous(listed: list[CsvPerson], steps: list[ImportStep]) -> list[CsvFaul
 
 def _refusal(faults: list[CsvFault]) -> str:
     more = f" (the first of {len(faults)} faults)" if len(faults) > 1 else ""
-    return f"nobody was added: line {faults[0].line}: {faults[0].text}{more}"
+    return f"no person was added: line {faults[0].line}: {faults[0].text}{more}"
 
 
 def _announce(steps: list[ImportStep], station: Services, by: str) -> None:
-    """Whoever wears a unit is shown with the new crew at once; the audit names everybody."""
+    """Wearers are shown with the new crew at once; the audit names every person."""
     done = {
         f"imported-{secrets.token_hex(8)}": (
             "AddedPerson" if step.kind == "add" else "ChangedPerson",
@@ -152,7 +152,7 @@ def get_person(person_id: Id, station: Station, _: Viewer) -> PersonView:
 
 @router.put("/people/{person_id}")
 def change_person(person_id: Id, form: PersonForm, station: Station, who: Commander) -> PersonView:
-    """Whoever wears a unit is shown with the new name at once."""
+    """Change a person; a wearer is shown with the new name at once."""
     person = station.roster.change_person(person_id, form.name, form.crew, form.role)
     if person is None:
         raise Problem(404, _NO_PERSON)

@@ -116,7 +116,7 @@ def start_together(form: StartForm, station: Station, perform: Perform) -> list[
 
 @router.post("/pins/meeting", status_code=201)
 def set_meeting(form: MeetingForm, station: Station, perform: Perform) -> PinView:
-    """Two people met; nobody has to know where."""
+    """Two people met; the place may be unknown."""
     met = uuid.uuid4().hex, form.unit_id, form.other_unit_id
     action = SetMeeting(*met, _time(station, form.t_ms), form.std_m, form.note)
     return _pin_or_404(station, perform(action).created_id)
@@ -124,7 +124,7 @@ def set_meeting(form: MeetingForm, station: Station, perform: Perform) -> PinVie
 
 @router.put("/pins/{pin_id}")
 def move_pin(pin_id: Id, form: PinForm, station: Station, perform: Perform) -> PinView:
-    """Take the pin back and set it as said now; what is left out stays as it was, the time too."""
+    """Remove the pin and set it anew; fields that are left out stay as they were, the time too."""
     before = _pin_or_404(station, pin_id)
     if before.kind not in {"place", "start"}:
         raise Problem(409, f"This pin is a {before.kind}; remove it, and set another.")
@@ -150,9 +150,7 @@ def list_beacons(station: Station, _: Viewer) -> list[BeaconView]:
 
 @router.put("/beacons/{beacon_id}")
 def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, perform: Perform) -> BeaconView:
-    """Say where a beacon or tag hangs, or that it hangs elsewhere than was said: what is left out
-    then stays as it was.
-    """
+    """Set or change the place of a beacon or tag; fields that are left out stay as they were."""
     before = _beacon(station, beacon_id)
     if before is not None:
         left_out = _BEACON_MAY_KEEP - form.model_fields_set
@@ -160,7 +158,7 @@ def place_beacon(beacon_id: Id, form: BeaconForm, station: Station, perform: Per
     named = site_incident_id(station, form.incident_id)
     perform(PlaceBeacon(beacon_id, **form.model_dump() | {"incident_id": named}))
     placed = _beacon(station, beacon_id)
-    if placed is None:  # somebody else has just removed it
+    if placed is None:  # another user has just removed it
         raise Problem(404, _NO_BEACON)
     return placed
 

@@ -32,7 +32,7 @@ LengthMs = Annotated[int, Query(ge=1, le=MAX_SPAN_MS)]
 
 
 class RadioChannelAnswer(Answer, frozen=True):
-    """Spans in order; between them nothing was recorded, or nothing was to be heard."""
+    """Spans in order; between them nothing was recorded, or the channel was silent."""
 
     name: str
     recorded_ms: tuple[tuple[int, int], ...]

@@ -50,7 +50,7 @@ def list_recordings(station: Station, _: Viewer) -> list[Recording]:
 
 @router.post("/recordings", status_code=202)
 def fetch_recording(new: NewPull, station: CurrentStation, who: Commander) -> Recording:
-    """It is pulled behind live data until it is there, whoever is away or started again."""
+    """It is pulled behind live data until it is there, also after restarts and lost links."""
     desk = _desk(station)
     if new.unit_id not in station.roster.registered_units():
         raise Problem(404, f"There is no unit {new.unit_id}.")
@@ -62,7 +62,7 @@ def fetch_recording(new: NewPull, station: CurrentStation, who: Commander) -> Re
 
 @router.delete("/recordings/{fetch_id}", status_code=204)
 def stop_recording(fetch_id: Id, station: Station, who: Commander) -> None:
-    """What has come is kept."""
+    """Stop a pull; the received part is kept."""
     if not _desk(station).stop(fetch_id):
         raise Problem(404, "There is no such recording being pulled.")
     station.records.audit(who.username, "StoppedRecording", fetch_id)

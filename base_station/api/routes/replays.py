@@ -1,7 +1,7 @@
 """Replays of past incidents, and their controls.
 
-A replay belongs to the user who began it: nobody else moves what somebody looks at.  The one that a
-station was started for belongs to all.
+A replay belongs to the user who began it: no other user can move it.  The one that a station was
+started for belongs to all.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class NewReplay(Form):
 
 
 class ReplayChange(Form):
-    """What is given is changed: first the place, then the speed, then whether it plays."""
+    """Changes of the given fields: first the place, then the speed, then whether it plays."""
 
     at_ms: Annotated[int, Field(ge=0, le=MAX_TIME_MS)] | None = None
     speed: Speed | None = None
@@ -56,7 +56,7 @@ def list_replays(station: Station, _: Viewer) -> list[Replay]:
 
 @router.post("/replays", status_code=201)
 def start_replay(new: NewReplay, station: CurrentStation, who: Viewer, request: Request) -> Replay:
-    """It plays from its beginning; it ends by itself when nobody looks at it any more."""
+    """It plays from its beginning; it ends by itself when it has no viewer any more."""
     loop: asyncio.AbstractEventLoop = request.app.state.loop
     incident = incident_or_404(station, new.incident_id)
     opened = station.replays.open(incident, new.speed, loop, who.username)
@@ -85,7 +85,7 @@ def change_replay(replay_id: Id, change: ReplayChange, station: Station, who: Vi
 
 @router.delete("/replays/{replay_id}", status_code=204)
 def end_replay(replay_id: Id, station: Station, who: Viewer) -> None:
-    """One's own; a commander may end anybody's; nobody the one that a station was started for."""
+    """End one's own; a commander may end all but the one that a station was started for."""
     replay = _replay_or_404(station, replay_id)
     if replay.persistent:
         raise Problem(403, "This replay is for all; it ends with the command that shows it.")

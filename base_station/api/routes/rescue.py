@@ -65,7 +65,7 @@ def begin_guide(
 
 @router.delete("/guides/{rescuer_id}", status_code=204)
 def end_guide(rescuer_id: UnitId, station: Station, guidance: Guiding, perform: Perform) -> None:
-    """The rescuer's unit is told that it is over."""
+    """End the guidance; the rescuer's unit receives its end."""
     if not guidance.end(station, rescuer_id, perform):
         raise Problem(404, "This rescuer is not guided.")
 

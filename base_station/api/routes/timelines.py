@@ -69,7 +69,7 @@ async def unit_timeline(
 def _timeline(station: Services, request: TimelineRequest) -> Response:
     window = request.window
     if station.roster.unit(request.unit_id) is None:
-        raise Problem(404, f"There is no unit {request.unit_id}: none is registered or was heard.")
+        raise Problem(404, f"There is no unit {request.unit_id}, registered or linked.")
     if station.read_timeline is None:
         raise Problem(503, "This station has no log to read it from.")
     try:

@@ -79,7 +79,7 @@ def hindsight_of(station: Services) -> PostProcessor:
 def trails_of(
     station: Services, incident: models.IncidentRow, kind: TrailKind
 ) -> tuple[int, Tracks]:
-    """When they were worked out, and the trails by unit."""
+    """Time at which they were worked out, and the trails by unit."""
     if kind is TrailKind.SMOOTHED:
         smoothed = hindsight_of(station).smoothed(incident)
         return smoothed.made_ns, smoothed.tracks

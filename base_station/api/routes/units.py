@@ -1,4 +1,4 @@
-"""The wearable units: heard, registered, labelled, and where each began."""
+"""The wearable units: received, registered and labelled ones, and their start positions."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Label(Form):
 
 
 class UnitStartForm(Form):
-    """Where the unit's own frame began, in the incident frame, as well as it is known."""
+    """Place where the unit's own frame began, in the incident frame, as well as it is known."""
 
     north_m: Metres
     east_m: Metres
@@ -106,9 +106,9 @@ def set_start(unit_id: UnitId, start: UnitStartForm, station: Station, perform: 
 
 @router.put("/reference-barometer", status_code=204)
 def set_reference(reference: Reference, station: Station, perform: Perform) -> None:
-    """Whose barometer stays where it is and tells the weather for everybody; empty: nobody's.
-    Where a start says where that unit stands, its satellite receiver tells what all receivers of
-    the site err by.
+    """Unit whose barometer stays where it is and measures the weather for all; empty: none.
+    If its start position is set, its satellite receiver measures the common error of all receivers
+    of the site.
     """
     with _not_found_if_unknown(station, reference.unit_id):
         named = site_incident_id(station, reference.incident_id)
