@@ -34,6 +34,7 @@ from base_station.views.answer import to_ms
 from shared.clock import NS_PER_MS, Clock
 
 _MS_PER_S = 1000.0
+_S_PER_MINUTE, _MINUTES_PER_H = 60, 60
 _NO_COUNTS = IncidentCounts()
 
 
@@ -279,9 +280,11 @@ def _incident_view(
 
 
 def _clock_problem(station: str, ahead_ms: int) -> str:
-    minutes, seconds = divmod(abs(ahead_ms) // 1000, 60)
-    hours, minutes = divmod(minutes, 60)
-    apart = f"{hours} h {minutes} min" if hours else f"{minutes} min {seconds} s"
+    minutes, seconds = divmod(round(abs(ahead_ms) / _MS_PER_S), _S_PER_MINUTE)
+    apart = f"{minutes} min {seconds} s"
+    if minutes >= _MINUTES_PER_H:
+        hours, minutes = divmod(round(abs(ahead_ms) / _MS_PER_S / _S_PER_MINUTE), _MINUTES_PER_H)
+        apart = f"{hours} h {minutes} min"
     side = "ahead of" if ahead_ms > 0 else "behind"
     return (
         f"The clock of {station} is {apart} {side} the department's: times are shown by the "

@@ -15,6 +15,7 @@ BENCHES = {
     "console": "tests.bench.console.command:bench_console",
     "constants": "tests.bench.tracker.constants:bench_constants",
     "department": "tests.bench.department:bench_department",
+    "department-faults": "tests.bench.department_faults:bench_department_faults",
     "exports": "tests.bench.past.exports:bench_exports",
     "faults": "tests.bench.faults.command:bench_faults",
     "floors": "tests.bench.floors:bench_floors",

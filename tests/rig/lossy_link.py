@@ -26,6 +26,7 @@ T = TypeVar("T")
 
 _NEW_NETWORK = 0x40000000  # CLONE_NEWNET
 _END_S = 10.0
+_NOT_ALLOWED = "no network namespaces or TUN devices here"
 
 CLEAN = Conditions(delay_s=0.015)  # each way
 DARK = Conditions(dark=True)
@@ -35,9 +36,13 @@ class Namespace:
     """A network of its own, with its own loopback and one address on the link."""
 
     def __init__(self, address: str, closing: ExitStack) -> None:
+        """Raises BusError where this machine does not allow it."""
         self.address = address
         anchor = ["unshare", "--net", "sh", "-c", "echo ready; exec cat"]
-        self.anchor = started(anchor, closing)
+        try:
+            self.anchor = started(anchor, closing)
+        except OSError as error:
+            raise BusError(f"{_NOT_ALLOWED}: {error}") from error
 
     def inside(self) -> tuple[str, ...]:
         """What to put in front of a command so that it runs in here."""
@@ -73,11 +78,19 @@ def enter_network(path: str) -> None:
 class LossyLink:
     """``station`` and ``units`` are the two ends."""
 
-    def __init__(self, seed: int, closing: ExitStack) -> None:
-        """Raises BusError where this machine does not allow it."""
+    def __init__(
+        self,
+        seed: int,
+        closing: ExitStack,
+        station: Namespace | None = None,
+        units: Namespace | None = None,
+    ) -> None:
+        """Ends that are not given are made.  Raises BusError where this machine does not allow
+        it.
+        """
+        self.station = station or Namespace("10.77.0.1", closing)
+        self.units = units or Namespace("10.77.0.2", closing)
         try:
-            self.station = Namespace("10.77.0.1", closing)
-            self.units = Namespace("10.77.0.2", closing)
             token = secrets.token_hex(4)  # a name has 15 characters at most
             devices = [f"mstr{token}{end}" for end in "su"]
             module = [sys.executable, "-m", "tests.rig.link_forwarder", str(seed), *devices]
@@ -85,7 +98,7 @@ class LossyLink:
             self.station.join(devices[0], self.units.address)
             self.units.join(devices[1], self.station.address)
         except OSError as error:
-            raise BusError(f"no network namespaces or TUN devices here: {error}") from error
+            raise BusError(f"{_NOT_ALLOWED}: {error}") from error
         self.set(CLEAN)
 
     def set(self, down: Conditions, up: Conditions | None = None) -> None:

@@ -17,11 +17,13 @@ from shared.codec import encode
 from shared.envelope import Stamper
 from shared.messages import (
     Activity,
+    EventKind,
     Header,
     Message,
     Position,
     Status,
     Temperature,
+    UnitEvent,
 )
 from shared.quality import Quality, Reason
 from tests.rig import message_factory
@@ -59,6 +61,9 @@ class Wearer:
         if turn == _STATUS_AT:
             return self._status(header)
         return Temperature(header, 21.5) if turn == _TEMPERATURE_AT else self._position(header)
+
+    def mayday(self) -> Message:
+        return UnitEvent(self._stamper.header(), EventKind.MAYDAY)
 
     def _status(self, header: Header) -> Status:
         return Status(
@@ -127,6 +132,9 @@ class BenchUnit:
         self._publish(message)
         if isinstance(message, Position):
             self.sent.position_times_ns.append(message.header.t_utc_ns)
+
+    def press_mayday(self) -> None:
+        self._publish(self._wearer.mayday())
 
     def _publish(self, message: Message) -> None:
         channel = channel_of(message)

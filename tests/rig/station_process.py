@@ -57,13 +57,13 @@ class StationProcess:
     def __init__(self, data: Path, program: Program, url: str) -> None:
         self._data = DataFolder(data)
         self._program = program
-        self._url = url
+        self.url = url
         self._cpu_s = 0.0
         self._since = 0.0
 
     @cached_property
     def api(self) -> Api:
-        return Api(self._url, *first_login(self._url, self._data.first_login))
+        return Api(self.url, *first_login(self.url, self._data.first_login))
 
     def begin_measuring(self) -> None:
         self._cpu_s, self._since = self.cpu_s(), time.perf_counter()
@@ -137,18 +137,21 @@ def station_process(
     patience_s: float = _START_TIMEOUT_S,
     launch: Launch = launch_installed,
     settings: Path | None = None,
+    before: str = "",
 ) -> Iterator[StationProcess]:
-    """Runs ``muster base serve``; ended hard where ``stop`` was not called."""
+    """Runs ``muster base serve``; ended hard where ``stop`` was not called.  ``before``: statements
+    that Python executes first.
+    """
     arguments = ["serve", "--data", str(data), "--listen", bus_address]
     arguments += ["--http", f"127.0.0.1:{free_port()}"]
     if settings is not None:
         arguments += ["--config", str(settings)]
     output = data / _OUTPUT
     output.touch()
-    before = output.stat().st_size
-    program = launch("base_station", arguments, output, network)
+    printed_before = output.stat().st_size
+    program = launch("base_station", arguments, output, network, before)
     try:
-        yield StationProcess(data, program, _ready_url(program, output, before, patience_s))
+        yield StationProcess(data, program, _ready_url(program, output, printed_before, patience_s))
     finally:
         end_hard(program)
 
