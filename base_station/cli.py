@@ -86,8 +86,8 @@ def serve(
         "insecure": insecure or None,
     }
     settings = _load_settings(config, flags)
-    # Imported where needed: it takes its time, and a wrong setting is said before.  The router's
-    # process takes as long, beside it.
+    # Imported where needed: it takes its time, and wrong settings are reported before.  The
+    # router's process takes as long, beside it.
     from base_station.security.router.process import start_loading  # noqa: PLC0415
 
     loading_router = start_loading()
@@ -249,7 +249,7 @@ def assess(
         typer.Option("--json", help="Also write all of it to this file.", callback=writable),
     ] = None,
 ) -> None:
-    """How good an incident's positions were, in the terms of ISO/IEC 18305."""
+    """Assess an incident's positions, in the terms of ISO/IEC 18305."""
     from base_station.app import folder_commands as station  # noqa: PLC0415
     from base_station.replay.assessment.report import with_people  # noqa: PLC0415
     from base_station.replay.assessment.tables import print_report, write_report  # noqa: PLC0415
@@ -315,7 +315,7 @@ def _load_settings(config: Path | None, flags: Mapping[str, object]) -> StationC
     settings.require_encryption()
     set_up_logging(settings.log_level, settings.log_format)
     logging.getLogger("alembic").setLevel(logging.WARNING)
-    os.umask(0o077)  # people's photos and tracks are nobody else's business
+    os.umask(0o077)  # people's photos and tracks are private
     return settings
 
 

@@ -87,7 +87,7 @@ class AccountabilityConfig:
 
 @dataclass(frozen=True, slots=True)
 class PositioningConfig:
-    """How the station works out where people are."""
+    """Settings for the estimation of positions."""
 
     fuser: str = "gps-inertial"  # gps-switching: the documents' rule, a baseline
 
@@ -100,7 +100,7 @@ class StandbyConfig:
     peer: tuple[str, ...] = ()  # where the other's bus listens, tls/HOST:PORT
     url: str = ""  # where consoles find this station; the other one points to it
     preferred: bool = False  # leads where both start at once; give it to one of the two
-    lease_s: Annotated[float, Within(1.0, 60.0)] = 3.0  # not heard for so long: the other leads
+    lease_s: Annotated[float, Within(1.0, 60.0)] = 3.0  # no heartbeat for so long: the other leads
     confirm_s: Annotated[float, Within(0.0, 10.0)] = 1.0  # an action waits so long for the other
 
     def __post_init__(self) -> None:
@@ -155,7 +155,7 @@ class ServerConfig:
         """Problems that last as long as these settings, as sentences for the console."""
         if all(one.startswith("tls/") for one in self.bus.listen):
             return ()
-        return ("The bus is plain TCP: whoever reaches it can speak as any unit",)
+        return ("The bus is plain TCP: every machine that reaches it can pose as any unit",)
 
     def require_encryption(self) -> None:
         """ConfigError where plain connections from other machines were not asked for."""

@@ -2,8 +2,8 @@
 
 Summaries (``department_summary_key``, once a second) are newest-only: what is lost is replaced by
 the next one.  Events (``department_events_key``) go up as queries, in the order of their numbers,
-until a receipt says that they are stored.  New fields have a default and stand at the end: an older
-department skips what it does not know, and keeps events of a kind that it does not know.
+until a receipt confirms that they are stored.  New fields have a default and stand at the end: an
+older department skips fields that it does not know, and keeps events of an unknown kind.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class PersonSummary(msgspec.Struct, frozen=True, array_like=True):
 
     unit_id: str
     label: str
-    person_id: str  # empty: nobody wears it; the name came as a ``PersonEvent``
+    person_id: str  # empty: it is not worn; the name came as a ``PersonEvent``
     link: str  # live | stale | lost | never
     incident_id: str  # empty: in none
     place: PlaceSummary | None

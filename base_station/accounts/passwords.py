@@ -1,8 +1,7 @@
 """Passwords as argon2 hashes; making and checking one takes long, and 64 MB, on purpose.
 
-All of it is done by two threads that the machine lets wait for others, so that whoever tries
-passwords takes little from those who are at work.  While they compute they hold no lock of the
-interpreter's.
+All of it is done by two threads of low priority, so that many attempts take little time from other
+requests.  While they compute they hold no lock of the interpreter's.
 """
 
 from __future__ import annotations

@@ -20,8 +20,8 @@ class PrincipalCache:
         self._known: dict[bytes, Principal] = {}  # the last who was looked up is the last here
 
     def resolve(self, secret: str, look_up: Callable[[str], Principal | None]) -> Principal | None:
-        """Whoever a secret stands for.  A commander who has to get people out is not asked to wait
-        for a disk or a server; nobody comes in by this who was not in before.
+        """Holder of a secret.  A commander in an emergency must not wait for a disk or a server;
+        only holders who were let in before are known without them.
 
         Raises StoreError, as ``look_up``.
         """
@@ -43,6 +43,6 @@ class PrincipalCache:
         return found
 
     def forget_all(self) -> None:
-        """Somebody is perhaps not to come in any more: everybody is looked up again."""
+        """Look up all holders again: a right may have been withdrawn."""
         with self._lock:
             self._known.clear()

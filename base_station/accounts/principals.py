@@ -15,7 +15,7 @@ _USERNAME = re.compile(rf"(?!\.\.?$)(?=.*\S)[^/\ud800-\udfff{BARRED}]{{1,80}}")
 
 
 def require_username(username: str) -> None:
-    """UserError where nobody could log in by it, or name it in an address of the API."""
+    """UserError where it cannot be used to log in, or in an address of the API."""
     if _USERNAME.fullmatch(username) is None:
         raise UserError("a user's name is one line of 1 to 80 plain characters, without '/'")
 

@@ -118,8 +118,8 @@ class BucketStore:
 
     def _refused(self, what: str) -> ArchiveError:
         return ArchiveError(
-            f"the archive {self.address}: {what}: whoever {_CREDENTIALS} are of may not do it; "
-            "give them the rights to list, read, write and delete there (s3:ListBucket, "
+            f"the archive {self.address}: {what}: the account of {_CREDENTIALS} may not do it; "
+            "give it the rights to list, read, write and delete there (s3:ListBucket, "
             "s3:GetObject, s3:PutObject, s3:DeleteObject)"
         )
 

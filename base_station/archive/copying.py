@@ -98,7 +98,7 @@ class ArchiveCopier:
         return CopyResult(incident.incident_id, size_bytes, entry.damage)
 
     def _is_current(self, entry: CatalogueEntry, incident: IncidentRow, known_ns: int) -> bool:
-        """A copy that this database lost sight of; not one from before somebody was forgotten."""
+        """A copy that this database lost sight of; not one from before a person was forgotten."""
         here = self._mentioned(incident)
         return (
             entry.known_ns == known_ns and entry.people == here and _is_whole(self._archive, entry)

@@ -55,7 +55,7 @@ class ArchivedFeed(LogFeed):
         return self._read(file, start_ns, end_ns, topics, derived=topics is not None)
 
     def watch(self) -> Callable[[], bool]:
-        """Nobody changes a copy: it is replaced."""
+        """A copy is never changed: it is replaced."""
         return lambda: False
 
     def _read(

@@ -74,7 +74,7 @@ def list_department_events(
     before: Annotated[int | None, Query(ge=1)] = None,
     limit: Limit = 100,
 ) -> list[DepartmentEventView]:
-    """What stations have reported, in the order of arrival, the newest first."""
+    """Events that stations have reported, in the order of arrival, the newest first."""
     return list(views.events(before, limit))
 
 

@@ -55,7 +55,7 @@ def serve(
     set_up_logging(settings.log_level, settings.log_format)
     logging.getLogger("alembic").setLevel(logging.WARNING)
     os.umask(0o077)
-    # Imported where needed: it takes its time, and a wrong setting is said before.
+    # Imported where needed: it takes its time, and a wrong setting is reported before.
     from base_station.department.program import run_department  # noqa: PLC0415
 
     run_department(settings, _announce)

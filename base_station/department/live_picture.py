@@ -49,7 +49,7 @@ class StationPicture:
 
     @property
     def offset_ms(self) -> int:
-        """What the station's clock is ahead of the department's."""
+        """Lead of the station's clock over the department's."""
         return self.summary.t_ms - self.received_ns // NS_PER_MS
 
     def silent_ns(self, now_ns: int, now_monotonic_ns: int) -> int:

@@ -20,7 +20,7 @@ _CLOSE_S = 20.0  # a server that does not answer is given up before
 
 
 class Standing(NamedTuple):
-    """What was reported, as of one reading."""
+    """Reports of stations, as of one reading."""
 
     alarms: Sequence[ReportedAlarm]  # that are not resolved, the gravest and newest
     open_alarms: int  # all of them

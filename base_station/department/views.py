@@ -81,7 +81,7 @@ class DepartmentViews:
         )
 
     def people(self, wanted: PeopleQuery) -> DepartmentPeopleView:
-        """Who needs help first."""
+        """People, those who need help first."""
         search = wanted.search.casefold()
         found = []
         for picture in self._of(wanted.station):

@@ -41,7 +41,7 @@ class KnownUnit(msgspec.Struct, frozen=True):
 
 
 class MatchedCallSign(msgspec.Struct, frozen=True):
-    """What the station knows under a call sign: a crew, or wearables, or nothing."""
+    """Meaning of a call sign at the station: a crew, or wearables, or nothing."""
 
     call_sign: str
     words: str  # "Engine 12" for E12

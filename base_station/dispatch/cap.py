@@ -32,7 +32,7 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
 class CapAlert(msgspec.Struct, frozen=True):
-    """What an alert changes on the plan."""
+    """Changes of the plan by an alert."""
 
     alert_id: str  # sender,identifier
     outcome: str  # shown | cancelled | expired | not actual | without a place

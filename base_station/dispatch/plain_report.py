@@ -1,4 +1,4 @@
-"""A dispatch as plain JSON, for whoever writes the sender (docs/howto/take-dispatches.md)."""
+"""A dispatch as plain JSON, for own senders (docs/howto/take-dispatches.md)."""
 
 from __future__ import annotations
 

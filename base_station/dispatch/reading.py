@@ -39,6 +39,6 @@ def read_report(body: bytes, config: DispatchConfig, now_ns: int) -> NoteDispatc
 
 
 def type_in_words(report: NoteDispatch, config: DispatchConfig) -> str:
-    """By the settings, else as the report has it, else what its code says by itself."""
+    """By the settings, else as the report has it, else its code, split into words."""
     words = config.types.get(report.type_code) or report.type
     return words or _CAMEL_CASE.sub(" ", report.type_code).capitalize()

@@ -1,4 +1,4 @@
-"""Parts of a report, checked: what cannot be used is left out, and a warning tells which.
+"""Parts of a report, checked: unusable ones are left out, each with a warning.
 
 A dispatch with a wrong time is still a fire: only a report without a number is refused.
 """

@@ -20,7 +20,7 @@ class Draft(msgspec.Struct, frozen=True, tag="draft"):
 
     picture: DrawnPicture | None = None
     plan: dict[str, Any] | None = None  # GeoJSON in site metres, as ``site/plan`` takes it
-    lat_deg: float | None = None  # of the plan's origin, where the file says where it lies
+    lat_deg: float | None = None  # of the plan's origin; None: the file does not have it
     lon_deg: float | None = None
     pages: int = 1  # of the file
     notes: tuple[str, ...] = ()  # for a person: what of the file is not in the draft
@@ -43,8 +43,8 @@ METRES_PER_UNIT: dict[LengthUnit, float] = {
 
 
 class Options(msgspec.Struct, frozen=True):
-    """What a person says of the file."""
+    """Options for a file that a person sets."""
 
     name: str = ""
     page: int = 1
-    unit: LengthUnit | None = None  # of a DXF; None: as the file says
+    unit: LengthUnit | None = None  # of a DXF; None: as in the file

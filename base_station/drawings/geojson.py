@@ -130,7 +130,7 @@ def _draft(name: str, tagged: Iterable[_Tagged]) -> Draft:
     if left:
         notes.append(f"{left} of its features are points or of no use to a plan, and left out.")
     if all(one.kind != "wall" for one in found):
-        notes.append("It has no walls: rooms are drawn, and nobody is kept from crossing them.")
+        notes.append("It has no walls: rooms are drawn, and paths may cross them.")
     return Draft(plan=plan_of(name, shapes), lat_deg=lat_deg, lon_deg=lon_deg, notes=tuple(notes))
 
 

@@ -1,4 +1,4 @@
-"""Drawings are read in a process of their own: libraries that read what anybody sends may end, hang
+"""Drawings are read in a process of their own: libraries that read files of strangers may end, hang
 or fill the memory, and the station does not with them.
 """
 
@@ -16,7 +16,7 @@ MOST_WAIT_S = 60.0
 
 
 def command_of(options: Options) -> tuple[str, ...]:
-    """What is run."""
+    """Command line of the process."""
     return (sys.executable, "-m", "base_station.drawings", msgspec.json.encode(options).decode())
 
 

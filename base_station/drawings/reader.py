@@ -1,4 +1,4 @@
-"""Reader of drawings: the kind of a file is told by how it begins, not by its name."""
+"""Reader of drawings: the kind of a file is read from its first bytes, not from its name."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def box_of(points: Iterable[Point]) -> tuple[float, float, float, float]:
 
 
 def require_size(points: Sequence[Point]) -> None:
-    """UserError where nobody could walk in it, or no site is so large."""
+    """UserError where it is too small to walk in, or no site is so large."""
     if len(points) > MOST_POINTS:
         raise UserError(
             f"the drawing has more than {MOST_POINTS} points; leave out furniture and hatching"

@@ -77,7 +77,7 @@ def _split(
 class _Wearer(NamedTuple):
     """A person who is assigned anew, as with a new photo, is the same one."""
 
-    person_id: str = ""  # empty: nobody
+    person_id: str = ""  # empty: not worn
     name: str = ""
     crew: str = ""
 

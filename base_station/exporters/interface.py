@@ -16,17 +16,17 @@ from shared.clock import NS_PER_S
 from shared.errors import UserError
 from shared.geo import Anchor
 
-# Somebody at rest leaves a point every 15 s; over a longer gap nobody knows the way.
+# A wearer at rest leaves a point every 15 s; over a longer gap the way is unknown.
 LONGEST_STEP_NS = 20 * NS_PER_S
 _SAME_PLACE_M = 1.0
 _BLOCK_CHARACTERS = 1 << 16
 
 
 class WornTrack(msgspec.Struct, frozen=True):
-    """Where one unit was while one person wore it, by time."""
+    """Track of one unit while one person wore it, by time."""
 
     unit_id: str
-    person_name: str  # empty: nobody was assigned
+    person_name: str  # empty: no person was assigned
     crew: str
     points: tuple[TrackSample, ...]  # NED metres in the incident frame
 

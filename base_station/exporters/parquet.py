@@ -140,7 +140,7 @@ def _columns(
 
 
 def _repeated(pyarrow: ModuleType, texts: Sequence[str], counts: Sequence[int]) -> Any:
-    """Each text as often as its count says, as a dictionary and indices."""
+    """Each text repeated by its count, as a dictionary and indices."""
     indices = np.repeat(np.arange(len(texts), dtype=np.int32), counts)
     return pyarrow.DictionaryArray.from_arrays(indices, pyarrow.array(texts, pyarrow.string()))
 

@@ -21,11 +21,11 @@ class TrackSelection:
     until_ns: int = FOREVER_NS  # before this
 
     def of(self, incident: IncidentTracks) -> IncidentTracks:
-        """Raises UserError for a name that nobody there has, and where no point is left."""
+        """Raises UserError for a name that is not in the incident, and where no point is left."""
         self._require_known(incident)
         chosen = LazyTracks(lambda: self._chosen(incident.tracks))
         if any(True for _ in incident.tracks) and not any(True for _ in chosen):
-            raise UserError("nobody who is asked for has a track in that time")
+            raise UserError("none of the selected people and units has a track in that time")
         return replace(incident, tracks=chosen)
 
     def _chosen(self, tracks: Iterable[WornTrack]) -> Iterator[WornTrack]:

@@ -1,7 +1,7 @@
 """Mailbox between the engine's thread and the thread of a forwarder.
 
-It keeps the newest of each unit and alarm, so that its size is theirs, however long nobody takes
-what is in it.
+It keeps the newest of each unit and alarm, so that its size is bounded by their number, however
+long it is not emptied.
 """
 
 from __future__ import annotations

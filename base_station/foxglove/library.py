@@ -12,7 +12,7 @@ from shared.errors import UserError
 
 
 def require_library() -> None:
-    """Raises UserError, which says how to install it."""
+    """Raises UserError with the way to install it."""
     if find_spec("foxglove") is None:
         raise UserError(
             "the library foxglove-sdk, which serves Foxglove, is not installed: "

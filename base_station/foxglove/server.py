@@ -31,7 +31,7 @@ _BACKLOG_MESSAGES = 16_384  # of one client; beyond it the oldest are dropped
 
 
 class FoxgloveServer:
-    """Channels are made as topics come; whoever subscribes to one gets its newest message.
+    """Channels are made as topics come; a subscriber gets the newest message of its topic.
 
     The library calls in a thread of its own: what it brings waits until ``work`` or ``requests``.
     """

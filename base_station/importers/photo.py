@@ -120,7 +120,7 @@ def _time_ns(details: _Tags, gps: _Tags, utc_offset_h: float | None) -> tuple[in
 def _fix_ns(gps: _Tags) -> int | None:
     """Time of the satellite fix, UTC; None: it has none."""
     try:
-        date = datetime.strptime(_text(gps, ExifTags.GPS.GPSDateStamp), "%Y:%m:%d")  # noqa: DTZ007  # UTC, as the next line says
+        date = datetime.strptime(_text(gps, ExifTags.GPS.GPSDateStamp), "%Y:%m:%d")  # noqa: DTZ007  # UTC, set two lines below
         hours, minutes, seconds = (float(one) for one in gps[ExifTags.GPS.GPSTimeStamp])
         time = timedelta(hours=hours, minutes=minutes, seconds=seconds)
         return _to_ns(date.replace(tzinfo=UTC) + time)

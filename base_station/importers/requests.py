@@ -1,8 +1,8 @@
 """Actions on imports that a command hands to the station that runs on the folder.
 
 The command puts the file in its place itself; the station has to log that it belongs to the
-incident.  One request at a time: a file of it, and one of the station's answer.  Whoever can write
-in the folder has all of it already, so a file there is proof enough.
+incident.  One request at a time: a file of it, and one of the station's answer.  A user who can
+write in the folder has all of it already, so a file there is proof enough.
 """
 
 from __future__ import annotations

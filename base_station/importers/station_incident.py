@@ -35,8 +35,8 @@ _HOW = "at the other station write it with: muster base export INCIDENT incident
 
 
 def read_station_incident(path: Path, options: ImportOptions) -> ImportedContent:
-    """The readable part of it.  Raises UserError where it is no incident of another station, or
-    nobody of it has a place on the Earth.
+    """The readable part of it.  Raises UserError where it is no incident of another station, or no
+    track of it has a place on the Earth.
     """
     whole = read_incident_file(path)
     incident = whole or _incident_in_torn(path)
@@ -59,14 +59,14 @@ def read_station_incident(path: Path, options: ImportOptions) -> ImportedContent
     tracks = tuple(found.tracks())
     if not tracks:
         raise UserError(
-            "; ".join((*damage, "nobody in it has a place on the Earth: its site has no anchor"))
+            "; ".join((*damage, "no track in it has a place on the Earth: its site has no anchor"))
         )
     return ImportedContent(INCIDENT.name, tracks, tuple(damage))
 
 
 def _incident_in_torn(path: Path) -> IncidentInFile:
-    """The incident of a file that breaks off before it says which it is of; UserError where it is
-    something else.
+    """The incident of a file that breaks off before its header; UserError where it is something
+    else.
     """
     opened: dict[str, str] = {}
     with SegmentReader(path) as reader:

@@ -2,7 +2,7 @@
 
 Its collector of cycles is that of a program that holds much and makes hardly a cycle.  As it comes
 it looks at everything that lives again and again: a tenth of the drive's time, in pauses of a tenth
-of a second in which nobody is heard or told anything.
+of a second in which no message is received or sent.
 
 Its threads take turns ten times as often as they would.  What comes from the bus and what goes to a
 console passes three threads that need it for a moment only, and each would wait for five
@@ -43,7 +43,7 @@ def paused() -> Iterator[None]:
 
 
 def configure() -> None:
-    """When the program begins."""
+    """Call it when the program begins."""
     gc.set_threshold(_NEW_OBJECTS, _YOUNG, _OLD)
     sys.setswitchinterval(_TURN_S)
     _have_own_blocks(_LARGE_BYTES)
@@ -61,11 +61,11 @@ def _have_own_blocks(large_bytes: int) -> None:
 
 
 def freeze() -> None:
-    """When it is made: what lives now stays, and need not be looked at again."""
+    """Call it when the program is set up: present objects stay, and are not looked at again."""
     gc.collect()
     gc.freeze()
 
 
 def unfreeze() -> None:
-    """When it has ended and another one is to be made in its place: its parts may go."""
+    """Call it when the program is to be set up anew: its objects may go."""
     gc.unfreeze()

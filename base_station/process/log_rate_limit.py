@@ -1,4 +1,4 @@
-"""Rate limit for log lines that anybody on the network can cause: once a minute, with a count."""
+"""Rate limit for log lines that other machines can cause: once a minute, with a count."""
 
 from __future__ import annotations
 
@@ -15,17 +15,18 @@ class RateLimitFilter(logging.Filter):
     def __init__(self, clock: Clock) -> None:
         super().__init__()
         self._clock = clock
-        self._said: dict[str, tuple[int, int]] = {}  # when, and how often it was left out since
+        # By message: time of logging, and how often it was left out since.
+        self._logged: dict[str, tuple[int, int]] = {}
 
     def filter(self, record: logging.LogRecord) -> bool:
         if record.levelno > logging.WARNING or not isinstance(record.msg, str):
             return True
         now_ns = self._clock.monotonic_ns()
-        said_ns, left_out = self._said.get(record.msg, (now_ns - APART_NS, 0))
-        if now_ns - said_ns < APART_NS:
-            self._said[record.msg] = said_ns, left_out + 1
+        logged_ns, left_out = self._logged.get(record.msg, (now_ns - APART_NS, 0))
+        if now_ns - logged_ns < APART_NS:
+            self._logged[record.msg] = logged_ns, left_out + 1
             return False
-        self._said[record.msg] = now_ns, 0
+        self._logged[record.msg] = now_ns, 0
         if left_out:
             record.msg = f"{record.msg} (and {left_out} times more in the minutes before)"
         return True

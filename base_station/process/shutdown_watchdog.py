@@ -1,7 +1,7 @@
-"""Ends a station that was told to end and whose disk does not answer.
+"""Ends a station that was asked to end and whose disk does not answer.
 
-Whoever waits for such a disk in the kernel can be neither woken nor left behind: each part of the
-station would have to look out for it.  What a kill may take, this may take, too.
+A thread that waits for such a disk in the kernel can be neither woken nor left behind: each part of
+the station would have to look out for it.  At most as much is lost as by a kill.
 """
 
 from __future__ import annotations

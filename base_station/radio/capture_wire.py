@@ -12,7 +12,7 @@ _LENGTH_MAX = 65_536
 
 
 class Captured(NamedTuple):
-    """An Opus packet, or a sentence that tells what is wrong."""
+    """An Opus packet, or a sentence about a problem."""
 
     kind: int
     t_mono_ns: int

@@ -138,7 +138,7 @@ class RadioChannel:
             start_new_session=True,
         )
         assert process.stdin is not None
-        with suppress(OSError):  # it is gone already: its end tells
+        with suppress(OSError):  # it is gone already: its end is noted elsewhere
             process.stdin.write(msgspec.json.encode(self._config) + b"\n")
             process.stdin.flush()
         return _CaptureRun(process, self._clock.monotonic_ns())
@@ -160,7 +160,7 @@ class RadioChannel:
         return ""
 
     def _take(self, run: _CaptureRun, captured: list[Captured]) -> str:
-        """Log packets; gives what the process says is wrong, if it does."""
+        """Log packets; gives the problem that the process reports, if any."""
         now_ns = self._clock.monotonic_ns()
         to_utc_ns = self._clock.utc_ns() - now_ns
         problem = ""

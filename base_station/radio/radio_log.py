@@ -77,8 +77,8 @@ class RadioLog:
         return len(old)
 
     def erase(self, from_ns: int, until_ns: int) -> int:
-        """Take a window out of all channels; the number of packets.  Nobody may be writing to the
-        segments that have some of it.  Raises LogError.
+        """Take a window out of all channels; the number of packets.  No thread may be
+        writing to the segments that have some of it.  Raises LogError.
         """
         erased = 0
         for channel in self.channels():

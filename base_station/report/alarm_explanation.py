@@ -57,7 +57,7 @@ class AlarmExplanation(msgspec.Struct, frozen=True):
     battery: Series  # 0..1
     height_m: Series  # above the origin of the incident frame
     stated_error_m: Series  # one standard deviation, horizontal
-    heard_ns: tuple[int, ...]  # messages that came live
+    received_ns: tuple[int, ...]  # messages that came live
     buttons_ns: tuple[int, ...]  # presses, and events that a button causes
     thresholds: tuple[tuple[str, float], ...]  # of the rule, at that time
     crossing: Crossing | None  # None: the rule judges no such series
@@ -87,7 +87,7 @@ class AlarmExplainer:
             stated_error_m=tuple(
                 (one.t_ns, math.hypot(one.std_north_m, one.std_east_m)) for one in points
             ),
-            heard_ns=tuple(facts.heard_ns),
+            received_ns=tuple(facts.received_ns),
             buttons_ns=tuple(t_ns for t_ns, kind in facts.events if kind in _BUTTONS),
             thresholds=thresholds,
             crossing=_crossing(alarm, facts, dict(thresholds)),

@@ -32,7 +32,7 @@ class WornTime(msgspec.Struct, frozen=True):
     """One person with one unit, within the incident."""
 
     unit_id: str
-    name: str  # empty: nobody was assigned
+    name: str  # empty: no person was assigned
     crew: str
     role: str
     during: Interval
@@ -42,7 +42,7 @@ class FloorTrail(msgspec.Struct, frozen=True):
     """Parts of a trail on one floor; None: no floor was known."""
 
     floor: int | None
-    heard: tuple[Line, ...]  # while the radio had contact
+    in_contact: tuple[Line, ...]  # while the radio had contact
     radio_gap: tuple[Line, ...]  # known afterwards, out of the unit's journal
 
 
@@ -98,7 +98,7 @@ class AlarmTrace(msgspec.Struct, frozen=True):
     motionless_s: Series
     temperature_degc: Series
     height_m: Series  # above the origin of the incident frame
-    heard_ns: tuple[int, ...]  # messages that came live
+    received_ns: tuple[int, ...]  # messages that came live
     thresholds: tuple[tuple[str, float], ...]  # of the rule, at that time
 
 

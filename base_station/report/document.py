@@ -199,7 +199,7 @@ def _people(report: ReportContents) -> Markup:
 
 def _person_row(one: PersonEntry) -> Sequence[str]:
     wearing = one.wearing
-    name = wearing.name or texts.NOBODY
+    name = wearing.name or texts.NOT_ASSIGNED
     gaps_s = sum(gap.seconds for gap in one.radio_gaps)
     return (
         str(one.number),

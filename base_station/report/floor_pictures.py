@@ -11,12 +11,12 @@ from base_station.report.markup import Markup, element
 from base_station.report.style import END, GAP, NUMBER, SCALE, SMALL, TRAIL, WALL
 from base_station.site.plan import Plan
 
-# Okabe and Ito (2008), those that are dark enough on white: told apart by the colour-blind.
+# Okabe and Ito (2008), those that are dark enough on white: distinct for the colour-blind.
 COLOURS = ("#000000", "#0072b2", "#d55e00", "#009e73", "#a3527d", "#7a5c00")
 _WIDTH, _MOST_HEIGHT = 680.0, 440.0
 _SMALL_WIDTH, _SMALL_HEIGHT = 230.0, 200.0
 _MARGIN = 18.0
-_LEAST_M = 10.0  # shown, however little anybody moved
+_LEAST_M = 10.0  # shown, however small the movement
 _SCALES_M = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 
 
@@ -60,7 +60,7 @@ def floor_picture(
     """Trails of these people on one floor."""
     walls = _walls(plan, floor)
     drawn = [(one, trail) for one in people for trail in one.trails if trail.floor == floor]
-    lines = [line for _, trail in drawn for line in (*trail.heard, *trail.radio_gap)]
+    lines = [line for _, trail in drawn for line in (*trail.in_contact, *trail.radio_gap)]
     size = (_SMALL_WIDTH, _SMALL_HEIGHT) if small else (_WIDTH, _MOST_HEIGHT)
     frame = _frame([*walls, *lines], *size)
     content = [
@@ -108,7 +108,7 @@ def _frame(lines: Sequence[Line], width: float, most_height: float) -> _Frame:
 
 def _trail(frame: _Frame, person: PersonEntry, trail: FloorTrail) -> Iterable[Markup]:
     colour = COLOURS[(person.number - 1) % len(COLOURS)]
-    for lines, look in ((trail.heard, TRAIL), (trail.radio_gap, GAP)):
+    for lines, look in ((trail.in_contact, TRAIL), (trail.radio_gap, GAP)):
         if lines:
             yield element("path", d=frame.path(lines), stroke=colour, **look)
 

@@ -152,7 +152,7 @@ class _Gathering:
     # ---- people
 
     def _all_wearings(self) -> Mapping[str, Sequence[WornTime]]:
-        """By unit, oldest first; a unit that nobody wore has one without a name."""
+        """By unit, oldest first; a unit that was not worn has one without a name."""
         roster = self._sources.roster
         found: dict[str, list[WornTime]] = {}
         last_person: dict[str, str] = {}
@@ -265,8 +265,8 @@ class _Gathering:
                 motionless_s=series_within(unit.motionless_s, about),
                 temperature_degc=series_within(unit.temperature_degc, about),
                 height_m=tuple((one.t_ns, -one.down_m) for one in points),
-                heard_ns=tuple(
-                    t_ns for t_ns in unit.heard_ns if about.from_ns <= t_ns <= about.until_ns
+                received_ns=tuple(
+                    t_ns for t_ns in unit.received_ns if about.from_ns <= t_ns <= about.until_ns
                 ),
                 thresholds=()
                 if rule is None
@@ -281,22 +281,26 @@ class _Gathering:
 
     def _done(self) -> Iterable[TimelineEntry]:
         for entry in self._entries:
-            said = self._order_details(entry)
+            details = self._order_details(entry)
             name_of = partial(self._name_at, t_ns=entry.t_ns)
-            described = texts.action_text(entry.action, said, name_of) if said else texts.ERASED
+            described = (
+                texts.action_text(entry.action, details, name_of) if details else texts.ERASED
+            )
             if described is not None:
                 kind, text = described
-                is_urgent = said.get("order") == texts.ORDER_NAMES["EVACUATE"]
+                is_urgent = details.get("order") == texts.ORDER_NAMES["EVACUATE"]
                 yield TimelineEntry(entry.t_ns, kind, self._shown(text), entry.by, is_urgent)
 
     def _order_details(self, entry: AuditEntry) -> Mapping[str, Any]:
-        said = dict(details_of(entry))
-        if "kind" in said:
-            said["order"] = texts.order_name(kind_name(said["kind"]))
-        if said.get("person_ids"):
+        details = dict(details_of(entry))
+        if "kind" in details:
+            details["order"] = texts.order_name(kind_name(details["kind"]))
+        if details.get("person_ids"):
             roster = self._sources.roster
-            said["people"] = [roster.known(person_id).name for person_id in said["person_ids"]]
-        return said
+            details["people"] = [
+                roster.known(person_id).name for person_id in details["person_ids"]
+            ]
+        return details
 
     def _alarm_entries(self) -> Iterable[TimelineEntry]:
         lives = self._sources.records.alarm_lives([one.alarm_id for one in self._alarms])
@@ -340,9 +344,9 @@ class _Gathering:
         par_s, work_s = PAR_INTERVAL_S, WORK_LIMIT_S
         for entry in self._entries:
             if entry.action in {OpenIncident.__name__, SetAccountability.__name__}:
-                said = details_of(entry)
-                par_s = said.get("par_interval_s") or par_s
-                work_s = said.get("work_limit_s") or work_s
+                details = details_of(entry)
+                par_s = details.get("par_interval_s") or par_s
+                work_s = details.get("work_limit_s") or work_s
         return par_s, work_s
 
     def _set_thresholds(self) -> dict[str, float]:

@@ -28,19 +28,19 @@ def entries_of_incident(
 def _is_of(
     entry: AuditEntry, incident_id: str, members: Members, assignments: Sequence[Assignment]
 ) -> bool:
-    said = details_of(entry)
+    details = details_of(entry)
     is_coming_or_leaving = entry.action == AssignIncident.__name__
-    named = said.get("incident_id")
+    named = details.get("incident_id")
     if named and not is_coming_or_leaving:
         return bool(named == incident_id)
-    units = _units_of(said, entry.t_ns, assignments)
+    units = _units_of(details, entry.t_ns, assignments)
     return not units or any(members.has(unit_id, entry.t_ns) for unit_id in units)
 
 
-def _units_of(said: Mapping[str, Any], t_ns: int, assignments: Sequence[Assignment]) -> set[str]:
+def _units_of(details: Mapping[str, Any], t_ns: int, assignments: Sequence[Assignment]) -> set[str]:
     """Units that an action is about; empty: it is about none."""
-    units = {*said.get("unit_ids", ()), said.get("unit_id"), said.get("other_unit_id")}
-    people = set(said.get("person_ids", ()))
+    units = {*details.get("unit_ids", ()), details.get("unit_id"), details.get("other_unit_id")}
+    people = set(details.get("person_ids", ()))
     units |= {one.unit_id for one in assignments if one.person_id in people and _held(one, t_ns)}
     return units - {None, ""}
 

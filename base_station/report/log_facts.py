@@ -53,7 +53,7 @@ class UnitFacts(msgspec.Struct):
     hottest: dict[int, tuple[int, float]] = msgspec.field(default_factory=dict)
     motionless_s: list[tuple[int, float]] = msgspec.field(default_factory=list)
     temperature_degc: list[tuple[int, float]] = msgspec.field(default_factory=list)
-    heard_ns: list[int] = msgspec.field(default_factory=list)
+    received_ns: list[int] = msgspec.field(default_factory=list)
     battery: list[tuple[int, float]] = msgspec.field(default_factory=list)  # 0..1
     events: list[tuple[int, EventKind]] = msgspec.field(default_factory=list)
 
@@ -130,7 +130,7 @@ class _UnitReader:
         self._wearings = wearings
         self._begins_ns = [one.from_ns for one in wearings]
         self._about = about
-        self._heard_ns: int | None = None
+        self._last_received_ns: int | None = None
         self._is_stopped = False
         self._sent_times = SentTimes()
         self._exposures: dict[int, list[ExposureInterval]] = {}
@@ -140,9 +140,9 @@ class _UnitReader:
         sent_ns = self._sent_times.sent_ns(t_ns, header, is_live=is_live)
         if is_live:
             self._note_gap(t_ns)
-            self._heard_ns, self._is_stopped = t_ns, False
+            self._last_received_ns, self._is_stopped = t_ns, False
             if self._is_about(t_ns):
-                self.facts.heard_ns.append(t_ns)
+                self.facts.received_ns.append(t_ns)
         return sent_ns
 
     def take_event(self, t_ns: int, message: UnitEvent) -> None:
@@ -175,9 +175,9 @@ class _UnitReader:
                 self.facts.battery.append((t_ns, message.battery))
 
     def _note_gap(self, t_ns: int) -> None:
-        heard_ns = self._heard_ns
-        if heard_ns is not None and not self._is_stopped and t_ns - heard_ns > GAP_NS:
-            self.facts.radio_gaps.append(Interval(heard_ns, t_ns))
+        last_ns = self._last_received_ns
+        if last_ns is not None and not self._is_stopped and t_ns - last_ns > GAP_NS:
+            self.facts.radio_gaps.append(Interval(last_ns, t_ns))
 
     def _wearing_at(self, t_ns: int) -> int | None:
         row = bisect_right(self._begins_ns, t_ns) - 1

@@ -79,14 +79,16 @@ def _confirmed_by_radio(entries: Iterable[AuditEntry]) -> dict[tuple[str, str], 
     """Time and user of each confirmation, by command and unit; those undone are left out."""
     confirmed: dict[tuple[str, str], tuple[int, str]] = {}
     for entry in entries:
-        said = details_of(entry)
-        if said and entry.action == ConfirmCommand.__name__:
-            confirmed.setdefault((said["command_id"], said["unit_id"]), (entry.t_ns, entry.by))
-        elif said and entry.action == UndoConfirmation.__name__:
+        details = details_of(entry)
+        if details and entry.action == ConfirmCommand.__name__:
+            confirmed.setdefault(
+                (details["command_id"], details["unit_id"]), (entry.t_ns, entry.by)
+            )
+        elif details and entry.action == UndoConfirmation.__name__:
             undone = [
                 one
                 for one in confirmed
-                if one[0] == said["entry_id"] and said["unit_id"] in ("", one[1])
+                if one[0] == details["entry_id"] and details["unit_id"] in ("", one[1])
             ]
             for one in undone:
                 del confirmed[one]

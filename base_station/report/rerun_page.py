@@ -104,7 +104,7 @@ def _person(
     floors: dict[int | None, FloorTrail] = {one.floor: one for one in figures_of_new.trails}
     for one in measure(old, plan, ()).trails:
         both = floors.get(one.floor, FloorTrail(one.floor, (), ()))
-        floors[one.floor] = msgspec.structs.replace(both, radio_gap=one.heard)
+        floors[one.floor] = msgspec.structs.replace(both, radio_gap=one.in_contact)
     return PersonEntry(
         number=number,
         wearing=WornTime(unit_id, name, "", "", Interval(0, 0)),

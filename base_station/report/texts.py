@@ -8,7 +8,7 @@ from typing import Any
 
 from base_station.report.contents import OrderReceipt
 
-Said = Mapping[str, Any]
+Details = Mapping[str, Any]
 NameOf = Callable[[str], str]  # of who wears a unit
 
 TITLE = "Incident report"
@@ -18,7 +18,7 @@ PREPARED = (
 )
 OPEN_INCIDENT = "The incident is still open: this report ends with the last record of the log."
 UNKNOWN, NONE = "unknown", "none"
-NOBODY = "not assigned"
+NOT_ASSIGNED = "not assigned"
 EVERYONE = "everyone"
 
 DISPATCH = "Dispatch"
@@ -31,7 +31,7 @@ POSITIONS, RECORD, SETTINGS = "Quality of positions", "Gaps in the record", "Ver
 
 NO_ORDERS = "No order was given."
 NO_PAR = "No roll call was ordered."
-NO_PEOPLE = "Nobody wore a unit and no position was recorded."
+NO_PEOPLE = "No unit was worn and no position was recorded."
 NO_POSITIONS = "No position was recorded."
 NO_PLAN = "No plan of the building was set: trails are drawn without walls."
 NO_ANCHOR = "The site has no place on the Earth: north in the pictures is north of the plan."
@@ -57,7 +57,7 @@ TRACES_KEY = (
 )
 PEOPLE_KEY = (
     "Distance: along the trail shown. Inside: within the outline of the plan. Heat budget: part of "
-    "what the equipment is made for (NIST TN 1474); it says nothing of the wearer's condition. "
+    "what the equipment is made for (NIST TN 1474); no measure of the wearer's condition. "
     "Radio gap: more than 10 s without a message."
 )
 POSITIONS_KEY = (
@@ -204,30 +204,30 @@ def traces_left_out(count: int) -> str:
     return f"{counted(count, 'alarm more has', 'alarms more have')} no picture here."
 
 
-def action_text(action: str, said: Said, name_of: NameOf) -> tuple[str, str] | None:
+def action_text(action: str, details: Details, name_of: NameOf) -> tuple[str, str] | None:
     """Kind and sentence of an operator's action; None: other parts of the report have it."""
     describe = _ACTIONS.get(action)
-    return _PLAIN_ACTIONS.get(action) if describe is None else describe(said, name_of)
+    return _PLAIN_ACTIONS.get(action) if describe is None else describe(details, name_of)
 
 
-def _order(said: Said, name_of: NameOf) -> tuple[str, str]:
-    text = f": {said['text']}" if said["text"] else ""
-    return ORDER, f"{said['order']} to {_to(said, name_of)}{text}"
+def _order(details: Details, name_of: NameOf) -> tuple[str, str]:
+    text = f": {details['text']}" if details["text"] else ""
+    return ORDER, f"{details['order']} to {_to(details, name_of)}{text}"
 
 
-def _to(said: Said, name_of: NameOf) -> str:
-    if said.get("everyone"):
+def _to(details: Details, name_of: NameOf) -> str:
+    if details.get("everyone"):
         return EVERYONE
-    if said.get("unit_id"):
-        return name_of(said["unit_id"])
-    if said.get("crew"):
-        return f"crew {said['crew']}"
-    people: Sequence[str] = said.get("people", ())
+    if details.get("unit_id"):
+        return name_of(details["unit_id"])
+    if details.get("crew"):
+        return f"crew {details['crew']}"
+    people: Sequence[str] = details.get("people", ())
     return ", ".join(people) or EVERYONE
 
 
-def _despite(said: Said) -> str:
-    alarms, people = len(said["despite_alarm_ids"]), len(said["despite_unit_ids"])
+def _despite(details: Details) -> str:
+    alarms, people = len(details["despite_alarm_ids"]), len(details["despite_unit_ids"])
     if not alarms and not people:
         return ""
     return (
@@ -236,64 +236,69 @@ def _despite(said: Said) -> str:
     )
 
 
-def _from(said: Said) -> str:
-    number = said.get("dispatch_number", "")
+def _from(details: Details) -> str:
+    number = details.get("dispatch_number", "")
     return f", from dispatch {number}" if number else ""
 
 
-def _to_incident(said: Said, name_of: NameOf) -> str:
-    names = ", ".join(map(name_of, said["unit_ids"]))
-    incident_id = said["incident_id"]
+def _to_incident(details: Details, name_of: NameOf) -> str:
+    names = ", ".join(map(name_of, details["unit_ids"]))
+    incident_id = details["incident_id"]
     return f"{names}: {f'to incident {incident_id}' if incident_id else 'unassigned'}"
 
 
-def _dispatch(said: Said) -> str:
-    words = said["type"] or said["type_code"], said["address"], " ".join(said["units"])
-    ended = "; ended by the dispatch centre" if said["has_ended"] else ""
-    return f"{said['number']}: {', '.join(filter(None, words)) or UNKNOWN}{ended}"
+def _dispatch(details: Details) -> str:
+    words = details["type"] or details["type_code"], details["address"], " ".join(details["units"])
+    ended = "; ended by the dispatch centre" if details["has_ended"] else ""
+    return f"{details['number']}: {', '.join(filter(None, words)) or UNKNOWN}{ended}"
 
 
-_ACTIONS: Mapping[str, Callable[[Said, NameOf], tuple[str, str]]] = {
+_ACTIONS: Mapping[str, Callable[[Details, NameOf], tuple[str, str]]] = {
     "SendCommand": _order,
-    "ConfirmCommand": lambda said, name_of: (
+    "ConfirmCommand": lambda details, name_of: (
         ORDER,
-        f"{name_of(said['unit_id'])} answered an order by radio",
+        f"{name_of(details['unit_id'])} answered an order by radio",
     ),
-    "CheckIn": lambda said, name_of: (ORDER, f"PAR by radio: {_to(said, name_of)}"),
-    "UndoConfirmation": lambda said, name_of: (
+    "CheckIn": lambda details, name_of: (ORDER, f"PAR by radio: {_to(details, name_of)}"),
+    "UndoConfirmation": lambda details, name_of: (
         ORDER,
-        f"Answer by radio taken back: {name_of(said['unit_id']) if said['unit_id'] else EVERYONE}",
+        f"Answer by radio taken back: {_to(details, name_of)}",
     ),
-    "OpenIncident": lambda said, _: (INCIDENT, f"Incident opened: {said['name']}{_from(said)}"),
-    "NoteDispatch": lambda said, _: (INCIDENT, f"Dispatch {_dispatch(said)}"),
-    "ImportFile": lambda said, _: (INCIDENT, f"{said['file_name']} brought in"),
-    "RemoveImport": lambda _said, _: (INCIDENT, "A file that was brought in was taken out"),
-    "DismissDispatch": lambda said, _: (INCIDENT, f"Dispatch {said['number']} dismissed"),
-    "CloseIncident": lambda said, _: (INCIDENT, f"Incident closed{_despite(said)}"),
-    "Assign": lambda said, _: (PERSON, f"{said['person_name']} wears {said['unit_id']}"),
-    "AssignIncident": lambda said, name_of: (PERSON, _to_incident(said, name_of)),
-    "Unassign": lambda said, _: (PERSON, f"{said['unit_id']} is worn by nobody"),
-    "SetRest": lambda said, name_of: (
-        PERSON,
-        f"{name_of(said['unit_id'])} {'goes to rest' if said['resting'] else 'is back at work'}",
-    ),
-    "SetAccountability": lambda said, _: (
+    "OpenIncident": lambda details, _: (
         INCIDENT,
-        f"Roll call every {duration(said['par_interval_s'])}, rest after "
-        f"{duration(said['work_limit_s'])}",
+        f"Incident opened: {details['name']}{_from(details)}",
     ),
-    "RegisterUnit": lambda said, _: (STATION, f"Unit {said['unit_id']} registered"),
-    "SetStart": lambda said, name_of: (SITE, f"Start of {name_of(said['unit_id'])} set"),
-    "SetReference": lambda said, _: (SITE, f"Barometer reference: {said['unit_id'] or NONE}"),
-    "SetPin": lambda said, name_of: (
+    "NoteDispatch": lambda details, _: (INCIDENT, f"Dispatch {_dispatch(details)}"),
+    "ImportFile": lambda details, _: (INCIDENT, f"{details['file_name']} brought in"),
+    "RemoveImport": lambda _details, _: (INCIDENT, "A file that was brought in was taken out"),
+    "DismissDispatch": lambda details, _: (INCIDENT, f"Dispatch {details['number']} dismissed"),
+    "CloseIncident": lambda details, _: (INCIDENT, f"Incident closed{_despite(details)}"),
+    "Assign": lambda details, _: (PERSON, f"{details['person_name']} wears {details['unit_id']}"),
+    "AssignIncident": lambda details, name_of: (PERSON, _to_incident(details, name_of)),
+    "Unassign": lambda details, _: (PERSON, f"{details['unit_id']} is not worn"),
+    "SetRest": lambda details, name_of: (
+        PERSON,
+        f"{name_of(details['unit_id'])} "
+        f"{'goes to rest' if details['resting'] else 'is back at work'}",
+    ),
+    "SetAccountability": lambda details, _: (
+        INCIDENT,
+        f"Roll call every {duration(details['par_interval_s'])}, rest after "
+        f"{duration(details['work_limit_s'])}",
+    ),
+    "RegisterUnit": lambda details, _: (STATION, f"Unit {details['unit_id']} registered"),
+    "SetStart": lambda details, name_of: (SITE, f"Start of {name_of(details['unit_id'])} set"),
+    "SetReference": lambda details, _: (SITE, f"Barometer reference: {details['unit_id'] or NONE}"),
+    "SetPin": lambda details, name_of: (
         SITE,
-        f"Pin for {name_of(said['unit_id'])}{': ' if said['note'] else ''}{said['note']}",
+        f"Pin for {name_of(details['unit_id'])}{': ' if details['note'] else ''}{details['note']}",
     ),
-    "SetFuser": lambda said, _: (STATION, f"Fuser of all units: {said['name']}"),
-    "TakeOver": lambda said, _: (STATION, f"Station {said['station']} took over"),
-    "DoneApart": lambda said, _: (
+    "SetFuser": lambda details, _: (STATION, f"Fuser of all units: {details['name']}"),
+    "TakeOver": lambda details, _: (STATION, f"Station {details['station']} took over"),
+    "DoneApart": lambda details, _: (
         STATION,
-        f"While the stations were apart, {said['who']} at {said['station']}: {said['what']}",
+        "While the stations were apart, "
+        f"{details['who']} at {details['station']}: {details['what']}",
     ),
 }
 _PLAIN_ACTIONS = {

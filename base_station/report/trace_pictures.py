@@ -103,7 +103,7 @@ def _path(series: Series, raised_ns: int, y_of: Callable[[float], float]) -> str
 
 def _link(top: float, trace: AlarmTrace) -> Markup:
     marks = "".join(
-        f"M{_x((t_ns - trace.raised_ns) / NS_PER_S):.1f} {top:.1f}v8" for t_ns in trace.heard_ns
+        f"M{_x((t_ns - trace.raised_ns) / NS_PER_S):.1f} {top:.1f}v8" for t_ns in trace.received_ns
     )
     return element(
         "g",

@@ -101,15 +101,15 @@ def _floors(points: Sequence[TrackSample]) -> tuple[tuple[int | None, float], ..
 def _floor_trails(
     pieces: Iterable[Sequence[TrackSample]], radio_gaps: Sequence[Interval]
 ) -> tuple[FloorTrail, ...]:
-    heard: dict[int | None, list[Line]] = {}
+    in_contact: dict[int | None, list[Line]] = {}
     silent: dict[int | None, list[Line]] = {}
     for piece in pieces:
         for floor, in_gap, run in _runs(piece, radio_gaps):
-            lines = (silent if in_gap else heard).setdefault(floor, [])
+            lines = (silent if in_gap else in_contact).setdefault(floor, [])
             lines.append(_line(run))
-    floors = sorted({*heard, *silent}, key=lambda one: (one is None, one or 0))
+    floors = sorted({*in_contact, *silent}, key=lambda one: (one is None, one or 0))
     return tuple(
-        FloorTrail(floor, tuple(heard.get(floor, ())), tuple(silent.get(floor, ())))
+        FloorTrail(floor, tuple(in_contact.get(floor, ())), tuple(silent.get(floor, ())))
         for floor in floors
     )
 

@@ -11,7 +11,7 @@ Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 NO_FLOOR = -1_000_000  # number of a floor that is not known
-STOREY_M = 3.0  # rise of a storey of which no plan says it (ours)
+STOREY_M = 3.0  # rise of a storey without a height in the plan (ours)
 
 
 class Waypoint(msgspec.Struct, frozen=True):
@@ -28,7 +28,7 @@ class WalkedTrail(msgspec.Struct, frozen=True):
     unit_id: str
     places_m: Floats  # (n, 2), north and east
     floors: Indices  # (n,), ``NO_FLOOR`` where it is not known
-    after_gap: Flags  # (n,), nothing tells the way from the point before
+    after_gap: Flags  # (n,), the way from the point before is unknown
     std_m: float  # of the position now, in one direction; of the trail it is no less
 
 

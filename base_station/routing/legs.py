@@ -15,7 +15,7 @@ Turn = Literal["ahead", "left", "right", "back"]
 
 AHEAD_RAD = math.radians(35.0)  # a bend of less is no turn to who feels along a wall (ours)
 BACK_RAD = math.radians(145.0)
-SHORTEST_M = 1.5  # a shorter leg is the corner between two others, or where somebody stands
+SHORTEST_M = 1.5  # a shorter leg is the corner between two others, or the place of a wearer at rest
 LANDING_M = 4.0  # a shorter way between two flights is their landing
 
 

@@ -22,7 +22,7 @@ class PlanLattice(NamedTuple):
     places_m: Floats  # (n, 2)
     floors: Indices  # (n,)
     edges: Indices  # (m, 2), of nodes
-    costs_m: Floats  # (m,), for each its length, and more on level ground that nobody has walked
+    costs_m: Floats  # (m,), for each its length, and more on level ground not walked so far
     # By floor: the node of each point of the lattice, -1 where a wall is.
     nodes: dict[int, Indices]
     grid: FloorGrid | None

@@ -24,7 +24,7 @@ def routes_to(
     costs_m, following = graph.ways_to(unit_id)
     known = [one for one in rescuer_ids if one in graph.nodes and one != unit_id]
     known = [one for one in known if math.isfinite(costs_m[graph.nodes[one]])]
-    # Ground that nobody has walked costs more than it is long: some further ones are measured too.
+    # Unwalked ground costs more than its length: some further ones are measured too.
     nearest = sorted(known, key=lambda one: float(costs_m[graph.nodes[one]]))
     routes = {
         one: _route(graph, one, unit_id, list(_nodes(graph, one, following)))

@@ -1,7 +1,7 @@
 """Graph of known ways: nodes on the ground that was walked or that a plan shows to be free.
 
 On a floor with a plan the nodes are the points of its lattice: doors are open, walls are not, and
-ground that somebody has walked is preferred.  Elsewhere the trails of all are cut into cells, and
+walked ground is preferred.  Elsewhere the trails of all are cut into cells, and
 what shares a cell or is beside it is one way.  Trails that do not meet are joined where they come
 as near as the doubt of both allows; such a bridge adds its doubt to the route.
 """
@@ -162,7 +162,7 @@ class WayGraph:
             self._through_walls |= set(map(_pair, *level[meets_wall].T.tolist()))
 
     def _add_open_ground(self) -> None:
-        """Who stands beyond the edge of the plan can walk straight to it."""
+        """Add straight ways to the edge of the plan from nodes beyond it."""
         for node in set(self.nodes.values()):
             to = self.lattice.edge_node(int(self.floors[node]), self.places_m[node])
             if to < 0:

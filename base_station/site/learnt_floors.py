@@ -21,14 +21,14 @@ from shared.messages import Position
 
 LEVEL_WALK_M = 6.0  # walked without climbing: on a storey
 CLIMB_M = 0.5  # net, that is a climb
-GROUND_RANGE_M = 1.2  # nobody who has never left the height of the beginning has left the ground
+GROUND_RANGE_M = 1.2  # a wearer who stays so near the first height has not left the ground
 APART_M = 25.0  # buildings
-GROUND_NEAR_M = 60.0  # of a building: that ground tells of its ground floor
+GROUND_NEAR_M = 60.0  # of a building: that ground gives the height of its ground floor
 GROUND_STD_M = 0.4  # steps at the door, a kerb, a slope
 MOST_LANDINGS = 300  # of a building, and on the ground
 ROOM = 30  # of them go at once
 RELEARN_EVERY = 16  # one new one of so many is enough to work the storeys out anew
-SAME_PLACE_M = 3.0  # of the same unit: tells nothing new
+SAME_PLACE_M = 3.0  # of the same unit: no new information
 SAME_HEIGHT_M = 0.25
 
 
@@ -56,7 +56,7 @@ class LevelWalk(msgspec.Struct):
     """Progress of a unit's walk since its last climb."""
 
     boot_id: int = 0
-    distance_m: float = 0.0  # as it last said
+    distance_m: float = 0.0  # by its last position
     down_m: float = 0.0
     walked_m: float = 0.0
     climbed_m: float = 0.0
@@ -123,7 +123,7 @@ class LearntFloors(msgspec.Struct):
     buildings: list[LandingGroup] = msgspec.field(default_factory=list)
     walks: dict[str, LevelWalk] = msgspec.field(default_factory=dict)
     reported_floors: tuple[ReportedFloor, ...] = ()
-    open: tuple[Storey, ...] = ()  # where nobody has been in any building
+    open: tuple[Storey, ...] = ()  # outside of all known buildings
     ground_down_m: float = 0.0
     pending_landings: int = 0  # landings on the ground since all storeys were worked out
 

@@ -27,9 +27,9 @@ UNEVEN_M = 0.35  # by which one storey of a building differs from the others
 SAME_M = 1.6  # heights nearer than this are one level
 GROUND_M = 1.4  # a level so near to the ground outside is the ground floor
 LEVEL_STD_M = 0.2  # how level a storey is
-EXPECTED_ABOVE, EXPECTED_BELOW = 8, 3  # storeys beyond the last one that somebody walked on
-SKIPPED = 0.4  # how often nobody walks about on a storey between two others
-SAID_SURE = 0.97  # a person who says a floor's number is right so often
+EXPECTED_ABOVE, EXPECTED_BELOW = 8, 3  # storeys beyond the last one that was walked on
+SKIPPED = 0.4  # probability that a storey between two others is not walked on
+REPORTED_SURE = 0.97  # probability that a floor number reported by a person is right
 
 _STOREY_M = np.arange(LEAST_M, MOST_M + 0.01, 0.1)
 _USUAL_STD_M = np.where(_STOREY_M < USUAL_M, LOWER_STD_M, HIGHER_STD_M)
@@ -73,17 +73,17 @@ def levels_of(heights: Sequence[Height]) -> list[Level]:
 
 
 def number_levels(
-    levels: Sequence[Level], ground: Height, said: Sequence[tuple[float, int]] = ()
+    levels: Sequence[Level], ground: Height, reported: Sequence[tuple[float, int]] = ()
 ) -> tuple[Storey, ...]:
     """Storeys of a building, lowest first: those walked on, those between and some beyond.
-    ``said``: reported heights (down) and floors.
+    ``reported``: heights (down) and floors that people reported.
     """
     known, at = _with_ground(levels, ground)
     numbers = {at: (0, 1.0)}
-    for down_m, floor in said:
+    for down_m, floor in reported:
         row = min(range(len(known)), key=lambda one: abs(known[one].down_m - down_m))
         if abs(known[row].down_m - down_m) < SAME_M and _fits(numbers, row, floor):
-            numbers[row] = (floor, SAID_SURE)
+            numbers[row] = (floor, REPORTED_SURE)
     storey_odds, between = _between(known, numbers)
     storey_m = float(storey_odds @ _STOREY_M)
     std_m = math.sqrt(float(storey_odds @ (_STOREY_M - storey_m) ** 2))
@@ -234,7 +234,7 @@ def _rising(floors: list[tuple[int, float]]) -> list[tuple[int, float]]:
     """Each is most probable by itself; together they have to rise."""
     for row in range(1, len(floors)):
         if floors[row][0] <= floors[row - 1][0]:
-            floors[row] = (floors[row - 1][0] + 1, 1.0 - SAID_SURE)
+            floors[row] = (floors[row - 1][0] + 1, 1.0 - REPORTED_SURE)
     return floors
 
 

@@ -1,14 +1,14 @@
 """The building's plan as far as the station itself uses it: storeys, outlines, walls and stairs.
 
 A plan is GeoJSON in site metres: coordinates are ``[east_m, north_m]`` in the incident frame,
-and the member ``muster`` says so and lists the storeys::
+and the member ``muster`` declares that and lists the storeys::
 
     {"type": "FeatureCollection",
      "muster": {"frame": "site-m", "floors": [{"floor": 0, "down_m": 0.0},
                                               {"floor": 1, "down_m": -3.2}]},
      "features": [{"type": "Feature", "properties": {"kind": "outline", "floor": 0}, ...}]}
 
-A feature of kind ``wall`` is a line that nobody walks through (doors are its gaps), one of kind
+A feature of kind ``wall`` is a line that cannot be crossed (doors are its gaps), one of kind
 ``stairs`` the ring within which people change floor.  Of several parts, each is one.  The member
 ``pictures`` of ``muster`` has pictures of floors (``plan_pictures``).
 """
@@ -79,11 +79,11 @@ class Plan(msgspec.Struct, frozen=True):
         return depth_m > (-OUTLINE_HYSTERESIS_M if inside else OUTLINE_HYSTERESIS_M)
 
     def depth_m(self, north_m: float, east_m: float) -> float:
-        """How far within the outer walls, negative outside of them; 0 where there is no outline."""
+        """Depth within the outer walls, negative outside of them; 0 where there is no outline."""
         return max((_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
 
     def away_m(self, north_m: float, east_m: float) -> float:
-        """How far from the nearest outline a place is; 0 within one or where there is none."""
+        """Distance of a place to the nearest outline; 0 within one or where there is none."""
         return max(
             0.0, min((-_depth_m(ring, east_m, north_m) for ring in self.outlines), default=0.0)
         )
@@ -157,7 +157,7 @@ def check_plan(geojson: bytes) -> Plan:
     drawn = {wall.floor for wall in plan.walls} | {one.floor for one in plan.stairs}
     if missing := sorted(drawn - listed):
         raise UserError(
-            f"the plan has walls or stairs on floor {missing[0]} and says not how high that is: "
+            f"the plan has walls or stairs on floor {missing[0]}, whose height is missing: "
             f'"floors" of its member "muster" must list {{"floor": {missing[0]}, "down_m": ...}}'
         )
     points = sum(map(len, plan.outlines))

@@ -1,7 +1,7 @@
-"""Features of a plan by RFC 7946, and what a plan asks of them beyond that.
+"""Features of a plan by RFC 7946, and further conditions on them.
 
-Types say what a feature may look like, so that msgspec checks a plan of 11 MB in half a second and
-tells the place of a fault.  A name of a member that is not here is a foreign one, and is left.
+Types describe valid features, so that msgspec checks a plan of 11 MB in half a second and reports
+the place of a fault.  A member whose name is not here is a foreign one, and is left.
 """
 
 from __future__ import annotations
@@ -91,8 +91,8 @@ class PlanFeature(msgspec.Struct, frozen=True, gc=False):
     kind: str
     floor: int  # of those kinds of which the station takes heed
     geometry: Geometry | None
-    said_floor: Any
-    is_typed: bool  # as ``Feature``: else nobody draws it
+    stated_floor: Any  # as in the file
+    is_typed: bool  # as ``Feature``: else it is not drawn
 
     @property
     def name(self) -> str:
@@ -122,20 +122,20 @@ def read_feature(number: int, encoded: msgspec.Raw) -> PlanFeature:
         raise UserError(
             f"the plan has a {_what(number, encoded)} that cannot be read: {error}"
         ) from error
-    said = feature.properties or _Properties()
-    kind = said.kind if isinstance(said.kind, str) else ""
-    floor = _floor(said.floor, number, kind) if kind in LINED else 0
+    properties = feature.properties or _Properties()
+    kind = properties.kind if isinstance(properties.kind, str) else ""
+    floor = _floor(properties.floor, number, kind) if kind in LINED else 0
     is_typed = feature.type == "Feature"
-    read = PlanFeature(number, kind, floor, feature.geometry, said.floor, is_typed)
+    read = PlanFeature(number, kind, floor, feature.geometry, properties.floor, is_typed)
     _require_shape(read)
     return read
 
 
 def require_strict(feature: PlanFeature) -> None:
-    """UserError where a plan of old may do what a new one may not: the station closes a ring by
-    itself, and a console draws on all floors what says none that there is.
+    """UserError where an old plan may do what a new one may not: the station closes a ring by
+    itself, and a console draws a feature without a valid floor on all floors.
     """
-    _floor(feature.said_floor, feature.number, feature.kind)
+    _floor(feature.stated_floor, feature.number, feature.kind)
     for ring in _rings(feature.geometry):
         if len(ring) < LEAST_RING_POINTS or ring[0] != ring[-1]:
             raise UserError(
@@ -148,9 +148,9 @@ def feature_name(number: int, kind: str) -> str:
     return f"{kind} (feature {number})" if kind else f"feature {number}"
 
 
-def _floor(said: Any, number: int, kind: str) -> int:
+def _floor(value: Any, number: int, kind: str) -> int:
     try:
-        return 0 if said is None else msgspec.convert(said, Floor)
+        return 0 if value is None else msgspec.convert(value, Floor)
     except msgspec.ValidationError as error:
         what = kind or "feature"
         raise UserError(
@@ -204,7 +204,7 @@ def _rings(geometry: Geometry | None) -> Iterator[_Positions]:
 
 
 def _what(number: int, encoded: msgspec.Raw) -> str:
-    """As far as a feature that cannot be read tells."""
+    """Name of a feature that cannot be read, as far as it has one."""
     kind: Any = None
     try:
         properties = msgspec.json.decode(encoded)["properties"]

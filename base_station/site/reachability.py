@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 SECTORS = 48
-MOST_SQUARES = 100_000  # of ground: then the region without walls tells as much
+MOST_SQUARES = 100_000  # of ground: beyond that the region without walls is as good
 
 _ALONG, _ACROSS = 70, 99  # 99 / 70 is the root of two, but for 5e-5
 _ROOM = 4096  # squares to be walked to next, at first

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 FLOOR_HYSTERESIS_M = 0.4  # past the middle between two storeys before the floor changes
-FLOOR_STD_M = 0.5  # of somebody's height on a storey: steps, crawling, how the plan is measured
+FLOOR_STD_M = 0.5  # of a wearer's height on a storey: steps, crawling, how the plan is measured
 _NOTHING = 12.0  # exp(-12): what is so improbable makes no difference
 
 _compiled = partial(njit, cache=True, error_model="numpy")
@@ -29,7 +29,7 @@ class Storey(msgspec.Struct, frozen=True, cache_hash=True):
     down_m: float
     std_m: float = 0.0  # how well the height is known; a plan's is
     numbered: float = 1.0  # probability that the number is right
-    seen: bool = True  # on the plan, or somebody walked there; not: only to be expected
+    seen: bool = True  # on the plan, or walked on; not: only to be expected
 
 
 def floor_at(storeys: tuple[Storey, ...], down_m: float, floor: int | None) -> int | None:
@@ -76,7 +76,7 @@ def _floor_probability(storeys: Floats, floor: float, down_m: float, std_down_m:
         off_m = storeys[row, 1] - down_m
         var_m2 = own_var_m2 + storeys[row, 2]
         exponent = 0.5 * off_m * off_m / var_m2
-        if exponent < least:  # weights are told by how much less likely than the likeliest
+        if exponent < least:  # weights are relative to the likeliest
             fading = math.exp(exponent - least)
             total, found, least = total * fading, found * fading, exponent
         if exponent - least < _NOTHING:

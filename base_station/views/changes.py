@@ -12,7 +12,7 @@ from base_station.views.wire import Delta, FieldDelta, Snapshot, TrailPoint, Uni
 
 _PLACE = ("t_ms", "north_m", "east_m", "floor")  # of a position; together a point of a trail
 _POINT_STEP_MS = 1000  # trails have at most a point a second
-# Parts that are told whole, or not at all.
+# Parts that are published whole, or not at all.
 _LATEST: Final = tuple(
     field.name for field in msgspec.structs.fields(FieldDelta) if field.default is None
 )

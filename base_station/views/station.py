@@ -211,7 +211,7 @@ def beacon_views(state: StationState, people: PersonLookup) -> tuple[BeaconView,
 
 
 def external_views(state: StationState) -> tuple[ExternalMarkerView, ...]:
-    """On the plan of each site; without an anchor nobody knows where that is."""
+    """On the plan of each site; without an anchor the places on it are unknown."""
     anchors = ((site_id, site.anchor) for site_id, site in state.sites.items())
     return tuple(
         _external_view(site_id, anchor, marker)

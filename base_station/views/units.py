@@ -121,7 +121,7 @@ def _unit_view(
 
 @lru_cache(maxsize=1000)  # units say the same again and again, and each change of one shows it
 def preflight_view(findings: tuple[PreflightFinding, ...] | None) -> PreflightView | None:
-    """What was found, in one text; None: the unit has not checked itself."""
+    """Findings of the self-check in one text; None: the unit has not checked itself."""
     if findings is None:
         return None
     if not findings:

@@ -8,8 +8,8 @@ were behind the units at the snapshot come one by one, whenever no delta has to 
 it gives ``FieldDelta`` instead, with the fields that changed.  Who asks for these also confirms
 what was shown: it sends ``{"type": "shown", "count": N}``, where N is the number of messages that
 it got over this connection, of any type, and is done with.  Until the last snapshot or delta is
-confirmed, what changes is merged; the next ``FieldDelta`` has all of it, and says with
-``after_seq`` what it follows.  Messages are compressed where the console offers it
+confirmed, changes are merged; the next ``FieldDelta`` has all of them, and names in ``after_seq``
+the message that it follows.  Messages are compressed where the console offers it
 (permessage-deflate).
 
 Times are milliseconds since 1970 (station time; in a replay, the time of the incident).
@@ -93,14 +93,14 @@ class PositionView(Answer, frozen=True):
     lat_deg: float | None  # where the site has an anchor
     lon_deg: float | None
     floor_probability: float | None
-    reach: tuple[tuple[float, float], ...]  # [east_m, north_m]; border of what a wearer who is
-    # not heard can have walked to, walls considered; empty: the ellipse is all that is known
+    reach: tuple[tuple[float, float], ...]  # [east_m, north_m]; border of the ground that a
+    # wearer without a link can have reached, walls considered; empty: only the ellipse is known
 
 
 class AlarmParametersView(Answer, frozen=True, omit_defaults=True):
     """Amounts and names in the sentence of an alarm; what is not in it is left out."""
 
-    member: str | None = None  # who it is about, or the unit where nobody wears it
+    member: str | None = None  # who it is about, or the unit where it is not worn
     member_before: str | None = None  # who wore the unit before, where it may be about them
     unit_id: str | None = None
     duration_s: float | None = None
@@ -150,14 +150,14 @@ class DutyView(Answer, frozen=True):
 
 
 class TrustView(Answer, frozen=True):
-    """How far the place of a unit can be trusted, as a light."""
+    """Trust in the place of a unit, as a light."""
 
     level: Annotated[str, one_of("green", "amber", "red")]
     reason: str  # for a person; empty: green
 
 
 class PreflightView(Answer, frozen=True):
-    """What a unit has found when it checked itself at its start."""
+    """Findings of a unit's self-check at its start."""
 
     level: Annotated[str, one_of("ok", "warning", "failed")]
     text: str  # for a person, the gravest first; empty: ok
@@ -174,21 +174,21 @@ class WornSensorView(Answer, frozen=True):
 
 
 class ClockView(Answer, frozen=True):
-    """What a unit knows of the station's time."""
+    """A unit's estimate of the station's time."""
 
     ahead_ms: float  # the unit's own UTC less the station's
     std_ms: float
 
 
 class PinView(Answer, frozen=True):
-    """Where somebody was, as a person or a beacon told, and what became of it."""
+    """Place of a wearer that a person or a beacon has reported, with the verdict on it."""
 
     pin_id: str
     kind: Annotated[str, one_of("place", "start", "meeting", "beacon", "tag")]
     unit_id: str
     other_id: str  # the beacon or tag, or the other unit of a meeting; else empty
     t_ms: int  # 0: where the unit's path begins
-    north_m: float | None  # None: a meeting, or a beacon that nobody has placed yet
+    north_m: float | None  # None: a meeting, or a beacon that is not placed yet
     east_m: float | None
     floor: int | None
     std_m: float
@@ -249,10 +249,10 @@ class UnitView(Answer, frozen=True):
     heat_used: float  # part of the equipment's heat budget, in this incident
     position: PositionView | None
     inside_since_ms: int | None
-    duty: DutyView | None  # nobody wears it, or no incident is open: None
+    duty: DutyView | None  # None: it is not worn, or no incident is open
     alarms: tuple[str, ...]  # ids of the alarms that are not resolved
     trust: TrustView
-    clock: ClockView | None  # None: it has not heard the station's time yet
+    clock: ClockView | None  # None: it has not received the station's time yet
     cloned: bool  # two machines speak under its name; one of them is shown
     gps: str | None  # why its last fix is not used; empty: it is; None: none has come
     switched_off: bool  # in order: its silence since is no loss
@@ -268,7 +268,7 @@ class UnitView(Answer, frozen=True):
 
 
 class DeliveryView(Answer, frozen=True):
-    """How far a command has got with one unit."""
+    """Progress of a command with one unit."""
 
     unit_id: str
     state: Annotated[
@@ -287,7 +287,7 @@ class DeliveryView(Answer, frozen=True):
 
 
 class CommandView(Answer, frozen=True):
-    """What units were told; a delta carries it whole."""
+    """A command to units; a delta carries it whole."""
 
     command_id: str
     kind: str  # lower-case name of shared.messages.CommandKind
@@ -295,7 +295,7 @@ class CommandView(Answer, frozen=True):
     issued_by: str
     issued_ms: int
     expires_ms: int
-    asks_wearer: bool  # done only when somebody has acknowledged it
+    asks_wearer: bool  # done only when the wearer has acknowledged it
     notifies_wearer: bool  # an output of each unit that has one is to notify its wearer
     open: bool  # more is to come of it
     units: tuple[DeliveryView, ...]
@@ -329,7 +329,7 @@ class IncidentView(Answer, frozen=True):
     name: str
     opened_ms: int
     closed_ms: int | None
-    par_interval_s: float  # everybody is to be heard from this often
+    par_interval_s: float  # each member is to be confirmed this often
     par_warning_s: float  # how long before it is due a check-in is announced
     work_limit_s: float
     dispatch: DispatchView | None = None  # from which it was opened
@@ -337,19 +337,19 @@ class IncidentView(Answer, frozen=True):
 
 
 class StandbyView(Answer, frozen=True):
-    """Which of two stations this is."""
+    """State of this station as one of two."""
 
     station: str  # its name
     role: str  # active | standby | waiting
     url: str  # where consoles find it
-    other: str  # "" while the other has not been heard
-    other_role: str  # "" while it is not heard
+    other: str  # "" until the other one's first heartbeat
+    other_role: str  # "" while it is not reachable
     other_url: str
     in_step: bool  # the standby has what the active station has
 
 
 class RecordingView(Answer, frozen=True):
-    """A unit's raw recording that somebody asked for, on its way over the bus."""
+    """A unit's raw recording that was requested, on its way over the bus."""
 
     fetch_id: str
     unit_id: str
@@ -412,7 +412,7 @@ class GapView(Answer, frozen=True):
 
 
 class ReplayView(Answer, frozen=True):
-    """Where a replay stands; absent when the console shows what is live."""
+    """State of a replay; absent when the console shows the live picture."""
 
     incident_id: str
     start_ms: int
@@ -435,7 +435,7 @@ class TrailPoint(msgspec.Struct, frozen=True, array_like=True):
     east_m: float
     floor: int | None
     after_gap: Annotated[int, shown_as("0 | 1", {"enum": [0, 1]})] = (
-        0  # 1: nothing tells the way from the point before
+        0  # 1: the way from the point before is unknown
     )
 
 
@@ -482,19 +482,19 @@ class Snapshot(msgspec.Struct, frozen=True, tag="snapshot"):
     # All that are open, and closed ones until the next is opened on their site.
     incidents: tuple[IncidentView, ...] = ()
     sites: tuple[SiteView, ...] = ()  # beside the one of ``incident``
-    plan_placed: bool = True  # False: nobody knows yet where on the plan people are
+    plan_placed: bool = True  # False: the plan is not placed on the Earth yet
     dispatches: tuple[DispatchView, ...] = ()  # from which no incident was opened, oldest first
 
 
 class Trail(msgspec.Struct, frozen=True, tag="trail"):
-    """Where a unit was before the last snapshot; deltas since then have gone on from there."""
+    """Trail of a unit before the last snapshot; deltas since then have gone on from there."""
 
     unit_id: str
     points: Annotated[msgspec.Raw, _POINTS]
 
 
 class _WhatChanges(msgspec.Struct, frozen=True, omit_defaults=True, kw_only=True):
-    """What ``Delta`` and ``FieldDelta`` have in common."""
+    """Fields that ``Delta`` and ``FieldDelta`` have in common."""
 
     alarms: tuple[AlarmView, ...] = ()
     commands: tuple[CommandView, ...] = ()
@@ -520,7 +520,7 @@ UnitChange = dict[str, object]
 
 
 class FieldDelta(_WhatChanges, frozen=True, tag="field_delta", omit_defaults=True):
-    """What changed since the message with ``after_seq``."""
+    """Changes since the message with ``after_seq``."""
 
     seq: int
     after_seq: int

@@ -116,7 +116,7 @@ def explain_alarm(alarm_id: AlarmId, station: CurrentStation, _: Viewer) -> Alar
         battery_level=_trace(found.battery),
         height_m=_trace(found.height_m),
         stated_error_m=_trace(found.stated_error_m),
-        live_ms=tuple(map(to_ms, found.heard_ns)),
+        live_ms=tuple(map(to_ms, found.received_ns)),
         buttons_ms=tuple(map(to_ms, found.buttons_ns)),
         thresholds=dict(found.thresholds),
         crossing=_crossing(found.crossing),

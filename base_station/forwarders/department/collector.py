@@ -132,7 +132,7 @@ class ReportCollector:
                 continue
             try:
                 change = decode(ALARM, payload)
-            except WireError:  # the integrity check tells of what is damaged in the log
+            except WireError:  # the integrity check reports damage of the log
                 continue
             if isinstance(change, AlarmChange):
                 yield change

@@ -30,7 +30,7 @@ _INCIDENT, _PAR, _PERSON = "incident/", "par/", "person/"
 
 
 class _Reported(msgspec.Struct, frozen=True, array_like=True):
-    """What was reported last of a subject."""
+    """Last report about a subject."""
 
     event_id: str
     body: bytes
@@ -71,7 +71,7 @@ def differences(
     is_forgotten: Callable[[str], bool],
     now_ms: int,
 ) -> Differences:
-    """What is not as it was ``reported`` last, by subject."""
+    """Differences to what was ``reported`` last, by subject."""
     found = Differences()
     shown = {f"{_INCIDENT}{one.incident_id}": _incident_event(one) for one in incidents}
     for subject, event in shown.items():

@@ -45,7 +45,7 @@ class GeodeticPlace:
 
 
 def place_of(position: PositionView | None, anchor: AnchorView | None) -> GeodeticPlace | None:
-    """None where nobody knows the place on the Earth: latitude and longitude 0 are none."""
+    """None where the place on the Earth is unknown: latitude and longitude 0 are none."""
     if position is None or anchor is None or _is_nowhere(anchor.lat_deg, anchor.lon_deg):
         return None
     frame = Anchor(anchor.lat_deg, anchor.lon_deg, anchor.height_m, anchor.plan_rotation_rad)

@@ -77,7 +77,7 @@ class Emergencies:
             return
         if alert.is_sent:
             alert.cancellations_left = CANCELLED_TIMES
-        else:  # nobody there has seen it
+        else:  # it was not sent yet
             del self._alerts[alert.unit_id]
 
     def _cancel_of_earlier_run(self, unit_id: str) -> None:

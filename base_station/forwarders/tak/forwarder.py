@@ -62,7 +62,9 @@ class TakForwarder:
         self._retry_s = _FIRST_RETRY_S
         self._awake: asyncio.Event | None = None  # of the connection that is open
         self._loop: asyncio.AbstractEventLoop | None = None
-        self._heard_ns: int | None = None  # monotonic; None: this connection has said nothing
+        self._last_received_ns: int | None = (
+            None  # monotonic; None: nothing came over this connection
+        )
         self._worker = Worker(
             f"tak-{name}", self._step, f"the TAK connection {name!r} does not go on"
         )
@@ -157,7 +159,7 @@ class TakForwarder:
         """Raises ConnectionLostError when the connection is over."""
         connection = await open_connection(self._config)
         self._loop, self._awake = asyncio.get_running_loop(), asyncio.Event()
-        self._heard_ns = None
+        self._last_received_ns = None
         self._outbox.begin_connection()
         self._inbox.begin_connection()
         self._set_state("connected")
@@ -207,14 +209,14 @@ class TakForwarder:
         self._retry_s = _FIRST_RETRY_S
         if self._config.is_datagram or self._outbox.anchor is None:
             return
-        heard_ns = self._heard_ns
-        if heard_ns is not None and self._clock.monotonic_ns() - heard_ns > _SILENT_NS:
+        last_ns = self._last_received_ns
+        if last_ns is not None and self._clock.monotonic_ns() - last_ns > _SILENT_NS:
             raise ConnectionLostError("does not answer any more")
         await connection.send([self._events.ping(self._outbox.anchor, now_ms)])
 
     async def _receive(self, connection: TakConnection) -> None:
         while True:
             data = await connection.receive()
-            self._heard_ns = self._clock.monotonic_ns()
+            self._last_received_ns = self._clock.monotonic_ns()
             if self._config.receive and self._leads():
                 self._inbox.push(data, self._outbox.anchor, self._clock.utc_ns())

@@ -23,7 +23,7 @@ from base_station.views.wire import AnchorView, PositionView, Snapshot, UnitView
 from shared.clock import NS_PER_S
 
 _LIVE = "live"
-_NOT_LIVE_EVERY_NS = 10 * NS_PER_S  # of who is not heard only the uncertainty grows
+_NOT_LIVE_EVERY_NS = 10 * NS_PER_S  # without a link only the uncertainty grows
 _UNPLACED_NS = NS_PER_S // 5  # then it is looked again whether an emergency has a place
 _WAY_EVERY_NS = 15 * NS_PER_S
 _WAY_PLACES = 60
@@ -87,7 +87,7 @@ class TakOutbox:
             person.unit, person.is_waiting = unit, True
 
     def begin_connection(self) -> None:
-        """Make everything due: whoever is at the other end has seen nothing of it."""
+        """Make everything due: the other end has received nothing of it."""
         for person in self._people.values():
             person.is_waiting, person.sent_ns, person.sent_link = True, None, ""
             person.free_ns = 0
@@ -189,12 +189,12 @@ class TakOutbox:
 
     @property
     def hint(self) -> str:
-        """Why less is sent than somebody may expect; empty: there is no reason."""
+        """Reason why less is sent than a user may expect; empty: none."""
         if self.anchor is None and not any(self._anchors.values()):
             return _NO_PLACE
         unplaced = [one for one in self._emergencies.open_units if self._placed(one) is None]
         if unplaced:
-            return f"the emergency of {', '.join(unplaced)} cannot be shown: nobody knows where"
+            return f"the emergency of {', '.join(unplaced)} cannot be shown: its place is unknown"
         return "" if self._incident_is_open else _NO_INCIDENT
 
 

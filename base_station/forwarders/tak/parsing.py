@@ -69,7 +69,7 @@ def _marker(
     if abs(lat_deg) > 90.0 or abs(lon_deg) > 180.0:
         raise NoMarkerError(f"{lat_deg}, {lon_deg} is no latitude and longitude")
     if abs(lat_deg) < _NOWHERE_DEG and abs(lon_deg) < _NOWHERE_DEG:
-        raise NoMarkerError("it is at 0, 0, where nobody is")
+        raise NoMarkerError("it is at 0, 0, which is no valid place")
     ce_m = _number(point, "ce")
     at, stale = _time(event, "time"), _time(event, "stale")
     contact = event.find("detail/contact")

@@ -30,7 +30,7 @@ from shared.channels import (
 from shared.enrolment import Holder
 
 _EVERYTHING = [f"{ROOT}/**"]
-_STATION_KEYS = [f"{STATIONS_ROOT}/**"]  # nobody else may say or hear anything there
+_STATION_KEYS = [f"{STATIONS_ROOT}/**"]  # no other holder may publish or subscribe there
 _DEPARTMENT_KEYS = [f"{DEPARTMENT_ROOT}/**"]
 _ALL_MESSAGES = [
     "put",
@@ -88,10 +88,10 @@ _RULES_OF_KIND = {
             [department_summary_key("*"), department_events_key("*")],
         ),
     ),
-    # An operator's program looks on: it hears everything and says nothing.
+    # An operator's program only receives: all messages.
     Holder.OPERATOR: (
         _rule("operator-asks", ["ingress"], _INTERESTS, _EVERYTHING),
-        _rule("operator-hears", ["egress"], ["put", "liveliness_token"], _EVERYTHING),
+        _rule("operator-receives", ["egress"], ["put", "liveliness_token"], _EVERYTHING),
     ),
 }
 
@@ -148,7 +148,7 @@ def _own_rules(entry: Entry) -> list[dict[str, Any]]:
 
 
 def _tracking_rules(entry: Entry) -> list[dict[str, Any]]:
-    """It hears the raw stream of its unit and fetches what it missed of it; it speaks under its
+    """It receives the raw stream of its unit and fetches missed parts of it; it publishes under its
     own key only.
     """
     raw = [channel.key(entry.name) for channel in (IMU, DESCRIPTION)]
@@ -158,7 +158,7 @@ def _tracking_rules(entry: Entry) -> list[dict[str, Any]]:
         _rule(f"{name}-is-given", ["egress"], ["reply"], [lost]),
         _rule(f"{name}-knows", ["egress"], ["declare_queryable"], [journal_keys(entry.name)]),
         _rule(f"{name}-follows", ["ingress"], ["declare_subscriber"], raw),
-        _rule(f"{name}-hears", ["egress"], ["put"], raw),
+        _rule(f"{name}-receives-raw", ["egress"], ["put"], raw),
     ]
 
 
@@ -187,7 +187,7 @@ def _unit_rules(entry: Entry, unit_id: str) -> list[dict[str, Any]]:
         _rule(f"{name}-lives", ["ingress"], ["liveliness_token"], [alive_key(unit_id)]),
         _rule(f"{name}-answers", ["ingress"], ["declare_queryable", "reply"], [subtree]),
         _rule(f"{name}-listens", ["ingress"], ["declare_subscriber"], [subtree, *to_all]),
-        _rule(f"{name}-is-told", ["egress"], ["put", "query"], [subtree, *to_all]),
+        _rule(f"{name}-receives", ["egress"], ["put", "query"], [subtree, *to_all]),
         _rule(f"{name}-asks-time", ["ingress"], ["query"], [clock_key(unit_id)]),
-        _rule(f"{name}-is-told-time", ["egress"], ["reply"], [clock_key(unit_id)]),
+        _rule(f"{name}-receives-time", ["egress"], ["reply"], [clock_key(unit_id)]),
     ]

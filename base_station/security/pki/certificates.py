@@ -57,7 +57,7 @@ def issue(
     """A certificate signed by ``authority``; only a station's stands for ``hosts``."""
     if now < authority.certificate.not_valid_before_utc:
         raise ConfigError(
-            f"this machine's clock says {now:%Y-%m-%d}, and the authority begins on "
+            f"this machine's clock is at {now:%Y-%m-%d}, and the authority begins on "
             f"{authority.certificate.not_valid_before_utc:%Y-%m-%d}: set the clock first"
         )
     if now + valid > authority.certificate.not_valid_after_utc:

@@ -1,5 +1,5 @@
-"""Registration of enrolled units, which need not be registered by hand as well.  What was
-issued and revoked stands in the audit, whoever did it and whether or not a station ran then.
+"""Registration of enrolled units, which need not be registered by hand as well.  The
+audit has all that was issued and revoked, by every user, also while no station ran.
 """
 
 from __future__ import annotations

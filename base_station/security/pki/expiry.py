@@ -53,7 +53,7 @@ class ConsoleExpiry:
     """
 
     def __init__(self, certificate: Path | None, pki: PkiFolder, clock: Clock) -> None:
-        """One that cannot be read is nobody's concern here: no console is served with it."""
+        """An unreadable certificate is no concern here: no console is served with it."""
         self._clock = clock
         self._file = certificate
         self._ends: datetime | None = None
@@ -77,7 +77,7 @@ def not_yet_valid(registry: Registry, now: datetime) -> tuple[str, ...]:
     if begins <= now:
         return ()
     return (
-        f"This machine's clock says {now:%Y-%m-%d}, and there are certificates that begin on "
+        f"This machine's clock is at {now:%Y-%m-%d}, and there are certificates that begin on "
         f"{begins:%Y-%m-%d}: set it; no link is made with them before",
     )
 

@@ -72,7 +72,7 @@ class PkiFolder:
         added, for the station itself.  ``connect``: endpoints written into enrolments.
         """
         if self._folder.exists():
-            self.registry()  # says what to do where a power cut left no whole authority
+            self.registry()  # raises with advice where a power cut left no whole authority
             raise ConfigError(
                 f"{self._folder} is there already: making a new authority would shut out "
                 "everyone enrolled; for another address use `muster pki renew-station --host`, "
@@ -80,7 +80,7 @@ class PkiFolder:
             )
         if self._now() < _EARLIEST_CREDIBLE_TIME:
             raise ConfigError(
-                f"this machine's clock says {self._now():%Y-%m-%d}: set it first, certificates "
+                f"this machine's clock is at {self._now():%Y-%m-%d}: set it first, certificates "
                 "would begin and end by it"
             )
         now = self._now().replace(microsecond=0)  # the authority's end is a whole second
@@ -100,7 +100,7 @@ class PkiFolder:
         valid: timedelta = CERTIFICATE_VALID,
         connect: Sequence[str] = (),
     ) -> Enrolment:
-        """A certificate for somebody new, or for whom the last one was revoked.
+        """A certificate for a new name, or for one whose last certificate was revoked.
 
         ``connect`` replaces the station's own endpoints in this enrolment.
         """
@@ -157,7 +157,7 @@ class PkiFolder:
     ) -> StationEnrolment:
         """A certificate for a further station, or a new one for it.
 
-        Units that are enrolled from now on are told ``endpoint`` too.
+        Enrolments from now on have ``endpoint`` too.
         """
         validate_unit_id(name)
         with locked(self._existing()):
@@ -273,7 +273,7 @@ class PkiFolder:
 
     def _existing(self) -> Path:
         if not self.exists():
-            load_registry(self.registry_path)  # says what is missing
+            load_registry(self.registry_path)  # raises with the missing file
         return self._folder
 
     def _current(self, registry: Registry, holder: Holder, name: str) -> Entry:

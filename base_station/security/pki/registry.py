@@ -117,7 +117,7 @@ def _serial(certificate: Certificate) -> str:
 
 
 def _behind(entry: Entry, *others: Entry) -> Entry:
-    """``entry`` as the newest of a row; the audit tells of all of them."""
+    """``entry`` as the newest of a row; the audit has all of them."""
     serials = dict.fromkeys(s for one in (*others, entry) for s in (*one.earlier, one.serial))
     earlier = tuple(serial for serial in serials if serial != entry.serial)
     return msgspec.structs.replace(entry, earlier=earlier)

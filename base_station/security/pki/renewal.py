@@ -1,6 +1,6 @@
 """The station's own certificate was renewed while it runs: when to take the new one up.
 
-The router does that by itself and loses nobody for it.  The station's own link, and the console
+The router does that by itself and keeps all links.  The station's own link, and the console
 that it serves, go by the certificate with which they began: when that ends they end, whatever lies
 in the folder by then.  To take the new one up the station starts again, which takes seconds.
 """

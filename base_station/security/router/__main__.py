@@ -33,7 +33,7 @@ _CHECK_EVERY_S = 1.0
 def run_router(settings: RouterSettings, orders: Iterator[bytes]) -> int:
     """Until a signal comes or ``orders`` end, which they do when the parent dies.
 
-    Tells the parent on standard output whether it is open.  Gives the exit code.
+    Reports to the parent on standard output whether it is open.  Gives the exit code.
     """
     set_up_logging()
     allow_many_files()
@@ -62,9 +62,9 @@ def run_router(settings: RouterSettings, orders: Iterator[bytes]) -> int:
 
 
 def _write_to_parent(line: str) -> None:
-    """One that was killed meanwhile is told nothing, and has ended the input too."""
+    """A parent that was killed meanwhile gets nothing, and has ended the input too."""
     with suppress(BrokenPipeError):
-        # Not print: what it could not say it would try to say again as the program ends.
+        # Not print: it would try to write an unwritten line again as the program ends.
         os.write(sys.stdout.fileno(), f"{line}\n".encode())
 
 

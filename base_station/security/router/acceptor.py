@@ -1,8 +1,8 @@
-"""Takes the bus's connections in front of the router, and hands on those of who is enrolled.
+"""Takes the bus's connections in front of the router, and hands on those of enrolled holders.
 
-Zenoh makes one TLS handshake after the other: whoever is silent, or fails, holds up all behind
+Zenoh makes one TLS handshake after the other: a client that is silent, or fails, delays all behind
 it.  Here they are made side by side, bounded in number and time, and the router gets a connection
-only when its holder has shown a certificate that holds and has begun to speak.
+only when its holder has shown a valid certificate and has sent its first bytes.
 """
 
 from __future__ import annotations
@@ -199,7 +199,7 @@ class Acceptor:
     async def _authenticate(
         self, connection: socket.socket, network: str, task: asyncio.Task[None]
     ) -> RelayedLink:
-        """Until its holder has said its first word; costs nothing until something comes."""
+        """Wait for the first bytes of its holder; costs nothing until they come."""
         await readable(connection)
         if not connection.recv(1, socket.MSG_PEEK):
             raise RefusedError(Refusal.ENDED)

@@ -80,7 +80,7 @@ async def connect_secure(
 
 
 def _continue_handshake(secured: ssl.SSLSocket) -> str | None:
-    """Goes on with the handshake; says what it waits for."""
+    """Goes on with the handshake; gives what it waits for."""
     try:
         secured.do_handshake()
     except ssl.SSLWantReadError:

@@ -118,7 +118,7 @@ class RouterProcess:
     def ban(self, sender_id: str, seconds: float) -> None:
         """Ends the links of ``sender_id``, and refuses new ones for a while.
 
-        A router that has just ended hears nothing of it; nor has anybody a link then.
+        A router that has just ended does not receive it; there are no links then.
         """
         line = msgspec.json.encode(BanOrder(sender_id, seconds)).decode()
         with self._starting, suppress(OSError, ValueError):

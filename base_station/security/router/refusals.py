@@ -10,7 +10,7 @@ import msgspec
 
 _WINDOW_S = 60
 _MIN_REPORTED = 120  # in that time: as two units that try in vain once a second
-_MAX_NETWORKS = 4096  # that are told apart in a second; what comes from further ones is one
+_MAX_NETWORKS = 4096  # that are counted apart in a second; further ones are counted together
 _OTHER_NETWORKS = "other addresses"
 
 
@@ -90,5 +90,5 @@ def refusal_problem(refused: RefusalSummary) -> str:
         f"{refused.in_window} connections to the bus were refused in the last minute "
         f"({refused.total} since the router began), {refused.of_network} of them from "
         f"{refused.network}, most for: {refused.reason}. Units are let in all the same; "
-        "docs/howto/when-attacked.md says what to do"
+        "see docs/howto/when-attacked.md"
     )

@@ -1,8 +1,8 @@
 """Relay between two TLS connections: hands bytes on both ways until both directions have ended.
 
-Whoever leaves the bus sends its last messages and closes at once, while the other end may still be
-writing to it.  So one direction that has ended, or fails, does not end the other: what was sent
-before the end is handed on first.
+A client that leaves the bus sends its last messages and closes at once, while the other end may
+still be writing to it.  So one direction that has ended, or fails, does not end the other: bytes
+sent before the end are handed on first.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ class _Direction:
         if not self._relay.is_open:  # the other direction has found the end
             return
         self._relay.loop.add_reader(self._source.fileno(), self._read)
-        self._read()  # what came with the handshake wakes nobody
+        self._read()  # bytes that came with the handshake cause no event
 
     def _read(self) -> None:
         try:

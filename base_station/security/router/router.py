@@ -1,8 +1,8 @@
 """The bus's router, a process of its own beside the station; ``process`` keeps it running.
 
-Zenoh reads access rules when it opens, so enrolling or revoking somebody means opening the
-router again.  In its own process that costs everybody's link half a second, and the station
-keeps its session, its subscriptions and what it knows.
+Zenoh reads access rules when it opens, so an enrolment or revocation means opening the router
+again.  In its own process that costs each link half a second, and the station keeps its session,
+its subscriptions and its state.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ def station_endpoint(data: Path, listen: tuple[str, ...]) -> ClientEndpoint:
 class Router:
     """Open from the start; ``refresh`` follows what has changed in the authority's folder.
 
-    Over TLS an acceptor stands in front of it.  Who is revoked, and the station's renewed
-    certificate, are the acceptor's matter; only for somebody new the router opens again.
+    Over TLS an acceptor stands in front of it.  It handles revocations and the station's renewed
+    certificate; only for a new enrolment the router opens again.
     """
 
     def __init__(

@@ -31,7 +31,7 @@ class SecureFront:
         self._acceptor = Acceptor(listen, self._admission(), self._authority)
 
     def reload(self) -> bool:
-        """Follows the folder; gives whether the router has no rules yet for somebody.
+        """Follows the folder; True if the router has no rules yet for an enrolled name.
 
         Raises MusterError where the folder cannot be read.
         """
@@ -42,7 +42,7 @@ class SecureFront:
         return not _enrolled(registry) <= self._common_names_in_rules
 
     def router_endpoint(self, links: tuple[str, ...]) -> StationEndpoint:
-        """With rules for all who are enrolled now; where it listens is still to be said."""
+        """With rules for all who are enrolled now; its addresses are still to be set."""
         self._common_names_in_rules = _enrolled(self._registry)
         return StationEndpoint(
             tls=self._authority.router,

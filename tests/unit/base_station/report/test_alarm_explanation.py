@@ -54,7 +54,7 @@ def test_a_mayday_has_its_button_and_no_threshold(opened: OpenedReport) -> None:
     alarm, found = explained(opened, "mayday")
     assert found.buttons_ns == (alarm.raised_ns,)
     assert found.crossing is None
-    assert len(found.heard_ns) > 100
+    assert len(found.received_ns) > 100
     assert len(found.height_m) == len(found.stated_error_m) > 60
     assert all(0.0 < value < 50.0 for _, value in found.stated_error_m)
     assert max(t_ns for t_ns, _ in found.height_m) > alarm.raised_ns + 30 * NS_PER_S

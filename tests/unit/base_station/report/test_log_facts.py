@@ -78,7 +78,7 @@ def test_series_are_kept_about_alarms_only():
     about = Interval(at(40.0), at(42.0))
     unit = facts_of(script, about=(about,)).units[UNIT]
     assert unit.motionless_s == [(at(one), float(one)) for one in (40, 41, 42)]
-    assert unit.heard_ns == [at(one) for one in (40, 41, 42)]
+    assert unit.received_ns == [at(one) for one in (40, 41, 42)]
 
 
 def test_orders_are_followed_to_the_answer():

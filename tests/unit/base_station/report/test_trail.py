@@ -51,14 +51,14 @@ def test_a_radio_gap_is_a_line_of_its_own_that_joins_its_neighbours():
     points = [point(second, 1.0 * second) for second in range(31)]
     (trail,) = measure(points, None, (seconds(9.5, 20.5),)).trails
     assert trail.floor == 0
-    assert [line[0][0] for line in trail.heard] == [0.0, 21.0]
+    assert [line[0][0] for line in trail.in_contact] == [0.0, 21.0]
     assert [(line[0][0], line[-1][0]) for line in trail.radio_gap] == [(10.0, 21.0)]
 
 
 def test_a_way_that_nobody_knows_is_left_open():
     points = [point(0.0, 0.0), point(1.0, 1.0), point(60.0, 50.0), point(61.0, 51.0)]
     (trail,) = measure(points, None, ()).trails
-    assert [(line[0][0], line[-1][0]) for line in trail.heard] == [(0.0, 1.0), (50.0, 51.0)]
+    assert [(line[0][0], line[-1][0]) for line in trail.in_contact] == [(0.0, 1.0), (50.0, 51.0)]
 
 
 def test_time_inside_and_on_each_floor():

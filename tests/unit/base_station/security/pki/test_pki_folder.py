@@ -383,9 +383,9 @@ def test_nothing_is_issued_by_a_clock_that_is_not_set(
     pki: PkiFolder, clock: Clock, tmp_path: Path
 ) -> None:
     clock.now = datetime(1970, 1, 1, 0, 5, tzinfo=UTC)
-    with pytest.raises(ConfigError, match=r"clock says 1970-01-01.*set the clock"):
+    with pytest.raises(ConfigError, match=r"clock is at 1970-01-01.*set the clock"):
         pki.enroll("anna")
-    with pytest.raises(ConfigError, match=r"clock says 1970-01-01: set it first"):
+    with pytest.raises(ConfigError, match=r"clock is at 1970-01-01: set it first"):
         PkiFolder(tmp_path / "new", clock).create("x", [], [])
 
 
@@ -407,7 +407,7 @@ def test_a_clock_behind_the_certificates_is_said(
 ) -> None:
     assert not_yet_valid(pki.registry(), clock.now) == ()
     (said,) = not_yet_valid(pki.registry(), clock.now - behind)
-    assert said.startswith(f"This machine's clock says {clock.now - behind:%Y-%m-%d}")
+    assert said.startswith(f"This machine's clock is at {clock.now - behind:%Y-%m-%d}")
     assert "set it" in said
 
 
