@@ -114,6 +114,22 @@ class StandbyConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class ArchiveConfig:
+    """Archive to which the station copies each incident that is closed."""
+
+    location: str  # a folder of another disk, or s3://BUCKET/PLACE; one of its own for each station
+    radio: bool = False  # with the audio of the radio channels
+    alarm_after_s: Annotated[float, Within(60.0, 604_800.0)] = 900.0  # away for longer: a problem
+
+    def __post_init__(self) -> None:
+        is_bucket = self.location.startswith("s3://")
+        if not self.location or ("://" in self.location and not is_bucket):
+            raise ConfigError(
+                f"location {self.location!r} is no archive: give a folder, or s3://BUCKET/PLACE"
+            )
+
+
+@dataclass(frozen=True, slots=True)
 class ServerConfig:
     """Settings of a program that has a bus, a console and a database."""
 
@@ -177,6 +193,7 @@ class StationConfig(ServerConfig):
     alarms: dict[str, dict[str, float]] = field(default_factory=dict)  # thresholds of each rule
     tak: dict[str, TakConfig] = field(default_factory=dict)  # TAK connections by name
     radio: dict[str, RadioConfig] = field(default_factory=dict)  # recorded channels by name
+    archive: ArchiveConfig | None = None  # None: incidents are archived by a command alone
     department: DepartmentConfig | None = None  # to which this station reports; None: to none
 
     def forwarders(self) -> Mapping[str, Mapping[str, Any]]:

@@ -489,6 +489,17 @@ FIELDS: Mapping[str, str] = {
     "ForwarderView.received": "Events of other teams taken since the station started.",
     "ForwarderView.refused": "Events of other teams that could not be read or were too many.",
     "ForwarderView.text": "Why it is not connected, or why less is sent; empty: all is well.",
+    # ---- archive
+    "archive": "The archive to which the station copies closed incidents; null: none is set.",
+    "ArchiveView.location": "A folder, or s3://BUCKET/PLACE.",
+    "ArchiveView.state": "waiting for incidents to be closed, copying, or away: it takes nothing.",
+    "ArchiveView.waiting": "Closed incidents that it does not have yet.",
+    "ArchiveView.copied": "Incidents that were copied since the station started.",
+    "ArchiveView.archived_ms": "When the last one was copied; null: none since the station "
+    "started.",
+    "ArchiveView.text": "Why nothing can be copied, as a sentence; empty: all is well.",
+    "IncidentAnswer.archived_ms": "When it was copied to an archive and read there; null: it is in "
+    "none.",
     # ---- radio
     "radio": "Radio channels whose audio is recorded.",
     "RadioView.name": "The channel's name in the station's settings.",

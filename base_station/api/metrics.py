@@ -56,6 +56,7 @@ class StationCollector(Collector):
         yield from _of_standby(self._picture.health)
         yield from _of_forwarders(self._picture.health)
         yield from _of_radio(self._picture.health)
+        yield from _of_archive(self._picture.health)
         yield _machine_temperatures()
 
 
@@ -187,6 +188,25 @@ def _of_radio(health: HealthView) -> Iterator[Metric]:
     for one in health.radio:
         recording.add_metric([one.name], one.state == "recording")
     yield recording
+
+
+def _of_archive(health: HealthView) -> Iterator[Metric]:
+    archive = health.archive
+    if archive is None:
+        return
+    yield GaugeMetricFamily(
+        "muster_archive_waiting",
+        "Closed incidents that are not in the archive yet.",
+        value=archive.waiting,
+    )
+    yield GaugeMetricFamily(
+        "muster_archive_reachable",
+        "1 while the archive takes incidents.",
+        value=archive.state != "away",
+    )
+    yield CounterMetricFamily(
+        "muster_archive_copied", "Incidents copied to the archive.", value=archive.copied
+    )
 
 
 def _position_ages(ages: PositionAges) -> Metric:

@@ -20,7 +20,7 @@ from base_station.api.forms import (
     MAX_SAMPLES_BYTES,
     MAX_UPLOAD_BYTES,
 )
-from shared.errors import ConfigError, LogError, MusterError, StoreError, UserError
+from shared.errors import ArchiveError, ConfigError, LogError, MusterError, StoreError, UserError
 
 PROBLEM_MEDIA_TYPE = "application/problem+json"
 
@@ -170,7 +170,7 @@ def _status_of(error: MusterError) -> int:
             return 409
         case ConfigError():
             return 422
-        case StoreError() | LogError():
+        case StoreError() | LogError() | ArchiveError():
             return 503
         case _:
             return 500

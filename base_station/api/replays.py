@@ -76,22 +76,30 @@ class Replays:
         persistent: Hub | None = None,
     ) -> OpenReplay:
         """Start a replay; one that is given its hub lasts until it is closed."""
-        with self._lock:
-            if len(self._open) >= MAX_REPLAYS:
-                raise UserError(f"{MAX_REPLAYS} replays are open already; end one of them")
-            hub = persistent or Hub()
-            player = self._start(incident, speed, hub)
-            opened = OpenReplay(
-                secrets.token_hex(8),
-                hub,
-                player,
-                begun_by,
-                persistent is not None,
-                self._monotonic_s(),
-            )
-            self._open[opened.replay_id] = opened
+        self._require_room()
+        hub = persistent or Hub()
+        player = self._start(incident, speed, hub)  # may wait for an archive, and nobody for it
+        opened = OpenReplay(
+            secrets.token_hex(8),
+            hub,
+            player,
+            begun_by,
+            persistent is not None,
+            self._monotonic_s(),
+        )
+        try:
+            with self._lock:
+                self._require_room()
+                self._open[opened.replay_id] = opened
+        except UserError:
+            player.close()
+            raise
         loop.call_soon_threadsafe(hub.connect, loop, player)
         return opened
+
+    def _require_room(self) -> None:
+        if len(self._open) >= MAX_REPLAYS:
+            raise UserError(f"{MAX_REPLAYS} replays are open already; end one of them")
 
     def get(self, replay_id: str) -> OpenReplay | None:
         with self._lock:

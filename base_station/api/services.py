@@ -34,6 +34,7 @@ from base_station.report.process import ReportProcess
 from base_station.security.pki.folder import PkiFolder
 from base_station.site.plan_reader import PlanReader
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.records import Records
@@ -64,6 +65,7 @@ class Services(LoginServices):
     roster: Roster
     base_maps: BaseMaps
     imports: ImportCatalogue
+    archived: ArchivedCopies
     hub: Hub
     gate: OperatorGate
     projection: ProjectedTables  # of which ``records`` and ``roster`` read

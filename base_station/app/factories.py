@@ -13,6 +13,7 @@ from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.feed import LogFeed
 from base_station.replay.playback import Archive
 from base_station.replay.processes.replay_process import ReplayContext, ReplayProcess
+from base_station.replay.processes.wire import ArchivedLog
 from base_station.replay.rebuild import project_log
 from base_station.replay.session import ReplaySession, ReplayWindow
 from base_station.storage.db.accounts import Accounts
@@ -46,12 +47,17 @@ def replay_starter(
 
 
 def replay_process_starter(
-    place: ReplayContext, recorded_until_ns: Callable[[], int]
+    place: ReplayContext,
+    recorded_until_ns: Callable[[], int],
+    instead_of_log: Callable[[IncidentRow], ArchivedLog | None],
 ) -> StartReplay:
-    """In processes of their own."""
+    """In processes of their own.  ``instead_of_log`` gives the copy of an incident whose log is not
+    here; what it raises goes to who asks for the replay.
+    """
 
     def start(incident: IncidentRow, speed: float, hub: Hub) -> ReplayProcess:
-        return ReplayProcess(place, _window_of(incident, recorded_until_ns), speed, hub)
+        window, archived = _window_of(incident, recorded_until_ns), instead_of_log(incident)
+        return ReplayProcess(place, window, speed, hub, archived)
 
     return start
 

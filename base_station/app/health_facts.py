@@ -9,7 +9,7 @@ from base_station.app.resources import Resources
 from base_station.engine.station_clock import SteadyClock
 from base_station.standby.mode import HaMode
 from base_station.views.station import StationFacts
-from base_station.views.wire import ForwarderView, RadioView
+from base_station.views.wire import ArchiveView, ForwarderView, RadioView
 
 
 class ReportsProblems(Protocol):
@@ -27,6 +27,7 @@ def health_facts(
     missing: int,
     forwarders: tuple[ForwarderView, ...],
     radio: tuple[RadioView, ...],
+    archive: ArchiveView | None,
 ) -> StationFacts:
     """``missing``: numbers of messages that no journal has any more."""
     certificates = resources.expiry, resources.console_expiry, resources.renewal
@@ -54,4 +55,5 @@ def health_facts(
         recordings=resources.recordings.views(),
         forwarders=forwarders,
         radio=radio,
+        archive=archive,
     )

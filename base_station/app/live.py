@@ -10,6 +10,7 @@ from contextlib import AbstractContextManager, ExitStack
 from subprocess import Popen
 
 from base_station.api.server import serve_until_stopped
+from base_station.app.archiving import automatic_archive
 from base_station.app.catch_up import CatchUp
 from base_station.app.factories import Announce, announce_first_login
 from base_station.app.folder_commands import cut_log
@@ -154,8 +155,12 @@ class _Station:
         self._shown = LiveFanOut(resources.hub, self._forwarders)
         stamper = Stamper(STATION_ID, secrets.randbits(63), clock)
         self._downlink = CommandSender(bus, stamper, clock, self._disk.roster.shown)
+        self._archive = automatic_archive(resources, replays, self._is_leader)
         self._radio = RadioRecorders(
-            resources.config.radio, RadioLog(self._disk.folder.radio), self._disk.clock
+            resources.config.radio,
+            RadioLog(self._disk.folder.radio),
+            self._disk.clock,
+            self._keeps_audio_since_ns,
         )
         self._erasures = self._disk.forgetting_desk(
             resources.recordings,
@@ -196,6 +201,8 @@ class _Station:
         )
         prepare = self._disk.recorder.flush
         closing.enter_context(CatchUp(self._disk.folder, replays, self._disk.projection, prepare))
+        if self._archive is not None:
+            closing.enter_context(self._archive)
         self._parts = LiveParts(
             resources=resources,
             announce=announce,
@@ -311,6 +318,7 @@ class _Station:
         others = (
             *(self._erasures, self._disk.check, self._restarts.stale, self._crashes),
             self._radio,
+            *(() if self._archive is None else (self._archive,)),
         )
         return health_facts(
             self._resources,
@@ -320,7 +328,11 @@ class _Station:
             missing=self._reports.backfill.gone,
             forwarders=self._forwarders.views(),
             radio=self._radio.views(),
+            archive=None if self._archive is None else self._archive.view(),
         )
+
+    def _keeps_audio_since_ns(self) -> int | None:
+        return None if self._archive is None else self._archive.keeps_audio_since_ns()
 
     def _is_leader(self) -> bool:
         return self._side.leads

@@ -8,6 +8,7 @@ from base_station.api.app import create_app
 from base_station.api.replays import Replays
 from base_station.api.server import ConsoleServer
 from base_station.api.services import Services
+from base_station.app.archiving import archived_logs
 from base_station.app.factories import replay_process_starter
 from base_station.app.live_parts import LiveParts
 from base_station.app.pipeline_factory import past_pipeline
@@ -20,6 +21,7 @@ from base_station.replay.processes.replay_process import ReplayContext
 from base_station.replay.processes.timeline_process import TimelineProcess
 from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.report.process import ReportProcess
+from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.imports import ImportFolder
@@ -37,7 +39,14 @@ def new_services(parts: LiveParts) -> Services:
         hub=resources.hub,
         gate=parts.gate,
         projection=disk.projection,
-        replays=Replays(replay_process_starter(_replay_context(parts), disk.clock.utc_ns)),
+        replays=Replays(
+            replay_process_starter(
+                _replay_context(parts),
+                disk.clock.utc_ns,
+                archived_logs(resources).instead_of_log,
+            )
+        ),
+        archived=ArchivedCopies(disk.store),
         forgettings=parts.erasures,
         clock=disk.clock,
         secure=resources.config.http.certificate is not None,

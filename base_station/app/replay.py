@@ -29,6 +29,7 @@ from base_station.replay.timelines.unit_timeline import read_timeline
 from base_station.report.alarm_explanation import AlarmExplainer
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.records import Records
@@ -102,6 +103,7 @@ def run_replay_station(
             log=offline_log.log,
             radio=RadioLog(DataFolder(data).radio),
             alarm_explainer=AlarmExplainer(records, offline_log.log.records),
+            archived=ArchivedCopies(store),
             imports=ImportCatalogue(store, ImportFolder(folder.imports)),
         )
         app = create_app(

@@ -8,6 +8,10 @@ import msgspec
 
 from base_station.app.factories import project_since
 from base_station.app.pipeline_factory import past_pipeline
+from base_station.archive.copying import ArchiveCopier
+from base_station.archive.entry import decoded_entry
+from base_station.archive.feed import ArchivedFeed
+from base_station.archive.store import open_store
 from base_station.engine.feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
 from base_station.replay.playback import Archive
@@ -21,8 +25,12 @@ from base_station.replay.processes.post_processing_work import (
 )
 from base_station.replay.processes.replay_work import replay
 from base_station.replay.processes.wire import (
+    ArchivedLog,
+    ArchiveJob,
     CatchUpJob,
     CaughtUp,
+    CopiesDone,
+    CopyFrame,
     Damage,
     Failure,
     FrameChannel,
@@ -65,6 +73,9 @@ def work(line: FrameChannel) -> None:
 
     log = LogFeed(Path(job.log), on_damage=note_damage)
     match job:
+        case ReplayJob(archived=ArchivedLog() as archived):
+            feed = _archived_feed(archived, flaws)
+            replay(job, _archive(job, feed, flaws), SystemClock(), line)
         case ReplayJob():
             replay(job, _archive(job, log, flaws), SystemClock(), line)
         case PostProcessingJob():
@@ -75,6 +86,16 @@ def work(line: FrameChannel) -> None:
             _catch_up(job, _archive(job, log, flaws), line)
         case TimelineJob():
             _timeline(job, log, flaws, line)
+        case ArchiveJob():
+            _copy_incidents(job, log, line)
+
+
+def _archived_feed(archived: ArchivedLog, flaws: LogDefects) -> ArchivedFeed:
+    entry, store = decoded_entry(archived.entry, archived.location), open_store(archived.location)
+    for words in entry.damage:
+        flaws.note(words)
+    files = {one.name: one for one in entry.files}
+    return ArchivedFeed(store, entry.incident_id, files, entry.log_id, flaws.note_damage)
 
 
 def _archive(
@@ -95,6 +116,10 @@ def _archive(
 def _flaws_of(job: Job) -> LogDefects:
     log = Path(job.log)
     match job:
+        case ReplayJob(archived=ArchivedLog()):
+            return LogDefects(Path(job.incident_id))  # no folder of this machine
+        case ArchiveJob():
+            return LogDefects(log, (), is_written=True)
         case ReplayJob():
             return LogDefects(log, job.known_segments, is_written=True, until_ns=job.end_ns)
         case CatchUpJob():
@@ -151,6 +176,18 @@ def _report(job: ReportJob, log: LogFeed, flaws: LogDefects, line: FrameChannel)
             )
             page = html_document(gather(sources, records.require_incident(job.incident_id)))
         line.send(ReportFrame(pdf_document(page) if job.as_pdf else page))
+    except MusterError as error:
+        line.send(Failure(str(error), is_memory=False))
+
+
+def _copy_incidents(job: ArchiveJob, log: LogFeed, line: FrameChannel) -> None:
+    stand_back(line)
+    try:
+        with open_database(Path(job.database)) as store:
+            archive, clock = open_store(job.location), SystemClock()
+            for done in ArchiveCopier(archive, store, log, clock).copy_due(lambda _: None):
+                line.send(CopyFrame(done.incident_id, done.damage))
+        line.send(CopiesDone())
     except MusterError as error:
         line.send(Failure(str(error), is_memory=False))
 

@@ -20,6 +20,7 @@ from base_station.app.station_storage import StationStorage
 from base_station.app.stored_snapshot import StoredSnapshotSource
 from base_station.config import HttpConfig, StationConfig
 from base_station.engine.ports import Record
+from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.models import IncidentRow
@@ -134,6 +135,7 @@ def startup_application(
         roster=disk.roster,
         records=disk.records,
         base_maps=BaseMaps(disk.store),
+        archived=ArchivedCopies(disk.store),
         imports=ImportCatalogue(disk.store, ImportFolder(disk.folder.imports)),
         hub=hub,
         gate=known,

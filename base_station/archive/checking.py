@@ -35,13 +35,14 @@ def defects_of(
     for number, incident_id in enumerate(ids):
         entry = require_entry(store, incident_id)
         for file in entry.files:
-            defect = _defect_of(store, entry, file)
+            defect = defect_of(store, entry, file)
             if defect:
                 yield incident_id, defect
         on_progress((number + 1) / len(ids))
 
 
-def _defect_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) -> str:
+def defect_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) -> str:
+    """Words for what is wrong with a file, all of which is read; empty: nothing."""
     name = name_in_archive(entry.incident_id, file.name)
     size = store.size(name)
     if size != file.size_bytes:

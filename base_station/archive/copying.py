@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 
 import msgspec
 
+from base_station.archive.checking import defect_of
 from base_station.archive.entry import (
     CONSOLE_NAME,
     ENTRY_NAME,
@@ -50,6 +51,11 @@ _READ_BYTES = 4 << 20
 _WAITING_BYTES = 1 << 20
 
 
+def closed_until_ns(clock: Clock) -> int:
+    """Station time before which an incident was closed that can be copied."""
+    return clock.utc_ns() - AFTER_NS - _FLUSHED_NS
+
+
 @dataclass(frozen=True)
 class CopyResult:
     incident_id: str
@@ -71,14 +77,13 @@ class ArchiveCopier:
 
         Raises ArchiveError: what was copied until then is there, and the rest is due still.
         """
-        until_ns = self._clock.utc_ns() - AFTER_NS - _FLUSHED_NS
-        due = self._copies.due(self._archive.address, until_ns)
-        for number, incident in enumerate(due):
-            yield self._copy(incident)
+        due = self._copies.due(self._archive.address, closed_until_ns(self._clock))
+        for number, (incident, known_ns) in enumerate(due):
+            yield self._copy(incident, known_ns)
             on_progress((number + 1) / len(due))
 
-    def _copy(self, incident: IncidentRow) -> CopyResult:
-        known_ns = max(incident.closed_ns or 0, incident.late_data_ns)
+    def _copy(self, incident: IncidentRow, known_ns: int) -> CopyResult:
+        """``known_ns``: station time of the newest that is known of it."""
         there = read_entry(self._archive, incident.incident_id)
         if there is not None and there.log_id not in ("", self._log.log_id):
             raise ArchiveError(
@@ -101,7 +106,9 @@ class ArchiveCopier:
         """A copy that this database lost sight of; not one from before a person was forgotten."""
         here = self._mentioned(incident)
         return (
-            entry.known_ns == known_ns and entry.people == here and _is_whole(self._archive, entry)
+            entry.known_ns == known_ns
+            and entry.people == here
+            and not any(defect_of(self._archive, entry, one) for one in entry.files)
         )
 
     def _note(self, entry: CatalogueEntry) -> None:
@@ -114,15 +121,16 @@ class ArchiveCopier:
         )
 
     def _send(self, entry: CatalogueEntry, scratch: Path) -> None:
-        """The entry goes last: what is cut short has none."""
+        """The entry goes last, when all was read there: what is cut short has none."""
         for one in entry.files:
             name = name_in_archive(entry.incident_id, one.name)
             self._archive.put(name, scratch / one.name)
-        if not _is_whole(self._archive, entry):
-            raise ArchiveError(
-                f"the archive {self._archive.address} did not keep all of {entry.incident_id}: "
-                "copy it once more"
-            )
+        for one in entry.files:
+            if defect := defect_of(self._archive, entry, one):
+                raise ArchiveError(
+                    f"the archive {self._archive.address} did not keep {entry.incident_id}: "
+                    f"{defect}"
+                )
         (scratch / ENTRY_NAME).write_bytes(encoded_entry(entry))
         self._archive.put(name_in_archive(entry.incident_id, ENTRY_NAME), scratch / ENTRY_NAME)
 
@@ -207,12 +215,4 @@ def archived_file(path: Path) -> ArchivedFile:
         ranges.summary_offset,
         topics,
         tuple((one.from_ns, one.until_ns, one.offset, one.end) for one in ranges.chunks),
-    )
-
-
-def _is_whole(archive: ArchiveStore, entry: CatalogueEntry) -> bool:
-    """Every file is there, and as long as it should be (``checking`` reads all of them)."""
-    return all(
-        archive.size(name_in_archive(entry.incident_id, one.name)) == one.size_bytes
-        for one in entry.files
     )

@@ -62,16 +62,21 @@ def read_entry(store: ArchiveStore, incident_id: str) -> CatalogueEntry | None:
     encoded = store.read_all(name)
     if encoded is None:
         return None
+    return decoded_entry(encoded, f"{store.address}: {name}")
+
+
+def decoded_entry(encoded: bytes, where: str) -> CatalogueEntry:
+    """``where``: the archive and the name, for messages.  Raises ArchiveError."""
     try:
         entry = msgspec.json.decode(encoded, type=CatalogueEntry)
     except msgspec.MsgspecError as error:
         raise ArchiveError(
-            f"the archive {store.address}: {name} cannot be read ({error}): copy the incident once "
-            "more, or use the version of Muster that wrote it"
+            f"the archive {where} cannot be read ({error}): copy the incident once more, or use "
+            "the version of Muster that wrote it"
         ) from error
     if entry.version > VERSION:
         raise ArchiveError(
-            f"the archive {store.address}: {name} was written by a newer version of Muster "
+            f"the archive {where} was written by a newer version of Muster "
             f"({entry.muster_version}): use that one"
         )
     return entry

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from threading import Event
 
 from base_station.radio.channel import RadioChannel
@@ -22,10 +22,18 @@ _LOOK_EVERY_S = 60.0
 class RadioRecorders:
     """``start`` once, ``close`` once; with no channel in the settings nothing is recorded."""
 
-    def __init__(self, channels: Mapping[str, RadioConfig], log: RadioLog, clock: Clock) -> None:
+    def __init__(
+        self,
+        channels: Mapping[str, RadioConfig],
+        log: RadioLog,
+        clock: Clock,
+        keeps_since_ns: Callable[[], int | None] = lambda: None,
+    ) -> None:
+        """``keeps_since_ns``: station time since when nothing is deleted, however old it is."""
         self._settings = channels
         self._log = log
         self._clock = clock
+        self._keeps_since_ns = keeps_since_ns
         self._channels = tuple(
             RadioChannel(name, config, log.folder / name, clock)
             for name, config in channels.items()
@@ -59,9 +67,11 @@ class RadioRecorders:
 
     def _remove_old(self, _stopping: Event) -> None:
         """Also of channels that the settings have no more."""
+        now_ns, kept_ns = self._clock.utc_ns(), self._keeps_since_ns()
         for name in self._log.channels():
             config = self._settings.get(name)
             keep_ns = round((KEEP_H if config is None else config.keep_h) * _NS_PER_H)
-            removed = self._log.remove_before(name, self._clock.utc_ns() - keep_ns)
+            before_ns = now_ns - keep_ns if kept_ns is None else min(now_ns - keep_ns, kept_ns)
+            removed = self._log.remove_before(name, before_ns)
             if removed:
                 logger.info("radio channel %s: %d old segments deleted", name, removed)

@@ -20,7 +20,7 @@ from base_station.replay.version_check import DIFFERS, VersionCheck
 from base_station.storage.db.known_people import PersonLookup
 from base_station.views.wire import GapView, ReplayView, Snapshot
 from shared.clock import NS_PER_MS, NS_PER_S, Clock
-from shared.errors import UserError
+from shared.errors import ArchiveError, UserError
 from shared.log_on_change import LogOnChange
 
 SLOWEST, FASTEST = 0.25, 1000.0  # times real time; the fastest is as fast as this machine goes
@@ -79,6 +79,7 @@ class ReplaySession:
         self._version_check: VersionCheck | None = None  # until something was decided again
         self._looked_ns = self._whole_ns = clock.monotonic_ns()
         self._is_behind = False  # the past goes by as fast as it is read
+        self._is_shown = False  # a picture
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._lock = threading.Lock()  # guards what follows
         self._speed = checked_speed(speed)
@@ -87,6 +88,7 @@ class ReplaySession:
         self._seek_ns: int | None = window.start_ns
         self._seeking = False
         self._gap: RecordGap | None = None  # in which it stands
+        self._away = ""  # why the archive does not give what is to be shown
         self._moved_ns = clock.monotonic_ns()  # until when time has gone by for what is shown
         self._news = threading.Event()
         self._closed = threading.Event()
@@ -102,6 +104,8 @@ class ReplaySession:
                 self._seek_ns = self._window.start_ns
             if not self._playing:
                 self._moved_ns = self._clock.monotonic_ns()
+            if self._away and self._seek_ns is None:
+                self._seek_ns = self._at_ns  # it is asked once more
             self._playing = True
         self._news.set()
 
@@ -145,7 +149,7 @@ class ReplaySession:
         )
 
     def _flaws(self) -> tuple[str, ...]:
-        flaws = tuple(self._archive.flaws())
+        flaws = (*filter(None, (self._away,)), *self._archive.flaws())
         more = len(flaws) - MOST_FLAWS
         if more <= 0:
             return flaws
@@ -184,10 +188,13 @@ class ReplaySession:
         self._open()
         while not self._closed.is_set():
             self._follow_changes()
-            self._follow_seek()
-            if self._closed.is_set():
-                return  # amid a seek the picture is not that of where it has got to
-            self._move()
+            try:
+                self._follow_seek()
+                if self._closed.is_set():
+                    return  # amid a seek the picture is not that of where it has got to
+                self._move()
+            except ArchiveError as error:
+                self._stop_for_archive(error)
             if self._seek_ns is not None:
                 continue  # a picture now would be of another time than asked for
             self._answer()
@@ -195,6 +202,20 @@ class ReplaySession:
             if not self._is_behind:
                 self._news.wait(DELTA_S if self._playing or looks else PAUSED_S)
             self._news.clear()
+
+    def _stop_for_archive(self, error: ArchiveError) -> None:
+        """It stands where it is until somebody plays or seeks.  Raises the error where nothing was
+        shown yet.
+        """
+        if not self._is_shown:
+            raise error
+        _log.warning("the replay of %s stands still: %s", self._window.incident_id, error)
+        shown = self._player
+        self._open()  # who reads where the reading failed finds the end
+        self._player = shown
+        with self._lock:
+            self._away, self._playing, self._seeking = str(error), False, False
+        self._publish()
 
     def _look_for_flaws(self) -> bool:
         """For a moment, for a seek passes over most of the log; whether more is to be looked at."""
@@ -274,7 +295,9 @@ class ReplaySession:
         self._player = player
         with self._lock:
             self._at_ns, self._seeking, self._gap = seek_ns, False, player.gap
+            self._away = ""
         player.reset(self.view())
+        self._is_shown = True
         with self._lock:
             self._moved_ns = self._clock.monotonic_ns()  # the way there is not played
 

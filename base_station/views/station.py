@@ -18,6 +18,7 @@ from base_station.views.units import unit_views
 from base_station.views.wire import (
     AlarmView,
     AnchorView,
+    ArchiveView,
     BeaconView,
     CommandView,
     DeliveryView,
@@ -57,6 +58,7 @@ class StationFacts(msgspec.Struct, frozen=True):
     recordings: tuple[RecordingView, ...] = ()
     forwarders: tuple[ForwarderView, ...] = ()
     radio: tuple[RadioView, ...] = ()
+    archive: ArchiveView | None = None
 
 
 def alarm_view(alarm: Alarm | AlarmChange | StoredAlarm, people: PersonLookup) -> AlarmView:
@@ -269,6 +271,7 @@ def health_view(state: StationState, facts: StationFacts) -> HealthView:
         recordings=facts.recordings,
         forwarders=facts.forwarders,
         radio=facts.radio,
+        archive=facts.archive,
     )
 
 

@@ -383,6 +383,17 @@ class RadioView(Answer, frozen=True):
     problem: str  # a sentence for a person; empty: it is recorded
 
 
+class ArchiveView(Answer, frozen=True):
+    """The archive to which the station copies closed incidents by itself."""
+
+    location: str  # a folder, or s3://BUCKET/PLACE
+    state: Annotated[str, one_of("waiting", "copying", "away")]
+    waiting: int  # closed incidents that are not there yet
+    copied: int  # since the station started
+    archived_ms: int | None  # when the last one was; null: none since the station started
+    text: str  # for a person: why nothing can be copied; empty: all is well
+
+
 class HealthView(Answer, frozen=True):
     """The station's own state; ``problems`` are sentences for a person."""
 
@@ -401,6 +412,7 @@ class HealthView(Answer, frozen=True):
     missing: int = 0  # since then, numbers of messages that no unit's journal has any more
     forwarders: tuple[ForwarderView, ...] = ()  # live connections with other systems
     radio: tuple[RadioView, ...] = ()  # channels whose audio is recorded
+    archive: ArchiveView | None = None  # None: incidents are archived by a command alone
     reading: float | None = None  # share of its log; nothing is live: what was last stored is shown
 
 

@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import select
@@ -27,7 +28,7 @@ from base_station.storage.db.store import Store
 from base_station.storage.db.window import EVER
 from shared.clock import NS_PER_S, SystemClock
 from shared.errors import ArchiveError, ConfigError, UserError
-from shared.mcap_log import SegmentPolicy, SegmentWriter
+from shared.mcap_log import SegmentPolicy, SegmentWriter, segment_paths
 from shared.messages import EventKind
 from shared.messages.station import Assign, CloseIncident, OpenIncident, SetPlan
 from tests.golden.test_recorded_console import people, shown_at
@@ -37,7 +38,10 @@ from tests.rig.console_log import with_console
 from tests.rig.counting_store import CountingStore
 from tests.rig.live_station import Screen, make_pipeline
 from tests.rig.round_walk import PLAN, Walk
+from tests.rig.served_station import snapshot
+from tests.rig.station_command import Browser, Command
 from tests.rig.station_script import START_NS, Script
+from tests.rig.waiting import until
 
 WALKED_S = 400  # three keyframes
 MOST_REQUESTS = 5
@@ -218,6 +222,79 @@ def test_a_bucket_that_goes_away_loses_nothing(
     assert "i2\t" in again
     assert "i1" not in again
     assert ": 0 defects" in succeeded("archive", "verify", address)
+
+
+@pytest.mark.slow
+def test_a_station_archives_by_itself_and_shows_what_it_has_no_log_of(
+    data: Path, server: BucketServer, ask_as: Callable[[str], None], serve: Callable[..., Command],
+    tmp_path: Path,
+) -> None:  # fmt: skip
+    address = f"{ADDRESS}-live"
+    settings = tmp_path / "station.toml"
+    settings.write_text(f'[archive]\nlocation = "{address}"\n')
+    server.stop()
+    first = serve("--config", str(settings))
+    with Browser(first.wait_ready(), data) as browser:
+        until(lambda: archive_of(browser)["state"] == "away", "the archive is away")
+        away = archive_of(browser)
+        assert away["waiting"] == 2
+        assert address in away["text"]
+        assert "muster_archive_reachable 0.0" in metrics_of(browser)
+    first.kill()
+    server.start()
+    second = serve("--config", str(settings))
+    with Browser(second.wait_ready(), data) as browser:
+        until(lambda: archived_ids(browser) == {"i1", "i2"}, "both closed incidents are archived")
+        until(lambda: archive_of(browser)["state"] == "waiting", "it waits for the next one")
+        assert "muster_archive_copied_total 2.0" in metrics_of(browser)
+        with_log = shown_in_replay(browser, 0.5)
+    assert second.stop() == 0
+    assert ": 0 defects" in succeeded("archive", "verify", address)
+
+    for segment in segment_paths(data / "log")[:-1]:
+        segment.unlink()
+    third = serve("--config", str(settings))
+    with Browser(third.wait_ready(), data) as browser:
+        assert shown_in_replay(browser, 0.5) == with_log
+        server.stop()
+        try:
+            with pytest.raises(AssertionError, match=f"503 .*{address}"):
+                browser.call("POST", "/replays", json={"incident_id": "i1"})
+        finally:
+            server.start()
+
+
+def archive_of(browser: Browser) -> dict[str, Any]:
+    archive: dict[str, Any] = browser.call("GET", "/health")["archive"]
+    return archive
+
+
+def archived_ids(browser: Browser) -> set[str]:
+    incidents = browser.call("GET", "/incidents")
+    return {one["incident_id"] for one in incidents if one["archived_ms"] is not None}
+
+
+def metrics_of(browser: Browser) -> str:
+    return browser.text("/metrics")
+
+
+def shown_in_replay(browser: Browser, part: float) -> dict[str, Any]:
+    """Positions of a second of i1."""
+    opened = browser.call("POST", "/replays", json={"incident_id": "i1"})
+    path, span_ms = f"/replays/{opened['replay_id']}", opened["end_ms"] - opened["start_ms"]
+    at_ms = opened["start_ms"] + round(part * span_ms)
+    until(lambda: not moved_to(browser, path, at_ms)["seeking"], "it stands there")
+    shown = snapshot(browser, f"{path}/live")
+    assert shown["replay"]["at_ms"] == at_ms
+    browser.call("DELETE", path)
+    return {one["unit_id"]: one["position"] for one in shown["units"]}
+
+
+def moved_to(browser: Browser, path: str, at_ms: int) -> dict[str, Any]:
+    """How the replay stands, when it was told to be there."""
+    browser.call("POST", path, json={"at_ms": at_ms, "playing": False})
+    view: dict[str, Any] = browser.call("GET", path)
+    return view
 
 
 def test_a_disk_s_copy_that_is_torn_is_found_and_made_again(data: Path, tmp_path: Path) -> None:

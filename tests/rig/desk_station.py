@@ -43,6 +43,7 @@ from base_station.privacy.erasure_queue import ErasureQueue
 from base_station.privacy.erasure_service import ClosedLog, ErasureService
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.db.accounts import Accounts
+from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.base_maps import BaseMaps
 from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.models import IncidentRow
@@ -215,6 +216,7 @@ class DeskStation:
             clock=clock,
             secure=False,
             alerts=AlertIntake(self.drive.note_external),
+            archived=ArchivedCopies(self.store),
             imports=ImportCatalogue(self.store, ImportFolder(folder / "imports")),
             intake=SampleIntake(self.drive.deliver, self.router.attach_station(), clock),
         )

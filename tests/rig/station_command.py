@@ -144,6 +144,12 @@ class Browser:
     def cookie(self) -> str:
         return "; ".join(f"{name}={value}" for name, value in self._client.cookies.items())
 
+    def text(self, path: str) -> str:
+        """An answer that is no JSON."""
+        answer = self._client.get(path)
+        assert answer.is_success, f"GET {path}: {answer.status_code} {answer.text}"
+        return answer.text
+
     def call(self, method: str, path: str, **request: Any) -> Any:
         answer = self._client.request(method, path, **request)
         assert answer.is_success, f"{method} {path}: {answer.status_code} {answer.text}"

@@ -60,6 +60,7 @@ class IncidentAnswer(BaseModel):
     closed_ms: int | None
     closed_by: str
     dispatch_number: str  # empty: opened from none
+    archived_ms: int | None  # when it was copied to an archive and read there; null: it is in none
 
 
 class Raising(Answer, frozen=True):
@@ -130,7 +131,8 @@ def list_incidents(
         found = station.records.incidents(when, limit)
     else:
         found = station.records.find_incidents(query, limit)
-    return [_incident(one, station.roster) for one in found]
+    archived_ns = station.archived.times_ns([one.incident_id for one in found])
+    return [_incident(one, station.roster, archived_ns.get(one.incident_id)) for one in found]
 
 
 @router.post("/incidents", status_code=201)
@@ -157,12 +159,16 @@ def open_incident(new: NewIncident, station: Station, perform: Perform) -> Incid
         closed_ms=None,
         closed_by="",
         dispatch_number=new.dispatch_number,
+        archived_ms=None,
     )
 
 
 @router.get("/incidents/{incident_id}")
 def get_incident(incident_id: Id, station: CurrentStation, _: Viewer) -> IncidentAnswer:
-    return _incident(incident_or_404(station, incident_id), station.roster)
+    incident = incident_or_404(station, incident_id)
+    return _incident(
+        incident, station.roster, station.archived.times_ns([incident_id]).get(incident_id)
+    )
 
 
 @router.get("/incidents/{incident_id}/dispatch")
@@ -219,7 +225,7 @@ def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
     incident = station.records.incident(incident_id)
     if incident is None:
         raise Problem(503, "The incident was opened, but the database has not taken it yet.")
-    return _incident(incident, station.roster)
+    return _incident(incident, station.roster, None)
 
 
 def _past_alarm(
@@ -253,7 +259,9 @@ def _is_raised_anew(
     return now.state == "raised" and not eased
 
 
-def _incident(incident: models.IncidentRow, roster: Roster) -> IncidentAnswer:
+def _incident(
+    incident: models.IncidentRow, roster: Roster, archived_ns: int | None
+) -> IncidentAnswer:
     return IncidentAnswer(
         incident_id=incident.incident_id,
         name=roster.shown(incident.name),
@@ -262,4 +270,5 @@ def _incident(incident: models.IncidentRow, roster: Roster) -> IncidentAnswer:
         closed_ms=to_ms_or_none(incident.closed_ns),
         closed_by=incident.closed_by,
         dispatch_number=incident.dispatch_number,
+        archived_ms=to_ms_or_none(archived_ns),
     )

@@ -93,6 +93,15 @@ export interface AnchorView {
   plan_rotation_rad: number;
 }
 
+export interface ArchiveView {
+  location: string;
+  state: string;
+  waiting: number;
+  copied: number;
+  archived_ms: number | null;
+  text: string;
+}
+
 export interface AssignmentAnswer {
   unit_id: string;
   person_id: string;
@@ -313,6 +322,7 @@ export interface Health {
   missing: number;
   forwarders: ForwarderView[];
   radio: RadioView[];
+  archive: ArchiveView | null;
   reading: number | null;
   consoles: number;
   segments: LogSegmentAnswer[];
@@ -356,6 +366,7 @@ export interface IncidentAnswer {
   closed_ms: number | null;
   closed_by: string;
   dispatch_number: string;
+  archived_ms: number | null;
 }
 
 export interface IncidentReport {

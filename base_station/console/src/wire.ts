@@ -301,6 +301,15 @@ export interface RadioView {
   problem: string;
 }
 
+export interface ArchiveView {
+  location: string;
+  state: "waiting" | "copying" | "away";
+  waiting: number;
+  copied: number;
+  archived_ms: number | null;
+  text: string;
+}
+
 export interface HealthView {
   problems: string[];
   messages: number;
@@ -317,6 +326,7 @@ export interface HealthView {
   missing: number;
   forwarders: ForwarderView[];
   radio: RadioView[];
+  archive: ArchiveView | null;
   reading: number | null;
 }
 

@@ -29,6 +29,7 @@ export const HEALTH: HealthView = {
   missing: 0,
   forwarders: [],
   radio: [],
+  archive: null,
   reading: null,
 };
 

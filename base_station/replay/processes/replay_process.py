@@ -17,6 +17,7 @@ from base_station.engine.console_publisher import ConsolePublisher
 from base_station.engine.ports import LiveSink, Trails
 from base_station.replay.processes.server import ReplayProcesses
 from base_station.replay.processes.wire import (
+    ArchivedLog,
     Command,
     Damage,
     DeltaFrame,
@@ -74,13 +75,20 @@ class ReplayProcess:
     """
 
     def __init__(
-        self, place: ReplayContext, window: ReplayWindow, speed: float, sink: EncodedSink
+        self,
+        place: ReplayContext,
+        window: ReplayWindow,
+        speed: float,
+        sink: EncodedSink,
+        archived: ArchivedLog | None = None,
     ) -> None:
-        """It plays from the window's beginning.  Raises UserError for an impossible speed.
+        """It plays from the window's beginning; ``archived``: the copy in the place of the log.
+        Raises UserError for an impossible speed.
 
         Disk and process are left to a thread: the caller does not wait.
         """
         self._place, self._window, self._sink = place, window, sink
+        self._archived = archived
         self._lock = threading.Lock()  # guards what follows
         self._line: FrameChannel | None = None  # to the process, as soon as that is there
         self._unsent: list[Command] = []
@@ -188,6 +196,7 @@ class ReplayProcess:
             window.end_ns,
             self.view().speed,
             tuple(self._place.known_segments()),
+            self._archived,
         )
         line = self._place.processes.start(job)
         with self._lock:

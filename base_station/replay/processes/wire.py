@@ -19,6 +19,13 @@ from shared.errors import StoreError
 _LENGTH = struct.Struct("<Q")  # before each message
 
 
+class ArchivedLog(msgspec.Struct, frozen=True):
+    """A copy of an incident in an archive."""
+
+    location: str  # of the archive
+    entry: bytes  # its ``catalogue.json``
+
+
 class ReplayJob(msgspec.Struct, frozen=True, tag="replay"):
     """First to a new process: the replay that it is to be."""
 
@@ -29,6 +36,7 @@ class ReplayJob(msgspec.Struct, frozen=True, tag="replay"):
     end_ns: int
     speed: float
     known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+    archived: ArchivedLog | None = None  # read in the place of the station's own
 
 
 class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
@@ -78,6 +86,15 @@ class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
     until_ns: int
     buckets: int
     known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+
+
+class ArchiveJob(msgspec.Struct, frozen=True, tag="archive"):
+    """First to a new process: to copy the incidents that are closed into an archive."""
+
+    log: str
+    database: str
+    location: str  # of the archive
+    has_radio: bool  # with the audio of the radio channels
 
 
 class Play(msgspec.Struct, frozen=True, tag="play"):
@@ -161,6 +178,17 @@ class CaughtUp(msgspec.Struct, frozen=True, tag="caught_up"):
     """The last message: the log is projected to where it ended."""
 
 
+class CopyFrame(msgspec.Struct, frozen=True, tag="copied"):
+    """An incident is in the archive, and was read there."""
+
+    incident_id: str
+    damage: tuple[str, ...]  # what of the station's log could not be read
+
+
+class CopiesDone(msgspec.Struct, frozen=True, tag="copies_done"):
+    """The last message: all that was due is in the archive."""
+
+
 class TimelineFrame(msgspec.Struct, frozen=True, tag="timeline_read"):
     """The last message: the timeline."""
 
@@ -174,7 +202,7 @@ class Failure(msgspec.Struct, frozen=True, tag="failure"):
     is_memory: bool  # there is not enough of it, nor would there be the next time
 
 
-Job = ReplayJob | PostProcessingJob | ReportJob | CatchUpJob | TimelineJob
+Job = ReplayJob | PostProcessingJob | ReportJob | CatchUpJob | TimelineJob | ArchiveJob
 Command = Play | Pause | Seek | SetSpeed | People | SnapshotRequest
 ReplayReport = DeltaFrame | SnapshotFrame | ViewFrame | Damage
 PostProcessingReport = (
@@ -182,6 +210,7 @@ PostProcessingReport = (
 )
 IncidentReportResult = ReportFrame | Damage | Failure
 CatchUpResult = CaughtUp | Damage | Failure
+ArchiveReport = CopyFrame | CopiesDone | Damage | Failure
 TimelineResult = TimelineFrame | Damage | Failure
 
 
@@ -200,7 +229,9 @@ class FrameChannel:
         | PostProcessingReport
         | ReportFrame
         | CaughtUp
-        | TimelineFrame,
+        | TimelineFrame
+        | CopyFrame
+        | CopiesDone,
     ) -> None:
         """Raises StoreError where the other end is gone."""
         encoded = msgspec.msgpack.encode(message)
@@ -272,6 +303,11 @@ def read_report_result(encoded: bytes) -> IncidentReportResult:
 def read_catch_up(encoded: bytes) -> CatchUpResult:
     result: CatchUpResult = msgspec.msgpack.decode(encoded, type=CatchUpResult)
     return result
+
+
+def read_archive_report(encoded: bytes) -> ArchiveReport:
+    report: ArchiveReport = msgspec.msgpack.decode(encoded, type=ArchiveReport)
+    return report
 
 
 def read_timeline_result(encoded: bytes) -> TimelineResult:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 import msgspec
-from sqlalchemy import delete, exists, select
+from sqlalchemy import ColumnElement, and_, delete, exists, func, or_, select
 
 from base_station.storage.db.database import Database
 from base_station.storage.db.incident_search import IncidentSearch
@@ -14,8 +14,9 @@ from base_station.storage.db.models import (
     ArchivedObject,
     ArchivedRange,
     IncidentRow,
-    IndexedIncident,
 )
+from base_station.storage.db.search_index import newest_known_ns
+from base_station.storage.db.window import FOREVER_NS
 from shared.mcap_log import ChunkRange, SegmentRanges
 
 
@@ -41,22 +42,21 @@ class ArchivedCopies:
     def __init__(self, store: Database) -> None:
         self._store = store
 
-    def due(self, archive: str, until_ns: int) -> Sequence[IncidentRow]:
+    def due(self, archive: str, until_ns: int) -> Sequence[tuple[IncidentRow, int]]:
         """Incidents closed before ``until_ns`` of which the archive has no copy, or of which more
-        is known since; the oldest first.
+        is known since, each with the station time of the newest that is known; the oldest first.
+        They are in the index of the search.
         """
         IncidentSearch(self._store).index_changes()
+        wanted = select(IncidentRow, newest_known_ns()).where(*_is_due(archive, until_ns))
         with self._store.read() as session:
-            is_copied = exists().where(
-                ArchivedIncident.incident_id == IncidentRow.incident_id,
-                ArchivedIncident.archive == archive,
-                ArchivedIncident.known_ns == IndexedIncident.known_ns,
-            )
-            wanted = (
-                select(IncidentRow)
-                .join(IndexedIncident, IndexedIncident.incident_id == IncidentRow.incident_id)
-                .where(IncidentRow.closed_ns < until_ns, ~is_copied)
-            )
+            found = session.execute(wanted.order_by(IncidentRow.opened_ns))
+            return [(incident, known_ns) for incident, known_ns in found]
+
+    def waiting(self, archive: str, until_ns: int) -> Sequence[str]:
+        """Ids of these, without bringing the index up to date."""
+        wanted = select(IncidentRow.incident_id).where(*_is_due(archive, until_ns))
+        with self._store.read() as session:
             return session.scalars(wanted.order_by(IncidentRow.opened_ns)).all()
 
     def note(
@@ -80,6 +80,21 @@ class ArchivedCopies:
             )
             for file in files:
                 session.add_all(_rows(incident_id, file))
+
+    def oldest_waiting_ns(self, archive: str) -> int | None:
+        """When the oldest incident was opened that the archive has not, or not as it is known, or
+        that is open; None: there is none.
+        """
+        is_waiting = or_(IncidentRow.closed_ns.is_(None), and_(*_is_due(archive, FOREVER_NS)))
+        with self._store.read() as session:
+            return session.scalar(select(func.min(IncidentRow.opened_ns)).where(is_waiting))
+
+    def times_ns(self, incident_ids: Collection[str]) -> dict[str, int]:
+        """Station times at which copies were made, by incident."""
+        of_these = ArchivedIncident.incident_id.in_(incident_ids)
+        wanted = select(ArchivedIncident.incident_id, ArchivedIncident.archived_ns).where(of_these)
+        with self._store.read() as session:
+            return {one.incident_id: one.archived_ns for one in session.execute(wanted)}
 
     def archives(self, incident_ids: Collection[str]) -> dict[str, str]:
         """Addresses of the archives that have copies, by incident."""
@@ -118,6 +133,15 @@ class ArchivedCopies:
                 )
                 for one in session.scalars(objects)
             }
+
+
+def _is_due(archive: str, until_ns: int) -> tuple[ColumnElement[bool], ...]:
+    is_copied = exists().where(
+        ArchivedIncident.incident_id == IncidentRow.incident_id,
+        ArchivedIncident.archive == archive,
+        ArchivedIncident.known_ns == newest_known_ns(),
+    )
+    return IncidentRow.closed_ns < until_ns, ~is_copied
 
 
 def _rows(incident_id: str, file: ArchivedFile) -> Sequence[ArchivedObject | ArchivedRange]:

@@ -16,6 +16,7 @@ from base_station.storage.db.models import (
     AlarmRow,
     AlarmTransition,
     AnchorRow,
+    ArchivedIncident,
     Assignment,
     AuditEntry,
     DispatchRow,
@@ -140,6 +141,11 @@ def _import(session: Session, t_ns: int, by: str, action: ImportFile | RemoveImp
         return
     is_it = ImportRow.incident_id == action.incident_id, ImportRow.import_id == action.import_id
     session.execute(delete(ImportRow).where(*is_it))
+    session.execute(  # its copy in an archive is made again, without it
+        update(ArchivedIncident)
+        .where(ArchivedIncident.incident_id == action.incident_id)
+        .values(known_ns=0)
+    )
 
 
 def _dispatch(session: Session, report: NoteDispatch) -> None:

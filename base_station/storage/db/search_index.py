@@ -22,6 +22,7 @@ from base_station.storage.db.models import (
     AlarmRow,
     Assignment,
     DispatchRow,
+    ImportRow,
     IncidentMember,
     IncidentRow,
     IndexedIncident,
@@ -46,9 +47,16 @@ def words_of(text: str) -> set[str]:
 
 def newest_known_ns() -> ColumnElement[int]:
     """Station time of the newest that is known of an incident; 0 while it is open."""
-    ended_ns, late_ns = IncidentRow.closed_ns, IncidentRow.late_data_ns
-    later_ns = case((late_ns > ended_ns, late_ns), else_=ended_ns)
-    return func.coalesce(later_ns, 0)
+    known_ns: ColumnElement[int] = func.coalesce(IncidentRow.closed_ns, 0)
+    imported_ns = (
+        select(func.coalesce(func.max(ImportRow.t_ns), 0))
+        .where(ImportRow.incident_id == IncidentRow.incident_id)
+        .correlate(IncidentRow)
+        .scalar_subquery()
+    )
+    for later_ns in (IncidentRow.late_data_ns, imported_ns):
+        known_ns = case((later_ns > known_ns, later_ns), else_=known_ns)
+    return case((IncidentRow.closed_ns.is_(None), 0), else_=known_ns)
 
 
 def outdated(session: Session) -> Sequence[str]:

@@ -1,10 +1,15 @@
-import { forwarderLine } from "../format";
-import type { ForwarderView } from "../wire";
+import { archiveLine, forwarderLine } from "../format";
+import type { ArchiveView, ForwarderView } from "../wire";
 import { t } from "../language/translate";
 
-/** Live connections with other systems, one line each; nothing where there is none. */
-export function Forwarders({ forwarders }: { forwarders: readonly ForwarderView[] }) {
-  if (forwarders.length === 0) return null;
+interface ForwardersProps {
+  forwarders: readonly ForwarderView[];
+  archive: ArchiveView | null;
+}
+
+/** Live connections with other systems and the archive, one line each; nothing where there is none. */
+export function Forwarders({ forwarders, archive }: ForwardersProps) {
+  if (forwarders.length === 0 && archive === null) return null;
   return (
     <section aria-label={t("systems.label")}>
       <h3>{t("systems.title")}</h3>
@@ -12,6 +17,7 @@ export function Forwarders({ forwarders }: { forwarders: readonly ForwarderView[
         {forwarders.map((one) => (
           <li key={`${one.kind}-${one.name}`}>{forwarderLine(one)}</li>
         ))}
+        {archive !== null && <li>{archiveLine(archive)}</li>}
       </ul>
     </section>
   );

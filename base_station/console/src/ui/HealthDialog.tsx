@@ -30,7 +30,7 @@ export function HealthDialog() {
         <Figure name={t("health.recorded")} value={bytes(health.log_bytes)} />
         <Figure name={t("health.disk_free")} value={bytes(health.disk_free_bytes)} />
       </dl>
-      <Forwarders forwarders={health.forwarders} />
+      <Forwarders forwarders={health.forwarders} archive={health.archive} />
       <Recordings pulls={health.recordings} />
     </Dialog>
   );

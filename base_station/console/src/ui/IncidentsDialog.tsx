@@ -88,6 +88,12 @@ export function IncidentsDialog() {
                 {incident.closed_ms === null
                   ? t("incident.still_open")
                   : minutes(incident.closed_ms - incident.opened_ms)}
+                {incident.archived_ms !== null && (
+                  <span class="quiet">
+                    {" "}
+                    {t("incident.archived", { time: dateAndTime(incident.archived_ms) })}
+                  </span>
+                )}
               </td>
               <td>
                 <button

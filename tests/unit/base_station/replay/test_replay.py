@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
@@ -20,7 +20,7 @@ from base_station.views.wire import Snapshot, TrailPoint
 from shared.channels import POSITION, backfilled_key
 from shared.clock import NS_PER_MS, NS_PER_S, ManualClock, SystemClock
 from shared.codec import encode
-from shared.errors import StoreError, UserError
+from shared.errors import ArchiveError, StoreError, UserError
 from shared.messages.station import CloseIncident, OpenIncident, ReportProblem
 from tests.rig import message_factory
 from tests.rig.console_log import reader, with_console
@@ -91,6 +91,41 @@ def test_a_seek_is_a_new_picture_for_everybody(session: ReplaySession, screen: S
     session.seek(START_NS + 50 * NS_PER_S)
     until(lambda: len(screen.resets) == 2)
     assert north_m(screen.resets[-1]) == pytest.approx(49.0)
+
+
+def test_an_archive_that_goes_away_stops_it_where_it_is_and_it_goes_on_afterwards(
+    tmp_path: Path, screen: Screen
+) -> None:
+    records, away = with_console(walk_with_mayday(), make_pipeline()), threading.Event()
+    read = reader(records)
+
+    def read_archive(
+        start_ns: int, end_ns: int | None, topics: Collection[str] | None
+    ) -> Iterator[Record]:
+        for record in read(start_ns, end_ns, topics):
+            if away.is_set():
+                raise ArchiveError("the archive is away")
+            yield record
+
+    source = replace(archive(walk_with_mayday(), tmp_path), console=read_archive)
+    window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
+    session = ReplaySession(source, window, 1.0, screen, person_lookup({}), SystemClock())
+    try:
+        until(lambda: len(screen.resets) == 1)
+        away.set()
+        session.seek(START_NS + 100 * NS_PER_S)
+        until(lambda: session.view().flaws == ("the archive is away",))
+        assert not session.view().playing
+        assert north_m(picture(session)) < 20.0, "it shows what it has"
+        session.play()
+        until(lambda: not session.view().playing, "it was asked in vain")
+        away.clear()
+        session.play()
+        until(lambda: session.view().flaws == ())
+        assert session.view().playing
+        assert north_m(picture(session)) == pytest.approx(99.0, abs=10.0)
+    finally:
+        session.close()
 
 
 def test_on_a_long_way_it_says_where_it_goes(

@@ -15,6 +15,7 @@ export const incident: Part<"incident"> = {
   positions: "Positionen",
   personal_data: "Daten",
   still_open: "offen",
+  archived: "archiviert {time}",
   replay_of: "Wiedergabe: {incident}",
   accuracy: "Genauigkeit",
   erase_warning: "Wer dort war und wo, wird gelöscht.",

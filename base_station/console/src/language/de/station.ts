@@ -53,3 +53,12 @@ export const systems: Part<"systems"> = {
   title: "Andere Systeme",
   label: "Weiterleitungen",
 };
+
+export const archive: Part<"archive"> = {
+  line: "Archiv {location}: {state}",
+  waiting: "nimmt beendete Einsätze",
+  copying: "ein Einsatz wird kopiert",
+  away: "nicht erreichbar",
+  incidents: "{count, plural, one {# Einsatz wartet} other {# Einsätze warten}}",
+  last: "zuletzt {time}",
+};

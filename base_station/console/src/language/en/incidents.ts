@@ -14,6 +14,7 @@ export const incident = {
   positions: "Positions",
   personal_data: "Personal data",
   still_open: "open",
+  archived: "archived {time}",
   replay_of: "Replay {incident}",
   accuracy: "Accuracy report",
   erase_warning: "Who was there and where is deleted.",

@@ -24,7 +24,7 @@ import { replay, transport, timeline, crossing } from "./replay";
 import { route } from "./rescue";
 import { people_list, person, people_import, par, rescue } from "./roster";
 import { crew, enrolment, draft, erase } from "./setup";
-import { station, forwarder, health, connection, systems } from "./station";
+import { station, forwarder, health, connection, systems, archive } from "./station";
 import { sound, standby, away, waiting, wall } from "./stations";
 
 export const en = {
@@ -110,6 +110,7 @@ export const en = {
   standby,
   station,
   systems,
+  archive,
   timeline,
   token,
   tracker,

@@ -50,3 +50,12 @@ export const systems = {
   title: "Other systems",
   label: "Forwarders",
 } as const;
+
+export const archive = {
+  line: "Archive {location}: {state}",
+  waiting: "takes closed incidents",
+  copying: "an incident is copied",
+  away: "cannot be reached",
+  incidents: "{count, plural, one {# incident waits} other {# incidents wait}}",
+  last: "the last one {time}",
+} as const;

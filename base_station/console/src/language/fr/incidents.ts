@@ -15,6 +15,7 @@ export const incident: Part<"incident"> = {
   positions: "Positions",
   personal_data: "Données",
   still_open: "en cours",
+  archived: "archivée {time}",
   replay_of: "Relecture\u00a0: {incident}",
   accuracy: "Précision",
   erase_warning: "Qui était là et où est effacé.",

@@ -51,3 +51,12 @@ export const systems: Part<"systems"> = {
   title: "Autres systèmes",
   label: "Transmissions",
 };
+
+export const archive: Part<"archive"> = {
+  line: "Archive {location}\u00a0: {state}",
+  waiting: "reçoit les interventions closes",
+  copying: "une intervention est copiée",
+  away: "injoignable",
+  incidents: "{count, plural, one {# intervention attend} other {# interventions attendent}}",
+  last: "la dernière {time}",
+};

@@ -1,0 +1,36 @@
+"""Archive of a live station: what copies incidents into it, and finds them there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from base_station.app.resources import Resources
+from base_station.archive.automatic import ArchivingContext, AutomaticArchive
+from base_station.archive.finding import ArchivedLogs
+from base_station.replay.processes.server import ReplayProcesses
+from base_station.storage.db.archived import ArchivedCopies
+
+
+def automatic_archive(
+    resources: Resources, processes: ReplayProcesses, leads: Callable[[], bool]
+) -> AutomaticArchive | None:
+    """None where the settings have no archive.  Raises ConfigError where it needs a library."""
+    config, disk = resources.config.archive, resources.disk
+    if config is None:
+        return None
+    place = ArchivingContext(
+        start=processes.start,
+        log=str(disk.folder.log),
+        database=str(disk.folder.database),
+        prepare=disk.recorder.flush,
+        note_damage=disk.check.recheck,
+        leads=leads,
+    )
+    return AutomaticArchive(config, place, ArchivedCopies(disk.store), disk.clock)
+
+
+def archived_logs(resources: Resources) -> ArchivedLogs:
+    disk = resources.disk
+    return ArchivedLogs(
+        ArchivedCopies(disk.store), resources.recorder.segments, disk.known_segments
+    )
