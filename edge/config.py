@@ -59,7 +59,7 @@ def _check_place(worn_on: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class WearerConfig:
-    """Measures of the wearer, for the trackers that use them; none: nobody has measured."""
+    """Measures of the wearer, for the trackers that use them; None: not measured."""
 
     height_m: Annotated[float, Meta(ge=1.0, le=2.5)] | None = None
     leg_length_m: Annotated[float, Meta(ge=0.4, le=1.4)] | None = (

@@ -38,7 +38,7 @@ def unit_connection(config: EdgeConfig) -> UnitConnection:
     if config.enrolment is None:
         if DISCOVER in config.connect:
             raise ConfigError(
-                "only an enrolled unit can discover its station, as anybody can announce one; give "
+                "only an enrolled unit can discover its station, as anyone can announce one; give "
                 "--enrolment FILE"
             )
         if followed is not None:

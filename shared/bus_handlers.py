@@ -37,7 +37,7 @@ class HandlerGate:
                     self._log(error)
 
     def replies(self, *arguments: Any) -> Iterator[bytes]:
-        """What a query handler answers, up to the end or to its failure."""
+        """Answers of a query handler, up to their end or to its failure."""
         with self._lock:
             if not self._closed:
                 try:

@@ -26,7 +26,7 @@ from shared.errors import BusError
 
 
 class EndpointRole(Enum):
-    """What an endpoint declared."""
+    """Declaration of an endpoint."""
 
     SUBSCRIBER = auto()
     TOKEN = auto()
@@ -42,7 +42,7 @@ class Declaration:
     role: EndpointRole
     expression: str
     gate: HandlerGate
-    alive: set[str] = field(default_factory=set)  # of a watcher: the tokens it was told of
+    alive: set[str] = field(default_factory=set)  # of a watcher: the tokens it was notified of
 
 
 class MemoryRouter:

@@ -40,7 +40,7 @@ logger = logging.getLogger(__name__)
 _SAMPLES_WAITING = 65_536  # of one subscription, for the interpreter; beyond, the link waits
 _QUERIES_WAITING = 1024
 _REPLIES_WAITING = 1024  # to one question
-_PLACE_IN_ZENOH = re.compile(r"\s+at \S+\.rs:\d+\.?")  # which helps nobody who reads of it
+_PLACE_IN_ZENOH = re.compile(r"\s+at \S+\.rs:\d+\.?")  # left out of messages for people
 _ENDING_S = 2.0  # for a thread to see that its channel has ended; a handler may be slow
 
 _Samples = zenoh.handlers.Handler[zenoh.Sample]
@@ -132,7 +132,7 @@ class ZenohBus:
             zenoh.handlers.FifoChannel(_REPLIES_WAITING),
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
-            # The replies travel as the query did.  Whoever asks what is urgent does not wait.
+            # The replies travel as the query did.  An urgent query does not wait.
             congestion_control=zenoh.CongestionControl.DROP
             if urgent
             else zenoh.CongestionControl.BLOCK,
@@ -192,7 +192,7 @@ class ZenohBus:
 
 
 class _Declared:
-    """Keeps what was declared: Zenoh undeclares what nobody refers to."""
+    """Owner of a declaration: Zenoh undeclares one without references."""
 
     def __init__(self, gate: HandlerGate, declared: Any) -> None:
         self._gate = gate
@@ -232,7 +232,7 @@ def _hand_over(
 
 
 def _answer(queryable: zenoh.Queryable[_Queries], gate: HandlerGate) -> None:
-    """Until nobody can ask any more."""
+    """Answer queries until the queryable is undeclared."""
     queries = queryable.handler  # as above
     while True:
         try:
@@ -262,7 +262,7 @@ def _hand_replies_over(replies: _Replies, on_reply: ReplyHandler) -> None:
                         on_reply(reply.ok.payload.to_bytes())
                     reply = replies.try_recv()
     finally:
-        on_reply(None)  # else whoever asked would wait for ever
+        on_reply(None)  # else the caller would wait for ever
 
 
 def _in_words(endpoint: Endpoint, error: zenoh.ZError) -> BusError:

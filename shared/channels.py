@@ -48,7 +48,7 @@ _TRACKER_OF = "@tracker"  # "@" is in no unit's id
 
 
 class Qos(Enum):
-    """How a channel's messages are queued on the way."""
+    """Queueing of a channel's messages on their way."""
 
     LIVE = "live"  # dropped rather than delayed; the journal brings what was dropped
     ALERT = "alert"  # ahead of everything else, sent at once

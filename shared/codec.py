@@ -98,8 +98,8 @@ def decode(channel: Channel, payload: bytes) -> Message:
 
 
 def header_of(payload: bytes) -> Header | None:
-    """Who said a message and which it is, also where ``decode`` refuses the rest: every message
-    begins with its header.  None: there is none.
+    """Header of a message, also where ``decode`` refuses the rest: every message begins with its
+    header.  None: there is none.
     """
     try:
         wire = header_pb2.AnyMessage.FromString(payload).header

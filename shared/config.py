@@ -95,7 +95,7 @@ def _overrule(table: dict[str, Any], dotted: str, value: object) -> None:
 
 
 def _unknown_keys(hint: Any, value: object, where: str) -> Iterator[str]:
-    """What to say of each key, at any depth, that no dataclass has a field for."""
+    """Message for each key, at any depth, that no dataclass has a field for."""
     if isinstance(hint, type) and dataclasses.is_dataclass(hint):
         if isinstance(value, dict):
             hints = get_type_hints(hint)

@@ -1,8 +1,8 @@
 """Finding a station by multicast DNS service discovery (RFC 6762 and 6763), as ``_muster._tcp``,
 and its console by a name such as ``muster.local``.
 
-An announcement proves nothing: whoever is on the network can make any.  It only says where it may
-be worth to connect, and the station's certificate proves all the rest, as at any address.
+An announcement proves nothing: every machine on the network can make any.  It is only a hint where
+to connect; the station's certificate proves the rest, as at any address.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ VERSION = "1"
 _CONSOLE_SERVICE = "_https._tcp.local."
 _PLAIN_CONSOLE_SERVICE = "_http._tcp.local."
 _RESOLVE_MS = 1000
-_NAME_ASKED_MS = 3000  # an answer that was sent to somebody else is not repeated for a second
+_NAME_ASKED_MS = 3000  # an answer that was sent to another host is not repeated for a second
 _LINGER_S = 0.5  # for further stations, once there is one
 _MOST_LABEL = 50  # a label of DNS has 63 bytes
 _MOST_NAMES = 32  # a machine that makes up more is not listened to
@@ -33,16 +33,16 @@ _MOST_ADDRESSES = 8  # of one station
 
 @dataclass(frozen=True, slots=True)
 class Announcement:
-    """What a station says of itself to everybody on its network."""
+    """Announcement of a station on its network."""
 
-    name: str  # of the station, for people; as it is heard, with letters that tell two apart
+    name: str  # of the station, for people; as received, with letters that distinguish two
     station: str  # common name of its certificate
     authority: str  # fingerprint of its authority's certificate
     port: int  # of the bus
     addresses: tuple[str, ...]
 
     def endpoints(self) -> tuple[str, ...]:
-        """Where a bus with TLS would be."""
+        """Endpoints of a bus with TLS at these addresses."""
         hosts = (f"[{one}]" if ":" in one else one for one in self.addresses)
         return tuple(f"tls/{host}:{self.port}" for host in hosts)
 
@@ -135,8 +135,9 @@ def _service_of(
 
 
 def _console_of(announcement: ConsoleAnnouncement, link: zeroconf.Zeroconf) -> zeroconf.ServiceInfo:
-    """Raises BusError where another machine has the name: nobody objects to a host's name, as to a
-    service's, and browsers would reach now the one and now the other.
+    """Service of a console's page.  Raises BusError where another machine has the name: mDNS
+    resolves no conflict of host names here, as it does of services, and browsers would reach now
+    the one and now the other.
     """
     server = f"{announcement.name}."
     holder = zeroconf.AddressResolver(server)  # type: ignore[attr-defined]  # left out of __all__

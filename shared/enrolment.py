@@ -33,7 +33,7 @@ _HEIC = b"ftyp"  # behind the length of its first box: named, though it cannot b
 
 
 class Holder(Enum):
-    """What kind of participant a certificate is for."""
+    """Kind of participant that a certificate is for."""
 
     UNIT = "unit"
     TRACKER = "tracking agent"  # of the unit of its name
@@ -44,7 +44,7 @@ class Holder(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Enrolment:
-    """Who somebody is, which station they belong to, and the proof."""
+    """Name of a participant, its station, and the proof of both."""
 
     holder: Holder
     name: str
@@ -206,7 +206,7 @@ def _from_compact(text: str) -> Enrolment:
 
 
 def private_key_pem(key: ec.EllipticCurvePrivateKey) -> bytes:
-    """PKCS #8, not encrypted: a unit starts with nobody there to type a passphrase."""
+    """PKCS #8, not encrypted: a unit starts without a person who could type a passphrase."""
     return key.private_bytes(
         serialization.Encoding.PEM,
         serialization.PrivateFormat.PKCS8,

@@ -57,7 +57,7 @@ class FolderLock:
             process = _process_in(self._file)
             self.close()
             raise DataFolderInUseError(in_use.format(process)) from error
-        with suppress(OSError):  # a disk that is full: it is held, and cannot be said by whom
+        with suppress(OSError):  # a full disk: the lock is held, only without the process's id
             os.ftruncate(self._file, 0)
             os.pwrite(self._file, f"{os.getpid()}\n".encode("ascii"), 0)
 
@@ -93,8 +93,8 @@ class FolderLock:
 
 
 def _is_free(descriptor: int, how: int) -> bool:
-    """Takes the lock, where nobody else has it.  On a file system that locks no folders nobody has:
-    the file is gone by.
+    """Take the lock where no other process has it.  On a file system that locks no folders it is
+    free: the lock of the file decides.
     """
     try:
         fcntl.flock(descriptor, how | fcntl.LOCK_NB)

@@ -81,7 +81,7 @@ _Triple = tuple[float, float, float]
 def _frame_at(
     lat_deg: float, lon_deg: float, height_m: float
 ) -> tuple[_Triple, tuple[_Triple, ...]]:
-    """Where a place lies from the Earth's centre, and by row x, y, z its north, east and down."""
+    """Earth-centred position of a place, and by row x, y, z its north, east and down."""
     lat_rad, lon_rad = math.radians(lat_deg), math.radians(lon_deg)
     sin_lat, cos_lat = math.sin(lat_rad), math.cos(lat_rad)
     sin_lon, cos_lon = math.sin(lon_rad), math.cos(lon_rad)

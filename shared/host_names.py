@@ -1,4 +1,4 @@
-"""Names of machines, as far as they can be judged without asking anybody."""
+"""Names of machines, checked without a name server."""
 
 from __future__ import annotations
 

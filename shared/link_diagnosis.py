@@ -53,7 +53,7 @@ def _try(endpoint: str, identity: TlsIdentity | None) -> str:
 def _unreachable(error: OSError, host: str, port: int) -> str:
     match error:
         case socket.gaierror():
-            return f"nobody knows the name {host}; is the name server there, is the name right?"
+            return f"the name {host} is not known; is the name server there, is the name right?"
         case ConnectionRefusedError():
             return f"{host} is there but nothing listens on port {port}; does the station run?"
         case TimeoutError():

@@ -1,5 +1,5 @@
-"""A file that a command writes at its end: that it cannot be written is said at the beginning, and
-no half of it is left.
+"""Output file of a command: the command fails at its beginning where the file cannot be written,
+and leaves no part of it behind.
 """
 
 from __future__ import annotations
@@ -35,14 +35,15 @@ def writable(path: Path | None) -> Path | None:
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Where to write it; it is at ``path`` when all of it is written, and not at all otherwise.
+    """Temporary path to write to; it becomes ``path`` when all of it is written, and is removed
+    otherwise.
 
     Raises UserError where the disk does not take it.
     """
     is_file = path.is_file() or not path.exists()  # what is no file is written as it comes
     making = path.with_name(f".part-{path.name}") if is_file else path
     try:
-        if is_file:  # whoever may write to that folder does not choose where else it is written
+        if is_file:  # no link of another user in that folder is followed
             write_own(making).close()
         yield making
         if is_file:

@@ -1,8 +1,8 @@
 """Ownership of files that root makes: they belong to the folder's owner, so that a command given
 as root beside a service of another user leaves nothing behind that the service cannot use.
 
-And no link leads out of it: whoever may write to the folder could else have root empty any file, or
-give it away.
+And no link leads out of it: a user with write access to the folder could else make root empty any
+file, or give it away.
 """
 
 from __future__ import annotations
@@ -71,10 +71,10 @@ def append_own(path: Path, mode: int = 0o666) -> BufferedWriter:
 
 def refuse_links(folder: Path, part: str = "") -> None:
     """LinkRefusedError where something in the folder, or in that part of it, leads out of it;
-    ``folder`` itself may be reached by a link, as whoever gives its name decides that.
+    ``folder`` itself may be reached by a link, as the caller names it.
 
-    It is looked at once, before anything else: whoever exchanges a folder for a link while a
-    command of root's runs is only stopped at the files (``open_own``).
+    The check is done once, before anything else: a folder that is exchanged for a link while a
+    command of root runs is refused only at its files (``open_own``).
     """
     top = folder.resolve()
     for path in _all_in(top / part):
@@ -130,9 +130,9 @@ def make_new_folder(folder: Path, mode: int) -> None:
 
 
 def give_to_owner(descriptor: int, folder: Path) -> None:
-    """Of what is open and stands in ``folder``; only root can give, and nobody else has to.
+    """Give an open file or folder to the owner of ``folder``; only root can, and only root has to.
 
-    Where the file system knows no owners, or takes no other ones, it stays as it is.
+    It stays as it is where the file system has no owners, or does not change them.
     """
     if os.geteuid() == 0:
         with suppress(OSError):

@@ -31,7 +31,7 @@ class PublishedWalk:
 
     t_s: Floats  # (n,)
     truth_m: Floats  # (n, 3) north, east, down in a frame of the truth's own
-    positions: Sequence[Position]  # (n,) of nobody, without pressure
+    positions: Sequence[Position]  # (n,) without unit and pressure
 
 
 def write_walk(path: Path, walk: PublishedWalk) -> None:

@@ -19,7 +19,7 @@ GOOD, DEGRADED, LOST = Quality.GOOD, Quality.DEGRADED, Quality.LOST
 
 
 class Reason(IntFlag):
-    """Why an estimate is not ``GOOD``, or no better; the bits are those on the wire."""
+    """Reasons that an estimate is not ``GOOD``, or no better; the bits are those on the wire."""
 
     NONE = 0
     ALIGNING = 1  # not enough stillness yet to know which way is down

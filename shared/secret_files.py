@@ -1,5 +1,5 @@
 """Files that their owner alone may read, such as private keys: one that others can read is closed
-to them, and named, as somebody may have read it.
+to them, and reported, as another user may have read it.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from shared.own_files import open_own
 
-OTHERS = 0o007  # whoever is neither the owner nor of the group
+OTHERS = 0o007  # users who are neither the owner nor of the group
 ALL_BUT_OWNER = 0o077
 
 

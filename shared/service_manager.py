@@ -1,7 +1,7 @@
 """Notifications to systemd, or to whatever started this program and keeps it running.
 
 The protocol is that of sd_notify(3): a datagram to the socket that the environment names.  A
-program that has not said for too long that it works is ended and started anew (``WatchdogSec``).
+program that has not reported in time that it works is restarted (``WatchdogSec``).
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ _SOCKET = "NOTIFY_SOCKET"
 
 
 class ServiceManager:
-    """Where nobody wants to hear, and where saying fails, nothing happens."""
+    """Sender of notifications; without a socket, or where sending fails, it does nothing."""
 
     def __init__(self, environment: Mapping[str, str]) -> None:
         address = environment.get(_SOCKET, "")
         self._address = f"\0{address[1:]}" if address.startswith("@") else address
 
     def ready(self) -> None:
-        """The program does from now on what it is there for."""
+        """Notify that the start is complete."""
         self._say(b"READY=1")
 
     def working(self) -> None:
-        """Said once a second by the thread without which nothing works."""
+        """Reset the watchdog; called once a second by the main thread."""
         self._say(b"WATCHDOG=1")
 
     def _say(self, what: bytes) -> None:

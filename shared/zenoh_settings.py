@@ -15,21 +15,21 @@ _LEASE_MS = 3000
 LOCAL_LINK = "unixsock-stream"  # a socket in a folder of this machine, which is its owner's alone
 _KEEP_ALIVES_A_LEASE = 4
 _RETRY = {"period_init_ms": 200, "period_max_ms": 1000, "period_increase_factor": 1.5}
-# What is larger is not taken, whoever sends it. So much may be unfinished of one link in each of
+# Larger messages are refused from every sender. So much may be unfinished of one link in each of
 # Zenoh's eight priorities.
 MOST_BYTES = 2 * 1024 * 1024
-# What units say and answer is smaller by far: what is larger ends at the router.
+# Messages and answers of units are far smaller: larger ones are dropped at the router.
 MOST_PUBLISHED_BYTES = 64 * 1024
 MOST_ANSWERED_BYTES = 1024 * 1024  # twice what is asked for at once
 _LARGEST = (
-    ("said", "put", MOST_PUBLISHED_BYTES, ("*/up/**", "*/alert/**", "*/heartbeat")),
+    ("published", "put", MOST_PUBLISHED_BYTES, ("*/up/**", "*/alert/**", "*/heartbeat")),
     ("answered", "reply", MOST_ANSWERED_BYTES, ("**",)),
 )
-# Who has said hello to the router and has no session yet: all units at once, when it opens again.
+# Connections to the router without a session yet: all units at once, when it opens again.
 _UNICAST = {"accept_pending": 1000}
 _QUERY_HZ = 5.0  # a unit asks for the time once a second at most
 # Batches of 64 KiB towards each neighbour, made when needed: 1 MB of live data outlasts a second
-# in which a busy machine lets nobody run. With two batches, as is usual, it was dropped.
+# in which a busy machine runs no other process. With two batches, the default, it was dropped.
 _ROUTER_QUEUES = {
     "control": 2,
     "real_time": 4,
@@ -97,7 +97,7 @@ def settings_of(endpoint: Endpoint) -> dict[str, Any]:
         "scouting": {
             "multicast": {"enabled": False},
             "gossip": {"enabled": False},
-            "delay": 0,  # nobody is scouted for: do not wait half a second for them
+            "delay": 0,  # without scouting there is no answer to wait half a second for
         },
         "transport": {"link": link, "shared_memory": {"enabled": False}, "unicast": _UNICAST},
     } | _role_settings(endpoint)

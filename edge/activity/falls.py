@@ -22,7 +22,7 @@ _HOLE_NS = NS_PER_S // 10  # between two samples; in a longer one there may have
 _IMPACT_MPS2 = 30.0
 _IMPACT_WITHIN_NS = NS_PER_S // 2
 _DOWN_FOR_S = 2.0  # motionless after the blow
-_DOWN_WITHIN_NS = 8 * NS_PER_S  # that were seen: in a hole nobody is known to have got up
+_DOWN_WITHIN_NS = 8 * NS_PER_S  # of received samples: a gap in them is no proof of getting up
 _WALKING_STRIDES = 2  # strides: one may be a lunge on the way down
 
 

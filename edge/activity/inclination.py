@@ -1,7 +1,7 @@
 """Inclination of one body segment: the direction up in the axes of its sensor, twice a second.
 
 The gyroscope carries the direction on and the accelerometer corrects it, the less the further
-its force is from that of gravity: while somebody moves, that is not all it feels.
+its force is from that of gravity: in motion it measures the acceleration as well.
 """
 
 from __future__ import annotations

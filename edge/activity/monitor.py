@@ -2,7 +2,7 @@
 
 The tracker's strides say how one moves, by their speed, their rise and the tilt of the foot
 as it comes down; the accelerometer alone says whether one moves at all and how the foot is
-held.  Rows come up to a second after their samples, so what ends is told by the samples.
+held.  Rows come up to a second after their samples, so an end is found in the samples.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Posture of the foot: as when standing, or tipped over as in crawling and lying.
 
 Standing is not given: the first rest is taken for it, and the footfalls of long strides,
-which nobody makes on hands and knees, correct it.
+which are impossible on hands and knees, correct it.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ _KNEELING_S = 6.0  # someone who crawls may rest on hands and knees for so long
 _SAME_COS = 0.8
 _CRAWL_STRIDE_M = 0.1  # who stirs where they lie puts the foot down where it was
 _SUDDEN_NS = 2 * NS_PER_S  # from upright to rest
-_SUDDEN_RADPS = 2.4  # nobody tips the foot so fast who lies or kneels down
+_SUDDEN_RADPS = 2.4  # faster than the foot tips when a person lies or kneels down
 _COLLAPSED_S = 1.0
 _TIPPED_FOR_NS = 3 * NS_PER_S // 2
-_LATE_NS = 10 * NS_PER_S  # a stride is told long before; what is earlier is of a clock that was set
+_LATE_NS = 10 * NS_PER_S  # a stride is reported sooner; an older one is of a clock that was set
 
 
 class Posture:

@@ -18,7 +18,7 @@ from edge.samples import Floats
 Segment = Literal["trunk", "thigh", "shank"]
 
 _WINDOWS = 6  # three seconds of walking are judged at once
-_STEPS_HZ = (1.3, 2.8)  # of a walk; nobody crawls so fast
+_STEPS_HZ = (1.3, 2.8)  # of a walk; crawling is slower
 _STEP_STD_MPS2 = (0.6, 8.0)  # of the vertical force
 _LEG_STD_RADPS = 0.5
 _STEADY_COS = 0.95  # of the inclination, from window to window
@@ -54,7 +54,7 @@ class SegmentAxes:
 
     @property
     def knows_forward(self) -> bool:
-        """True where front and sides are told apart."""
+        """True where front and sides are distinguished."""
         length = float(np.linalg.norm(self._forward_b))
         is_shown = self._is_given or self._walks >= _FORWARD_WALKS
         return is_shown and length >= _FORWARD_AGREES

@@ -10,7 +10,7 @@ from shared.clock import NS_PER_S
 from shared.earth_field import EarthField, earth_field
 
 _DAY_NS = 86_400 * NS_PER_S
-_FAR_M = 5_000.0  # a fix that is no better tells no more than the settings
+_FAR_M = 5_000.0  # a fix that is no better adds nothing to the settings
 _PLACE_DIGITS = 2  # of degrees; over a kilometre the field hardly changes
 
 
@@ -31,7 +31,7 @@ class ExpectedField:
         """The field, and the source's time from which it holds.
 
         ``utc_ns_of`` gives the date of a source's time.  While that is no date of the model,
-        because the clock has not been set, nothing is said, and it is tried again.
+        because the clock has not been set, None is returned, and the next batch is tried.
         """
         if self._fixed:
             return None

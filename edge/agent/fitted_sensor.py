@@ -38,7 +38,7 @@ class FittedSensor:
     def as_sent(self, recognised_place: str = "") -> UnitSensor:
         """Return the part of the unit's description that describes it.
 
-        ``recognised_place``: where its motion has shown that it is worn, if nobody has set that.
+        ``recognised_place``: place on the body by its motion, where none is configured.
         """
         description = self.description
         is_recognised = bool(recognised_place) and not description.place

@@ -196,6 +196,6 @@ class Link:
         declared.callback(bus.declare_alive(alive_key(self._unit_id)).close)
 
     def _forget_bus(self) -> None:
-        """Drop the bus, on which nobody may publish while it closes."""
+        """Drop the bus, so that no thread publishes on it while it closes."""
         with self._using:
             self._bus = None

@@ -39,7 +39,7 @@ class MaydayLatch:
 
     @property
     def fault(self) -> str:
-        """What fails, for a person; empty when nothing does."""
+        """Fault of the disk as a sentence; empty where there is none."""
         if self._worker.fault:
             return f"the mayday's state would not survive a restart: {self._worker.fault}"
         return self._read_fault

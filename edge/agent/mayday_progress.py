@@ -15,7 +15,7 @@ class MaydayProgress:
         self._sent: Header | None = None  # of a call that is not known to have arrived
         self.called = 0
         self.received = 0  # of these, by the station
-        self.acknowledgement = ""  # id of the command that told of it; empty: of the newest none
+        self.acknowledgement = ""  # id of the command that acknowledged the newest call, or empty
 
     def note_own(self, messages: Iterable[Message]) -> None:
         """Note the unit's own messages, as they are sent."""

@@ -53,7 +53,7 @@ class OpenCommands:
 
     @property
     def fault(self) -> str:
-        """What fails, for a person; empty when nothing does."""
+        """Fault of the disk as a sentence; empty where there is none."""
         if self._worker.fault:
             return f"open commands would not survive a restart: {self._worker.fault}"
         return self._read_fault

@@ -1,9 +1,8 @@
-"""Sends what a unit has to say: into the journal first, then on the air.
+"""Outbox of a unit: messages go into the journal first, then on the air.
 
-A thread of its own, because a disk may take its time to say that bytes are safe.  Messages
-that wait together are committed together, at most every tenth of a second; an alert waits
-for nobody.  What is put at once is committed at once: after a sudden end all of it is there or
-none.
+A thread of its own, because a disk may be slow to confirm a write.  Messages that wait together
+are committed together, at most every tenth of a second; an alert is committed immediately.
+Messages of one call are one transaction: after a sudden end all of them are there or none.
 """
 
 from __future__ import annotations

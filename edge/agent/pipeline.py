@@ -55,9 +55,9 @@ from shared.messages import (
 
 LIVE = Timeline()
 _WORN_S = 20.0  # of motion, all in all
-_SIGHTED_MAX = 1000  # things told from each other
+_SIGHTED_MAX = 1000  # beacons whose sightings are limited one by one
 _ONE_PRESS_NS = 3 * NS_PER_S  # a thumb that presses several times
-_DESCRIPTION_FOR_TRACKER_HZ = 0.2  # it cannot begin before it has heard one
+_DESCRIPTION_FOR_TRACKER_HZ = 0.2  # a tracker elsewhere cannot begin before it has received one
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +89,10 @@ class TrackerPipeline:
         notes: tuple[str, ...] = (),
     ) -> None:
         """``mayday``: one was latched when the unit last came to a sudden end.  ``raw_uplink``:
-        of a unit that sends its samples for somebody else to track with.  ``foot_sensor``: name
-        of the sensor that the tracker needs on a foot.  ``worn_on``: where the tracker expects a
-        sensor whose place nobody has set; its inclination shows the posture.  ``notes``: what is
-        to be said at the start of the tracker and its sensors.
+        of a unit that sends its samples and is tracked elsewhere.  ``foot_sensor``: name
+        of the sensor that the tracker needs on a foot.  ``worn_on``: place on the body that the
+        tracker assumes for a sensor without one; its inclination shows the posture.  ``notes``:
+        messages on the tracker and its sensors that are sent at the start.
         """
         self._identity = identity
         self._sensors = UnitSensors(identity.sensors)
@@ -118,7 +118,7 @@ class TrackerPipeline:
         self._batteries = Batteries()
         self._battery: float | None = None
         self._mayday = mayday
-        self._mayday_ns: int | None = None  # when it was pressed and said
+        self._mayday_ns: int | None = None  # when it was pressed and sent
         self._has_gps = False
         self._preflight: tuple[PreflightFinding, ...] | None = None
         self._journal_pending = 0
@@ -281,8 +281,8 @@ class TrackerPipeline:
         return [sighting(self._stamper.header(mono_ns), sample)]
 
     def _take_button(self, press: ButtonPress, mono_ns: int) -> list[Message]:
-        """A mayday stays until the wearer takes it back.  Pressed again it is said again: somebody
-        at the station may have resolved the first one.
+        """A mayday stays until the wearer cancels it.  Pressed again it is sent again, as an
+        operator may have resolved the first one.
         """
         if press.button == CANCEL:
             if not self._mayday:

@@ -22,8 +22,8 @@ logger = logging.getLogger(__name__)
 def mayday_before(journal: Journal) -> bool:
     """Return True if a mayday was latched when the boot before this one ended suddenly.
 
-    A unit that was stopped in order has said so, and starts afresh; one that has failed had the
-    time to say so, and is started again.
+    A unit that was stopped in order has logged its stop, and starts afresh; one that has failed
+    had the time to log it, too, and is started again.
     """
     for event in next(_boots(journal, EVENT), ()):
         assert isinstance(event, UnitEvent)
@@ -38,8 +38,8 @@ def position_rate_before(journal: Journal, now_mono_ns: int) -> float | None:
     """Return the rate that the station has set since the unit was switched on, if its agent was
     not stopped since: the rate of another incident would surprise.
 
-    Monotonic time begins anew when a machine is switched on: what was said at a later time than the
-    start that followed it was said before that.
+    Monotonic time begins anew when a machine is switched on: a message with a later time than the
+    start that follows it is of the time before the machine was switched on.
     """
     if not any(position_rate_of(answer) for answer in _answers(journal)):
         return None  # most often: the starts since then need not be looked at one by one
@@ -88,7 +88,7 @@ def _readable(journal: Journal, channels: tuple[Channel, ...]) -> Iterator[Earli
     try:
         yield from journal.earlier_alerts(*channels)
     except StoreError as error:
-        logger.warning("not all that was said before this start is known: %s", error)
+        logger.warning("the messages before this start could be read only in part: %s", error)
 
 
 def _decoded(messages: Iterator[EarlierAlert]) -> Iterator[Message]:

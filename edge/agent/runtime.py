@@ -130,7 +130,7 @@ class Agent:
                     return
                 self._run_once()
             if stop.is_set():
-                reason = "told to stop"
+                reason = "stopped by a signal"
             elif parts.reader.failure is None:
                 reason = "the source ended"
         finally:

@@ -1,4 +1,4 @@
-"""Notifying the wearer: what the outputs play, and what the station is told of it."""
+"""Notification of the wearer: signals on the outputs, and the answers to the station."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class WearerNotifier:
 
     @property
     def fault(self) -> str:
-        """What fails on the disk, for a person; empty when nothing does."""
+        """Fault of the disk as a sentence; empty where there is none."""
         return self._open_commands.fault
 
     def take_faults(self) -> tuple[str, ...]:

@@ -13,12 +13,14 @@ logger = logging.getLogger(__name__)
 
 _SEARCH_S = 3.0
 _MOST_ENDPOINTS = 16  # each may take seconds to turn out a lie
-_MOST_NAMED = 100  # strangers; a log is no place for all that somebody makes up
+_MOST_NAMED = 100  # foreign stations in the log, as an attacker can announce any number of them
 
 
 class StationFinder:
-    """Search by the fingerprint of the authority, which whoever hears it can repeat: it spares
-    attempts, and proves nothing.
+    """Search for the station by the fingerprint of its authority.
+
+    Every receiver of an announcement can repeat the fingerprint: it saves attempts to connect, and
+    proves nothing.
     """
 
     def __init__(self, authority: bytes, interfaces: Sequence[str] = ()) -> None:

@@ -23,7 +23,7 @@ class Tracking:
     name: str
     tracker: MultiSensorTracker
     foot_sensor: str | None = None  # name of the sensor that has to be on a foot
-    worn_on: str = ""  # where a sensor is expected whose place nobody has set
+    worn_on: str = ""  # place on the body that is assumed for a sensor without a configured one
     notes: tuple[str, ...] = ()  # what does not fit, for a person
 
 

@@ -34,14 +34,15 @@ class ZenohStation:
     def open_bus(self) -> Bus:
         from shared.bus_zenoh import UnitEndpoint, ZenohBus  # noqa: PLC0415  # slow to load
 
-        # Linked with one of several stations, else it hears double.
+        # Linked with one of several stations, else it receives every message twice.
         if self._find is not None or len(self._member.connect) > 1:
             return self.open_listening_bus()
         return ZenohBus(UnitEndpoint(self._member.connect, self._member.identity))
 
     def open_listening_bus(self) -> Bus:
-        """Open a bus linked with one router, which hears other units, as an endpoint for
-        publishing does not.
+        """Open a bus linked with one router.
+
+        It receives the messages of other units; an endpoint for publishing does not.
 
         While it opens, Zenoh tries the first router again and again, and no other.
         """
@@ -69,8 +70,8 @@ class ZenohStation:
         return why_no_link(self._connect, self._member.identity, datetime.now(UTC))
 
     def _search(self) -> None:
-        """Take up where stations are now; those that the enrolment names stay, whoever announces
-        what.
+        """Take over the addresses of the stations that are announced now.  The addresses in the
+        enrolment stay, whatever is announced.
         """
         now_s = time.monotonic()
         is_fresh = self._searched_s is not None and now_s - self._searched_s < _SEARCH_EVERY_S

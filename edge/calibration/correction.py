@@ -14,8 +14,8 @@ from edge.samples import Floats, ImuBatch, SensorDescription
 class Correction:
     """Correction of the samples of one unit in order; the same however they are batched.
 
-    Most sensors tell their temperature more seldom than they tell motion: what was told last
-    holds until the next.
+    Most sensors report their temperature less often than motion: the last value holds until the
+    next.
     """
 
     def __init__(self, calibration: Calibration, sensor: SensorDescription) -> None:

@@ -140,8 +140,8 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return tuple(found)
 
     def impossible(self) -> str | None:
-        """Return an error that no intact sensor has: the file is damaged, or the samples were of
-        other
+        """Return an error that no intact sensor has, or None: with one, the file is damaged, or
+        the samples were of other movements than those of the calibration.
         """
         if not _MADE[0] <= self.made < _MADE[1]:
             return f"made in {self.made.year}"

@@ -60,7 +60,7 @@ class RestDetector:
                     self._began_ns = cell * WINDOW_NS
                 self._close()
                 if cell - 1 != self._cell:
-                    self._settling = True  # nobody saw what was done with it meanwhile
+                    self._settling = True  # the unit may have been moved meanwhile
                 self._cell = cell
             self._parts.append(samples[start:stop])
 

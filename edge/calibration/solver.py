@@ -66,12 +66,12 @@ def _force_slope(poses: list[RestWindow], rates: Floats) -> tuple[Floats, Floats
 
 
 def observes_misalignment(directions: Floats) -> tuple[bool, bool, bool]:
-    """Return whether poses (n, 3) determine the angles between x and y, x and z, y and z: each
-    beside
+    """Return True for each of the angles between axes x and y, x and z, y and z that the directions
+    (n, 3) of the poses determine, beside scale and bias.
     """
     x, y, z = directions.T
     table = np.column_stack((x * y, x * z, y * z, directions**2, directions))
-    # The second part: what no pose tells of is as good as unknown, and spoils nothing else.
+    # The second part: an angle that no pose observes gets a large variance, and the rest none.
     inverse = np.linalg.inv(table.T @ table + 1e-6 * np.eye(table.shape[1]))
     xy, xz, yz = (np.diag(inverse)[:3] < _SURE**2).tolist()
     return xy, xz, yz
@@ -150,8 +150,8 @@ def solve_warmth(windows: list[RestWindow]) -> Warmth:
 def _line(degc: Floats, values: Floats) -> tuple[Vector, Vector, float]:
     """Slope of windows (n, 3), its standard deviation, and the root mean square off the line.
 
-    A bias walks by itself while the sensor warms, and that looks like a slope.  How much it
-    walks is told by what is off the line beyond noise, each by its expectation.
+    A bias walks by itself while the sensor warms, and that looks like a slope.  The size of its
+    walk follows from the residuals beyond the noise, both by their expectation.
     """
     blocks = values.reshape(-1, _BLOCK, 3)
     count = len(blocks)

@@ -29,7 +29,7 @@ _WARM_UP_BLOCKS = 8 * 20  # windows
 _NEIGHBOURS = 3  # windows on either side of one, by which its temperature is judged
 _MISREAD_DEGC = 2.0  # off those around it: no sensor warms so fast
 _MISREAD_MOST = 0.25  # of the windows: what is left of more spans ten degrees by chance
-_DIRECTIONS = 3.0  # steps from -1 to 1 on each axis in which directions of the field are told
+_DIRECTIONS = 3.0  # steps from -1 to 1 on each axis by which directions of the field are counted
 _FLAT = 0.06  # spread off the best plane against that in it: turned about one axis only
 _FIELDS_UT = (15.0, 90.0)  # of the earth, with what a unit's own iron may add or take
 _MISREAD_SHARE = 0.02  # of the readings; more are no mistakes
@@ -59,7 +59,7 @@ class StillStep:
     """Step for the bias of the gyroscope: the longest rest."""
 
     name = "still"
-    instruction = "Lay the unit on a table that nobody touches, and leave it alone."
+    instruction = "Lay the unit on a table, and do not touch the unit or the table."
 
     def __init__(self) -> None:
         self._finder = RestDetector()
@@ -89,14 +89,14 @@ class StillStep:
         return f"{min(seconds(self.windows()), _STILL_FOR_S):.0f} of {_STILL_FOR_S:.0f} s"
 
     def _is_stuck(self) -> str | None:
-        """A gyroscope that works trembles at rest; one value repeated tells nothing of its bias."""
+        """A gyroscope that works is noisy at rest; one repeated value does not show its bias."""
         spread = np.ptp([window.gyro_radps for window in self.windows()], axis=0)
         axes = [axis for axis, by in zip("xyz", spread, strict=True) if by < _REPEATED_RADPS]
         if not axes:
             return None
         return (
             f"the gyroscope repeated one value about {_listed(axes)} all the time: it hangs, or "
-            "tells too little of slow rates to be calibrated; switch it off and on and try again"
+            "is too coarse at slow rates to be calibrated; switch it off and on and try again"
         )
 
 
@@ -267,12 +267,12 @@ class WarmUpStep:
     def missing(self) -> str | None:
         windows = self.windows()
         if not windows and self._finder.rests:
-            return "this unit does not tell its sensor's temperature: leave the warm-up out"
+            return "this unit does not report its sensor's temperature: leave the warm-up out"
         observed = self._known_windows()
         if len(windows) < (1.0 - _MISREAD_MOST) * len(observed):
             return (
                 f"the temperature jumps about by more than {_MISREAD_DEGC:.0f} degC between half "
-                "seconds, which tells nothing of how warm the sensor is: is its thermometer whole?"
+                "seconds, which is not the sensor's own temperature: is its thermometer defective?"
             )
         span_degc = self._span_degc()
         if span_degc < _SPAN_DEGC:

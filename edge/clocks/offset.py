@@ -3,9 +3,9 @@ timestamps.
 
 Pure.  An exchange bounds the offset: it is the middle of what is possible give or take half the
 round trip (Mills, "Network Time Protocol", RFC 5905, section 8), so quick exchanges count for much
-more than those that were queued.  How the quickest way there differs from the way back nobody can
-tell: that stays in the uncertainty for good, however many exchanges there were.  Offset and drift
-are the two states of a Kalman filter.
+more than those that were queued.  The asymmetry between the two directions cannot be observed: it
+stays in the uncertainty for good, however many exchanges there were.  Offset and drift are the two
+states of a Kalman filter.
 """
 
 from __future__ import annotations

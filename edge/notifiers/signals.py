@@ -1,6 +1,6 @@
 """Signals to the wearer: what each means, how urgent it is, and its pattern of light and sound.
 
-Patterns differ in rhythm, as a wearer tells them apart through gloves, smoke and noise; pitch helps
+Patterns differ in rhythm, which can be recognised through gloves, smoke and noise; pitch helps
 where the output has one.  A rising sequence is the pre-alert's alone, as with other personal alert
 safety systems.
 """

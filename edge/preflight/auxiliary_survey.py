@@ -1,8 +1,8 @@
 """Survey of what a unit reads beside its inertial sensor: temperatures, batteries, satellites,
 beacons and buttons.
 
-What was set and gives nothing has failed; what the unit does not have at all is said with what that
-costs.
+A device that is configured and gives nothing has failed; a device that the unit lacks is a finding,
+too, with its consequence.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _TWO_DIMENSIONAL = 2  # fix type
 _BUTTONS = frozenset({Quantity.MAYDAY_BUTTON, Quantity.ACKNOWLEDGE_BUTTON})
 
 _NO_HEAT_ALARM = "no heat alarm for this wearer: give --temperature"
-_NO_LOW_BATTERY = "nobody is warned before it is empty: give --battery"
+_NO_LOW_BATTERY = "there is no warning before it is empty: give --battery"
 _NO_MAYDAY = "the wearer cannot call a mayday with this unit: give --button"
 
 
@@ -67,7 +67,7 @@ class AuxiliarySurvey:
                 self._buttons.add(sample.button)
 
     def findings(self, *, asks_press: bool = True) -> Iterator[CheckFinding]:
-        """``asks_press``: somebody was asked to press the button."""
+        """``asks_press``: a person was asked to press the button."""
         yield from self._temperature()
         yield from self._battery()
         yield from self._gnss()

@@ -9,11 +9,11 @@ import msgspec
 
 
 class Severity(StrEnum):
-    """How much a finding matters."""
+    """Severity of a finding."""
 
     OK = "ok"
     WARNING = "warning"  # the unit works, and something of it is missing or weak
-    FAILED = "failed"  # the wearer is not tracked, or not heard
+    FAILED = "failed"  # the wearer is not tracked, or cannot call
 
 
 class CheckFinding(msgspec.Struct, frozen=True):

@@ -61,7 +61,7 @@ class InertialSurvey:
             self._pressure_pa.append(imu.pressure_pa)
 
     def findings(self, *, asks_rest: bool = True) -> Iterator[CheckFinding]:
-        """``asks_rest``: somebody was asked to lay the unit down."""
+        """``asks_rest``: a person was asked to lay the unit down."""
         for finding in self._findings(asks_rest=asks_rest):
             of = f" of {self._name}" if self._name else ""
             yield msgspec.structs.replace(finding, subject=f"{finding.subject}{of}")
@@ -72,7 +72,7 @@ class InertialSurvey:
                 _SENSOR,
                 Severity.FAILED,
                 f"{self._sensor.name or 'the source'} gave no samples",
-                "check its power and cable; nobody is tracked without it",
+                "check its power and cable; without it the wearer is not tracked",
             )
             return
         yield from (CheckFinding(_SENSOR, Severity.FAILED, fault) for fault in self._faults)

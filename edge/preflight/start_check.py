@@ -1,9 +1,9 @@
 """Check that a unit makes by itself at its start, beside everything else.
 
-It is the short form: nobody lays the unit down or presses anything, no output plays, and link and
-clock show themselves.  It watches what the sensors give for some seconds.  What it has found wrong
-is struck off when it has come right, as with a sensor that appears later, and nothing is added:
-what fails later is an event of its own.
+It is the short form: no person has to lay the unit down or press a button, no output plays, and
+link and clock are not checked.  It watches the sensors for some seconds.  A fault that it has found
+is removed when it is gone, as with a sensor that appears later, and none is added: a later failure
+is an event of its own.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ class RawStreamListener:
         self._changed = Condition()
         self._waiting: deque[RawImu] = deque()
         self._descriptions: dict[int, UnitDescription] = {}  # by boot; the newest few
-        self._current_boot: int | None = None  # the boot that is heard
+        self._current_boot: int | None = None  # the boot that is received
         self._last_received_ns = 0  # when it was, last
         self._ended_boots: deque[int] = deque(
             maxlen=_BOOTS_KEPT
@@ -99,8 +99,10 @@ class RawStreamListener:
             return self._waiting.popleft()
 
     def fetch(self, boot_id: int, after_seq: int, before_seq: int) -> Iterator[RawImu]:
-        """Yield what the unit's journal has of the raw stream between two numbers, in order;
-        ends where
+        """Yield the raw samples between two sequence numbers from the unit's journal, in order.
+
+        It ends before the last one where the unit does not answer, has no more of them, or the
+        time for it is over.
         """
         end_ns = self._clock.monotonic_ns() + _FETCH_LIMIT_NS
         first = after_seq + 1

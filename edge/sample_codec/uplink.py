@@ -1,7 +1,7 @@
 """Uplink of a unit that does not track: its inertial samples as messages at the channel's rate.
 
 Pure, as the pipeline it belongs to.  What is sent has been through the wire's rounding once,
-so whoever tracks with it computes what the unit itself would have computed.
+so a tracker elsewhere computes the same result as one on the unit.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from edge.simulation.legs import Metres
 from shared.clock import NS_PER_S
 
 RSSI_STD_DB = 4.0
-LOWEST_DBM = -88.0  # nothing below is heard
+LOWEST_DBM = -88.0  # the receiver's sensitivity
 CEILING_DB_PER_M = 6.0  # of height: a floor lies between
 
 

@@ -1,6 +1,6 @@
 """Movements of a body that stays where it is: standing about, raising a foot, kneeling, sitting.
 
-Nobody is still for minutes.  The weight goes from one leg to the other, a foot is put anew,
+No person is still for minutes.  The weight goes from one leg to the other, a foot is put anew,
 the foot of crossed legs dangles.
 """
 

@@ -39,7 +39,7 @@ class TriadErrors:
 class ImuErrors:
     accel: TriadErrors
     gyro: TriadErrors
-    gain_std: float | None = None  # of scale and axes, as far as a calibration tells
+    gain_std: float | None = None  # of scale and axes by a calibration, 1 sigma; None: unknown
 
 
 IDEAL_IMU = ImuErrors(TriadErrors(), TriadErrors(), gain_std=0.0)

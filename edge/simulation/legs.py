@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-MOST_M = 1e5  # that anybody goes; what is farther would be planned for minutes, stride by stride
+MOST_M = 1e5  # of a leg; a longer one takes minutes to plan, stride by stride
 Metres = Annotated[float, Meta(ge=-MOST_M, le=MOST_M)]
 Degrees = Annotated[float, Meta(ge=-36_000.0, le=36_000.0)]
 Point = tuple[Metres, Metres]

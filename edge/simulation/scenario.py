@@ -40,7 +40,7 @@ class Scenario(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     anchor: Anchor | None = None  # of the site frame, for GPS and the earth's field; the house's
     ambient_degc: tuple[tuple[Time, Warmth], ...] = ((0.0, 18.0),)  # (time, value), linear between
     radio_outages_s: tuple[tuple[Time, Time], ...] = ()  # (start, duration)
-    beacons: tuple[BeaconPlace, ...] = ()  # heard by a receiver that the wearer carries
+    beacons: tuple[BeaconPlace, ...] = ()  # seen by a receiver that the wearer carries
     battery_start: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.95
     battery_life_s: Annotated[float, Meta(ge=1.0, le=1e9)] = 6 * 3600.0  # from full to empty
     acknowledges_every_s: Annotated[int, Meta(ge=1)] | None = None  # looks at the unit so often

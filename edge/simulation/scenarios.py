@@ -169,7 +169,7 @@ SCENARIOS: tuple[Scenario, ...] = (
     ),
     Scenario(
         name="passes-beacons",
-        summary="searches both floors with a receiver that hears the beacons on the way",
+        summary="searches both floors with a receiver of the beacons on the way",
         legs=_enter(),
         loop=(
             _HOUSE.search("office"),

@@ -131,7 +131,7 @@ class Simulation:
         )
 
     def sensor_rngs(self) -> list[np.random.Generator]:
-        """Return the generators of the errors, new at each call: of the inertial sensors, the"""
+        """Return the five generators of the sensors' errors, new at each call."""
         return [np.random.default_rng(seed) for seed in _children(self._sensor_seed, 5)]
 
     def beacon_rng(self) -> np.random.Generator:

@@ -96,6 +96,6 @@ class BusSource(OfflineSource):
     def _followed(self) -> tuple[RawStreamListener, int, dict[str, SensorDescription]]:
         if self._listener is None or self._boot is None:
             raise RecordingError(
-                f"bus:{self.unit_id} is heard by `muster edge run` only, when the unit is there"
+                f"bus:{self.unit_id} is received by `muster edge run` only, while the unit sends"
             )
         return self._listener, *self._boot

@@ -1,10 +1,10 @@
 """Clock of a device, mapped to this machine's clock by when its messages come.
 
-A message comes after it was meant, never before: the least delay of the last seconds is the
-offset, give or take what the quickest message took.  The offset follows the device's drift a little
-at a time, so that intervals between samples stay the device's own.  A clock that was set, started
-anew or wrapped is laid on again, and that is told; one message is not believed, because noise on a
-line says any time.
+A message arrives after its time, never before: the least delay of the last seconds is the
+offset, up to the delay of the quickest message.  The offset follows the device's drift slowly, so
+that intervals between samples stay the device's own.  Where the device's clock was set, restarted
+or wrapped, the offset begins anew, and the event is reported; one message alone does not do this,
+because noise on a line can look like any time.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ logger = logging.getLogger(__name__)
 
 _STALE_NS = 5 * NS_PER_S  # without a reading: a 1-wire sensor takes a second
 _RECOVERED_NS = 10 * NS_PER_S  # of readings, after which the same reason is reported again
-_SAMPLES_MAX = 100  # readings that nobody took; the oldest are left out
+_SAMPLES_MAX = 100  # readings that were not taken; the oldest are dropped
 _JOIN_TIMEOUT_S = 0.5  # one that hangs is left behind
 
 Sample = TypeVar("Sample")

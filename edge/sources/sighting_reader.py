@@ -56,7 +56,7 @@ class SightingReader:
         return tuple(self._seen.popleft() for _ in range(len(self._seen)))
 
     def take_faults(self) -> tuple[str, ...]:
-        """Return none: what it misses is logged, and endangers nobody."""
+        """Return none: a missed sighting is logged, and endangers no one."""
         return ()
 
     def close(self) -> None:

@@ -49,12 +49,12 @@ class UnitDataFolder:
 
     @property
     def calibrations(self) -> Path:
-        """Calibrations ever used, by their identity: without them the raw samples do not"""
+        """Calibrations ever used, by their identity: the raw samples are computed with them."""
         return self.path / "calibrations"
 
     def _make_own(self) -> Path | None:
         owner_file, owner, quarantine = self.path / _OWNER, "", None
-        with suppress(OSError, UnicodeDecodeError):  # nobody has said so: it is this one's
+        with suppress(OSError, UnicodeDecodeError):  # without an owner's name it is this unit's
             # Zeros are what a power cut left of it.
             owner = owner_file.read_text(encoding="utf-8").replace("\0", "").strip()
         if owner == self.path.name:

@@ -24,7 +24,7 @@ class QueryServer:
     def __init__(self, unit_id: str, branch: str, functions: Mapping[str, AnswerFunction]) -> None:
         self._prefix = f"{ROOT}/{unit_id}/{branch}/"
         self._functions = functions
-        self._last_error = ""  # the last that was told, while it lasts
+        self._last_error = ""  # the last in the log, while it lasts
 
     @property
     def key_expression(self) -> str:

@@ -11,7 +11,7 @@ from shared.errors import MusterError
 
 
 class ButtonError(MusterError):
-    """A button cannot be read now; the text tells a person why, and what to do."""
+    """A button cannot be read now; the text states why, and what to do."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,7 +55,7 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class Extraction:
-    """What the new file has, and what could not be read for it."""
+    """Contents of the new file, and damage of the log that it was read from."""
 
     messages: int
     damage: list[str]
@@ -119,7 +119,7 @@ def cut_log(
 
 
 def _origin(files: LogFileSet, selection: Selection) -> dict[str, str]:
-    """Where an extract is from, for any reader of MCAP; the log's id stands in the head."""
+    """Origin of an extract, for any reader of MCAP; the log's id stands in the head."""
     return {
         "muster_version": version("muster"),
         "first_file": files.paths[0].name,

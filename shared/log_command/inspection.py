@@ -76,7 +76,7 @@ def check_file(path: Path, on_bytes: Callable[[int], None]) -> FileContents:
 
 
 def damage_of(reader: SegmentReader) -> list[str]:
-    """What could not be read of a file so far, in words."""
+    """Damage of a file that was found so far, as sentences."""
     damage = list(reader.damage)
     name = reader.path.name
     if identity_of(reader.path) is None:

@@ -56,7 +56,7 @@ def records_in(data: bytes) -> Iterator[tuple[int, bytes]]:
 
 
 def message_offsets(data: bytes, topics: dict[int, str]) -> Iterator[int]:
-    """Where the messages in a chunk's data are; learns the topics on the way."""
+    """Positions of the messages in a chunk's data; learns the topics on the way."""
     offset = 0
     unpack = RECORD.unpack_from
     message = int(Opcode.MESSAGE)

@@ -37,7 +37,7 @@ class Chunk:
 
 @dataclass(slots=True)
 class Contents:
-    """What a segment holds, found without decompressing it."""
+    """Contents of a segment, found without decompressing it."""
 
     chunks: list[Chunk] = field(default_factory=list)
     topics: dict[int, str] = field(default_factory=dict)

@@ -43,7 +43,7 @@ class DurableFile:
         return len(data)
 
     def take(self) -> bytes:
-        """What waits, instead of bringing it to the disk: for a file that is sent elsewhere."""
+        """Take the buffered bytes instead of writing them: for a file that is sent elsewhere."""
         content = b"".join(self._waiting)
         self._waiting.clear()
         self._given_bytes = self._safe_bytes = self._size

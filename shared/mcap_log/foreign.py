@@ -35,7 +35,7 @@ _LAST_NS = 3600 * NS_PER_S  # of one that none follows, so much may be lost at i
 
 @dataclass(frozen=True, slots=True)
 class LogEnd:
-    """Where a log goes on."""
+    """Position at which a log continues."""
 
     log_id: str = ""  # empty: no segment of it says so
     name: str = ""  # of its newest segment
@@ -82,7 +82,7 @@ def log_end(folder: Path) -> LogEnd:
 
 
 def identity_in_log(path: Path) -> SegmentIdentity:
-    """Where its own head is damaged, that of the log around it."""
+    """Identity of a segment; with a damaged head, that of the log around it."""
     around = [path for path, _ in candidates(path.parent, {})]
     return identity_of(path) or SegmentIdentity(log_id_of(around))
 
@@ -110,7 +110,7 @@ def _in_order(paths: Sequence[Path]) -> list[Path]:
 
 
 def foreign_by_content(path: Path, following: Path | None) -> str:
-    """Empty where it is of the log, or damaged so that nobody can tell."""
+    """Reason that a segment is of another log; empty where it is of this one, or too damaged."""
     try:
         file = SegmentFile(path)
     except LogError:
@@ -128,7 +128,7 @@ def foreign_by_content(path: Path, following: Path | None) -> str:
 
 
 def _first_ns(file: SegmentFile, chunk_at: int) -> int:
-    """When the first record was written; what the chunk says of its times has no checksum."""
+    """Log time of the first record; the times in the chunk's header have no checksum."""
     opcode, length = file.record_at(chunk_at)
     if opcode != Opcode.CHUNK or length < CHUNK.size:
         raise ValueError("no chunk stands there")

@@ -41,7 +41,7 @@ class SegmentIdentity:
 
 
 def identity_of(path: Path) -> SegmentIdentity | None:
-    """None where it is damaged, or gone, so that nobody can tell."""
+    """Identity of a segment; None where it is damaged or gone."""
     try:
         file = path.stat()
     except OSError:
@@ -81,7 +81,7 @@ def _identity(file: SegmentFile) -> SegmentIdentity:
 
 
 def first_chunk_at(file: SegmentFile) -> int:
-    """Where it begins; ValueError where the head is damaged."""
+    """Offset of its beginning; ValueError where the head is damaged."""
     _, offset = _header(file)
     opcode, length = file.record_at(offset)
     return offset + RECORD.size + length if opcode == Opcode.METADATA else offset

@@ -43,7 +43,7 @@ from shared.mcap_log.container import (
 from shared.mcap_log.durable_file import DurableFile
 from shared.mcap_log.identity import PROFILE, SegmentIdentity
 
-_MESSAGE = struct.Struct(MESSAGE.format + "Q")  # and when it was said
+_MESSAGE = struct.Struct(MESSAGE.format + "Q")  # and its publish time
 _INDEX = struct.Struct("<BQHI")  # opcode, length, topic, bytes of entries
 _SIZE = struct.Struct("<Q")
 _INDEX_OF_TOPIC = np.dtype([("topic", "<u2"), ("offset", "<u8")])
@@ -113,7 +113,7 @@ class ChunkMaker:
         self.size += 9 + length
 
     def take(self) -> MadeChunk | None:
-        """What came since the last one; None where there was no message."""
+        """Chunk of the records since the last one; None where there was no message."""
         if not self._entries:
             return None
         data = b"".join(self._parts)

@@ -36,7 +36,7 @@ class RangedSegmentFile(SegmentFile):
         self._lock = Lock()
 
     def close(self) -> None:
-        """What was fetched is kept for the next reader."""
+        """Keep fetched bytes for the next reader."""
 
     def prefetch(self, from_ns: int, until_ns: int) -> None:
         """Fetch all chunks that have records of the time at once."""
@@ -88,7 +88,7 @@ class RangedSegmentFile(SegmentFile):
         self._forget(set(range(first, last + 1)))
 
     def _forget(self, needed: set[int]) -> None:
-        """What was used longest ago, where it is too much in all."""
+        """Drop the least recently used bytes where there are too many in all."""
         kept_bytes = sum(map(len, self._blocks.values()))
         for number in list(self._blocks):
             if kept_bytes <= _KEPT_BYTES:

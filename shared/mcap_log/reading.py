@@ -39,7 +39,7 @@ class IntactChunk:
 
 @dataclass(frozen=True, slots=True)
 class _Wanted:
-    """Which records are asked for."""
+    """Selection of records."""
 
     low_ns: int
     high_ns: int
@@ -77,7 +77,7 @@ class SegmentReader:
 
     @property
     def state(self) -> SegmentState:
-        """Of nobody who writes to it anything is known here: an open one counts as torn."""
+        """State by the contents alone: a segment that is still written counts as torn."""
         if not self._file.is_given:
             return SegmentState.UNREADABLE
         return SegmentState.CLOSED if self._contents.is_complete else SegmentState.TORN
@@ -149,7 +149,7 @@ class SegmentReader:
         return self._file.is_given and all(map(self._chunk_data, self._contents.chunks))
 
     def intact_chunks(self) -> Iterator[IntactChunk]:
-        """What can be read, as it stands in the file."""
+        """Records that can be read, in the order of the file."""
         for chunk in self._contents.chunks:
             data = self._chunk_data(chunk)
             if data:
@@ -235,8 +235,9 @@ def read_log(
     """The records of a folder of segments in the order of writing: ``(t_ns, key, payload)``.
 
     From ``start_ns`` until before ``end_ns``; log times must not go back from one segment to the
-    next.  Files that are no segments of this log are left out.  ``on_damage`` hears in words of
-    each part that could not be read; ``derived``: topics that follow from others are given, too.
+    next.  Files that are no segments of this log are left out.  ``on_damage`` is called with a
+    sentence for each part that could not be read; ``derived``: topics that follow from others are
+    given, too.
     Raises LogError when a segment is taken away meanwhile.
     """
     foreign: dict[Path, str] = {}

@@ -41,7 +41,7 @@ class RebuiltSegment:
     def finish(self) -> None:
         """Write what makes the file complete."""
         for number in self._mcap.counts.keys() - self._mcap.topics.keys():
-            # The chunk that told its key is lost.
+            # The chunk with the record of its topic is lost.
             self._mcap.topics[number] = bytes_of(Channel(number, f"unknown/{number}", "", {}, 0))
         self._mcap.finish()
 

@@ -19,7 +19,7 @@ MAKING = ".recovering"
 
 @dataclass(frozen=True, slots=True)
 class Recovery:
-    """What became of one torn segment."""
+    """Result of the recovery of one torn segment."""
 
     path: Path  # the clean segment
     torn_path: Path  # the original as it was found
@@ -36,7 +36,7 @@ class Recovery:
 
 
 def recover_log(folder: Path) -> list[Recovery]:
-    """Make every segment of a log complete; nobody may be writing to it.
+    """Make every segment of a log complete; no process may write to it meanwhile.
 
     A torn file is kept beside its clean segment, with ``.torn`` added to its name.  Torn again
     at any instant, the next recovery goes on.  Raises LogError when the disk refuses; the torn
@@ -67,7 +67,7 @@ def recover_log(folder: Path) -> list[Recovery]:
 
 
 def _recover_segment(path: Path) -> Recovery | None:
-    """None when the segment is complete, or nobody can tell."""
+    """None when the segment is complete, or its state cannot be determined."""
     with SegmentReader(path) as reader:
         if reader.state is not SegmentState.TORN:
             return None
@@ -100,7 +100,7 @@ def _tear(torn: Path) -> int:
 
 
 def _free_name(path: Path) -> Path:
-    """Where the torn original goes; earlier ones of the same segment are kept too."""
+    """Path of the torn original; earlier ones of the same segment are kept too."""
     before = _torn_of(path)
     number = 1 + _tear(before[-1]) if before else 1
     return path.with_name(f"{path.name}{TORN}{number if number > 1 else ''}")

@@ -24,12 +24,12 @@ def rewrite_segment(
 ) -> int:
     """Give the number of records that changed; where none did, the file is left as it is.
 
-    ``rest`` gives what is to stand behind the last record.  ``on_damage`` hears in words of each
-    part that could not be read, and so is not in a new file; where one of the three raises, the
-    file stays, too.
+    ``rest`` gives the records behind the last one.  ``on_damage`` is called with a sentence for
+    each part that could not be read, and so is not in a new file; where one of the three raises,
+    the file stays, too.
 
     The segment is exchanged as a whole or not at all; what a reader has open stays as it was.
-    Nobody may be writing to it.  Raises LogError when the disk refuses.
+    No process may write to it meanwhile.  Raises LogError when the disk refuses.
     """
     making = path.with_name(path.name + MAKING)
     try:

@@ -36,7 +36,7 @@ _TOPICS_MAX = 60_000  # a channel id has 16 bits
 
 @dataclass(frozen=True, slots=True)
 class SegmentPolicy:
-    """How a log is cut into segments and brought to the disk."""
+    """Policy of cutting a log into segments and of bringing them to the disk."""
 
     segment_s: float = 900.0
     flush_every_s: float = 0.5
@@ -56,7 +56,7 @@ class SegmentState(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SegmentInfo:
-    """What is known of a segment; times are log times, 0 while it is empty."""
+    """Summary of a segment; times are log times, 0 while it is empty."""
 
     path: Path
     state: SegmentState
@@ -173,7 +173,7 @@ class SegmentWriter:
         policy: SegmentPolicy = SegmentPolicy(),
         on_closed: Callable[[SegmentInfo], None] = lambda _: None,
     ) -> None:
-        """``on_closed`` is told of each segment that is complete and on the disk.
+        """``on_closed`` is called with each segment that is complete and on the disk.
 
         Raises LogError when the folder cannot be made or read.
         """
@@ -204,7 +204,7 @@ class SegmentWriter:
 
     @property
     def problem(self) -> str:
-        """Why records do not reach the disk, as a sentence for a person; empty: they do."""
+        """Reason that records do not reach the disk, as a sentence; empty: they do."""
         if self._trouble is None:
             return ""
         lost = f", {self.lost} records are lost" if self.lost else ""

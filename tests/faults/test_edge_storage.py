@@ -302,7 +302,7 @@ def test_a_unit_whose_disk_hangs_stops_when_it_is_told_to(
     with frozen(freezing_disk):
         until(running.station.faults)
         assert running.ends_within(ENDING_S)
-        assert running.station.how_it_stopped() == "told to stop"
+        assert running.station.how_it_stopped() == "stopped by a signal"
         assert not running.station.is_alive
     told = [record.getMessage() for record in caplog.records]
     assert any("messages are not kept" in one for one in told)

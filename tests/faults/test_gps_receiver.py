@@ -168,9 +168,9 @@ def test_a_line_without_fixes_is_told_and_opened_again(
     ("devices", "said", "told"),
     [
         ((), [], "gpsd has no receiver; is it plugged in"),
-        ((DEVICE,), [], "gpsd hears nothing of its receiver"),
+        ((DEVICE,), [], "gpsd receives nothing from its receiver"),
         ((DEVICE,), [json_line("DEVICE", path=DEVICE, activated=0)], "gpsd has no receiver"),
-        ((DEVICE,), [b"SSH-2.0-OpenSSH_9.6\r\n" * 9], "gpsd hears nothing"),
+        ((DEVICE,), [b"SSH-2.0-OpenSSH_9.6\r\n" * 9], "gpsd receives nothing"),
     ],
     ids=["no device", "silent device", "unplugged", "odd words"],
 )

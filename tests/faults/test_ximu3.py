@@ -152,7 +152,7 @@ def test_samples_at_another_rate_than_said_are_told_once(listen) -> None:
 
     with closing(TcpDevice(parts())) as device:
         listener = listen(device.source, hasty=True)
-        listener.hears("it sends 50 samples a second and 400 are said to come")
+        listener.hears("it sends 50 samples a second, configured are 400")
         listener.close()
     assert len([fault for fault in listener.faults if "a second and" in fault]) == 1
 
@@ -184,7 +184,7 @@ def test_what_is_no_serial_port_is_told(listen, tmp_path: Path) -> None:
         (TimeoutError("timed out"), "does not answer"),
         (OSError(errno.EHOSTUNREACH, "No route to host"), "no way to that address"),
         (OSError(errno.EBUSY, "Device or resource busy"), "another program"),
-        (socket.gaierror(-2, "Name or service not known"), "nobody here knows the name imu.local"),
+        (socket.gaierror(-2, "Name or service not known"), "the name imu.local is not known here"),
         (OSError(errno.ENOSPC, "No space left on device"), "No space left"),
     ],
 )

@@ -134,7 +134,7 @@ def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, star
         until(lambda: station.of(UnitEvent))
         last = station.of(UnitEvent)[-1]
         assert isinstance(last, UnitEvent)
-        assert (last.kind, last.detail) == (EventKind.STOPPED, "told to stop")
+        assert (last.kind, last.detail) == (EventKind.STOPPED, "stopped by a signal")
     finally:
         station.bus.close()
 

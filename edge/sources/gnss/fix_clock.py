@@ -1,9 +1,9 @@
 """Clock of a receiver: its UTC mapped to this machine's monotonic clock.
 
 A fix is of an instant that the receiver knows to the microsecond, and comes some tenths of a second
-later, by a line that may hold it for longer.  Nothing comes before it was said: of the last half
-minute, the fix that came quickest tells how the two clocks lie, and every other is placed by its
-own UTC.  What the quickest one took is stated (``latency_s``).
+later, by a line that may hold it for longer.  No fix arrives before its instant: the fix with the
+least delay of the last half minute gives the offset of the two clocks, and every other is placed by
+its own UTC.  The delay of that one is stated (``latency_s``).
 
 Only the time of day is used, so a receiver without a date, or one that is 1024 weeks off, serves
 as well.  UTC that jumps (a leap second learnt late, a receiver started anew) is believed when it

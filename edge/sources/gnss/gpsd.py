@@ -19,7 +19,7 @@ _PORT = 2947
 _WATCH = b'?WATCH={"enable":true,"json":true};\n'
 _LONGEST = 16384  # bytes; its own limit is 10240
 _LATENCY_S = 0.2  # the receiver's own, and its sentences: gpsd waits for the last one
-_HOLDS_NS = 3 * NS_PER_S  # what was said of the sky or of errors
+_HOLDS_NS = 3 * NS_PER_S  # a report of satellites or of errors
 _ELSEWHERE_NS = 10 * NS_PER_S  # without a fix of one receiver, until another's is taken
 _MOST_DEVICES = 16
 _OPTIONS = {"latency": LATENCY}
@@ -111,7 +111,7 @@ class Gpsd:
         if self._device and self._device not in self._session.present:
             present = ", ".join(sorted(self._session.present))
             return f"gpsd has no receiver {self._device}, it has {present}; name one of these"
-        return "gpsd hears nothing of its receiver; is the receiver on, and the cable in?"
+        return "gpsd receives nothing from its receiver; is the receiver on, and the cable in?"
 
     def _note(self, device: Device) -> None:
         if device.activated == 0:

@@ -4,9 +4,9 @@ out.
 Errors come with "certainty unknown" and a history.  ``GST`` is the receiver's own, one sigma.
 ``eph`` and ``epv`` are the receiver's own where its driver has them (u-blox: one sigma, radial);
 elsewhere gpsd multiplies a dilution of precision by a range error of the last century (19 m and
-23 m at 95 %, a quarter of it with corrections; gpsd_error_model in libgpsd_core.c), which is told
-by the quotient and replaced by what NMEA gets (``accuracy``).  ``epx`` and ``epy``, all that old
-versions say, are 95 %.
+23 m at 95 %, a quarter of it with corrections; gpsd_error_model in libgpsd_core.c), which is
+recognised by the quotient and replaced by the estimate for NMEA (``accuracy``).  ``epx`` and
+``epy``, the only errors of old versions, are 95 %.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ def report_of(line: bytes) -> GpsdReport | None:
 
 
 def fix_of(tpv: Tpv, sky: Sky, gst: Gst, satellites: int, t_ns: int) -> GpsSample:
-    """The fix, with what was said of the sky and of errors about the same time."""
+    """The fix, with satellites and errors of the reports about the same time."""
     located = abs(tpv.lat) <= 90.0 and abs(tpv.lon) <= 180.0
     fix_type = tpv.mode if tpv.mode in {2, 3} and located else 0
     if tpv.status in _NO_FIX_STATUS:

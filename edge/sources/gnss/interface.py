@@ -53,7 +53,7 @@ class Dialect(Protocol):
     def parse_line(self, line: bytes, began_ns: int) -> tuple[Report, ...]:
         """Return the reports that are complete with a line that began to come at ``began_ns``.
 
-        Raises WireError for what it cannot have said.
+        Raises WireError for a line that is no report of a receiver.
         """
         ...
 

@@ -22,7 +22,7 @@ from shared.errors import WireError
 
 logger = logging.getLogger(__name__)
 
-_FIXES_MAX = 600  # fixes that nobody took; the oldest are left out
+_FIXES_MAX = 600  # fixes that were not taken; the oldest are dropped
 _FAULTS_MAX = 100
 _SILENT_NS = 10 * NS_PER_S  # receivers say something every second, and gpsd seeks their speed first
 _CHECK_NS = 10 * NS_PER_S

@@ -35,7 +35,7 @@ from edge.sources.sysfs import write_text
 from shared.clock import Clock
 
 _WAKE_S = 0.05  # between two reads of a buffer
-_HELD_S = 2.0  # in a buffer that nobody reads: a machine that is busy loses nothing
+_HELD_S = 2.0  # in the buffer between two reads: a machine that is busy loses nothing
 _WAIT_S = 0.2  # after which a buffer is asked all the same: it may be gone
 _CHUNK = 1 << 16
 _DEGC = 1e-3  # of the unit of temperatures
@@ -88,7 +88,7 @@ class BufferReader:
     def descriptor(self) -> int:
         return self._descriptor
 
-    def wait_s(self, now_ns: int) -> float:  # noqa: ARG002  # it wakes whoever waits
+    def wait_s(self, now_ns: int) -> float:  # noqa: ARG002  # it wakes the reader itself
         return _WAIT_S
 
     def take(self) -> Block:

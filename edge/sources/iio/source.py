@@ -36,7 +36,7 @@ _BATCH_NS = NS_PER_S // 25  # and a period or two more
 _SILENT_NS = 3 * NS_PER_S
 _RETRY_S = 1.0
 _QUICK_RETRY_S = 0.05  # after samples: a single read may fail
-_FAULTS_MAX = 100  # faults that nobody took; the oldest are left out
+_FAULTS_MAX = 100  # faults that were not taken; the oldest are dropped
 _RATE_OFF = 0.05  # of the rate that was described
 
 

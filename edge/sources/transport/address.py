@@ -125,7 +125,7 @@ _EXPLANATIONS = {
 def explain_os_error(error: OSError, place: TransportAddress) -> str:
     """Return what a person can do about a line that cannot be opened or read."""
     if isinstance(error, socket.gaierror):
-        return f"nobody here knows the name {place.host}; check the address"
+        return f"the name {place.host} is not known here; check the address"
     if isinstance(error, TimeoutError):
         return "it does not answer; is it on, and this machine in its network?"
     return _EXPLANATIONS.get(error.errno or 0, str(error))

@@ -107,6 +107,6 @@ class MessageMonitor:
             return []
         self._rate_reported = True
         return [
-            f"it sends {rate_hz:.0f} samples a second and {self._rate_hz:g} are said to come; set "
+            f"it sends {rate_hz:.0f} samples a second, configured are {self._rate_hz:g}; set "
             f"its inertial message rate divisor to 1 (400 a second), or write ?rate={rate_hz:.0f}"
         ]

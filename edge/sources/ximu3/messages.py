@@ -81,7 +81,7 @@ class Notification:
 
 @dataclass(frozen=True, slots=True)
 class OtherMessage:
-    """Understood to be a message, of a kind that nobody here needs."""
+    """Well-formed message of a kind that is not used here."""
 
 
 Message = (
@@ -126,7 +126,7 @@ def _from_text(frame: bytes) -> Message:
     except UnicodeDecodeError as error:
         raise WireError("bytes that are no text") from error
     if text.startswith("{") and text.endswith("}\r"):
-        return OtherMessage()  # an answer to a command that somebody gave it
+        return OtherMessage()  # an answer to a command of another program
     if not text.endswith("\r"):
         raise WireError("a line without its end")
     kind, _, remainder = text[:-1].partition(",")

@@ -1,7 +1,7 @@
 """Source of an x-io x-IMU3, over Wi-Fi (TCP) or a cable (USB, serial).
 
-The device is listened to and never told anything: how it is set is its owner's business.  While it
-is off, out of reach or talks nonsense, the source says why and tries again, and never ends.
+The device is read and never configured: its settings are its owner's.  While it is off, out of
+reach or sends nonsense, the source reports why and tries again, and never ends.
 """
 
 from __future__ import annotations
@@ -63,8 +63,8 @@ _G_MPS2 = 9.80665
 _BATCH_NS = NS_PER_S // 20
 _SILENT_NS = 3 * NS_PER_S
 _RETRY_S = 1.0
-_FAULTS_MAX = 100  # faults that nobody took; the oldest are left out
-_ERRORS_MAX = 20  # errors of the device that are told from one another
+_FAULTS_MAX = 100  # faults that were not taken; the oldest are dropped
+_ERRORS_MAX = 20  # different errors of the device that are reported
 _SENSOR = "x-IMU3"  # name of its temperature
 _NOTHING: Vector = (np.nan, np.nan, np.nan)
 

@@ -84,7 +84,7 @@ class BlackBox:
 
     @property
     def fault(self) -> str | None:
-        """Why samples are not kept; None while they are."""
+        """Reason that samples are not kept; None while they are."""
         if not self._worker.is_alive:
             return "the black box has stopped"
         if self._worker.fault:
@@ -191,7 +191,7 @@ class BlackBox:
         """Return how much more is to be free on the disk."""
         try:
             disk = shutil.disk_usage(self._folder)
-        except OSError:  # the folder cannot be made yet, or the disk fails: that is told elsewhere
+        except OSError:  # no folder yet, or the disk fails: the writer reports that
             return 0
         return min(_SPARE_BYTES, _SPARE_SHARE * disk.total) - disk.free
 

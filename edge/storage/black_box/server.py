@@ -102,8 +102,8 @@ def _ends_before(path: Path, from_ns: int) -> bool:
     """Return True if a segment, which may still be written, has no record at this log time or
     later.
 
-    Mostly its name tells.  All of one that was torn has to be read for its end, and a unit that is
-    switched off has one of each boot: asked for all of them it would answer too late.
+    Its name is enough in most cases.  A torn segment has to be read to its end, and a unit that is
+    switched off without a stop has one of each boot: reading all of them would take too long.
     """
     if segment_began_ns(path) + _LONGEST_NS < from_ns:
         return True

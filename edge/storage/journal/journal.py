@@ -152,15 +152,16 @@ class Journal:
                     return
 
     def boots(self, newest: int | None = None) -> tuple[JournalBoot, ...]:
-        """Return what can be served, oldest boot first, of the ``newest`` or of all of them;
-        boots of
+        """Return the boots that can be served, oldest first: the ``newest``, or all of them.
+
+        Raises StoreError where they cannot be read.
         """
         path = self._path
         with as_store_error(path), closing(connect(path)) as reader:
             try:
                 return tuple(islice(boots(reader), newest))[::-1]
             except sqlite3.Error as error:
-                # Where nobody can be told what there is, nothing of it will be asked for.
+                # Where the list of boots cannot be read, the station will ask for none of them.
                 if path == self._path and code_of(error) in DAMAGE:
                     self._read_damage = str(error)
                 raise
@@ -175,8 +176,8 @@ class Journal:
         """Yield what is kept of these channels of alerts of the boots before this one, newest
         first.
 
-        Reads while it is iterated.  Damage hides what was said before it in the same boot; what
-        earlier boots said is there all the same.
+        Reads while it is iterated.  Damage hides the alerts before it in the same boot; those of
+        earlier boots are given all the same.
         """
         suffixes = {channel.suffix: channel for channel in channels}
         below, past = self._boot or _NO_BOOT_YET, 1

@@ -51,8 +51,8 @@ def entries(
     to_seq: int,
     priorities: Sequence[int],
 ) -> Iterator[JournalEntry]:
-    """Yield rows without those in which a bit has flipped so that they have wrong types: SQLite
-    sees nothing
+    """Yield rows without those of wrong types, which a flipped bit has caused: SQLite does not
+    check types when it reads.
     """
     parts = [
         connection.execute(

@@ -48,7 +48,7 @@ class JournalWriter:
 
     @property
     def fault(self) -> str | None:
-        """Why the journal cannot be written; None while it can."""
+        """Reason that the journal cannot be written; None while it can."""
         if self._disk.hangs and self._refusal is None:
             return f"the journal hangs: the disk has not answered for {HANGS_S:.0f} s"
         return self._refusal

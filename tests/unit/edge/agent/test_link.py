@@ -274,7 +274,7 @@ def test_a_bus_that_cannot_be_asked_ends_no_agent(station, tmp_path, caplog):
     source = open_source(config.source)
     agent = compose_agent(config, "u1", data, source, FakeStation(open_bus), speed=1.0)
     agent.run(stop)
-    assert how_it_stopped(data) == "told to stop"
+    assert how_it_stopped(data) == "stopped by a signal"
     assert caplog.text.count("cannot be asked") == 1
     data.close()
 

@@ -202,7 +202,7 @@ def test_the_rate_that_was_set_holds_until_the_agent_is_stopped(tmp_path):
     assert RateBoot(tmp_path, 500.0).known_hz == 0.125
     assert RateBoot(tmp_path, 600.0, detail=FAILED).known_hz == 0.125
     assert RateBoot(tmp_path, 700.0, 20.0).known_hz == 0.125
-    assert RateBoot(tmp_path, 800.0, detail="told to stop").known_hz == 20.0
+    assert RateBoot(tmp_path, 800.0, detail="stopped by a signal").known_hz == 20.0
     assert RateBoot(tmp_path, 900.0).known_hz is None
     assert RateBoot(tmp_path, 1000.0).known_hz is None
 

@@ -63,7 +63,7 @@ def life(script: Script, rule: str) -> list[tuple[str, str]]:
 def test_what_nobody_expects_of_it_any_more_ends_with_the_reason(script: Script, rule: str) -> None:
     script.wait(60, lambda: MOOT[rule](script))
     assert life(script, rule) == [("RAISED", "")]
-    script.event(U, EventKind.STOPPED, "told to stop")
+    script.event(U, EventKind.STOPPED, "stopped by a signal")
     script.wait(60)
     assert life(script, rule) == [("RAISED", ""), ("RESOLVED", OFF)]
     script.boot_ids[U] = 8
@@ -108,6 +108,6 @@ def test_whatever_may_have_happened_to_the_wearer_or_the_unit_stands(
     DANGERS[rule](script)
     script.wait(1)
     assert life(script, rule) == [("RAISED", "")]
-    script.event(U, EventKind.STOPPED, "told to stop")
+    script.event(U, EventKind.STOPPED, "stopped by a signal")
     script.wait(600)
     assert life(script, rule) == [("RAISED", "")]

@@ -181,7 +181,7 @@ def test_a_receiver_that_is_named_is_the_only_one() -> None:
 def test_a_receiver_that_says_nothing_to_gpsd_is_told() -> None:
     receiver = Gpsd("//h")
     heard(receiver, gpsd_devices(DEVICE))
-    assert "hears nothing of its receiver" in receiver.silence_reason()
+    assert "receives nothing from its receiver" in receiver.silence_reason()
 
 
 def test_why_there_is_nothing() -> None:
@@ -192,7 +192,7 @@ def test_why_there_is_nothing() -> None:
     heard(receiver, gpsd_devices(DEVICE))
     assert f"gpsd has no receiver {OTHER}, it has {DEVICE}" in receiver.silence_reason()
     heard(receiver, json_line("DEVICE", path=OTHER, activated=iso(0.0)))
-    assert "hears nothing of its receiver" in receiver.silence_reason()
+    assert "receives nothing from its receiver" in receiver.silence_reason()
     for path in (DEVICE, OTHER):
         heard(receiver, json_line("DEVICE", path=path, activated=0))
     assert "gpsd has no receiver; is it plugged in" in receiver.silence_reason()
