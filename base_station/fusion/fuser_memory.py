@@ -20,7 +20,7 @@ class FuserMemory(msgspec.Struct):
     odometry: bytes = b""  # the own path
     previous_run: bytes = b""  # of the run before this one, as it ended
     assumed: bool = True  # nothing but the own frame is known: shown about the unit's start
-    height_assumed: bool = True  # and nothing told yet that it did not begin upstairs
+    height_assumed: bool = True  # and no evidence yet that it did not begin upstairs
     last: Position | None = None
     path: RecentPath = msgspec.field(default_factory=RecentPath)
     fix_t_mono_ns: int | None = None  # the newest accepted fix

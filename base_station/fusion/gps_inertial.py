@@ -39,7 +39,7 @@ from base_station.site.storeys import Storey
 from shared.clock import NS_PER_S
 from shared.messages import Position
 
-INSIDE_NS = 10 * NS_PER_S  # without a fix for as long: inside, where no plan tells
+INSIDE_NS = 10 * NS_PER_S  # without a fix for as long: inside, where there is no plan
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +151,7 @@ class GpsInertialFuser(PathEstimates):
 
     def match_building(self, learnt: LearntBuilding) -> LearntBuilding:
         memory, last = self._memory, self._memory.last
-        if last is None or memory.assumed:  # it is another frame, and tells nothing of this one
+        if last is None or memory.assumed:  # it is another frame, without a relation to this one
             return learnt
         fix_ns = memory.fix_t_mono_ns
         inside = fix_ns is None or last.header.t_mono_ns - fix_ns > INSIDE_NS

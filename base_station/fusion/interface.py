@@ -97,8 +97,8 @@ class Estimate(msgspec.Struct, frozen=True, gc=False):
     quality: Quality
     quality_reason: str
     since_gps_s: float | None
-    height_assumed: bool = False  # nothing said how high the own frame begins: on the ground?
-    assumed: bool = False  # nothing said where it lies: shown as if it were the incident frame
+    height_assumed: bool = False  # no evidence of the height of the own frame: on the ground?
+    assumed: bool = False  # no evidence where it lies: shown as if it were the incident frame
 
 
 class Fuser(Protocol):

@@ -2,7 +2,7 @@
 
 Symbols: ``x`` (n,) is a record's ``mean``, ``P`` (n, n) its ``covariance``, ``F`` the Jacobian of a
 prediction, ``Q`` its noise, ``H`` the Jacobian of a measurement, ``R`` its variance.  Metres,
-seconds and radians; north, east and down of the incident frame unless said otherwise.
+seconds and radians; north, east and down of the incident frame unless stated otherwise.
 
 The state of each filter is one record, so that a position finds it in a few pieces of memory.
 Steps that run five times a second for each unit are here and work in place; each equals filterpy's
@@ -54,7 +54,7 @@ ODOMETRY = np.dtype(  # memory of ``integrate_increment``
         ("std_m", np.float64),  # as stated, along the worse axis
         ("heading_std_rad", np.float64),
         ("step_rad", np.float64),  # direction of the last increment; NaN: there was none
-        ("moved_heading_std_rad", np.float64),  # when it moved last; NaN: nothing was said yet
+        ("moved_heading_std_rad", np.float64),  # when it moved last; NaN: none was stated yet
         ("moving_s", np.float64),
         ("heading_std_growth_radps", np.float64),  # recent growth of that, while moving
         ("drift_radps", np.float64),  # how fast its heading may drift
@@ -77,7 +77,7 @@ PARAMS = np.dtype(  # of ``Parameters``
 )
 MOVING_MPS = 0.1
 MIN_DIRECTION_M = 0.1  # of way that has a direction
-DRIFT_LEARNING_S = 10.0  # moved, after which the unit's own heading says how fast it drifts
+DRIFT_LEARNING_S = 10.0  # moved, after which the unit's own heading gives its drift
 DRIFT_WINDOW_S = 60.0  # moved, over which that is judged
 SUDDEN_GROWTH = 3.0  # so much faster than that, a heading's uncertainty has grown by something else
 

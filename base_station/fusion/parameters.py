@@ -18,7 +18,7 @@ class Parameters:
     drift_wander_radps: float = 6e-5  # of that rate in a minute
     climb_m_per_sqrt_climb_m: float = 0.12  # height error by height climbed
     climb_m_per_sqrt_m: float = 0.01  # and by distance
-    level_m: float = 0.5  # nobody who climbs less than this changes floor
+    level_m: float = 0.5  # a wearer who climbs less than this does not change floor
     level_walk_m: float = 6.0  # walked like that: on a storey
     level_std_m: float = 0.25  # how level storeys are
     level_sure: float = 0.95
@@ -38,11 +38,11 @@ class Parameters:
     unsure_m: float = 5.0  # standard deviation of a place that is called degraded
     lost_m: float = 30.0  # and lost
     height_std_floor_m: float = 5.0
-    open_sky_m: float = 5.0  # standard deviation of a fix that nobody has far inside
+    open_sky_m: float = 5.0  # standard deviation of a fix, which no receiver has far inside
     fastest_mps: float = 12.0
-    unguided_mps: float = 1.5  # how fast a wearer gets away while nothing is heard of the path
+    unguided_mps: float = 1.5  # speed of a wearer while nothing is received of the path
     restart_m: float = 5.0  # and how far while the unit starts again
-    climb_part: float = 0.1  # of the way that somebody got unseen, up or down
+    climb_part: float = 0.1  # of the way that a wearer went unseen, up or down
     stuck_fixes: int = 5
     stuck_m: float = 8.0
     max_rejected_count: int = 20

@@ -8,4 +8,4 @@ THROUGH_WALL = 0.02  # what is left of its likelihood: plans lack doors
 BESIDE_WALL = 0.5  # the same where there is no room for half a body
 OFF_STAIRS = 0.2  # the same where the path climbs and the plan has stairs elsewhere
 CLIMBS = 0.25  # rise over way from which a path climbs
-UNSEEN_M = 3.0  # after a gap as long as this nobody knows around which corners the way led
+UNSEEN_M = 3.0  # after a gap as long as this the corners of the way are unknown

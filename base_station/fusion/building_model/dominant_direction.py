@@ -26,7 +26,7 @@ from base_station.fusion.building_model.straight_segments import (
 )
 
 WINDOW = 16  # of the last legs, one after each turn, that are asked for an axis
-ABOUT_RAD = math.radians(8.0)  # what shows an axis tells no more of its direction
+ABOUT_RAD = math.radians(8.0)  # further legs of an axis add nothing to its direction
 WIDE_RAD = math.radians(10.0)  # a direction less known than this may be any by a single leg
 SETTLED_RAD = math.radians(5.0)  # and is known again by several
 KEPT = 0.3  # of the belief in a direction, with which it is held on to
@@ -73,7 +73,7 @@ class DominantDirectionFilter(msgspec.Struct):
             held.variance
         )
         if shown.evidence < 0.0:
-            return turn_rad, variance  # nobody walks along walls here
+            return turn_rad, variance  # people do not walk along walls here
         off_rad = shown.direction_rad - held.direction_rad
         if held.variance > WIDE_RAD**2:
             if shown.evidence < SHOWN or shown.variance > SETTLED_RAD**2:
@@ -82,7 +82,7 @@ class DominantDirectionFilter(msgspec.Struct):
             return self._follow(segment, held, turn_rad, variance)
         else:
             return turn_rad, self._reject_axis(off_rad**2 + shown.variance, variance)
-        self.segments.clear()  # they have told what they know
+        self.segments.clear()  # their information is used
         return self._condition(held, (off_rad, shown.variance), turn_rad, variance)
 
     def _reject_axis(self, off2: float, variance: float) -> float:

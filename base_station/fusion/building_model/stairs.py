@@ -23,7 +23,7 @@ STOREY_M = 2.0  # a climb of at least this
 TURNS_M = 0.5  # net way over way: less turns back on itself, and lies above the next one
 SAME_LEVEL_M = 1.2
 STD_M = 0.4  # each axis, of a climb's middle by the stairs': a flight is some 1.2 m wide
-SHARED_M2 = 1.0  # by which everybody errs alike, each axis, where nobody says how much
+SHARED_M2 = 1.0  # error common to all units, each axis, where it is not stated
 OTHERS_PER_M2 = 0.15 / 600.0  # other stairs than those known, before anything is known of them
 
 

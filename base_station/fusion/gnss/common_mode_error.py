@@ -19,7 +19,7 @@ from shared.clock import NS_PER_S
 
 Floats = NDArray[np.float64]
 
-COMMON_MOST_M = 1.5  # each axis, of what orbits, clocks and the air do to anybody
+COMMON_MOST_M = 1.5  # each axis, of the errors by orbits, clocks and the air for any receiver
 COMMON_PART = 0.45  # of a fix's variance, at most
 OWN_PART = 0.8  # of the rest is slow too; what is left is new with every fix
 COMMON_S, OWN_S = 1200.0, 300.0  # correlation times, of a receiver that does not move

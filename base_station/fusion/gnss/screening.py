@@ -12,8 +12,8 @@ from shared.messages import FixType, GpsFix
 STD_FLOOR_M = 1.27  # each axis: 1.5 m CEP of data sheets; who claims better is too sure
 STD_UNSTATED_M = 10.0
 STD_ABSURD_M = 100.0
-DEEPEST_M, HIGHEST_M = -1_000.0, 10_000.0  # above the ellipsoid, where anybody stands
-ANCHOR_STD_M = 8.0  # the worst fix that may say where the site is
+DEEPEST_M, HIGHEST_M = -1_000.0, 10_000.0  # above the ellipsoid, of any place on the ground
+ANCHOR_STD_M = 8.0  # of the worst fix that may place the site
 
 
 def screen_fix(fix: GpsFix) -> FixVerdict:

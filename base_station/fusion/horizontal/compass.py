@@ -21,9 +21,9 @@ _DAY_NS = 86_400 * NS_PER_S
 _PLACE_DIGITS = 2  # of degrees
 _PLAN_STD_RAD = 0.02  # how well plans are laid on the map
 _GATE = 3.0  # standard deviations
-_ONE_FIX = 5.0  # tells no more, for it may be wrong itself
+_ONE_FIX = 5.0  # counts at most so much, for it may be wrong itself
 _REFUTED = 8.0
-_WORTH = 0.9  # of the variance held: a compass that leaves more is not listened to
+_WORTH = 0.9  # of the variance held: a compass that leaves more is not used
 
 
 CONTRADICTS2 = 13.8  # chi-square of 2 degrees of freedom, 99.9 %
@@ -33,7 +33,7 @@ class CompassTest(msgspec.Struct):
     """Likelihood ratio test of a compass: a filter with it against one without, by fixes."""
 
     last_heading: CompassHeading | None = None  # last
-    is_rejected: bool = False  # it is not heard again
+    is_rejected: bool = False  # it is not used again
     log_ratio: float = 0.0  # how much likelier fixes were without it, as a logarithm
 
     def add_fix(self, with_distance2: float, without_distance2: float) -> None:

@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 HYPOTHESES = 72
 SPACING_RAD = 2.0 * math.pi / HYPOTHESES
 _PLAUSIBLE = 1e-3  # of the best hypothesis' weight
-SCALE_KNOWN = 0.1  # standard deviation; a solution that tells no heading has several times that
+SCALE_KNOWN = 0.1  # standard deviation; a solution without a heading has several times that
 
 
 class GnssObservation(msgspec.Struct, frozen=True):

@@ -16,7 +16,7 @@ from base_station.site.floor_grid import FloorGrid
 Floats = NDArray[np.float64]
 
 KEPT_M = 30.0  # of path
-LEG_M = 3.0  # walked until somebody might have turned
+LEG_M = 3.0  # walked until the wearer might have turned
 REACH_M = 1.5  # and gone so far
 COSTS = 0.0, math.log(BESIDE_WALL), math.log(THROUGH_WALL), math.log(OFF_STAIRS)
 ANY_WALL, REPEATED_WALL = math.log(THROUGH_WALL), math.log(0.15)

@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 SLOW = slice(4, 8)  # of the fixes' errors
 PLACE_AND_SLOW = [0, 1, 4, 5, 6, 7]
-PATH = [0, 1, 2, 3, DRIFT]  # what the path tells of, in the order of ``port.Posterior``
+PATH = [0, 1, 2, 3, DRIFT]  # of the path, in the order of ``port.Posterior``
 
 
 def turn_and_std(mean: Floats, covariance: Floats) -> tuple[float, float]:

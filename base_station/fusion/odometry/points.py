@@ -144,9 +144,9 @@ def rows_of(points: Sequence[Point]) -> Records:
         values = np.array(column)
         if name == "t_ms":
             values //= NS_PER_MS
-        elif name == "heading_e3":  # whatever it says
+        elif name == "heading_e3":  # any value
             values = np.rint(values % _TURN_RAD * 1e3)
-        elif name.endswith("std_cm"):  # none is said to be smaller than it is
+        elif name.endswith("std_cm"):  # none is stated smaller than it is
             values = saturated(np.ceil(values * 1e2))
         elif name.endswith("_cm"):
             values = saturated(values * 1e2)

@@ -10,7 +10,7 @@ from shared.messages import Position
 
 
 def jump_m(kind: Parameters, last: Position, position: Position, duration_s: float) -> float:
-    """Distance to a position that is farther than anybody goes in that time; 0 of others."""
+    """Distance to a position that is out of a wearer's reach in that time; 0 of others."""
     apart_m = math.hypot(position.north_m - last.north_m, position.east_m - last.east_m)
     return apart_m if apart_m > kind.fastest_mps * max(duration_s, 0.2) + 1.0 else 0.0
 

@@ -24,7 +24,7 @@ Ints = NDArray[np.int64]
 Term = tuple[Ints, Floats | float]
 
 AXIS_STD_RAD = 0.3  # of what has to be added to it in one step
-START_PART = 0.65  # of a start's variance: what was said is off by that for all who begin there
+START_PART = 0.65  # of a start's variance: that error is common to all who begin there
 PLAN_STD_M = 0.25  # by which plans lie aside, each axis
 COMMON_KNOT_S = 600.0  # from one knot of the common error to the next
 

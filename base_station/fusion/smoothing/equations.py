@@ -148,9 +148,7 @@ class NormalEquations:
     def _take(
         self, name: str, matrix: csr_matrix, right: Floats, whole: Floats, shared_right: Floats
     ) -> None:
-        """Eliminate a chain (Schur complement) into ``whole`` and ``told`` of the
-        shared unknowns.
-        """
+        """Eliminate a chain (Schur complement) into ``whole`` and ``shared_right``."""
         own, shared = matrix[:, self._columns[name]], matrix[:, self._first :]
         whole += (shared.T @ shared).toarray()
         shared_right += shared.T @ right

@@ -37,8 +37,8 @@ Ints = NDArray[np.int64]
 
 MAX_ITERATIONS = 10  # Gauss-Newton steps at most
 CONVERGED_M = 0.02  # no knot moved further: done
-UNINFORMATIVE_STD_M = 1e4  # standard deviation of a visit that tells nothing
-ALIGNED_RAD = 0.5  # standard deviation from which a heading is told by the evidence
+UNINFORMATIVE_STD_M = 1e4  # standard deviation of a visit without information
+ALIGNED_RAD = 0.5  # standard deviation below which the evidence gives a heading
 
 
 class Graph:
@@ -184,7 +184,7 @@ class Graph:
                 is_observed = float(across @ spread[pair, pair] @ across) < ALIGNED_RAD**2
                 estimate.aligned[segment] = is_observed and 0.5 < float(np.hypot(*turn)) < 2.0
 
-    # ---- what the solution says
+    # ---- results of the solution
 
     def expected(self, unit_id: str, places: Sequence[PositionConstraint]) -> Prediction:
         """Prediction of places that the solution does not use."""

@@ -27,7 +27,7 @@ CLIMB_M_PER_SQRT_CLIMB_M = 0.12
 CLIMB_M_PER_SQRT_M = 0.01
 MIN_AGREEING = 2  # sources, against the path
 MIN_GROWTH_STD_M = 0.5  # less is stated anew at every storey: no error that comes to it
-ANY_FLOOR_M = 100.0  # standard deviation of where somebody was switched on: up a tower, perhaps
+ANY_FLOOR_M = 100.0  # standard deviation of the place of switching on: up a tower, perhaps
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Solved:
     t_ns: Ints
     down_m: Floats
     std_m: Floats
-    shift: tuple[float, float | None]  # at the last one, and its std; None: no place says anything
+    shift: tuple[float, float | None]  # at the last one, and its std; None: no place gives one
 
     def at(self, t_ns: int) -> tuple[float, float]:
         """Down and its standard deviation then."""
@@ -50,7 +50,7 @@ class Heights:
     """Live heights along a path, and the variance of their error."""
 
     path: PathArrays
-    assumed: bool  # nothing has told how high it began
+    assumed: bool  # no evidence how high it began
     begin_m2: float  # variance of the shift at the first point
     grown_m2: Floats  # (n - 1,) of what comes to it until the next
 

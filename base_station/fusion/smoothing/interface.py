@@ -19,7 +19,7 @@ from base_station.site.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
 
-ON_FLOOR_STD_M = 0.4  # of the height of somebody on a floor that is known
+ON_FLOOR_STD_M = 0.4  # of the height of a wearer on a known floor
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class PositionConstraint:
     down_std_m: float = ON_FLOOR_STD_M
     heading_rad: float | None = None  # of travel, in the incident frame
     heading_std_rad: float = 0.0
-    source: str = ""  # what may say it again, and again wrong: a beacon, or somebody who was met
+    source: str = ""  # of repeated and equally wrong places: a beacon, or a partner who was met
 
     @property
     def source_key(self) -> str:
@@ -63,7 +63,7 @@ class UnitEvidence:
     start_ns: int = 0
     places: Sequence[PositionConstraint] = ()  # in the order in which they came to be known
     grid: FloorGrid | None = None  # walls of the plan
-    height_assumed: bool = False  # nothing has told how high the own frame begins
+    height_assumed: bool = False  # no evidence how high the own frame begins
 
 
 @dataclass(frozen=True)

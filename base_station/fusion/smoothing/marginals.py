@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 _BLOCKS = float64[:, :, ::1]
-UNKNOWN_VAR = 1e8  # said of a knot where the numbers are too far apart to tell
+UNKNOWN_VAR = 1e8  # of a knot where the numbers are too far apart
 
 
 def chain_covariances(band: Floats, states: int) -> Floats:

@@ -37,7 +37,7 @@ def add_path(
     there = here + STATES
     north, east = 0.5 * chain.step_m[:, 0], 0.5 * chain.step_m[:, 1]
     std = np.sqrt(chain.step_var_m2)
-    # A new own frame: its turn says nothing of the step that led there.
+    # A new own frame: its turn has no relation to the step that led there.
     equations.add(
         std, 0.0,
         (there, 1.0), (here, -1.0),

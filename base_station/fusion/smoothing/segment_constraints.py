@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 OUTSIDE_NS = 10_000_000_000  # so near a fix people are outside, where nothing is at right angles
-UNSURE_RAD = 0.1  # of headings before they have heard of an axis
+UNSURE_RAD = 0.1  # of headings before an axis corrects them
 TRIED_RAD = math.radians(1.0)
 WALLS_STD_RAD = math.radians(1.5)  # walls of one building are not quite parallel
 ASIDE_M = 0.4  # so far from the wall's direction leads one end of a leg from the other

@@ -36,9 +36,9 @@ Ints = NDArray[np.int64]
 
 GRID_POINTS = 11  # places each way, within
 GRID_HALF_WIDTH = 2.5  # standard deviations
-SHARPEST_M = 0.01  # nothing is told better
-LEAST_PART = 0.05  # of what is known of a piece has to be others' word
-DAMPING = 0.6  # of a new word is taken
+SHARPEST_M = 0.01  # no constraint is sharper
+LEAST_PART = 0.05  # of the information on a piece must come from others
+DAMPING = 0.6  # of a new message is taken
 
 
 def _grid_points() -> tuple[Floats, Floats]:

@@ -45,7 +45,7 @@ class Line:
     building: int
     wrap_quarter: int  # 0: along the axis, 1: at right angles to it
     visits: Sequence[Visit]  # at the middles of legs
-    counts: Floats  # (v,) what part of a leg that tells by itself each one is worth
+    counts: Floats  # (v,) weight of each, as a part of an independent leg
 
 
 @dataclass(frozen=True)
