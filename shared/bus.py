@@ -70,9 +70,9 @@ class Bus(Protocol):
         """True if another end is there at this moment, as far as this one has noticed."""
         ...
 
-    def is_heard(self, key: str) -> bool:
+    def has_subscriber(self, key: str) -> bool:
         """True if another end would be sent what is published under ``key``: false without a
-        link or a subscriber, and where the access rules forbid this end to hear of one.
+        link or a subscriber, and where the access rules hide it from this end.
         """
         ...
 

@@ -95,7 +95,7 @@ class MemoryRouter:
                     self._defer(entry.gate, key, payload)
         self._settle()
 
-    def is_heard(self, sender: MemoryBus, key: str) -> bool:
+    def has_subscriber(self, sender: MemoryBus, key: str) -> bool:
         with self._lock:
             return any(
                 intersects(entry.expression, key) and entry.owner is not sender
@@ -233,8 +233,8 @@ class MemoryBus:
     def is_linked(self) -> bool:
         return self._linked and not self._closed
 
-    def is_heard(self, key: str) -> bool:
-        return not self._closed and self._router.is_heard(self, require_key(key))
+    def has_subscriber(self, key: str) -> bool:
+        return not self._closed and self._router.has_subscriber(self, require_key(key))
 
     def close(self) -> None:
         self._closed = True

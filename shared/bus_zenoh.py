@@ -147,7 +147,7 @@ class ZenohBus:
             return False
         return bool(self._session.info.routers_zid() or self._session.info.peers_zid())
 
-    def is_heard(self, key: str) -> bool:
+    def has_subscriber(self, key: str) -> bool:
         if self._session.is_closed():
             return False
         if key not in self._watched:

@@ -27,7 +27,7 @@ class Passwords:
         self._hasher = hasher or PasswordHash.recommended()
         self._worker = ThreadPoolExecutor(_AT_ONCE, "passwords", initializer=_give_way)
         # Checked for names that do not exist, so that the answer takes as long; a start goes on.
-        self._nobody = self._worker.submit(self._hasher.hash, secrets.token_urlsafe())
+        self._unknown_user_hash = self._worker.submit(self._hasher.hash, secrets.token_urlsafe())
 
     def hash(self, password: str) -> str:
         """UserError where it is too short to be one, or longer than what is read at a login."""
@@ -38,8 +38,8 @@ class Passwords:
         return self._worker.submit(self._hasher.hash, password).result()
 
     def is_right(self, password: str, stored: str | None) -> bool:
-        """``stored``: the hash; None: there is no such user, which takes as long to say."""
-        against = self._nobody.result() if stored is None else stored
+        """``stored``: the hash; None: there is no such user, and the answer takes as long."""
+        against = self._unknown_user_hash.result() if stored is None else stored
         verified = self._worker.submit(self._hasher.verify, password, against).result()
         return verified and stored is not None
 

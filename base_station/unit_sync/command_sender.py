@@ -110,7 +110,7 @@ class CommandSender:
     def _send(self, order: Order, before_ns: int | None, now_ns: int) -> int | None:
         """Send an order if it is due; gives the time of its last sending, None: never yet."""
         key = COMMAND.key(order.unit_id)
-        if self._clock.utc_ns() >= order.expires_ns or not self._bus.is_heard(key):
+        if self._clock.utc_ns() >= order.expires_ns or not self._bus.has_subscriber(key):
             return None  # without a last time, it is sent at once when the unit is back
         if before_ns is not None and now_ns - before_ns < _AGAIN_AFTER_NS:
             return before_ns

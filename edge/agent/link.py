@@ -173,7 +173,7 @@ class Link:
 
     def _report_state(self, bus: Bus | None) -> None:
         """Log once when the station comes, and once when it goes; None: there is no link."""
-        is_subscribed = bus is not None and bus.is_heard(HEARTBEAT.key(self._unit_id))
+        is_subscribed = bus is not None and bus.has_subscriber(HEARTBEAT.key(self._unit_id))
         self._checks_unlinked = 0 if is_subscribed else self._checks_unlinked + 1
         if is_subscribed and self._reported_linked is not True:
             self._reported_linked = True

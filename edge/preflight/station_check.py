@@ -58,7 +58,7 @@ def _wait_for_subscriber(bus: Bus, key: str) -> bool:
     """Wait until the station subscribes to this unit's messages; False when it does not in time."""
     end_s = time.monotonic() + _LINK_WAIT_S
     while time.monotonic() < end_s:
-        if bus.is_linked() and bus.is_heard(key):
+        if bus.is_linked() and bus.has_subscriber(key):
             return True
         time.sleep(_POLL_S)
     return False

@@ -180,7 +180,7 @@ class _Backlog:
     def appear(self) -> None:
         """Say the next message live: the station sees that all before it are missing."""
         key = POSITION.key(_BACKLOG_UNIT)
-        wait_until("the station listens", lambda: self._bus.is_heard(key))
+        wait_until("the station listens", lambda: self._bus.has_subscriber(key))
         self.speak()
 
     def speak(self) -> None:

@@ -84,7 +84,7 @@ def _run(
         station.api.post("/units", {"unit_id": wearer.unit_id})
     station.api.put("/site/anchor", _ANCHOR)
     station.api.post("/incidents", {"name": "Bench"})
-    wait_until("the station listens", lambda: bus.is_heard("muster/v1/x/up/position"))
+    wait_until("the station listens", lambda: bus.has_subscriber("muster/v1/x/up/position"))
     station.begin_measuring()
     began_ns = time.time_ns()
     for number in paced(people * rate_hz / _POSITIONS_SHARE, seconds):

@@ -112,14 +112,14 @@ def test_a_query_handler_that_fails_answers_nothing(
 
 def test_one_knows_whether_anybody_else_listens(ends: Ends) -> None:
     ends.unit.subscribe("muster/v1/anna/command/**", Heard())
-    assert not ends.unit.is_heard(KEY)
+    assert not ends.unit.has_subscriber(KEY)
     listening = ends.station.subscribe("muster/v1/*/up/**", Heard())
-    until(lambda: ends.unit.is_heard(KEY), "the station's interest")
-    assert not ends.unit.is_heard(ALIVE)
+    until(lambda: ends.unit.has_subscriber(KEY), "the station's interest")
+    assert not ends.unit.has_subscriber(ALIVE)
     listening.close()
-    until(lambda: not ends.unit.is_heard(KEY), "the end of the station's interest")
+    until(lambda: not ends.unit.has_subscriber(KEY), "the end of the station's interest")
     ends.unit.close()
-    assert not ends.unit.is_heard(KEY)
+    assert not ends.unit.has_subscriber(KEY)
 
 
 def test_a_linked_end_knows_it_until_it_closes(ends: Ends) -> None:

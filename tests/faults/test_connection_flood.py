@@ -48,7 +48,7 @@ class Bus:
         """How long it takes a unit to link and to be heard."""
         began_s = time.monotonic()
         with closing(unit(self.anna)) as bus:
-            until(lambda: bus.is_heard(KEY), "the link")
+            until(lambda: bus.has_subscriber(KEY), "the link")
             return time.monotonic() - began_s
 
 
@@ -86,7 +86,7 @@ def test_a_unit_links_at_once_beside_a_flood_of_connections(
 
 def test_links_come_back_at_once_when_somebody_is_enrolled_under_a_flood(bus: Bus) -> None:
     with closing(unit(bus.anna)) as anna:
-        until(lambda: anna.is_heard(KEY), "the link")
+        until(lambda: anna.has_subscriber(KEY), "the link")
         with (
             connection_flood("hello", "127.0.0.1", bus.port, 60.0, held=200, per_s=100),
             ThreadPoolExecutor(1) as watcher,
@@ -99,9 +99,9 @@ def test_links_come_back_at_once_when_somebody_is_enrolled_under_a_flood(bus: Bu
 
 def next_outage_s(anna: ZenohBus) -> float:
     """How long the link is lost, once it is."""
-    until(lambda: not anna.is_heard(KEY), "the router opens again", look_every_s=0.002)
+    until(lambda: not anna.has_subscriber(KEY), "the router opens again", look_every_s=0.002)
     closed_s = time.monotonic()
-    until(lambda: anna.is_heard(KEY), "the link is back")
+    until(lambda: anna.has_subscriber(KEY), "the link is back")
     return time.monotonic() - closed_s
 
 
@@ -182,7 +182,7 @@ def test_what_one_holder_leaves_unfinished_is_bounded(bus: Bus) -> None:
     """In every priority of each link that it may have; as much beside a standby."""
     many, key = bus.pki.enroll("unfinished"), POSITION.key("unfinished")
     with closing(unit(many)) as linked:
-        until(lambda: linked.is_heard(key), "its place on the list")
+        until(lambda: linked.has_subscriber(key), "its place on the list")
     before_mb = processes.memory_mb(bus.router.pid)
     with ExitStack() as stack:
         for size in (1_900_000, 60_000_000, 1_900_000, 60_000_000, 1_900_000, 60_000_000):
@@ -196,7 +196,7 @@ def test_messages_of_60_mb_take_no_memory_of_the_router(bus: Bus) -> None:
     before_mb = processes.memory_mb(bus.router.pid)
     with closing(unit(bus.anna)) as anna:
         for _ in range(5):
-            until(lambda: anna.is_heard(KEY), "the link")
+            until(lambda: anna.has_subscriber(KEY), "the link")
             anna.publish(KEY, bytes(60_000_000), Qos.LIVE)
             assert processes.memory_mb(bus.router.pid) < before_mb + 30.0
     assert bus.link_s() < LINKED_WITHIN_S

@@ -82,9 +82,9 @@ class Scene:
         for name in [*names, EVIL, *self.others]:
             self.station.api.post("/units", {"unit_id": name})
         wait_until("the station listens", lambda: all(unit.is_heard for unit in self.units))
-        wait_until("to the other one too", lambda: self.evil.is_heard(POSITION.key(EVIL)))
+        wait_until("to the other one too", lambda: self.evil.has_subscriber(POSITION.key(EVIL)))
         for name, bus in self.others.items():
-            wait_until(f"and to {name}", lambda: bus.is_heard(POSITION.key(name)))  # noqa: B023
+            wait_until(f"and to {name}", lambda: bus.has_subscriber(POSITION.key(name)))  # noqa: B023
 
     def flood(self, say: Say, over: Event) -> None:
         stamper = Stamper(EVIL, secrets.randbits(63), SystemClock())
@@ -226,7 +226,7 @@ def test_others_are_heard_at_once_beside_a_token_that_comes_and_goes(scene: Scen
             time.sleep(1.0 / 7.0)
         wait_until("a person is told", lambda: "evil appears and vanishes" in scene.problems())
         assert scene.station.memory_mb() < before_mb + GROWN_MB
-        wait_until("it has no link", lambda: not scene.evil.is_heard(POSITION.key(EVIL)))
+        wait_until("it has no link", lambda: not scene.evil.has_subscriber(POSITION.key(EVIL)))
     finally:
         over.set()
         flood.join()

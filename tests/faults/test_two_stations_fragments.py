@@ -40,7 +40,7 @@ def router_pid(station: Station) -> int:
 def wait_linked(enrolment: Enrolment) -> None:
     """The router knows it, and has what it makes once."""
     with closing(ZenohBus(UnitEndpoint(enrolment.connect, enrolment.identity))) as linked:
-        wait_until("it is enrolled", lambda: linked.is_heard(POSITION.key(enrolment.name)))
+        wait_until("it is enrolled", lambda: linked.has_subscriber(POSITION.key(enrolment.name)))
 
 
 def has_plan(station: Station, plan: bytes) -> bool:

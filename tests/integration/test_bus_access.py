@@ -56,7 +56,7 @@ def test_an_enrolled_unit_speaks_lives_hears_its_commands_and_answers(site: Site
     until(lambda: site.alive == {alive_key("anna")}, "the token")
     for name in ("anna", EVERY_UNIT):
         key = COMMAND.key(name)
-        until(partial(site.station.is_heard, key), "the unit's interest")
+        until(partial(site.station.has_subscriber, key), "the unit's interest")
         site.station.publish(key, b"leave", Qos.ALERT)
     until(lambda: len(commands) == 2, "both commands")
 
@@ -82,7 +82,7 @@ def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
     token = unit.declare_alive(alive_key("bert"))
     publish_until_heard(site, unit, "anna")
     publish_until_heard(site, other, "bert")
-    until(lambda: site.station.is_heard(COMMAND.key("bert")), "bert's interest")
+    until(lambda: site.station.has_subscriber(COMMAND.key("bert")), "bert's interest")
     forged = (
         POSITION.key("bert"),
         COMMAND.key("bert"),

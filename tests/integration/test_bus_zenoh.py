@@ -143,7 +143,7 @@ def sizes_heard(address: str, key: str, sizes: Sequence[int]) -> list[int]:
         closing(ZenohBus(ClientEndpoint((address,)))) as rogue,
     ):
         station.subscribe("muster/**", lambda _, payload: heard.append(len(payload)))
-        until(lambda: rogue.is_heard(key))
+        until(lambda: rogue.has_subscriber(key))
         for size in sizes:
             rogue._session.put(key, bytes(size), congestion_control=zenoh.CongestionControl.BLOCK)
         until(lambda: sizes[-1] in heard)

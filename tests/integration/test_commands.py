@@ -216,14 +216,14 @@ def test_one_that_cannot_be_told_keeps_nobody_else_from_being_told(
     """Nor are the others told again and again for it."""
     down, unit, clock = link
     unit.come()
-    heard = down._bus.is_heard
+    has_subscriber = down._bus.has_subscriber
 
     def fail_for_one(key: str) -> bool:
         if "FF-00" in key or "FF-99" in key:
             raise BusError("no")
-        return heard(key)
+        return has_subscriber(key)
 
-    monkeypatch.setattr(down._bus, "is_heard", fail_for_one)
+    monkeypatch.setattr(down._bus, "has_subscriber", fail_for_one)
     monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 2 * 10**9)
     order = an_order(clock.utc_ns() + 10**12)
     orders = [msgspec.structs.replace(order, unit_id=one) for one in ("FF-00", U, "FF-99")]

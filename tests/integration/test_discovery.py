@@ -101,7 +101,7 @@ def test_a_unit_finds_its_station_at_another_place(
 ) -> None:
     announce(site.pki, port)
     with closing(opened(station_of(moved(site.pki)))) as bus:
-        until(lambda: bus.is_heard(POSITION.key("u1")), "the station hears the unit")
+        until(lambda: bus.has_subscriber(POSITION.key("u1")), "the station hears the unit")
 
 
 def test_a_station_of_another_authority_is_ignored_and_named_once(

@@ -66,7 +66,7 @@ def test_enrolling_and_revoking_take_effect_while_it_runs(
     with closing(station(pki, listen)) as base:
         base.subscribe("muster/v1/**", lambda key, _: heard.append(key))
         with closing(unit(pki.enroll("anna"))) as anna:
-            until(lambda: anna.is_heard(KEY), "the right to speak")
+            until(lambda: anna.has_subscriber(KEY), "the right to speak")
             anna.publish(KEY, b"", Qos.LIVE)
             until(lambda: heard == [KEY], "the message")
             pki.revoke("anna")
@@ -103,10 +103,10 @@ def test_a_killed_router_is_started_again(
 ) -> None:
     with closing(station(pki, listen)) as base, closing(unit(pki.enroll("anna"))) as anna:
         base.subscribe("muster/v1/**", lambda *_: None)
-        until(lambda: anna.is_heard(KEY), "the right to speak")
+        until(lambda: anna.has_subscriber(KEY), "the right to speak")
         first = process.pid
         os.kill(first, signal.SIGKILL)
-        until(lambda: process.pid != first and anna.is_heard(KEY), "everything again")
+        until(lambda: process.pid != first and anna.has_subscriber(KEY), "everything again")
 
 
 def test_closing_ends_it(process: RouterProcess) -> None:
@@ -212,7 +212,7 @@ def test_a_damaged_registry_leaves_the_rules_as_they_were(
         assert [record.levelname for record in caplog.records] == ["ERROR"]
         assert "access rules stay as they were" in caplog.text
         with closing(unit(anna)) as bus:
-            until(lambda: bus.is_heard(KEY), "the right to speak")
+            until(lambda: bus.has_subscriber(KEY), "the right to speak")
         pki.registry_path.write_bytes(good)
         router.refresh()
         assert len(caplog.records) == 1  # nothing changed: not opened again
@@ -228,10 +228,10 @@ def test_a_renewed_station_certificate_is_taken_up(
         closing(unit(anna)) as bus,
     ):
         base.subscribe("muster/v1/**", lambda *_: None)
-        until(lambda: bus.is_heard(KEY), "the right to speak")
+        until(lambda: bus.has_subscriber(KEY), "the right to speak")
         pki.renew_station()
         router.refresh()
-        until(lambda: bus.is_heard(KEY), "the right to speak, to the renewed station")
+        until(lambda: bus.has_subscriber(KEY), "the right to speak, to the renewed station")
 
 
 def test_plain_tcp_works_when_asked_for_by_name(tmp_path: Path, address: str) -> None:
@@ -242,7 +242,7 @@ def test_plain_tcp_works_when_asked_for_by_name(tmp_path: Path, address: str) ->
         closing(ZenohBus(UnitEndpoint(plain))) as bus,
     ):
         base.subscribe("muster/v1/**", lambda *_: None)
-        until(lambda: bus.is_heard(KEY), "the station's interest")
+        until(lambda: bus.has_subscriber(KEY), "the station's interest")
 
 
 def test_plain_and_secure_do_not_mix(tmp_path: Path, listen: tuple[str, ...]) -> None:
@@ -287,4 +287,4 @@ def test_it_listens_on_one_interface_where_that_is_asked_for(
     ):
         base.subscribe("muster/v1/**", lambda *_: None)
         with closing(unit(anna)) as bus:
-            until(lambda: bus.is_heard(KEY), "the right to speak")
+            until(lambda: bus.has_subscriber(KEY), "the right to speak")

@@ -63,16 +63,16 @@ def test_a_unit_is_enrolled_and_revoked_while_the_station_runs(
     with Browser(station.wait_ready(), data) as browser:
         assert not browser.call("GET", "/health")["insecure"]
         with closing(join(pki.enroll("FF-01"))) as unit:
-            until(lambda: unit.is_heard(key), "the unit is let in")
+            until(lambda: unit.has_subscriber(key), "the unit is let in")
             unit.publish(key, encode(make_position()), Qos.LIVE)
             until(lambda: browser.call("GET", "/health")["messages"] == 1, "it is heard")
             pki.revoke("FF-01")
-            until(lambda: not unit.is_heard(key), "the unit is shut out")
+            until(lambda: not unit.has_subscriber(key), "the unit is shut out")
             until(lambda: not unit.is_linked(), "its link ends")
             unit.publish(key, encode(make_position()), Qos.LIVE)
         again = pki.enroll("FF-01", valid=timedelta(days=3))
         with closing(join(again)) as unit:
-            until(lambda: unit.is_heard(key), "its successor is let in")
+            until(lambda: unit.has_subscriber(key), "its successor is let in")
             unit.publish(key, encode(make_position()), Qos.LIVE)
             until(lambda: browser.call("GET", "/health")["messages"] >= 2, "it is heard")
         assert browser.call("GET", "/health")["messages"] == 2  # not what was said in between
@@ -109,7 +109,7 @@ def test_a_station_takes_its_renewed_certificate_up_before_the_old_one_ends(
     station = serve("--listen", listen, http=f"127.0.0.1:{free_port()}")
     address, key = station.wait_ready(), POSITION.key("FF-01")
     with closing(join(pki.enroll("FF-01"))) as unit, Browser(address, data) as browser:
-        until(lambda: unit.is_heard(key), "the unit is let in")
+        until(lambda: unit.has_subscriber(key), "the unit is let in")
         pki.renew_station()
         until(lambda: station.said().count("ready ") == 2, "the station begins again")
 

@@ -105,7 +105,7 @@ def assert_speechless(site: Site, unit: ZenohBus, name: str) -> None:
         say_forged(unit, POSITION.key(name))
         site.station.publish(COMMAND.key(name), b"secret", Qos.ALERT)
         time.sleep(0.02)
-    assert not unit.is_heard(POSITION.key(name))
+    assert not unit.has_subscriber(POSITION.key(name))
     assert list(site.station.query(f"muster/v1/{name}/journal/range", b"", 0.5)) == []
     assert site.heard_under(POSITION.key(name)) == []
     assert heard == []

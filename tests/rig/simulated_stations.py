@@ -70,7 +70,7 @@ class SimulatedStation:
         self._opened_ms = _now_ms()
 
     def is_heard(self) -> bool:
-        return self._bus.is_heard(department_summary_key(self.name))
+        return self._bus.has_subscriber(department_summary_key(self.name))
 
     def begin(self) -> None:
         """Open an incident and name everybody."""

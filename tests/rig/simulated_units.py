@@ -121,7 +121,7 @@ class BenchUnit:
     @property
     def is_heard(self) -> bool:
         """The station listens."""
-        return self._bus.is_heard(POSITION.key(self.unit_id))
+        return self._bus.has_subscriber(POSITION.key(self.unit_id))
 
     def introduce(self) -> None:
         self._publish(self._wearer.introduction())

@@ -180,7 +180,7 @@ class Unit:
         channel = channel_of(message)
         key = channel.key(self.stamper.unit_id)
         if not self._heard:
-            until(lambda: self.bus.is_heard(key), "a station listens")
+            until(lambda: self.bus.has_subscriber(key), "a station listens")
             self._heard = True
         self.bus.publish(key, encode(message), channel.qos)
 

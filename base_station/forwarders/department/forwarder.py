@@ -140,7 +140,7 @@ class DepartmentForwarder:
         assert self._bus is not None
         key = department_summary_key(self._enrolment.name)
         summary = self._collector.summary(now_ms, self._config.console_url)
-        if summary is not None and self._bus.is_heard(key):
+        if summary is not None and self._bus.has_subscriber(key):
             self._bus.publish(key, pack(summary), Qos.LIVE)
 
     # ---- in the sending thread
@@ -152,7 +152,7 @@ class DepartmentForwarder:
             self._set_state("standby")
             self._outbox.keep_newest(_KEPT_BY_STANDBY)
             return _RETRY_S
-        if not self._bus.is_heard(department_summary_key(self._enrolment.name)):
+        if not self._bus.has_subscriber(department_summary_key(self._enrolment.name)):
             self._set_state("connecting", self._why_away())
             return _RETRY_S
         batch = self._outbox.next_batch(_MAX_EVENTS, _MAX_BYTES)

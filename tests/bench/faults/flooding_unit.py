@@ -100,7 +100,7 @@ ATTACKS: dict[str, Callable[[Enrolment, float], None]] = {
 
 def _joined(enrolment: Enrolment) -> ZenohBus:
     bus = ZenohBus(UnitEndpoint(enrolment.connect, enrolment.identity))
-    wait_until("the station listens", lambda: bus.is_heard(POSITION.key(enrolment.name)))
+    wait_until("the station listens", lambda: bus.has_subscriber(POSITION.key(enrolment.name)))
     return bus
 
 
