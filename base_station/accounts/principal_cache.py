@@ -17,7 +17,7 @@ class PrincipalCache:
 
     def __init__(self) -> None:
         self._lock = Lock()
-        self._known: dict[bytes, Principal] = {}  # the last who was looked up is the last here
+        self._known: dict[bytes, Principal] = {}  # in the order of look-ups, the newest last
 
     def resolve(self, secret: str, look_up: Callable[[str], Principal | None]) -> Principal | None:
         """Holder of a secret.  A commander in an emergency must not wait for a disk or a server;

@@ -9,7 +9,7 @@ import msgspec
 
 from shared.errors import UserError
 
-# What no name holds: what controls, ends a line, turns writing round, or has no place in XML.
+# No name has these: controls, ends of lines, changes of direction, characters invalid in XML.
 BARRED = r"\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufffe\uffff"
 _USERNAME = re.compile(rf"(?!\.\.?$)(?=.*\S)[^/\ud800-\udfff{BARRED}]{{1,80}}")
 
@@ -46,6 +46,6 @@ class Principal(msgspec.Struct, frozen=True):
     username: str
     role: Role
     scopes: frozenset[str] = frozenset()  # parts of the API; empty: all that the role may
-    token_ends_ns: int | None = None  # None: it does not, or who asks has logged in
+    token_ends_ns: int | None = None  # None: it does not end, or this is a login
     unit_id: str = ""  # whose samples alone it may post; empty: it is no unit's token
     must_change_password: bool = False  # it was generated; until then nothing else may be done

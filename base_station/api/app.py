@@ -85,7 +85,7 @@ def add_request_handling(app: FastAPI, services: LoginServices) -> LoginQueue:
     app.state.known_networks = KnownNetworks()
     ha_status = services.ha_status
     app.add_middleware(UnhandledErrorMiddleware)
-    # The framework's own limit stands outside of what answers like a problem, with its headers.
+    # The framework's own limit stands outside of the middleware for problems and headers.
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=MAX_BYTES)
     app.add_middleware(BodyTooLargeMiddleware)
     app.add_middleware(AdmissionMiddleware, throttle=throttle, queue=queue)

@@ -18,7 +18,7 @@ class AttemptLimiter:
         self._max_size = max_attempts
         self._within_s = within_s
         self._monotonic_s = monotonic_s
-        self._attempts_s: dict[Hashable, deque[float]] = {}  # who tried last is the last here
+        self._attempts_s: dict[Hashable, deque[float]] = {}  # the newest attempt last
 
     def __len__(self) -> int:
         """Number of keys with attempts."""

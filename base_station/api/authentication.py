@@ -23,7 +23,7 @@ from base_station.api.services import Logins, LoginServices, login_services_of
 COOKIE = "muster_session"
 CHANGE_FIRST = "Change your password first: this one was generated, and is written in a file."
 _SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
-# What a station that changes nothing lets people do all the same: log in, look, and make it lead.
+# Requests that a station which changes nothing allows all the same: log in, look, and make it lead.
 _ALLOWED_READ_ONLY = ("login", "logout", "replays", "standby")
 
 # They declare the schemes in the OpenAPI document; ``principal_of`` reads the headers itself.

@@ -32,13 +32,13 @@ class ConnectionLimitedSocket(socket.socket):
         super().__init__(family, kind, protocol, fileno)
         self.is_known: Callable[[str], bool] = lambda _: True  # of a place: logged in from there
         self._networks: dict[socket.socket, str] = {}  # in the order of coming
-        self._count_of: Counter[str] = Counter()  # by place, with what has gone since the last look
+        self._count_of: Counter[str] = Counter()  # by network, with those just gone
 
     def accept(self) -> tuple[socket.socket, Any]:
         """Raises ConnectionAbortedError in the place of one too many, which it lets go."""
         accepted, address = super().accept()
         network = network_of(address[0])
-        if self._is_full(network):  # it may be full of what has gone
+        if self._is_full(network):  # some of its connections may have gone
             self._remove_closed()
         known = self.is_known(network)
         if len(self._networks) >= MAX_CONNECTIONS or self._count_of[network] >= _max_per_network(
@@ -88,7 +88,7 @@ class KnownNetworks:
 
     def __init__(self, max_size: int = 1000) -> None:
         self._max_size = max_size
-        self._networks: dict[str, None] = {}  # who asked last is the last here
+        self._networks: dict[str, None] = {}  # in the order of requests, the newest last
 
     def add(self, address: str) -> None:
         """Adds the network of a request of a user that is logged in."""

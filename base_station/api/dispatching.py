@@ -84,7 +84,7 @@ def _opens_incident(station: Services, by: str, report: NoteDispatch) -> bool:
 
 
 def _content(dispatch: DispatchView) -> DispatchView:
-    """Without what differs between two reports that tell the same."""
+    """Without the fields that differ between two reports of the same content."""
     return msgspec.structs.replace(
         dispatch, updated_ms=None, received_ms=None, is_dismissed=False, warnings=()
     )

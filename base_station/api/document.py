@@ -29,7 +29,7 @@ def file_response(*media_types: str) -> dict[int | str, dict[str, Any]]:
 
 
 def complete_document(app: FastAPI) -> None:
-    """Have the application's document say what FastAPI leaves out of it."""
+    """Add to the application's document the parts that FastAPI leaves out."""
     make = app.openapi
 
     def document() -> dict[str, Any]:

@@ -84,7 +84,7 @@ class Guidance:
         return True
 
     def step(self, station: Services) -> None:
-        """Look at everybody once: send what has changed for two looks, drop what is over."""
+        """Look at each rescuer once: send changes that two looks have found, drop ended ones."""
         guides = self.guides()
         if not guides:
             return

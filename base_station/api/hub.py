@@ -1,6 +1,6 @@
-"""Broadcasts live snapshots and what changes to the consoles that watch.
+"""Broadcasts live snapshots and deltas to the connected consoles.
 
-Whatever it is, it is encoded once and the same bytes go to everyone.  A client that cannot keep up
+Each message is encoded once and the same bytes go to all.  A client that cannot keep up
 loses its queue, not the station its memory: once it takes something again it gets a snapshot.  One
 that confirms what it has shown (``PacedClient``) gets what it missed as one message instead.
 Trails, nearly all of a picture, go out when nothing else does: over a slow link too a console

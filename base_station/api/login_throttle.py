@@ -36,7 +36,7 @@ class LoginThrottle:
         )
         self._per_network = AttemptLimiter(_MAX_PER_NETWORK, _MINUTE_S, monotonic_s)
         self._per_account = AttemptLimiter(_MAX_PER_ACCOUNT, _MINUTE_S, monotonic_s)
-        self._known: dict[tuple[str, str], None] = {}  # who has logged in last is the last here
+        self._known: dict[tuple[str, str], None] = {}  # in the order of logins, the newest last
 
     def check(self, address: str, username: str) -> bool:
         """Count a try; True where this name has logged in from there.  Problem 429 where there

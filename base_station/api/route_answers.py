@@ -17,7 +17,7 @@ from base_station.site.max_travel import RADII_95
 from base_station.views.answer import Answer
 from base_station.views.wire import PositionView, Snapshot, UnitView
 
-_MISSED_CHECK_IN = MissedCheckIn().name  # who has not answered is not down yet
+_MISSED_CHECK_IN = MissedCheckIn().name  # a member without an answer is not down yet
 HEADING_KNOWN_RAD = 0.8  # standard deviation up to which left and right mean something
 NEXT_LEGS = 2  # that are sent to a unit at once
 

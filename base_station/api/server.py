@@ -83,7 +83,7 @@ class _Connection(H11Protocol):
         self._reset_timeout()
 
     def handle_websocket_upgrade(self, event: Any) -> None:
-        self._is_websocket = True  # this one does not hear when it ends
+        self._is_websocket = True  # this one is not notified of its end
         self._cancel_timeout()
         super().handle_websocket_upgrade(event)
 
@@ -161,7 +161,7 @@ class ConsoleServer:
             log_level="warning",
             access_log=False,
             server_header=False,
-            proxy_headers=False,  # who asks is who connected: logins are counted by it
+            proxy_headers=False,  # the client is the connected address: logins are counted by it
             ws=WebSocketProtocol,
             ws_max_size=_MAX_MESSAGE_BYTES,
             timeout_graceful_shutdown=_SHUTDOWN_GRACE_S,

@@ -57,7 +57,7 @@ class LoginServices:
     records: Records  # of which the audit
     secure: bool  # the console is served over TLS
     ha_status: HaStatus | None = None  # None: this is the only station
-    is_replay_only: bool = False  # what is changed would be lost with its copy of the database
+    is_replay_only: bool = False  # changes would be lost with its copy of the database
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,8 +88,8 @@ class Services(LoginServices):
     plans: PlanReader = field(default_factory=PlanReader)  # of the drive that acts
     route_finder: RouteFinder = field(default_factory=RouteFinder)
     image_lock: Lock = field(default_factory=Lock)  # decoding takes up to 200 MB: one at a time
-    # One whole incident at a time: an hour of a hundred units takes 300 MB.  Who waits holds no
-    # thread: those are for who acts.
+    # One whole incident at a time: an hour of a hundred units takes 300 MB.  Waiting
+    # requests hold no thread: those are for actions.
     export_lock: asyncio.Lock = field(default_factory=asyncio.Lock)
     import_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # one file is read at a time
     timeline_lock: asyncio.Lock = field(default_factory=asyncio.Lock)  # as above, shorter work

@@ -85,7 +85,7 @@ class UploadTurns:
             queue = self._waiting.pop(account)
             granted = queue.popleft()
             self._waiting[account] = queue  # behind the others
-            if not granted.done():  # who waited may have gone
+            if not granted.done():  # the client may have gone
                 turn = UploadTurn(account)
                 self._turns.append(turn)
                 granted.set_result(turn)

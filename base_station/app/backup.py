@@ -1,8 +1,8 @@
-"""Copies what a station cannot do without into another folder, also while the station runs.
+"""Backup of the necessary data of a station into another folder, also while the station runs.
 
 The copy is a data folder like any other: a station that is started on it goes on from there.
-What can be made again (checkpoints) or fetched again (raw recordings) stays behind.  A disk that is
-failing keeps nothing from the copy but what it does not give.
+Data that can be made again (checkpoints) or fetched again (raw recordings) is left out.  Of a
+failing disk all readable parts are copied.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Backup:
     copied_bytes: int = 0
     unchanged: int = 0
     removed: int = 0  # segments of an earlier run that the station has no more
-    unreadable: list[str] = field(default_factory=list)  # what the disk does not give, or in parts
+    unreadable: list[str] = field(default_factory=list)  # files, or parts of them
 
     def require_whole(self) -> None:
         """LogError where something is missing in it."""
@@ -81,7 +81,7 @@ def _require_own_target(source: DataFolder, copy: DataFolder) -> None:
     if here == there or here in there.parents or there in here.parents:
         raise UserError(f"{copy.path} is not apart from the station's folder; choose another")
     if all(path.suffix == _PART for path in copy.path.rglob("*") if path.is_file()):
-        return  # nothing, or what a kill left of a first run
+        return  # nothing, or the rest of a first run after a kill
     kept = {path.name for path in segment_paths(copy.log)} | known_segments(copy.database)
     if not kept & {path.name for path in segment_paths(source.log)}:
         raise UserError(
@@ -131,8 +131,8 @@ def _copy_files(
 
 
 def _remove_taken_out(copy: DataFolder) -> None:
-    """Removes what was brought into an incident and has been taken out since, or forgotten; what
-    is missing at the station alone stays.
+    """Removes imports that were taken out of their incident since, or forgotten; those that are
+    only missing at the station stay.
     """
     if not (copy.imports.is_dir() and copy.database.exists()):
         return
@@ -186,7 +186,7 @@ def _copy_file(path: Path, copy: Path) -> bool:
 
 
 def _files(source: DataFolder) -> Iterator[Path]:
-    # What is to be forgotten goes first: done meanwhile, it is done in the copy, too.
+    # Pending erasures go first: one that is done meanwhile is done in the copy, too.
     yield from filter(Path.exists, (source.forgettings, source.begun))
     yield from segment_paths(source.log)
     yield from ImportFolder(source.imports).files()

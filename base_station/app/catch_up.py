@@ -31,7 +31,7 @@ class CatchUp:
         """``prepare``: brings to the disk what was recorded so far."""
         self._folder, self._processes = folder, processes
         self._projection, self._prepare = projection, prepare
-        self._lock = Lock()  # guards what follows
+        self._lock = Lock()  # guards the fields below
         self._line: wire.FrameChannel | None = None
         self._closed = False
         self._worker = Worker.periodic(

@@ -26,7 +26,7 @@ class ConsolePresence(KeptAnnouncement):
         self._host, self._port = host_and_port(config.listen)
 
     def update(self) -> None:
-        """Announce what holds now; what fails is tried again the next time."""
+        """Announce the present state; a failure is tried again the next time."""
         if not self._config.local_name:
             return
         self.keep(self._wanted, lambda: interfaces_of([self._host]))

@@ -52,7 +52,7 @@ def replay_process_starter(
     instead_of_log: Callable[[IncidentRow], ArchivedLog | None],
 ) -> StartReplay:
     """In processes of their own.  ``instead_of_log`` gives the copy of an incident whose log is not
-    here; what it raises goes to who asks for the replay.
+    here; its errors go to the caller who opens the replay.
     """
 
     def start(incident: IncidentRow, speed: float, hub: Hub) -> ReplayProcess:
@@ -76,7 +76,7 @@ def announce_first_login(accounts: Accounts, note: Path | None, announce: Announ
 
 
 def project_since(store: Database, archive: Archive, since_ns: int) -> None:
-    """Project again what the log has from a time on; what the tables have of it stays as it is."""
+    """Project the log again from a time on; rows that the tables have stay as they are."""
 
     def write(projection: Projection) -> None:
         if projection.t_ns >= since_ns - _OVERLAP_NS:

@@ -56,7 +56,7 @@ class IncidentCommandContext:
     records: Records
     roster: Roster
     incident: IncidentRow
-    people: Mapping[str, Sequence[str]]  # who wore each unit
+    people: Mapping[str, Sequence[str]]  # wearers of each unit
     keeps_result: bool  # what is worked out; else it is gone with the command
     log: LogFeed
     recorded_until_ns: Callable[[], int]  # where an open incident ends

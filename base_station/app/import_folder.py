@@ -57,7 +57,7 @@ class FolderImports:
     is_locked: bool  # no station runs on the folder
 
     def bring_in(self, file: Path, shift_s: float, utc_offset_h: float | None) -> Sequence[str]:
-        """Gives lines about what was read.  Raises UserError with what is wrong with the file."""
+        """Gives lines about the content.  Raises UserError with the fault of the file."""
         desk = self._desk()
         options = ImportOptions(file.name, self.incident.incident_id, shift_s, utc_offset_h)
         with self._catalogue.folder.incoming() as path:

@@ -41,7 +41,7 @@ class KeptAnnouncement:
     def keep(
         self, wanted: Callable[[], AnyAnnouncement], interfaces: Callable[[], tuple[str, ...]]
     ) -> None:
-        """Announce what holds now; what fails is tried again the next time."""
+        """Announce the present state; a failure is tried again the next time."""
         with self._fault_log:
             now = wanted()
             if now == self._announced:

@@ -1,4 +1,4 @@
-"""Gives what consoles are shown, and what is projected, to forwarders too."""
+"""Gives snapshots and deltas for consoles, and projections, to forwarders too."""
 
 from __future__ import annotations
 

@@ -61,10 +61,10 @@ class OfflineLog:
     report: Report
 
     def archive(self, *, recompute: bool = False) -> Archive:
-        """``recompute``: what consoles were shown is decided again, and not played from the log.
+        """``recompute``: decisions are made again, instead of playing the recorded pictures.
 
-        Uses the station's checkpoints where there are any that fit this program; what is come by
-        is saved elsewhere: to go back is not to step an hour again.
+        Uses the station's checkpoints where there are any that fit this program; new ones are
+        saved elsewhere, so that a jump back need not step an hour again.
         """
         own = Checkpoints(self.scratch / "checkpoints", self.report)
         saved = self.folder.checkpoints

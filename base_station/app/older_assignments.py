@@ -20,7 +20,7 @@ class OlderAssignments:
         self._is_done = False
 
     def look(self) -> None:
-        """Once in a run.  Who wears what stays; whose name only the log has keeps it there."""
+        """Once in a run.  Assignments stay; names that only the log has stay there."""
         if self._is_done:
             return
         self._is_done = True

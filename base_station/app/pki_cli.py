@@ -62,7 +62,7 @@ def init(
     days: Days = 365,
 ) -> None:
     """Make the authority and this station's certificate, once."""
-    # Only this command needs what these import, and they take their time.
+    # Only this command needs these imports, and they take their time.
     from base_station.security.pki.folder import PkiFolder  # noqa: PLC0415
 
     hosts, endpoint = _station_hosts(host, port)

@@ -27,7 +27,7 @@ def report(
         bool, typer.Option("--assess", help="First judge the positions: it may take minutes.")
     ] = False,
 ) -> None:
-    """Write the report on an incident: what happened, who was where, and what is not known."""
+    """Write the report on an incident: its events, the trails of its members, and the gaps."""
     # Imported where needed: they take their time, and a wrong option is refused before.
     from base_station.app.offline_report import open_report_sources  # noqa: PLC0415
     from base_station.report.document import html_document  # noqa: PLC0415

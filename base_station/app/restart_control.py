@@ -13,7 +13,7 @@ class Restart(NamedTuple):
     """The station is to start anew; where there is another one that leads, as its standby."""
 
     cut_from: LogPosition | None  # behind which the log goes its own way
-    is_repaired: bool = False  # what was saved of it was made without what was missing
+    is_repaired: bool = False  # its saved state was made without the missing part
 
 
 class RestartControl:

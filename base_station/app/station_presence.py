@@ -40,7 +40,7 @@ class StationPresence(KeptAnnouncement):
         self._not_covered: tuple[str, ...] = ()
 
     def update(self) -> None:
-        """Announce what holds now; what fails is tried again the next time."""
+        """Announce the present state; a failure is tried again the next time."""
         if not self._endpoints:
             return
         self.keep(self._wanted, self._interfaces)

@@ -48,7 +48,7 @@ _RESTORE = (
     "Messages of units are fetched again from their journals; for the rest, restore the file from "
     "a backup"
 )
-REPAIR_RETENTION = 12  # tries to forget: two minutes for what takes some seconds
+REPAIR_RETENTION = 12  # attempts to forget: two minutes for a job of some seconds
 _MENDED_FROM_THE_OTHER = "What is missing is fetched from the other station when that is reachable"
 
 
@@ -75,8 +75,8 @@ class StationStorage:
         return Archive(self.log.records, self.checkpoints, past_pipeline, self.log.watch)
 
     def latest_state(self) -> SavedState | None:
-        """To go on from: also one whose place in the log was lost since.  What people did until
-        then is in it, and what came, so that it is known to be missing.
+        """Checkpoint to go on from: also one whose place in the log was lost since.  It has the
+        actions and messages until then, so that the lost ones are known to be missing.
         """
         return replace(self.archive, has_lost=self.check.has_lost).latest()
 

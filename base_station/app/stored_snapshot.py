@@ -1,8 +1,8 @@
 """Stored snapshot, for consoles while a station that starts is still reading its log.
 
-A log without a saved state takes minutes to be read, and a commander needs to know meanwhile who
-was where, and when, and what had been raised.  The tables have that.  Nothing here is live: every
-unit counts as not linked, and no change is possible.
+A log without a saved state takes minutes to be read, and a commander needs the last positions of
+members, with their times, and the alarms meanwhile.  The tables have them.  Nothing here is live:
+every unit counts as not linked, and no change is possible.
 """
 
 from __future__ import annotations

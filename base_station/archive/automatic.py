@@ -35,7 +35,7 @@ class ArchivingContext:
     start: Callable[[wire.ArchiveJob], wire.FrameChannel]  # a process for it
     log: str
     database: str
-    prepare: Callable[[], object]  # what is to be copied is on the disk then
+    prepare: Callable[[], object]  # brings the data to be copied to the disk
     note_damage: Callable[[str], None]  # of the log
     leads: Callable[[], bool]  # of two stations one copies
 
@@ -56,7 +56,7 @@ class AutomaticArchive:
         self._address = open_store(config.location).address
         self._copies, self._clock = copies, clock
         self._look_every_s = self._pause_s = look_every_s
-        self._lock = Lock()  # guards what follows
+        self._lock = Lock()  # guards the fields below
         self._line: wire.FrameChannel | None = None  # to the process that is at work
         self._closed = False
         self._waiting = 0

@@ -45,7 +45,7 @@ from shared.mcap_log import (
     is_console,
 )
 
-_FLUSHED_NS = 10 * NS_PER_S  # what a station has recorded is on its disk
+_FLUSHED_NS = 10 * NS_PER_S  # until a station's records are on its disk
 _CONSOLE_CHUNK_BYTES = 1 << 20
 _READ_BYTES = 4 << 20
 _WAITING_BYTES = 1 << 20
@@ -60,7 +60,7 @@ def closed_until_ns(clock: Clock) -> int:
 class CopyResult:
     incident_id: str
     size_bytes: int  # that were sent; 0: the archive had it already
-    damage: tuple[str, ...]  # what of the station's log could not be read
+    damage: tuple[str, ...]  # unreadable parts of the station's log
 
 
 class ArchiveCopier:
@@ -72,10 +72,10 @@ class ArchiveCopier:
         self._copies = ArchivedCopies(store)
 
     def copy_due(self, on_progress: Callable[[float], None]) -> Iterator[CopyResult]:
-        """Copy what is due, the oldest first; each is in the catalogue when its result comes.
-        What was closed a minute ago waits: the log goes on with it.
+        """Copy due incidents, the oldest first; each is in the catalogue when its result comes.
+        An incident that was closed a minute ago waits: the log still has records of it to come.
 
-        Raises ArchiveError: what was copied until then is there, and the rest is due still.
+        Raises ArchiveError: finished copies are there, and the rest is due still.
         """
         due = self._copies.due(self._archive.address, closed_until_ns(self._clock))
         for number, (incident, known_ns) in enumerate(due):
@@ -95,7 +95,7 @@ class ArchiveCopier:
             return CopyResult(incident.incident_id, 0, there.damage)
         with TemporaryDirectory(prefix="muster-archive-") as scratch:
             entry = self._pack(incident, known_ns, Path(scratch))
-            if there is not None:  # what is cut short from here on is no copy
+            if there is not None:  # a copy that is cut short from here on does not count
                 self._archive.remove(name_in_archive(incident.incident_id, ENTRY_NAME))
             self._send(entry, Path(scratch))
         self._note(entry)

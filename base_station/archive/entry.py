@@ -16,7 +16,7 @@ from base_station.storage.db.known_people import KnownPerson
 from shared.errors import ArchiveError
 
 LOG_NAME = "incident.mcap"  # all of it, a log that stands alone (decision 119)
-CONSOLE_NAME = "console.mcap"  # what consoles were shown, again: a replay needs no more
+CONSOLE_NAME = "console.mcap"  # the pictures of consoles once more: a replay needs no other file
 ENTRY_NAME = "catalogue.json"
 VERSION = 1
 
@@ -38,7 +38,7 @@ class CatalogueEntry(msgspec.Struct, frozen=True):
     alarm_rules: tuple[str, ...]
     files: tuple[ArchivedFile, ...]
     tables: dict[str, list[Row]]  # rows of the station's tables that a replay asks for
-    damage: tuple[str, ...] = ()  # what of the station's log could not be read, in words
+    damage: tuple[str, ...] = ()  # unreadable parts of the station's log, in words
 
     def file(self, name: str) -> ArchivedFile:
         """Raises ArchiveError where it has none of the name."""

@@ -12,7 +12,7 @@ from base_station.core.state import Dispatch, Incident, StationState
 from shared.errors import UserError
 from shared.messages.station import NoteDispatch
 
-KEPT = 50  # offered or dismissed ones, newest last; of more the log and the tables tell
+KEPT = 50  # offered or dismissed ones, newest last; the log and the tables have all
 
 
 def note(state: StationState, report: NoteDispatch) -> None:

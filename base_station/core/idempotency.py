@@ -31,7 +31,7 @@ def idempotent_action_id(by: str, key: str, request: bytes, own: str) -> str:
 
 
 def row_id(by: str, key: str, request: bytes) -> str:
-    """For what is added to a table and is no action: its first ``KEY_DIGITS`` tell the key."""
+    """Row id for a row that is no action: its first ``KEY_DIGITS`` are those of the key."""
     of_key = _digest(f"{by} {key}".encode())
     return of_key[:KEY_DIGITS] + _keyed_digest(by, key, request)[:KEY_DIGITS]
 

@@ -61,7 +61,7 @@ from shared.messages.station import (
     UndoConfirmation,
 )
 
-# What an action changed.
+# Changes by an action.
 StateChange = (
     Alarm
     | UnitState

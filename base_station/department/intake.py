@@ -42,7 +42,7 @@ class ReportIntake:
         self._tables, self._picture, self._clock = tables, picture, clock
         self._on_stored = on_stored
         self._fault_log = LogOnChange(logger, "what stations report is not stored")
-        self._lock = Lock()  # guards what follows
+        self._lock = Lock()  # guards the fields below
         self._people: dict[tuple[str, str], KnownPerson] = {}
         self._kept_ns: dict[str, int] = {}  # receipt of the summary that is in the tables
         self._unreadable = 0

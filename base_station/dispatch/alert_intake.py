@@ -25,8 +25,8 @@ class AlertIntake:
         self._lock = Lock()
 
     def take(self, alert: CapAlert) -> CapAlert:
-        """Gives the alert with what came of it: one that comes behind its own update or
-        cancellation is not shown.
+        """Gives the alert with its outcome: one that comes behind its own update or cancellation is
+        not shown.
         """
         with self._lock:
             if alert.alert_id in self._replaced:

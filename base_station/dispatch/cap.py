@@ -27,7 +27,7 @@ MOST_REFERENCES = 20
 _ID_CHARACTERS, _NAME_CHARACTERS, _REMARKS_CHARACTERS = 128, 64, 200
 _EARTH_M = 6_371_000.0  # mean radius
 _LONGEST_NS = 7 * 86_400 * NS_PER_S
-_UNLIMITED_NS = 86_400 * NS_PER_S  # an alert that does not tell its end
+_UNLIMITED_NS = 86_400 * NS_PER_S  # an alert without an end
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 

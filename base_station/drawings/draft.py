@@ -23,7 +23,7 @@ class Draft(msgspec.Struct, frozen=True, tag="draft"):
     lat_deg: float | None = None  # of the plan's origin; None: the file does not have it
     lon_deg: float | None = None
     pages: int = 1  # of the file
-    notes: tuple[str, ...] = ()  # for a person: what of the file is not in the draft
+    notes: tuple[str, ...] = ()  # for a person: parts of the file that are not in the draft
 
 
 class DrawingRefusal(msgspec.Struct, frozen=True, tag="refused"):

@@ -26,7 +26,7 @@ _ROUGH_M = 0.05  # how far a curve's line may lie from it
 
 
 def read_dxf(content: bytes, options: Options) -> Draft:
-    """Raises UserError with what is wrong with it, and what to do."""
+    """Raises UserError with the fault of the file, and advice."""
     if find_spec("ezdxf") is None:
         raise UserError(_MISSING)
     library: Any = import_module("ezdxf")

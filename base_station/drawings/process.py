@@ -21,7 +21,7 @@ def command_of(options: Options) -> tuple[str, ...]:
 
 
 def draft_of(content: bytes, options: Options) -> Draft:
-    """Read it.  Raises UserError with what is wrong with the file, and what to do."""
+    """Read it.  Raises UserError with the fault of the file, and advice."""
     try:
         done = subprocess.run(
             command_of(options),

@@ -17,7 +17,7 @@ _OTHERS = {
 
 
 def read_drawing(content: bytes, options: Options) -> Draft:
-    """Raises UserError with what is wrong with the file, and what to do."""
+    """Raises UserError with the fault of the file, and advice."""
     if content.startswith(_PICTURES):
         return Draft(picture=pictures.read_picture(content))
     text = content.removeprefix(_BOM).lstrip()

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from shared.errors import UserError
 
-STOREY_M = 3.2  # where the file does not say how high a floor is
+STOREY_M = 3.2  # where the file does not have the height of a floor
 MOST_POINTS = 200_000
 MOST_SIZE_M = 5_000.0  # of a site
 _LEAST_SIZE_M = 1.0

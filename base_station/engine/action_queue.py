@@ -45,7 +45,7 @@ class ActionQueue:
         self._write_ahead = write_ahead
         self._stamper = stamper
         self._waiting: deque[tuple[str, Action, str, Future[ActionResult]]] = deque()
-        # What waited during an action is news to its operator, and so it is later by the log.
+        # Messages that waited during an action are new to its operator, and so later in the log.
         self.not_before_ns = 0
 
     def put(self, by: str, action: Action, action_id: str) -> Future[ActionResult]:
@@ -74,8 +74,8 @@ class ActionQueue:
             yield PerformedAction(action, result, future)
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
-        """Raises StoreError where the log does not take it: it is not done then, but for what
-        people are to hear in any case.
+        """Raises StoreError where the log does not take it: it is not done then, but for commands
+        that people must receive in any case.
         """
         header = self._stamper.header()
         action_id = action_id or f"{header.boot_id:016x}-{header.seq}"

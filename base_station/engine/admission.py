@@ -22,8 +22,8 @@ class Admission(Enum):
 
 
 def classify(key: str, event: StationEvent, state: StationState) -> Admission:
-    """``event`` is what the record under ``key`` stands for.  What cannot be read is kept,
-    counted and shown.
+    """``event``: the decoded record under ``key``.  An unreadable record is kept, counted and
+    shown.
     """
     try:
         channel = parse_key(key)[1]

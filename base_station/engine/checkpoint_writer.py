@@ -50,5 +50,5 @@ class CheckpointWriter:
             self._health.report_bug(PART, error)
 
     def _save(self, log_position: tuple[int, int], state: bytes) -> None:
-        if self._log.flush():  # it must not know what a crash would take from the log
+        if self._log.flush():  # it must not have events that a crash would take from the log
             self._checkpoints.save(*log_position, state)

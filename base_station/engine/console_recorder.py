@@ -1,9 +1,9 @@
-"""Console recorder: writes to the log what consoles were shown, so that a replay plays it again and
-decides nothing.
+"""Console recorder: writes the pictures of consoles to the log, so that a replay plays them again
+and decides nothing.
 
 While an incident is open a delta goes to the log once a second, and at once with an alarm, an order
-or a pin; a snapshot with all trails every two minutes, and whenever consoles get a new one.  What a
-console cannot tell apart is left out: ten deltas of a second are one.
+or a pin; a snapshot with all trails every two minutes, and whenever consoles get a new one.
+Differences that a console cannot show are left out: ten deltas of a second are one.
 """
 
 from __future__ import annotations
@@ -98,4 +98,4 @@ class ConsoleRecorder:
 
     def _write(self, topic: str, message: RecordedDelta | Snapshot | Trail) -> None:
         if not self._log.write(self._pipeline.state.t_ns, topic, self._encoder.encode(message)):
-            self._keyframe_due_ns = 0  # the next one is not to follow from what is lost
+            self._keyframe_due_ns = 0  # the next delta must not follow a lost one

@@ -53,7 +53,7 @@ RECEIVE_FIRST_NS = 2 * NS_PER_S  # then, until its links are back
 DELTA_NS = NS_PER_S // 10  # twice as often as units send positions
 URGENT_SOONER_NS = DELTA_NS // 2  # alarms and commands wait for half of that
 DELTAS_SHARE = 4  # of the drive's time at most a quarter goes into telling consoles
-CHECKPOINT_NS = 15 * NS_PER_S  # what a restart steps at most; at 1,000 events/s a second's work
+CHECKPOINT_NS = 15 * NS_PER_S  # that a restart steps at most; at 1,000 events/s a second's work
 CHECKPOINTS_SHARE = 100  # of the drive's time at most a hundredth goes into saving
 REBUILT_NS = 5 * 60 * NS_PER_S  # of a log that is read; a kill meanwhile costs no more
 MANY_STEPPED = 1000  # events at a start: they are not stepped at the next one
@@ -63,7 +63,7 @@ STOP_TIMEOUT_S = 10.0
 _EXTERNAL_KEY = EXTERNAL.key(STATION_ID)
 _OPERATOR_KEY = OPERATOR.key(STATION_ID)
 _EXTERNAL_WAITING = 20  # batches of other systems, of a second each
-# What is to be sent to units changes with these at once; with all else at the next tick.
+# Commands to units change with these at once; with all else at the next tick.
 _CHANGES_ORDERS = (
     SendCommand,
     ConfirmCommand,
@@ -80,7 +80,7 @@ class _Due:
     """Monotonic times at which something is to be done next."""
 
     tick_ns: int
-    sooner_tick_ns: int  # where there is something to tell
+    sooner_tick_ns: int  # where there are changes
     delta_ns: int
     checkpoint_ns: int
 
@@ -121,7 +121,7 @@ class StationEngine:
         self._due = _Due(now_ns, now_ns, now_ns, now_ns + CHECKPOINT_NS)
         self._messages_before = 0
         self._repeated = 0  # messages that were in the log already
-        self._health_due = False  # consoles hear of the station's health with the next delta
+        self._health_due = False  # the next delta carries the station's health
 
     # ---- from any thread
 
@@ -248,7 +248,7 @@ class StationEngine:
         while self._snapshot_requests:
             snapshot = (
                 self._publisher.snapshot()
-            )  # where it cannot be made, who asked goes on waiting
+            )  # where it cannot be made, the caller goes on waiting
             self._snapshot_requests.popleft()(*snapshot)
         return bool(records)
 
@@ -317,8 +317,8 @@ class StationEngine:
         tick = Tick(header, t_ns, tuple(sorted(self._unlinked & self._pipeline.state.units.keys())))
         self._write_ahead.append_and_apply(t_ns, TICK.key(STATION_ID), encode(tick))
         self._report_problems()
-        is_behind = self._ports.log.is_behind  # and what is reported perhaps in memory only
-        if not (is_behind and self._ports.log.refuses):  # else what is fetched would be lost
+        is_behind = self._ports.log.is_behind  # and reported messages are perhaps in memory only
+        if not (is_behind and self._ports.log.refuses):  # else fetched messages would be lost
             held = message_report(self._pipeline.state, self._ports.linked())
             self._ports.report(held, is_behind)
         self._ports.send_orders(command_tracker.open_orders(self._pipeline.state))

@@ -20,18 +20,18 @@ _GATHER_S = 0.004  # waking a thread for every single message costs more than th
 _OVERFLOW_REPORTED_NS = 60 * NS_PER_S
 _RECORDS_MAX = 100_000
 _BYTES_MAX = 64 * 1024 * 1024
-_LATE_WAITING = 1024  # records that can wait, at most; who brings them waits meanwhile
+_LATE_WAITING = 1024  # records that can wait, at most; their source waits meanwhile
 _LATE_BYTES = 1024 * 1024
-_LATE_AT_ONCE = 32  # of these behind what is live: some 3 ms of the pipeline's time
+_LATE_AT_ONCE = 32  # of these behind live ones: some 3 ms of the pipeline's time
 
 
 class LiveFeed:
     """A queue from the bus to the one thread that steps the pipeline.
 
-    Any number of threads ``offer`` and ``deliver``; one thread at a time may ``take``.  What can
-    wait has a queue of its own, and comes in small portions behind what is live.  Station time is
-    that of getting in for what is live, of coming out for what can wait, and so never goes back
-    in the order in which records come out.  The queues are bounded: beyond it live data is
+    Any number of threads ``offer`` and ``deliver``; one thread at a time may ``take``.  Data that
+    can wait has a queue of its own, and comes in small portions behind live data.  Live data gets
+    its station time when it enters, other data when it leaves, and so the time never goes back in
+    the order in which records come out.  The queues are bounded: beyond it live data is
     dropped, and counted in ``overflowed``; alerts are dropped only at twice the bound.
     """
 
@@ -48,7 +48,7 @@ class LiveFeed:
         self._late: deque[tuple[str, bytes]] = deque()
         self._late_bytes = 0
         self._late_pending = False  # of what was delivered
-        self._all_taken = False  # and who took it has not come again
+        self._all_taken = False  # and the engine has not come again since
         self._woken = False
         self._closed = False
         self._overflowed_ns = 0
@@ -83,7 +83,7 @@ class LiveFeed:
 
     def deliver(self, key: str, payload: bytes) -> None:
         """As ``offer``, for data that can wait: returns when little of it waits.  An alert that
-        comes this way has waited long enough: it goes with what is live.
+        comes this way has waited long enough: it goes with live data.
         """
         with self._changed:
             if not self._has_late_room(1.0):  # and then for a good while, not for a record or two
@@ -152,8 +152,8 @@ class LiveFeed:
 class LogFeed:
     """The records of a log, from every segment in turn, the one being written included.
 
-    Any thread may ask; each iterator is for one thread.  What comes is what was recorded, in
-    the order in which it was recorded, which is the order in which it was stepped.
+    Any thread may ask; each iterator is for one thread.  Records come in the order of recording,
+    which is the order of stepping.
     """
 
     def __init__(

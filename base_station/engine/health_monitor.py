@@ -25,7 +25,7 @@ class HealthMonitor:
     """Turns present problems into reports of changes."""
 
     def __init__(self) -> None:
-        self._failed: dict[str, str] = {}  # since the last check: what is wrong, by part
+        self._failed: dict[str, str] = {}  # problems since the last check, by part
         self._quiet: dict[str, int] = {}  # checks without a problem, of parts that had one
         self._logged: dict[str, set[type[Exception]]] = {}  # by part, until it is well
 
@@ -50,9 +50,9 @@ class HealthMonitor:
         self.report(part, f"The station's {part} failed: {error!r}; please report it")
 
     def check(self, seen: Mapping[str, str], known: Mapping[str, str]) -> Iterator[ReportProblem]:
-        """``seen``: what is wrong now, by part, empty where nothing is; ``known``: what has been
-        reported, perhaps by an earlier run of the program.  Parts that others watch are left to
-        them.
+        """``seen``: present problems, by part, empty where there is none; ``known``: problems that
+        were reported, perhaps by an earlier run of the program.  Parts that others watch are left
+        to them.
         """
         now = {**dict.fromkeys(_REPORTED_PARTS, ""), **seen, **self._failed}
         self._failed = {}

@@ -51,7 +51,7 @@ class LivenessMonitor:
         if not changes.take(1, now_ns):
             self._ban(unit_id, _WHY)
             if unit_id in self._unlinked:
-                return  # until it is quiet: what follows is not worth the time
+                return  # until it is quiet: the rest is not worth the time
             there = False
         unit_ids = {unit_id}
         linked, unlinked = self._linked, self._unlinked

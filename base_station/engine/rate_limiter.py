@@ -13,7 +13,7 @@ from base_station.process.token_bucket import TokenBucket
 from shared.clock import NS_PER_S, Clock
 from shared.messages.station import ReportProblem
 
-BURST_S = 1.0  # so much may come at once: what a link has held up
+BURST_S = 1.0  # so much may come at once, after a link was held up
 _REPORT_AFTER_NS = 3 * NS_PER_S  # of being beyond it: one burst is no matter
 _PAUSE_NS = 2 * NS_PER_S  # without any that is too much: it begins anew
 _OVER_AFTER_NS = 30 * NS_PER_S

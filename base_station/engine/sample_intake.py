@@ -27,7 +27,7 @@ from shared.codec import encode
 from shared.errors import ConfigError, StoreError, UserError
 from shared.messages import Message, RawImu, UnitDescription
 
-BURST_BYTES = 4 * BYTES_PER_S  # what a node has kept through a minute without a link
+BURST_BYTES = 4 * BYTES_PER_S  # samples that a node has kept over a minute without a link
 _TIMEOUT_S = 10.0
 _SOURCE = "posted"
 

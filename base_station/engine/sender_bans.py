@@ -42,7 +42,7 @@ class SenderBans:
         with self._lock:
             before = self._bans.get(sender_id)
             if before is not None and now_ns < before.begun_ns + NS_PER_S:
-                return  # what was on its way when it was shut out
+                return  # on its way when the sender was shut out
             seconds = FIRST_S
             if before is not None and now_ns < before.end_ns + _WELL_AFTER_NS:
                 is_over = now_ns >= before.end_ns

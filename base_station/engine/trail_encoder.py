@@ -57,8 +57,8 @@ class _EncodedTrail:
             self.update(trail)
 
     def update(self, trail: list[TrailStep]) -> None:
-        """Say what the trail is now.  Steps are never changed, so comparing is cheap: they are
-        the same ones.
+        """Update the encoded trail.  Steps are never changed, so comparing is cheap: they are the
+        same objects.
         """
         if trail == self._steps:
             return

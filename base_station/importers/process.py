@@ -22,7 +22,7 @@ class ImportRefusal(msgspec.Struct, frozen=True):
 
 
 def content_of(path: Path, options: ImportOptions) -> ImportedContent:
-    """Read it.  Raises UserError with what is wrong with the file, and what to do."""
+    """Read it.  Raises UserError with the fault of the file, and advice."""
     command = (
         *(sys.executable, "-m", "base_station.importers"),
         *(str(path.absolute()), msgspec.json.encode(options).decode()),

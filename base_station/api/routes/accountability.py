@@ -51,7 +51,7 @@ class NewCheckIn(Form):
     """PAR confirmed by radio."""
 
     target: Target
-    incident_id: PersonIdText | None = None  # only of who is in it
+    incident_id: PersonIdText | None = None  # only of its members
     check_in_id: CheckInId | None = None  # of the client's choice, to undo it by; None: any
 
 

@@ -86,7 +86,7 @@ class NewCommand(Form):
     target: Target
     text: Note = ""
     position_rate_hz: Annotated[float, Field(ge=0.1, le=50.0)] = 5.0  # for set_position_rate
-    incident_id: PersonIdText | None = None  # only to who is in it; None: to all of the target
+    incident_id: PersonIdText | None = None  # only to its members; None: to all of the target
     expires_s: Annotated[float, Field(ge=1.0, le=86_400.0)] = 600.0
 
 

@@ -22,11 +22,11 @@ class LogSegmentAnswer(Answer, frozen=True):
     last_ms: int
     messages: int
     size_bytes: int
-    note: str  # what recovery had to say
+    note: str  # of its recovery
 
 
 class Health(HealthView, frozen=True, kw_only=True):
-    """As the consoles see it, and who watches, and what the log is made of."""
+    """Health as the consoles see it, with the number of consoles and the segments of the log."""
 
     consoles: int
     segments: tuple[LogSegmentAnswer, ...]

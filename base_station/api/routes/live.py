@@ -51,7 +51,7 @@ class WebSocketClosing(Exception):  # noqa: N818  # it is no error
         self.reason = reason
 
 
-Deltas = Literal["units", "fields"]  # what they have of a unit that changed: all, or what changed
+Deltas = Literal["units", "fields"]  # of a unit that changed: all of it, or the changed fields
 
 
 class PictureRequest(msgspec.Struct, forbid_unknown_fields=True, tag="snapshot"):

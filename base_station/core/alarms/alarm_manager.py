@@ -38,11 +38,11 @@ from shared.messages import (
 from shared.messages.alarm import NO_PARAMETERS
 from shared.messages.station import AcknowledgeAlarm, ResolveAlarm
 
-# What comes all the time: only who heeds it looks at it before the next tick.
+# Frequent messages: before the next tick only those rules judge that are triggered by them.
 ROUTINE: tuple[type[Message], ...] = (Position, Status, Temperature, Heartbeat, GpsFix, RawImu)
 HISTORY = 50  # resolved alarms kept at hand; the store has all of them
 STATION_RULE = "station"
-UNIT_REASSIGNED = "handed over"  # what is not latched ends with who wore the unit
+UNIT_REASSIGNED = "handed over"  # an alarm that is not latched ends with the wearing
 MAX_OPEN_BESIDE = 10  # open ones of one rule and unit, beside the newest
 
 
@@ -141,8 +141,8 @@ class AlarmManager:
         return _resolve(state, alarm, by)
 
     def erase_names(self, state: StationState, unit: UnitState) -> None:
-        """Erase what alarms say of the unit's wearers, and the notes of their resolution; that
-        there were alarms stays.
+        """Erase texts of alarms about the unit's wearers, and notes of their resolution; the alarms
+        stay.
         """
         for alarm in (*state.alarms.values(), *state.history):
             if alarm.unit_id == unit.unit_id:
@@ -212,8 +212,8 @@ def _new_id(state: StationState, of: str) -> str:
 
 
 def _same_subject(state: StationState, key: str, newest: Alarm, finding: Finding) -> Alarm | None:
-    """The alarm about the same wearer or fault, None where there is none: who pressed the button
-    while another one wore the unit, or what failed before, is not forgotten over it.
+    """The alarm about the same wearer or fault, None where there is none: an alarm of a former
+    wearer, or of an earlier fault, is kept beside it.
     """
     if finding.about == newest.about:
         return newest

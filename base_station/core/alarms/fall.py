@@ -1,4 +1,4 @@
-"""The unit felt a fall; a person at the station has to find out what became of it."""
+"""The unit detected a fall; an operator at the station has to find out how the wearer is."""
 
 from __future__ import annotations
 

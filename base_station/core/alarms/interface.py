@@ -37,8 +37,8 @@ class Clear(msgspec.Struct, frozen=True):
     """There is evidence that nothing is the matter."""
 
     seen_ns: int  # station time of the evidence: time passing without news clears nothing
-    by: str  # what it was that resolved the alarm
-    at_once: bool = False  # a word that settles it, and does not have to stay so
+    by: str  # cause of the resolution
+    at_once: bool = False  # conclusive: the condition need not last
     about: int | None = None  # of whose matter it is evidence, where that counts
 
 

@@ -8,7 +8,7 @@ from base_station.site.plan import Plan
 
 OUTSIDE_M = 3.0  # from the outer walls: the weather's pressure
 OUTSIDE_FIX_S = 5.0  # where no plan is known, as long after a fix
-WORK_BEGINS_M = 5.0  # walked since the start: the wearer has gone in, where no plan can tell
+WORK_BEGINS_M = 5.0  # walked since the start: taken as inside, where there is no plan
 
 
 def is_outside(plan: Plan | None, history: PathHistory) -> bool:

@@ -25,7 +25,7 @@ def moved_to(anchor: Anchor, old: Anchor) -> RigidTransform2D:
     )
     apart_m = 0.5 * (math.hypot(north_m, east_m) + math.hypot(back_north_m, back_east_m))
     turn_rad = old.rotation_rad - anchor.rotation_rad
-    if apart_m > 1.0:  # nearer, and the ways tell no direction
+    if apart_m > 1.0:  # nearer, and the paths give no direction
         there_rad = math.atan2(east_m, north_m)
         turn_rad = wrap_pi(there_rad + math.pi - math.atan2(back_east_m, back_north_m))
         north_m, east_m = rotate(apart_m, 0.0, there_rad)

@@ -31,7 +31,7 @@ class Alarm(msgspec.Struct):
     parameters: AlarmParameters = NO_PARAMETERS
     reason: str = ""  # code of the reason for which a user resolved it; empty: none was given
     note: str = ""  # the user's words about it
-    worst: float | None = None  # value so far of what its rule measures
+    worst: float | None = None  # value so far of the measure of its rule
     peak: float | None = None  # ``worst`` at the last change, as it is logged and shown
 
     @property

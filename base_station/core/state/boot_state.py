@@ -1,7 +1,7 @@
 """One run of a unit's program, as the station knows it.
 
-What came of it, how its clock stands to the station's, and when it was there: two runs that were
-there at the same time are two machines under one name.
+Its received messages, its clock offset, and its time of presence: two runs that were present at the
+same time are two machines under one name.
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ class SentCommand(msgspec.Struct):
         return self.notifies_wearer and bool(delivery.can_be_notified)
 
     def state_of(self, delivery: Delivery) -> DeliveryState:
-        """State of a delivery; what happened too late is still what happened."""
+        """State of a delivery; a late answer counts, too."""
         if delivery.acknowledged_ns is not None:
             return "acknowledged"
         received = delivery.received_ns is not None

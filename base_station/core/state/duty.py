@@ -1,7 +1,7 @@
-"""Duty: what an open incident asks of a member who wears a unit, and how the member's PAR stands.
+"""Duty: PAR and work time of a member who wears a unit in an open incident.
 
-Station times.  Whatever follows from the confirmations is worked out from the list of them, so that
-undoing one leaves what would be had it never been entered.
+Station times.  The state is computed from the list of confirmations, so that undoing one gives the
+state without it.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ class Duty(msgspec.Struct):
             ]
 
     def undo(self, entry_id: str) -> bool:
-        """Take out what was entered by radio under this id; False: there is nothing of it."""
+        """Take out the answers entered by radio under this id; False: there are none."""
         kept = [one for one in self.confirmations if not entry_id or one.entry_id != entry_id]
         is_undone = len(kept) < len(self.confirmations)
         self.confirmations = kept

@@ -17,7 +17,7 @@ BYTES_PER_S = 1_000_000
 STALE_AFTER_S = 10.0
 LOST_AFTER_S = 30.0
 BOOTS_KEPT = (
-    1000  # runs of a unit's program of which it is known what came; older ones are not fetched
+    1000  # runs of a unit's program whose received numbers are kept; older ones are not fetched
 )
 STARTS_KEPT = 16
 RESTART_STORM_NS = 60 * NS_PER_S  # no program starts more often than that in such a time
@@ -66,7 +66,7 @@ class MessageStream(msgspec.Struct):
         ):  # the message of the highest number is new: the clock was wrong before
             return "old"
         self.latest_mono_ns[channel.name] = header.t_mono_ns
-        if header.seq == boot.seen.lasts[-1]:  # a goodbye is an alert and overtakes what is not
+        if header.seq == boot.seen.lasts[-1]:  # a goodbye is an alert and overtakes other messages
             self.stopped_ns = None
         return "new"
 

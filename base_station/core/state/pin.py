@@ -38,9 +38,9 @@ class PinVerdict(msgspec.Struct, frozen=True):
 
     state: PinState
     residual_m: float | None = None  # between the pin and the trail
-    sigmas: float | None = None  # the same in standard deviations of what was expected
-    text: str = ""  # for a person: what it conflicts with, or what it waits for
-    of_units: tuple[tuple[str, PinVerdict], ...] = ()  # what each that it is about makes of it
+    sigmas: float | None = None  # the same in standard deviations of the expected place
+    text: str = ""  # for a person: its conflict, or the reason why it waits
+    of_units: tuple[tuple[str, PinVerdict], ...] = ()  # verdict of each unit that it is about
 
 
 class Beacon(msgspec.Struct):

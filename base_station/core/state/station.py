@@ -30,7 +30,7 @@ class Counts(msgspec.Struct):
     messages: int = 0
     undecodable: int = 0
     last_undecodable: str = ""
-    unregistered_dropped: int = 0  # messages of strangers beyond what is kept
+    unregistered_dropped: int = 0  # messages of unregistered units beyond those that are kept
 
 
 class StationState(msgspec.Struct):
@@ -61,7 +61,7 @@ class StationState(msgspec.Struct):
     idempotency_records: dict[str, IdempotencyRecord] = msgspec.field(
         default_factory=dict
     )  # by key, oldest first
-    take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # who has been in charge
+    take_overs: list[TakeOver] = msgspec.field(default_factory=list)  # leaders so far
     external: dict[str, ExternalMarker] = msgspec.field(default_factory=dict)  # of other teams
     dispatches: tuple[Dispatch, ...] = ()  # from which no incident was opened, oldest first
     counts: Counts = msgspec.field(default_factory=Counts)

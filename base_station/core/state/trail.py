@@ -1,8 +1,8 @@
 """The way that the console draws behind a unit: whole since the incident began, and bounded in
 length.
 
-Its older part is thinned by Douglas and Peucker (1973) and stays within a stated distance of what
-it was. What is drawn of everybody, the last minutes, stays point by point.
+Its older part is thinned by Douglas and Peucker (1973) and stays within a stated distance of the
+original.  The last minutes, which are drawn of every unit, stay point by point.
 """
 
 from __future__ import annotations

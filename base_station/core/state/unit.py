@@ -67,7 +67,7 @@ class UnitState(MessageStream):
     fault: Fault | None = None
     duty: Duty | None = None  # it has a wearer, and an incident is open
     off_duty_ns: int = 0  # when that was last over
-    tracker: UnitState | None = None  # what is known of its tracking agent as a sender
+    tracker: UnitState | None = None  # state of its tracking agent as a sender
     gps: GpsUse | None = None
     rejected_counts: dict[str, int] = msgspec.field(
         default_factory=dict

@@ -25,5 +25,5 @@ class UnitHeat(msgspec.Struct):
     temperature: Temperature | None = None
     temperature_ns: int = 0  # station time of receipt
     dose: float = 0.0
-    late_dose: float = 0.0  # of that, what came out of the journal
+    late_dose: float = 0.0  # of that, the part from the journal
     exposures: list[ExposureInterval] = msgspec.field(default_factory=list)

@@ -122,7 +122,7 @@ def _within_m(fused: FusedPosition) -> float:
 
 
 def _cause_of(reason: str) -> str:
-    """A fuser may say how far, and why or what to do behind a colon; that is one cause."""
+    """Cause without its details: fusers add an amount, or a reason or advice behind a colon."""
     return "place only roughly known" if reason.startswith("within ") else reason.partition(":")[0]
 
 
