@@ -14,6 +14,7 @@ from base_station.core.trust.trust import conflicts_of, trust_of
 from base_station.core.units.worn_sensors import DescribedSensor, worn_sensors
 from base_station.site.max_travel import RADII_95, max_travel_m
 from base_station.site.plan import Ring
+from base_station.site.storeys import storey_of
 from base_station.storage.db.known_people import KnownPerson, PersonLookup, shown_text
 from base_station.views.answer import to_ms, to_ms_or_none
 from base_station.views.wire import (
@@ -200,12 +201,14 @@ def _sensors_view(sensors: Sequence[SensorTemperature]) -> tuple[SensorTemperatu
 
 def _position_view(state: StationState, fused: FusedPosition, reach: Ring) -> PositionView:
     lat_deg = lon_deg = None
-    anchor = state.site_of(fused.unit_id).anchor
+    site = state.site_of(fused.unit_id)
+    anchor = site.anchor
     if anchor is not None:
         lat_deg, lon_deg, _ = anchor.to_geodetic(fused.north_m, fused.east_m, fused.down_m)
     silent_m = max_travel_m((state.t_ns - fused.t_meas_ns) / NS_PER_S)
     major_m, minor_m, heading_rad = _ellipse(fused)
     since_gps_s, probability = fused.since_gps_s, fused.floor_probability
+    storey = storey_of(site.storeys_at(fused.north_m, fused.east_m), fused.floor)
     return PositionView(  # by place: there are thousands a second
         fused.t_meas_ns // NS_PER_MS,
         round(fused.north_m, _DECIMALS),
@@ -225,6 +228,7 @@ def _position_view(state: StationState, fused: FusedPosition, reach: Ring) -> Po
         None if lon_deg is None else round(lon_deg, _DEGREE_DECIMALS),
         None if probability is None else round(probability, _DECIMALS),
         tuple([(round(east_m, 1), round(north_m, 1)) for east_m, north_m in reach]),
+        None if storey is None else round(storey.down_m, 1),
     )
 
 

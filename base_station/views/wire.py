@@ -95,6 +95,7 @@ class PositionView(Answer, frozen=True):
     floor_probability: float | None
     reach: tuple[tuple[float, float], ...]  # [east_m, north_m]; border of the ground that a
     # wearer without a link can have reached, walls considered; empty: only the ellipse is known
+    floor_down_m: float | None = None  # of the floor, as planned or learnt; None: not known
 
 
 class AlarmParametersView(Answer, frozen=True, omit_defaults=True):

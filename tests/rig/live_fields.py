@@ -92,6 +92,8 @@ LIVE_FIELDS: Mapping[str, str] = {
     "ellipse_heading_rad": "Heading of the longer axis.",
     "quality_reason": "Why the quality is not good; empty: it is.",
     "since_gps_s": "Time since a fix of GPS was used; null: never.",
+    "floor_down_m": "Height of that floor, metres below the origin of the incident frame, as "
+    "planned or as learnt from where people walk; null: not known.",
     "reach": "Border of where a wearer who is not received can have walked to, as [east, north] "
     "in metres; empty: the ellipse is all that is known.",
     # ---- the rest

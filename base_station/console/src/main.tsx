@@ -7,6 +7,7 @@ import "./styles/alarms.css";
 import "./styles/people.css";
 import "./styles/commands.css";
 import "./styles/plan.css";
+import "./styles/section.css";
 import "./styles/dialogs.css";
 import "./styles/timeline.css";
 import "./styles/small.css";

@@ -54,6 +54,7 @@ export interface PositionView {
   lon_deg: number | null;
   floor_probability: number | null;
   reach: [number, number][];
+  floor_down_m: number | null;
 }
 
 export interface AlarmParametersView {

@@ -68,6 +68,7 @@ export function position(change: Partial<PositionView> = {}): PositionView {
     lon_deg: null,
     floor_probability: null,
     reach: [],
+    floor_down_m: null,
     ...change,
   };
 }

@@ -14,9 +14,9 @@ import { beginOnAFloor } from "./floorShown";
 import { areImportsShown, followImports, imports } from "./imports";
 import type { PlanMap } from "./map";
 import { followTrails, pastTrails, shownKinds } from "./pastTrails";
+import { atMostEvery, REDRAW_MS } from "./redrawing";
 import { clicked, tool } from "./tools";
 
-const REDRAW_MS = 200;
 const NO_TRAILS = new Map<string, readonly TrailPoint[]>();
 
 /** Begin to follow; the result ends it. */
@@ -111,19 +111,4 @@ function chosenOnPlan(): string | null {
   const now = tool.value;
   if (now?.kind === "edit-pin") return now.pinId;
   return now?.kind === "edit-beacon" ? now.beaconId : null;
-}
-
-function atMostEvery(periodMs: number, work: () => void): { ask(): void; cancel(): void } {
-  let timer: number | null = null;
-  return {
-    ask() {
-      timer ??= window.setTimeout(() => {
-        timer = null;
-        work();
-      }, periodMs);
-    },
-    cancel() {
-      if (timer !== null) clearTimeout(timer);
-    },
-  };
 }

@@ -47,7 +47,7 @@ export function colourOf({ old, urgency }: Mark, colours: Colours): string {
 }
 
 /** In the mark: "!" is danger, "?" an old place.  Of several in danger, the initials tell who is who. */
-export function lettersOf({ old, urgency, initials }: Mark): string {
+export function lettersOf({ old, urgency, initials }: Pick<Mark, "old" | "urgency" | "initials">): string {
   const danger = urgency === "immediate";
   if (old && !danger) return "?";
   return danger ? `!${old ? "?" : ""}${initials}` : initials;

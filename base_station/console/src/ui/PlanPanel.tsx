@@ -10,11 +10,13 @@ import { PlanMap, type PlanEvents } from "../plan/map";
 import type { Standing } from "../plan/pins";
 import { siteCoordinate } from "../plan/site";
 import { click, clicked, take, tool, wantsPlaces, type Place } from "../plan/tools";
+import { section } from "../section/shown";
 import { t } from "../language/translate";
 import { Edges } from "./Edges";
 import { Floors } from "./Floors";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { PlanTools, ToolPanel } from "./PlanTools";
+import { SideSection } from "./SideSection";
 
 export function PlanPanel({ picture }: { picture: Picture }) {
   const target = useRef<HTMLDivElement>(null);
@@ -41,8 +43,10 @@ export function PlanPanel({ picture }: { picture: Picture }) {
     if (position) map.current?.centre(siteCoordinate(position));
   });
 
+  // A tool that wants places needs the plan.
+  const withSection = section.value === "on" && !wantsPlaces(tool.value);
   return (
-    <section class="plan" aria-label={t("plan_view.title")}>
+    <section class={`plan ${withSection ? "with-section" : ""}`} aria-label={t("plan_view.title")}>
       <ErrorBoundary what={t("plan_view.tools")}>
         <PlanTools picture={picture} />
       </ErrorBoundary>
@@ -76,6 +80,11 @@ export function PlanPanel({ picture }: { picture: Picture }) {
       <div class="north" aria-hidden="true">
         {t("plan_view.north")}
       </div>
+      {withSection && (
+        <ErrorBoundary what={t("section.title")}>
+          <SideSection picture={picture} />
+        </ErrorBoundary>
+      )}
       <ErrorBoundary what={t("plan_view.tool")}>
         <ToolPanel picture={picture} />
       </ErrorBoundary>

@@ -3,6 +3,7 @@ import { useLayoutEffect } from "preact/hooks";
 import { mayAct, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { dialog } from "../uiState";
+import { section, toggleSection } from "../section/shown";
 import { putDown, toggle, tool, type Tool } from "../plan/tools";
 import { listed } from "../language/measures";
 import { t } from "../language/translate";
@@ -27,6 +28,9 @@ export function PlanTools({ picture }: { picture: Picture }) {
         </>
       )}
       <ToolButton tool={{ kind: "trails" }}>{t("plan_tools.trails")}</ToolButton>
+      <button type="button" aria-pressed={section.value === "on"} onClick={toggleSection}>
+        {t("plan_tools.section")}
+      </button>
       {pins.length + beacons > 0 && (
         <ToolButton tool={{ kind: "pins" }} alarmed={conflicts > 0}>
           {listed(pinWords(pins.length, conflicts, beacons))}

@@ -3,6 +3,7 @@ import { useEffect } from "preact/hooks";
 import { shortcutsOn } from "../appearance";
 import type { PlainKey } from "../language/translate";
 import type { Picture } from "../live/picture";
+import { toggleSection } from "../section/shown";
 import { mayAct, picture, waiting } from "../sessions";
 import { dialog, openDialog, pane } from "../uiState";
 import { finding, seeking } from "./listState";
@@ -20,6 +21,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { key: "p", words: "shortcut.par", acts: true, run: () => openDialog("par_request") },
   { key: "n", words: "shortcut.next_alarm", run: showNextAlarm },
   { key: "a", words: "shortcut.all_alarms", run: () => openDialog("alarms") },
+  { key: "s", words: "shortcut.section", run: showSection },
   { key: "/", words: "shortcut.search", run: seek },
   { key: "?", words: "shortcut.help", run: () => openDialog("display") },
 ];
@@ -51,6 +53,11 @@ export function useShortcuts(): void {
 
 function isWriting(target: EventTarget | null): boolean {
   return target instanceof Element && target.matches("input, textarea, select");
+}
+
+function showSection(): void {
+  pane.value = "plan";
+  toggleSection();
 }
 
 function seek(): void {

@@ -39,6 +39,7 @@ export const shortcut: Part<"shortcut"> = {
   par: "PAR: öffnet die Abfrage, sendet noch nichts",
   next_alarm: "Nächster Alarm: zeigt die Person auf dem Plan",
   all_alarms: "Alle Alarme, und was aus jedem wurde",
+  section: "Gebäudeschnitt statt des Plans, und zurück",
   search: "Personenliste durchsuchen",
   help: "Diese Liste",
 };

@@ -5,6 +5,7 @@ export const plan_tools: Part<"plan_tools"> = {
   start: "Gemeinsamen Start setzen",
   beacon: "Bake",
   trails: "Wege",
+  section: "Schnitt",
   pins: "Pins {count, number}",
   conflicts: "{count, number} im Widerspruch",
   beacons: "Baken {count, number}",
@@ -116,4 +117,20 @@ export const direction: Part<"direction"> = {
   sw: "Südwesten",
   w: "Westen",
   nw: "Nordwesten",
+};
+
+export const section: Part<"section"> = {
+  title: "Gebäudeschnitt",
+  floors: "Geschosse, von oben",
+  axis: "Entlang",
+  axis_longest: "längere Seite",
+  axis_east: "West nach Ost",
+  axis_north: "Süd nach Nord",
+  legend: "Jede Person steht auf ihrer Höhe; der Balken enthält sie mit 95 %.",
+  in_danger: "in Gefahr",
+  height: "Höhe {height} {error}",
+  several: "{count, number} Personen: {names}",
+  people_on: ", {count, plural, one {# Person} other {# Personen}}",
+  here: "Personen an dieser Stelle",
+  not_located: "Ohne Position, nicht gezeigt: {count, number}",
 };

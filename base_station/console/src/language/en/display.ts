@@ -38,6 +38,7 @@ export const shortcut = {
   par: "PAR: opens the request, sends nothing yet",
   next_alarm: "Next alarm: shows its member on the plan",
   all_alarms: "All alarms, with what became of each",
+  section: "Side section of the building instead of the plan, and back",
   search: "Search the list of people",
   help: "This list",
 } as const;

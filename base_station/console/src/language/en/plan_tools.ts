@@ -4,6 +4,7 @@ export const plan_tools = {
   start: "Set common start",
   beacon: "Beacon",
   trails: "Trails",
+  section: "Side section",
   pins: "Pins {count, number}",
   conflicts: "{count, number} in conflict",
   beacons: "beacons {count, number}",
@@ -114,4 +115,20 @@ export const direction = {
   sw: "south-west",
   w: "west",
   nw: "north-west",
+} as const;
+
+export const section = {
+  title: "Side section",
+  floors: "Floors, from the top",
+  axis: "Along",
+  axis_longest: "longer side",
+  axis_east: "west to east",
+  axis_north: "south to north",
+  legend: "Each person stands at their height; the bar holds it with 95 %.",
+  in_danger: "in danger",
+  height: "height {height} {error}",
+  several: "{count, number} people: {names}",
+  people_on: ", {count, plural, one {# person} other {# people}}",
+  here: "People who stand here",
+  not_located: "Without a position, not shown: {count, number}",
 } as const;

@@ -39,6 +39,7 @@ export const shortcut: Part<"shortcut"> = {
   par: "PAR\u00a0: ouvre la demande, n’envoie encore rien",
   next_alarm: "Alarme suivante\u00a0: montre la personne sur le plan",
   all_alarms: "Toutes les alarmes, et ce qu’il en est advenu",
+  section: "Coupe du bâtiment à la place du plan, et retour",
   search: "Chercher dans la liste des personnes",
   help: "Cette liste",
 };

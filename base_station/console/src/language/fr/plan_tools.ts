@@ -5,6 +5,7 @@ export const plan_tools: Part<"plan_tools"> = {
   start: "Définir le départ commun",
   beacon: "Balise",
   trails: "Trajets",
+  section: "Coupe",
   pins: "Repères {count, number}",
   conflicts: "{count, number} en conflit",
   beacons: "balises {count, number}",
@@ -115,4 +116,20 @@ export const direction: Part<"direction"> = {
   sw: "sud-ouest",
   w: "ouest",
   nw: "nord-ouest",
+};
+
+export const section: Part<"section"> = {
+  title: "Coupe du bâtiment",
+  floors: "Niveaux, de haut en bas",
+  axis: "Le long",
+  axis_longest: "du grand côté",
+  axis_east: "d’ouest en est",
+  axis_north: "du sud au nord",
+  legend: "Chaque personne est à sa hauteur ; la barre la contient à 95 %.",
+  in_danger: "en danger",
+  height: "hauteur {height} {error}",
+  several: "{count, number} personnes : {names}",
+  people_on: ", {count, plural, one {# personne} other {# personnes}}",
+  here: "Personnes à cet endroit",
+  not_located: "Sans position, non montrées : {count, number}",
 };

@@ -1,0 +1,97 @@
+/** From metres of the building to pixels of a side section.  Pure. */
+import { united, type Span } from "./axis";
+import { storeyHeightM, type Level } from "./levels";
+import type { Member } from "./members";
+
+export interface Size {
+  widthPx: number;
+  heightPx: number;
+  markPx: number; // of one person
+  gutterPx: number; // on the left, for the names of floors
+}
+
+/** Pixels from the upper left corner; who is beyond what is drawn stands at its edge. */
+export interface Frame {
+  widthPx: number;
+  heightPx: number; // more than the window's where floors would be too low
+  leftPx: number; // where the building may begin
+  rightPx: number;
+  topPx: number; // the highest that is drawn
+  bottomPx: number;
+  xOf(alongM: number): number;
+  yOf(heightM: number): number;
+  storeyPx: number; // the lowest
+  isBeyond(alongM: number): -1 | 0 | 1; // left of what is drawn, on it, right of it
+}
+
+const EDGE_PX = 10;
+const BAND_ROOM_PX = 10; // above and below a mark in its band
+const LEAST_BESIDE_M = 6;
+const LEAST_LENGTH_M = 10;
+const OUTLIERS_STOREYS = 1.5; // beyond the floors, as far as heights are drawn
+
+/** People far from the building do not make it small. */
+export function frameOf(
+  building: Span | null,
+  members: readonly Member[],
+  levels: readonly Level[],
+  size: Size,
+): Frame {
+  const span = shownSpan(building, members);
+  const storeyM = storeyHeightM(levels);
+  const heights = shownHeights(levels, members, storeyM);
+  const usablePx = size.heightPx - 2 * EDGE_PX - size.markPx;
+  const leastPx = (size.markPx + BAND_ROOM_PX) / lowestStoreyM(levels, storeyM);
+  const pxPerM = Math.max(leastPx, usablePx / (heights.toM - heights.fromM));
+  const heightPx = Math.max(size.heightPx, pxPerM * (heights.toM - heights.fromM) + 2 * EDGE_PX + size.markPx);
+  const half = size.markPx / 2;
+  const leftPx = size.gutterPx + half;
+  const rightPx = size.widthPx - EDGE_PX - half;
+  const bottomPx = heightPx - EDGE_PX;
+  const xScale = (rightPx - leftPx) / (span.toM - span.fromM);
+  return {
+    widthPx: size.widthPx,
+    heightPx,
+    leftPx,
+    rightPx,
+    topPx: EDGE_PX + size.markPx,
+    bottomPx,
+    storeyPx: pxPerM * lowestStoreyM(levels, storeyM),
+    isBeyond: (alongM) => (alongM < span.fromM - 0.5 ? -1 : alongM > span.toM + 0.5 ? 1 : 0),
+    xOf: (alongM) => clamp(leftPx + (alongM - span.fromM) * xScale, leftPx, rightPx),
+    yOf: (heightM) => clamp(bottomPx - (heightM - heights.fromM) * pxPerM, EDGE_PX + size.markPx, bottomPx),
+  };
+}
+
+function shownSpan(building: Span | null, members: readonly Member[]): Span {
+  const all = united([building, ...members.map(({ alongM }) => ({ fromM: alongM, toM: alongM }))]);
+  if (all === null) return { fromM: -LEAST_LENGTH_M / 2, toM: LEAST_LENGTH_M / 2 };
+  const lengthM = building === null ? 0 : building.toM - building.fromM;
+  const besideM = Math.max(LEAST_BESIDE_M, lengthM / 3);
+  const span =
+    building === null
+      ? { fromM: all.fromM - 1, toM: all.toM + 1 }
+      : {
+          fromM: Math.max(all.fromM, building.fromM - besideM),
+          toM: Math.min(all.toM, building.toM + besideM),
+        };
+  const missingM = Math.max(0, LEAST_LENGTH_M - (span.toM - span.fromM));
+  return { fromM: span.fromM - missingM / 2, toM: span.toM + missingM / 2 };
+}
+
+/** All floors with the top one's storey, ground for the bars below, and people near to them. */
+function shownHeights(levels: readonly Level[], members: readonly Member[], storeyM: number): Span {
+  const lowM = (levels[0]?.heightM ?? 0) - storeyM / 2;
+  const highM = (levels.at(-1)?.heightM ?? 0) + storeyM;
+  const beyondM = OUTLIERS_STOREYS * storeyM;
+  const heights = members.map(({ heightM }) => clamp(heightM, lowM - beyondM, highM + beyondM));
+  return { fromM: Math.min(lowM, ...heights), toM: Math.max(highM, ...heights) };
+}
+
+function lowestStoreyM(levels: readonly Level[], storeyM: number): number {
+  return Math.min(storeyM, ...levels.slice(1).map(({ heightM }, i) => heightM - (levels[i]?.heightM ?? 0)));
+}
+
+function clamp(value: number, least: number, most: number): number {
+  return Math.min(Math.max(value, least), most);
+}

@@ -1,0 +1,105 @@
+/** Where people stand in a side section: at their heights, side by side or as a number where they would
+ * cover each other.  Pure. */
+import type { Frame } from "./frame";
+import { isAlone, type Member } from "./members";
+
+/** Left of a mark, for the bar of its height. */
+export const BAR_PX = 8;
+
+/** One person, or several as a number. */
+export interface SectionMark {
+  key: string; // of the first of them, who keeps it
+  members: readonly Member[];
+  floor: number | null;
+  xPx: number; // the middle
+  yPx: number;
+  footXPx: number; // where they are; the mark is beside it where others are in the way
+  footYPx: number;
+  barTopPx: number; // the height with its error
+  barBottomPx: number;
+}
+
+/** In steps of a mark, the nearest first. */
+const BESIDE = [[0, 0], [1, 0], [-1, 0], [2, 0], [-2, 0]] as const;
+const ABOVE = [[0, -1], [1, -1], [-1, -1], [2, -1], [-2, -1]] as const;
+
+const RANK = { immediate: 1, soon: 2, watch: 3, normal: 4 } as const;
+
+/** How far somebody joins others, in steps of a mark, where those in need leave no room. */
+const JOIN_STEPS = 3;
+
+/** Who is in need or chosen first: they have a mark of their own, moved aside if need be; all others
+ * join whoever of their floor stands there. */
+export function sectionMarks(members: readonly Member[], frame: Frame, markPx: number): SectionMark[] {
+  const stepPx = markPx + BAR_PX;
+  const sides = frame.storeyPx >= 2 * markPx + BAR_PX ? [...BESIDE, ...ABOVE] : BESIDE;
+  const placed: SectionMark[] = [];
+  const isFree = (mark: SectionMark) =>
+    isOn(mark, frame, markPx) && !placed.some((other) => meet(mark, other, stepPx, markPx));
+  for (const member of [...members].sort((a, b) => rankOf(a) - rankOf(b))) {
+    const alone = markOf(member, frame, markPx);
+    const aside = sides.map(([right, down]) => moved(alone, right * stepPx, down * markPx));
+    const free = (isAlone(member) ? aside : aside.slice(0, 1)).find(isFree);
+    const host = free === undefined ? hostOf(alone, placed, stepPx, markPx) : -1;
+    const before = placed[host];
+    if (before === undefined) placed.push(free ?? aside.find(isFree) ?? alone);
+    else placed[host] = joined(before, alone);
+  }
+  return placed;
+}
+
+function rankOf(member: Member): number {
+  return member.chosen ? 0 : RANK[member.urgency];
+}
+
+function markOf(member: Member, frame: Frame, markPx: number): SectionMark {
+  const [footXPx, footYPx] = [frame.xOf(member.alongM), frame.yOf(member.heightM)];
+  return {
+    key: member.unitId,
+    members: [member],
+    floor: member.floor,
+    xPx: footXPx,
+    yPx: footYPx - markPx / 2, // they stand on their height
+    footXPx,
+    footYPx,
+    barTopPx: frame.yOf(member.heightM + member.errorM),
+    barBottomPx: frame.yOf(member.heightM - member.errorM),
+  };
+}
+
+/** The nearest of the same floor, of who has no mark of their own rather than of who has; -1: nobody. */
+function hostOf(mark: SectionMark, placed: readonly SectionMark[], stepPx: number, markPx: number): number {
+  const own = mark.members.some(isAlone);
+  let [best, nearest] = [-1, JOIN_STEPS * stepPx];
+  placed.forEach((other, i) => {
+    const apartPx = Math.abs(mark.xPx - other.xPx);
+    const level = Math.abs(mark.yPx - other.yPx) < markPx;
+    if (other.floor !== mark.floor || other.members.some(isAlone) !== own || !level) return;
+    if (apartPx < nearest) [best, nearest] = [i, apartPx];
+  });
+  return best;
+}
+
+function moved(mark: SectionMark, rightPx: number, downPx: number): SectionMark {
+  return { ...mark, xPx: mark.xPx + rightPx, yPx: mark.yPx + downPx };
+}
+
+function joined(host: SectionMark, one: SectionMark): SectionMark {
+  return {
+    ...host,
+    members: [...host.members, ...one.members],
+    barTopPx: Math.min(host.barTopPx, one.barTopPx),
+    barBottomPx: Math.max(host.barBottomPx, one.barBottomPx),
+  };
+}
+
+function meet(a: SectionMark, b: SectionMark, widthPx: number, heightPx: number): boolean {
+  return Math.abs(a.xPx - b.xPx) < widthPx && Math.abs(a.yPx - b.yPx) < heightPx;
+}
+
+function isOn({ xPx, yPx }: SectionMark, frame: Frame, markPx: number): boolean {
+  const half = markPx / 2;
+  return (
+    xPx >= frame.leftPx - half && xPx <= frame.rightPx + half && yPx >= half && yPx <= frame.heightPx - half
+  );
+}
