@@ -1,9 +1,9 @@
 """Storeys out of the heights at which people walked about, where no plan lists them.
 
-Heights gather in levels; what lies between two levels is one storey or several.  How high a storey
-of this building is, is not known either, so every height from ``LEAST_M`` to ``MOST_M`` is tried
-(Bayes over a grid) and the numbers of floors between levels are what is most probable over all of
-them together.  The probability of each floor's number comes out of the same sum.
+Heights gather in levels; between two levels there is one storey or several.  The height of a storey
+of this building is unknown, too, so every height from ``LEAST_M`` to ``MOST_M`` is tried (Bayes
+over a grid), and the most probable numbers of floors between levels over all of them are taken.
+The probability of each floor's number comes out of the same sum.
 """
 
 from __future__ import annotations

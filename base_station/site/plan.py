@@ -53,7 +53,7 @@ class Plan(msgspec.Struct, frozen=True):
     outlines: tuple[Ring, ...]
     walls: tuple[Wall, ...] = ()
     stairs: tuple[Stairs, ...] = ()
-    damage: str = ""  # for a person: what of it cannot be read, and is left out
+    damage: str = ""  # for a person: parts that cannot be read, and are left out
     read_whole: bool = False  # each of its features was looked at: before, only some were
 
     @property

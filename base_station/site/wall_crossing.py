@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 Ground = NDArray[np.uint8]
 Flags = NDArray[np.bool_]
 
-FREE, BESIDE, WALL = 0, 1, 2  # what a square is; beside a wall there is no room for half a body
+FREE, BESIDE, WALL = 0, 1, 2  # kinds of squares; beside a wall there is no room for half a body
 
 DIRECTIONS = 8  # into which is looked for room
 SAME_WALL = 6.0  # squares within which two walls are one

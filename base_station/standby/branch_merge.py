@@ -1,8 +1,8 @@
 """Merge of the branch of a station that was apart: its messages and actions come to the leader.
 
-The standby serves what it has set aside; the active station fetches it.  Units' messages go the
-way of what was fetched late, so that those that are in the log are left out.  What people did is
-written down and shown, and not applied.
+The standby serves the branch that it has set aside; the active station fetches it.  Units' messages
+are treated as late data, so that those that are in the log are left out.  Actions of people are
+logged and shown, and not applied.
 """
 
 from __future__ import annotations
@@ -182,7 +182,7 @@ def _in_words(done: OperatorAction) -> str:
 
 
 def _in_word(name: str, value: object) -> str:
-    """Empty where there is nothing to say."""
+    """Text of one field; empty where it adds nothing."""
     match value:
         case bool():
             return name if value else f"not {name}"

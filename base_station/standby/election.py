@@ -41,7 +41,7 @@ class Election:
 
     def __init__(self, lease_ns: int, now_ns: int) -> None:
         self._lease_ns = lease_ns
-        self._since_ns = now_ns  # waits to hear of another one
+        self._since_ns = now_ns  # start of the wait for another station
         self._other: PeerHeartbeat | None = None
         self._received_ns = 0
         self._token_there = False

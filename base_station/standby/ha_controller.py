@@ -38,7 +38,7 @@ from shared.worker import Worker
 logger = logging.getLogger(__name__)
 
 _LOOK_EVERY_S = 0.2
-_STEP_S = 5.0  # that the drive may take for what was delivered
+_STEP_S = 5.0  # that the drive may take for the delivered events
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ from shared.messages.station import TakeOver
 
 
 def find_divergence(mine: LogAncestry, theirs: LogAncestry) -> LogPosition | None:
-    """The place behind which my log is not what the active station has; None: I can go on.
+    """The place behind which this log differs from the active station's; None: it can go on.
 
-    Every take-over is in the log of who took over, with the place behind which it stands.  So the
-    first one that only one of the two has names the last place that both share.  Raises
+    Every take-over is in the log of the station that took over, with the place behind which it
+    stands.  So the first one that only one of the two has gives the last common place.  Raises
     ConfigError where they never had one log.
     """
     if mine.place == START:

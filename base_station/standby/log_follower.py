@@ -25,7 +25,7 @@ Answer = TypeVar("Answer")
 
 _TIMEOUT_S = 3.0
 _AGAIN_S = 0.2
-_SETTLE_S = 0.02  # what is written in quick succession goes to the disk together
+_SETTLE_S = 0.02  # records in quick succession go to the disk together
 _REPORT_S = 0.5
 _BACKLOG = 1000  # so many events at once are no longer the last moment's
 
@@ -56,11 +56,11 @@ class LogFollower:
         self._on_parting = on_parting
         self._changed = Condition()
         self._leader: Leader | None = None
-        self._same_log: Leader | None = None  # what this log holds is the beginning of its log
+        self._same_log: Leader | None = None  # this log is the beginning of its log
         self._delivering = Lock()
         self.delivered = START  # up to here the feed has it
         self._closed = False
-        self.in_step = False  # it has stepped what the leader has, but for the last moment
+        self.in_step = False  # it has stepped the leader's events, but for the last moment
         self.problem = ""  # why it cannot follow, as a sentence for a person
         self._workers = [
             Worker("following", self._follow_leader, "the other station's log is not followed"),
@@ -117,7 +117,7 @@ class LogFollower:
     def _follow(self, leader: Leader) -> None:
         """Until it is no longer to be followed, or does not answer."""
         if not self._log.wait_reached(self.delivered, _AGAIN_S):
-            return  # what waits to be stepped would be asked for again
+            return  # events that wait to be stepped would be fetched again
         history = self._ask(leader, "history", LogAncestry)
         if history is None or not self._is_wanted(leader):
             return

@@ -1,6 +1,6 @@
-"""Repair of the log from the other station: what one disk has lost, the other one has.
+"""Repair of the log from the other station, whose disk has the lost events.
 
-Only events are fetched: what was decided from them a replay decides again.
+Only events are fetched: a replay makes the decisions from them again.
 """
 
 from __future__ import annotations

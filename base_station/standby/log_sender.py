@@ -17,7 +17,7 @@ logger = logging.getLogger(__name__)
 
 _BATCH_BYTES = 512 * 1024
 _FROM_DISK = 2000  # events in a batch
-_WAIT_S = 0.3  # for something to say
+_WAIT_S = 0.3  # for new events
 _GATHER_S = 0.01  # events in quick succession are sent together
 
 
@@ -34,7 +34,7 @@ class DiskReader:
             self._reading = place, events_after(place, self._disk.records(place.t_ns))
         reader = self._reading[1]
         records = list(islice(reader, _FROM_DISK))
-        if not records:  # what came since it was opened
+        if not records:  # look for those since it was opened
             reader = events_after(place, self._disk.records(place.t_ns))
             records = list(islice(reader, _FROM_DISK))
         for t_ns, _, _ in records:

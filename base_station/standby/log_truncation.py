@@ -1,4 +1,4 @@
-"""Cuts a log where two stations parted; what stood behind it is kept beside, never deleted.
+"""Cuts a log where two stations parted; the rest is kept beside it, never deleted.
 
 DATA/apart/TIME-EVENTS-NUMBER/*.mcap    whole segments, of which what stands behind the place counts
 DATA/apart/TIME-EVENTS-NUMBER.told/     the same, when the active station has taken what it lacked

@@ -47,7 +47,7 @@ class Parts:
     records: Records
     pki: PkiFolder
     on_people: Callable[[], None]  # people or photos may have changed
-    on_taken_back: Callable[[str], None]  # what was lost with the database is there again
+    on_taken_back: Callable[[str], None]  # rows that were lost with the database are there again
     on_lead: Callable[[], None]
     start_again: Callable[[LogPosition | None], None]
     step_again: Callable[[int], None]  # the log up to this time, in which something was missing

@@ -33,7 +33,7 @@ class PeerHeartbeat(msgspec.Struct, frozen=True):
     run: int  # of its program; another number: it has started anew
     units: int  # that are linked, with whichever router
     url: str  # where consoles find it
-    t_ns: int = 0  # station time there; 0: it is of a version that does not say
+    t_ns: int = 0  # station time there; 0: of a version without it
 
 
 class ReplicationAck(msgspec.Struct, frozen=True):

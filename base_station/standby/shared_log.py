@@ -32,7 +32,7 @@ class SharedLog:
         self.follows = False  # it is to be the same as another station's
         self.is_cut_short = False  # and is not, until this station starts again
         self._changed = Condition()
-        self._first: LogPosition = START  # what is at hand begins behind it
+        self._first: LogPosition = START  # events at hand begin behind it
         self._places: list[LogPosition] = []
         self._recent: list[Record] = []
         self._bytes = 0

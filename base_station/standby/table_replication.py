@@ -1,10 +1,10 @@
-"""Keeps what is in no log the same at both stations: accounts, people, the base map, audit, who is
-enrolled.
+"""Keeps data that is in no log the same at both stations: accounts, people, the base map, audit,
+enrolments.
 
 The standby asks in every round whether anything has changed; the answer is all of it, or nothing.
-The one that leads asks the same, and takes what the other took away: users, tokens, roles; and
-takes back what it has lost with its own database.  The audit is added to, in both directions, in
-the order in which the other one got to know.
+The active one asks the same, applies removals of the other (users, tokens, roles), and takes back
+rows that it has lost with its own database.  Audit entries are copied in both directions, in the
+order in which the other one got them.
 """
 
 from __future__ import annotations

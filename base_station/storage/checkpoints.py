@@ -28,7 +28,7 @@ _NOT_OURS = frozenset({"node_modules", "__pycache__"})  # in a checkout; npm may
 KEPT_CLOSE = 5  # the newest ones; older ones are kept SPARSE_NS apart
 KEPT_FAR = 500
 KEPT_BYTES = 2_000_000_000
-SPARSE_NS = 60 * NS_PER_S  # what a seek in a replay steps at most
+SPARSE_NS = 60 * NS_PER_S  # that a seek in a replay steps at most
 
 
 class SavedState(msgspec.Struct, frozen=True):

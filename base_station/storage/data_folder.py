@@ -21,11 +21,11 @@ class DataFolder:
         self.checkpoints = path / "checkpoints"
         self.recordings = path / "recordings"  # of units' raw sensors, pulled on request
         self.radio = path / "radio"  # audio of radio channels
-        self.imports = path / "imports"  # what was brought into incidents from elsewhere
+        self.imports = path / "imports"  # files imported into incidents
         self.database = path / "station.sqlite"
         self.tables_behind = path / "tables-behind"  # since when, while a server was away
-        self.forgettings = path / "forgetting.json"  # what is to be forgotten, until it is
-        self.begun = path / "forgetting-begun.json"  # whom that concerns, of incidents
+        self.forgettings = path / "forgetting.json"  # pending erasures
+        self.begun = path / "forgetting-begun.json"  # people concerned by them, of incidents
         self.first_login = path / "first-login.txt"
 
     def require(self) -> None:

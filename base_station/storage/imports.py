@@ -1,4 +1,4 @@
-"""Files that were brought into incidents: each as it came, beside what was read of it.
+"""Files that were brought into incidents: each as it came, beside its converted content.
 
 The log has the list of those that belong to an incident (``ImportFile``), with the hash of each; a
 second station has that from the log, and not the file.
@@ -117,7 +117,7 @@ class ImportFolder:
             shutil.copyfileobj(source, target, 1 << 20)
 
     def keep(self, incident_id: str, import_id: str, path: Path, content: ImportedContent) -> None:
-        """Move an incoming file to where it stays, with what was read of it.
+        """Move an incoming file to its final place, with its converted content.
 
         Raises StoreError, and leaves nothing of it, where the disk takes no more.
         """

@@ -37,7 +37,7 @@ class IntegrityChecker:
         self._lock = Lock()
         self._read: set[Path] = set()
         self._idle = 0  # looks since all were read
-        self._damaged: dict[Path, str] = {}  # with what is wrong
+        self._damaged: dict[Path, str] = {}  # with the damage
         self._cut: set[Path] = set()  # of these, those that can be read and lack something
         self._missing: tuple[int, ...] = ()  # numbers between those that are there
         self._lacks: dict[str, LogGap] = {}  # by name: found as the station started

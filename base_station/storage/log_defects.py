@@ -125,7 +125,7 @@ def _info_of(path: Path) -> SegmentInfo:
 
 
 def _being_written(path: Path) -> SegmentInfo:
-    """Nothing of it is looked at: to count what is in it is to read it."""
+    """It is not opened: to count its records is to read it."""
     began_ns = segment_began_ns(path)
     return SegmentInfo(path, SegmentState.OPEN, began_ns, began_ns, sys.maxsize, 0)
 

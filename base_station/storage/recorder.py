@@ -44,8 +44,8 @@ _STUCK_NS = NS_PER_S  # one turn of the thread takes so long: the disk is slow, 
 _HANGS_NS = 5 * NS_PER_S  # it hangs
 _LITTLE_FREE_BYTES = 1_000_000_000
 _RECORD_BYTES = 200  # that a record takes in memory beside the bytes of its key and payload
-_ALERTS_SHARE = 1.25  # of what may wait for the disk, until alerts are refused
-_ACTIONS_SHARE = 1.5  # and what people do
+_ALERTS_SHARE = 1.25  # of the bytes that may wait for the disk, until alerts are refused
+_ACTIONS_SHARE = 1.5  # and until actions are refused
 _TAKES_NOTHING = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)  # of a full disk, or a
 # failed one that the system has made read-only
 
@@ -114,7 +114,7 @@ class Recorder:
         try:
             self.recoveries: tuple[Recovery, ...] = _mended(self.folder)
             self._segments = self._look_up_segments()
-            # What is taken is kept: this recorder refuses, so that the writer never has to.
+            # Taken records are kept: this recorder refuses, so that the writer never has to.
             patient = replace(policy, waiting_bytes_max=sys.maxsize)
             self._writer = SegmentWriter(self.folder, patient, self._segment_closed)
         except BaseException:
@@ -129,7 +129,7 @@ class Recorder:
         self._on_disk = 0
         self._flushes_asked = 0
         self._flushes_done = 0
-        self._ending = False  # behind what is in the queue the segment is complete
+        self._ending = False  # behind the records in the queue the segment is complete
         self._refused = 0
         self._refused_from_ns = self._refused_until_ns = 0
         self._failure = ""
@@ -148,7 +148,7 @@ class Recorder:
         Returns at once, or, where it is urgent, when it is on the disk; a disk that hangs is not
         waited for longer than two seconds, and hardly at all once it is known to.
         """
-        with self._taking:  # the condition's own lock, without what a condition costs
+        with self._taking:  # the condition's own lock, without the cost of a condition
             if self.refuses and not self._has_room_for(key):
                 self._note_refused(t_ns)
                 return False
@@ -181,7 +181,7 @@ class Recorder:
         Raises LogError where the disk does not take what is left.
         """
         with self._news:
-            self._ending = True  # behind what is in the queue now
+            self._ending = True  # behind the records in the queue now
         if not self.flush():
             raise LogError(f"the log cannot be brought to the disk: {self.problem}")
         return tuple(segment.path for segment in self._segments)
@@ -242,8 +242,8 @@ class Recorder:
 
     @property
     def refuses(self) -> bool:
-        """True if memory is full of what the disk does not take.  For alerts, and for what people
-        do, of which there is no other copy, there is some room left then.
+        """True if memory is full of records that the disk does not take.  For alerts, and for
+        actions, of which there is no other copy, there is some room left then.
         """
         return bool(self._failure) or self._waiting_bytes > self._waiting_max
 
@@ -303,9 +303,7 @@ class Recorder:
     # ---- in the thread
 
     def _step(self) -> float:
-        """Take a turn; a recorder that failed stops, for what it logged behind a gap would not be
-        what happened.
-        """
+        """Take a turn; a recorder that failed stops: records behind a gap would be wrong."""
         try:
             self._record()
         except Exception as error:

@@ -22,8 +22,8 @@ class SegmentIndex:
         notes: Mapping[Path, str],
         lacking: Callable[[], Collection[str]] = tuple,
     ) -> None:
-        """``notes``: what recovery had to say of segments.  ``lacking`` names those of which
-        something is gone: the table goes on telling what was in them.
+        """``notes`` of the recovery of segments.  ``lacking`` names those with losses: the table
+        keeps their former content.
         """
         self._records = records
         self._notes = notes

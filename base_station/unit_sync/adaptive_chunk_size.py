@@ -13,7 +13,7 @@ from shared.clock import NS_PER_S
 
 LEAST_BYTES, MOST_BYTES = 1024, 524_288  # the most is 10,000 messages a second
 _WANTED_NS = NS_PER_S // 2  # of one answer
-_FULL_SHARE = 0.25  # of what was asked for: messages may be smaller than was expected
+_FULL_SHARE = 0.25  # of the requested size: messages may be smaller than expected
 
 
 class AdaptiveChunkSize:

@@ -2,8 +2,8 @@
 
 The drive reports about once a second the sequence numbers it has (``report``); one thread asks all
 the units for the rest, each one question at a time and by turns, a bounded number of them at once,
-and hands what comes to the feed as it comes.  Live data never stands behind it: what is asked for
-travels behind live data, and is handed over only while hardly anything waits there.
+and hands answers to the feed as they come.  Live data never waits for it: answers travel behind
+live data, and are handed over only while hardly anything waits there.
 """
 
 from __future__ import annotations
@@ -78,9 +78,9 @@ class Backfill:
         self._reported: Report = {}
         self._asking: dict[str, _Request] = {}
         self._backlogs = 0  # of these, questions behind live data
-        self._came_bytes: dict[str, int] = {}  # in answer to what a unit is asked
+        self._came_bytes: dict[str, int] = {}  # of the answer to a unit's question
         self._ended_ns: dict[str, int] = {}  # when such an answer was over, by unit
-        self._lock = Lock()  # guards what follows
+        self._lock = Lock()  # guards the fields below
         self._report: Report | None = None
         self._urgent: list[tuple[_Request, bytes | None]] = []
         self._replies: deque[tuple[_Request, bytes | None]] = deque()
@@ -99,11 +99,11 @@ class Backfill:
         self._worker.start()
 
     def report(self, report: Report, refused: int = 0, *, alerts_only: bool = False) -> None:
-        """Say what the station has now; an older report that was not looked at is forgotten.
+        """Report the messages that the station has now; it replaces an unread older report.
 
-        ``refused``: how many records its log has not taken so far.  Where there are more of them,
-        what was fetched may not have come into the log.  ``alerts_only``: its disk takes nothing,
-        and what it has may be in memory only.
+        ``refused``: number of records its log has not taken so far.  Where it has grown, fetched
+        messages may not have come into the log.  ``alerts_only``: its disk takes nothing, and new
+        records may be in memory only.
         """
         with self._lock:
             self._report, self._alerts_only = report, alerts_only
@@ -174,7 +174,7 @@ class Backfill:
     def _end(self, request: _Request) -> None:
         del self._asking[request.unit_id]
         self._backlogs -= not request.question.urgent
-        # What is fetched is asked for no faster than it is handed over here, too.
+        # The time of handing over counts, too: it limits the rate of questions.
         now_ns = self._clock.monotonic_ns()
         ended_ns = self._ended_ns[request.unit_id] if request.question.urgent else now_ns
         took_ns = ended_ns - request.requested_ns

@@ -1,10 +1,10 @@
-"""Client of one unit's journal: what the station has of it, and the next question.
+"""Client of one unit's journal: the received messages, and the next question.
 
-Pure: reports and answers in, questions out.  Of what the journal has the newest runs of the unit's
-program are asked for, and more as far as the link carries the answer: there may be thousands.
+Pure: reports and answers in, questions out.  The index of the journal is asked for its newest runs
+of the unit's program, and for more as far as the link carries the answer: there may be thousands.
 Alerts are asked for as soon as a number is missing; the rest when it has been missing for a whole
-report, newest first and in pieces that the link carries.  What the station has safely on its own
-disk is acknowledged, so that the unit may forget it when it needs the room.
+report, newest first and in pieces that the link carries.  Messages that are durable on the
+station's disk are acknowledged, so that the unit may delete them when it needs the room.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ _INDEX_MORE_NS = NS_PER_S  # where more runs than were asked for may be there
 _INDEXED_BYTES = 32  # of each run in an index
 _ACKNOWLEDGE_EVERY_NS = 10 * NS_PER_S  # of one run; the answer names all of them
 _SAFE_REPORTS = 3  # complete for so many reports: on the disk, of both stations where there are two
-_REPLY_BYTES = 8192  # at most, so that what comes first can be stored first
+_REPLY_BYTES = 8192  # at most, so that the first messages can be stored first
 _NUMBER_BYTES = 100.0  # that come for a number, as long as none have
 _EVICTED_BYTES = 0.1  # where the journal has none of them any more
 _OVERHEAD_BYTES = 24  # beside its payload, as the unit counts them
-_PIECE_SHARE = 0.8  # of an answer; what does not fit takes a question more
+_PIECE_SHARE = 0.8  # of an answer; the rest takes a question more
 _LEARN_SHARE = 0.02
 _BRIDGED = 4  # messages that are there between two holes: a question more costs as much
 
@@ -67,7 +67,7 @@ class _Boot:
     def __init__(self) -> None:
         self.held = SequenceSet()  # by the last report
         self._fetched = SequenceSet()  # or gone for ever
-        self._evicted = SequenceSet()  # of these, what the journal has no more
+        self._evicted = SequenceSet()  # those of these that the journal has no more
         self._without_alert = SequenceSet()  # whatever alerts are among them were fetched
         self._have = SequenceSet()  # held or fetched
         self._known = SequenceSet()  # held, fetched or without an alert
@@ -86,7 +86,7 @@ class _Boot:
         self._settled_to = self.newest
         self.newest = max(self.newest, runs[-1].last if runs else 0)
         if safe:
-            # What was fetched may still wait to be written, and is held by a later report.
+            # Fetched messages may still wait to be written, and are held by a later report.
             self.complete.append(_union(self.held, self._evicted).complete_to(self.first))
 
     def note_fetched(self, run: Run) -> None:

@@ -1,8 +1,8 @@
-"""Limits on what a unit's journal may bring, so that one unit fills neither the log nor its disk.
+"""Limits on messages of a unit's journal, so that one unit fills neither the log nor its disk.
 
 ``engine.rate_limiter`` bounds live messages.  A journal may bring at once what a unit sends in
 hours; beyond that it is asked no faster than any unit may send.  An honest one loses nothing by
-it: what is not asked for now is asked for later.
+it: the rest is asked for later.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ class JournalRateLimit:
     def note(
         self, unit_id: str, came_bytes: int, messages: int, alerts: int, *, urgent: bool
     ) -> None:
-        """One reply of a journal: what of it is kept, and all its bytes.  ``urgent``: alerts were
-        asked for; whatever else it brings counts as such, or it would not be bounded.
+        """One reply of a journal: its kept messages, and all its bytes.  ``urgent``: alerts were
+        asked for; all other messages in it count as such, or they would not be bounded.
         """
         now_ns, unit = self._clock.monotonic_ns(), self._unit(unit_id)
         if urgent:

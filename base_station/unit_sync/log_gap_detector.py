@@ -1,8 +1,8 @@
-"""Messages that the log had and has no more: its disk gives back other bytes than it was given, or
+"""Messages that the log had and has no more: its disk returns other bytes than were written, or
 lacks a file.  Their units may have them still.
 
-What the saved state has seen must stand in the log.  What does not is taken back: it counts as
-missing again, and is fetched from the units' journals as what the radio lost.
+Messages that the saved state has seen must be in the log.  Those that are not count as missing
+again, and are fetched from the units' journals like those that the radio lost.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ _KEPT_MERGED = 16  # slow consoles that are about as slow get the same
 
 
 class UnitChanges:
-    """Every unit as it was last given to all consoles, and what has changed of it since."""
+    """Every unit as it was last given to all consoles, and its changes since."""
 
     def __init__(self) -> None:
         self._known: dict[str, UnitChange] = {}

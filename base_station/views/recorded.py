@@ -28,7 +28,7 @@ from base_station.views.wire import (
 
 
 class RecordedDelta(Delta, frozen=True, tag="delta", omit_defaults=True):
-    points: Mapping[str, tuple[TrailPoint, ...]] = {}  # by unit, behind what its trail had before
+    points: Mapping[str, tuple[TrailPoint, ...]] = {}  # by unit, behind earlier points
 
 
 class _EncodedSnapshot(Snapshot, frozen=True, tag="snapshot"):

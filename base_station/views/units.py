@@ -120,7 +120,7 @@ def _unit_view(
     )
 
 
-@lru_cache(maxsize=1000)  # units say the same again and again, and each change of one shows it
+@lru_cache(maxsize=1000)  # findings are mostly the same, and each change of a unit shows them
 def preflight_view(findings: tuple[PreflightFinding, ...] | None) -> PreflightView | None:
     """Findings of the self-check in one text; None: the unit has not checked itself."""
     if findings is None:

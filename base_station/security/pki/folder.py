@@ -2,7 +2,7 @@
 
     authority.pem   authority.key   the root of trust; the key may be kept elsewhere
     station.pem     station.key     this station on the bus and towards browsers
-    registry.json                   who has been issued what
+    registry.json                   issued certificates and their holders
 
 Private keys of units are made here, put into the enrolment, and not kept.
 """
@@ -38,8 +38,8 @@ def _utc_now() -> datetime:
 
 
 class PkiFolder:
-    """Raises ConfigError throughout, one sentence about what is wrong and what to do; StoreError
-    where the disk does not take what is to be kept.
+    """Raises ConfigError throughout, one sentence with the fault and advice; StoreError where the
+    disk does not take a file.
     """
 
     def __init__(self, data: Path, now: Clock = _utc_now) -> None:
@@ -90,7 +90,7 @@ class PkiFolder:
         with new_folder(self._folder), locked(self._folder):
             write_atomically(self._folder / "authority.key", authority.key_pem())
             write_atomically(self._folder / "authority.pem", authority.certificate_pem())
-            # The registry is written last: what is interrupted is not taken for an authority.
+            # The registry is written last: a folder without one is not taken for an authority.
             self._write_station(issued, registry)
 
     def enroll(
@@ -136,7 +136,7 @@ class PkiFolder:
         connect: Sequence[str] = (),
     ) -> None:
         """A new certificate, for other hosts where they are given; the router takes it up by
-        itself.  ``connect`` is what enrolments say from now on, beside other stations' ends.
+        itself.  ``connect``: endpoints of enrolments from now on, beside those of other stations.
         """
         with locked(self._existing()):
             registry = self.registry()

@@ -34,7 +34,7 @@ from base_station.security.router.relay import Relay
 logger = logging.getLogger(__name__)
 
 _ACCEPTS_PER_WAKEUP = 64
-_HANDSHAKE_TIMEOUT_S = 10.0  # from the connection to the first word behind the handshake
+_HANDSHAKE_TIMEOUT_S = 10.0  # from the connection to the first bytes behind the handshake
 _ROUTER_TIMEOUT_S = 10.0  # while it opens again
 _MAX_PENDING = 2000
 _PENDING_SHARE = 4  # of the files that a process may open, one in so many

@@ -24,7 +24,7 @@ _NEW_LINKS_PER_S = 2.0  # a unit tries every second at most
 
 @dataclass(frozen=True, slots=True)
 class ConnectionAdmission:
-    """``identity``: what the acceptor shows; ``holders``: who is enrolled, by common name."""
+    """``identity``: of the acceptor; ``holders``: enrolled holders, by common name."""
 
     identity: TlsIdentity
     holders: Mapping[str, Holder]

@@ -18,7 +18,7 @@ from shared.enrolment import Holder
 
 logger = logging.getLogger(__name__)
 
-# What waits for a unit with a thin radio is to wait in the router, which sends alerts first.
+# Messages to a unit with a thin radio must wait in the router, which sends alerts first.
 _UNIT_BUFFER_BYTES = 65_536
 _SMALL_BUFFER_HOLDERS = (Holder.UNIT, Holder.TRACKER)
 

@@ -160,7 +160,7 @@ class RouterProcess:
         process = loading or start_loading()
         assert process.stdin is not None
         with suppress(OSError):  # it has ended, as is found when it is waited for
-            # Not print: what could not be written would be tried again as the pipe is closed.
+            # Not print: it would try to write an unwritten line again as the pipe is closed.
             os.write(process.stdin.fileno(), msgspec.json.encode(self._settings) + b"\n")
         return process
 

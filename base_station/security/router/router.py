@@ -34,7 +34,7 @@ _ATTEMPT_EVERY_S = 0.3
 def station_endpoint(data: Path, listen: tuple[str, ...]) -> ClientEndpoint:
     """Endpoint with which the station itself joins its router; over TLS with a right to everything.
 
-    Raises ConfigError where it could not: Zenoh would only say that time ran out.
+    Raises ConfigError where it could not: Zenoh would only report a timeout.
     """
     own = listen[0].replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
     if not _is_secure(listen):

@@ -1,1 +1,1 @@
-"""The SQL store: what is queried.  The log is the truth; most tables are a projection of it."""
+"""The SQL store, for queries.  The log is the truth; most tables are a projection of it."""

@@ -1,11 +1,11 @@
 """Users, their login sessions and API tokens.
 
-Sessions, tokens and tickets are 256 random bits, of which only the SHA-256 is stored: who reads
+Sessions, tokens and tickets are 256 random bits, of which only the SHA-256 is stored: a reader of
 the database cannot log in with it.
 
-Of two stations each has sessions of its own, and one table of users.  So what ends a user's
-sessions begins a new *generation* of them in that table: it ends those at the other station too,
-which copies it.  A new user with the name of a removed one does not get that one's generation.
+Of two stations each has sessions of its own, and one table of users.  To end a user's sessions, a
+new *generation* of them is begun in that table: it ends those at the other station too, which
+copies it.  A new user with the name of a removed one does not get that one's generation.
 Removals are noted for good (``tombstones``), and of a role and a password the later one holds:
 changes at one station while the other was off hold at both when they meet, whichever leads by then.
 """

@@ -1,4 +1,4 @@
-"""A damaged database file: what of it can be read, and the name under which it is set aside.
+"""A damaged database file: its readable rows, and the name under which it is set aside.
 
 The whole new file is there under ``SALVAGED`` before the damaged one gets its other name: a start
 after a kill between the two goes on with it.

@@ -14,7 +14,7 @@ IN_MEMORY = "muster_in_memory"  # of ``Session.info``, behind ``write``
 class Database(Protocol):
     """A file (``store.Store``) or a server (``server_store.ServerStore``).  Thread-safe."""
 
-    loss: str  # what it lacks since it was made again, as a sentence for a person
+    loss: str  # missing data since it was made again, as a sentence for a person
 
     @property
     def name(self) -> str:

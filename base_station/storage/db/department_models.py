@@ -1,8 +1,8 @@
-"""The tables of a department: what its stations have reported.
+"""The tables of a department: reports of its stations.
 
 They stand beside those of a station in the department's database, of which users, sessions and the
-audit are used.  Times in ms are the reporting station's own; ``offset_ms`` is what its clock was
-ahead of the department's when it reported.
+audit are used.  Times in ms are the reporting station's own; ``offset_ms`` is the lead of its
+clock over the department's when it reported.
 """
 
 from __future__ import annotations

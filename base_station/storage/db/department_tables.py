@@ -77,7 +77,7 @@ class DepartmentTables:
                 stream = ReportedStream(station=station, epoch=batch.epoch, last_seq=0, missing=0)
                 session.add(stream)
             stream.last_seq = max(stream.last_seq, batch.dropped_seq)
-            # What it thinks to be here, and is not: this database is older than its receipts.
+            # It has receipts for events that are not here: this database was put back.
             stream.missing += max(batch.after_seq - stream.last_seq, 0)
             stream.last_seq = max(stream.last_seq, batch.after_seq)
             for event, body in zip(batch.events, bodies, strict=True):

@@ -29,7 +29,7 @@ _PRAGMAS = (
     "journal_mode = WAL",
     "synchronous = FULL",
     "foreign_keys = ON",
-    "secure_delete = ON",  # what is deleted is overwritten
+    "secure_delete = ON",  # deleted data is overwritten
 )
 
 

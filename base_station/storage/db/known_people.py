@@ -55,7 +55,7 @@ def shown_wearer(assignment: Assignment, people: PersonLookup) -> KnownPerson:
 
 
 def load_people(session: Session) -> dict[str, KnownPerson]:
-    """Everybody on the roster, who was removed from it, and who was forgotten."""
+    """People on the roster, those who were removed from it, and those who were forgotten."""
     gone = session.scalars(select(Tombstone.what).where(Tombstone.what.startswith(PERSON)))
     known = {what.removeprefix(PERSON): FORGOTTEN for what in gone}
     return known | {one.person_id: known_person(one) for one in session.scalars(select(PersonRow))}

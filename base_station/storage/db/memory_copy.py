@@ -1,7 +1,7 @@
 """A copy of the station's database in memory, for as long as its disk takes nothing.
 
-What is changed in it meanwhile is noted transaction by transaction, and done again in the file when
-the disk takes something: what others have changed there since stays.
+Changes in it meanwhile are noted transaction by transaction, and made again in the file when the
+disk takes something: changes of others there since stay.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class MemoryCopy:
     """Not thread-safe: one changes it at a time."""
 
     def __init__(self, path: Path, *, is_open: bool, is_damaged: bool = False) -> None:
-        """An empty one where there is no file.  ``is_open``: this process has that open;
-        ``is_damaged``: of it what can be read is taken, and all else is to be made again.  Raises
+        """An empty one where there is no file.  ``is_open``: this process has the file open;
+        ``is_damaged``: its readable rows are taken, and all else is to be made again.  Raises
         StoreError where it cannot be read.
         """
         self.is_damaged = is_damaged
@@ -179,7 +179,7 @@ class MemoryCopy:
             pages = reading.execute("PRAGMA page_count").fetchone()[0]
             page_bytes = reading.execute("PRAGMA page_size").fetchone()[0]
             if pages * page_bytes <= WHOLE_BYTES_MAX:
-                # Not as a backup, in which it would say of itself that it has a WAL.
+                # Not as a backup, whose header would declare a WAL.
                 reading.execute("VACUUM INTO ?", (self._name,))
                 return
             self.lacks_tracks = True

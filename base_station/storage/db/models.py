@@ -285,7 +285,7 @@ class AlarmRow(Base):
     parameters: Mapped[str] = mapped_column(server_default="{}")  # JSON
     reason: Mapped[str] = mapped_column(server_default="")  # of its resolution, as a code
     note: Mapped[str] = mapped_column(server_default="")
-    peak: Mapped[float | None]  # worst value so far of what its rule measures
+    peak: Mapped[float | None]  # worst value so far of its rule's measure
 
 
 class AlarmTransition(Base):
@@ -431,7 +431,7 @@ class LogSegment(Base):
     last_ns: Mapped[int]
     messages: Mapped[int]
     size_bytes: Mapped[int]
-    note: Mapped[str]  # what recovery had to say; empty: nothing
+    note: Mapped[str]  # of its recovery; empty: none
     log_id: Mapped[str] = mapped_column(default="", server_default="")  # empty: an earlier version
 
 

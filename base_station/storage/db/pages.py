@@ -23,8 +23,8 @@ def newest(
 ) -> Sequence[Row]:
     """The newest ``limit`` of those wanted, by ``t_ns``, in one instant by ``key``; None: all.
 
-    A page never parts what belongs to one millisecond, and is longer where that asks for it: so
-    the next one, of what was before the last millisecond of this, goes on without a gap.
+    A page never splits the rows of one millisecond, and is longer where needed: so the next one,
+    of rows before the last millisecond of this, goes on without a gap.
     """
     if limit is not None:
         times = wanted.with_only_columns(t_ns).order_by(t_ns.desc())

@@ -130,7 +130,7 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
         case ImportFile() | RemoveImport():
             _import(session, t_ns, done.by, done.action)
         case AcknowledgeAlarm() | ResolveAlarm() | ReportProblem():
-            pass  # what it changed of the alarms comes with the same step
+            pass  # its changes of alarms come with the same step
         case _:
             pass  # the audit and the log have it, or what is stored was rewritten before
 

@@ -134,7 +134,7 @@ class SqlProjection:
 
     def _write_now(self, goal: int) -> Callable[[], bool]:
         """True if the projections up to ``goal`` are in the tables, or the store takes none."""
-        # A try that is under way may have begun before this call: two tell.
+        # An attempt under way may have begun before this call: two are needed.
         given_up = self._failed_tries + 2
 
         def is_over() -> bool:

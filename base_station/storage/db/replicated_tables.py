@@ -1,10 +1,10 @@
 """Tables that no log can make again and that are replicated: users, sessions, tokens, people, the
 base map.
 
-A standby station copies it from the active one.  What either has taken away both take away
-(``tombstones``), and of a role and a password the later one holds.  What either has lost with its
-database (``lost_tables``) comes back from the other.  Pictures travel by themselves, named by their
-hashes; the audit is only ever added to.
+A standby station copies them from the active one.  A removal at either holds at both
+(``tombstones``), and of a role and a password the later one holds.  Rows that either has lost with
+its database (``lost_tables``) come back from the other.  Pictures travel by themselves, named by
+their hashes; the audit is only ever added to.
 """
 
 from __future__ import annotations
@@ -69,11 +69,11 @@ class ReplicatedTables:
                 session.merge(LostTable(name=name))
 
     def copy(self, active: ReplicatedRows) -> tuple[str, ...]:
-        """Make these tables like the active station's.  Gives who and what was only here.
+        """Make these tables like the active station's.  Gives names of rows that were only here.
 
         Sessions that began here stay; photos are kept where their hash is the same, and a base map
-        stays until the other one has come.  What was taken away here does not come back, and what
-        the active station has lost stays here until it has taken it back.
+        stays until the other one has come.  Rows removed here do not come back, and rows
+        that the active station has lost stay here until it has taken them back.
         """
         with self._store.write() as session:
             end_what_ended(session, active.ended)

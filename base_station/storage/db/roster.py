@@ -45,7 +45,7 @@ class Roster:
         with self._store.read() as session:
             return _on_roster(session, person_id)
 
-    # ---- names for what has ids, from memory: asked in the engine's thread, too
+    # ---- names of ids, from memory: also for the engine's thread
 
     def known(self, person_id: str) -> KnownPerson:
         """A person who is or was on the roster."""

@@ -1,4 +1,4 @@
-"""Sets a damaged database aside, and keeps what can be read of what the log does not have.
+"""Sets a damaged database aside, and keeps readable rows that the log does not have.
 
 The damaged file stays beside the new one under a name with the time.  Cut short at any instant, the
 next start goes on: the new file is whole before the damaged one is renamed.
@@ -63,7 +63,7 @@ def gone(*, alone: bool) -> str:
 
 @dataclass(frozen=True)
 class Salvage:
-    """Result for a damaged database: the file set aside, what was copied, what was lost."""
+    """Result for a damaged database: the file set aside, the copied tables, and the losses."""
 
     aside: Path | None  # None: it stays where it is until the disk takes another
     damage: str
@@ -139,7 +139,7 @@ def _damage_in(reading: sqlite3.Connection, patience_s: float) -> str:
             found = reading.execute(f"PRAGMA quick_check('{table}')").fetchone()[0]
         except sqlite3.Error as error:
             if code_of(error) == sqlite3.SQLITE_INTERRUPT:
-                continue  # what is wrong behind is found by who reads it
+                continue  # damage behind that is found when it is read
             if code_of(error) not in DAMAGE:
                 raise
             found = str(error)

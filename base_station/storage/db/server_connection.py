@@ -26,5 +26,5 @@ class LimitedConnection(psycopg.Connection[Any]):
         try:
             return super().wait(gen, interval, timeout=ANSWER_WITHIN_S)
         except psycopg.errors._WaitTimeout as error:  # noqa: SLF001  # it has no other name
-            self.pgconn.finish()  # what it was about to say is not waited for
+            self.pgconn.finish()  # its answer is not waited for
             raise psycopg.OperationalError(f"no answer for {ANSWER_WITHIN_S:.0f} s") from error

@@ -11,7 +11,7 @@ from base_station.storage.db.server_address import ServerAddress
 from shared.errors import StoreError
 
 LOCK_WAIT_S = 10  # another process (``muster base users add``) may be writing
-WRITERS_LOCK = 0x6D75_7374_6572_0001  # advisory, for one transaction: who changes anything
+WRITERS_LOCK = 0x6D75_7374_6572_0001  # advisory, for one transaction: held by the writer
 STATION_LOCK = 0x6D75_7374_6572_0002  # advisory, of the one station that works on the database
 STATION_WAIT_S = 40  # until the server has found that a station before is gone
 _ALONE = "muster_alone"

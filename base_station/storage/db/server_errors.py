@@ -1,4 +1,4 @@
-"""Refusals of a PostgreSQL server in words: what happened, and what to do.
+"""Refusals of a PostgreSQL server in words: the fault and advice.
 
 https://www.postgresql.org/docs/current/errcodes-appendix.html has the codes.
 """

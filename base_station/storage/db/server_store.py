@@ -47,7 +47,7 @@ class ServerStore:
         """
         self.loss = ""
         self._is_station = is_station
-        self._lock = threading.Lock()  # guards what follows
+        self._lock = threading.Lock()  # guards the fields below
         self._away = ""  # why the server does not answer
         self._next_try_s = 0.0
         self._guard: Connection | None = None  # holds the lock of a station

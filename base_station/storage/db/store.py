@@ -72,7 +72,7 @@ class Store:
         self._memory: MemoryCopy | None = None
         self._tried_s = 0.0
         self._refused = 0
-        self.loss = ""  # what it lacks since it was made again, as a sentence for a person
+        self.loss = ""  # missing data since it was made again, as a sentence for a person
         self._damage = ""  # that was met since
         self._reason = no_room_beside_damaged  # why the disk takes nothing
         if no_room_beside_damaged:
@@ -303,7 +303,7 @@ class Store:
         self._engine, self._memory = engine, None
         memory.leave()
 
-    # ---- what may go wrong
+    # ---- failures
 
     @contextmanager
     def _alone(self) -> Iterator[None]:

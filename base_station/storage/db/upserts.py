@@ -1,4 +1,4 @@
-"""Inserts that say what is done where the row is there already, for SQLite and PostgreSQL alike."""
+"""Inserts that update a row which is there already, for SQLite and PostgreSQL alike."""
 
 from __future__ import annotations
 

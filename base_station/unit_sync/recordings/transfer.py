@@ -38,7 +38,7 @@ HASHES = "SHA256SUMS"  # as `sha256sum --check` reads it
 _SPARED_BYTES = 256_000_000  # of the disk, for the station's log
 _PART = ".part"
 _TIMEOUT_S = 5.0  # of one question
-_CHANCES = 2  # for what is on the disk since before, and for all of it anew
+_CHANCES = 2  # for the parts on the disk since before, and for all of it anew
 
 T = TypeVar("T")
 Steps = Generator[None, None, T]  # a pause before each question
@@ -205,7 +205,7 @@ class Transfer:
         )
 
     def _paths(self, file: RecordedFile) -> tuple[Path, Path]:
-        """Paths of all of it, and of what has come so far."""
+        """Paths of the whole file, and of its received part."""
         whole = self.folder / PurePosixPath(file.path)
         return whole, whole.with_name(whole.name + _PART)
 

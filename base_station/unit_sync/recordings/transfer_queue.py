@@ -77,7 +77,7 @@ class TransferQueue:
         return False
 
     def forget(self, unit_ids: Collection[str]) -> None:
-        """Nothing more of what these units kept is to come; who wore them is forgotten."""
+        """Mark all transfers of these units as deleted, and end them: a wearer is forgotten."""
         self._pulls.note_each(
             lambda pull: pull.wanted.unit_id in unit_ids,
             state=TransferState.FAILED,
