@@ -100,7 +100,7 @@ def gyro_clipped(description: SensorDescription, imu: ImuBatch, _: np.random.Gen
     return told, _with(imu, imu.accel_mps2, clipped)
 
 
-def gyro_clipped_untold(
+def gyro_clipped_undeclared(
     description: SensorDescription, imu: ImuBatch, rng: np.random.Generator
 ) -> Made:
     _, clipped = gyro_clipped(description, imu, rng)
@@ -114,19 +114,19 @@ def accel_clipped(description: SensorDescription, imu: ImuBatch, _: np.random.Ge
     return told, _with(imu, clipped, imu.gyro_radps)
 
 
-def accel_clipped_untold(
+def accel_clipped_undeclared(
     description: SensorDescription, imu: ImuBatch, rng: np.random.Generator
 ) -> Made:
     _, clipped = accel_clipped(description, imu, rng)
     return replace(description, accel_full_scale_mps2=None), clipped
 
 
-def accel_of_2_g_untold(
+def accel_of_2_g_undeclared(
     description: SensorDescription, imu: ImuBatch, _: np.random.Generator
 ) -> Made:
     clipped = np.clip(imu.accel_mps2, -LEAST_FULL_SCALE_MPS2, LEAST_FULL_SCALE_MPS2)
-    untold = replace(description, accel_full_scale_mps2=None)
-    return untold, _with(imu, clipped, imu.gyro_radps)
+    undeclared = replace(description, accel_full_scale_mps2=None)
+    return undeclared, _with(imu, clipped, imu.gyro_radps)
 
 
 def samples_lost(share: float) -> Change:
@@ -220,10 +220,10 @@ PERTURBATIONS: tuple[Perturbation, ...] = (
     Perturbation("gyroscope scale 3 % off", gyro_scale(0.03)),
     Perturbation("noise x 3", thrice_the_noise),
     Perturbation("gyroscope clips at 70 %", gyro_clipped),
-    Perturbation("the same, untold", gyro_clipped_untold),
+    Perturbation("the same, undeclared", gyro_clipped_undeclared),
     Perturbation("accelerometer clips at 70 %", accel_clipped),
-    Perturbation("accelerometer so, untold", accel_clipped_untold),
-    Perturbation("accelerometer of 2 g, untold", accel_of_2_g_untold),
+    Perturbation("accelerometer so, undeclared", accel_clipped_undeclared),
+    Perturbation("accelerometer of 2 g, undeclared", accel_of_2_g_undeclared),
     Perturbation("1 % of samples lost", samples_lost(0.01)),
     Perturbation("10 % of samples lost", samples_lost(0.1)),
     Perturbation("0.05 s lost every 2 s", holes(0.05, 2.0)),

@@ -41,11 +41,11 @@ class Outcome:
     trial: str
     error_m: float  # ATE, or the closure of a closed walk
     right: bool
-    said: bool  # flagged, or the truth is in the stated ellipse
+    flagged: bool  # by the quality, or the truth is in the stated ellipse
 
     @property
     def silent(self) -> bool:
-        return not self.right and not self.said
+        return not self.right and not self.flagged
 
 
 def score_perturbed(trials: Sequence[Path], tracker: str) -> list[Outcome]:
@@ -79,7 +79,7 @@ def _outcomes(path: Path, tracker: str) -> Iterator[Outcome]:
             trial=source.trial.trial or path.name,
             error_m=error_m,
             right=error_m <= max(RIGHT_RATIO * clean_m, RIGHT_M),
-            said=_says_so(rows, score),
+            flagged=_is_flagged(rows, score),
         )
 
 
@@ -105,7 +105,7 @@ def _moved_before_m(rows: TrackBatch, t_ns: int) -> float:
     return float(np.linalg.norm(rows.position_n_m[min(at, len(rows) - 1), :2]))
 
 
-def _says_so(rows: TrackBatch, score: Score) -> bool:
+def _is_flagged(rows: TrackBatch, score: Score) -> bool:
     if np.mean(rows.quality != Quality.GOOD) >= FLAGGED_SHARE:
         return True
     if score.coverage_95_from_start is not None:
@@ -116,11 +116,11 @@ def _says_so(rows: TrackBatch, score: Score) -> bool:
 
 
 def perturbed_table(outcomes: Sequence[Outcome]) -> Table:
-    """Mean error by dataset, and how many trials are right, wrong and said, wrong and silent."""
+    """Mean error by dataset, and how many trials are right, wrong and flagged, wrong and silent."""
     datasets = list(dict.fromkeys(outcome.dataset for outcome in outcomes))
-    table = Table(title="Perturbed: mean error, m; trials right / said / silent")
+    table = Table(title="Perturbed: mean error, m; trials right / flagged / silent")
     table.add_column("perturbation")
-    for title in (*datasets, "right", "said", "silent"):
+    for title in (*datasets, "right", "flagged", "silent"):
         table.add_column(title, justify="right")
     for name in dict.fromkeys(outcome.perturbation for outcome in outcomes):
         members = [outcome for outcome in outcomes if outcome.perturbation == name]
