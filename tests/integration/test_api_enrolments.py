@@ -149,7 +149,7 @@ async def test_without_an_authority_it_is_said_how_to_make_one(
         set_services(station, pki=None)
         answer = await client.get("/enrolments")
         assert answer.status_code == 409
-        assert "enrols nobody now" in answer.json()["detail"]
+        assert "enrols no units now" in answer.json()["detail"]
 
 
 async def test_a_further_station_says_where_to_enrol(

@@ -54,7 +54,7 @@ def test_faults_are_named_by_line_and_the_others_are_there() -> None:
     ("content", "reason"),
     [
         (b"", "is empty"),
-        (b"Name,Crew\n", "nobody below it"),
+        (b"Name,Crew\n", "no person below it"),
         (b"Ada,Engine 1\nBea,Engine 1\n", "names no column of names"),
         (b"Name,Full name\nAda,Ada\n", "two columns of one meaning"),
         (b"Name\nName of the crew\n".replace(b"N", b"\x00"), "names no column"),
