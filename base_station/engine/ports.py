@@ -166,7 +166,7 @@ class EnginePorts:
     live: LiveSink
     projection: ProjectionSink
     checkpoints: Checkpoints
-    people: PersonLookup  # who the person ids stand for
+    people: PersonLookup  # by person id
     facts: Callable[[], StationFacts]  # asked once a second; messages a second are filled in
     # Receives once a second what has come of each linked unit, and if it may not be on the disk.
     report: Callable[[Report, bool], None]

@@ -1,7 +1,7 @@
 """Interface of a forwarder: a live connection with another system of the incident.
 
-A forwarder is given what consoles are shown, in the engine's thread, and returns at once; a thread
-of its own does the rest.
+A forwarder gets the snapshots and deltas of consoles, in the engine's thread, and returns at once;
+a thread of its own does the rest.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ class Forwarder(Protocol):
     """One configured connection; ``start`` once, ``close`` once."""
 
     def delta(self, delta: Delta) -> None:
-        """Take what changed; in the engine's thread."""
+        """Take changes; in the engine's thread."""
         ...
 
     def reset(self, snapshot: Snapshot) -> None:
-        """Take the whole picture: what was before is void; in the engine's thread."""
+        """Take the whole picture, which replaces the former one; in the engine's thread."""
         ...
 
     def project(self, projection: Projection) -> None:
-        """Take what was decided, which is in the log; in the engine's thread.  After a kill what
-        came since the last checkpoint comes again.
+        """Take decisions, which are in the log; in the engine's thread.  After a kill those since
+        the last checkpoint come again.
         """
         ...
 
@@ -55,7 +55,7 @@ class Surroundings:
     clock: Clock
     leads: Callable[[], bool]  # False: the other one of two stations forwards
     data: Path  # folder of the station
-    people: PersonLookup  # who the person ids stand for
+    people: PersonLookup  # by person id
     read_log: Callable[[int], Iterable[tuple[int, str, bytes]]]  # from that station time on
     # Takes people and markers of other teams that changed, and ids of those that are gone.
     note_external: Callable[[tuple[ExternalMarker, ...], tuple[str, ...]], None]

@@ -15,7 +15,7 @@ _PART = "forwarder-"
 
 
 class Forwarders:
-    """All that the settings name; each gets what consoles are shown."""
+    """All forwarders of the settings; each gets the snapshots and deltas of consoles."""
 
     def __init__(self, forwarders: Sequence[Forwarder]) -> None:
         self._forwarders = tuple(forwarders)

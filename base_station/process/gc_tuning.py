@@ -1,15 +1,15 @@
 """Python's interpreter, set for a station.
 
-Its collector of cycles is that of a program that holds much and makes hardly a cycle.  As it comes
-it looks at everything that lives again and again: a tenth of the drive's time, in pauses of a tenth
-of a second in which no message is received or sent.
+Its collector of cycles is set for a program that holds much and makes hardly a cycle.  By default
+it looks at all live objects again and again: a tenth of the drive's time, in pauses of a tenth of a
+second in which no message is received or sent.
 
-Its threads take turns ten times as often as they would.  What comes from the bus and what goes to a
-console passes three threads that need it for a moment only, and each would wait for five
-milliseconds while the drive has much to do.
+Its threads take turns ten times as often as by default.  A message from the bus to a console passes
+three threads that need the interpreter for a moment only, and each would wait for five milliseconds
+while the drive has much to do.
 
-Its memory for what is large, such as a state that is saved, would come to be that of what is small,
-full of holes that nothing fits into, and the station's would grow with them.
+Large blocks, such as a saved state, have memory of their own: small blocks would else fill a part
+of it, and leave holes that nothing fits into, so that the station's memory would grow.
 """
 
 from __future__ import annotations

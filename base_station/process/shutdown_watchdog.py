@@ -35,8 +35,8 @@ class ShutdownWatchdog:
     def begin(self, not_kept: Callable[[], str], let_go: Callable[[], None]) -> None:
         """From any thread, more than once too.
 
-        ``not_kept``: what a disk that hangs lacks, as a sentence for a person; empty: it answers.
-        ``let_go`` ends what would outlive this program.
+        ``not_kept``: records missing on a disk that hangs, as a sentence for a person; empty: it
+        answers.  ``let_go`` ends processes that would outlive this program.
         """
         with self._lock:
             if self._has_begun:

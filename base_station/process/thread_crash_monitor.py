@@ -1,4 +1,4 @@
-"""A part of the station that a mistake of the program has ended: a person must hear of it."""
+"""A part of the station that a bug of the program has ended: it is reported to people."""
 
 from __future__ import annotations
 

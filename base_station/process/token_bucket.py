@@ -6,7 +6,7 @@ from shared.clock import NS_PER_S
 
 
 class TokenBucket:
-    """Fills at a rate, up to a burst; what is taken beyond it is not had."""
+    """Fills at a rate, up to a burst; more than its content cannot be taken."""
 
     __slots__ = ("_burst", "_filled_ns", "_left", "_per_s")
 

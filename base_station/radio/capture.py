@@ -19,7 +19,7 @@ from base_station.radio.capture_wire import PACKET, PROBLEM, Captured, encoded
 from base_station.radio.config import RadioConfig
 from shared.errors import MusterError
 
-_NICE = 5  # what is live goes before
+_NICE = 5  # live work goes before
 NOT_INSTALLED = (
     "the library av, which encodes audio, is not installed: "
     "pip install --require-hashes -r deploy/requirements-radio.lock"

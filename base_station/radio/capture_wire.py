@@ -29,7 +29,7 @@ class CaptureDecoder:
         self._waiting = b""
 
     def push(self, data: bytes) -> Iterator[Captured]:
-        """Give what is whole; ValueError where it makes no sense."""
+        """Give complete packets; ValueError where the data makes no sense."""
         self._waiting += data
         while len(self._waiting) >= _HEAD.size:
             kind, t_mono_ns, length = _HEAD.unpack_from(self._waiting)

@@ -1,7 +1,7 @@
 """Recording of one radio channel: a thread that supervises the process that captures it.
 
 Whatever the source or that process does, the station goes on: a process that gives nothing is
-ended, and begun again after a pause that grows.  What is missed is a gap in the channel's log.
+ended, and begun again after a pause that grows.  Missed audio is a gap in the channel's log.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _TURN_MS = 500
 _CONNECTS_NS, _HANGS_NS = 20 * NS_PER_S, 6 * NS_PER_S  # without a packet
 _RETRY_S, _LONGEST_RETRY_S = 1.0, 30.0
 _STEADY_NS = 30 * NS_PER_S  # recorded for so long: the next pause is short again
-_OVERLAP_NS = 60 * NS_PER_MS  # more of what is there already is not taken twice
+_OVERLAP_NS = 60 * NS_PER_MS  # packets that overlap more with recorded ones are left out
 _POLICY = SegmentPolicy(flush_every_s=2.0)
 _PIPE_BYTES = 65_536
 _ENDS_WITHIN_S = 2.0
@@ -144,7 +144,7 @@ class RadioChannel:
         return _CaptureRun(process, self._clock.monotonic_ns())
 
     def _record(self, run: _CaptureRun) -> str:
-        """Take packets until none come any more; what is wrong, in words."""
+        """Take packets until none come any more; gives the problem, in words."""
         assert run.process.stdout is not None
         pipe, decoder, problem = run.process.stdout.fileno(), CaptureDecoder(), ""
         poll = select.poll()
@@ -176,8 +176,8 @@ class RadioChannel:
         return problem
 
     def _log(self, packet: Packet) -> None:
-        """A source that gives again what it gave before, or a clock that was set back, leaves out
-        what is there already.
+        """Leave out packets of recorded times: of a source that repeats itself, or after the clock
+        was set back.
         """
         assert self._writer is not None
         if packet.t_ns < self._recorded_until_ns - _OVERLAP_NS:
@@ -191,7 +191,7 @@ def _patience_ns(run: _CaptureRun) -> int:
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """With what it has started."""
+    """Kill it with the processes that it has started."""
     with suppress(OSError):
         os.killpg(process.pid, signal.SIGKILL)
     with process:  # its pipes are closed, and its end is noted

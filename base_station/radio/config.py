@@ -25,7 +25,7 @@ class RadioConfig:
     source: str  # device:NAME of ALSA, http(s)://, rtp:// or rtsp:// of a stream, file:PATH
     keep_h: Annotated[float, Within(1.0, 87_600.0)] = KEEP_H  # audio that is older is deleted
     bits_per_s: Annotated[int, Within(8_000, 64_000)] = 20_000  # of voice, as Opus
-    # What is quieter for half a second is not stored, but noted as silence; dB below full scale.
+    # Quieter sound for half a second is not stored, but noted as silence; dB below full scale.
     silence_dbfs: Annotated[float, Within(-90.0, -10.0)] = -50.0
     delay_s: Annotated[float, Within(0.0, 60.0)] = 0.0  # from the air to the source's output
 

@@ -1,4 +1,4 @@
-"""Encodes voice as Opus packets; what is silent becomes packets of a few bytes."""
+"""Encodes voice as Opus packets; silence becomes packets of a few bytes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from base_station.radio.opus import SAMPLE_HZ, SILENT_FRAMES_MAX, silence
 BYTES_PER_SAMPLE = 2
 _PACKET_SAMPLES = 2_880  # 60 ms: the longest that is one frame, so the fewest bytes
 _PACKET_BYTES = _PACKET_SAMPLES * BYTES_PER_SAMPLE
-_BLOCK_PACKETS = 2  # 120 ms are voice or silence as a whole: what leads to a word is kept with it
+_BLOCK_PACKETS = 2  # 120 ms are voice or silence as a whole: the onset of a word is kept with it
 _HANG_OVER_BLOCKS = 4  # pauses between words are kept
 _FULL_SCALE = 32_768.0
 

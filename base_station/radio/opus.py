@@ -39,5 +39,5 @@ def silence(frames: int) -> bytes:
 
 
 def is_silence(packet: bytes) -> bool:
-    """True for what ``silence`` gives."""
+    """True for a packet of ``silence``."""
     return len(packet) > 2 and packet == silence(packet[1])

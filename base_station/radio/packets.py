@@ -32,7 +32,7 @@ def payload_of(packet: Packet) -> bytes:
 
 
 def packet_of(t_ns: int, payload: bytes) -> Packet | None:
-    """None where it is not what this version writes."""
+    """None where it is not of this version."""
     try:
         audio = CompressedAudio.FromString(payload)
     except DecodeError:

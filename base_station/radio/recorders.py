@@ -1,4 +1,4 @@
-"""All radio channels that a station records, and how long what is recorded is kept."""
+"""All radio channels that a station records, and the retention of their recordings."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Sources of audio: a sound device, a stream or a file, as pieces of PCM with the times they came.
 
-What they raise is a ``SourceError`` whose text is for a person.  The programs and libraries here
+They raise a ``SourceError`` whose text is for a person.  The programs and libraries here
 may hang: this is run in a process that can be ended.
 """
 
@@ -30,7 +30,7 @@ _OPEN_S, _READ_S = 10.0, 5.0
 _MOST_AHEAD_S = 20.0  # servers give some seconds at once; a file they would give as a whole
 _JUMP_NS = 2 * NS_PER_S  # between two pieces: the source's own time is another one
 _DAMAGED_MAX = 100  # packets in succession
-_PROTOCOLS = "http,https,tls,tcp,udp,rtp,rtsp,crypto"  # not what reads this machine's files
+_PROTOCOLS = "http,https,tls,tcp,udp,rtp,rtsp,crypto"  # none that reads this machine's files
 
 
 class SourceError(MusterError):
@@ -140,7 +140,7 @@ def _repeated(path: str) -> Iterator[Sound]:
 
 
 def _paced(sounds: Iterator[Sound], ahead_s: float) -> Iterator[Sound]:
-    """Not faster than it is played, but for what comes at the beginning."""
+    """Not faster than it is played, but for the beginning."""
     first: Sound | None = None
     for sound in sounds:
         first = first or sound

@@ -1,4 +1,4 @@
-"""Recording of what consoles were shown, in a log: keyframes, what follows them, and its gaps."""
+"""Recording of the pictures of consoles in a log: keyframes, deltas behind them, and gaps."""
 
 from __future__ import annotations
 
@@ -70,8 +70,8 @@ class ConsoleRecording:
             yield Frame(*begun, trails)
 
     def stretch_behind(self, frame_ns: int, next_ns: int | None) -> RecordGap | None:
-        """Gap between two frames that are far apart: the time of which the log has no record;
-        None where it has some, and only what consoles were shown is missing.
+        """Gap between two frames that are far apart: the time of which the log has no record; None
+        where it has some, and only the pictures of consoles are missing.
         """
         begun_ns = frame_ns + LONGEST_NS
         last_ns = max((one[0] for one in self._read(frame_ns, begun_ns, None)), default=frame_ns)

@@ -1,10 +1,10 @@
 """An incident as one MCAP file that stands alone: it needs neither the station's folder nor its
 database (decision 119).
 
-In it are, in the order of the log: what was set before and still held when the incident was opened
-(units and wearers, plan, place on the Earth, fuser, thresholds, beacons), everything from some
-minutes before the opening until a minute after the closing, and what journals and a debriefing
-brought later.  The people who are mentioned, and the plan, are attached as files.
+In it are, in the order of the log: earlier settings that still held when the incident was opened
+(units and wearers, plan, place on the Earth, fuser, thresholds, beacons), all records from some
+minutes before the opening until a minute after the closing, and later ones of journals and a
+debriefing.  The people who are mentioned, and the plan, are attached as files.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ def _records(log: LogFeed, incident: IncidentRow, end_ns: int) -> Iterator[LogRe
             break
         standing.note(record)
         if isinstance(action, CloseIncident):
-            from_ns = max(from_ns, record[0] + 1)  # what was before is of another incident
+            from_ns = max(from_ns, record[0] + 1)  # earlier records are of another incident
     yield from standing.records(from_ns)
     yield from log.everything(from_ns, end_ns + AFTER_NS, _AllKeys())
     if incident.closed_ns is None:
@@ -152,20 +152,20 @@ def _records(log: LogFeed, incident: IncidentRow, end_ns: int) -> Iterator[LogRe
     for record in log.records(end_ns + AFTER_NS):
         action = _action_of(record)
         if isinstance(action, OpenIncident):
-            return  # what comes now is about that one
+            return  # later records are about that one
         if is_backfilled(record[1]) or isinstance(action, PinAction):
             yield record
 
 
 class _SettingKeys:
-    """Keys of what people did, and of what units say of themselves."""
+    """Keys of actions of people, and of descriptions of units."""
 
     def __contains__(self, key: object) -> bool:
         return key == _OPERATOR_KEY or (isinstance(key, str) and key.endswith(DESCRIPTION.suffix))
 
 
 class _AllKeys:
-    """All keys, those of what follows from others too."""
+    """All keys, those of derived records too."""
 
     def __contains__(self, _: object) -> bool:
         return True
@@ -180,7 +180,7 @@ class _Standing:
     def note(self, record: LogRecord) -> None:
         what = _what_it_sets(record)
         if what is not None:
-            self._records.pop(what, None)  # it goes behind what was set meanwhile
+            self._records.pop(what, None)  # it goes behind settings made meanwhile
             self._records[what] = record
 
     def keep_dispatch(self, number: str) -> None:

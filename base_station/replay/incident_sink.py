@@ -1,4 +1,4 @@
-"""Replay of one incident of several that were open at once, without what is of the others."""
+"""Replay of one incident of several that were open at once, without data of the others."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from base_station.views.wire import Delta, SiteView, Snapshot, UnitView
 
 
 class IncidentSink:
-    """A ``LiveSink`` that hands on what is of one incident.  A unit that leaves it is handed on
-    once more, with the incident where it is now, so that a console takes it away.
+    """A ``LiveSink`` that hands on the data of one incident.  A unit that leaves it is handed on
+    once more, with its new incident, so that a console removes it.
     """
 
     def __init__(self, sink: LiveSink, incident_id: str) -> None:

@@ -35,7 +35,7 @@ from shared.messages import STATION_ID, OperatorAction, Position
 from shared.messages.station import OpenIncident
 
 Record = tuple[int, str, bytes]  # station time, key, payload
-Run = tuple[str, int]  # of a program: who spoke, and its boot
+Run = tuple[str, int]  # of a program: its sender id and boot
 
 CLOCK_REFERENCE_MESSAGES = 1000  # of a run: some minutes of them give the offset of its clock
 _LOCATING = frozenset({POSITION, GPS, SIGHTING})
@@ -48,9 +48,7 @@ def apply_late_arrivals(
     closed_ns: int,
     site_id: str = OWN_SITE_ID,
 ) -> None:
-    """``pipeline`` stands where the incident on this site was closed; ``records`` gives what came
-    since.
-    """
+    """``pipeline``: at the closing of the incident on this site; ``records``: of the time since."""
     late = _late(records())
     recorded = [run for run in late if _is_recorded(pipeline, run)]
     for run in recorded:

@@ -11,7 +11,7 @@ _log = logging.getLogger(__name__)
 
 
 class ReplayPipeline(StationPipeline):
-    """A mistake of the program costs one event, as it did live: what came after it is there."""
+    """A bug of the program costs one event, as it did live: later ones are stepped."""
 
     def step(self, event: StationEvent) -> list[Output]:
         try:

@@ -29,7 +29,7 @@ class Player(Protocol):
         ...
 
     def advance(self, t_ns: int) -> bool:
-        """Take some of what happened until ``t_ns``; False: all is done."""
+        """Take some of the events until ``t_ns``; False: all is done."""
         ...
 
     def reset(self, view: ReplayView) -> None:
@@ -37,7 +37,7 @@ class Player(Protocol):
         ...
 
     def publish(self, view: ReplayView, *, whole: bool) -> None:
-        """Publish what changed; ``whole``: and the station's health."""
+        """Publish changes; ``whole``: and the station's health."""
         ...
 
     def snapshot(self, view: ReplayView) -> tuple[Snapshot, Trails]:

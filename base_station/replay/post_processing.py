@@ -1,8 +1,8 @@
 """An incident as it is known afterwards, beside what was shown at the time.
 
-The state at the incident's end comes out of the log, by the same pipeline as live, with what
-came late of its time; the smoother makes trails of everything in it.  What it made of a closed
-incident is kept in the store, and made again when more of its time has come to be known.
+The state at the incident's end comes out of the log, by the same pipeline as live, with late data
+of its time; the smoother makes trails from all of it.  The result for a closed incident is kept in
+the store, and made again when more data of its time has come.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ Progress = Callable[[float], None]
 Tracks = Mapping[str, Sequence[TrackSample]]
 Made = TypeVar("Made")
 LATELY_NS = 3600 * NS_PER_S  # an incident that closed since is smoothed without being asked
-_AGAIN_NS = 300 * NS_PER_S  # after what it came to could not be kept: it may have taken long
+_AGAIN_NS = 300 * NS_PER_S  # after a result that could not be kept: it may have taken long
 QUIET_NS = 30 * NS_PER_S  # without news: a journal that is being read brings more of it
-_EVER_NS = 2**63 - 1  # an open incident goes on: whatever was recorded is of it
+_EVER_NS = 2**63 - 1  # an open incident goes on: all later records are of it
 UNSURE_M = 5.0  # a smoothed place known no better than this is called degraded
 
 
@@ -109,7 +109,7 @@ class PostProcessor:
         made_ns: int,
         report: IncidentReport | None = None,
     ) -> Smoothed:
-        """All of it at once: no assessment stands beside trails that it does not belong to."""
+        """All of it at once: assessment and trails always belong together."""
         incident_id, smoother = incident.incident_id, self._smoother.name
         tracks = _smoothed_tracks(incident, known)
         is_kept = False
@@ -275,7 +275,7 @@ class PostProcessor:
     def _state_at(
         self, incident_id: str, until_ns: int, late_data_ns: int, on_progress: Progress
     ) -> StationState:
-        """As everything was then, and with what came of that time until ``late_data_ns``."""
+        """State of that time, with later data of that time until ``late_data_ns``."""
         playback = Playback(self._archive)
         begin_ns, end_ns = None, min(until_ns, self._clock.utc_ns())
         for _ in playback.seek(until_ns):

@@ -11,7 +11,7 @@ from base_station.storage.db.models import IncidentRow
 from shared.worker import Worker
 
 EVERY_S = 5.0
-GRACE_S = 2.0  # the end of a station does not wait for what can be computed again
+GRACE_S = 2.0  # the end of a station does not wait for results that can be computed again
 
 
 class PostProcessingWorker:

@@ -21,7 +21,7 @@ def project_log(
     write: Callable[[Projection], None],
     on_progress: Callable[[int], None],
 ) -> int:
-    """Step a whole log through a new pipeline and write what it projects.
+    """Step a whole log through a new pipeline and write its projections.
 
     ``on_progress`` receives the station time reached.  Gives the number of records.
     """

@@ -1,5 +1,5 @@
-"""Player that decides everything again: the proof, and the way to play a log that has no recording
-of what consoles were shown.
+"""Player that makes all decisions again: as a proof, and to play a log without recorded pictures of
+consoles.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class RecomputedPlayer:
         return self._playback.gap
 
     def version_check(self, until_ns: int) -> VersionCheck:
-        """Return the check of the versions of what is about to be shown."""
+        """Return the version check of the records that are about to be shown."""
         return VersionCheck(self._playback, until_ns)
 
     def seek(self, t_ns: int) -> Iterator[None]:

@@ -1,4 +1,4 @@
-"""Picture of a console at some time of a recording, and what changed since it was published."""
+"""Picture of a console at some time of a recording, and its changes since it was published."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class RecordedPicture:
     """``apply`` frames to it in their order."""
 
     def __init__(self) -> None:
-        self._apart = _EMPTY  # what deltas do not carry
+        self._apart = _EMPTY  # parts that deltas do not carry
         self._units: dict[str, UnitView] = {}
         self._alarms: dict[str, AlarmView] = {}  # the resolved ones in the order of resolving
         self._commands: dict[str, CommandView] = {}

@@ -1,4 +1,4 @@
-"""Player of what consoles were shown, as the log has it: it decides nothing."""
+"""Player of the recorded pictures of consoles: it decides nothing."""
 
 from __future__ import annotations
 

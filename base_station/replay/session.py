@@ -43,7 +43,7 @@ class ReplayWindow:
     end_ns: int
 
     def place_of(self, t_ns: int) -> int:
-        """Before the beginning is the beginning; the last millisecond and what is behind it are
+        """Times before the beginning give the beginning; the last millisecond and later times give
         the end, for a console knows it to a millisecond.
         """
         is_end = t_ns // NS_PER_MS >= self.end_ns // NS_PER_MS
@@ -74,22 +74,22 @@ class ReplaySession:
         self._trouble = LogOnChange(_log, "whether the past was changed cannot be seen")
         self._sink, self._people = IncidentSink(sink, window.incident_id), people
         self._player: Player  # that is shown
-        self._recorded: RecordedPlayer | None  # of what the log has of consoles
+        self._recorded: RecordedPlayer | None  # of the recorded pictures of consoles
         self._recomputed: RecomputedPlayer | None  # once it is needed
         self._version_check: VersionCheck | None = None  # until something was decided again
         self._looked_ns = self._whole_ns = clock.monotonic_ns()
         self._is_behind = False  # the past goes by as fast as it is read
         self._is_shown = False  # a picture
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
-        self._lock = threading.Lock()  # guards what follows
+        self._lock = threading.Lock()  # guards the fields below
         self._speed = checked_speed(speed)
         self._playing = True
         self._at_ns = window.start_ns
         self._seek_ns: int | None = window.start_ns
         self._seeking = False
         self._gap: RecordGap | None = None  # in which it stands
-        self._away = ""  # why the archive does not give what is to be shown
-        self._moved_ns = clock.monotonic_ns()  # until when time has gone by for what is shown
+        self._away = ""  # reason why the archive does not give the data
+        self._moved_ns = clock.monotonic_ns()  # until when time has gone by for the picture
         self._news = threading.Event()
         self._closed = threading.Event()
         self._thread = threading.Thread(target=self._run, name="replay", daemon=True)
@@ -317,7 +317,7 @@ class ReplaySession:
             self._asked.popleft()(*self._sink.of_incident(*shown))
 
     def _move(self) -> None:
-        """Let as much of the past go by as the clock and the speed say."""
+        """Let as much of the past go by as follows from the clock and the speed."""
         self._is_behind = False
         with self._lock:
             now_ns = self._clock.monotonic_ns()

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 class TrailKind(StrEnum):
     RAW = "raw"  # the unit's own path, placed by its start
-    FUSED = "fused"  # what was shown at the time
+    FUSED = "fused"  # as shown at the time
     SMOOTHED = "smoothed"  # the best that is known afterwards
 
     @property

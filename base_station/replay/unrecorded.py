@@ -20,8 +20,8 @@ class RecordGap:
 
 
 class UnrecordedTime:
-    """Ages what a pipeline shows, and takes that back before the next record is stepped: what
-    follows is decided from the very state from which it was decided live.
+    """Ages the picture of a pipeline, and takes that back before the next record is stepped: later
+    decisions are made from the same state as live.
     """
 
     def __init__(self, pipeline: StationPipeline) -> None:

@@ -35,7 +35,7 @@ def decisions_differ(records: Iterable[Record], pipeline: StationPipeline) -> bo
 
 
 class VersionCheck:
-    """Check of what a playback is about to show, a record at a time."""
+    """Check of the next records of a playback, one at a time."""
 
     def __init__(self, playback: Playback, until_ns: int) -> None:
         self._playback = playback

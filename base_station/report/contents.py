@@ -114,7 +114,7 @@ class ImportEntry(msgspec.Struct, frozen=True):
 
     file_name: str
     format: str
-    during: Interval  # of what is in it
+    during: Interval  # of its content
     shift_s: float
     t_ns: int  # when it was brought in
     by: str

@@ -1,4 +1,4 @@
-"""Pictures of floors: the plan, and trails on it.  Line styles tell what colours tell, too."""
+"""Pictures of floors: the plan, and trails on it.  Line styles have the same meaning as colours."""
 
 from __future__ import annotations
 

@@ -224,7 +224,7 @@ class _Gathering:
             end=_place(points[-1]) if points else None,
         )
 
-    # ---- what the log has
+    # ---- facts of the log
 
     def _facts(self, on_progress: Progress) -> LogFacts:
         sources = self._sources
@@ -235,7 +235,7 @@ class _Gathering:
         for alarm in self._explained_alarms()[:MOST_TRACES]:
             about.setdefault(alarm.unit_id, []).append(_about(alarm))
         while sources.defects.look():
-            pass  # into all of it: what cannot be read is to be in the report
+            pass  # into all of it: unreadable parts must be in the report
         records = sources.log.records(
             self._window.from_ns, self._window.until_ns, wanted_keys(self._wearings)
         )
@@ -273,7 +273,7 @@ class _Gathering:
                 else tuple((name, float(getattr(rule, name))) for name in limits_of(rule)),
             )
 
-    # ---- what people did
+    # ---- actions of people
 
     def _timeline(self) -> Iterable[TimelineEntry]:
         entries = [*self._done(), *self._alarm_entries()]

@@ -1,6 +1,6 @@
-"""Facts that only the log has: radio gaps, temperatures, and what became of orders.
+"""Facts that only the log has: radio gaps, temperatures, and outcomes of orders.
 
-One pass, message by message; what is kept is bounded: gaps, doses, and series about alarms only.
+One pass, message by message; the kept data is bounded: gaps, doses, and series about alarms only.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Orders of an incident, and what became of each at each unit."""
+"""Orders of an incident, and the outcome of each at each unit."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Style of a report, on a screen and on paper: black on white, with line styles.
 
-Pictures have theirs as attributes: what makes the PDF gives them no style of the page.
+Pictures have theirs as attributes: the library for PDF gives them no style of the page.
 """
 
 from __future__ import annotations

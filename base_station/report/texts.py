@@ -9,7 +9,7 @@ from typing import Any
 from base_station.report.contents import OrderReceipt
 
 Details = Mapping[str, Any]
-NameOf = Callable[[str], str]  # of who wears a unit
+NameOf = Callable[[str], str]  # of the wearer of a unit
 
 TITLE = "Incident report"
 PREPARED = (

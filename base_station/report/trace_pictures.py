@@ -1,4 +1,4 @@
-"""Pictures of what was known about an alarm: a strip for motion, air, height and link."""
+"""Pictures of the data about an alarm: a strip for motion, air, height and link."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Picture of a sweep over a threshold: alarms per hour of wear, and what becomes of the alarms that
+"""Picture of a sweep over a threshold: alarms per hour of wear, and the outcome of the alarms that
 were raised then, for each value.
 """
 

@@ -17,7 +17,7 @@ from base_station.storage.db.records import TrackSample
 from shared.clock import NS_PER_S
 
 TOLERANCE_M = 0.3  # by so much a line that is drawn may miss a position: a third of a door
-STEP_M = 0.5  # what moves less than that about one place has not walked
+STEP_M = 0.5  # a unit that moves less than that about one place has not walked
 _INSIDE_EVERY_NS = 5 * NS_PER_S  # to look at the walls for every second takes long
 
 

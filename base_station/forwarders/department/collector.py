@@ -1,4 +1,4 @@
-"""Collects what is to be reported: events into the outbox, and all else into summaries."""
+"""Collects reports: events into the outbox, and all else into summaries."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from shared.messages import STATION_ID, AlarmChange
 ReadLog = Callable[[int], Iterable[tuple[int, str, bytes]]]
 
 _ALARM_KEY = ALARM.key(STATION_ID)
-_OVERLAP_NS = 5 * NS_PER_S  # of the log before what was collected; the ids are the same
+_OVERLAP_NS = 5 * NS_PER_S  # of the log before the collected part; the ids are the same
 _NOTE_EVERY_NS = 10 * NS_PER_S  # up to where the log is collected, where nothing else is written
 
 
@@ -47,7 +47,7 @@ class ReportCollector:
         self._reported: dict[str, bytes] = {}
         self._noted_ns = 0
         self._has_picture = False
-        self._is_up_to_date = False  # what was decided before this start may be missing
+        self._is_up_to_date = False  # decisions before this start may be missing
 
     # ---- in the engine's thread
 
@@ -63,7 +63,7 @@ class ReportCollector:
     # ---- in the collecting thread
 
     def collect(self, now_ms: int) -> bool:
-        """Bring what came into the outbox; True where there are events.  ``now_ms``: station time.
+        """Bring new events into the outbox; True where there are any.  ``now_ms``: station time.
 
         Raises StoreError or LogError: the next call does the same again.
         """

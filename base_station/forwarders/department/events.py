@@ -1,7 +1,7 @@
-"""Events for the department: transitions of alarms, and what differs from what was reported last.
+"""Events for the department: transitions of alarms, and differences to the last reports.
 
-An event's id follows from what it reports: the same one from both machines of two stations, and
-from one that reports it again after a kill.
+An event's id follows from its content: the same one from both machines of two stations, and from
+one that reports it again after a kill.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ def _compare(
     packed, before = pack(body), _last(reported, subject)
     if packed == before.body:
         return
-    # What is as it was once before is another event: the id follows from the one before, too.
+    # A return to a former state is another event: the id follows from the one before, too.
     digest = sha256(before.event_id.encode() + packed).hexdigest()[:_DIGEST_CHARACTERS]
     event_id = f"{subject}/{digest}"
     found.events.append(NewEvent(event_id, subject, now_ms, packed))

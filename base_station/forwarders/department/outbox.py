@@ -1,8 +1,8 @@
 """Outbox of a station: events for its department, in a file of its own in the data folder.
 
-An event has a number from here and is kept until the department has acknowledged it.  Beside the
-events stands what was reported last of each subject, and up to where the log was collected, so that
-a station that was killed reports what changed since.
+An event has a number from here and is kept until the department has acknowledged it.  The file
+also has the last report on each subject, and the place up to which the log was collected, so that a
+station that was killed reports the changes since.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ CREATE TABLE IF NOT EXISTS events (
 );
 CREATE TABLE IF NOT EXISTS reported (subject TEXT PRIMARY KEY, state BLOB NOT NULL) WITHOUT ROWID;
 """
-# What is deleted is overwritten; what was committed survives a power cut.
+# Deleted data is overwritten; committed data survives a power cut.
 _PRAGMAS = ("journal_mode = WAL", "synchronous = FULL", "secure_delete = ON")
 _EPOCH, _ACKNOWLEDGED, _DROPPED = "epoch", "acknowledged", "dropped"
 _COLLECTED = "collected_ns"
@@ -103,8 +103,8 @@ class DepartmentOutbox:
         reported: Mapping[str, bytes | None],
         collected_ns: int | None,
     ) -> None:
-        """Keep events with what they report, together or not at all; an event that is there stays
-        as it is.  ``reported``: None takes a subject away.
+        """Keep events with the reports of their subjects, together or not at all; an event that is
+        there stays as it is.  ``reported``: None removes a subject.
         """
         with self._transaction() as database:
             # One that SQLite ignores because of its id would use up a number.

@@ -1,4 +1,4 @@
-"""Summary of what a station's consoles are shown."""
+"""Summary of the picture on a station's consoles."""
 
 from __future__ import annotations
 

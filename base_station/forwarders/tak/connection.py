@@ -16,8 +16,8 @@ from base_station.forwarders.tak.config import TakConfig
 _CONNECT_S = 10.0
 _DRAIN_S = 10.0  # a server that takes nothing for so long has stalled
 _READ_BYTES = 65_536
-_SEND_BUFFER_BYTES = 131_072  # what waits in it is not the newest any more
-_GONE_AFTER_MS = 20_000  # what was sent and is not confirmed by the other machine
+_SEND_BUFFER_BYTES = 131_072  # data that waits in it is not the newest any more
+_GONE_AFTER_MS = 20_000  # without a confirmation of sent data by the other machine
 _DATAGRAM_BYTES = 65_000
 # Every call of the system waits its turn among the station's threads, up to 5 ms on a busy one.
 _BATCH_BYTES = 16_384

@@ -1,4 +1,4 @@
-"""Cursor-on-Target (CoT) 2.0 events of what the station knows; ``CotEvents`` is pure.
+"""Cursor-on-Target (CoT) 2.0 events of the station's picture; ``CotEvents`` is pure.
 
 Nothing is made without a place on the Earth, and a place is stale by the time at which it was
 measured, however late its event is sent.
@@ -18,7 +18,7 @@ from base_station.views.wire import AnchorView, PositionView, UnitView
 from shared.geo import Anchor
 from shared.xml_text import in_xml
 
-PERSON = "a-f-G-U-C"  # friendly, on the ground, a unit of combatants: what TAK shows as a member
+PERSON = "a-f-G-U-C"  # friendly, on the ground, a unit of combatants: shown as a member by TAK
 EMERGENCY, EMERGENCY_CANCELLED = "b-a-o-tbl", "b-a-o-can"
 WAY = "u-d-f"  # a drawn line
 PING = "t-x-c-t"
@@ -187,7 +187,7 @@ class CotEvents:
 
 
 def how_of(position: PositionView) -> str:
-    """Origin of the position, in CoT's word."""
+    """Origin of the position, in CoT's term."""
     since_s = position.since_gps_s
     return FUSED if since_s is not None and since_s <= _GNSS_HOLDS_S else DEAD_RECKONED
 

@@ -14,7 +14,7 @@ from shared.clock import NS_PER_S
 REPEAT_NS = 10 * NS_PER_S
 CANCELLED_TIMES = 6  # a minute: longer than a dead connection is taken for a live one
 _RESOLVED = "resolved"
-_RECENTLY_MS = 600_000  # an earlier run of the program may have raised what ended since
+_RECENTLY_MS = 600_000  # an earlier run of the program may have raised alerts that ended since
 
 
 @dataclass(slots=True)

@@ -1,4 +1,4 @@
-"""Inbox of one connection: what other teams sent, bounded in number, rate and distance."""
+"""Inbox of one connection: markers of other teams, bounded in number, rate and distance."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ logger = logging.getLogger(__name__)
 
 
 class ExternalInbox:
-    """``push`` what comes, and ``deliver_due`` now and then."""
+    """``push`` received data, and ``deliver_due`` now and then."""
 
     def __init__(self, source: str, own_prefix: str, within_m: float, deliver: Deliver) -> None:
-        """``own_prefix``: of the uids of what this station sent itself; a group echoes it."""
+        """``own_prefix``: of the uids of this station's own events, which a group echoes."""
         self._source, self._own_prefix = source, own_prefix
         self._within_m = within_m
         self._deliver = deliver
@@ -81,7 +81,7 @@ class ExternalInbox:
             logger.warning("TAK %s: an event is left out: %s", self._source, reason)
 
     def deliver_due(self, now_ns: int) -> None:
-        """Hand over what came, once a second at most."""
+        """Hand over received markers, once a second at most."""
         if now_ns < self._next_ns or not (self._waiting or self._gone):
             return
         self._next_ns = now_ns + _EVERY_NS

@@ -1,7 +1,7 @@
-"""Outbox of one connection: what is to be sent next, newest position of each person, alerts first.
+"""Outbox of one connection: the next events to send, newest position of each person, alerts first.
 
 Events are made when they are sent and not before, so that a connection that was away for an hour
-begins with where people are now.  Pure: times are given.
+begins with the present positions.  Pure: times are given.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class _Person:
     unit: UnitView
     is_waiting: bool = True
     sent_ns: int | None = None  # monotonic
-    free_ns: int = 0  # monotonic, when what was sent is paid for: one may be sent ahead of that
+    free_ns: int = 0  # monotonic, when the rate allows the next; one may be sent ahead of that
     sent_link: str = ""
     sent_place: tuple[int, GeodeticPlace] | None = None  # with the time of the position
     way: deque[GeodeticPlace] = field(default_factory=lambda: deque(maxlen=_WAY_PLACES))
@@ -51,7 +51,7 @@ class _Person:
 
 
 class TakOutbox:
-    """``apply`` changes, then send what ``due`` gives."""
+    """``apply`` changes, then send the events of ``due``."""
 
     def __init__(self, events: CotEvents, every_s: float, *, breadcrumbs: bool) -> None:
         self._events = events
@@ -95,7 +95,7 @@ class TakOutbox:
         self._emergencies.repeat_all()
 
     def due(self, now_ns: int, now_ms: int) -> Iterator[bytes]:
-        """Events to send now; what was taken from here has been sent."""
+        """Events to send now; they count as sent."""
         for alert in self._emergencies.due(now_ns):
             event = self._alert(alert, now_ms)
             if event is None:

@@ -115,6 +115,6 @@ def _ns(at: datetime) -> int:
 
 
 def _plain(text: str, characters: int) -> str:
-    """In one line, without what cannot be seen."""
+    """In one line, without invisible characters."""
     words = "".join(one if one.isprintable() else " " for one in text).split()
     return " ".join(words)[:characters]

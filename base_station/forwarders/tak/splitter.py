@@ -1,4 +1,4 @@
-"""Splits what a TAK server sends into events; what is no event costs no memory."""
+"""Splits data of a TAK server into events; other data costs no memory."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class EventSplitter:
 
     def __init__(self) -> None:
         self._buffer = b""
-        self.dropped_bytes = 0  # of what was no event, or too long for one
+        self.dropped_bytes = 0  # of data that was no event, or too long for one
 
     def push(self, data: bytes) -> list[bytes]:
         """Whole events, from their first tag to their last."""

@@ -1,4 +1,4 @@
-"""Report on an incident's positions: the accuracy stated at the time beside what is known since."""
+"""Report on an incident's positions: the accuracy stated at the time beside later knowledge."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from shared.clock import NS_PER_S
 AWAY_M = 15.0  # a wearer who was so far from the beginning
 BACK_M = 3.0  # and came so near to it again has closed a loop
 GAP_NS = 60 * NS_PER_S  # without a fix, after which the next one is a re-entry
-NEAR_NS = 5 * NS_PER_S  # half of what lies between two points of a trail, at most
+NEAR_NS = 5 * NS_PER_S  # half of the time between two points of a trail, at most
 SETTLING_NS = 20 * NS_PER_S  # about a re-entry
 
 Tracks = Mapping[str, Sequence[TrackSample]]
@@ -61,16 +61,16 @@ class UnitReport(Answer, frozen=True):
     seconds: float
     walked_m: float
     stated: Figures | None  # as the standard deviations promised
-    against_smoothed: Figures | None  # what was shown, held against the smoothed trail
+    against_smoothed: Figures | None  # shown positions compared with the smoothed trail
     floor_probability: float | None  # as the stated heights promise it
-    floor_right: float | None  # part of the time, by what is known since
+    floor_right: float | None  # fraction of the time, by later knowledge
     trust: TrustReport
     pin_residuals: tuple[PinResidual, ...]
     loop_closure_m: float | None  # by the unit's own path alone
     loop_closure_percent: float | None  # of the way walked until then
-    reentry_jumps_m: tuple[float, ...]  # of what was shown, when fixes came back
+    reentry_jumps_m: tuple[float, ...]  # of the shown positions, when fixes came back
     not_used: tuple[tuple[str, int], ...] = ()  # fixes and sightings; by reason, most first
-    people: tuple[str, ...] = ()  # who wore it; not kept, so that people can be forgotten
+    people: tuple[str, ...] = ()  # its wearers; not kept, so that people can be forgotten
 
 
 class IncidentReport(Answer, frozen=True):
@@ -94,7 +94,7 @@ def assess(
     smoothed: Tracks,
     raw: Tracks,
 ) -> IncidentReport:
-    """``state`` is that of the incident's end; ``live`` is what was shown."""
+    """``state`` is that of the incident's end; ``live``: shown positions."""
     units, stated, errors = [], [], []
     for unit_id in sorted(live):  # one by one: all tracks together are large
         shown, known, own = live[unit_id], smoothed.get(unit_id, ()), raw.get(unit_id, ())
@@ -176,7 +176,7 @@ def _not_used(state: StationState, unit_id: str) -> tuple[tuple[str, int], ...]:
 
 
 def with_people(report: IncidentReport, people: Mapping[str, Sequence[str]]) -> IncidentReport:
-    """``people``: who wore each unit."""
+    """``people``: wearers of each unit."""
     units = tuple(
         msgspec.structs.replace(unit, people=tuple(people.get(unit.unit_id, ())))
         for unit in report.units

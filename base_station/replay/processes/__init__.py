@@ -1,3 +1,3 @@
-"""Processes of their own for what looks at the past: what is live does not share an interpreter,
-nor its memory, with them.
+"""Processes for work on the past: the live station shares neither its interpreter nor its memory
+with them.
 """

@@ -1,4 +1,4 @@
-"""One question about the log, answered by a process of its own: what is live does not wait."""
+"""One question about the log, answered by a process of its own: the live station does not wait."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class LogProcess:
     processes: ReplayProcesses
     log: str
     database: str
-    prepare: Callable[[], object]  # what was recorded is on the disk then
+    prepare: Callable[[], object]  # brings recorded data to the disk
     note_damage: Callable[[str], None]  # of the log
     known_segments: Callable[[], Iterable[KnownSegment]]  # of the log, by the database
 

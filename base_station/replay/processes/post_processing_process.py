@@ -39,14 +39,14 @@ class PostProcessingContext:
     log: str
     checkpoints: str
     database: str
-    prepare: Callable[[], object]  # what is to be looked back on is on the disk then
+    prepare: Callable[[], object]  # brings recorded data to the disk
     note_damage: Callable[[str], None]  # of the log
     memory_mb: int = MEMORY_MB
     known_segments: Callable[[], Iterable[KnownSegment]] = tuple  # of the log, by the database
 
 
 class PostProcessingProcess(PostProcessor):
-    """Asks what is kept; what is not is made by a process, one at a time."""
+    """Gives kept results; others are made by a process, one at a time."""
 
     def __init__(
         self,
@@ -58,7 +58,7 @@ class PostProcessingProcess(PostProcessor):
     ) -> None:
         super().__init__(archive, smoother, store, clock)
         self._place = place
-        self._lock = Lock()  # guards what follows
+        self._lock = Lock()  # guards the fields below
         self._line: wire.FrameChannel | None = None  # to the process that is at work
         self._closed = False
 
@@ -70,7 +70,7 @@ class PostProcessingProcess(PostProcessor):
     def post_process(
         self,
         incident: IncidentRow,
-        live: Tracks,  # noqa: ARG002  # the process reads what was shown by itself
+        live: Tracks,  # noqa: ARG002  # the process reads the shown tracks by itself
         on_progress: Progress = lambda _: None,
     ) -> PostProcessingResult:
         """Raises StoreError where it was not done; MemoryLimitError, where it never will be."""

@@ -1,4 +1,4 @@
-"""Works out what is known of an incident afterwards, in a process and a memory of its own."""
+"""Post-processing of an incident, in a process with a memory limit of its own."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _STEP = 0.01  # of progress that is reported
 
 
 class StationTime:
-    """The station's time, which went on from what it was when the job was given."""
+    """The station's time, which goes on from that of the job."""
 
     def __init__(self, now_ns: int, clock: Clock) -> None:
         self._ahead_ns = now_ns - clock.utc_ns()
@@ -58,7 +58,7 @@ def bounded(job: PostProcessingJob, line: FrameChannel) -> Iterator[None]:
     resource.setrlimit(resource.RLIMIT_DATA, (job.memory_mb * 1_000_000, most))
     try:
         if psutil.Process().memory_info().data > job.memory_mb * 1_000_000:
-            raise MemoryError  # the limit holds for what is yet to come only
+            raise MemoryError  # the limit holds for new memory only
         yield
     except MemoryError:
         resource.setrlimit(resource.RLIMIT_DATA, (before, most))

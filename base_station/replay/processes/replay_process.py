@@ -47,7 +47,7 @@ _log = logging.getLogger(__name__)
 
 
 class EncodedSink(LiveSink, Protocol):
-    """A ``LiveSink`` that also takes what is encoded already (``base_station.api.hub.Hub``)."""
+    """A ``LiveSink`` that also takes encoded messages (``base_station.api.hub.Hub``)."""
 
     def broadcast_delta(self, whole: bytes, changes: bytes, redrawn: tuple[str, ...]) -> None: ...
 
@@ -61,7 +61,7 @@ class ReplayContext:
     processes: ReplayProcesses
     log: str
     checkpoints: str
-    prepare: Callable[[], object]  # what is to be replayed is on the disk then
+    prepare: Callable[[], object]  # brings recorded data to the disk
     note_damage: Callable[[str], None]  # of the log
     people: Callable[[], Mapping[str, KnownPerson]]  # by id
     empty_pipeline: Callable[[], StationPipeline]
@@ -69,7 +69,7 @@ class ReplayContext:
 
 
 class ReplayProcess:
-    """A ``ReplayPlayer``: commands go to the process, what consoles see comes from it.
+    """A ``ReplayPlayer``: commands go to the process, pictures for consoles come from it.
 
     Until it is loaded, consoles see that the replay is on its way.
     """
@@ -89,14 +89,14 @@ class ReplayProcess:
         """
         self._place, self._window, self._sink = place, window, sink
         self._archived = archived
-        self._lock = threading.Lock()  # guards what follows
+        self._lock = threading.Lock()  # guards the fields below
         self._line: FrameChannel | None = None  # to the process, as soon as that is there
         self._unsent: list[Command] = []
         self._commands = 0  # given so far
         self._view = _first_view(window, checked_speed(speed))
         self._asked: deque[Callable[[Snapshot, Trails], None]] = deque()
         self._people: Mapping[str, KnownPerson] = {}  # as the process knows them
-        self._is_shown = False  # what the process shows
+        self._is_shown = False  # pictures of the process are shown
         self._closed = threading.Event()
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="replay", daemon=True)

@@ -1,4 +1,4 @@
-"""A replay in a process of its own: commands come on its line, and what consoles see goes back."""
+"""A replay in a process of its own: commands come on its line, pictures for consoles go back."""
 
 from __future__ import annotations
 

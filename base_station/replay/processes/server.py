@@ -22,7 +22,7 @@ from shared.errors import StoreError
 
 IDLE_S = 600.0  # after the last use it is ended: its memory may be wanted
 _NUMERICS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-_ONE_THREAD = dict.fromkeys(_NUMERICS, "1")  # the other cores are for what is live
+_ONE_THREAD = dict.fromkeys(_NUMERICS, "1")  # the other cores are for the live station
 _log = logging.getLogger(__name__)
 
 

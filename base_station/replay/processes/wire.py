@@ -35,12 +35,12 @@ class ReplayJob(msgspec.Struct, frozen=True, tag="replay"):
     start_ns: int
     end_ns: int
     speed: float
-    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
     archived: ArchivedLog | None = None  # read in the place of the station's own
 
 
 class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
-    """First to a new process: to work out what is known afterwards of an incident, and keep it."""
+    """First to a new process: to post-process an incident, and keep the result."""
 
     log: str
     checkpoints: str
@@ -51,7 +51,7 @@ class PostProcessingJob(msgspec.Struct, frozen=True, tag="look_back"):
     late_data_ns: int
     now_ns: int  # station time
     memory_mb: int  # of its own, at most
-    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
 
 
 class ReportJob(msgspec.Struct, frozen=True, tag="report"):
@@ -63,7 +63,7 @@ class ReportJob(msgspec.Struct, frozen=True, tag="report"):
     opened_ns: int
     closed_ns: int | None
     as_pdf: bool
-    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
 
 
 class CatchUpJob(msgspec.Struct, frozen=True, tag="catch_up"):
@@ -73,7 +73,7 @@ class CatchUpJob(msgspec.Struct, frozen=True, tag="catch_up"):
     checkpoints: str
     database: str
     since_ns: int  # station time
-    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
 
 
 class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
@@ -85,7 +85,7 @@ class TimelineJob(msgspec.Struct, frozen=True, tag="timeline"):
     from_ns: int
     until_ns: int
     buckets: int
-    known_segments: tuple[KnownSegment, ...] = ()  # what the database knows of the log
+    known_segments: tuple[KnownSegment, ...] = ()  # as in the database
 
 
 class ArchiveJob(msgspec.Struct, frozen=True, tag="archive"):
@@ -182,7 +182,7 @@ class CopyFrame(msgspec.Struct, frozen=True, tag="copied"):
     """An incident is in the archive, and was read there."""
 
     incident_id: str
-    damage: tuple[str, ...]  # what of the station's log could not be read
+    damage: tuple[str, ...]  # unreadable parts of the station's log
 
 
 class CopiesDone(msgspec.Struct, frozen=True, tag="copies_done"):

@@ -87,7 +87,7 @@ class EpisodePair(msgspec.Struct, frozen=True):
 
 def compare(recorded: Iterable[Episode], rehearsed: Iterable[Episode]) -> list[EpisodePair]:
     """Pair episodes of the same level, rule and unit whose times overlap, each once and in the
-    order of time; what has no partner is missed, or added.
+    order of time; those without a partner are missed, or added.
     """
     before, after = _by_subject(recorded), _by_subject(rehearsed)
     found = [

@@ -61,7 +61,7 @@ class RehearsalReport(msgspec.Struct, frozen=True):
     incidents: tuple[RehearsedIncident, ...]
     points: tuple[RehearsedPoint, ...]  # one, or those of a sweep
     swept: str = ""  # the threshold that a sweep changes
-    flaws: tuple[str, ...] = ()  # of the record: what it does not tell
+    flaws: tuple[str, ...] = ()  # of the record: its missing parts
 
     @property
     def worn_h(self) -> float:

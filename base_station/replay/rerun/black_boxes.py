@@ -75,7 +75,7 @@ def _sender(path: Path) -> Run:
             continue
         header = header_of(payload)
         if sender == STATION_ID or (header is not None and header.seq):
-            break  # a log of a station, or a journal: what a unit records has no numbers
+            break  # a log of a station, or a journal: recordings of a unit have no numbers
         if channel is DESCRIPTION and header is not None:
             return sender, header.boot_id
     raise RecordingError(f"{path} is no raw recording of a unit")

@@ -1,4 +1,4 @@
-"""Comparison of a re-run with what was shown: trails, floors and alarms, as data for JSON."""
+"""Comparison of a re-run with the live result: trails, floors and alarms, as data for JSON."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class RerunReport(msgspec.Struct, frozen=True):
     version: str
     trails: tuple[TrailDifference, ...]
     alarms: tuple[AlarmDifference, ...]
-    notes: tuple[str, ...]  # what could not be, and flaws of the record
+    notes: tuple[str, ...]  # parts that could not be compared, and flaws of the record
 
 
 def compare_trail(

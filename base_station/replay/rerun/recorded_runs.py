@@ -1,4 +1,4 @@
-"""Recorded runs: of each run of a unit's program what a re-run needs of the log of an incident."""
+"""Recorded runs: the data that a re-run needs of each run of a unit's program, out of the log."""
 
 from __future__ import annotations
 

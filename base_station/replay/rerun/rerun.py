@@ -1,4 +1,4 @@
-"""Fusion again, over a log in which units sent what another tracker gives."""
+"""Fusion again, over a log with the positions of another tracker in it."""
 
 from __future__ import annotations
 

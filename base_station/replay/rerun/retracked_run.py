@@ -87,7 +87,7 @@ class FrameShift(msgspec.Struct, frozen=True):
 
 
 class RetrackedRun:
-    """Looks up what the unit would have sent in the place of what it sent."""
+    """Looks up the message of the new run in the place of a sent one."""
 
     def __init__(self, records: Iterable[LogRecord], recorded: RecordedRun) -> None:
         """``records``: as ``muster edge retrack`` writes them.
@@ -146,7 +146,7 @@ class RetrackedRun:
         return msgspec.structs.replace(placed, header=header)
 
     def status(self, recorded: Status) -> Status:
-        """The status with what sensors and tracker give; what is the unit's own stays."""
+        """The status with the new values of sensors and tracker; the unit's own values stay."""
         new = self._statuses.get(recorded.header.t_mono_ns)
         if new is None:
             return recorded

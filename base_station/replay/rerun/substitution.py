@@ -1,7 +1,7 @@
-"""The records of a log with what units sent replaced by what they would have sent.
+"""The records of a log with sent messages of units replaced by those of a re-run.
 
-Each message stays where it is in the log, under its own number: radio gaps, delays and what
-journals brought later are as they were.
+Each message stays at its place in the log, under its own number: radio gaps, delays and late
+messages of journals are as they were.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Timelines: what a unit measured and stated over a span of time, small enough for a screen."""
+"""Timelines: measured and stated values of a unit over a span of time, reduced for a screen."""

@@ -1,4 +1,4 @@
-"""Downsampling of a series to what a screen can show, so that peaks and gaps stay.
+"""Downsampling of a series for a screen, so that peaks and gaps stay.
 
 A span is cut into buckets of equal length.  Of each, the least and the greatest value are kept with
 their times: a line through them covers the same points of the screen as one through all values.
@@ -12,7 +12,7 @@ import msgspec
 
 from shared.clock import NS_PER_MS
 
-_DIGITS = 3  # behind the point: finer than any of what is measured
+_DIGITS = 3  # behind the point: finer than any measurement
 
 
 class Column(msgspec.Struct, frozen=True):

@@ -23,7 +23,7 @@ from shared.mcap_log import LogRecord
 from shared.messages import Command, Status, Temperature
 
 MAX_SPAN_NS = 24 * 3600 * NS_PER_S
-_LATE_NS = 3600 * NS_PER_S  # so long after the span, a journal may still bring what is of it
+_LATE_NS = 3600 * NS_PER_S  # so long after the span, a journal may still bring messages of it
 _READ_AT_ONCE_NS = 3600 * NS_PER_S  # of a track
 _JOURNALED = (STATUS, TEMPERATURE)
 

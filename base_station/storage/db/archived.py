@@ -82,8 +82,8 @@ class ArchivedCopies:
                 session.add_all(_rows(incident_id, file))
 
     def oldest_waiting_ns(self, archive: str) -> int | None:
-        """When the oldest incident was opened that the archive has not, or not as it is known, or
-        that is open; None: there is none.
+        """Opening time of the oldest incident that is open, or of which the archive has no current
+        copy; None: there is none.
         """
         is_waiting = or_(IncidentRow.closed_ns.is_(None), and_(*_is_due(archive, FOREVER_NS)))
         with self._store.read() as session:
