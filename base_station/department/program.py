@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 
@@ -33,6 +34,7 @@ from shared.clock import SystemClock
 from shared.enrolment import Holder
 from shared.errors import ConfigError, MusterError
 from shared.own_files import make_folder
+from shared.service_manager import ServiceManager
 
 _FOLDER_MODE = 0o700
 
@@ -41,7 +43,7 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
     """Serve until SIGINT or SIGTERM.  Raises MusterError where the settings cannot work."""
     if config.bus.announce:
         raise ConfigError("stations know a department from their enrolments: leave announce out")
-    pki, clock = PkiFolder(config.data), SystemClock()
+    pki, clock, manager = PkiFolder(config.data), SystemClock(), ServiceManager(os.environ)
     if station_endpoint(config.data, config.bus.listen).tls is not None:
         pki.require_valid_station()
     folder = DataFolder(config.data)
@@ -89,8 +91,17 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
             config.http.private_key,
             is_known=app.state.known_networks.__contains__,
         )
+
+        def on_ready(line: str) -> None:
+            announce(line)
+            manager.ready()
+
+        def keep_summaries() -> None:
+            manager.working()
+            intake.keep_summaries()
+
         announce_first_login(accounts, folder.first_login, announce)
-        asyncio.run(serve_until_stopped(server, announce, intake.keep_summaries))
+        asyncio.run(serve_until_stopped(server, on_ready, keep_summaries))
         intake.keep_summaries()
 
 

