@@ -153,6 +153,9 @@ def rebuild(data: Path = Path("muster-data")) -> None:
 def backup(
     target: Annotated[Path, typer.Argument(help="A folder of its own for this station's copy.")],
     data: Path = Path("muster-data"),
+    radio: Annotated[
+        bool, typer.Option("--radio", help="With the audio of the radio channels.")
+    ] = False,
 ) -> None:
     """Copy log, database and certificates, also while the station runs; again: what is new."""
     from rich.progress import Progress  # noqa: PLC0415
@@ -162,7 +165,12 @@ def backup(
     os.umask(0o077)
     with Progress(transient=True) as progress:
         task = progress.add_task("copying", total=1.0)
-        done = back_up(data, target, lambda part: progress.update(task, completed=part))
+        done = back_up(
+            data,
+            target,
+            lambda part: progress.update(task, completed=part),
+            with_radio=radio,
+        )
     typer.echo(
         f"{target}: {done.copied} files ({done.copied_bytes / 1e6:.1f} MB) copied, "
         f"{done.unchanged} were there already"

@@ -19,7 +19,13 @@ _Archive = Annotated[str, typer.Argument(metavar="ARCHIVE", help="A folder, or s
 
 
 @archive.command("copy")
-def copy_incidents(archive: _Archive, data: Path = Path("muster-data")) -> None:
+def copy_incidents(
+    archive: _Archive,
+    data: Path = Path("muster-data"),
+    radio: Annotated[
+        bool, typer.Option("--radio", help="With the audio of the radio channels.")
+    ] = False,
+) -> None:
     """Copy all closed incidents that the archive lacks, or of which more is known since.
 
     Also while the station runs.  Cut short, or with the archive away, the next one goes on.
@@ -29,7 +35,7 @@ def copy_incidents(archive: _Archive, data: Path = Path("muster-data")) -> None:
     count = 0
     with (
         sigterm_as_ctrl_c(),
-        open_copier(archive, data) as copier,
+        open_copier(archive, data, with_radio=radio) as copier,
         progress_bar("copying") as on_progress,
     ):
         for done in copier.copy_due(on_progress):

@@ -9,27 +9,33 @@ from tempfile import TemporaryDirectory
 
 from base_station.app.offline_log import OfflineLog, Report
 from base_station.archive.copying import ArchiveCopier
+from base_station.archive.enclosed import ArchivedImports, ArchivedRadio
 from base_station.archive.entry import require_entry
 from base_station.archive.feed import ArchivedFeed
 from base_station.archive.store import ArchiveStore, open_store
 from base_station.engine.feed import LogFeed
+from base_station.radio.radio_log import RadioLog
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.incident_rows import put_rows
 from base_station.storage.db.opening import open_database
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.store import Store
+from base_station.storage.imports import ImportFolder
 from base_station.storage.log_defects import LogDefects
 from shared.clock import SystemClock
 
 
 @contextmanager
-def open_copier(archive: str, data: Path) -> Iterator[ArchiveCopier]:
+def open_copier(archive: str, data: Path, *, with_radio: bool = False) -> Iterator[ArchiveCopier]:
     """Copies from a folder, beside a running station or without one."""
     folder = DataFolder(data)
     folder.require()
     target = open_store(archive)
     with open_database(folder.require_database()) as store:
-        yield ArchiveCopier(target, store, LogFeed(folder.log), SystemClock())
+        yield ArchiveCopier(
+            target, store, LogFeed(folder.log), SystemClock(), ImportFolder(folder.imports),
+            RadioLog(folder.radio) if with_radio else None,
+        )  # fmt: skip
 
 
 NOT_FETCHED = (
@@ -57,5 +63,13 @@ def open_archived_log(
     files = {one.name: one for one in entry.files}
     log = ArchivedFeed(archive, incident_id, files, entry.log_id, defects.note_damage)
     return OfflineLog(
-        folder, store, keeps_result=False, scratch=scratch, log=log, defects=defects, report=report
+        folder,
+        store,
+        keeps_result=False,
+        scratch=scratch,
+        log=log,
+        defects=defects,
+        report=report,
+        imports=ArchivedImports(folder.imports, archive, entry),
+        radio=ArchivedRadio(folder.radio, archive, entry),
     )

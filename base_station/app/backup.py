@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from base_station.radio.radio_log import RadioLog
 from base_station.security.pki.folder import PkiFolder
 from base_station.standby.log_truncation import APART, MERGED_SUFFIX
 from base_station.storage.data_folder import DataFolder
@@ -50,9 +51,12 @@ class Backup:
             )
 
 
-def back_up(data: Path, target: Path, on_progress: Callable[[float], None]) -> Backup:
+def back_up(
+    data: Path, target: Path, on_progress: Callable[[float], None], *, with_radio: bool = False
+) -> Backup:
     """Bring ``target`` up to date with the station's folder ``data``; ``on_progress`` receives the
-    fraction done.
+    fraction done.  ``with_radio``: with the audio of the radio channels, as long as the station
+    itself keeps it.
 
     The database is copied before the log, so it never knows more than the log does.  Raises
     UserError where ``target`` is something else than a backup of this station, LogError where it
@@ -65,7 +69,7 @@ def back_up(data: Path, target: Path, on_progress: Callable[[float], None]) -> B
     try:
         make_folder(target, _PRIVATE)
         without = _copy_database(source, copy)
-        done = _copy_files(source, copy, on_progress)
+        done = _copy_files(source, copy, on_progress, with_radio=with_radio)
     except OSError as error:
         raise LogError(
             f"the backup to {target} is not complete ({error.strerror or error}): make room or "
@@ -102,11 +106,16 @@ def _copy_database(source: DataFolder, copy: DataFolder) -> StoreError | None:
 
 
 def _copy_files(
-    source: DataFolder, copy: DataFolder, on_progress: Callable[[float], None]
+    source: DataFolder,
+    copy: DataFolder,
+    on_progress: Callable[[float], None],
+    *,
+    with_radio: bool,
 ) -> Backup:
     done = Backup()
     _rename_handed_over(source, copy)
-    sizes = {path: _size_of(path) for path in _files(source)}
+    audio = _audio_files(source) if with_radio else ()
+    sizes = {path: _size_of(path) for path in (*_files(source), *audio)}
     total, passed = sum(sizes.values()) or 1, 0
     for path, size in sizes.items():
         target = copy.path / path.relative_to(source.path)
@@ -125,6 +134,7 @@ def _copy_files(
     if not source.begun.exists():
         copy.begun.unlink(missing_ok=True)  # it has names in it
     _remove_taken_out(copy)
+    _remove_old_audio(source, copy)
     here = {path.name for path in segment_paths(source.log)}
     done.removed = sum(path.name not in here for path in segment_paths(copy.log))
     return done
@@ -139,6 +149,18 @@ def _remove_taken_out(copy: DataFolder) -> None:
     imports = ImportFolder(copy.imports)
     with open_database(copy.database) as store:
         imports.remove_others(ImportCatalogue(store, imports).ids())
+
+
+def _remove_old_audio(source: DataFolder, copy: DataFolder) -> None:
+    """What the station has deleted by its age is not kept here either."""
+    for path in _audio_files(copy):
+        if not (source.path / path.relative_to(copy.path)).exists():
+            path.unlink()
+
+
+def _audio_files(folder: DataFolder) -> Iterator[Path]:
+    for channel in RadioLog(folder.radio).channels():
+        yield from segment_paths(folder.radio / channel)
 
 
 def _rename_handed_over(source: DataFolder, copy: DataFolder) -> None:

@@ -44,6 +44,9 @@ def export(
     ] = None,
     start: Start = None,
     end: End = None,
+    radio: Annotated[
+        bool, typer.Option("--radio", help="With the audio of the radio channels (mcap).")
+    ] = False,
 ) -> None:
     """Write an incident for other programs: tracks as GPX, KML, GeoJSON, CSV or Parquet, or all of
     it as one file that stands alone (mcap).
@@ -68,8 +71,10 @@ def export(
                 "an incident that stands alone is whole, with every kind of trail, and compressed: "
                 "leave out --kind, --only, --start, --end and .gz, or cut it with muster log cut"
             )
-        _export_whole(incident, out, data)
+        _export_whole(incident, out, data, with_radio=radio)
         return
+    if radio:
+        raise UserError("audio of the radio is in an incident that stands alone: give OUT.mcap")
     exporter = exporter_of(name)
     selection = TrackSelection(only or (), _ns(start, 0), _ns(end, FOREVER_NS))
     with sigterm_as_ctrl_c(), ExitStack() as closing:
@@ -84,8 +89,9 @@ def export(
     typer.echo(f"{out}: {count.tracks} tracks, {count.points} points")
 
 
-def _export_whole(incident: str, out: Path, data: Path) -> None:
+def _export_whole(incident: str, out: Path, data: Path, *, with_radio: bool) -> None:
     from base_station.app.folder_commands import open_post_processing  # noqa: PLC0415
+    from base_station.radio.radio_log import RadioLog  # noqa: PLC0415
     from base_station.replay.incident_file import (  # noqa: PLC0415
         IncidentFileSource,
         incident_file,
@@ -93,7 +99,7 @@ def _export_whole(incident: str, out: Path, data: Path) -> None:
 
     with sigterm_as_ctrl_c(), ExitStack() as closing, progress_bar("writing") as on_progress:
         context = open_post_processing(data, incident, closing, _warn, lambda _: None)
-        until_ns = context.recorded_until_ns()
+        until_ns = context.folder.recorded_until_ns()
         source = IncidentFileSource(
             log=context.log,
             incident=context.incident,
@@ -101,11 +107,14 @@ def _export_whole(incident: str, out: Path, data: Path) -> None:
             people=context.roster.known_people(),
             plan=context.records.plan(context.incident.closed_ns or until_ns),
             until_ns=until_ns,
+            imports=context.imports.attachments(context.incident.incident_id),
+            radio=RadioLog(context.folder.radio) if with_radio else None,
             report=_warn,
             on_progress=on_progress,
         )
         _write(out, incident_file(source))
-        _audit(context, "as a file that stands alone")
+        with_audio = ", with the audio of the radio" if with_radio else ""
+        _audit(context, f"as a file that stands alone{with_audio}")
     size_mb = out.stat().st_size / 1e6
     typer.echo(f"{out}: {size_mb:.1f} MB, all of it; muster base replay {out}")
 

@@ -28,6 +28,7 @@ from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.database import Database
 from base_station.storage.db.erasure import ids_of
+from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.opening import open_database
 from base_station.storage.db.records import Records
@@ -36,6 +37,7 @@ from base_station.storage.db.roster import Roster
 from base_station.storage.db.salvage import salvage_if_damaged
 from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.imports import ImportFolder
 from base_station.storage.projection_mark import ProjectionMark
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
 from shared.clock import SystemClock
@@ -59,7 +61,8 @@ class IncidentCommandContext:
     people: Mapping[str, Sequence[str]]  # wearers of each unit
     keeps_result: bool  # what is worked out; else it is gone with the command
     log: LogFeed
-    recorded_until_ns: Callable[[], int]  # where an open incident ends
+    folder: DataFolder  # that has all but the database
+    imports: ImportCatalogue
 
     def tracks(self, kind: TrailKind) -> Tracks:
         if kind is TrailKind.SMOOTHED:
@@ -241,7 +244,8 @@ def open_post_processing(
         people,
         offline_log.keeps_result,
         offline_log.log,
-        offline_log.folder.recorded_until_ns,
+        offline_log.folder,
+        ImportCatalogue(offline_log.store, ImportFolder(offline_log.folder.imports)),
     )
 
 

@@ -16,6 +16,7 @@ from tempfile import TemporaryDirectory
 from base_station.app.factories import project_whole_log
 from base_station.app.pipeline_factory import past_pipeline
 from base_station.engine.feed import LogFeed
+from base_station.radio.radio_log import RadioLog
 from base_station.replay.incident_file import read_incident_file
 from base_station.replay.playback import Archive
 from base_station.replay.version_check import DIFFERS, decisions_differ
@@ -29,6 +30,7 @@ from base_station.storage.db.roster import Roster
 from base_station.storage.db.salvage import damage_of
 from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.store import Store
+from base_station.storage.imports import ImportFolder
 from base_station.storage.log_defects import LogDefects
 from base_station.storage.segment_index import known_segments_of
 from shared.clock import SystemClock
@@ -37,7 +39,9 @@ from shared.folder_lock import FolderLock
 from shared.mcap_log import (
     SegmentInfo,
     SegmentReader,
+    enclosures_of,
     own_segments,
+    read_attached,
     segment_number,
     segment_path,
     segment_paths,
@@ -59,6 +63,8 @@ class OfflineLog:
     log: LogFeed
     defects: LogDefects
     report: Report
+    imports: ImportFolder  # files that were brought in
+    radio: RadioLog
 
     def archive(self, *, recompute: bool = False) -> Archive:
         """``recompute``: decisions are made again, instead of playing the recorded pictures.
@@ -118,6 +124,8 @@ def open_offline_log(
                 log=log,
                 defects=defects,
                 report=report,
+                imports=ImportFolder(folder.imports),
+                radio=RadioLog(folder.radio),
             )
     copy = scratch / "station.sqlite"
     if not damage and server is None:
@@ -129,9 +137,29 @@ def open_offline_log(
         project_whole_log(store, folder.log, on_progress)
     if path.is_file() and (incident := read_incident_file(path)) is not None:
         Roster(store, SystemClock()).bring_people(incident.people)
+        _take_enclosed(path, incident.incident_id, folder)
     return OfflineLog(
-        folder, store, keeps_result=False, scratch=scratch, log=log, defects=defects, report=report
+        folder,
+        store,
+        keeps_result=False,
+        scratch=scratch,
+        log=log,
+        defects=defects,
+        report=report,
+        imports=ImportFolder(folder.imports),
+        radio=RadioLog(folder.radio),
     )
+
+
+def _take_enclosed(file: Path, incident_id: str, folder: DataFolder) -> None:
+    """Lay out what a file that stands alone has beside its log: files that were brought in, and the
+    audio of the radio channels.
+    """
+    imports = ImportFolder(folder.imports)
+    for name, attached in enclosures_of(file).attachments.items():
+        imports.take_from(incident_id, name, read_attached(file, attached))
+    with SegmentReader(file) as reader:
+        RadioLog(folder.radio).take_from(reader)
 
 
 def _opened(folder: DataFolder, closing: ExitStack, report: Report) -> Database | None:

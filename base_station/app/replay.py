@@ -22,12 +22,10 @@ from base_station.app.offline_log import named_incident, open_offline_log
 from base_station.archive.store import open_store
 from base_station.config import StationConfig, host_and_port
 from base_station.fusion.smoothing import SMOOTHERS
-from base_station.radio.radio_log import RadioLog
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.read_only import ReadOnlyGate
 from base_station.replay.timelines.unit_timeline import read_timeline
 from base_station.report.alarm_explanation import AlarmExplainer
-from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.accounts import Accounts
 from base_station.storage.db.archived import ArchivedCopies
 from base_station.storage.db.base_maps import BaseMaps
@@ -35,7 +33,6 @@ from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
-from base_station.storage.imports import ImportFolder
 from base_station.storage.projection import FinishedTables
 from shared.clock import SystemClock
 
@@ -101,10 +98,10 @@ def run_replay_station(
             post_processor=PostProcessor(past, SMOOTHERS[0], SmoothedTracks(store), clock),
             read_timeline=partial(read_timeline, records, offline_log.log),
             log=offline_log.log,
-            radio=RadioLog(DataFolder(data).radio),
+            radio=offline_log.radio,
             alarm_explainer=AlarmExplainer(records, offline_log.log.records),
             archived=ArchivedCopies(store),
-            imports=ImportCatalogue(store, ImportFolder(folder.imports)),
+            imports=ImportCatalogue(store, offline_log.imports),
         )
         app = create_app(
             services, started=lambda loop: _ignore(replays.open(incident, speed, loop, "", hub))

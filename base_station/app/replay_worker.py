@@ -14,6 +14,7 @@ from base_station.archive.feed import ArchivedFeed
 from base_station.archive.store import open_store
 from base_station.engine.feed import LogFeed
 from base_station.fusion.smoothing import SMOOTHERS
+from base_station.radio.radio_log import RadioLog
 from base_station.replay.playback import Archive
 from base_station.replay.post_processing import PostProcessor
 from base_station.replay.processes.post_processing_work import (
@@ -54,6 +55,7 @@ from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.smoothed import SmoothedTracks
 from base_station.storage.db.window import Window
+from base_station.storage.imports import ImportFolder
 from base_station.storage.log_defects import LogDefects
 from shared.clock import SystemClock
 from shared.errors import MusterError
@@ -184,8 +186,12 @@ def _copy_incidents(job: ArchiveJob, log: LogFeed, line: FrameChannel) -> None:
     stand_back(line)
     try:
         with open_database(Path(job.database)) as store:
-            archive, clock = open_store(job.location), SystemClock()
-            for done in ArchiveCopier(archive, store, log, clock).copy_due(lambda _: None):
+            folder = DataFolder(Path(job.log).parent)
+            copier = ArchiveCopier(
+                open_store(job.location), store, log, SystemClock(), ImportFolder(folder.imports),
+                RadioLog(folder.radio) if job.has_radio else None,
+            )  # fmt: skip
+            for done in copier.copy_due(lambda _: None):
                 line.send(CopyFrame(done.incident_id, done.damage))
         line.send(CopiesDone())
     except MusterError as error:

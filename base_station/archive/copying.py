@@ -16,6 +16,7 @@ from base_station.archive.entry import (
     CONSOLE_NAME,
     ENTRY_NAME,
     LOG_NAME,
+    RADIO_NAME,
     VERSION,
     CatalogueEntry,
     encoded_entry,
@@ -25,9 +26,11 @@ from base_station.archive.entry import (
 from base_station.archive.store import ArchiveStore
 from base_station.core.state import ERASED_TEXT
 from base_station.engine.feed import LogFeed
+from base_station.radio.radio_log import RadioLog
 from base_station.replay.incident_file import AFTER_NS, IncidentFileSource, incident_file
 from base_station.storage.db.archived import ArchivedCopies, ArchivedFile
 from base_station.storage.db.database import Database
+from base_station.storage.db.imports import ImportCatalogue
 from base_station.storage.db.incident_rows import rows_of_incident
 from base_station.storage.db.incident_search import IncidentSearch
 from base_station.storage.db.known_people import KnownPerson
@@ -35,6 +38,7 @@ from base_station.storage.db.models import IncidentRow
 from base_station.storage.db.records import Records
 from base_station.storage.db.roster import Roster
 from base_station.storage.db.search_index import ALARM, PERSON
+from base_station.storage.imports import ImportFolder
 from shared.clock import NS_PER_S, Clock
 from shared.errors import ArchiveError
 from shared.mcap_log import (
@@ -42,6 +46,8 @@ from shared.mcap_log import (
     SegmentIdentity,
     SegmentReader,
     byte_ranges_of,
+    channel_of_audio,
+    enclosures_of,
     is_console,
 )
 
@@ -64,7 +70,17 @@ class CopyResult:
 
 
 class ArchiveCopier:
-    def __init__(self, archive: ArchiveStore, store: Database, log: LogFeed, clock: Clock) -> None:
+    def __init__(
+        self,
+        archive: ArchiveStore,
+        store: Database,
+        log: LogFeed,
+        clock: Clock,
+        imports: ImportFolder,
+        radio: RadioLog | None = None,
+    ) -> None:
+        """``radio``: None: without audio of the radio channels."""
+        self._imports, self._radio = ImportCatalogue(store, imports), radio
         self._archive = archive
         self._store = store
         self._log = log
@@ -107,6 +123,7 @@ class ArchiveCopier:
         here = self._mentioned(incident)
         return (
             entry.known_ns == known_ns
+            and (self._radio is None or RADIO_NAME in {one.name for one in entry.files})
             and entry.people == here
             and not any(defect_of(self._archive, entry, one) for one in entry.files)
         )
@@ -147,11 +164,17 @@ class ArchiveCopier:
             people=roster.known_people(),
             plan=records.plan(closed_ns, incident.site_id),
             until_ns=closed_ns,
+            imports=self._imports.attachments(incident.incident_id),
+            radio=self._radio,
             report=damage.append,
         )
         with (scratch / LOG_NAME).open("wb") as file:
             file.writelines(incident_file(source))
-        write_console_file(scratch / LOG_NAME, scratch / CONSOLE_NAME, self._log.log_id)
+        names = [CONSOLE_NAME, LOG_NAME]
+        write_topics(scratch / LOG_NAME, scratch / CONSOLE_NAME, self._log.log_id, is_console)
+        if self._radio is not None:
+            write_topics(scratch / LOG_NAME, scratch / RADIO_NAME, self._log.log_id, _is_audio)
+            names.append(RADIO_NAME)
         dispatch = records.dispatch(incident.dispatch_number) if incident.dispatch_number else None
         terms = IncidentSearch(self._store).terms(incident.incident_id)
         return CatalogueEntry(
@@ -167,7 +190,11 @@ class ArchiveCopier:
             address="" if dispatch is None else dispatch.address,
             people=people,
             alarm_rules=tuple(sorted(terms.get(ALARM, ()))),
-            files=(archived_file(scratch / CONSOLE_NAME), archived_file(scratch / LOG_NAME)),
+            files=tuple(archived_file(scratch / one) for one in names),
+            attached={
+                name: (one.begin, one.end)
+                for name, one in enclosures_of(scratch / LOG_NAME).attachments.items()
+            },
             tables=rows_of_incident(self._store, incident),
             damage=tuple(damage),
         )
@@ -182,15 +209,15 @@ class ArchiveCopier:
         }
 
 
-def write_console_file(log: Path, target: Path, log_id: str) -> None:
-    """Write what consoles were shown as a segment of its own: the chunks stand side by side, and
-    one request gives all of a time.
+def write_topics(log: Path, target: Path, log_id: str, is_wanted: Callable[[str], bool]) -> None:
+    """Write some topics as a segment of its own: the chunks stand side by side, and one request
+    gives all of a time.
     """
     topics: Mapping[str, int]
     with SegmentReader(log) as reader:
         topics = reader.topic_counts or {}
         segment = Segment(target, _CONSOLE_CHUNK_BYTES, SegmentIdentity(log_id))
-        wanted = frozenset(filter(is_console, topics))
+        wanted = frozenset(filter(is_wanted, topics))
         for record in reader.records(keys=wanted, derived=True):
             segment.add(*record)
             if segment.file.waiting_bytes > _WAITING_BYTES:
@@ -198,6 +225,10 @@ def write_console_file(log: Path, target: Path, log_id: str) -> None:
     segment.finish()
     segment.file.sync()
     segment.file.close()
+
+
+def _is_audio(topic: str) -> bool:
+    return channel_of_audio(topic) is not None
 
 
 def archived_file(path: Path) -> ArchivedFile:

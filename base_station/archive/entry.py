@@ -17,6 +17,7 @@ from shared.errors import ArchiveError
 
 LOG_NAME = "incident.mcap"  # all of it, a log that stands alone (decision 119)
 CONSOLE_NAME = "console.mcap"  # the pictures of consoles once more: a replay needs no other file
+RADIO_NAME = "radio.mcap"  # audio of the radio channels once more
 ENTRY_NAME = "catalogue.json"
 VERSION = 1
 
@@ -38,6 +39,8 @@ class CatalogueEntry(msgspec.Struct, frozen=True):
     alarm_rules: tuple[str, ...]
     files: tuple[ArchivedFile, ...]
     tables: dict[str, list[Row]]  # rows of the station's tables that a replay asks for
+    # Files attached to ``incident.mcap``, by name: bytes from the first until before the second.
+    attached: dict[str, tuple[int, int]] = {}  # msgspec copies it
     damage: tuple[str, ...] = ()  # unreadable parts of the station's log, in words
 
     def file(self, name: str) -> ArchivedFile:

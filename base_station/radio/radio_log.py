@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import closing
 from functools import lru_cache
+from heapq import merge
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,8 +22,11 @@ from base_station.radio.spans import ChannelSpans, joined, spans_of
 from shared.clock import NS_PER_S
 from shared.errors import LogError
 from shared.mcap_log import (
+    LogRecord,
     SegmentReader,
+    SegmentWriter,
     audio_topic,
+    channel_of_audio,
     remove_torn,
     rewrite_segment,
     segment_began_ns,
@@ -62,6 +67,30 @@ class RadioLog:
         """A window as an Ogg file with a length of just that; gaps are silent.  Raises LogError."""
         packets = self.packets(channel, from_ns - _PACKET_MAX_NS, until_ns)
         return ogg_opus(_filled(packets, from_ns, until_ns))
+
+    def records(self, from_ns: int, until_ns: int) -> Iterator[LogRecord]:
+        """Those of all channels, in the order of time.  Raises LogError."""
+        return merge(
+            *(self._records_of(one, from_ns, until_ns) for one in self.channels()),
+            key=lambda record: record[0],
+        )
+
+    def _records_of(self, channel: str, from_ns: int, until_ns: int) -> Iterator[LogRecord]:
+        topics = {audio_topic(channel)}
+        paths = segments_within(segment_paths(self.folder / channel), from_ns, until_ns)
+        for path in _existing(paths):
+            with SegmentReader(path) as segment:
+                yield from segment.records(from_ns, until_ns, topics, derived=True)
+
+    def take_from(self, file: SegmentReader) -> None:
+        """Lay out the audio of a file that has all channels (``records``) as here."""
+        for topic in sorted(file.topic_counts or ()):
+            channel = channel_of_audio(topic)
+            if channel is None:
+                continue
+            with closing(SegmentWriter(self.folder / channel)) as writer:
+                for record in file.records(keys={topic}, derived=True):
+                    writer.write(*record)
 
     def remove_before(self, channel: str, t_ns: int) -> int:
         """Delete segments that are older as a whole; the number of them.  Raises OSError.

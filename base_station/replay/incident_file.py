@@ -3,8 +3,9 @@ database (decision 119).
 
 In it are, in the order of the log: earlier settings that still held when the incident was opened
 (units and wearers, plan, place on the Earth, fuser, thresholds, beacons), all records from some
-minutes before the opening until a minute after the closing, and later ones of journals and a
-debriefing.  The people who are mentioned, and the plan, are attached as files.
+minutes before the opening until a minute after the closing, and later ones of journals, of a
+debriefing and of files that were brought in.  The people who are mentioned, the plan, and these
+files are attached.  The audio of the radio channels is in it on request.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from heapq import merge
 from importlib.metadata import version
 from pathlib import Path
 
@@ -21,21 +23,24 @@ from base_station.core.events import Received, event_of
 from base_station.core.pins.pin_registry import PinAction
 from base_station.core.state import ERASED_TEXT
 from base_station.engine.feed import LogFeed
+from base_station.radio.radio_log import RadioLog
 from base_station.storage.db.known_people import KnownPerson
 from base_station.storage.db.models import IncidentRow
 from shared.channels import DESCRIPTION, OPERATOR, is_backfilled
 from shared.clock import NS_PER_S
-from shared.errors import UserError
-from shared.mcap_log import LogRecord, Segment, SegmentIdentity, enclosures_of
+from shared.errors import LogError, UserError
+from shared.mcap_log import LogRecord, Segment, SegmentIdentity, enclosures_of, read_attached
 from shared.messages import STATION_ID, OperatorAction
 from shared.messages.pins import PlaceBeacon, RemoveBeacon
 from shared.messages.station import (
     Action,
     Assign,
     CloseIncident,
+    ImportFile,
     NoteDispatch,
     OpenIncident,
     RegisterUnit,
+    RemoveImport,
     SetAnchor,
     SetFuser,
     SetPlan,
@@ -53,6 +58,7 @@ AFTER_NS = 60 * NS_PER_S
 _CHUNK_BYTES = 2 << 20
 _PART_BYTES = 1 << 20
 _DISPATCH = "dispatch"
+_ANY_TYPE = "application/octet-stream"
 _OPERATOR_KEY = OPERATOR.key(STATION_ID)
 Progress = Callable[[float], None]
 
@@ -77,6 +83,8 @@ class IncidentFileSource:
     people: Mapping[str, KnownPerson]
     plan: bytes | None
     until_ns: int  # where an incident ends that is open
+    imports: Mapping[str, Path] = field(default_factory=dict)  # files brought in, by name
+    radio: RadioLog | None = None  # None: without audio
     report: Callable[[str], object] = lambda _: None
     on_progress: Progress = field(default=lambda _: None)
 
@@ -89,7 +97,11 @@ def incident_file(source: IncidentFileSource) -> Iterator[bytes]:
     mentioned: set[str] = set()
     damage: dict[str, None] = {}  # each once, though the log is gone through more than once
     log = source.log.noting(damage.setdefault)
-    for record in _records(log, incident, end_ns):
+    records: Iterator[LogRecord] = _records(log, incident, end_ns)
+    if source.radio is not None:
+        audio = source.radio.records(incident.opened_ns, end_ns)
+        records = merge(records, audio, key=lambda record: record[0])
+    for record in records:
         t_ns, key, payload = record
         if key == _OPERATOR_KEY:
             mentioned |= {one for one in source.people if one.encode() in payload}
@@ -101,6 +113,9 @@ def incident_file(source: IncidentFileSource) -> Iterator[bytes]:
     for words in damage:
         source.report(words)
     _enclose(part, source, mentioned, damage, end_ns)
+    for name, path in source.imports.items():
+        for _ in part.add_attachment_file(name, _ANY_TYPE, path, end_ns):
+            yield part.file.take()
     part.finish()
     yield part.file.take()
 
@@ -149,12 +164,28 @@ def _records(log: LogFeed, incident: IncidentRow, end_ns: int) -> Iterator[LogRe
     yield from log.everything(from_ns, end_ns + AFTER_NS, _AllKeys())
     if incident.closed_ns is None:
         return
+    next_ns = None  # when another one was opened
     for record in log.records(end_ns + AFTER_NS):
         action = _action_of(record)
         if isinstance(action, OpenIncident):
-            return  # later records are about that one
-        if is_backfilled(record[1]) or isinstance(action, PinAction):
+            next_ns = record[0]
+            break
+        is_about = isinstance(action, PinAction) or _is_import(action, incident)
+        if is_backfilled(record[1]) or is_about:
             yield record
+    if next_ns is not None:
+        for record in log.records(next_ns + 1, None, {_OPERATOR_KEY}):
+            if _is_import(_action_of(record), incident):
+                yield record
+
+
+def _is_import(action: Action | None, incident: IncidentRow) -> bool:
+    """A file was brought into the incident, or taken out."""
+    match action:
+        case ImportFile(incident_id=incident_id) | RemoveImport(incident_id=incident_id):
+            return incident_id == incident.incident_id
+        case _:
+            return False
 
 
 class _SettingKeys:
@@ -236,10 +267,12 @@ def read_incident_file(path: Path) -> IncidentInFile | None:
     if about is None:
         return None
     try:
-        people = msgspec.json.decode(
-            enclosed.attachments.get(PEOPLE_NAME, b"{}"), type=dict[str, KnownPerson]
-        )
+        attached = enclosed.attachments.get(PEOPLE_NAME)
+        encoded = b"{}" if attached is None else b"".join(read_attached(path, attached))
+        people = msgspec.json.decode(encoded, type=dict[str, KnownPerson])
         return IncidentInFile(about["incident_id"], about["name"], people)
+    except LogError:
+        return None
     except (KeyError, msgspec.MsgspecError) as error:
         raise UserError(
             f"{path} is marked as an incident of Muster, and cannot be read as one ({error}): "

@@ -7,10 +7,11 @@ second station has that from the log, and not the file.
 from __future__ import annotations
 
 import os
+import re
 import secrets
 import shutil
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from hashlib import file_digest
 from pathlib import Path
@@ -27,6 +28,9 @@ _PRIVATE = 0o700
 _INCOMING = "incoming"
 # Not by its own ending: what ends in .mcap in a station's folder is taken for a part of its log.
 _ORIGINAL, _CONTENT, _SUMMARY = ".original", ".content", ".summary"
+_SUFFIXES = (_ORIGINAL, _CONTENT, _SUMMARY)
+_ATTACHED = "imports/"
+_OWN_NAME = re.compile(rf"[0-9a-f]{{32}}({'|'.join(map(re.escape, _SUFFIXES))})")
 _MOST_NAMES = 100
 _LEFT_AFTER_S = 86_400.0
 KEEP_FREE_BYTES = 500_000_000  # of the disk, for the log
@@ -151,7 +155,7 @@ class ImportFolder:
 
     def _read(self, incident_id: str, name: str, kind: type[_Part]) -> _Part | None:
         try:
-            with read_own(self.path / incident_id / name) as file:
+            with read_own(self.file(incident_id, name)) as file:
                 return msgspec.msgpack.decode(file.read(), type=kind)
         except FileNotFoundError:
             return None
@@ -162,8 +166,40 @@ class ImportFolder:
 
     def original(self, incident_id: str, import_id: str) -> Path | None:
         """The file as it came; None where it is not here."""
-        path = self.path / incident_id / f"{import_id}{_ORIGINAL}"
+        path = self.file(incident_id, f"{import_id}{_ORIGINAL}")
         return path if path.is_file() else None
+
+    def attachments(self, incident_id: str, import_ids: Iterable[str]) -> dict[str, Path]:
+        """All files of these imports that are here, by the name that they have in a file of the
+        incident that stands alone.
+        """
+        names = sorted(f"{one}{suffix}" for one in import_ids for suffix in _SUFFIXES)
+        paths = {self.attached_name(name): self.file(incident_id, name) for name in names}
+        return {name: path for name, path in paths.items() if path.is_file()}
+
+    def file(self, incident_id: str, name: str) -> Path:
+        """Where a file is, or would be."""
+        return self.path / incident_id / name
+
+    @staticmethod
+    def attached_name(name: str) -> str:
+        return f"{_ATTACHED}{name}"
+
+    def take_from(self, incident_id: str, name: str, parts: Iterable[bytes]) -> None:
+        """Keep what such a file has attached under ``name``; other names are left out.
+
+        Raises StoreError where the disk does not take it.
+        """
+        own = name.removeprefix(_ATTACHED)
+        if own == name or not _OWN_NAME.fullmatch(own) or Path(incident_id).name != incident_id:
+            return
+        folder = self.path / incident_id
+        self._make(folder)
+        try:
+            with write_own(folder / own, 0o600) as target:
+                target.writelines(parts)
+        except OSError as error:
+            raise StoreError(f"the file cannot be kept: {error.strerror or error}") from error
 
     def remove(self, incident_id: str, import_id: str) -> None:
         for suffix in (_SUMMARY, _CONTENT, _ORIGINAL):

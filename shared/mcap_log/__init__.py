@@ -5,7 +5,7 @@ read as they are, complete, growing, torn or damaged.  The only package that imp
 from __future__ import annotations
 
 from shared.mcap_log.byte_ranges import ChunkRange, SegmentRanges, byte_ranges_of
-from shared.mcap_log.enclosures import Enclosures, enclosures_of
+from shared.mcap_log.enclosures import AttachedFile, Enclosures, enclosures_of, read_attached
 from shared.mcap_log.folder import (
     missing_segments,
     segment_began_ns,
@@ -28,6 +28,7 @@ from shared.mcap_log.schemas import (
     SNAPSHOT_TOPIC,
     TRAIL_TOPIC,
     audio_topic,
+    channel_of_audio,
     descriptor_set,
     is_console,
     is_derived,
@@ -50,6 +51,7 @@ __all__ = [
     "PLAN_TOPIC",
     "SNAPSHOT_TOPIC",
     "TRAIL_TOPIC",
+    "AttachedFile",
     "ChunkRange",
     "Enclosures",
     "FetchRange",
@@ -68,6 +70,7 @@ __all__ = [
     "SegmentWriter",
     "audio_topic",
     "byte_ranges_of",
+    "channel_of_audio",
     "descriptor_set",
     "enclosures_of",
     "foreign_in_words",
@@ -80,6 +83,7 @@ __all__ = [
     "log_topic",
     "missing_segments",
     "own_segments",
+    "read_attached",
     "read_log",
     "recover_log",
     "remove_torn",

@@ -10,7 +10,7 @@ from __future__ import annotations
 import struct
 import zlib
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -31,6 +31,7 @@ from mcap.records import (
 )
 from mcap.writer import LIBRARY_IDENTIFIER, MCAP0_MAGIC
 
+from shared.errors import LogError
 from shared.mcap_log.container import (
     CHUNK,
     CHUNK_INDEX,
@@ -47,6 +48,8 @@ _MESSAGE = struct.Struct(MESSAGE.format + "Q")  # and its publish time
 _INDEX = struct.Struct("<BQHI")  # opcode, length, topic, bytes of entries
 _SIZE = struct.Struct("<Q")
 _INDEX_OF_TOPIC = np.dtype([("topic", "<u2"), ("offset", "<u8")])
+_CRC_BYTES = 4
+_PART_BYTES = 1 << 20  # of a file that is attached
 _LEVEL = 1  # of Zstandard: packs positions as small as the usual 3, and sooner
 
 
@@ -180,6 +183,33 @@ class McapFile:
             create_time=attachment.create_time,
             log_time=attachment.log_time,
             data_size=len(attachment.data),
+            name=attachment.name,
+            media_type=attachment.media_type,
+        )
+        self._attachment_indexes.append(bytes_of(index))
+
+    def add_attachment_file(self, attachment: Attachment, path: Path) -> Iterator[None]:
+        """The same with a file's content, in parts (MCAP specification, Attachment, op=0x09)."""
+        offset, size = self.file.tell(), path.stat().st_size
+        empty = bytes_of(attachment)[RECORD.size : -_CRC_BYTES - _SIZE.size]
+        head = empty + _SIZE.pack(size)
+        length = len(head) + size + _CRC_BYTES
+        self.file.write(RECORD.pack(Opcode.ATTACHMENT, length) + head)
+        crc, count = zlib.crc32(head), 0
+        with path.open("rb") as content:
+            while part := content.read(_PART_BYTES):
+                crc, count = zlib.crc32(part, crc), count + len(part)
+                self.file.write(part)
+                yield
+        if count != size:
+            raise LogError(f"{path} was changed while it was read; try again")
+        self.file.write(struct.pack("<I", crc))
+        index = AttachmentIndex(
+            offset=offset,
+            length=RECORD.size + length,
+            create_time=attachment.create_time,
+            log_time=attachment.log_time,
+            data_size=size,
             name=attachment.name,
             media_type=attachment.media_type,
         )

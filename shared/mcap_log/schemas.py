@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from foxglove_schemas_protobuf.CompressedAudio_pb2 import CompressedAudio
@@ -30,6 +31,7 @@ PLAN_TOPIC = f"{FOXGLOVE}station/plan"
 SNAPSHOT_TOPIC = f"{CONSOLE}snapshot"
 TRAIL_TOPIC = f"{CONSOLE}trail"  # behind a snapshot: one unit's
 DELTA_TOPIC = f"{CONSOLE}delta"
+_AUDIO_TOPIC = re.compile(rf"{FOXGLOVE}radio/([A-Za-z0-9][A-Za-z0-9_-]{{0,31}})/audio")
 
 
 def location_topic(unit_id: str) -> str:
@@ -43,6 +45,12 @@ def log_topic(unit_id: str) -> str:
 def audio_topic(channel: str) -> str:
     """Of a radio channel.  It follows from nothing, but no reader of events wants it."""
     return f"{FOXGLOVE}radio/{channel}/audio"
+
+
+def channel_of_audio(topic: str) -> str | None:
+    """Name of the radio channel; None: the topic has no audio."""
+    found = _AUDIO_TOPIC.fullmatch(topic)
+    return None if found is None else found[1]
 
 
 def is_derived(key: str) -> bool:

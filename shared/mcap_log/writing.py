@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
@@ -105,6 +105,17 @@ class Segment:
         """A file of its own behind what was added so far, for any reader of MCAP."""
         self.end_chunk()
         self._mcap.add_attachment(Attachment(t_ns, t_ns, name, media_type, content))
+
+    def add_attachment_file(
+        self, name: str, media_type: str, path: Path, t_ns: int
+    ) -> Iterator[None]:
+        """The same of a file that may be large: in parts, between which the caller may take what is
+        made.  Raises LogError where the file is changed meanwhile, OSError where it cannot be read.
+        """
+        self.end_chunk()
+        yield from self._mcap.add_attachment_file(
+            Attachment(t_ns, t_ns, name, media_type, b""), path
+        )
 
     def end_chunk(self) -> None:
         """Everything added so far is in the file, which may still have to reach the disk."""

@@ -130,3 +130,15 @@ async def test_what_makes_no_sense_is_refused_in_words(
         refused = await client.get(f"{ADDRESS}/{channel}", params=window)
         assert refused.status_code == status
         assert words in refused.text
+
+
+async def test_an_incident_as_a_file_has_audio_for_whom_may_hear_it(station: DeskStation) -> None:
+    address = "/incidents/i-1/incident.mcap"
+    async with station.client(Role.VIEWER) as viewer:
+        assert (await viewer.get(address, params={"radio": True})).status_code == 403
+    _, secret = station.services.accounts.add_token(
+        "commander", "exports alone", Role.COMMANDER, None, frozenset({"exports"})
+    )
+    async with station.client() as token:
+        token.headers["Authorization"] = f"Bearer {secret}"
+        assert (await token.get(address, params={"radio": True})).status_code == 403

@@ -12,8 +12,8 @@ from fastapi.responses import StreamingResponse
 from pydantic import BaseModel
 from starlette.concurrency import run_in_threadpool
 
-from base_station.accounts.principals import Principal
-from base_station.api.authentication import Viewer
+from base_station.accounts.principals import Principal, Role
+from base_station.api.authentication import Viewer, scope_covers
 from base_station.api.current_tables import CurrentStation
 from base_station.api.document import file_response
 from base_station.api.forms import Id, Name, window
@@ -91,18 +91,25 @@ async def export_incident(
     response_class=Response,
     responses=file_response("application/octet-stream"),
 )
-async def export_whole_incident(incident_id: Id, station: CurrentStation, who: Viewer) -> Response:
+async def export_whole_incident(
+    incident_id: Id, station: CurrentStation, who: Viewer, radio: bool = False
+) -> Response:
     """All of the incident as one MCAP file that stands alone: what was recorded, shown and decided,
-    plan, pins, thresholds and the people in it.  ``muster base replay FILE`` shows it.
+    plan, pins, thresholds, the people in it and the files that were brought in.  With ``radio``, by
+    a commander, with the audio of the radio channels.  ``muster base replay FILE`` shows it.
     """
+    if radio and (who.role < Role.COMMANDER or not scope_covers(who, ("radio",))):
+        raise Problem(403, "The audio of the radio is for commanders, and tokens with scope radio.")
     async with station.export_lock:
-        content = await run_in_threadpool(_whole, incident_id, station, who)
+        content = await run_in_threadpool(_whole, incident_id, station, who, with_radio=radio)
     headers = {"Content-Disposition": f'attachment; filename="{incident_id}.mcap"'}
     in_turn = _in_turn(content, station.export_lock)
     return StreamingResponse(in_turn, media_type="application/octet-stream", headers=headers)
 
 
-def _whole(incident_id: str, station: Services, who: Principal) -> Iterator[bytes]:
+def _whole(
+    incident_id: str, station: Services, who: Principal, *, with_radio: bool
+) -> Iterator[bytes]:
     incident = incident_or_404(station, incident_id)
     if station.log is None:
         raise Problem(503, "This station has no log to make it from.")
@@ -114,10 +121,13 @@ def _whole(incident_id: str, station: Services, who: Principal) -> Iterator[byte
         people=station.roster.known_people(),
         plan=station.records.plan(incident.closed_ns or until_ns),
         until_ns=until_ns,
+        imports=station.imports.attachments(incident_id),
+        radio=station.radio if with_radio else None,
     )
     content = incident_file(source)
     first = next(content)
-    _audit(station, who, f"{incident_id} as a file that stands alone")
+    with_audio = ", with the audio of the radio" if with_radio else ""
+    _audit(station, who, f"{incident_id} as a file that stands alone{with_audio}")
     return chain((first,), content)
 
 

@@ -151,7 +151,8 @@ export const incidentAlarms = (incidentId: string) =>
 export const exportFormats = () => call<ExportFormat[]>("GET", "/export-formats");
 export const report = (incidentId: string, suffix: "html" | "pdf") =>
   file(`/incidents/${id(incidentId)}/report.${suffix}`);
-export const wholeIncident = (incidentId: string) => file(`/incidents/${id(incidentId)}/incident.mcap`);
+export const wholeIncident = (incidentId: string, withRadio: boolean) =>
+  file(`/incidents/${id(incidentId)}/incident.mcap${withRadio ? "?radio=true" : ""}`);
 export const exported = (incidentId: string, format: string, kind: string) =>
   file(`/incidents/${id(incidentId)}/export/${id(format)}?kind=${kind}`);
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from sqlalchemy import select
 
 from base_station.storage.db.database import Database
@@ -21,6 +23,12 @@ class ImportCatalogue:
         with self._store.read() as session:
             found = session.execute(select(ImportRow.incident_id, ImportRow.import_id))
             return {(incident_id, import_id) for incident_id, import_id in found}
+
+    def attachments(self, incident_id: str) -> dict[str, Path]:
+        """As ``ImportFolder.attachments``, of all of an incident that are here."""
+        own = select(ImportRow.import_id).where(ImportRow.incident_id == incident_id)
+        with self._store.read() as session:
+            return self.folder.attachments(incident_id, session.scalars(own).all())
 
     def entry(self, incident_id: str, import_id: str) -> ImportRow | None:
         with self._store.read() as session:

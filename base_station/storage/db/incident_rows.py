@@ -16,6 +16,7 @@ from base_station.storage.db.models import (
     Assignment,
     Base,
     DispatchRow,
+    ImportRow,
     IncidentMember,
     IncidentRow,
     Unit,
@@ -30,6 +31,7 @@ _TABLES: tuple[type[Base], ...] = (
     IncidentRow,
     IncidentMember,
     DispatchRow,
+    ImportRow,
     Unit,
     Assignment,
     AlarmRow,
@@ -60,6 +62,7 @@ def _is_of(table: type[Base], incident: IncidentRow) -> ColumnElement[bool]:
     of_incident: Mapping[type[Base], ColumnElement[bool]] = {
         IncidentRow: IncidentRow.incident_id == incident.incident_id,
         IncidentMember: IncidentMember.incident_id == incident.incident_id,
+        ImportRow: ImportRow.incident_id == incident.incident_id,
         DispatchRow: DispatchRow.number == incident.dispatch_number,
         Unit: Unit.unit_id.in_(
             select(Assignment.unit_id)

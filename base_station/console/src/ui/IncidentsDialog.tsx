@@ -314,6 +314,7 @@ interface DownloadsProps {
 }
 
 const WHOLE = "mcap";
+const WITH_RADIO = "mcap with radio";
 
 /** An incident for other programs: its tracks, or all of it. */
 function Downloads({ incident, formats }: DownloadsProps) {
@@ -325,7 +326,9 @@ function Downloads({ incident, formats }: DownloadsProps) {
     writing.value = false;
   };
   const chosen = useChosen("", async (key) => {
-    if (key === WHOLE) return write(api.wholeIncident(incident.incident_id), `.${WHOLE}`);
+    if (key === WHOLE || key === WITH_RADIO) {
+      return write(api.wholeIncident(incident.incident_id, key === WITH_RADIO), `.${WHOLE}`);
+    }
     const file = files.find((one) => keyOf(one.kind, one.format) === key);
     if (file === undefined) return;
     const which = file.kind === "fused" ? "" : `-${file.kind}`; // as the station names it
@@ -350,6 +353,9 @@ function Downloads({ incident, formats }: DownloadsProps) {
       ))}
       <optgroup label={t("incident.whole")}>
         <option value={WHOLE}>{WHOLE}</option>
+        {user.value?.role !== "viewer" && (
+          <option value={WITH_RADIO}>{t("incident.with_radio", { format: WHOLE })}</option>
+        )}
       </optgroup>
     </select>
   );

@@ -41,6 +41,7 @@ export const incident: Part<"incident"> = {
   writing: "Wird geschrieben …",
   save_as: "Speichern als …",
   whole: "Alles, zur Wiedergabe anderswo",
+  with_radio: "{format}, mit Funk",
   report_of: "Bericht über {incident} als {format}",
   none_open: "Kein Einsatz offen",
   recorded: "Alles wird trotzdem aufgezeichnet",

@@ -39,6 +39,7 @@ export const incident = {
   writing: "Is written …",
   save_as: "Save as …",
   whole: "All of it, to replay elsewhere",
+  with_radio: "{format}, with the radio",
   report_of: "Report on {incident} as {format}",
   none_open: "No incident open",
   recorded: "Everything is recorded all the same",

@@ -41,6 +41,7 @@ export const incident: Part<"incident"> = {
   writing: "Écriture …",
   save_as: "Enregistrer sous …",
   whole: "Tout, pour une relecture ailleurs",
+  with_radio: "{format}, avec la radio",
   report_of: "Rapport sur {incident} en {format}",
   none_open: "Aucune intervention en cours",
   recorded: "Tout est enregistré malgré tout",
