@@ -37,6 +37,7 @@ from base_station.storage.db.roster import Roster
 from base_station.storage.db.salvage import salvage_if_damaged
 from base_station.storage.db.server_address import noted_server
 from base_station.storage.db.smoothed import SmoothedTracks
+from base_station.storage.db.window import FOREVER_NS
 from base_station.storage.imports import ImportFolder
 from base_station.storage.projection_mark import ProjectionMark
 from base_station.unit_sync.recordings.transfer_queue import TransferQueue
@@ -184,11 +185,25 @@ def _subject(subject_name: str, store: Database) -> _Subject:
     incident = records.incident(subject_name)
     if incident is not None:
         name = roster.shown(incident.name)
-        return _Subject("incident", subject_name, f"incident {name!r} of {subject_name}")
+        others = [roster.shown(one.name) for one in _open_beside(incident, records)]
+        beside = f", and nothing of {', '.join(others)}, which was open beside it"
+        description = f"incident {name!r} of {subject_name}{beside if others else ''}"
+        return _Subject("incident", subject_name, description)
     person_id = _person_id(subject_name, store)
     worn = roster.worn_by(person_id)
     wears = f", who wears {', '.join(worn)} and is unassigned first" if worn else ""
     return _Subject("person", person_id, f"person {subject_name}{wears}", worn)
+
+
+def _open_beside(incident: IncidentRow, records: Records) -> list[IncidentRow]:
+    """Other incidents that were open while it was."""
+    others = (one for one in records.incidents() if one.incident_id != incident.incident_id)
+    return [
+        one
+        for one in others
+        if one.opened_ns < (incident.closed_ns or FOREVER_NS)
+        and incident.opened_ns < (one.closed_ns or FOREVER_NS)
+    ]
 
 
 def _person_id(subject_name: str, store: Database) -> str:

@@ -132,7 +132,10 @@ def _assign(state: StationState, action: Assign) -> Iterator[UnitState]:
     wearer.person = Person(action.person_id, action.person_name, action.crew, action.role)
     if not same:
         wearer.since_ns = state.t_ns
-        incident_membership.follow_person(state, unit, came_from, duty)
+        if action.keeps_incident:
+            accountability.begin(state, unit)
+        else:
+            incident_membership.follow_person(state, unit, came_from, duty)
     yield unit
 
 

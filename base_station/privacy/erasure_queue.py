@@ -54,6 +54,7 @@ class ErasureJob(msgspec.Struct):
     records: int = 0  # of the log that changed or went
     files: int = 0  # that were written anew or removed
     damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
+    kept: tuple[str, ...] = ()  # what stays, as sentences
     began: bool = False  # once before, perhaps by an earlier run of the program
     told: bool = False  # the other station has done it: this one does, too
 
@@ -144,7 +145,7 @@ class ErasureQueue:
             return False
         self._told = ""
         self._on_done(msgspec.structs.replace(job))
-        problem = problem or ". ".join(tally.damaged)
+        problem = problem or ". ".join((*tally.damaged, *tally.kept))
         self._note(job, state=ErasureState.DONE, share=1.0, problem=problem, **_so_far(tally))
         return True
 
@@ -214,8 +215,13 @@ def _forget(
 
 def _tally_of(job: ErasureJob) -> ErasureProgress:
     """Tally of the tries before."""
-    return ErasureProgress(job.records, job.files, job.began, job.damaged)
+    return ErasureProgress(job.records, job.files, job.began, job.damaged, job.kept)
 
 
 def _so_far(tally: ErasureProgress) -> dict[str, object]:
-    return {"records": tally.records, "files": tally.files, "damaged": tally.damaged}
+    return {
+        "records": tally.records,
+        "files": tally.files,
+        "damaged": tally.damaged,
+        "kept": tally.kept,
+    }

@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import shutil
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import Future
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -23,10 +23,10 @@ from base_station.core.erasure.erasure import (
     Erasure,
     Record,
     actions_of,
-    erasure_of_incident,
     erasure_of_person,
     first_erased_ns,
 )
+from base_station.core.erasure.incident_scan import erasure_of_incident
 from base_station.core.erasure.names_in_older_logs import has_names
 from base_station.core.erasure.redaction import Redactor
 from base_station.core.events import Received, event_of
@@ -35,7 +35,13 @@ from base_station.privacy.pending_erasure import PendingErasure
 from base_station.storage.checkpoints import Checkpoints
 from base_station.storage.data_folder import DataFolder
 from base_station.storage.db.database import Database
-from base_station.storage.db.erasure import forget_in, known_names
+from base_station.storage.db.erasure import (
+    FORGOT_INCIDENT,
+    INCIDENT,
+    erased_incidents,
+    forget_in,
+    known_names,
+)
 from base_station.storage.db.records import Records
 from base_station.storage.imports import ImportFolder
 from base_station.storage.segment_index import segment_row
@@ -44,16 +50,22 @@ from shared.clock import Clock
 from shared.errors import StoreError, UserError
 from shared.mcap_log import (
     SegmentReader,
+    missing_segments,
     read_log,
     remove_torn,
     rewrite_segment,
+    segment_number,
     segment_paths,
 )
 from shared.messages import STATION_ID
-from shared.messages.station import Action, ForgetWearers
+from shared.messages.station import Action, ForgetWearers, OpenIncident, RegisterUnit
 
 _log = logging.getLogger(__name__)
 BY_OTHER_STATION = "the other station"  # wished that what it has forgotten is forgotten here too
+RADIO_KEPT = (
+    "What was recorded of the radio while another incident was open stays until that is forgotten, "
+    "too: nobody can tell who of them speaks"
+)
 _ACTIONS = OPERATOR.key(STATION_ID)
 _ACTED_WITHIN_S = 20.0
 _REMOVED_WITHIN_S = 20.0
@@ -101,6 +113,7 @@ class ErasureProgress:
     files: int = 0  # that were written anew or removed
     again: bool = False  # it was tried before
     damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
+    kept: tuple[str, ...] = ()  # what stays, as sentences
 
     def note_damage(self, part: str, written_anew: bool) -> None:
         gone, stays = "what could not be read of it is gone", "it stays, whoever it tells of"
@@ -118,10 +131,11 @@ class ErasureResult:
     records: int
     files: int
     damaged: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         done = f"{self.what}: {self.records} records of the log in {self.files} files"
-        return ". ".join((done, *self.damaged))
+        return ". ".join((done, *self.damaged, *self.kept))
 
 
 class ClosedLog:
@@ -204,10 +218,16 @@ class ErasureService:
         """UserError where there is no such incident, or it is open."""
         erasure = self._begun.of(incident_id)
         if erasure is None:
-            erasure = erasure_of_incident(self._actions(), incident_id)
+            actions = self._actions()
+            erasure = erasure_of_incident(
+                actions,
+                incident_id,
+                self._first_heard_ns(actions),
+                is_whole=self._is_whole(),
+            )
             self._begun.keep(erasure)
         return self._forget(
-            by, erasure, f"incident {incident_id}", on_progress, tally or ErasureProgress()
+            by, erasure, f"{INCIDENT} {incident_id}", on_progress, tally or ErasureProgress()
         )
 
     def _erasure_of(self, person_id: str) -> tuple[Erasure, bool]:
@@ -228,7 +248,7 @@ class ErasureService:
         self._checkpoints.clear()
         self._rewrite_log(erasure, on_progress, tally)
         if erasure.incident_id:
-            tally.records += self._erase_audio(erasure.from_ns, erasure.until_ns)
+            self._erase_radio(erasure, tally)
         with self._store.write() as session:
             forget_in(session, erasure)
         tally.files += self._store.compact()
@@ -236,11 +256,22 @@ class ErasureService:
             tally.files += self._imports.remove_all(erasure.incident_id)
         self._checkpoints.clear()  # one that was being written meanwhile
         self._begun.let_go(erasure.incident_id)
-        done = ErasureResult(what, tally.records, tally.files, tally.damaged)
-        kind = "ForgotPerson" if erasure.person_id else "ForgotIncident"
+        done = ErasureResult(what, tally.records, tally.files, tally.damaged, tally.kept)
+        kind = "ForgotPerson" if erasure.person_id else FORGOT_INCIDENT
         self._records.audit(by, kind, str(done))
         _log.info("forgotten at the wish of %s: %s", by, done)
         return done
+
+    def _erase_radio(self, erasure: Erasure, tally: ErasureProgress) -> None:
+        """What was spoken while another incident was open is of that, too: it goes with the last
+        of them.
+        """
+        with self._store.read() as session:
+            erased = erased_incidents(session)
+        for from_ns, until_ns in erasure.times_alone(erased):
+            tally.records += self._erase_audio(from_ns, until_ns)
+        if any(one.incident_id not in erased for one in erasure.others):
+            tally.kept = (RADIO_KEPT,)
 
     def _forget_in_memory(self, by: str, erasure: Erasure) -> None:
         """Done when this returns: what the station saved before that would bring them back."""
@@ -261,7 +292,7 @@ class ErasureService:
         tally.files += sum(map(remove_torn, self._folders(segments)))
         for number, path in enumerate(segments):
             on_progress(number / len(segments))
-            redactor = Redactor(erasure.without_inserted(_actions_in(path)), clocks)
+            redactor = Redactor(erasure, clocks, erasure.inserted_in(_actions_in(path)))
             damage: list[str] = []
             with self._log.rewriting:
                 changed = rewrite_segment(path, redactor, on_damage=self._noting(path, damage))
@@ -319,13 +350,40 @@ class ErasureService:
     def _actions(self) -> Collection[Record]:
         return list(read_log(self._log.folder, keys={_ACTIONS}))
 
+    def _is_whole(self) -> bool:
+        """True where no segment of the log is missing, and the first is there."""
+        segments = self._log.complete_segments()
+        first = min(map(segment_number, segments), default=1)
+        return first <= 1 and not missing_segments(segments)
+
+    def _first_heard_ns(self, actions: Iterable[Record]) -> dict[str, int]:
+        """By unit, of those that were heard before they were registered: of several incidents such
+        a unit is in the one that was open alone then.
+        """
+        registered_ns: dict[str, int] = {}
+        several = False
+        for t_ns, action in actions_of(actions):
+            match action.action:
+                case RegisterUnit(unit_id=unit_id):
+                    registered_ns.setdefault(unit_id, t_ns)
+                case OpenIncident(beside_others=beside_others):
+                    several |= beside_others
+        if not (several and registered_ns):
+            return {}
+        units = {key: one for one in registered_ns for key in _keys_of(one)}
+        heard_ns: dict[str, int] = {}
+        for t_ns, key, _ in read_log(
+            self._log.folder, end_ns=max(registered_ns.values()), keys=units
+        ):
+            if t_ns < registered_ns[units[key]]:
+                heard_ns.setdefault(units[key], t_ns)
+        return heard_ns
+
     def _clocks(self, erasure: Erasure) -> CaptureClocks:
         """From all that came live.  What was erased has left a heartbeat with the same header, so a
         station that forgets again, or later than the other one, places every message as before.
         """
-        senders = [*erasure.unit_ids, *map(tracker_id, erasure.unit_ids)]
-        upwards = [one for one in CHANNELS if one.logged and one.direction is Direction.UP]
-        keys = {channel.key(one) for channel in upwards for one in senders}
+        keys = {key for unit_id in erasure.unit_ids for key in _keys_of(unit_id)}
         clocks = CaptureClocks(first_erased_ns(self._actions(), erasure))
         for record in read_log(self._log.folder, keys=keys):
             event = event_of(*record)
@@ -336,6 +394,12 @@ class ErasureService:
 
 def _unknown(person_id: str) -> UserError:
     return UserError(f"neither the roster nor the log knows a person {person_id}")
+
+
+def _keys_of(unit_id: str) -> list[str]:
+    """Under which the log has what a unit, or the agent that tracks for it, said live."""
+    upwards = [one for one in CHANNELS if one.logged and one.direction is Direction.UP]
+    return [channel.key(one) for channel in upwards for one in (unit_id, tracker_id(unit_id))]
 
 
 def _actions_in(path: Path) -> Iterator[Record]:

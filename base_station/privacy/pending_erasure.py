@@ -8,9 +8,38 @@ from pathlib import Path
 
 import msgspec
 
-from base_station.core.erasure.erasure import Erasure
+from base_station.core.erasure.erasure import (
+    Erasure,
+    HandBack,
+    Reassignment,
+    inserted_action_id,
+)
 from base_station.storage.private_files import write_atomically
 from shared.errors import StoreError
+from shared.messages.station import Assign
+
+
+class _OlderErasure(msgspec.Struct, frozen=True):
+    """What an earlier version kept of the actions that it puts into the log."""
+
+    returned_units: tuple[str, ...] = ()  # before the opening
+    assigned_after: tuple[Assign, ...] = ()  # behind the closing
+    opening_id: str = ""
+    closing_id: str = ""
+
+
+def _with_actions(erasure: Erasure, older: _OlderErasure) -> Erasure:
+    """An erasure that an earlier version has begun, as this one goes on with it."""
+    if not older.opening_id:
+        return erasure
+    return msgspec.structs.replace(
+        erasure,
+        hand_backs=tuple(HandBack(older.opening_id, one) for one in older.returned_units),
+        reassignments=tuple(
+            Reassignment(older.closing_id, one, inserted_action_id(older.closing_id, one.unit_id))
+            for one in older.assigned_after
+        ),
+    )
 
 
 class PendingErasure:
@@ -36,7 +65,9 @@ class PendingErasure:
 
     def _read(self) -> list[Erasure]:
         try:
-            return msgspec.json.decode(self._path.read_bytes(), type=list[Erasure])
+            content = self._path.read_bytes()
+            found = msgspec.json.decode(content, type=list[Erasure])
+            older = msgspec.json.decode(content, type=list[_OlderErasure])
         except FileNotFoundError:
             return []
         except (OSError, msgspec.DecodeError) as error:
@@ -44,6 +75,7 @@ class PendingErasure:
                 f"{self._path} tells what is being forgotten and cannot be read ({error}): "
                 "restore it from a backup, or remove it and forget again"
             ) from error
+        return [_with_actions(one, before) for one, before in zip(found, older, strict=True)]
 
     def _write(self, begun: list[Erasure]) -> None:
         """It has names in it."""

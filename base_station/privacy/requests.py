@@ -117,5 +117,5 @@ def _done(folder: DataFolder, forgetting_id: str, on_progress: Progress) -> Eras
                 raise UserError(job.problem)
             if job.state is ErasureState.DONE:
                 what = f"{job.kind} {job.subject_id}"
-                return ErasureResult(what, job.records, job.files, job.damaged)
+                return ErasureResult(what, job.records, job.files, job.damaged, job.kept)
         time.sleep(_LOOK_EVERY_S)

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Iterator
 from itertools import islice, takewhile
 
-from base_station.core.erasure.erasure import inserted_action_id
+from base_station.core.erasure.erasure import is_inserted
 from base_station.core.events import Received, event_of
 from base_station.core.pipeline import StationPipeline
 from base_station.core.state import ERASED_TEXT
@@ -18,7 +18,6 @@ from base_station.replay.playback import Comparison, Decision, Playback, Record
 from shared.channels import channel_of
 from shared.codec import decode, encode
 from shared.messages import AlarmChange, FusedPosition, Message, OperatorAction
-from shared.messages.station import CloseIncident, OpenIncident
 
 FIRST = 10_000  # records: to look at them takes half a second
 OF_INCIDENT = 100_000  # records, of which a few are looked at now and then
@@ -77,7 +76,6 @@ def _comparable(records: Iterable[Record], pipeline: StationPipeline) -> Iterato
     numbered from the first event on.
     """
     begun = numbered = pipeline.state.seq
-    put_in: tuple[str, ...] = ()  # how the ids begin of what forgetting put into the log
     for record in records:
         event = event_of(*record)
         message = event.message if isinstance(event, Received) else None
@@ -88,11 +86,10 @@ def _comparable(records: Iterable[Record], pipeline: StationPipeline) -> Iterato
             numbered += 1
             if (header.boot_id, header.seq) != (pipeline.state.boot_id, numbered):
                 return
-        elif isinstance(message, OperatorAction):
-            if ERASED_TEXT.encode() in record[2] or message.action_id.startswith(put_in):
-                return
-            if isinstance(message.action, OpenIncident | CloseIncident):
-                put_in = (*put_in, inserted_action_id(message.action_id, ""))
+        elif isinstance(message, OperatorAction) and (
+            ERASED_TEXT.encode() in record[2] or is_inserted(message)
+        ):
+            return
         yield record
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from base_station.core.state import ERASED_TEXT
 from base_station.report.orders import details_of
+from base_station.storage.db.erasure import erased_detail
 from base_station.storage.db.members import Members
 from base_station.storage.db.models import Assignment, AuditEntry
 from shared.messages.station import AssignIncident
@@ -28,6 +30,8 @@ def entries_of_incident(
 def _is_of(
     entry: AuditEntry, incident_id: str, members: Members, assignments: Sequence[Assignment]
 ) -> bool:
+    if entry.detail.startswith(ERASED_TEXT):
+        return entry.detail in (erased_detail(""), erased_detail(incident_id))
     details = details_of(entry)
     is_coming_or_leaving = entry.action == AssignIncident.__name__
     named = details.get("incident_id")

@@ -84,6 +84,7 @@ HEAD_THRESHOLDS = ("Threshold", "In force", "Default", "")
 ALARM, ORDER, PERSON, SITE, INCIDENT, STATION = (
     "Alarm", "Order", "People", "Site", "Incident", "Station",
 )  # fmt: skip
+ERASED_PEOPLE = "people who were forgotten"
 ERASED = (SITE, "Entry about a person who was forgotten")
 MOTIONLESS, TEMPERATURE, HEIGHT, LINK = "still, s", "air, °C", "height, m", "link"
 NORTH = "N"
@@ -223,7 +224,7 @@ def _to(details: Details, name_of: NameOf) -> str:
     if details.get("crew"):
         return f"crew {details['crew']}"
     people: Sequence[str] = details.get("people", ())
-    return ", ".join(people) or EVERYONE
+    return ", ".join(people) or ERASED_PEOPLE
 
 
 def _despite(details: Details) -> str:

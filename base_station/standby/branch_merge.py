@@ -34,7 +34,7 @@ logger = logging.getLogger(__name__)
 _SETTLE_S = 0.05
 _BATCH = 1000  # events
 _MOST_LETTERS = 2000  # a note has 500
-_NAMES = ("person_name", "crew", "role")  # of a person in a log of an earlier version
+_NAMES = ("person_name", "crew", "role", "keeps_incident")  # of an earlier version, or an erasure
 
 
 class PartServer(RpcServer):

@@ -80,6 +80,7 @@ class Assign(msgspec.Struct, frozen=True):
     person_name: str = ""
     crew: str = ""
     role: str = ""
+    keeps_incident: bool = False  # the unit stays in none where it is in none (of an erasure)
 
 
 class Unassign(msgspec.Struct, frozen=True):

@@ -13,11 +13,9 @@ import msgspec
 
 from base_station.core.events import Received, event_of
 from shared.channels import tracked_unit
-from shared.errors import UserError
 from shared.messages import Header, OperatorAction
 from shared.messages.station import (
     Assign,
-    CloseIncident,
     DoneApart,
     ForgetWearers,
     OpenIncident,
@@ -25,6 +23,7 @@ from shared.messages.station import (
 )
 
 FOREVER_NS = 2**63 - 1
+_OWN_ID = re.compile(r"[0-9a-f]{16}-\d+")  # of an action that nobody gave an id
 Record = tuple[int, str, bytes]  # station time, key, payload
 # What these say is where somebody was.
 PLACE_ACTIONS = frozenset({"SetStart", "SetPin", "StartTogether", "SetMeeting"})
@@ -39,49 +38,72 @@ class Wearing(msgspec.Struct, frozen=True):
     until_ns: int
 
 
+class Elsewhere(msgspec.Struct, frozen=True):
+    """Time in which a person of an incident that is to be erased wore a unit outside it."""
+
+    person_id: str
+    unit_id: str
+    from_ns: int
+    until_ns: int  # excluded
+
+
+class HandBack(msgspec.Struct, frozen=True):
+    """Unassigning of a unit that stands in the log before another action."""
+
+    action_id: str  # of that other action
+    unit_id: str
+
+    @property
+    def inserted_id(self) -> str:
+        return inserted_action_id(self.action_id, self.unit_id)
+
+
+class Reassignment(msgspec.Struct, frozen=True):
+    """Assignment of a unit to its wearer that stands in the log behind another action."""
+
+    action_id: str  # of that other action
+    assign: Assign
+    inserted_id: str
+
+
+class OtherIncident(msgspec.Struct, frozen=True):
+    """Time in which another incident was open beside the one that is to be erased."""
+
+    incident_id: str
+    from_ns: int
+    until_ns: int  # excluded
+
+
 class Erasure(msgspec.Struct, frozen=True):
     """Erasure of one person, or of all people in one incident."""
 
-    wearings: tuple[Wearing, ...]
+    wearings: tuple[Wearing, ...]  # of an incident: when its units were in it
     names: tuple[str, ...]  # longest first; none where the log is of this version
     person_id: str = ""  # empty: everybody in the incident
     incident_id: str = ""
-    from_ns: int = 0  # when the names are to be forgotten
+    from_ns: int = 0  # when the incident was open
     until_ns: int = FOREVER_NS
-    returned_units: tuple[str, ...] = ()  # when the incident is opened: every unit of it
-    assigned_after: tuple[Assign, ...] = ()  # what was worn when it was closed
-    opening_id: str = ""  # of the action that opened it
-    closing_id: str = ""
-    about_until_ns: int = FOREVER_NS  # alarms of its units: until the next incident is opened
+    hand_backs: tuple[HandBack, ...] = ()  # where units come into the incident
+    reassignments: tuple[Reassignment, ...] = ()  # where they leave it
+    entries: tuple[str, ...] = ()  # ids of assignments by which a unit comes into it
+    about_until_ns: int = FOREVER_NS  # alarms of its units: until no console shows it any more
     person_ids: frozenset[str] = frozenset()  # whose references go: of the people in the incident
+    wearers: tuple[tuple[str, str], ...] = ()  # in the incident: unit and person
+    elsewhere: tuple[Elsewhere, ...] = ()  # when such references stay
+    others: tuple[OtherIncident, ...] = ()
     openings_ns: tuple[int, ...] = ()  # of all incidents, in order: trails begin anew with each
 
     @property
     def unit_ids(self) -> frozenset[str]:
         return frozenset(one.unit_id for one in self.wearings)
 
-    def is_inserted(self, action_id: str) -> bool:
-        """True for an action that an erasure put into the log (``inserted_action_id``)."""
-        return action_id.startswith((f"{self.opening_id}-", f"{self.closing_id}-"))
-
-    def without_inserted(self, records: Iterable[Record]) -> Erasure:
-        """Erasure without the actions that a part of the log has already."""
-        if not (self.returned_units or self.assigned_after):
-            return self
-        there = {action.action_id for _, action in actions_of(records)}
-        return msgspec.structs.replace(
-            self,
-            returned_units=tuple(
-                unit_id
-                for unit_id in self.returned_units
-                if inserted_action_id(self.opening_id, unit_id) not in there
-            ),
-            assigned_after=tuple(
-                assign
-                for assign in self.assigned_after
-                if inserted_action_id(self.closing_id, assign.unit_id) not in there
-            ),
-        )
+    def inserted_in(self, records: Iterable[Record]) -> frozenset[str]:
+        """Ids of those that a part of the log has already."""
+        if not (self.hand_backs or self.reassignments):
+            return frozenset()
+        inserted_ids = {one.inserted_id for one in self.hand_backs}
+        inserted_ids |= {one.inserted_id for one in self.reassignments}
+        return frozenset(one.action_id for _, one in actions_of(records)) & inserted_ids
 
     def covers(self, unit_id: str, t_ns: int) -> bool:
         """True where messages of this unit at that time are to be erased."""
@@ -100,6 +122,42 @@ class Erasure(msgspec.Struct, frozen=True):
     def _next_opening_ns(self, t_ns: int) -> int:
         return next((one for one in self.openings_ns if one >= t_ns), FOREVER_NS)
 
+    def people_at(self, t_ns: int) -> frozenset[str]:
+        """People whose references go from what was written at that time: all of the incident while
+        it is open, but for those who are elsewhere then.
+        """
+        if not self.from_ns <= t_ns < self.until_ns:
+            return frozenset()
+        return self.person_ids - {one.person_id for one in self._elsewhere_at(t_ns)}
+
+    def people_in_alarm(self, unit_id: str, raised_ns: int) -> frozenset[str]:
+        """People whose references go from an alarm: it may be of what the unit could not say before
+        it came elsewhere, about who wore it in the incident, and does not wear it there.
+        """
+        if not self.is_about(unit_id, raised_ns):
+            return frozenset()
+        elsewhere = list(self._elsewhere_at(raised_ns))
+        wear_it = {one.person_id for one in elsewhere if one.unit_id == unit_id}
+        wore_it = {person_id for worn, person_id in self.wearers if worn == unit_id}
+        here = self.person_ids - {one.person_id for one in elsewhere}
+        return here | (wore_it - wear_it)
+
+    def _elsewhere_at(self, t_ns: int) -> Iterable[Elsewhere]:
+        return (one for one in self.elsewhere if one.from_ns <= t_ns < one.until_ns)
+
+    def times_alone(self, erased_ids: Collection[str]) -> list[tuple[int, int]]:
+        """Times, begin and end, in which no other incident was open beside it, but for those that
+        are erased already.
+        """
+        times_ns, from_ns = list[tuple[int, int]](), self.from_ns
+        for one in sorted(self.others, key=lambda other: other.from_ns):
+            if one.incident_id in erased_ids:
+                continue
+            times_ns.append((from_ns, one.from_ns))
+            from_ns = max(from_ns, one.until_ns)
+        times_ns.append((from_ns, self.until_ns))
+        return [(begin_ns, end_ns) for begin_ns, end_ns in times_ns if begin_ns < end_ns]
+
     def is_about(self, unit_id: str, raised_ns: int) -> bool:
         """True if an alarm may name who is to be forgotten: also where it was raised when an
         incident was over, of what a unit could not say before.
@@ -107,19 +165,14 @@ class Erasure(msgspec.Struct, frozen=True):
         until_ns = self.about_until_ns if unit_id in self.unit_ids else self.until_ns
         return self.from_ns <= raised_ns < until_ns
 
-    def is_about_alarm(self, alarm_id: str) -> bool:
-        """The same of one whose id is all that is known (``core.alarms.alarm_manager``)."""
-        _, unit_id, raised_ns = [*alarm_id.rsplit(":", 2), "", ""][:3]
-        return raised_ns.isdecimal() and self.is_about(unit_id, int(raised_ns))
-
     def covers_alarm(self, alarm_id: str) -> bool:
         """True if an alarm is about who wore the unit then."""
-        _, unit_id, raised_ns = [*alarm_id.rsplit(":", 2), "", ""][:3]
-        return raised_ns.isdecimal() and self.covers(unit_id, int(raised_ns))
+        raised = raised_of(alarm_id)
+        return raised is not None and self.covers(*raised)
 
-    def is_of(self, person_ids: Iterable[str]) -> bool:
-        """True if anybody of these is to be forgotten."""
-        return not {self.person_id, *self.person_ids}.isdisjoint({*person_ids} - {""})
+    def is_of(self, person_ids: Iterable[str], t_ns: int) -> bool:
+        """True if anybody of these is to be forgotten, in what was written at that time."""
+        return not {self.person_id, *self.people_at(t_ns)}.isdisjoint({*person_ids} - {""})
 
     def covers_separate_action(self, t_ns: int, apart: DoneApart) -> bool:
         """True if what was done apart, and written down at ``t_ns``, says where somebody was, or
@@ -129,17 +182,36 @@ class Erasure(msgspec.Struct, frozen=True):
         if kind == "Assign":
             if self.person_id:
                 return self.person_id in values
-            return self.from_ns <= apart.t_ns < self.until_ns
-        if kind in TEXT_ACTIONS and (self.is_of(values) or any(map(self.covers_alarm, values))):
-            return True
+            elsewhere = {one.person_id for one in self._elsewhere_at(apart.t_ns)}
+            return self.from_ns <= apart.t_ns < self.until_ns and elsewhere.isdisjoint(values)
         times_ns = [t_ns, apart.t_ns, *(int(value) for value in values if value.isdecimal())]
+        if kind in TEXT_ACTIONS and (
+            self.is_of(values, apart.t_ns) or any(map(self.covers_alarm, values))
+        ):
+            return True
         concerned = self.unit_ids & {*values} if kind in PLACE_ACTIONS | TEXT_ACTIONS else ()
         return any(self.covers(unit_id, one) for unit_id in concerned for one in times_ns)
+
+
+def raised_of(alarm_id: str) -> tuple[str, int] | None:
+    """Unit of an alarm and when it was raised, of one whose id is all that is known
+    (``core.alarms.alarm_manager``); None: it is of another program.
+    """
+    _, unit_id, raised_ns = [*alarm_id.rsplit(":", 2), "", ""][:3]
+    return (unit_id, int(raised_ns)) if raised_ns.isdecimal() else None
 
 
 def inserted_action_id(action_id: str, unit_id: str) -> str:
     """Id of an action inserted at the time of another."""
     return f"{action_id}-{unit_id}"
+
+
+def is_inserted(done: OperatorAction) -> bool:
+    """True for an action that an erasure has put into the log."""
+    action = done.action
+    if not isinstance(action, Assign | Unassign) or _OWN_ID.fullmatch(done.action_id):
+        return False
+    return done.action_id.endswith(inserted_action_id("", action.unit_id))
 
 
 def erasure_of_person(
@@ -175,76 +247,9 @@ def erasure_of_person(
         hand_back(unit_id, until_ns)
     return Erasure(
         tuple(wearings),
-        _longest_first(names),
+        longest_first(names),
         person_id=person_id,
         openings_ns=tuple(openings_ns),
-    )
-
-
-def erasure_of_incident(records: Iterable[Record], incident_id: str) -> Erasure:
-    """``records``: the operators' actions of the whole log.  UserError where it is not there or
-    still open.
-    """
-    worn: dict[str, Assign] = {}  # by unit
-    returned_units: dict[str, str] = {}  # units, by the action
-    units: set[str] = set()
-    people: dict[str, str] = {}  # names by person id, or none
-    opened_ns = closed_ns = None
-    opening_id = closing_id = ""
-    others: set[str] = set()  # incidents that are open
-    actions = iter(actions_of(records))
-    for t_ns, action in actions:
-        done = action.action
-        if isinstance(done, OpenIncident):
-            others.add(done.incident_id)
-        elif isinstance(done, CloseIncident):
-            others.discard(done.incident_id)
-        if opened_ns is not None and others - {incident_id}:
-            raise UserError(
-                f"the incident {incident_id} was open together with another one; "
-                "erase the people of it one by one"
-            )
-        if isinstance(done, OpenIncident) and done.incident_id == incident_id:
-            opened_ns, opening_id = t_ns, action.action_id
-            before = {  # that it was forgotten: the log tells of its units no other way
-                unit_id
-                for action_id, unit_id in returned_units.items()
-                if action_id == inserted_action_id(opening_id, unit_id)
-            }
-            units = before | set(worn)
-            people = {one.person_id: one.person_name for one in worn.values()}
-        elif isinstance(done, CloseIncident) and done.incident_id == incident_id:
-            closed_ns, closing_id = t_ns, action.action_id
-            break
-        elif isinstance(done, Assign):
-            for unit_id in [one for one in worn if worn[one].person_id == done.person_id]:
-                del worn[unit_id]
-            worn[done.unit_id] = done
-            units.add(done.unit_id)
-            people[done.person_id] = done.person_name
-        elif isinstance(done, Unassign):
-            worn.pop(done.unit_id, None)
-            returned_units[action.action_id] = done.unit_id
-    if opened_ns is None:
-        raise UserError(f"the log knows no incident {incident_id}")
-    if closed_ns is None:
-        raise UserError(f"the incident {incident_id} is open; close it first")
-    next_opening_ns = next(
-        (t_ns for t_ns, later in actions if isinstance(later.action, OpenIncident)), FOREVER_NS
-    )
-    return Erasure(
-        tuple(Wearing(unit_id, opened_ns, closed_ns) for unit_id in sorted(units)),
-        _longest_first(people.values()),
-        incident_id=incident_id,
-        from_ns=opened_ns,
-        until_ns=closed_ns,
-        returned_units=tuple(sorted(units)),
-        assigned_after=tuple(worn.values()),
-        opening_id=opening_id,
-        closing_id=closing_id,
-        about_until_ns=next_opening_ns,
-        person_ids=frozenset(people),
-        openings_ns=(next_opening_ns,),
     )
 
 
@@ -302,5 +307,6 @@ def actions_of(records: Iterable[Record]) -> Iterable[tuple[int, OperatorAction]
             yield event.t_ns, event.message
 
 
-def _longest_first(names: Iterable[str]) -> tuple[str, ...]:
+def longest_first(names: Iterable[str]) -> tuple[str, ...]:
+    """Names that are none but spaces are left out."""
     return tuple(sorted((one for one in names if one.strip()), key=lambda one: (-len(one), one)))

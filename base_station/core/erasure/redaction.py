@@ -8,13 +8,12 @@ found by where they stand; names are in logs of earlier versions only (``names_i
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Collection
 
 import msgspec
 from google.protobuf.message import Message as WireMessage
 
-from base_station.core.erasure.erasure import CaptureClocks, Erasure, Record, inserted_action_id
+from base_station.core.erasure.erasure import CaptureClocks, Erasure, Record, raised_of
 from base_station.core.erasure.names_in_older_logs import OlderNames, is_program_text
 from base_station.core.events import Received, Rejected, event_of
 from base_station.core.person_references import reference_to, without_people
@@ -46,11 +45,10 @@ from shared.messages.pins import SetMeeting, SetPin, StartTogether
 from shared.messages.station import (
     Action,
     Assign,
+    AssignIncident,
     CheckIn,
-    CloseIncident,
     DoneApart,
     ImportFile,
-    OpenIncident,
     RemoveImport,
     ResolveAlarm,
     SendCommand,
@@ -62,9 +60,17 @@ from shared.messages.station import (
 class Redactor:
     """Call it with every record of the log; gives what is to stand in its place."""
 
-    def __init__(self, erasure: Erasure, clocks: CaptureClocks) -> None:
+    def __init__(
+        self,
+        erasure: Erasure,
+        clocks: CaptureClocks,
+        inserted_ids: frozenset[str] = frozenset(),
+    ) -> None:
+        """``inserted_ids``: of the erasure's own actions, those that this part of the log has."""
         self._erasure = erasure
         self._clocks = clocks
+        self._inserted_ids = inserted_ids
+        self._unit_ids = erasure.unit_ids
         self._older = OlderNames(erasure.names)
         self._references = [reference_to(one).encode() for one in erasure.person_ids]
 
@@ -90,7 +96,7 @@ class Redactor:
         sender, boot_id, seq = event.number
         wearer = tracked_unit(sender) or sender
         came_late = is_backfilled(key) or parse_unread_key(key) is not None
-        at_any_time = came_late and wearer in self._erasure.unit_ids
+        at_any_time = came_late and wearer in self._unit_ids
         if not (at_any_time or self._erasure.covers(wearer, t_ns) or self._mentions(payload)):
             return [record]
         alive = Heartbeat(Header(sender, boot_id, seq, 0), 0, 0)
@@ -99,11 +105,7 @@ class Redactor:
     def _received(self, record: Record, event: Received) -> list[Record]:
         match event.message:
             case OperatorAction() as action:
-                done = action.action
-                about = isinstance(done, ResolveAlarm) and self._erasure.is_about_alarm(
-                    done.alarm_id
-                )
-                return [self._renamed(one, about) for one in self._actions(record, action)]
+                return [self._acted(one, action) for one in self._actions(record, action)]
             case FusedPosition() as fused:
                 gone = self._erasure.covers(fused.unit_id, fused.t_meas_ns)
                 return [] if gone else [record]
@@ -121,7 +123,7 @@ class Redactor:
         except UnknownChannelError:
             return False
         wearer = tracked_unit(unit_id) or unit_id
-        return channel.direction is Direction.UP and wearer not in self._erasure.unit_ids
+        return channel.direction is Direction.UP and wearer not in self._unit_ids
 
     def _unit(self, record: Record, event: Received) -> Record:
         """A unit's message, or the sign of life that is left of it; out of a journal, where nobody
@@ -135,7 +137,7 @@ class Redactor:
         if captured_ns is not None:
             times_ns.append(captured_ns)
         wearer = tracked_unit(sender) or sender
-        at_any_time = not times_ns and wearer in self._erasure.unit_ids
+        at_any_time = not times_ns and wearer in self._unit_ids
         covered = at_any_time or any(self._erasure.covers(wearer, one) for one in times_ns)
         if channel in (DESCRIPTION, HEARTBEAT) or not covered:
             return self._renamed(record)
@@ -144,11 +146,24 @@ class Redactor:
             alive = backfilled_key(sender, HEARTBEAT.suffix)
         return t_ns, alive, encode(Heartbeat(header, 0, 0))
 
+    def _acted(self, record: Record, message: OperatorAction) -> Record:
+        """With the names replaced in what somebody did; of an alarm, as in the alarm, too."""
+        action = message.action
+        raised = raised_of(action.alarm_id) if isinstance(action, ResolveAlarm) else None
+        if raised is None or not self._erasure.is_about(*raised):
+            return self._renamed(record)
+        people = self._erasure.people_at(record[0]) | self._erasure.people_in_alarm(*raised)
+        return self._renamed(record, people)
+
     def _alarm(self, record: Record, change: AlarmChange) -> Record:
         t_ns, key, _ = record
-        if not self._erasure.covers(change.unit_id, change.raised_ns):
-            return self._renamed(record, self._erasure.is_about(change.unit_id, change.raised_ns))
-        by = self._without_names(without_note(change.by))
+        raised = change.unit_id, change.raised_ns
+        if not self._erasure.covers(*raised):
+            is_about = self._erasure.is_about(*raised)
+            return self._renamed(
+                record, self._erasure.people_in_alarm(*raised) if is_about else None
+            )
+        by = self._without_names(without_note(change.by), self._erasure.person_ids)
         note = ERASED_TEXT if change.note else ""
         erased = msgspec.structs.replace(
             change, text=ERASED_TEXT, by=by, code="", parameters=NO_PARAMETERS, note=note
@@ -168,8 +183,7 @@ class Redactor:
 
     def _actions(self, record: Record, message: OperatorAction) -> list[Record]:
         t_ns, key, _ = record
-        erasure = self._erasure
-        instead = _in_incident(t_ns, message, erasure) if erasure.incident_id else [message]
+        instead = self._in_incident(t_ns, message) if self._erasure.incident_id else [message]
         records = []
         for one in instead:
             kept = self._without_places(t_ns, self._without_texts(t_ns, one))
@@ -178,6 +192,40 @@ class Redactor:
             elif kept is not None:
                 records.append((t_ns, key, encode(kept)))
         return records
+
+    def _in_incident(self, t_ns: int, message: OperatorAction) -> list[OperatorAction]:
+        """Nobody wears a unit in the incident; outside they wear what they did."""
+        before = [
+            msgspec.structs.replace(
+                message, action_id=one.inserted_id, action=Unassign(one.unit_id)
+            )
+            for one in self._erasure.hand_backs
+            if one.action_id == message.action_id and one.inserted_id not in self._inserted_ids
+        ]
+        behind = [
+            msgspec.structs.replace(message, action_id=one.inserted_id, action=one.assign)
+            for one in self._erasure.reassignments
+            if one.action_id == message.action_id and one.inserted_id not in self._inserted_ids
+        ]
+        return [*before, *self._left_in_incident(t_ns, message), *behind]
+
+    def _left_in_incident(self, t_ns: int, message: OperatorAction) -> list[OperatorAction]:
+        erasure = self._erasure
+        match message.action:
+            case (
+                ImportFile(incident_id=erasure.incident_id)
+                | RemoveImport(incident_id=erasure.incident_id)
+            ):
+                return []  # the files go, too
+            case Assign(unit_id=unit_id) if message.action_id in erasure.entries:
+                comes = AssignIncident(erasure.incident_id, (unit_id,))
+                return [msgspec.structs.replace(message, action=comes)]
+            case Assign(unit_id=unit_id) | Unassign(unit_id=unit_id) if (
+                erasure.covers(unit_id, t_ns) and message.action_id not in self._inserted_ids
+            ):
+                return []
+            case _:
+                return [message]
 
     def _without_texts(self, t_ns: int, message: OperatorAction) -> OperatorAction:
         kept = without_texts(t_ns, message.action, self._erasure)
@@ -210,19 +258,22 @@ class Redactor:
             case _:
                 return message
 
-    def _renamed(self, record: Record, about: bool = False) -> Record:
+    def _renamed(self, record: Record, people: Collection[str] | None = None) -> Record:
         """With every name replaced, or reference to one in the incident, wherever it stands; who
-        did something stays.  ``about``: also of a record of another time.
+        did something stays.  ``people``: whose references go; None: as of the record's time.
         """
         t_ns, key, payload = record
-        inside = self._erasure.from_ns <= t_ns < self._erasure.until_ns
-        if not (inside or about) or not self._mentions(payload):
+        if people is None:
+            if not self._erasure.from_ns <= t_ns < self._erasure.until_ns:
+                return record
+            people = self._erasure.people_at(t_ns)
+        if not self._mentions(payload):
             return record
         wire_type = wire_type_of(key)
         assert wire_type is not None  # it could be read
         wire = wire_type.FromString(payload)
         by = wire.by if key == OPERATOR.key(STATION_ID) else None
-        _change_texts(wire, self._without_names)
+        _change_texts(wire, lambda text: self._without_names(text, people))
         if by is not None:
             wire.by = by
         return t_ns, key, wire.SerializeToString()
@@ -232,8 +283,8 @@ class Redactor:
         known = any(reference in payload for reference in self._references)
         return known or self._older.may_be_in(payload)
 
-    def _without_names(self, text: str) -> str:
-        return without_people(self._older.erased(text), self._erasure.person_ids, ERASED_TEXT)
+    def _without_names(self, text: str, people: Collection[str]) -> str:
+        return without_people(self._older.erased(text), people, ERASED_TEXT)
 
 
 def without_texts(t_ns: int, action: Action, erasure: Erasure) -> Action:
@@ -244,17 +295,35 @@ def without_texts(t_ns: int, action: Action, erasure: Erasure) -> Action:
         case Assign(person_id=erasure.person_id, person_name=name) if name:
             return msgspec.structs.replace(action, person_name=ERASED_TEXT, crew="", role="")
         case SendCommand() if erasure.covers(action.unit_id, t_ns) or erasure.is_of(
-            action.person_ids
+            action.person_ids, t_ns
         ):
-            text = ERASED_TEXT if action.text else ""
-            people = () if erasure.incident_id else action.person_ids
-            return msgspec.structs.replace(action, text=text, person_ids=people)
-        case CheckIn(person_ids=people) if erasure.incident_id and erasure.is_of(people):
-            return msgspec.structs.replace(action, person_ids=())
+            return _order_without(action, t_ns, erasure)
+        case CheckIn(person_ids=people) if erasure.incident_id and erasure.is_of(people, t_ns):
+            people = _others(people, t_ns, erasure)
+            of = action.incident_id if people else erasure.incident_id
+            return msgspec.structs.replace(action, person_ids=people, incident_id=of)
         case ResolveAlarm(alarm_id=alarm_id, note=note) if note and erasure.covers_alarm(alarm_id):
             return msgspec.structs.replace(action, note=ERASED_TEXT)
         case _:
             return action
+
+
+def _order_without(order: SendCommand, t_ns: int, erasure: Erasure) -> SendCommand:
+    """Of an order to others, too, the text stays."""
+    text = ERASED_TEXT if order.text else ""
+    if not erasure.incident_id:
+        return msgspec.structs.replace(order, text=text)
+    people = _others(order.person_ids, t_ns, erasure)
+    if people:
+        return msgspec.structs.replace(order, person_ids=people)
+    of = order.incident_id or erasure.incident_id  # nothing else says it any more
+    return msgspec.structs.replace(order, text=text, person_ids=(), incident_id=of)
+
+
+def _others(person_ids: tuple[str, ...], t_ns: int, erasure: Erasure) -> tuple[str, ...]:
+    """Those who are not to be forgotten, or are elsewhere at that time."""
+    gone = erasure.people_at(t_ns)
+    return tuple(one for one in person_ids if one not in gone)
 
 
 def without_note(by: str) -> str:
@@ -267,39 +336,11 @@ def remaining_text(apart: DoneApart, t_ns: int, erasure: Erasure, names: OlderNa
     """Text of what was done apart and written down at ``t_ns``, without what is forgotten."""
     if erasure.covers_separate_action(t_ns, apart):
         return ERASED_TEXT
-    inside = any(erasure.from_ns <= one < erasure.until_ns for one in (t_ns, apart.t_ns))
-    if not inside:
+    times_ns = (t_ns, apart.t_ns)
+    if not any(erasure.from_ns <= one < erasure.until_ns for one in times_ns):
         return apart.what
-    return without_people(names.erased(apart.what), erasure.person_ids, ERASED_TEXT)
-
-
-def _in_incident(t_ns: int, message: OperatorAction, erasure: Erasure) -> list[OperatorAction]:
-    """While it was open nobody wears anything; afterwards they wear what they did."""
-    match message.action:
-        case OpenIncident(incident_id=erasure.incident_id):
-            returned_units = [Unassign(unit_id) for unit_id in erasure.returned_units]
-            return [*_replacement(message, returned_units), message]
-        case CloseIncident(incident_id=erasure.incident_id):
-            return [message, *_replacement(message, erasure.assigned_after)]
-        case (
-            ImportFile(incident_id=erasure.incident_id)
-            | RemoveImport(incident_id=erasure.incident_id)
-        ):
-            return []  # the files go, too
-        case Assign() | Unassign() if erasure.from_ns <= t_ns < erasure.until_ns:
-            return [message] if erasure.is_inserted(message.action_id) else []
-        case _:
-            return [message]
-
-
-def _replacement(message: OperatorAction, actions: Any) -> list[OperatorAction]:
-    """Actions at the time of another, each with an id of its own."""
-    return [
-        msgspec.structs.replace(
-            message, action_id=inserted_action_id(message.action_id, action.unit_id), action=action
-        )
-        for action in actions
-    ]
+    people = erasure.people_at(t_ns) | erasure.people_at(apart.t_ns)
+    return without_people(names.erased(apart.what), people, ERASED_TEXT)
 
 
 def _change_texts(wire: WireMessage, change: Callable[[str], str]) -> None:

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Collection
+
 import msgspec
 from sqlalchemy import ColumnElement, and_, delete, or_, select, update
 from sqlalchemy.orm import Session
 
-from base_station.core.erasure.erasure import FOREVER_NS, PLACE_ACTIONS, Erasure, Wearing
+from base_station.core.erasure.erasure import (
+    FOREVER_NS,
+    PLACE_ACTIONS,
+    Erasure,
+    Wearing,
+    raised_of,
+)
 from base_station.core.erasure.names_in_older_logs import OlderNames
 from base_station.core.erasure.redaction import remaining_text, without_note, without_texts
 from base_station.core.person_references import name_pattern, without_people
@@ -39,6 +48,10 @@ from shared.messages.station import (
     SendCommand,
 )
 
+FORGOT_INCIDENT = (
+    "ForgotIncident"  # action of the audit; its detail begins with INCIDENT and the id
+)
+INCIDENT = "incident"
 _APART, _RESOLVED, _ASSIGNED = (one.__name__ for one in (DoneApart, ResolveAlarm, Assign))
 _WITH_WORDS: dict[str, type[SendCommand | CheckIn | ResolveAlarm]] = {
     one.__name__: one for one in (SendCommand, CheckIn, ResolveAlarm)
@@ -46,6 +59,7 @@ _WITH_WORDS: dict[str, type[SendCommand | CheckIn | ResolveAlarm]] = {
 _NAMED = AuditEntry.action.in_(
     ("AddedPerson", "ChangedPerson")
 )  # "ID", or by an older version "ID NAME"
+_PLACED_NS = re.compile(r'"t_ns":(\d+)')  # the time of which a place is
 _NOBODY = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
 
 
@@ -64,7 +78,8 @@ def forget_in(session: Session, erasure: Erasure) -> None:
         session.execute(delete(PersonRow).where(PersonRow.person_id == erasure.person_id))
         session.merge(Tombstone(what=f"{PERSON}{erasure.person_id}", until_ns=None))
     else:
-        _cut_out(session, erasure)
+        for one in erasure.wearings:
+            _cut_out(session, one)
 
 
 def _imports(session: Session, erasure: Erasure) -> None:
@@ -73,10 +88,15 @@ def _imports(session: Session, erasure: Erasure) -> None:
         session.execute(delete(ImportRow).where(ImportRow.incident_id == erasure.incident_id))
         of_it = AuditEntry.detail.contains(f'"{erasure.incident_id}"', autoescape=True)
         is_import = AuditEntry.action == ImportFile.__name__
-        session.execute(update(AuditEntry).where(is_import, of_it).values(detail=ERASED_TEXT))
+        session.execute(
+            update(AuditEntry)
+            .where(is_import, of_it)
+            .values(detail=erased_detail(erasure.incident_id))
+        )
         return
+    names = _Names(erasure, erasure.person_ids)
     for row in session.scalars(select(ImportRow)):
-        row.file_name = _without_names(row.file_name, erasure)
+        row.file_name = names.erased(row.file_name)
 
 
 def _looked_back(session: Session, erasure: Erasure) -> None:
@@ -109,6 +129,17 @@ def known_names(session: Session, person_id: str) -> set[str]:
     return names - {ERASED_TEXT, ""}
 
 
+def erased_detail(incident_id: str) -> str:
+    """Detail of an entry of the audit of which nothing else is left."""
+    return f"{ERASED_TEXT} {incident_id}".rstrip()
+
+
+def erased_incidents(session: Session) -> set[str]:
+    """Ids of the incidents that were forgotten here."""
+    details = session.scalars(select(AuditEntry.detail).where(AuditEntry.action == FORGOT_INCIDENT))
+    return {detail.removeprefix(f"{INCIDENT} ").partition(":")[0] for detail in details}
+
+
 def ids_of(session: Session, name: str) -> set[str]:
     """Ids of people of that name, now or before, whether or not they are on the roster still."""
     ids = set(session.scalars(select(PersonRow.person_id).where(PersonRow.name == name)))
@@ -125,41 +156,45 @@ def _within(table: type[TrackPoint | UnitStart], one: Wearing) -> ColumnElement[
 
 def _alarms(session: Session, erasure: Erasure) -> None:
     for alarm in session.scalars(select(AlarmRow)):
-        covered = erasure.covers(alarm.unit_id, alarm.raised_ns)
-        if covered or erasure.is_about(
-            alarm.unit_id, alarm.raised_ns
-        ):  # what it said before may name others than what it says now
-            _rewrite_alarm(session, alarm, erasure, covered)
+        raised = alarm.unit_id, alarm.raised_ns
+        covered = erasure.covers(*raised)
+        if covered or erasure.is_about(*raised):
+            # What it said before may name others than what it says now.
+            people = erasure.person_ids if covered else erasure.people_in_alarm(*raised)
+            _rewrite_alarm(session, alarm, _Names(erasure, people), covered)
 
 
-def _rewrite_alarm(session: Session, alarm: AlarmRow, erasure: Erasure, covered: bool) -> None:
+def _rewrite_alarm(session: Session, alarm: AlarmRow, names: _Names, covered: bool) -> None:
     changes = session.scalars(
         select(AlarmTransition).where(AlarmTransition.alarm_id == alarm.alarm_id)
     ).all()
     rows: list[AlarmRow | AlarmTransition] = [alarm, *changes]
     for row in rows:
-        row.text = ERASED_TEXT if covered else _without_names(row.text, erasure)
-        row.by = _without_names(without_note(row.by) if covered else row.by, erasure)
+        row.text = ERASED_TEXT if covered else names.erased(row.text)
+        row.by = names.erased(without_note(row.by) if covered else row.by)
         row.code = "" if covered else row.code
-        row.parameters = "{}" if covered else _without_names(row.parameters, erasure)
+        row.parameters = "{}" if covered else names.erased(row.parameters)
         if row.note:
-            row.note = ERASED_TEXT if covered else _without_names(row.note, erasure)
+            row.note = ERASED_TEXT if covered else names.erased(row.note)
 
 
 def _audit(session: Session, erasure: Erasure) -> None:
     """Names, words and places go; that it was done, when and by whom stays."""
-    units = name_pattern(erasure.unit_ids)
     inside = and_(AuditEntry.t_ns >= erasure.from_ns, AuditEntry.t_ns < erasure.until_ns)
     for entry in session.scalars(select(AuditEntry).where(inside, AuditEntry.action != _APART)):
-        entry.detail = _without_names(_without_texts(entry, erasure), erasure)
+        names = _Names(erasure, erasure.people_at(entry.t_ns))
+        entry.detail = names.erased(_without_texts(entry, erasure))
         if entry.action == _ASSIGNED:
-            entry.detail = _nobodys(entry.detail, erasure)
-        about = units.search(entry.detail) if entry.action in PLACE_ACTIONS else None
-        if about is not None:
-            entry.detail = ERASED_TEXT
+            entry.detail = _nobodys(entry, erasure)
+    places = AuditEntry.action.in_(PLACE_ACTIONS), AuditEntry.t_ns >= erasure.from_ns
+    for entry in session.scalars(select(AuditEntry).where(*places)):
+        if _is_place_of(entry, erasure):
+            entry.detail = erased_detail(erasure.incident_id)
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _RESOLVED)):
-        if _is_about(entry, erasure):
-            entry.detail = _without_names(entry.detail, erasure)
+        raised = _alarm_raised(entry)
+        if raised is not None and erasure.is_about(*raised):
+            names = _Names(erasure, erasure.people_in_alarm(*raised))
+            entry.detail = names.erased(entry.detail)
     for entry in session.scalars(select(AuditEntry).where(AuditEntry.action == _APART)):
         entry.detail = _apart(entry, erasure)
     mine = AuditEntry.detail.startswith(f"{erasure.person_id} ", autoescape=True)
@@ -167,9 +202,28 @@ def _audit(session: Session, erasure: Erasure) -> None:
         entry.detail = f"{erasure.person_id} {ERASED_TEXT}"
 
 
-def _without_names(text: str, erasure: Erasure) -> str:
-    older = OlderNames(erasure.names).erased_in_json(text)
-    return without_people(older, erasure.person_ids, ERASED_TEXT)
+class _Names:
+    """Names, and references to people, that go from a text."""
+
+    def __init__(self, erasure: Erasure, person_ids: Collection[str]) -> None:
+        self._older = OlderNames(erasure.names)
+        self._person_ids = person_ids
+
+    def erased(self, text: str) -> str:
+        older = self._older.erased_in_json(text)
+        return without_people(older, self._person_ids, ERASED_TEXT)
+
+
+def _is_place_of(entry: AuditEntry, erasure: Erasure) -> bool:
+    """True if it says where a unit was whose wearer of that time is to be forgotten."""
+    about = _PLACED_NS.search(entry.detail)
+    times_ns = {entry.t_ns, int(about[1]) if about else 0} - {0}
+    units = [
+        unit_id
+        for unit_id in erasure.unit_ids
+        if any(erasure.covers(unit_id, one) for one in times_ns)
+    ]
+    return name_pattern(units).search(entry.detail) is not None
 
 
 def _without_texts(entry: AuditEntry, erasure: Erasure) -> str:
@@ -184,26 +238,28 @@ def _without_texts(entry: AuditEntry, erasure: Erasure) -> str:
     return entry.detail if left is done else msgspec.json.encode(left).decode()
 
 
-def _nobodys(detail: str, erasure: Erasure) -> str:
+def _nobodys(entry: AuditEntry, erasure: Erasure) -> str:
     """Assignment without its wearer: in a small station crew and role are as good as a name."""
     try:
-        worn = msgspec.json.decode(detail, type=Assign)
+        worn = msgspec.json.decode(entry.detail, type=Assign)
     except msgspec.DecodeError:  # nothing is left of it
-        return detail
-    if erasure.person_id not in ("", worn.person_id):
-        return detail
-    nobody = msgspec.structs.replace(worn, **_NOBODY)
+        return entry.detail
     if erasure.incident_id:
-        nobody = msgspec.structs.replace(nobody, person_id=ERASED_TEXT)
-    return msgspec.json.encode(nobody).decode()
+        if not erasure.covers(worn.unit_id, entry.t_ns):
+            return entry.detail
+        worn = msgspec.structs.replace(worn, person_id=ERASED_TEXT)
+    elif worn.person_id != erasure.person_id:
+        return entry.detail
+    return msgspec.json.encode(msgspec.structs.replace(worn, **_NOBODY)).decode()
 
 
-def _is_about(entry: AuditEntry, erasure: Erasure) -> bool:
+def _alarm_raised(entry: AuditEntry) -> tuple[str, int] | None:
+    """Unit of the alarm that was resolved, and when that was raised."""
     try:
         noted = msgspec.json.decode(entry.detail, type=ResolveAlarm)
     except msgspec.DecodeError:  # nothing is left of it
-        return False
-    return erasure.is_about_alarm(noted.alarm_id)
+        return None
+    return raised_of(noted.alarm_id)
 
 
 def _apart(entry: AuditEntry, erasure: Erasure) -> str:
@@ -216,25 +272,26 @@ def _apart(entry: AuditEntry, erasure: Erasure) -> str:
     return msgspec.json.encode(msgspec.structs.replace(done, what=left)).decode()
 
 
-def _cut_out(session: Session, erasure: Erasure) -> None:
-    """Nobody wears anything in the time of the incident."""
-    from_ns, until_ns = erasure.from_ns, erasure.until_ns
+def _cut_out(session: Session, one: Wearing) -> None:
+    """Nobody wears the unit in that time."""
     overlapping = select(Assignment).where(
-        Assignment.from_ns < until_ns,
-        or_(Assignment.until_ns.is_(None), Assignment.until_ns > from_ns),
+        Assignment.unit_id == one.unit_id,
+        Assignment.from_ns < one.until_ns,
+        or_(Assignment.until_ns.is_(None), Assignment.until_ns > one.from_ns),
     )
     for row in session.scalars(overlapping).all():
-        goes_on = row.until_ns is None or row.until_ns > until_ns
-        if goes_on and row.from_ns < from_ns:
+        goes_on = row.until_ns is None or row.until_ns > one.until_ns
+        if goes_on and row.from_ns < one.from_ns:
             columns = {
                 column.name: getattr(row, column.name) for column in Assignment.__table__.columns
             }
-            after = {"action_id": f"{row.action_id}-after", "from_ns": until_ns}
+            after = {"action_id": f"{row.action_id}-after", "from_ns": one.until_ns}
             session.add(Assignment(**(columns | after)))
-            row.until_ns = from_ns
+            row.until_ns = one.from_ns
         elif goes_on:
-            row.from_ns = until_ns
-        elif row.from_ns < from_ns:
-            row.until_ns = from_ns
+            row.from_ns = one.until_ns
+        elif row.from_ns < one.from_ns:
+            row.until_ns = one.from_ns
         else:
             session.delete(row)
+    session.flush()

@@ -10,6 +10,7 @@ import msgspec
 from sqlalchemy import ColumnElement, delete, func, select, update
 from sqlalchemy.orm import Session
 
+from base_station.core.erasure.erasure import is_inserted
 from base_station.core.person_references import reference_to
 from base_station.core.units.worn_sensors import worn_sensors
 from base_station.storage.db.models import (
@@ -75,7 +76,8 @@ def project_into(session: Session, projections: Sequence[Projection]) -> int:
     last_messages: dict[str, int] = {}
     for projection in projections:
         for action in projection.actions:
-            if not isinstance(action.action, ReportProblem):  # that is no person's doing
+            if not (isinstance(action.action, ReportProblem) or is_inserted(action)):
+                # Those two are no person's doing.
                 _audit(session, action.header.t_utc_ns, action)
             _action(session, action.header.t_utc_ns, action)
         _memberships(session, projection)
@@ -112,9 +114,10 @@ def _action(session: Session, t_ns: int, done: OperatorAction) -> None:
         case Assign() as assign:
             _end_assignments(session, t_ns, Assignment.unit_id == assign.unit_id)
             _end_assignments(session, t_ns, Assignment.person_id == assign.person_id)
+            columns = {name: getattr(assign, name) for name in _ASSIGNED_COLUMNS}
             _add(
                 session, Assignment, action_id=done.action_id, from_ns=t_ns, until_ns=None,
-                **msgspec.structs.asdict(assign),
+                **columns,
             )  # fmt: skip
         case Unassign(unit_id=unit_id):
             _end_assignments(session, t_ns, Assignment.unit_id == unit_id)
@@ -186,6 +189,7 @@ def _memberships(session: Session, projection: Projection) -> None:
             )  # fmt: skip
 
 
+_ASSIGNED_COLUMNS = ("unit_id", "person_id", "person_name", "crew", "role")
 _START_COLUMNS = ("unit_id", "north_m", "east_m", "down_m", "heading_rad")
 
 

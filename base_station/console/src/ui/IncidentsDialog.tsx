@@ -9,6 +9,7 @@ import { assess, openDispatch, openImports } from "../uiState";
 import type { IncidentView } from "../wire";
 import { dateAndTime, minutes, zone } from "../format";
 import { saveAs } from "../saving";
+import { listed } from "../language/measures";
 import { rich, t } from "../language/translate";
 import { Columns } from "./Columns";
 import { AssignForm } from "./AssignForm";
@@ -131,7 +132,7 @@ export function IncidentsDialog() {
                   {incident.closed_ms !== null && (
                     <EraseForm
                       name={incident.name}
-                      warning={t("incident.erase_warning")}
+                      warning={eraseWarning(incident, entries.value)}
                       subjectId={incident.incident_id}
                       forget={(name) => api.forgetIncident(incident.incident_id, name)}
                       done={again}
@@ -155,6 +156,20 @@ export function IncidentsDialog() {
       <OpenReplays incidents={entries.value} />
     </Dialog>
   );
+}
+
+/** Names the incidents of the list that were open while this one was. */
+function eraseWarning(incident: api.Incident, all: readonly api.Incident[]): string {
+  const endMs = (one: api.Incident) => one.closed_ms ?? Infinity;
+  const beside = all.filter(
+    (one) =>
+      one.incident_id !== incident.incident_id &&
+      one.opened_ms < endMs(incident) &&
+      incident.opened_ms < endMs(one),
+  );
+  if (beside.length === 0) return t("incident.erase_warning");
+  const others = listed(beside.map((one) => one.name));
+  return t("incident.erase_warning_beside", { others });
 }
 
 /** Finds incidents by words; none: all of them. */

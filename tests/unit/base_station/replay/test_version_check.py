@@ -9,7 +9,8 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from base_station.core.erasure.erasure import CaptureClocks, erasure_of_incident, erasure_of_person
+from base_station.core.erasure.erasure import CaptureClocks, erasure_of_person
+from base_station.core.erasure.incident_scan import erasure_of_incident
 from base_station.core.erasure.redaction import Redactor
 from base_station.core.events import Received, event_of
 from base_station.replay.playback import Archive, Decision, Playback, Record

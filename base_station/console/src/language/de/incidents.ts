@@ -19,6 +19,8 @@ export const incident: Part<"incident"> = {
   replay_of: "Wiedergabe: {incident}",
   accuracy: "Genauigkeit",
   erase_warning: "Wer dort war und wo, wird gelöscht.",
+  erase_warning_beside:
+    "Wer dort war und wo, wird gelöscht. Von Einsätzen, die gleichzeitig liefen ({others}), bleibt alles; Funkaufnahmen aus dieser Zeit bleiben, bis auch diese gelöscht werden.",
   none: "Noch keine. Meldungen der Geräte werden trotzdem aufgezeichnet.",
   none_found: "Kein Einsatz enthält alle diese Wörter.",
   found: "Einsätze mit: {words}",

@@ -18,6 +18,8 @@ export const incident = {
   replay_of: "Replay {incident}",
   accuracy: "Accuracy report",
   erase_warning: "Who was there and where is deleted.",
+  erase_warning_beside:
+    "Who was there and where is deleted. Of incidents that were open at the same time ({others}) everything stays; radio recordings of that time stay until those are deleted, too.",
   none: "None yet. What a unit says is kept all the same.",
   none_found: "No incident has all of these words.",
   found: "Incidents with: {words}",

@@ -19,6 +19,8 @@ export const incident: Part<"incident"> = {
   replay_of: "Relecture\u00a0: {incident}",
   accuracy: "Précision",
   erase_warning: "Qui était là et où est effacé.",
+  erase_warning_beside:
+    "Qui était là et où est effacé. Des interventions ouvertes en même temps ({others}), tout reste\u00a0; les enregistrements radio de ce temps restent jusqu’à ce que celles-ci soient effacées aussi.",
   none: "Aucune pour l’instant. Les messages des boîtiers sont conservés malgré tout.",
   none_found: "Aucune intervention ne contient tous ces mots.",
   found: "Interventions avec\u00a0: {words}",

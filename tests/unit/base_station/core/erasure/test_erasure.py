@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import msgspec
 import pytest
 
 from base_station.core.erasure.erasure import (
@@ -9,11 +10,13 @@ from base_station.core.erasure.erasure import (
     Erasure,
     Record,
     Wearing,
-    erasure_of_incident,
     erasure_of_person,
     first_erased_ns,
     inserted_action_id,
+    is_inserted,
+    raised_of,
 )
+from base_station.core.erasure.incident_scan import erasure_of_incident
 from base_station.core.erasure.redaction import Redactor
 from shared.channels import OPERATOR
 from shared.codec import encode
@@ -44,8 +47,18 @@ def done(*actions: tuple[int, Action]) -> list[Record]:
     ]
 
 
+def erasure_of(records: list[Record]) -> Erasure:
+    """Of a log whose beginning, with the registrations, is lost."""
+    return erasure_of_incident(records, "i1", is_whole=False)
+
+
 def ana(unit_id: str, name: str = "Ana") -> Assign:
     return Assign(unit_id, "p1", name, "", "")
+
+
+def worn(assign: Assign) -> Assign:
+    """The assignment as it stands behind the end of an incident that was erased."""
+    return msgspec.structs.replace(assign, keeps_incident=True)
 
 
 def bo(unit_id: str) -> Assign:
@@ -92,12 +105,13 @@ def test_everybody_who_wore_a_unit_in_an_incident_is_of_it() -> None:
         (20, OPEN), (30, bo("B")), (35, ana("D")), (36, Unassign("B")), (40, CLOSE),
         (50, bo("E")),
     )  # fmt: skip
-    erasure = erasure_of_incident(records, "i1")
+    erasure = erasure_of(records)
     assert erasure.wearings == tuple(Wearing(one, 20, 40) for one in "ABD")
     assert erasure.names == ("Bo Lind", "Ana")
     assert (erasure.from_ns, erasure.until_ns) == (20, 40)
-    assert erasure.returned_units == ("A", "B", "D")
-    assert erasure.assigned_after == (ana("D"),), "who changes for another unit wears one"
+    assert [one.unit_id for one in erasure.hand_backs] == ["A", "B", "D"]
+    again = [one.assign for one in erasure.reassignments]
+    assert again == [worn(ana("D"))], "who changes for another unit wears one"
     assert not erasure.covers("A", 40)
 
 
@@ -107,16 +121,15 @@ def test_what_is_raised_after_an_incident_of_its_units_is_about_it_until_the_nex
         (5, OpenIncident("i0", "")), (6, CloseIncident("i0")),
         (10, ana("A")), (20, OPEN), (40, CLOSE), (50, OpenIncident("i2", "")),
     )  # fmt: skip
-    erasure = erasure_of_incident(records, "i1")
+    erasure = erasure_of(records)
     raised_ns = (19, 20, 39, 40, 49, 50)
     about = [erasure.is_about("A", one) for one in raised_ns]
     assert about == [False, True, True, True, True, False]
     about = [erasure.is_about("B", one) for one in raised_ns]
     assert about == [False, True, True, False, False, False]
-    assert [erasure.is_about_alarm(f"fall:{one}:45") for one in "AB"] == [True, False]
-    assert erasure.is_about_alarm("station:log:30")
-    assert not erasure.is_about_alarm("of another program")
-    last = erasure_of_incident(records[:-1], "i1")
+    assert raised_of("fall:A:45") == ("A", 45)
+    assert raised_of("of another program") is None
+    last = erasure_of(records[:-1])
     assert last.is_about("A", 10**18)
 
 
@@ -126,15 +139,15 @@ def test_log_of_a_forgotten_incident_keeps_its_units() -> None:
         (5, bo("C")), (6, Unassign("C")),  # before
         (10, ana("A")), (20, OPEN), (30, bo("B")), (36, Unassign("B")), (40, CLOSE),
     )  # fmt: skip
-    erasure = erasure_of_incident(records, "i1")
+    erasure = erasure_of(records)
     forgotten = redacted(records, erasure)
-    again = erasure_of_incident(forgotten, "i1")
+    again = erasure_of(forgotten)
     assert again.wearings == erasure.wearings == (Wearing("A", 20, 40), Wearing("B", 20, 40))
     assert redacted(forgotten, again) == forgotten
 
 
 def redacted(records: list[Record], erasure: Erasure) -> list[Record]:
-    redactor = Redactor(erasure.without_inserted(records), CaptureClocks())
+    redactor = Redactor(erasure, CaptureClocks(), erasure.inserted_in(records))
     return [one for record in records for one in redactor(record)]
 
 
@@ -143,7 +156,7 @@ def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
         (1, OpenIncident("i0", "")), (2, bo("B")), (3, CloseIncident("i0")), (4, Unassign("B")),
         (10, ana("A")), (20, OPEN), (40, CLOSE),
     )  # fmt: skip
-    erasure = erasure_of_incident(records, "i1")
+    erasure = erasure_of(records)
     assert (sorted(erasure.unit_ids), erasure.names) == (["A"], ("Ana",))
 
 
@@ -164,22 +177,48 @@ def test_what_is_open_or_unknown_is_not_forgotten(
 
 def test_what_was_put_into_a_part_of_the_log_is_not_put_in_again() -> None:
     records = done((10, ana("A")), (11, bo("B")), (20, OPEN), (40, CLOSE))
-    erasure = erasure_of_incident(records, "i1")
-    assert erasure.without_inserted(records) == erasure
+    erasure = erasure_of(records)
+    assert erasure.inserted_in(records) == set()
     header = Header(STATION_ID, 1, 1, 0)
     there = [
         (t_ns, OPERATOR.key(STATION_ID), encode(OperatorAction(header, name, "chief", action)))
         for t_ns, name, action in (
             (20, inserted_action_id("a20", "A"), Unassign("A")),
-            (40, inserted_action_id("a40", "B"), bo("B")),
+            (40, inserted_action_id("a40", "B"), worn(bo("B"))),
+            (41, inserted_action_id("a201", "A"), Unassign("A")),
         )
     ]
-    left = erasure.without_inserted(there)
-    assert (left.returned_units, left.assigned_after) == (("B",), (ana("A"),))
-    assert erasure.is_inserted("a20-A")
-    assert erasure.is_inserted("a40-B")
-    assert not erasure.is_inserted("a20")
-    assert not erasure.is_inserted("a201-A")
+    assert erasure.inserted_in(there) == {"a20-A", "a40-B"}
+    forgotten = redacted(records, erasure)
+    assert redacted(forgotten, erasure) == forgotten
+
+
+def test_radio_of_a_time_in_which_another_incident_was_open_goes_with_the_last() -> None:
+    records = done(
+        (10, OPEN), (20, OpenIncident("i2", "", beside_others=True)),
+        (30, OpenIncident("i3", "", beside_others=True)), (40, CloseIncident("i2")),
+        (50, CloseIncident("i3")), (60, CLOSE), (70, OpenIncident("i4", "")),
+    )  # fmt: skip
+    erasure = erasure_of(records)
+    assert erasure.times_alone(()) == [(10, 20), (50, 60)]
+    assert erasure.times_alone({"i2"}) == [(10, 30), (50, 60)]
+    assert erasure.times_alone({"i2", "i3"}) == [(10, 60)]
+    inside = erasure_of_incident(records, "i2", is_whole=False)
+    assert inside.times_alone(()) == []
+    assert inside.times_alone({"i1", "i3"}) == [(20, 40)]
+
+
+def test_action_of_a_person_is_no_inserted_one_whatever_its_unit_is_called() -> None:
+    own = f"{1:016x}-7"
+    for action_id, action, inserted in (
+        (own, Unassign("7"), False),
+        (inserted_action_id(own, "7"), Unassign("7"), True),
+        (inserted_action_id(own, "7"), ana("7"), True),
+        (inserted_action_id(own, "7"), CLOSE, False),
+        (inserted_action_id(own, "8"), Unassign("7"), False),
+    ):
+        done_by = OperatorAction(Header(STATION_ID, 1, 1, 0), action_id, "chief", action)
+        assert is_inserted(done_by) is inserted
 
 
 @pytest.mark.parametrize(("sender", "captured_ns"), [("A", 115), ("A@tracker", 115), ("B", 113)])
