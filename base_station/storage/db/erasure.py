@@ -294,4 +294,3 @@ def _cut_out(session: Session, one: Wearing) -> None:
             row.until_ns = one.from_ns
         else:
             session.delete(row)
-    session.flush()
