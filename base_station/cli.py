@@ -157,7 +157,7 @@ def backup(
         bool, typer.Option("--radio", help="With the audio of the radio channels.")
     ] = False,
 ) -> None:
-    """Copy log, database and certificates, also while the station runs; again: what is new."""
+    """Copy log, database and certificates, also while the station runs; again: new data only."""
     from rich.progress import Progress  # noqa: PLC0415
 
     from base_station.app.backup import back_up  # noqa: PLC0415
@@ -185,9 +185,9 @@ def forget(
     what: Annotated[str, typer.Argument(help="A person's id or full name, or an incident's id.")],
     data: Path = Path("muster-data"),
 ) -> None:
-    """Delete what is stored of a person or of everybody in an incident; the audit stays.
+    """Delete all data of a person or of all people in an incident; the audit stays.
 
-    What the person wears is unassigned first.  A station that runs on the folder does it itself.
+    Units of the person are unassigned first.  A station that runs on the folder does it itself.
     """
     from rich.progress import Progress  # noqa: PLC0415
 
@@ -210,9 +210,7 @@ def forget(
 
 @app.command("compile")
 def compile_() -> None:
-    """Compile what every position and every trail goes through now, so that the first station
-    starts at once.
-    """
+    """Compile the code for positions and trails now, so that the first station starts at once."""
     from importlib import import_module  # noqa: PLC0415
 
     for compiled in (
@@ -314,7 +312,7 @@ def list_segments(data: Path = Path("muster-data")) -> None:
 
 
 def _load_settings(config: Path | None, flags: Mapping[str, object]) -> StationConfig:
-    """The settings, and what else is set once for the whole process."""
+    """The settings; also sets up the whole process once."""
     from base_station.config import StationConfig  # noqa: PLC0415
     from shared.config import load_config  # noqa: PLC0415
     from shared.log import set_up_logging  # noqa: PLC0415
@@ -347,7 +345,7 @@ def _announce(line: str) -> None:
 
 
 def _ask_to_confirm(what: str, about: str) -> None:
-    """It cannot be undone: what is meant is typed a second time, or comes on standard input."""
+    """It cannot be undone: the name is typed a second time, or comes on standard input."""
     from shared.errors import UserError  # noqa: PLC0415
 
     question = f"This deletes all that is stored of the {about}, for good. Type it again"

@@ -104,7 +104,7 @@ class LoginQueue:
 
 
 class _BoundedWorker:
-    """Worker thread with a bound on what waits for it."""
+    """Worker thread with a bound on its waiting requests."""
 
     def __init__(self, name: str, max_pending: int) -> None:
         self.thread = ThreadPoolExecutor(1, name)

@@ -75,7 +75,7 @@ def create_app(services: Services, started: Callable[[asyncio.AbstractEventLoop]
 
 
 def add_request_handling(app: FastAPI, services: LoginServices) -> LoginQueue:
-    """Add what stands before every route, of a station and of a department.  Gives the queue of
+    """Add the middleware of every route, of a station and of a department.  Gives the queue of
     log-ins, to be closed at the end.
     """
     app.state.services = services

@@ -22,7 +22,7 @@ The API is at <code>/api/v1</code>.</p></html>
 
 
 class _Assets(StaticFiles):
-    """Their names change with what is in them."""
+    """Their names change with their content."""
 
     async def get_response(self, path: str, scope: Scope) -> Response:
         response = await super().get_response(path, scope)

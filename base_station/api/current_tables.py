@@ -15,7 +15,7 @@ from fastapi import Depends
 from base_station.api.authentication import Viewer
 from base_station.api.services import Services, Station
 
-MAX_WAIT_S = 5.0  # then the tables are read as they are: most of what is asked for is there
+MAX_WAIT_S = 5.0  # then the tables are read as they are: most of the data is there
 _LOOK_S = 0.01
 
 

@@ -1,4 +1,4 @@
-"""Takes a report of the dispatch centre: what changed by it, and whether it opens an incident."""
+"""Takes a report of the dispatch centre: logs its changes, and may open an incident."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The API's OpenAPI document: what FastAPI makes of the routes, with descriptions and problems."""
+"""The API's OpenAPI document: that of FastAPI, with descriptions and problems."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Guidance of rescuers: the next legs of their ways, sent to their units as they advance.
 
 Pieces are messages as any other: each waits for the link, asks for an acknowledgement, is in the
-log, and expires soon, as the next one takes its place.  Who is guided is kept in memory: after a
-restart, or at the station that takes over, guidance is begun again from the console.
+log, and expires soon, as the next one takes its place.  Guidance is kept in memory only: after a
+restart, or at the station that takes over, it is begun again from the console.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Guide(msgspec.Struct):
 
 
 class Guidance:
-    """Everybody who is guided now; any thread may call it."""
+    """Rescuers who are guided now; any thread may call it."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -74,7 +74,7 @@ class Guidance:
         return guide
 
     def end(self, station: Services, rescuer_id: str, send: Send) -> bool:
-        """Tell the rescuer's unit that it is over; False: this one is not guided."""
+        """Send the end of the guidance to the rescuer's unit; False: there is no guidance."""
         with self._lock:
             guide = self._guides.pop(rescuer_id, None)
         if guide is None:

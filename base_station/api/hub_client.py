@@ -94,8 +94,8 @@ class _Sent(NamedTuple):
 
 
 class PacedClient(Client):
-    """Gets ``FieldDelta``, and no more than it shows: what comes meanwhile is merged, so that a
-    console that is slow is shown the newest, and not all that was.
+    """Gets ``FieldDelta``, and no more than it can show: changes meanwhile are merged, so that a
+    slow console shows the newest state, and not all former ones.
     """
 
     def __init__(self, ask: Callable[[], None]) -> None:
@@ -127,7 +127,7 @@ class PacedClient(Client):
         return sum(one.is_picture for one in self._unshown) < MAX_UNSHOWN
 
     def _take(self) -> bytes | None:
-        """Pictures and trails by turns: who is slow gets both."""
+        """Pictures and trails by turns: a slow console gets both."""
         has_room = sum(one.size for one in self._unshown) < MAX_UNSHOWN_BYTES
         is_trail = bool(self._trails) and has_room and (self._is_trail_next or not self._queue)
         if is_trail and not self._begins_with_snapshot:

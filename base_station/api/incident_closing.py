@@ -43,9 +43,9 @@ class ClosingObstacles(msgspec.Struct, frozen=True):
 
 
 def closing_obstacles(picture: Snapshot, incident_id: str) -> ClosingObstacles:
-    """The alarms and people inside among an incident's members; an alarm about the station itself
-    is no matter of it.  A person who was inside when the unit was switched off, or fell silent, is
-    inside as far as is known.
+    """The alarms and people inside among an incident's members; alarms about the station itself do
+    not count.  A person who was inside when the unit was switched off, or lost its link, counts as
+    inside.
     """
     members = [one for one in picture.units if one.incident_id == incident_id]
     unit_ids = {one.unit_id for one in members}

@@ -59,7 +59,7 @@ class LoginThrottle:
         return is_known
 
     def check_account(self, username: str) -> None:
-        """Count a try of who has logged in and has to give the password again."""
+        """Count an attempt of a logged-in user who has to give the password again."""
         with self._lock:
             if not self._per_account_and_network.allows(("", username)):
                 raise too_many_attempts()

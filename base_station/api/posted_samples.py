@@ -53,7 +53,7 @@ class PostedSamples(Form):
 
 
 def read_json(unit_id: str, body: bytes) -> Sequence[RawImu]:
-    """Batches of a JSON body.  Raises ConfigError with a sentence for what is wrong in it."""
+    """Batches of a JSON body.  Raises ConfigError with a sentence about its fault."""
     try:
         posted = PostedSamples.model_validate_json(body)
     except ValidationError as error:
@@ -64,7 +64,7 @@ def read_json(unit_id: str, body: bytes) -> Sequence[RawImu]:
 def read_protobuf(unit_id: str, body: bytes) -> Sequence[RawImu]:
     """Batches of a body of ``ImuBatch`` messages, each after its length as a varint.
 
-    Raises ConfigError with a sentence for what is wrong in it.
+    Raises ConfigError with a sentence about its fault.
     """
     batches: list[RawImu] = []
     for number, payload in enumerate(_payloads(body), start=1):
@@ -124,7 +124,7 @@ def _payloads(body: bytes) -> Iterator[bytes]:
 
 
 def _checked(unit_id: str, batches: Sequence[RawImu]) -> Sequence[RawImu]:
-    """Return the batches where they are what a unit on the bus could have sent."""
+    """Return the batches where a unit on the bus could have sent them."""
     if not 1 <= len(batches) <= MAX_BATCHES:
         raise ConfigError(f"send 1 to {MAX_BATCHES} batches in one request, not {len(batches)}")
     seq, boot_id = 0, batches[0].header.boot_id

@@ -177,7 +177,7 @@ def _status_of(error: MusterError) -> int:
 
 
 def _expected_body(request: Request) -> str:
-    """For who sent no body, or one that the framework could not read."""
+    """Problem for a request without a body, or with an unreadable one."""
     route = request.scope["route"]
     kind = route.body_field.field_info.media_type
     if kind == "application/json":

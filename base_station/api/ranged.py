@@ -27,7 +27,7 @@ def ranged_response(content: bytes, media_type: str, request: Request) -> Respon
 
 
 def begins_at_start(request: Request) -> bool:
-    """True where a client asks for a content from its beginning, and not for what follows."""
+    """True where a client asks for a content from its beginning, and not for later parts."""
     asked = _RANGE.fullmatch(request.headers.get("Range", "").strip())
     return asked is None or asked[1] == "0"
 

@@ -1,5 +1,5 @@
-"""Refused actions: whether what they are about exists is asked behind the refusal, for a database
-that is busy must delay no action that is carried out.
+"""Refused actions: whether their subject exists is looked up after the refusal, for a busy database
+must delay no action that is carried out.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def not_found_if_unknown(
 ) -> Iterator[None]:
     """Problem 404 with ``detail`` in place of the refusal (UserError) of an action on something
     that does not exist: neither ``shown`` in the picture nor ``stored`` in the tables.  Where the
-    database cannot tell, the refusal stands.
+    database does not answer, the refusal stands.
     """
     try:
         yield

@@ -58,7 +58,7 @@ class RouteFinder:
             return snapshot, routes_to(graph, unit_id, rescuer_ids(snapshot), NEAREST)
 
     def _has_kept(self, unit_id: str) -> bool:
-        """True if what was made a moment ago will do; a unit may have come since."""
+        """True if routes of a moment ago will do; a unit may have come since."""
         if self._made is None or time.monotonic() - self._made[0] > KEPT_S:
             return False
         return any(unit.unit_id == unit_id for unit in self._made[1].units)

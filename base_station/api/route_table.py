@@ -22,9 +22,7 @@ _NO_PARAMETERS = "this address takes no parameters"
 
 
 def check_query(connection: HTTPConnection) -> None:
-    """Dependency of every route: a parameter that it does not take is refused, for what was meant
-    by it would not be done.
-    """
+    """Dependency of every route: an unknown parameter is refused, for it would have no effect."""
     known = _query_parameters().get(connection.scope["endpoint"])
     if known is None:  # the console's page, which has no filters
         return

@@ -96,8 +96,8 @@ class Services(LoginServices):
 
     def perform(self, by: str, action: Action, action_id: str = "") -> ActionResult:
         """Have the drive take a person's action, and wait until it is decided and in the log; not
-        for the database, which has it later: who reads that waits (``current_tables``).  Names
-        of the roster in its words go into the log as references.
+        for the database, which has it later: reads of that wait (``current_tables``).  Names of
+        the roster in its texts go into the log as references.
 
         Raises UserError with the reason where the action had no effect.  ``action_id``: as of
         ``OperatorGate``; Problem 422 where the client's key came with another request before.

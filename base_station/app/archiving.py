@@ -1,4 +1,4 @@
-"""Archive of a live station: what copies incidents into it, and finds them there."""
+"""Archive of a live station: copies incidents into it, and finds them there."""
 
 from __future__ import annotations
 

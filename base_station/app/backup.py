@@ -164,8 +164,8 @@ def _audio_files(folder: DataFolder) -> Iterator[Path]:
 
 
 def _rename_handed_over(source: DataFolder, copy: DataFolder) -> None:
-    """Renames what was set aside and was renamed when the other station had it.  Under both
-    names it would be handed over once more, and under the old one erasure would not reach it.
+    """Renames parts that were set aside and were renamed when the other station had them.  Under
+    both names it would be handed over once more, and under the old one erasure would not reach it.
     """
     for handed_over in (source.path / APART).glob(f"*{MERGED_SUFFIX}"):
         now = copy.path / APART / handed_over.name

@@ -1,4 +1,4 @@
-"""Brings into the tables what was decided while their server was away, from the log.
+"""Brings decisions made while the tables' server was away into the tables, from the log.
 
 It is stepped in a process of its own: that takes minutes after an hour of many units.
 """
@@ -28,7 +28,7 @@ class CatchUp:
         projection: SqlProjection,
         prepare: Callable[[], object],
     ) -> None:
-        """``prepare``: brings to the disk what was recorded so far."""
+        """``prepare``: brings recorded data to the disk."""
         self._folder, self._processes = folder, processes
         self._projection, self._prepare = projection, prepare
         self._lock = Lock()  # guards the fields below

@@ -28,7 +28,7 @@ from shared.clock import NS_PER_S, Clock, SystemClock
 from shared.mcap_log import SegmentReader, own_segments
 
 _log = logging.getLogger(__name__)
-_OVERLAP_NS = 60 * NS_PER_S  # longer than what one projection holds
+_OVERLAP_NS = 60 * NS_PER_S  # longer than the time of one projection
 Announce = Callable[[str], None]
 
 

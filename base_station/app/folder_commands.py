@@ -60,7 +60,7 @@ class IncidentCommandContext:
     roster: Roster
     incident: IncidentRow
     people: Mapping[str, Sequence[str]]  # wearers of each unit
-    keeps_result: bool  # what is worked out; else it is gone with the command
+    keeps_result: bool  # in the database; else results are gone with the command
     log: LogFeed
     folder: DataFolder  # that has all but the database
     imports: ImportCatalogue
@@ -100,11 +100,11 @@ def rebuild(
 
 
 def cut_log(data: Path, place: LogPosition, on_progress: Callable[[float], None]) -> None:
-    """Set aside what the log has behind a place, and make the projections again without it."""
+    """Set aside the log behind a place, and make the projections again without it."""
     folder = DataFolder(data)
     lock = folder.lock()
     try:
-        # It must not know what is cut, however this ends.
+        # It must not have events of the cut part, however this ends.
         with open_database(folder.database) as store:
             Records(store, SystemClock()).forget_projections()
         set_aside(folder, place)
@@ -120,10 +120,10 @@ def forget(
     on_progress: Callable[[float], None],
 ) -> ErasureResult:
     """Forget a person (id or name) or an incident (id).  A station that runs on the folder does it
-    itself.  What a person wears is unassigned first.
+    itself.  Units of the person are unassigned first.
 
-    ``confirm`` gets what it will be about and may raise.  Cut short, the station goes on with it
-    when it is started.
+    ``confirm`` gets the subject and may raise.  Cut short, the station goes on with it when it is
+    started.
     """
     folder = DataFolder(data)
     folder.require()

@@ -36,7 +36,7 @@ _TURN_S = 0.02
 
 @foxglove.command()
 def live(data: Data = _DATA, listen: Listen = _LISTEN, insecure: Insecure = False) -> None:
-    """Show what a station on this machine records, until Ctrl-C."""
+    """Show the records of a station on this machine, until Ctrl-C."""
     host, port = _listening_address(listen, insecure=insecure)
     from base_station.foxglove.live import follow  # noqa: PLC0415
     from base_station.storage.data_folder import DataFolder  # noqa: PLC0415

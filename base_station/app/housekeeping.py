@@ -1,4 +1,4 @@
-"""Housekeeping of a live station: what is looked at now and then, beside the engine."""
+"""Housekeeping of a live station: periodic checks beside the engine."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Housekeeping:
             self._submit_actions()
 
     def _submit_actions(self) -> None:
-        """Submit what the station itself has to change in the live state."""
+        """Submit the station's own changes of the live state."""
         parts, live = self._parts, self._parts.live
         self._enrolled.update()
         self._older.look()

@@ -1,4 +1,4 @@
-"""Addresses at which others reach what listens on this machine."""
+"""Addresses at which others reach the servers of this machine."""
 
 from __future__ import annotations
 

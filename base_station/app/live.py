@@ -119,7 +119,7 @@ class _Station:
         end: ShutdownWatchdog,
         closing: ExitStack,
     ) -> None:
-        """Begins to hear and to step; ``closing`` ends everything in its order."""
+        """Begins to receive and to step; ``closing`` ends all parts in their order."""
         self._resources, self._disk = resources, resources.disk
         self._announce, self._manager, self._end = announce, manager, end
         bus, clock = resources.bus, self._disk.clock
@@ -185,7 +185,7 @@ class _Station:
         # Ends behind the engine: the other station gets all.
         self._after_engine = closing.enter_context(ExitStack())
         closing.callback(self._engine.stop)
-        closing.callback(subscription.close)  # first: what still comes is stepped before the end
+        closing.callback(subscription.close)  # first: late records are stepped before the end
         closing.enter_context(self._erasures)
         for thread in (self._reports.backfill, self._downlink):
             thread.start()
@@ -230,7 +230,7 @@ class _Station:
         asyncio.run(serve_until_stopped(self._server, self._on_ready, housekeeping.run))
         return self._restarts.requested
 
-    # ---- what is made
+    # ---- the parts
 
     def _new_side(self) -> HaMode:
         resources, disk = self._resources, self._disk
@@ -346,7 +346,7 @@ class _Station:
         return ha_status is not None and ha_status.view().in_step
 
     def _submit_if_leader(self, by: str, action: Action) -> Future[ActionResult] | None:
-        """A standby does what stands in the other's log."""
+        """None at a standby, whose actions come from the other's log."""
         return self._engine.submit(by, action) if self._side.leads else None
 
     def _note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:

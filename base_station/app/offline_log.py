@@ -58,7 +58,7 @@ class OfflineLog:
 
     folder: DataFolder
     store: Database
-    keeps_result: bool  # what is worked out; else it is gone with the command
+    keeps_result: bool  # in the database; else results are gone with the command
     scratch: Path
     log: LogFeed
     defects: LogDefects

@@ -120,8 +120,8 @@ def rerun(
     on_tracking: Progress,
     on_fusing: Progress,
 ) -> Rerun:
-    """Track and fuse again, and compare with what was shown.  ``out``: where the logs of the
-    tracker are kept, from which an interrupted re-run goes on.
+    """Track and fuse again, and compare with the live result.  ``out``: folder for the logs of
+    the tracker, from which an interrupted re-run goes on.
     """
     retracker = Retracker(out / "retracked", settings)
     wanted = [Retracking(boot, opened.runs[boot.run].rate_hz) for boot in opened.boots]

@@ -1,4 +1,4 @@
-"""Assigns anew who is worn by a record of an earlier version, which has the name in it.
+"""Makes assignments anew that are records of an earlier version, which have the name in them.
 
 Else the station would go on writing that name into the texts of alarms.
 """

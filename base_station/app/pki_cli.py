@@ -1,4 +1,4 @@
-"""``muster pki``: who may take part, and as whom."""
+"""``muster pki``: certificates of those who may take part, and their kinds."""
 
 from __future__ import annotations
 
@@ -241,7 +241,7 @@ def _free_target(
 
 
 def _require_free(path: Path) -> None:
-    """Before anything is issued: what cannot be handed over would stand in the rules."""
+    """Before anything is issued: a certificate that cannot be handed over would be in the rules."""
     from shared.errors import ConfigError  # noqa: PLC0415
     from shared.out_file import writable  # noqa: PLC0415
 

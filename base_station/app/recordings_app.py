@@ -1,4 +1,4 @@
-"""Puts together what pulls one recording beside a running station, whose router it uses."""
+"""Composition of the pull of one recording beside a running station, whose router it uses."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def pull(config: StationConfig, wanted: TransferRequest, show: Show) -> tuple[Pa
 
 
 def _now_ns(records: Records) -> int:
-    """Station time, which goes on from what was recorded where a clock was set back."""
+    """Station time, which goes on from the recorded time where a clock was set back."""
     recorded_ns = max((one.last_ns for one in records.segments()), default=0)
     return SteadyClock(SystemClock(), recorded_ns).utc_ns()
 

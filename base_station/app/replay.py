@@ -49,8 +49,8 @@ def run_replay_station(
 ) -> None:
     """A station that shows one past incident, and writes nothing to the folder.
 
-    It plays what consoles were shown; with ``recompute``, and where the log has nothing of that,
-    everything is decided again.
+    It plays the recorded pictures of consoles; with ``recompute``, and where the log has none, all
+    decisions are made again.
 
     ``archive``: the incident is read there, and the folder is not asked.
     ``incident_id`` may be a file that has one incident.  A live station may be running on the

@@ -40,7 +40,7 @@ def rerun(
         Path | None, typer.Option(help="Folder for the result, not INCIDENT-rerun; goes on in it.")
     ] = None,
 ) -> None:
-    """Track an incident's raw recordings again, fuse again, and compare with what was shown."""
+    """Track an incident's raw recordings again, fuse again, and compare with the live result."""
     # Imported where needed: they take their time, and a wrong option is refused before.
     from base_station.app.offline_rerun import open_rerun  # noqa: PLC0415
     from base_station.app.offline_rerun import rerun as run_again  # noqa: PLC0415

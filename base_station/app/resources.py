@@ -33,7 +33,7 @@ from shared.mcap_log import SegmentPolicy
 
 @dataclass(frozen=True)
 class Resources:
-    """None of them knows what the station does with it."""
+    """None of them depends on the station."""
 
     config: StationConfig
     clock: Clock  # the machine's; the station's own is the disk's

@@ -46,7 +46,7 @@ class Retracking(NamedTuple):
 
 
 class Retracker:
-    """Writes the logs of what comes out into a folder, which it goes on from."""
+    """Writes the logs of the results into a folder, from which it goes on."""
 
     def __init__(self, folder: Path, settings: RetrackSettings) -> None:
         self._folder = folder

@@ -106,7 +106,7 @@ class _StartupServer:
 
     def __init__(self, app: ASGIApp, listening: socket.socket, http: HttpConfig) -> None:
         self._server = ConsoleServer(app, listening.dup(), http.certificate, http.private_key)
-        # Ends with the loop what is under way, as a greeting of TLS; it is no loop of this thread.
+        # Pending work, as a TLS handshake, ends with the loop, which is none of this thread.
         self._runner = asyncio.Runner(loop_factory=asyncio.new_event_loop)
         self._loop = self._runner.get_loop()
         self._started = Event()

@@ -1,4 +1,4 @@
-"""Storage of a live station: the log, the database, and what is made from both."""
+"""Storage of a live station: the log, the database, and data derived from both."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class StationStorage:
 
     @property
     def log(self) -> LogFeed:
-        """Feed of what is written up to the moment of reading."""
+        """Feed of the records that are written up to the moment of reading."""
         return LogFeed(self.folder.log, self.recorder.flush, self.check.recheck)
 
     @property
@@ -122,8 +122,8 @@ class StationStorage:
         other_there: Callable[[], bool],
         erase_audio: EraseAudio,
     ) -> ErasureQueue:
-        """``act`` has the running station forget what it holds in memory, ``save_soon`` save its
-        state, which forgetting has removed.  ``other_there``: the other one of two is reachable.
+        """``act`` makes the running station erase its memory, ``save_soon`` makes it save its
+        state, which the erasure has removed.  ``other_there``: the other one of two is reachable.
         ``erase_audio``: as of ``ErasureService``.
         """
 

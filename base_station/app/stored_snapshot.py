@@ -42,7 +42,7 @@ from shared.errors import StoreError
 from shared.log_on_change import LogOnChange
 from shared.messages.station import Action
 
-_RECENT_NS = 3600 * NS_PER_S  # of trails; what was raised so long before an incident is of it
+_RECENT_NS = 3600 * NS_PER_S  # of trails; alarms raised so long before an incident are of it
 _TRAIL_EVERY_S = 5
 _PUBLISH_EVERY_NS = 2 * NS_PER_S
 _log = logging.getLogger(__name__)
@@ -50,7 +50,7 @@ _STORED = TrustView("red", "as it was last stored; the station is reading its lo
 
 
 class StoredSnapshotSource:
-    """A ``LiveSource``; and an ``OperatorGate`` and a standing that say why nothing can be done."""
+    """A ``LiveSource``; and an ``OperatorGate`` and a status that refuse actions with a reason."""
 
     def __init__(self, roster: Roster, records: Records, clock: Clock, sink: LiveSink) -> None:
         self._roster = roster

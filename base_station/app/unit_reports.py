@@ -23,7 +23,7 @@ class UnitReports:
         )
 
     def report(self, held: Report, in_memory: bool) -> None:
-        """Pass on what the engine has of the units' messages."""
+        """Pass on the engine's report of received messages of units."""
         self._side.note_report()
         self._durable.note_report_received()
         refused = self._recorder.lost + self._missing_count

@@ -18,7 +18,7 @@ Unit = Annotated[str, typer.Argument(help="The unit's id.")]
 
 @unit_tokens.command("list")
 def list_unit_tokens(unit: Unit, data: Path = Path("muster-data")) -> None:
-    """Ids of the unit's tokens, and who made them."""
+    """List ids of the unit's tokens, with the users who made them."""
     from base_station.app.folder_commands import open_accounts  # noqa: PLC0415
 
     with ExitStack() as closing:
@@ -50,7 +50,7 @@ def add_unit_token(
 
 @unit_tokens.command("remove")
 def remove_unit_token(unit: Unit, token_id: str, data: Path = Path("muster-data")) -> None:
-    """End a token: what is posted with it is refused from then on."""
+    """End a token: posts with it are refused from then on."""
     from base_station.app.folder_commands import open_accounts  # noqa: PLC0415
     from shared.errors import UserError  # noqa: PLC0415
 

@@ -15,7 +15,7 @@ from base_station.process import gc_tuning
 from base_station.replay.processes.wire import FrameChannel
 from shared.log import set_up_logging
 
-_NICE = 10  # of copies: what is live goes before; loading is soon over
+_NICE = 10  # of copies: the live station goes before; loading is soon over
 _OOM_SCORE = 500  # of 1,000: where memory ends, it is these that the system ends
 _log = logging.getLogger(__package__)
 
@@ -36,7 +36,7 @@ def serve(control: socket.socket) -> None:
 
 
 def _run_copy(fd: int) -> NoReturn:
-    """Not a way back into what it is a copy of, however it ends."""
+    """It never returns into the code of the process that it is a copy of."""
     from base_station.app.replay_worker import work  # noqa: PLC0415  # loaded already
 
     code = 1
@@ -59,7 +59,7 @@ def _prefer_for_oom_kill() -> None:
 
 
 def main() -> None:
-    # What is to end the station may reach all of its processes; this one ends with the station.
+    # A signal to the station may reach all of its processes; this one ends with the station.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # no process waits for copies

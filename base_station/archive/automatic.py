@@ -1,8 +1,8 @@
 """Copies of closed incidents that the station makes by itself.
 
-The work is done by a process of its own, which reads back what it has written.  What is due stands
-in the database, so that nothing of it is forgotten by a restart; while the archive is away it is
-tried again after pauses that grow.
+The work is done by a process of its own, which reads back what it has written.  Due incidents are
+in the database, so that a restart loses none; while the archive is away it is tried again after
+pauses that grow.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ class AutomaticArchive:
     # ---- in the thread
 
     def _step(self) -> float:
-        """Copy what is due; gives the pause after it."""
+        """Copy due incidents; gives the pause after them."""
         if not self._place.leads():
             return self._look_every_s
         try:
@@ -164,7 +164,7 @@ class AutomaticArchive:
                     self._place.note_damage(what)
         raise StoreError("the process that copies incidents has ended")
 
-    # ---- what is known of it
+    # ---- status
 
     def _note_waiting(self, waiting: int) -> None:
         with self._lock:

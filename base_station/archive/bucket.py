@@ -1,6 +1,6 @@
 """An archive in a bucket that speaks S3.
 
-Who may use it is taken from the environment, as by other programs: AWS_ACCESS_KEY_ID,
+Credentials are taken from the environment, as by other programs: AWS_ACCESS_KEY_ID,
 AWS_SECRET_ACCESS_KEY, AWS_REGION, and AWS_ENDPOINT_URL for another server than Amazon's.
 """
 
@@ -140,6 +140,6 @@ def _is_on_this_machine(endpoint: str) -> bool:
 
 
 def _reason(error: Exception) -> str:
-    """The innermost reason, which comes last but for what helps developers alone."""
+    """The innermost reason, which comes last but for hints to developers."""
     text = str(error).split("\n\nDebug source")[0]
     return text.strip().splitlines()[0][:300]

@@ -25,7 +25,7 @@ _PART_BYTES = 4 << 20
 def defects_of(
     store: ArchiveStore, on_progress: Callable[[float], None]
 ) -> Iterator[tuple[str, str]]:
-    """Incident and what is wrong with its copy, in words; reads all of the archive.
+    """Incident and the faults of its copy, in words; reads all of the archive.
 
     Raises ArchiveError where the archive does not answer.
     """
@@ -42,7 +42,7 @@ def defects_of(
 
 
 def defect_of(store: ArchiveStore, entry: CatalogueEntry, file: ArchivedFile) -> str:
-    """Words for what is wrong with a file, all of which is read; empty: nothing."""
+    """Fault of a file in words, after reading all of it; empty: none."""
     name = name_in_archive(entry.incident_id, file.name)
     size = store.size(name)
     if size != file.size_bytes:

@@ -1,4 +1,4 @@
-"""Copies of incidents into an archive: what is missing there, or is known better since."""
+"""Copies of incidents into an archive: those missing there, or with newer data since."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ class ArchiveCopier:
         )
 
     def _send(self, entry: CatalogueEntry, scratch: Path) -> None:
-        """The entry goes last, when all was read there: what is cut short has none."""
+        """The entry goes last, when all was read there: a copy that is cut short has none."""
         for one in entry.files:
             name = name_in_archive(entry.incident_id, one.name)
             self._archive.put(name, scratch / one.name)
@@ -152,7 +152,7 @@ class ArchiveCopier:
         self._archive.put(name_in_archive(entry.incident_id, ENTRY_NAME), scratch / ENTRY_NAME)
 
     def _pack(self, incident: IncidentRow, known_ns: int, scratch: Path) -> CatalogueEntry:
-        """Make the files of a copy, and the entry that is to say so."""
+        """Make the files of a copy, and its entry."""
         damage: list[str] = []
         records, roster = Records(self._store, self._clock), Roster(self._store, self._clock)
         people = self._mentioned(incident)

@@ -1,4 +1,4 @@
-"""The log of an archived incident, read where it is: what is asked for is fetched, and no more."""
+"""The log of an archived incident, read in place: only requested parts are fetched."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ KEPT = 50  # offered or dismissed ones, newest last; the log and the tables have
 
 
 def note(state: StationState, report: NoteDispatch) -> None:
-    """Take a report; one that is older than what is known changes nothing."""
+    """Take a report; one that is older than the known one changes nothing."""
     for incident_id, incident in state.incidents.items():
         state.incidents[incident_id] = _with_report(incident, report)
     state.closed_incidents = [_with_report(one, report) for one in state.closed_incidents]

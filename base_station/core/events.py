@@ -28,7 +28,7 @@ class Received(msgspec.Struct, frozen=True, gc=False):
     """Message that was decoded."""
 
     t_ns: int  # station time (UTC, never going back) at which it came
-    unit_id: str  # from the key: whose message it is, or to whom a command goes
+    unit_id: str  # from the key: sender of a message, or recipient of a command
     message: Message
     backfilled: bool = False  # fetched later from the unit's journal
 
@@ -113,7 +113,7 @@ _DECISIONS = frozenset(channel.key(STATION_ID) for channel in (FUSED, ALARM))
 
 
 def is_decision(key: str) -> bool:
-    """Tell records that the live station derived from others (positions, alarms) from events."""
+    """Distinguish records derived by the live station (positions, alarms) from events."""
     return key in _DECISIONS
 
 

@@ -15,7 +15,7 @@ OLD_FOR_NS = 600 * NS_PER_S  # so long one is shown as old; then it is not shown
 
 
 def apply(state: StationState, message: ExternalMarkers) -> bool:
-    """Take what another system sent; True where a marker changed."""
+    """Take markers of another system; True where one changed."""
     changed = False
     for marker_id in message.removed:
         changed = state.external.pop(marker_id, None) is not None or changed

@@ -1,8 +1,8 @@
 """Idempotency: a request that its client repeats is done once.
 
-The id of such an action contains the client's key and a digest of the request.  So the log knows
-what was done already, and with it every reader of the log: the station after a restart, and a
-standby that takes over.
+The id of such an action contains the client's key and a digest of the request.  So the log
+shows finished requests, to every reader of the log: the station after a restart, and a standby that
+takes over.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def row_id(by: str, key: str, request: bytes) -> str:
 
 
 def audit_entry_prefixes(by: str, key: str) -> tuple[str, str]:
-    """Beginnings of the audit's entries of what a person did with a key: an action, or a row."""
+    """Beginnings of the ids of audit entries of a user's key: of an action, or of a row."""
     digest = _digest(f"{by} {key}".encode())
     return f"{digest}.", f"added-{digest[:KEY_DIGITS]}"
 

@@ -81,12 +81,12 @@ def follow_person(
         move(state, unit, incident)
     if duty is None:
         accountability.begin(state, unit)
-    else:  # with another unit, which is no word of theirs, and no rest
+    else:  # with another unit, which is neither a PAR answer nor a rest
         unit.duty = duty
 
 
 def _restart(unit: UnitState) -> None:
-    """Forget what counts from the coming to an incident on."""
+    """Reset the values that count from the assignment to an incident on."""
     unit.trails.shown.clear()
     unit.trust = TrustTally()
     unit.place.inside_since_ns = None

@@ -39,7 +39,7 @@ PeopleAction = (
 
 
 def apply_people_action(state: StationState, by: str, action: PeopleAction) -> Iterable[UnitState]:
-    """Apply an action about who is there and accounted for."""
+    """Apply an action about people and their accountability."""
     changed: Iterable[UnitState]
     match action:
         case OpenIncident():

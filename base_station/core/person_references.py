@@ -64,7 +64,7 @@ def without_people(text: str, person_ids: Collection[str], instead: str) -> str:
 
 def without_numbers(text: str) -> str:
     """Text without its numbers, to compare texts that differ only in an amount; the numbers in a
-    reference are of whom it is about.
+    reference name its person, and stay.
     """
     return _NUMBER.sub(lambda found: found[1] or "", text)
 

@@ -1,4 +1,4 @@
-"""The station's pure core: an event in, what follows from it out.
+"""The station's pure core: an event in, its outputs out.
 
 Live and replay step the very same pipeline.  It has no clock (time comes with the events), reads
 no other source, and numbers its own outputs, so that the same events give the same outputs.
@@ -75,8 +75,8 @@ class StationPipeline:
         plans: PlanReader | None = None,
         make_alarms: Callable[[Sequence[AlarmRule]], AlarmManager] = AlarmManager,
     ) -> None:
-        """``fuser_kind``: until the log names another; ``plans``: for who has them read beforehand;
-        ``make_alarms``: for who judges by other thresholds beside.
+        """``fuser_kind``: until the log names another; ``plans``: a reader that has read them
+        before; ``make_alarms``: for a caller that also judges by other thresholds.
         """
         self.state = checkpoint.state if checkpoint is not None else StationState()
         fuser_kind = fuser_named(self.state.fuser) or fuser_kind

@@ -1,4 +1,4 @@
-"""PAR, work and rest of who is on duty in the open incident."""
+"""PAR, work and rest of members on duty in the open incident."""
 
 from __future__ import annotations
 
@@ -102,8 +102,8 @@ def check_in(new: NewCheckIn, station: Station, perform: Perform) -> None:
 
 @router.post("/check-ins/{check_in_id}/undo", status_code=204)
 def undo_check_in(check_in_id: Id, perform: Perform, undo: UndoCheckIn | None = None) -> None:
-    """The PAR stands as if this check-in had not been entered.  What members answered on their own
-    units stays.
+    """Undo a check-in: the PAR is as if it had not been entered.  Answers of members on their own
+    units stay.
     """
     perform(UndoConfirmation(check_in_id, undo.unit_id if undo else ""))
 

@@ -1,4 +1,4 @@
-"""Alarms and what people do about them."""
+"""Alarms and people's actions on them."""
 
 from __future__ import annotations
 

@@ -35,8 +35,8 @@ class CarriedOut(BaseModel):
 
 @router.get("/idempotency-keys/{key}")
 def get_carried_out(key: IdempotencyKey, station: CurrentStation, who: Viewer) -> CarriedOut:
-    """For who had no answer: whether the request with this key, of the same person, was carried
-    out.  404: it was not so far, or it was refused.
+    """For a client without an answer: the action of the request with this key, of the same user.
+    404: it was not carried out so far, or it was refused.
     """
     entry = station.records.audited(audit_entry_prefixes(who.username, key.strip('"')))
     if entry is None:

@@ -67,7 +67,7 @@ Target = Annotated[
 def members_of(target: object, station: Services) -> tuple[str, ...]:
     """Ids of the people who are a crew or on a floor now; empty where the target is neither.
 
-    Whose floor is not known may be on it.
+    A member whose floor is not known may be on it.
     """
     if isinstance(target, CrewTarget):
         return station.roster.crew(target.crew)

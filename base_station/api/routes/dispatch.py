@@ -38,7 +38,7 @@ _ALERT_CONTENT = {one: {"schema": {"type": "string"}} for one in _ALERT_TYPES}
 
 
 class CallSignAnswer(Answer, frozen=True):
-    """A call sign of a dispatch, and what the station knows under that name."""
+    """A call sign of a dispatch, and its crew or units at the station."""
 
     call_sign: str
     words: str

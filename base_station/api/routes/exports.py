@@ -65,7 +65,7 @@ async def export_incident(
     only: Names = (),
     gzip: bool = False,
 ) -> Response:
-    """``kind``: what was shown at the time, or the trails as they are known afterwards; ``only``:
+    """``kind``: trails as shown at the time, or as known afterwards; ``only``:
     units, people or crews, else everyone; ``gzip``: a compressed file, beside which the answer is
     compressed on its way to clients that accept that.
     """
@@ -94,9 +94,9 @@ async def export_incident(
 async def export_whole_incident(
     incident_id: Id, station: CurrentStation, who: Viewer, radio: bool = False
 ) -> Response:
-    """All of the incident as one MCAP file that stands alone: what was recorded, shown and decided,
-    plan, pins, thresholds, the people in it and the files that were brought in.  With ``radio``, by
-    a commander, with the audio of the radio channels.  ``muster base replay FILE`` shows it.
+    """All of the incident as one MCAP file that stands alone: records, pictures of consoles,
+    decisions, plan, pins, thresholds, people and imported files.  With ``radio``, by a commander,
+    with the audio of the radio channels.  ``muster base replay FILE`` shows it.
     """
     if radio and (who.role < Role.COMMANDER or not scope_covers(who, ("radio",))):
         raise Problem(403, "The audio of the radio is for commanders, and tokens with scope radio.")
@@ -146,7 +146,7 @@ def _begun(
     kind: TrailKind,
     selection: TrackSelection,
 ) -> tuple[Exporter, Iterator[bytes]]:
-    """The exporter, and what it writes; whatever is refused is refused here."""
+    """The exporter, and its tracks; raises all problems of the request."""
     try:
         exporter = exporter_of(format_name)
     except UserError as error:

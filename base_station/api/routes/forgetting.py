@@ -1,4 +1,4 @@
-"""Personal data goes; that it went, and who wished it, stays in the audit."""
+"""Erasure of personal data; the fact, and the user who requested it, stay in the audit."""
 
 from __future__ import annotations
 

@@ -220,7 +220,7 @@ def incident_alarms(
 
 
 def _closed_since(station: Services, incident_id: str) -> IncidentAnswer:
-    """For who repeats the request after the incident's end: only the tables have it."""
+    """For a request that is repeated after the incident's end: only the tables have it."""
     station.projection.flush()
     incident = station.records.incident(incident_id)
     if incident is None:

@@ -1,4 +1,4 @@
-"""Logging in and out, who one is, and going on at the other station."""
+"""Login, logout, the present user, and continuation at the other station."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ router = APIRouter(tags=["incidents"])
 
 
 class Member(Answer, frozen=True):
-    """A unit in an incident, with who wears it."""
+    """A unit in an incident, with its wearer."""
 
     unit_id: str
     person_id: str | None  # None: it is not worn

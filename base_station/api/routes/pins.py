@@ -1,4 +1,4 @@
-"""Pins and beacons: what is known of where people were, set, moved and removed."""
+"""Pins and beacons: known places of people, set, moved and removed."""
 
 from __future__ import annotations
 
@@ -86,14 +86,14 @@ class BeaconForm(Form):
     incident_id: PersonIdText | None = None  # on whose site; None: of the only open one
 
 
-# What one that is moved may keep; its view calls them the same.
+# Fields that a moved one may keep; they have the same names in its view.
 _PIN_MAY_KEEP = frozenset({"t_ms", "std_m", "floor", "heading_rad", "heading_std_rad", "note"})
 _BEACON_MAY_KEEP = frozenset({"label", "floor", "std_m", "reach_m"})
 
 
 @router.get("/pins")
 def list_pins(station: Station, _: Viewer) -> list[PinView]:
-    """In the order of setting, with what became of each."""
+    """In the order of setting, each with its verdict."""
     return list(station.picture().pins)
 
 

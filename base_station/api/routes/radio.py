@@ -85,8 +85,8 @@ async def radio_audio(
     from_ms: AtMs,
     length_ms: LengthMs,
 ) -> Response:
-    """A window as Opus in Ogg, an hour at most, and no more than the incident.  Second for second
-    it is that of the incident: what was not recorded is silent.  It can be asked for in ranges.
+    """A window as Opus in Ogg, an hour at most, and no more than the incident.  It has the
+    incident's time, second for second: unrecorded times are silent.  Ranges can be requested.
     """
     window = Window(from_ms * NS_PER_MS, (from_ms + length_ms) * NS_PER_MS)
     content = await run_in_threadpool(_audio, station, incident_id, channel, window)

@@ -129,7 +129,7 @@ def remove_unit_token(unit_id: UnitId, token_id: Id, station: Station, who: Admi
 
 
 def _intake_for(unit_id: str, station: Services, who: Viewer) -> SampleIntake:
-    """Intake for who may post samples of this unit: the unit itself, or an administrator."""
+    """Intake for those who may post samples of this unit: the unit itself, or an administrator."""
     if who.unit_id and who.unit_id != unit_id:
         raise Problem(403, f"This token is for samples of {who.unit_id}, not of {unit_id}.")
     if not who.unit_id:

@@ -1,4 +1,4 @@
-"""Timeline of one unit: what it measured and stated over a span, as columns for charts."""
+"""Timeline of one unit: measured and stated values over a span, as columns for charts."""
 
 from __future__ import annotations
 

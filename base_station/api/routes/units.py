@@ -132,7 +132,7 @@ def _registered_or_404(station: Services, unit_id: str) -> UnitView:
 
 
 def _unit_as_decided(station: Services, unit_id: str) -> UnitAnswer:
-    """As was decided.  What the unit has described itself as is no part of that, and comes from the
+    """As in the live picture.  The unit's description is no part of that, and comes from the
     database, as far as that has it now.
     """
     view = _registered_or_404(station, unit_id)

@@ -85,7 +85,7 @@ def remove_user(username: Username, station: Logins, who: Administrator) -> None
 
 @router.delete("/users/{username}/sessions", status_code=204)
 def end_sessions(username: Username, station: Logins, who: Administrator) -> None:
-    """Everybody who is logged in as this user has to log in again; tokens stay."""
+    """End all sessions of this user, who has to log in again; tokens stay."""
     station.accounts.end_sessions(username)
     station.records.audit(who.username, "EndedSessions", username)
 

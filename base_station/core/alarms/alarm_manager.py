@@ -1,6 +1,6 @@
 """Alarm manager: raises, acknowledges and resolves alarms, and reports each transition.
 
-A rule judges; the manager decides what becomes of the alarm.  It keeps an alarm from flapping
+A rule judges; the manager decides on the alarm.  It keeps an alarm from flapping
 (evidence must stay clear for a time), never resolves one because time passed without messages, and
 keeps a latched one until a person resolves it.  A rule that fails is reported and the others
 go on.
@@ -64,7 +64,7 @@ class AlarmManager:
     def review(
         self, state: StationState, unit: UnitState, came: type[Message] | None = None
     ) -> Iterator[Alarm]:
-        """Let the rules judge the unit as it is now: those that heed what just came, or all."""
+        """Let the rules judge the unit as it is now: those triggered by the new message, or all."""
         for rule in self._rules if came is None else self._rules_by_message.get(came, self._rules):
             if not (unit.registered or rule.applies_to_unregistered):
                 continue
@@ -100,8 +100,8 @@ class AlarmManager:
         return bool(self._rules_by_message.get(came, self._rules))
 
     def report_problem(self, state: StationState, part: str, text: str) -> Iterator[Alarm]:
-        """A part of the station itself fails, or fails in another way, which is more than to say
-        less or another number; without a text, it is well again.
+        """A part of the station itself fails, or fails in another way: a shorter text or other
+        numbers are no other way.  Without a text, it is well again.
         """
         key = f"{STATION_RULE}|{part}"
         current = state.alarms.get(key)
@@ -315,7 +315,7 @@ def _clear(state: StationState, rule: AlarmRule, alarm: Alarm, clear: Clear) -> 
 def _resolve(state: StationState, alarm: Alarm, by: str) -> Alarm:
     alarm.state, alarm.by = AlarmState.RESOLVED, by
     alarm.mark_changed(state.t_ns)
-    as_it_ended = msgspec.structs.replace(alarm)  # what is found later changes the newest alone
+    as_it_ended = msgspec.structs.replace(alarm)  # later findings change the newest alone
     state.history = [*state.history[1 - HISTORY :], as_it_ended]
     return alarm
 

@@ -168,7 +168,7 @@ def note_reply(
 
 
 def note_outputs(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
-    """The unit has described itself: whether it can notify its wearer of what is still open."""
+    """The unit has described itself: whether it can notify its wearer of open commands."""
     for command in state.commands.values():
         delivery = command.deliveries.get(unit.unit_id)
         if delivery is None or delivery.can_be_notified == unit.can_be_notified:
@@ -190,9 +190,9 @@ def expire(state: StationState) -> Iterator[SentCommand]:
 
 
 def erase_names(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
-    """Erase acknowledgements of this unit's wearers, and texts to them.  Of a message nothing is
-    left then: for whom it has not reached its time is over.  Texts to others may name them: the
-    words go of what has reached all whom it goes to.
+    """Erase acknowledgements of this unit's wearers, and texts to them.  A message to them
+    ends for those whom it has not reached.  Texts to others may name them: texts that have reached
+    all recipients are erased, too.
     """
     for command in state.commands.values():
         delivery, not_reached = command.deliveries.get(unit.unit_id), _undelivered(command)
@@ -305,7 +305,7 @@ def _delivery(
 
 
 def _undelivered(command: SentCommand) -> list[Delivery]:
-    """To whom it is still on its way, as far as is known."""
+    """Recipients to whom it is still on its way, as far as is known."""
     return [one for one in command.deliveries.values() if command.state_of(one) in _NOT_RECEIVED]
 
 

@@ -1,7 +1,7 @@
 """Ends of orders: sent to a unit that may still notify its wearer of an order that is over.
 
 An order is over for a unit when its answer by radio was entered, or when its incident was closed.
-What the wearer has answered, and what has expired, the unit knows by itself.
+The unit itself knows of answers of the wearer and of expired orders.
 """
 
 from __future__ import annotations

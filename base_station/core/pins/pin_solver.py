@@ -66,7 +66,7 @@ class PathSolver:
         return Solution({unit_id: solution.paths[unit_id]}, verdicts)
 
     def alone(self, state: StationState, unit_id: str, history: PathHistory) -> SmoothedPath:
-        """A unit's path by all that is known of it but its meetings; the same at each of them."""
+        """A unit's path by all evidence but its meetings; the same at each of them."""
         if unit_id not in self._alone:
             places = own_places(state, unit_id, history)
             self._alone[unit_id] = self.solve(state, unit_id, places).paths[unit_id]

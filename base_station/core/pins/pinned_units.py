@@ -1,7 +1,7 @@
-"""Units whose past has pins: a second fuser beside the first, which knows of the pins.
+"""Units whose past has pins: a second fuser beside the first, which uses the pins.
 
-The first fuser goes on as if there were no pin, so that taking the last one away leaves exactly
-what would have been without.  The second begins where the solution of the whole past ends, again
+The first fuser goes on as if there were no pin, so that removing the last one gives exactly the
+state without pins.  The second begins where the solution of the whole past ends, again
 at every change of a pin.
 """
 
@@ -40,8 +40,8 @@ class PinnedUnits:
         unit.trails.unpinned = None
 
     def solver(self, grid: FloorGrid | None) -> PathSolver:
-        """Solver for the evidence as it is now; a new one is needed after a change.  ``grid``: what
-        stands in the way on the site.
+        """Solver for the evidence as it is now; a new one is needed after a change.  ``grid``:
+        walls of the site.
         """
         return PathSolver(self._smoother, grid)
 
