@@ -152,7 +152,7 @@ def _remove_taken_out(copy: DataFolder) -> None:
 
 
 def _remove_old_audio(source: DataFolder, copy: DataFolder) -> None:
-    """What the station has deleted by its age is not kept here either."""
+    """Remove audio that the station has deleted by its age."""
     for path in _audio_files(copy):
         if not (source.path / path.relative_to(copy.path)).exists():
             path.unlink()

@@ -178,7 +178,7 @@ class ImportFolder:
         return {name: path for name, path in paths.items() if path.is_file()}
 
     def file(self, incident_id: str, name: str) -> Path:
-        """Where a file is, or would be."""
+        """Path of a file, present or not."""
         return self.path / incident_id / name
 
     @staticmethod
