@@ -63,6 +63,8 @@ class Summary(msgspec.Struct, frozen=True):
     people: tuple[PersonSummary, ...]
     problems: tuple[str, ...]  # of the station's health, as sentences
     waiting: int  # events that are not acknowledged
+    lat_deg: float | None = None  # of the station's site, where that has an anchor
+    lon_deg: float | None = None
 
 
 class AlarmEvent(msgspec.Struct, frozen=True, tag="alarm"):

@@ -31,10 +31,12 @@ class _Assets(StaticFiles):
         return response
 
 
-def serve_console(app: FastAPI) -> None:
-    """Add ``/`` and the files below it; to be called after every other route was added."""
+def serve_console(app: FastAPI, name: str = "index.html") -> None:
+    """Add ``/``, which is the page ``name``, and the files below it; to be called after every other
+    route was added.
+    """
     with as_file(files("base_station") / "console" / "dist") as dist:
-        page = Path(dist) / "index.html"
+        page = Path(dist) / name
     if not page.is_file():
 
         @app.get("/", include_in_schema=False)
@@ -42,12 +44,12 @@ def serve_console(app: FastAPI) -> None:
             return HTMLResponse(_NOT_BUILT, 503)
 
         return
-    serve_built(app, page.parent)
+    serve_built(app, page)
 
 
-def serve_built(app: FastAPI, dist: Path) -> None:
-    """The console as it lies in that folder."""
-    page = dist / "index.html"
+def serve_built(app: FastAPI, page: Path) -> None:
+    """The page with all that lies beside it."""
+    dist = page.parent
 
     @app.get("/", include_in_schema=False)
     def console() -> FileResponse:

@@ -62,6 +62,7 @@ def run_replay_station(
         listening = closing.enter_context(bind(*host_and_port(config.http.listen)))
         if archive is not None:
             offline_log = open_archived_log(open_store(archive), incident_id, closing, announce)
+            data = offline_log.folder.path  # radio audio is not in the archive
         else:
             incident_id, data = named_incident(incident_id, config.data)
             offline_log = open_offline_log(

@@ -9,6 +9,7 @@ export default defineConfig({
     assetsInlineLimit: 0, // a data: address would need a wider content policy
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 600,
+    rolldownOptions: { input: ["index.html", "department.html"] }, // of a station, of a department
   },
   test: { include: ["tests/**/*.test.ts"], css: { include: [/colours\.css/] } },
 });

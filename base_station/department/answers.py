@@ -22,6 +22,8 @@ class ReportingStationView(Answer, frozen=True):
     missing: int  # events that were lost on the way: more than none is to be looked into
     clock_ahead_ms: int  # of its clock, against the department's
     problems: tuple[str, ...]
+    lat_deg: float | None  # of its site, where that has an anchor
+    lon_deg: float | None
 
 
 class DepartmentIncidentView(Answer, frozen=True):
@@ -63,6 +65,7 @@ class DepartmentView(Answer, frozen=True):
     open_alarms: int  # all of them
     people: int
     problems: tuple[str, ...]  # sentences for a person
+    has_archive: bool  # past incidents can be opened
 
 
 class DepartmentPersonView(Answer, frozen=True):
@@ -108,3 +111,11 @@ class DepartmentEventView(Answer, frozen=True):
     t_ms: int  # of the event, by the department's clock
     received_ms: int
     text: str
+
+
+class StartedReplay(Answer, frozen=True):
+    """A past incident in a console of its own, on this machine."""
+
+    port: int
+    username: str
+    password: str

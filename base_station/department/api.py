@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
-from importlib.resources import as_file, files
-from pathlib import Path
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, FastAPI, Query
+from fastapi import APIRouter, Depends, FastAPI, Query, Request
+from pydantic import Field
 from starlette.requests import HTTPConnection
 
 from base_station.api.app import add_request_handling
-from base_station.api.authentication import Viewer, check_leads, check_origin
-from base_station.api.console_files import serve_built
+from base_station.api.authentication import Commander, Viewer, check_leads, check_origin
+from base_station.api.console_files import serve_console
 from base_station.api.document import operation_id
-from base_station.api.forms import Limit
-from base_station.api.problems import handle_problems
+from base_station.api.forms import Form, Limit
+from base_station.api.problems import Problem, handle_problems
 from base_station.api.route_table import DOCUMENT_PATH, PREFIX
 from base_station.api.routes import login, users
 from base_station.api.services import LoginServices
@@ -25,7 +24,9 @@ from base_station.department.answers import (
     DepartmentEventView,
     DepartmentPeopleView,
     DepartmentView,
+    StartedReplay,
 )
+from base_station.department.archive_replays import ArchiveReplays
 from base_station.department.views import DepartmentViews, PeopleQuery
 
 _SEARCH_MAX = 80
@@ -36,6 +37,7 @@ router = APIRouter(prefix="/department", tags=["live"])
 @dataclass(frozen=True, kw_only=True)
 class DepartmentServices(LoginServices):
     views: DepartmentViews
+    replays: ArchiveReplays
 
 
 def _views_of(connection: HTTPConnection) -> DepartmentViews:
@@ -45,6 +47,13 @@ def _views_of(connection: HTTPConnection) -> DepartmentViews:
 
 Views = Annotated[DepartmentViews, Depends(_views_of)]
 Filter = Annotated[str, Query(max_length=_SEARCH_MAX)]
+
+
+class PastIncident(Form):
+    """An incident that a station has closed."""
+
+    station: Annotated[str, Field(max_length=_SEARCH_MAX)]
+    incident_id: Annotated[str, Field(max_length=_SEARCH_MAX)]
 
 
 @router.get("")
@@ -78,6 +87,19 @@ def list_department_events(
     return list(views.events(before, limit))
 
 
+@router.post("/replays")
+def open_past_incident(
+    wanted: PastIncident, connection: Request, views: Views, _: Commander
+) -> StartedReplay:
+    """Show a past incident from the archive; answered when browsers can connect."""
+    if not views.has_archive:
+        raise Problem(404, "This department has no archive: set place in [archive].")
+    if not views.is_past(wanted.station, wanted.incident_id):
+        raise Problem(404, "No station has reported that this incident is closed.")
+    services: DepartmentServices = connection.app.state.services
+    return services.replays.open(wanted.station, wanted.incident_id)
+
+
 def create_department_app(services: DepartmentServices) -> FastAPI:
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -99,6 +121,5 @@ def create_department_app(services: DepartmentServices) -> FastAPI:
     handle_problems(app, lambda _: "")
     for one in (login.router, users.router, router):
         app.include_router(one, prefix=PREFIX)
-    with as_file(files("base_station.department") / "page") as page:
-        serve_built(app, Path(page))
+    serve_console(app, "department.html")
     return app

@@ -4,8 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
 
 from base_station.config import BusConfig, HttpConfig, ServerConfig
+from shared.config import Within
+
+
+@dataclass(frozen=True, slots=True)
+class ArchiveConfig:
+    """Archive of the stations' past incidents, each station's below its name."""
+
+    place: str = ""  # a folder, or s3://BUCKET/PLACE; empty: past incidents are not opened here
+    first_port: Annotated[int, Within(1, 65_000)] = 8091  # of replays, one each
+    replays: Annotated[int, Within(1, 50)] = 4  # at once; one more ends the oldest
 
 
 def _bus() -> BusConfig:
@@ -23,3 +34,4 @@ class DepartmentServerConfig(ServerConfig):
     data: Path = Path("muster-department")  # database, certificates and first login
     bus: BusConfig = field(default_factory=_bus)  # where stations connect
     http: HttpConfig = field(default_factory=_http)
+    archive: ArchiveConfig = field(default_factory=ArchiveConfig)

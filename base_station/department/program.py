@@ -12,6 +12,7 @@ from base_station.app.console_presence import ConsolePresence
 from base_station.app.factories import announce_first_login
 from base_station.config import host_and_port
 from base_station.department.api import DepartmentServices, create_department_app
+from base_station.department.archive_replays import ArchiveReplays
 from base_station.department.config import DepartmentServerConfig
 from base_station.department.intake import ReportIntake
 from base_station.department.live_picture import LivePicture
@@ -75,13 +76,23 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
                 yield from part.problems()
 
         views = DepartmentViews(
-            picture, tables, standing, intake, clock, lambda: _enrolled(pki), problems
+            picture,
+            tables,
+            standing,
+            intake,
+            clock,
+            lambda: _enrolled(pki),
+            problems,
+            has_archive=config.archive.place != "",
         )
+        replays = ArchiveReplays(config.archive, config.http)
+        closing.callback(replays.close)
         services = DepartmentServices(
             accounts=accounts,
             records=records,
             secure=config.http.certificate is not None,
             views=views,
+            replays=replays,
         )
         app = create_department_app(services)
         server = ConsoleServer(

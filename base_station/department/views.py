@@ -58,8 +58,11 @@ class DepartmentViews:
         clock: Clock,
         enrolled: Callable[[], Collection[str]],
         problems: Callable[[], Iterable[str]],
+        *,
+        has_archive: bool,
     ) -> None:
         """``enrolled``: stations with a certificate; ``problems``: of the department itself."""
+        self.has_archive = has_archive
         self._picture, self._tables, self._intake = picture, tables, intake
         self._standing = standing
         self._clock, self._enrolled, self._problems = clock, enrolled, problems
@@ -78,6 +81,7 @@ class DepartmentViews:
             open_alarms=standing.open_alarms,
             people=sum(one.people for one in stations),
             problems=(*self._problems(), *self._problems_of(pictures, standing.missing)),
+            has_archive=self.has_archive,
         )
 
     def people(self, wanted: PeopleQuery) -> DepartmentPeopleView:
@@ -115,6 +119,11 @@ class DepartmentViews:
             for row in self._tables.events(before, limit)
         )
 
+    def is_past(self, station: str, incident_id: str) -> bool:
+        """True if the station has reported that the incident is closed.  Raises StoreError."""
+        incident = self._tables.incident(station, incident_id)
+        return incident is not None and incident.closed_ms is not None
+
     # ---- stations
 
     def _of(self, station: str) -> Iterator[StationPicture]:
@@ -142,6 +151,8 @@ class DepartmentViews:
                 missing=missing.get(name, 0),
                 clock_ahead_ms=0 if newest is None else newest.offset_ms,
                 problems=() if newest is None else newest.summary.problems,
+                lat_deg=None if newest is None else newest.summary.lat_deg,
+                lon_deg=None if newest is None else newest.summary.lon_deg,
             )
 
     def _state(self, picture: StationPicture | None) -> str:

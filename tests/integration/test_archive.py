@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 from typing import Any
+from urllib.error import URLError
 
 import pytest
 from sqlalchemy import select
@@ -18,6 +19,10 @@ from base_station.app.factories import project_whole_log
 from base_station.archive.entry import CONSOLE_NAME, ENTRY_NAME, LOG_NAME, require_entry
 from base_station.archive.store import open_store
 from base_station.cli import app
+from base_station.config import HttpConfig
+from base_station.department.answers import StartedReplay
+from base_station.department.archive_replays import ArchiveReplays
+from base_station.department.config import ArchiveConfig
 from base_station.engine.feed import LogFeed
 from base_station.replay.recorded_player import RecordedPlayer
 from base_station.storage.db.archived import ArchivedCopies
@@ -34,12 +39,14 @@ from shared.messages.station import Assign, CloseIncident, OpenIncident, SetPlan
 from tests.golden.test_recorded_console import people, shown_at
 from tests.integration.test_incident_file import PEOPLE
 from tests.rig.bucket_server import ADDRESS, BucketServer, bucket_server
+from tests.rig.console_client import Api
 from tests.rig.console_log import with_console
 from tests.rig.counting_store import CountingStore
 from tests.rig.live_station import Screen, make_pipeline
 from tests.rig.round_walk import PLAN, Walk
 from tests.rig.served_station import snapshot
 from tests.rig.station_command import Browser, Command
+from tests.rig.station_process import free_port
 from tests.rig.station_script import START_NS, Script
 from tests.rig.waiting import until
 
@@ -346,3 +353,27 @@ def test_whoever_is_forgotten_is_gone_from_the_copy_with_the_next_one(
     assert not any(b"Ada" in file.read_bytes() for file in disk.rglob("*.*"))
     with Store(data / "station.sqlite") as store, store.read() as session:
         assert "mayday" in session.scalars(select(AlarmRow.rule)).all()
+
+
+@pytest.mark.slow
+def test_a_department_opens_past_incidents_and_one_more_than_fits_ends_the_oldest(
+    data: Path, tmp_path: Path
+) -> None:
+    archive = tmp_path / "archive"
+    succeeded("archive", "copy", archive / "engine-7", "--data", data)
+    config = ArchiveConfig(place=str(archive), first_port=free_port(), replays=1)
+    with closing(ArchiveReplays(config, HttpConfig())) as replays:
+        first = replays.open("engine-7", "i1")
+        assert replays.open("engine-7", "i1") == first  # it runs already
+        assert shown_by(first) == ["Mill Lane"]
+        second = replays.open("engine-7", "i2")
+        assert (second.port, shown_by(second)) == (first.port, ["Harbour"])
+        with pytest.raises(ArchiveError, match=r"did not start: .*no complete copy of i3"):
+            replays.open("engine-7", "i3")
+    with pytest.raises(URLError):
+        shown_by(second)
+
+
+def shown_by(replay: StartedReplay) -> list[str]:
+    api = Api(f"http://127.0.0.1:{replay.port}", replay.username, replay.password)
+    return [one["name"] for one in api.get("/incidents")]

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from tests.rig.console_types import ANSWERS_TS, WIRE_TS, answer_types, wire_types
+from tests.rig.console_types import (
+    ANSWERS_TS,
+    DEPARTMENT_TS,
+    WIRE_TS,
+    answer_types,
+    department_types,
+    wire_types,
+)
 from tests.rig.live_page import LIVE_MD, LIVE_SCHEMA, page, schema_file
 
 
@@ -16,6 +23,8 @@ def test_types_of_the_console_are_those_of_the_station() -> None:
 def test_types_of_requests_and_answers_are_those_of_the_api() -> None:
     written = ANSWERS_TS.read_text(encoding="utf-8")
     assert written == answer_types(), "run: python -m tests.rig.console_types"
+    written = DEPARTMENT_TS.read_text(encoding="utf-8")
+    assert written == department_types(), "run: python -m tests.rig.console_types"
 
 
 def test_the_page_about_the_websocket_is_that_of_the_messages() -> None:

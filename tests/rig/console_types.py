@@ -1,5 +1,6 @@
-"""Generator of the console's types: ``wire.ts`` from the structs of the live picture, and
-``answers.ts`` from the OpenAPI document; with the page about the WebSocket, ``docs/live.md``.
+"""Generator of the console's types: ``wire.ts`` from the structs of the live picture,
+``answers.ts`` from the OpenAPI document, and those of the department's page; with ``docs/live.md``,
+the page about the WebSocket.
 
 ``python -m tests.rig.console_types`` writes the files; a test fails while they are not current.
 """
@@ -9,11 +10,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import ModuleType
 from typing import Any, Final
 
 import msgspec
 from msgspec import inspect
 
+from base_station.department import answers as department_answers
 from base_station.views import wire
 from shared.clock import ManualClock
 from tests.rig.desk_station import DeskStation
@@ -22,6 +25,7 @@ from tests.rig.live_page import LIVE_MD, LIVE_SCHEMA, page, schema_file
 _SOURCES: Final = Path(__file__).resolve().parents[2] / "base_station/console/src"
 WIRE_TS: Final = _SOURCES / "wire.ts"
 ANSWERS_TS: Final = _SOURCES / "answers.ts"
+DEPARTMENT_TS: Final = _SOURCES / "department/answers.ts"
 _HEAD: Final = """\
 /** Messages of the station to the console, over the WebSocket.
  *
@@ -48,6 +52,13 @@ _ANSWERS_HEAD: Final = """\
  * `python -m tests.rig.console_types`.
  */
 """
+_DEPARTMENT_HEAD: Final = """\
+/** Answers of a department's API.
+ *
+ * Generated from `base_station/department/answers.py`, which describes every field; after a change
+ * there run `python -m tests.rig.console_types`.
+ */
+"""
 _SCHEMA_NAMES: Final = {
     "integer": "number",
     "number": "number",
@@ -67,15 +78,24 @@ _NAMES: Final = {
 
 def wire_types() -> str:
     """Return the content of ``wire.ts``."""
+    return "\n".join([_HEAD, *_declarations(wire), _TAIL])
+
+
+def department_types() -> str:
+    """Return the content of ``department/answers.ts``."""
+    return "\n".join([_DEPARTMENT_HEAD, *_declarations(department_answers)])
+
+
+def _declarations(module: ModuleType) -> list[str]:
+    """Of its public structs."""
     structs = [
         item
-        for item in vars(wire).values()
+        for item in vars(module).values()
         if isinstance(item, type)
-        if issubclass(item, msgspec.Struct) and item.__module__ == wire.__name__
+        if issubclass(item, msgspec.Struct) and item.__module__ == module.__name__
         if not item.__name__.startswith("_")
     ]
-    declared = map(_declaration, inspect.multi_type_info(structs))
-    return "\n".join([_HEAD, *declared, _TAIL])
+    return [_declaration(one) for one in inspect.multi_type_info(structs)]
 
 
 def _declaration(struct: inspect.Type) -> str:
@@ -184,6 +204,7 @@ def main() -> None:
     """Write the files."""
     WIRE_TS.write_text(wire_types(), encoding="utf-8")
     ANSWERS_TS.write_text(answer_types(), encoding="utf-8")
+    DEPARTMENT_TS.write_text(department_types(), encoding="utf-8")
     LIVE_MD.write_text(page(), encoding="utf-8")
     LIVE_SCHEMA.write_text(schema_file(), encoding="utf-8")
 

@@ -57,13 +57,16 @@ class DepartmentProcess:
     def printed(self) -> str:
         return self._output.read_text(errors="replace")
 
+    def login(self) -> tuple[str, str]:
+        """Name and password that it made at its first start, changed as it asks."""
+        return first_login(self._url, self._data / "first-login.txt")
+
     def get(self, path: str) -> Any:
         """Answer of the API to the administrator."""
 
         def ask() -> Any:
             if self._api is None:
-                login = first_login(self._url, self._data / "first-login.txt")
-                self._api = Api(self._url, *login)
+                self._api = Api(self._url, *self.login())
             return self._api.get(path)
 
         return ask() if self._network is None else self._network.call(ask)

@@ -19,25 +19,18 @@ import msgspec
 
 from base_station.department_wire import (
     AlarmEvent,
-    Event,
-    EventBatch,
-    EventReceipt,
     IncidentEvent,
     IncidentSummary,
     PersonEvent,
     PersonSummary,
     PlaceSummary,
     Summary,
-    pack,
-    unpack,
 )
-from shared.bus_zenoh import UnitEndpoint, ZenohBus
-from shared.channels import Qos, department_events_key, department_summary_key
 from shared.enrolment import read_enrolment
+from tests.rig.department_reporter import DepartmentReporter
 from tests.rig.waiting import until
 
 _ALARM_EVERY_S = 10
-_TIMEOUT_S = 10.0
 _OPENED_AT_ONCE = 16
 _CLOCK_PERIOD_MS = 10_000_000  # so that it is exact as a position
 
@@ -56,30 +49,29 @@ def station_name(number: int) -> str:
 
 def clock_ms() -> float:
     """UTC within a period of some hours."""
-    return float(_now_ms() % _CLOCK_PERIOD_MS)
+    return float(DepartmentReporter.now_ms() % _CLOCK_PERIOD_MS)
 
 
 class SimulatedStation:
     def __init__(self, enrolment: Path, units: int, closing: ExitStack) -> None:
-        made = read_enrolment(enrolment)
-        self.name, self._units = made.name, units
-        self._bus = ZenohBus(UnitEndpoint(made.connect, made.identity))
-        closing.callback(self._bus.close)
-        self._seq = 0
+        self._reporter = DepartmentReporter(read_enrolment(enrolment))
+        closing.callback(self._reporter.close)
+        self.name, self._units = self._reporter.name, units
         self.alarms = 0
-        self._opened_ms = _now_ms()
+        self._opened_ms = DepartmentReporter.now_ms()
 
+    @property
     def is_heard(self) -> bool:
-        return self._bus.has_subscriber(department_summary_key(self.name))
+        return self._reporter.is_heard
 
     def begin(self) -> None:
         """Open an incident and name everybody."""
         incident = IncidentEvent(self._incident_id, "Bench", self._opened_ms, None)
         people = [PersonEvent(f"p{n}", f"Person {n}", "Crew", "") for n in range(self._units)]
-        self._hand_over([incident, *people])
+        self._reporter.hand_over(incident, *people)
 
     def publish_summary(self) -> None:
-        now_ms = _now_ms()
+        now_ms = DepartmentReporter.now_ms()
         summary = Summary(
             epoch=1,
             t_ms=now_ms,
@@ -90,14 +82,14 @@ class SimulatedStation:
             problems=(),
             waiting=0,
         )
-        self._bus.publish(department_summary_key(self.name), pack(summary), Qos.LIVE)
+        self._reporter.publish(summary)
 
     def raise_alarm(self) -> None:
         self.alarms += 1
-        now_ms = _now_ms()
+        now_ms = DepartmentReporter.now_ms()
         alarm_id, unit_id = f"fall|{self.alarms}", f"FF-{self.alarms % self._units:03}"
-        self._hand_over(
-            [AlarmEvent(alarm_id, "fall", unit_id, 1, "raised", "", "fell", "", now_ms, now_ms)]
+        self._reporter.hand_over(
+            AlarmEvent(alarm_id, "fall", unit_id, 1, "raised", "", "fell", "", now_ms, now_ms)
         )
 
     @property
@@ -121,21 +113,6 @@ class SimulatedStation:
             par_due_ms=now_ms + 600_000,
         )
 
-    def _hand_over(self, bodies: list[AlarmEvent | IncidentEvent | PersonEvent]) -> None:
-        """Until there is a receipt, as a station does."""
-        after_seq = self._seq
-        events = []
-        for body in bodies:
-            self._seq += 1
-            event_id = f"{self.name}/{self._seq}"
-            events.append(Event(self._seq, event_id, _now_ms(), msgspec.Raw(pack(body))))
-        batch = pack(EventBatch(1, _now_ms(), after_seq, tuple(events)))
-        until(lambda: self._stored_seq(batch) >= self._seq, "a receipt")
-
-    def _stored_seq(self, batch: bytes) -> int:
-        replies = self._bus.query(department_events_key(self.name), batch, _TIMEOUT_S)
-        return max((unpack(one, EventReceipt).stored_seq for one in replies), default=0)
-
 
 def main(folder: Path, units: int) -> None:
     """Until its standard input ends."""
@@ -153,8 +130,8 @@ def main(folder: Path, units: int) -> None:
                 lambda path: SimulatedStation(path, units, closing), sorted(folder.glob("*.toml"))
             )
         )
+        until(lambda: all(one.is_heard for one in stations), "the department hears all")
         for station in stations:
-            until(station.is_heard, f"the department hears {station.name}")
             station.begin()
         began_s, turn, summaries = time.monotonic(), 0, 0
         while not ended.is_set():
@@ -170,10 +147,6 @@ def main(folder: Path, units: int) -> None:
         took_s = time.monotonic() - began_s
         alarms = sum(station.alarms for station in stations)
         print(msgspec.json.encode(StationsReport(took_s, summaries, alarms)).decode(), flush=True)
-
-
-def _now_ms() -> int:
-    return time.time_ns() // 1_000_000
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from base_station.forwarders.department.summary import incident_summary, person_
 from base_station.forwarders.mailbox import Mailbox
 from base_station.storage.db.known_people import FORGOTTEN, PersonLookup
 from base_station.storage.projection import Projection
-from base_station.views.wire import Delta, IncidentView, Snapshot, UnitView
+from base_station.views.wire import AnchorView, Delta, IncidentView, Snapshot, UnitView
 from shared.channels import ALARM
 from shared.clock import NS_PER_MS, NS_PER_S
 from shared.codec import decode
@@ -44,6 +44,7 @@ class ReportCollector:
         self._units: dict[str, UnitView] = {}
         self._incidents: tuple[IncidentView, ...] = ()
         self._problems: tuple[str, ...] = ()
+        self._anchor: AnchorView | None = None
         self._reported: dict[str, bytes] = {}
         self._noted_ns = 0
         self._has_picture = False
@@ -89,6 +90,7 @@ class ReportCollector:
         if not self._has_picture:
             return None
         open_incidents = [one for one in self._incidents if one.closed_ms is None]
+        anchor = self._anchor
         return Summary(
             epoch=self._outbox.epoch,
             t_ms=now_ms,
@@ -102,6 +104,8 @@ class ReportCollector:
             ),
             problems=self._problems,
             waiting=self._outbox.waiting,
+            lat_deg=None if anchor is None else anchor.lat_deg,
+            lon_deg=None if anchor is None else anchor.lon_deg,
         )
 
     def _take_picture(self) -> None:
@@ -112,6 +116,8 @@ class ReportCollector:
             self._units = {unit.unit_id: unit for unit in picture.units}
             self._incidents = picture.incidents
             self._problems = picture.health.problems
+            anchors = (picture.anchor, *(one.anchor for one in picture.sites))
+            self._anchor = next((one for one in anchors if one is not None), None)
         self._units.update(changes.units)
         if changes.health is not None:
             self._problems = changes.health.problems

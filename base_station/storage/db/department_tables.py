@@ -137,6 +137,10 @@ class DepartmentTables:
         with self._store.read() as session:
             return session.scalars(wanted).all()
 
+    def incident(self, station: str, incident_id: str) -> ReportedIncident | None:
+        with self._store.read() as session:
+            return session.get(ReportedIncident, (station, incident_id))
+
     def events(self, before: int | None, limit: int) -> Sequence[ReportedEvent]:
         """In the order of arrival, the newest first; ``before``: a number, exclusive."""
         wanted = select(ReportedEvent).order_by(ReportedEvent.number.desc()).limit(limit)

@@ -1,6 +1,6 @@
 import { useEffect, useLayoutEffect } from "preact/hooks";
 import { shownTheme, wall } from "../appearance";
-import { isPast, live, picture, replay, stationAway, user, waiting } from "../sessions";
+import { begin, isPast, live, picture, replay, stationAway, user, waiting } from "../sessions";
 import type { Picture } from "../live/picture";
 import { sound } from "../sound";
 import { entitle } from "../title";
@@ -38,7 +38,7 @@ export function App() {
     <>
       {shownTheme.value === "red" && <RedLight />}
       {user.value !== null && shown !== null && <Console shown={shown} />}
-      {login && <Login />}
+      {login && <Login enter={begin} />}
     </>
   );
 }

@@ -19,7 +19,7 @@ def built(tmp_path: Path) -> FastAPI:
     (tmp_path / "index.html").write_text("<!doctype html><title>Muster</title>", encoding="utf-8")
     (tmp_path / "assets" / "index-a1b2.js").write_text(SCRIPT, encoding="utf-8")
     app = FastAPI()
-    serve_built(app, tmp_path)
+    serve_built(app, tmp_path / "index.html")
     return app
 
 

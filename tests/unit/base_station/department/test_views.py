@@ -54,6 +54,7 @@ class Department:
             self.clock,
             lambda: ["engine-7"],
             lambda: (),
+            has_archive=False,
         )
 
     def person(self, unit_id: str, **changes: Any) -> PersonSummary:

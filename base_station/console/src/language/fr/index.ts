@@ -6,6 +6,7 @@ import { alarm, closing } from "./alarms";
 import { assessment } from "./assessment";
 import { audit_action, audit_field, audit_value } from "./audit";
 import { common } from "./common";
+import { department } from "./department";
 import { dispatch } from "./dispatch";
 import { display, language_name, shortcut } from "./display";
 import { frame } from "./frame";
@@ -57,6 +58,7 @@ export const fr: Catalogue = {
   crew,
   crossing,
   delivery,
+  department,
   direction,
   dispatch,
   display,

@@ -1,0 +1,85 @@
+/** What the department knows, asked for once a second, and what of it is wanted. */
+import { effect, signal } from "@preact/signals";
+import { ApiError, call, id, PAGE } from "../http";
+import { t } from "../language/translate";
+import * as api from "../api";
+import type { DepartmentPeopleView, DepartmentView, StartedReplay } from "./answers";
+
+const PERIOD_MS = 1000;
+const SHUT_OUT = [401, 403];
+
+/** Null: nobody is logged in, or nothing has come yet. */
+export const overview = signal<DepartmentView | null>(null);
+export const people = signal<DepartmentPeopleView | null>(null);
+/** Why what is shown is old; empty: it is current. */
+export const problem = signal("");
+export const isLoggedIn = signal(false);
+
+/** Which people are shown; empty: all. */
+export const search = signal("");
+export const station = signal("");
+export const skip = signal(0);
+
+let timer: ReturnType<typeof setTimeout> | undefined;
+let turn = 0;
+
+/** Asks now, and again after a while for as long as somebody is logged in. */
+export async function refresh(): Promise<void> {
+  clearTimeout(timer);
+  const mine = ++turn;
+  try {
+    const [all, some] = await Promise.all([
+      call<DepartmentView>("GET", "/department"),
+      call<DepartmentPeopleView>("GET", `/department/people${query()}`),
+    ]);
+    if (mine !== turn) return; // somebody has asked for something else since
+    [overview.value, people.value, problem.value, isLoggedIn.value] = [all, some, "", true];
+  } catch (error) {
+    if (mine !== turn) return;
+    if (error instanceof ApiError && SHUT_OUT.includes(error.status)) {
+      forget();
+      return;
+    }
+    isLoggedIn.value = overview.value !== null;
+    problem.value = error instanceof Error ? error.message : t("connection.unreachable");
+  }
+  timer = setTimeout(() => void refresh(), PERIOD_MS);
+}
+
+function query(): string {
+  const wanted = `search=${id(search.peek())}&station=${id(station.peek())}`;
+  return `?${wanted}&skip=${skip.peek()}&limit=${PAGE}`;
+}
+
+/** People of this station, or whose name has these words, from the first. */
+export function want(changes: { search?: string; station?: string }): void {
+  search.value = changes.search ?? search.value;
+  station.value = changes.station ?? station.value;
+  skip.value = 0;
+  void refresh();
+}
+
+export function turnTo(first: number): void {
+  skip.value = Math.max(0, first);
+  void refresh();
+}
+
+export async function leave(): Promise<void> {
+  await api.logout().catch(() => undefined);
+  forget();
+}
+
+function forget(): void {
+  clearTimeout(timer);
+  turn += 1;
+  [overview.value, people.value, isLoggedIn.value] = [null, null, false];
+}
+
+/** A past incident, shown from the department's archive. */
+export const openArchived = (name: string, incidentId: string) =>
+  call<StartedReplay>("POST", "/department/replays", { station: name, incident_id: incidentId });
+
+effect(() => {
+  const view = overview.value;
+  document.title = view === null ? t("department.title") : `(${view.open_alarms}) ${t("department.title")}`;
+});
