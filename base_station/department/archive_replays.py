@@ -14,7 +14,7 @@ from threading import Lock, Timer
 
 from base_station.config import HttpConfig, host_and_port
 from base_station.department.answers import StartedReplay
-from base_station.department.config import ArchiveConfig
+from base_station.department.config import DepartmentArchiveConfig
 from shared.errors import ArchiveError
 
 _LOGIN = re.compile(r"^login for this replay: (\S+)  password: (\S+)$")
@@ -33,7 +33,7 @@ class _Running:
 class ArchiveReplays:
     """Thread-safe.  ``close`` ends all of them."""
 
-    def __init__(self, config: ArchiveConfig, http: HttpConfig) -> None:
+    def __init__(self, config: DepartmentArchiveConfig, http: HttpConfig) -> None:
         self._config, self._http = config, http
         self._lock = Lock()
         self._running: dict[

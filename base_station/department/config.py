@@ -11,7 +11,7 @@ from shared.config import Within
 
 
 @dataclass(frozen=True, slots=True)
-class ArchiveConfig:
+class DepartmentArchiveConfig:
     """Archive of the stations' past incidents, each station's below its name."""
 
     place: str = ""  # a folder, or s3://BUCKET/PLACE; empty: past incidents are not opened here
@@ -34,4 +34,4 @@ class DepartmentServerConfig(ServerConfig):
     data: Path = Path("muster-department")  # database, certificates and first login
     bus: BusConfig = field(default_factory=_bus)  # where stations connect
     http: HttpConfig = field(default_factory=_http)
-    archive: ArchiveConfig = field(default_factory=ArchiveConfig)
+    archive: DepartmentArchiveConfig = field(default_factory=DepartmentArchiveConfig)

@@ -22,7 +22,7 @@ from base_station.cli import app
 from base_station.config import HttpConfig
 from base_station.department.answers import StartedReplay
 from base_station.department.archive_replays import ArchiveReplays
-from base_station.department.config import ArchiveConfig
+from base_station.department.config import DepartmentArchiveConfig
 from base_station.engine.feed import LogFeed
 from base_station.replay.recorded_player import RecordedPlayer
 from base_station.storage.db.archived import ArchivedCopies
@@ -361,7 +361,7 @@ def test_a_department_opens_past_incidents_and_one_more_than_fits_ends_the_oldes
 ) -> None:
     archive = tmp_path / "archive"
     succeeded("archive", "copy", archive / "engine-7", "--data", data)
-    config = ArchiveConfig(place=str(archive), first_port=free_port(), replays=1)
+    config = DepartmentArchiveConfig(place=str(archive), first_port=free_port(), replays=1)
     with closing(ArchiveReplays(config, HttpConfig())) as replays:
         first = replays.open("engine-7", "i1")
         assert replays.open("engine-7", "i1") == first  # it runs already
