@@ -93,7 +93,7 @@ def open_past_incident(
 ) -> StartedReplay:
     """Show a past incident from the archive; answered when browsers can connect."""
     if not views.has_archive:
-        raise Problem(404, "This department has no archive: set place in [archive].")
+        raise Problem(404, "This department has no archive: set location in [archive].")
     if not views.is_past(wanted.station, wanted.incident_id):
         raise Problem(404, "No station has reported that this incident is closed.")
     services: DepartmentServices = connection.app.state.services

@@ -75,7 +75,7 @@ class ArchiveReplays:
 
     def _start(self, station: str, incident_id: str, port: int) -> _Running:
         host, _ = host_and_port(self._http.listen)
-        place = f"{self._config.place.rstrip('/')}/{station}"
+        place = f"{self._config.location.rstrip('/')}/{station}"
         process = subprocess.Popen(
             [sys.executable, "-m", _PROGRAM, incident_id, place, f"{host}:{port}", *self._tls()],
             stdin=subprocess.PIPE,  # it ends with it, and so with this program

@@ -14,7 +14,7 @@ from shared.config import Within
 class DepartmentArchiveConfig:
     """Archive of the stations' past incidents, each station's below its name."""
 
-    place: str = ""  # a folder, or s3://BUCKET/PLACE; empty: past incidents are not opened here
+    location: str = ""  # a folder, or s3://BUCKET/PLACE; empty: past incidents are not opened here
     first_port: Annotated[int, Within(1, 65_000)] = 8091  # of replays, one each
     replays: Annotated[int, Within(1, 50)] = 4  # at once; one more ends the oldest
 

@@ -83,7 +83,7 @@ def run_department(config: DepartmentServerConfig, announce: Callable[[str], Non
             clock,
             lambda: _enrolled(pki),
             problems,
-            has_archive=config.archive.place != "",
+            has_archive=config.archive.location != "",
         )
         replays = ArchiveReplays(config.archive, config.http)
         closing.callback(replays.close)

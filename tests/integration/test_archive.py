@@ -361,7 +361,7 @@ def test_a_department_opens_past_incidents_and_one_more_than_fits_ends_the_oldes
 ) -> None:
     archive = tmp_path / "archive"
     succeeded("archive", "copy", archive / "engine-7", "--data", data)
-    config = DepartmentArchiveConfig(place=str(archive), first_port=free_port(), replays=1)
+    config = DepartmentArchiveConfig(location=str(archive), first_port=free_port(), replays=1)
     with closing(ArchiveReplays(config, HttpConfig())) as replays:
         first = replays.open("engine-7", "i1")
         assert replays.open("engine-7", "i1") == first  # it runs already
