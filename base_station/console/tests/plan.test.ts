@@ -1,10 +1,9 @@
 import { describe, expect, it } from "vitest";
 import { isOld, outline, regionAt, ring } from "../src/plan/ellipse";
-import { firstFloor, floorRemark, floorsOf, floorsUp } from "../src/plan/floors";
+import { firstFloor, floorBadge, floorRemark, floorsOf } from "../src/plan/floors";
 import type { Colours } from "../src/plan/colours";
 import {
   colourOf,
-  floorArrow,
   isHollow,
   isStrong,
   labelStyle,
@@ -104,7 +103,6 @@ describe("floorRemark", () => {
   it("is empty where the floor that is shown says it all", () => {
     expect(floorRemark(position({ floor: 1 }), 1)).toBe("");
     expect(floorRemark(position({ floor: 1, floor_probability: 0.5 }), 1)).toBe("");
-    expect(floorRemark(position({ floor: 1 }), "all")).toBe("");
   });
 
   it("says who is on another floor, or on one that nobody knows", () => {
@@ -112,7 +110,12 @@ describe("floorRemark", () => {
     expect(floorRemark(position({ floor: null }), 0)).toBe("floor unknown");
     expect(floorRemark(position({ floor: 0, floor_probability: 0.49 }), 0)).toBe("floor unknown");
     expect(floorRemark(position({ floor: 1, floor_probability: 0.49 }), 0)).toBe("floor unknown");
-    expect(floorRemark(position({ floor: null }), "all")).toBe("");
+  });
+
+  it("says each one's floor where all floors are shown", () => {
+    expect(floorRemark(position({ floor: 1 }), "all")).toBe("floor 1");
+    expect(floorRemark(position({ floor: null }), "all")).toBe("floor unknown");
+    expect(floorRemark(position({ floor: 2, floor_probability: 0.3 }), "all")).toBe("floor unknown");
   });
 
   it("says that a floor is the last one that is known of somebody who is not heard", () => {
@@ -122,12 +125,13 @@ describe("floorRemark", () => {
 });
 
 describe("somebody on another floor", () => {
-  it("has an arrow with the number of floors", () => {
+  it("has an arrow with the number of floors, or the floor where all are shown", () => {
     const arrow = (floor: number | null, shown: number | "all", sure: number | null = null) =>
-      floorArrow({ floorsUp: floorsUp(position({ floor, floor_probability: sure }), shown) });
+      floorBadge(position({ floor, floor_probability: sure }), shown);
     expect(arrow(4, 2)).toBe("▲2");
     expect(arrow(-1, 0)).toBe("▼1");
-    expect([arrow(2, 2), arrow(null, 2), arrow(4, 2, 0.4), arrow(4, "all")]).toEqual(["", "", "", ""]);
+    expect([arrow(2, 2), arrow(null, 2), arrow(4, 2, 0.4)]).toEqual(["", "", ""]);
+    expect([arrow(4, "all"), arrow(0, "all"), arrow(null, "all"), arrow(4, "all", 0.4)]).toEqual(["4", "G", "?", "?"]);
   });
 
   it("is drawn hollow, as who is old", () => {
@@ -238,6 +242,7 @@ describe("the name of somebody on the plan", () => {
     ageMs: 72_000,
     floor: "",
     floorsUp: 0,
+    floorBadge: "",
     headingRad: 0,
     headingKnown: false,
   } as const;

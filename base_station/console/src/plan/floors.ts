@@ -43,9 +43,9 @@ export function firstFloor(floors: readonly Floor[]): number | null {
   return best?.floor ?? null;
 }
 
-/** What a floor that is shown does not say of somebody on it: another floor, or one that nobody knows. */
+/** What the drawing does not say of somebody: another floor than the one shown, or one that nobody knows;
+ * where all floors are shown, each one's. */
 export function floorRemark(position: PositionView, shown: FloorChoice, old = false): string {
-  if (shown === "all") return "";
   if (!isFloorLikely(position)) return floorName(null);
   return position.floor === shown ? "" : floorOf(position, old);
 }
@@ -54,6 +54,17 @@ export function floorRemark(position: PositionView, shown: FloorChoice, old = fa
 export function floorsUp(position: PositionView, shown: FloorChoice): number {
   if (shown === "all" || position.floor === null || !isFloorLikely(position)) return 0;
   return position.floor - shown;
+}
+
+/** Beside the mark of somebody on another floor than the one shown: "▲2" is two floors up.  Where all
+ * floors are shown, beside each mark: the floor, as on its button. */
+export function floorBadge(position: PositionView, shown: FloorChoice): string {
+  if (shown === "all") {
+    return position.floor === null || !isFloorLikely(position) ? "?" : shortFloor(position.floor);
+  }
+  const up = floorsUp(position, shown);
+  if (up === 0) return "";
+  return up > 0 ? `▲${up}` : `▼${-up}`;
 }
 
 function planFloors(plan: Plan | null): Set<number> {

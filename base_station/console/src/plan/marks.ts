@@ -17,6 +17,7 @@ export interface Mark {
   ageMs: number;
   floor: string; // where it is not simply the one shown
   floorsUp: number; // from the floor shown; negative: down; 0: on it, or not known
+  floorBadge: string;
   headingRad: number;
   headingKnown: boolean;
 }
@@ -51,12 +52,6 @@ export function lettersOf({ old, urgency, initials }: Pick<Mark, "old" | "urgenc
   const danger = urgency === "immediate";
   if (old && !danger) return "?";
   return danger ? `!${old ? "?" : ""}${initials}` : initials;
-}
-
-/** Beside the mark of somebody on another floor: "▲2" is two floors up. */
-export function floorArrow({ floorsUp }: Pick<Mark, "floorsUp">): string {
-  if (floorsUp === 0) return "";
-  return floorsUp > 0 ? `▲${floorsUp}` : `▼${-floorsUp}`;
 }
 
 /** Only what is on the floor shown, and new, is filled. */
@@ -123,7 +118,7 @@ function drawMark(at: number[], state: RenderState, mark: Mark, colours: Colours
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.fillText(lettersOf(mark), 0, 0.5, 2 * radiusPx - 4);
-  drawFloorArrow(context, floorArrow(mark), radiusPx, colour, colours.halo);
+  drawFloorBadge(context, mark.floorBadge, radiusPx, colour, colours.halo);
   context.restore();
 }
 
@@ -148,7 +143,7 @@ function outline(context: Context, urgency: Urgency, radiusPx: number): void {
 type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
 /** At the upper right of the mark. */
-function drawFloorArrow(context: Context, text: string, radiusPx: number, colour: string, halo: string): void {
+function drawFloorBadge(context: Context, text: string, radiusPx: number, colour: string, halo: string): void {
   if (text === "") return;
   context.font = "800 13px system-ui, sans-serif";
   context.textAlign = "left";

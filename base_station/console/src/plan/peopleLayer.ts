@@ -14,7 +14,7 @@ import { initials } from "../format";
 import { t } from "../language/translate";
 import type { Colours } from "./colours";
 import { isOld, outline } from "./ellipse";
-import { floorRemark, floorsUp } from "./floors";
+import { floorBadge, floorRemark, floorsUp } from "./floors";
 import {
   isStrong,
   labelFont,
@@ -223,6 +223,7 @@ function markOf(unit: UnitView, position: PositionView, scene: Scene): Mark {
     ageMs: scene.nowMs - position.t_ms,
     floor: floorRemark(position, scene.floor, old),
     floorsUp: floorsUp(position, scene.floor),
+    floorBadge: floorBadge(position, scene.floor),
     headingRad: position.heading_rad,
     headingKnown: position.heading_std_rad < HEADING_KNOWN_RAD,
   };

@@ -14,7 +14,7 @@ import { ParMark } from "./ParClock";
 /** A member in one line: who, what is the matter or else where, and when the PAR is due. */
 export function Line({ unit, picture }: { unit: UnitView; picture: Picture }) {
   const name = displayName(unit);
-  const words = whatOrWhere(unit, picture);
+  const words = whatAndWhere(unit, picture);
   return (
     <button type="button" class="card-head" aria-pressed={false} title={t("common.hint", { what: t("card.words", { name, words }), action: t("common.show_on_plan") })}>
       <Icon name={unit.alarms.length > 0 ? "alarm" : activityIcon(unit.status?.activity ?? "")} />
@@ -25,8 +25,20 @@ export function Line({ unit, picture }: { unit: UnitView; picture: Picture }) {
   );
 }
 
+/** The floor, in front of alarms as short as on its button, for they are cut first; then the alarms or the place. */
+function whatAndWhere(unit: UnitView, picture: Picture): string {
+  const words = whatOrWhere(unit, picture, format.floorName);
+  const floor = unit.position?.floor ?? null;
+  const isKnown = unit.position !== null && format.isFloorLikely(unit.position);
+  return unit.alarms.length === 0 || floor === null || !isKnown ? words : listed([format.shortFloor(floor), words]);
+}
+
 /** The alarms, or else where it is. */
-export function whatOrWhere(unit: UnitView, picture: Picture): string {
+export function whatOrWhere(
+  unit: UnitView,
+  picture: Picture,
+  floorWord: (floor: number) => string = format.shortFloor,
+): string {
   const alarms = unit.alarms
     .map((alarmId) => picture.alarms.value.get(alarmId))
     .filter((alarm) => alarm !== undefined)
@@ -41,5 +53,5 @@ export function whatOrWhere(unit: UnitView, picture: Picture): string {
     return placeWords(unit.position, picture, old);
   }
   const room = roomWord(picture.plan.value, unit.position, regionAt(unit.position, 0));
-  return room === "" ? format.floorName(floor) : listed([format.shortFloor(floor), room]);
+  return room === "" ? format.floorName(floor) : listed([floorWord(floor), room]);
 }
