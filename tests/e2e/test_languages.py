@@ -32,6 +32,21 @@ SHOWN_TEXTS = """
 """
 
 
+BEYOND_PX = "shown => shown.scrollWidth - shown.clientWidth"
+HEADER_PX = 62  # of one row
+CUT_CHOICES = """
+(dialog) => [...dialog.querySelectorAll("select")].filter((select) => {
+  const whole = select.cloneNode(false);
+  whole.style.cssText = "width: auto; min-width: 0; position: absolute";
+  whole.append(select.selectedOptions[0].cloneNode(true));
+  select.after(whole);
+  const isCut = whole.offsetWidth > select.offsetWidth;
+  whole.remove();
+  return isCut;
+}).map((select) => select.selectedOptions[0].text)
+"""
+
+
 def catalogue(language: str) -> dict[tuple[str, str], str]:
     """Messages by part and key."""
     sources = [file.read_text(encoding="utf-8") for file in (LANGUAGES / language).glob("*.ts")]
@@ -81,13 +96,42 @@ def test_the_console_is_whole_in_the_language_of_the_browser(
     page.set_viewport_size({"width": 1440, "height": 900})
     for number, opens in enumerate(open_dialogs(page)):
         opens.click()
-        page.get_by_role("dialog").wait_for()
+        dialog = page.get_by_role("dialog")
+        dialog.wait_for()
         page.screenshot(path=tmp_path / f"dialog-{number}.png")
+        assert dialog.evaluate(BEYOND_PX) <= 0
         assert flaws(page) == []
         assert barriers(page) == []
         assert english_on(page, language) == set()
         page.keyboard.press("Escape")
         expect(page.locator("dialog")).to_have_count(0)
+
+
+@pytest.mark.parametrize("locale", ["en-GB", "de-DE", "fr-FR"])
+def test_every_language_has_the_room_that_its_words_need(
+    stage: Stage, tmp_path: Path, locale: str
+) -> None:
+    page, _ = stage.open(scenes.quiet(), locale=locale)
+    page.set_viewport_size({"width": 1440, "height": 900})
+    expect(page.locator(".header .light.good")).to_have_count(2)
+    assert page.locator(".header").evaluate("shown => shown.offsetHeight") <= HEADER_PX
+    page.keyboard.press("a")
+    filters = page.locator(".alarm-filters")
+    for width in (1440, 768, 390):
+        page.set_viewport_size({"width": width, "height": 900})
+        for state in ("all", "open", "resolved"):
+            filters.locator("select").nth(3).select_option(state)
+            assert filters.evaluate(CUT_CHOICES) == [], width
+    page.close()
+    page, _ = stage.open(scenes.with_sensors(), locale=locale)
+    page.set_viewport_size({"width": 1440, "height": 900})
+    page.locator("#menu button").nth(1).click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_role("row").nth(40).wait_for()
+    for width in (390, 701, 768, 1024, 1200, 1280, 1440, 1920):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.screenshot(path=tmp_path / f"units-{width}.png")
+        assert dialog.evaluate(BEYOND_PX) <= 0, width
 
 
 def test_a_chosen_language_comes_at_once_and_is_kept(stage: Stage) -> None:

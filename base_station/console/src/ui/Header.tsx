@@ -14,8 +14,10 @@ export function Header({ picture }: { picture: Picture }) {
       <IncidentTitle picture={picture} />
       <Clock picture={picture} />
       <ParClock picture={picture} />
-      {!isPast.value && <HealthLight picture={picture} />}
-      <LinkLight picture={picture} />
+      <div class="lights">
+        {!isPast.value && <HealthLight picture={picture} />}
+        <LinkLight picture={picture} />
+      </div>
       <Menu />
     </header>
   );

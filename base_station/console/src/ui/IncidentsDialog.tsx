@@ -61,9 +61,7 @@ export function IncidentsDialog() {
         <SeveralIncidents running={running} picture={live.value.picture} done={again} />
       )}
       {mayAct.value && <Dispatches />}
-      {entries.value.length > 0 && (
-        <p class="quiet">{t("incident.times_zone", { zone: zone(Date.now()) })}</p>
-      )}
+      <p class="quiet">{t("incident.times_zone", { zone: zone(Date.now()) })}</p>
       <SearchForm
         search={(text) => {
           sought.value = text;
@@ -293,7 +291,7 @@ function OpenForm({ done, beside = false }: OpenProps) {
         {t("dispatch.incident_name")}
         <input name="name" required maxLength={80} autofocus />
       </label>
-      {usual.value && <TimesFields times={usual.value} />}
+      <TimesFields key={usual.value === null ? "asked" : "known"} times={usual.value} />
       <button class="primary">{t(beside ? "incident.open_beside" : "dispatch.open_incident")}</button>
     </form>
   );

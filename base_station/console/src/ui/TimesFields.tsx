@@ -1,12 +1,12 @@
 import type * as api from "../api";
 import { t } from "../language/translate";
 
-/** The PAR interval and the work limit of an incident. */
-export function TimesFields({ times }: { times: api.Times }) {
+/** The PAR interval and the work limit of an incident; null: they are not known yet, and cannot be set. */
+export function TimesFields({ times }: { times: api.Times | null }) {
   return (
     <>
-      <MinutesField name="par" label={t("par.every")} valueS={times.par_interval_s} />
-      <MinutesField name="work" label={t("par.work_limit")} valueS={times.work_limit_s} />
+      <MinutesField name="par" label={t("par.every")} valueS={times?.par_interval_s} />
+      <MinutesField name="work" label={t("par.work_limit")} valueS={times?.work_limit_s} />
     </>
   );
 }
@@ -15,8 +15,14 @@ export function timesOf(given: Record<string, string>): api.Times {
   return { par_interval_s: 60 * Number(given["par"]), work_limit_s: 60 * Number(given["work"]) };
 }
 
+interface FieldProps {
+  name: string;
+  label: string;
+  valueS: number | undefined;
+}
+
 /** A time that nobody changes is sent as it was, seconds and all. */
-function MinutesField({ name, label, valueS }: { name: string; label: string; valueS: number }) {
+function MinutesField({ name, label, valueS }: FieldProps) {
   return (
     <label class="short">
       {label}
@@ -27,7 +33,8 @@ function MinutesField({ name, label, valueS }: { name: string; label: string; va
         max={720}
         step="any"
         required
-        defaultValue={valueS / 60}
+        disabled={valueS === undefined}
+        defaultValue={valueS === undefined ? "" : valueS / 60}
       />
     </label>
   );
