@@ -158,6 +158,17 @@ def test_the_settings_name_what_is_mounted(name: str) -> None:
         assert secret.name in service["secrets"]
 
 
+def test_the_archive_in_the_settings_is_that_of_the_command(tmp_path: Path) -> None:
+    text = (FOLDER / "station.toml").read_text()
+    file = tmp_path / "station.toml"
+    file.write_text(re.sub(r"^# (?=\[archive\]|location = )", "", text, flags=re.MULTILINE))
+    settings = load_config(file, StationConfig)
+    assert settings.archive is not None
+    assert settings.archive.location in SERVICES["archive"]["command"]
+    for name in ("environment", "secrets"):
+        assert set(SERVICES["archive"][name]) == set(SERVICES["station"][name])
+
+
 def test_a_unit_finds_its_settings_enrolment_and_data() -> None:
     settings = load_config(FOLDER / "unit.toml", EdgeConfig)
     mounted = {volume.split(":")[1] for volume in SERVICES["unit"]["volumes"]}
