@@ -11,7 +11,7 @@ import errno
 import os
 import stat
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from io import BufferedReader, BufferedWriter
 from pathlib import Path
 
@@ -32,7 +32,8 @@ def open_own(path: Path, flags: int, mode: int) -> int:
         if error.errno == errno.ELOOP:
             raise OSError(errno.ELOOP, _IS_LINK, str(path)) from error
         raise
-    try:
+    with ExitStack() as undo:
+        undo.callback(os.close, descriptor)
         found = os.fstat(descriptor)
         if not stat.S_ISREG(found.st_mode) or _is_of_another(found, path.parent):
             raise OSError(errno.EMLINK, _IS_SHARED, str(path))
@@ -40,9 +41,7 @@ def open_own(path: Path, flags: int, mode: int) -> int:
             os.ftruncate(descriptor, 0)
         if flags & (os.O_WRONLY | os.O_RDWR | os.O_CREAT):
             give_to_owner(descriptor, path.parent)
-    except BaseException:
-        os.close(descriptor)
-        raise
+        undo.pop_all()
     return descriptor
 
 

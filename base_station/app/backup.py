@@ -239,6 +239,5 @@ def _part_of(target: Path) -> Iterator[Path]:
                 give_to_owner(written.fileno(), target.parent)
                 os.fsync(written.fileno())
             part.replace(target)
-    except BaseException:
+    finally:  # after a success it has its name
         part.unlink(missing_ok=True)
-        raise

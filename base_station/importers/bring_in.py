@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -79,11 +80,10 @@ class ImportDesk:
             self.incident.incident_id, import_id, options.file_name, content.format, sha256,
             size_bytes, options.shift_s, first_ns, last_ns,
         )  # fmt: skip
-        try:
+        with ExitStack() as undo:
+            undo.callback(folder.remove, self.incident.incident_id, import_id)
             act(action)
-        except BaseException:
-            folder.remove(self.incident.incident_id, import_id)
-            raise
+            undo.pop_all()
         return import_id
 
     def _is_here(self, import_id: str) -> bool:

@@ -8,7 +8,7 @@ import fcntl
 import os
 import shutil
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from shared.errors import StoreError
@@ -26,11 +26,10 @@ def new_folder(folder: Path) -> Iterator[None]:
         make_new_folder(folder, _FOLDER)
     except OSError as error:
         raise StoreError(f"{folder} cannot be made: {error.strerror or error}") from error
-    try:
+    with ExitStack() as undo:
+        undo.callback(shutil.rmtree, folder, ignore_errors=True)
         yield
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
+        undo.pop_all()
 
 
 def write_atomically(path: Path, content: bytes) -> None:

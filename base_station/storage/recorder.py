@@ -11,7 +11,7 @@ import logging
 import shutil
 import sys
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -111,15 +111,14 @@ class Recorder:
         self._waiting_max = policy.waiting_bytes_max
         self.folder = data / LOG_FOLDER
         self._lock = FolderLock(data)
-        try:
+        with ExitStack() as undo:
+            undo.callback(self._lock.close)
             self.recoveries: tuple[Recovery, ...] = _mended(self.folder)
             self._segments = self._look_up_segments()
             # Taken records are kept: this recorder refuses, so that the writer never has to.
             patient = replace(policy, waiting_bytes_max=sys.maxsize)
             self._writer = SegmentWriter(self.folder, patient, self._segment_closed)
-        except BaseException:
-            self._lock.close()
-            raise
+            undo.pop_all()
         self._taking = RLock()
         self._news = Condition(self._taking)
         self._queue: list[LogRecord] = []

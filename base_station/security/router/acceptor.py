@@ -13,6 +13,7 @@ import logging
 import resource
 import socket
 from collections.abc import Sequence
+from contextlib import ExitStack
 from functools import partial
 from threading import Thread
 
@@ -204,30 +205,27 @@ class Acceptor:
         if not connection.recv(1, socket.MSG_PEEK):
             raise RefusedError(Refusal.ENDED)
         secured = await accept_secure(connection, self._context, self._round_robin, network)
-        link = None
-        try:
+        with ExitStack() as undo:
+            undo.callback(secured.close)
             link = self._links.add(secured, task, self._loop.time())
+            undo.callback(link.close)
             await readable(secured)
-        except BaseException:
-            if link is not None:
-                link.close()
-            secured.close()
-            raise
+            undo.pop_all()
         return link
 
     async def _connect(self, link: RelayedLink) -> None:
         """Hands it on to the router, which may be away for a moment."""
-        try:
-            async with asyncio.timeout(_ROUTER_TIMEOUT_S):
-                await self._router_is_open.wait()
-                context, buffer_bytes = self._links.router_connection_settings(link.common_name)
-                router = await connect_secure(self._router_port, context, buffer_bytes)
-        except BaseException as error:
-            link.close()
-            link.secured.close()
-            if not isinstance(error, OSError):  # TimeoutError is one
-                raise
-            logger.debug("the router takes no link of %s: %s", link.common_name, error)
-            return
+        with ExitStack() as undo:
+            undo.callback(link.secured.close)
+            undo.callback(link.close)
+            try:
+                async with asyncio.timeout(_ROUTER_TIMEOUT_S):
+                    await self._router_is_open.wait()
+                    context, buffer_bytes = self._links.router_connection_settings(link.common_name)
+                    router = await connect_secure(self._router_port, context, buffer_bytes)
+            except OSError as error:  # TimeoutError is one
+                logger.debug("the router takes no link of %s: %s", link.common_name, error)
+                return
+            undo.pop_all()
         link.relay = Relay(self._loop, (link.secured, router), link.close)
         link.relay.start()

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import socket
 import ssl
+from contextlib import ExitStack
 
 from base_station.security.router.admission import ConnectionAdmission
 from base_station.security.router.internal_authority import load_identity
@@ -45,13 +46,12 @@ async def accept_secure(
     """Takes ``connection`` over.  Raises OSError, of which ssl.SSLError is one."""
     await round_robin.wait(network)
     secured = context.wrap_socket(connection, server_side=True, do_handshake_on_connect=False)
-    try:
+    with ExitStack() as undo:
+        undo.callback(secured.close)
         while (waits_for := _continue_handshake(secured)) is not None:
             await _ready(secured, writing=waits_for == "write")
             await round_robin.wait(network)
-    except BaseException:
-        secured.close()
-        raise
+        undo.pop_all()
     return secured
 
 
@@ -59,23 +59,17 @@ async def connect_secure(
     port: int, context: ssl.SSLContext, buffer_bytes: int | None
 ) -> ssl.SSLSocket:
     """To the router on this machine.  Raises OSError."""
-    connection = socket.socket()
-    try:
+    with ExitStack() as undo:
+        connection = undo.enter_context(socket.socket())
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         if buffer_bytes is not None:
             connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer_bytes)
         await asyncio.get_running_loop().sock_connect(connection, ("127.0.0.1", port))
-        secured = context.wrap_socket(connection, do_handshake_on_connect=False)
-    except BaseException:
-        connection.close()
-        raise
-    try:
+        secured = undo.enter_context(context.wrap_socket(connection, do_handshake_on_connect=False))
         while (waits_for := _continue_handshake(secured)) is not None:
             await _ready(secured, writing=waits_for == "write")
-    except BaseException:
-        secured.close()
-        raise
+        undo.pop_all()
     return secured
 
 

@@ -6,7 +6,7 @@ import logging
 import os
 import subprocess
 import sys
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Lock, Thread
@@ -80,11 +80,10 @@ class RouterProcess:
         self._settings = RouterSettings(str(data), listen, links, (own,))
         self._starting = Lock()
         self._refused = RefusalSummary()
-        try:
+        with ExitStack() as undo:
+            undo.callback(self._folder.cleanup)
             self._process = self._start_process(loading)
-        except BaseException:
-            self._folder.cleanup()
-            raise
+            undo.pop_all()
         self._is_restarting = False
         self._worker = Worker("router", self._keep_running, "the router is not started again")
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 import secrets
 import time
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -71,13 +72,12 @@ class Router:
         self._station = station
         self._links = links
         self._front = SecureFront(data, listen) if _is_secure((*listen, *links)) else None
-        try:
+        with ExitStack() as undo:
+            if self._front is not None:
+                undo.callback(self._front.close)
             self._endpoint = self._current_endpoint()
             self._bus = self._open(self._endpoint)
-        except BaseException:
-            if self._front is not None:
-                self._front.close()
-            raise
+            undo.pop_all()
         self._peer_probe = PeerRouterProbe(self._bus)
         self._logged_error = ""
         self._checks_without_peer = (

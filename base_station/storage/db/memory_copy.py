@@ -11,7 +11,7 @@ import os
 import secrets
 import sqlite3
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from threading import Lock
 
@@ -129,14 +129,13 @@ class MemoryCopy:
         making = beside(self._path, SALVAGED if self.is_damaged else ".part")
         making.unlink(missing_ok=True)
         make_private(making)
-        try:
+        with ExitStack() as undo:
+            undo.callback(making.unlink, missing_ok=True)
             with closing(sqlite3.connect(making)) as target:
                 self._keeper.backup(target)
             with making.open("rb") as written:
                 os.fsync(written.fileno())
-        except BaseException:
-            making.unlink(missing_ok=True)
-            raise
+            undo.pop_all()
         if self.is_damaged:
             _log.warning("the damaged database is set aside as %s", set_aside(self._path))
         making.replace(self._path)

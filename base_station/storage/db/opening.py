@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 
 from base_station.storage.db.database import Database
@@ -24,7 +25,8 @@ def open_live_server(server: ServerAddress, path: Path) -> tuple[ServerStore, bo
     """
     noted = noted_server(path)
     store = ServerStore(server, is_station=True)
-    try:
+    with ExitStack() as undo:
+        undo.callback(store.close)
         is_new = not has_users(store)
         if is_new and noted is not None and noted.url != server.url:
             raise StoreError(
@@ -35,9 +37,7 @@ def open_live_server(server: ServerAddress, path: Path) -> tuple[ServerStore, bo
         if is_copied:
             with Store(path) as file:
                 copy_kept(file, store)
-    except BaseException:
-        store.close()
-        raise
+        undo.pop_all()
     return store, is_copied
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 
 from edge.sources.gnss.gpsd_reports import Device, Devices, Error, Gst, Sky, Tpv, fix_of, report_of
@@ -72,11 +73,10 @@ class Gpsd:
 
     def open(self) -> Connection:
         line = TcpConnection(self.place.host, self.place.port)
-        try:
+        with ExitStack() as undo:
+            undo.callback(line.close)
             line.write(_WATCH)
-        except BaseException:
-            line.close()
-            raise
+            undo.pop_all()
         self._session = _Session(self._device or None)
         return line
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import errno
 import os
 from collections.abc import Iterable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import numpy as np
@@ -67,7 +67,8 @@ class BufferReader:
         self.rate_hz = plan.rate_hz
         # It is opened first: one that another program reads is not touched.
         self._descriptor = os.open(node, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-        try:
+        with ExitStack() as undo:
+            undo.callback(self.close)
             self._enable(is_on=False)  # a program that was killed leaves it on
             plan.carry_out()
             if trigger is not None:
@@ -79,9 +80,7 @@ class BufferReader:
             self._temperature = self._read_temperature_scale()
             self._set_length()
             self._enable(is_on=True)
-        except BaseException:
-            self.close()
-            raise
+            undo.pop_all()
         self._monitor = StreamMonitor(self.rate_hz)
 
     @property

@@ -8,6 +8,7 @@ import os
 import select
 import socket
 import termios
+from contextlib import ExitStack
 from typing import Protocol
 
 from shared.errors import ConfigError
@@ -71,11 +72,10 @@ class SerialConnection(DeviceConnection):
     def __init__(self, path: str, baud: int) -> None:
         speed = speed_of(baud)
         super().__init__(path)
-        try:
+        with ExitStack() as undo:
+            undo.callback(self.close)
             self._set_up(path, speed)
-        except BaseException:
-            self.close()
-            raise
+            undo.pop_all()
 
     def _set_up(self, path: str, speed: int) -> None:
         if not os.isatty(self._descriptor):
