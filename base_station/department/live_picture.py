@@ -32,12 +32,13 @@ class StationPicture:
     received_ns: int  # UTC of the department
     received_monotonic_ns: int | None  # None: before this program began
     counts: Mapping[str, IncidentCounts]  # by incident id; empty: people who are in none
+    people: Sequence[PersonSummary]  # who need help first
 
     @staticmethod
     def of(
         station: str, summary: Summary, received_ns: int, received_monotonic_ns: int | None
     ) -> StationPicture:
-        """Counted once, however often it is shown."""
+        """Counted and put in order once, however often it is shown."""
         counts: dict[str, IncidentCounts] = {}
         for person in summary.people:
             count = counts.setdefault(person.incident_id, IncidentCounts())
@@ -45,7 +46,8 @@ class StationPicture:
             count.maydays += person.mayday
             count.alarms += len(person.alarms)
             count.overdue += is_overdue(person, summary.t_ms)
-        return StationPicture(station, summary, received_ns, received_monotonic_ns, counts)
+        people = sorted(summary.people, key=lambda one: rank_of(one, summary.t_ms))
+        return StationPicture(station, summary, received_ns, received_monotonic_ns, counts, people)
 
     @property
     def offset_ms(self) -> int:
@@ -62,6 +64,11 @@ class StationPicture:
 def is_overdue(person: PersonSummary, t_ms: int) -> bool:
     """True if the member's PAR was due before ``t_ms``, station time."""
     return person.par_due_ms is not None and person.par_due_ms < t_ms
+
+
+def rank_of(person: PersonSummary, t_ms: int) -> tuple[bool, int, bool, str]:
+    """Sorts who needs help first: mayday, alarms, PAR overdue at ``t_ms``, then by unit."""
+    return not person.mayday, -len(person.alarms), not is_overdue(person, t_ms), person.unit_id
 
 
 class LivePicture:

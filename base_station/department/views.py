@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import heapq
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
+from itertools import islice
 from typing import NamedTuple
 
 from base_station.department.answers import (
@@ -24,6 +26,7 @@ from base_station.department.live_picture import (
     LivePicture,
     StationPicture,
     is_overdue,
+    rank_of,
 )
 from base_station.department.standing import StandingReports
 from base_station.department_wire import PersonSummary
@@ -86,23 +89,15 @@ class DepartmentViews:
 
     def people(self, wanted: PeopleQuery) -> DepartmentPeopleView:
         """People, those who need help first."""
-        search = wanted.search.casefold()
-        found = []
-        for picture in self._of(wanted.station):
-            station, t_ms = picture.station, picture.summary.t_ms
-            for person in picture.summary.people:
-                if wanted.incident_id and person.incident_id != wanted.incident_id:
-                    continue
-                if search and not self._matches(station, person, search):
-                    continue
-                need = (not person.mayday, -len(person.alarms), not is_overdue(person, t_ms))
-                found.append((need, station, person.unit_id, picture, person))
-        found.sort(key=lambda one: one[:3])
-        part = found[wanted.skip : wanted.skip + wanted.limit]
+        found = [(picture, self._found(picture, wanted)) for picture in self._of(wanted.station)]
+        ranked = heapq.merge(
+            *(_ranked(picture, people) for picture, people in found), key=lambda one: one[0]
+        )
+        part = islice(ranked, wanted.skip, wanted.skip + wanted.limit)
         return DepartmentPeopleView(
             now_ms=to_ms(self._clock.utc_ns()),
-            total=len(found),
-            people=tuple(self._person_view(picture, person) for *_, picture, person in part),
+            total=sum(len(people) for _, people in found),
+            people=tuple(self._person_view(picture, person) for _, picture, person in part),
         )
 
     def events(self, before: int | None, limit: int) -> tuple[DepartmentEventView, ...]:
@@ -186,6 +181,15 @@ class DepartmentViews:
 
     # ---- people and alarms
 
+    def _found(self, picture: StationPicture, wanted: PeopleQuery) -> Sequence[PersonSummary]:
+        """Of one station, who need help first."""
+        people, search = picture.people, wanted.search.casefold()
+        if wanted.incident_id:
+            people = [one for one in people if one.incident_id == wanted.incident_id]
+        if search:
+            people = [one for one in people if self._matches(picture.station, one, search)]
+        return people
+
     def _matches(self, station: str, person: PersonSummary, search: str) -> bool:
         known = self._intake.person(station, person.person_id)
         texts = (known.name, known.crew, person.label, person.unit_id)
@@ -249,6 +253,15 @@ class DepartmentViews:
             raised_ms=alarm.raised_ms - alarm.offset_ms,
             changed_ms=alarm.changed_ms - alarm.offset_ms,
         )
+
+
+def _ranked(
+    picture: StationPicture, people: Iterable[PersonSummary]
+) -> Iterator[tuple[tuple[object, ...], StationPicture, PersonSummary]]:
+    """With what they are sorted by."""
+    for person in people:
+        rank = rank_of(person, picture.summary.t_ms)
+        yield (*rank[:-1], picture.station, rank[-1]), picture, person
 
 
 def _not_stored(
