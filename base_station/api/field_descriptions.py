@@ -292,6 +292,13 @@ FIELDS: Mapping[str, str] = {
     "acknowledged_via": "How the answer came: self (on the member's own unit) or radio; empty: not "
     "yet.",
     "CommandView.incident_id": "The incident that was open when it was given; empty: none was.",
+    "repeated_ms": "When the order was last sent to the unit again; null: it was not.",
+    "DeliveryView.ended_ms": "When the unit had answered that the order is over; null: not yet.",
+    "signal": "How the unit signals its place: sound or light; empty: not known.",
+    "CommandView.ended_ms": "When it ended: by an all clear, by being stopped, or with its "
+    "incident; null: it stands.",
+    "ended_command_id": "The evacuation that an all clear has ended; empty: it is none.",
+    "Repeat.unit_id": "The unit to which it is sent again; null: all that have not answered.",
     "despite_alarm_ids": "Open alarms over which the incident is closed knowingly.",
     "despite_unit_ids": "Units of people who are inside and over whom it is closed knowingly.",
     "reason": "Why the unit refused it, or why it was withdrawn; empty: neither.",

@@ -11,8 +11,11 @@ from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.closed_incidents import last_closed_ns
 from base_station.core.commands import (
     alarm_acknowledgements,
+    all_clears,
     command_tracker,
     mayday_acknowledgements,
+    order_ends,
+    order_repeats,
 )
 from base_station.core.events import (
     ClosedIncidentChanged,
@@ -36,6 +39,7 @@ from base_station.fusion.interface import Start
 from base_station.site.plan_reader import PlanReader
 from shared.errors import UserError
 from shared.geo import Anchor
+from shared.messages import CommandKind
 from shared.messages.pins import PlaceBeacon, SetPin, StartTogether
 from shared.messages.station import (
     AcknowledgeAlarm,
@@ -211,6 +215,9 @@ class ActionHandler:
     def _command(
         self, state: StationState, by: str, action: SendCommand | ConfirmCommand
     ) -> Iterator[StateChange]:
+        if isinstance(action, SendCommand) and (action.repeats or action.ended_command_id):
+            yield from _earlier_order(state, by, action)
+            return
         if isinstance(action, SendCommand):
             command = command_tracker.send(state, by, action)
             yield from command_tracker.replace(state, command)
@@ -295,6 +302,19 @@ class ActionHandler:
         self._positioning.start(state, unit, start)
         yield _pins_changed(touched)
         yield from map(TrailBackfilled, sorted(touched))
+
+
+def _earlier_order(state: StationState, by: str, action: SendCommand) -> Iterator[SentCommand]:
+    """Send an order again, or end it."""
+    command_tracker.check_new(state, action)
+    if action.repeats:
+        yield order_repeats.send_again(state, action)
+    elif action.kind is CommandKind.ALL_CLEAR:
+        yield from all_clears.give(state, by, action)
+    elif action.kind is CommandKind.END_ORDER:
+        yield order_ends.stop(state, action)
+    else:
+        raise UserError("an order ends by ALL_CLEAR or END_ORDER")
 
 
 def _site_of_place(state: StationState, action: PinAction) -> str | None:

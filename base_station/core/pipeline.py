@@ -21,6 +21,7 @@ from base_station.core.checkpoint import Checkpoint
 from base_station.core.commands import (
     alarm_acknowledgements,
     command_tracker,
+    delivery_progress,
     mayday_acknowledgements,
 )
 from base_station.core.events import (
@@ -134,7 +135,7 @@ class StationPipeline:
     def _note_from_log(self, unit_id: str, message: Message) -> list[Output]:
         """Take a message that the station itself sent or took in; its decisions change nothing."""
         if isinstance(message, Command):
-            return _command_changed(command_tracker.note_sent(self.state, unit_id, message))
+            return _command_changed(delivery_progress.note_sent(self.state, unit_id, message))
         if isinstance(message, ExternalMarkers):
             return _external_changed(external_markers.apply(self.state, message))
         return []

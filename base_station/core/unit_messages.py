@@ -13,7 +13,7 @@ import msgspec
 from base_station.core import accountability
 from base_station.core.alarms.alarm_manager import AlarmManager
 from base_station.core.closed_incidents import closed_incidents_at
-from base_station.core.commands import command_tracker
+from base_station.core.commands import delivery_progress
 from base_station.core.events import (
     ClosedIncidentChanged,
     CommandChanged,
@@ -137,7 +137,7 @@ class UnitMessages:
             case CommandReply():
                 return _note_reply(state, unit, message)
             case UnitDescription():
-                changed = command_tracker.note_outputs(state, unit)
+                changed = delivery_progress.note_outputs(state, unit)
                 return [CommandChanged(command.command_id) for command in changed]
             case _:
                 return []
@@ -245,7 +245,7 @@ def _unregistered_unit(state: StationState, unit_id: str) -> UnitState | None:
 
 def _note_reply(state: StationState, unit: UnitState, reply: CommandReply) -> list[Output]:
     event_ns = event_time_ns(unit.boots, reply.header, state.t_ns)  # it may come of a journal
-    command = command_tracker.note_reply(state, unit, reply, event_ns)
+    command = delivery_progress.note_reply(state, unit, reply, event_ns)
     if command is None:
         return []
     if reply.state is CommandState.ACKNOWLEDGED:

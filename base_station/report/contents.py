@@ -78,6 +78,7 @@ class OrderEntry(msgspec.Struct, frozen=True):
     kind: str  # as ``CommandKind`` calls it
     text: str
     receipts: tuple[OrderReceipt, ...]
+    is_repeat: bool = False  # its receipts are of this sending; the first order has all of them
 
 
 class TimelineEntry(msgspec.Struct, frozen=True):

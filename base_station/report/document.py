@@ -108,7 +108,7 @@ def _timeline(report: ReportContents) -> Markup:
 
 
 def _roll_calls(report: ReportContents) -> Markup:
-    asked = [one for one in report.orders if one.kind == ASKED_PAR]
+    asked = [one for one in report.orders if one.kind == ASKED_PAR and not one.is_repeat]
     if not asked:
         return element("p", texts.NO_PAR)
     rows = (
@@ -131,7 +131,7 @@ def _orders(report: ReportContents) -> Markup:
     rows = (
         (
             texts.clock_time(one.t_ns),
-            f"{texts.order_name(one.kind)}{': ' if one.text else ''}{one.text}",
+            _order_words(one),
             one.by,
             str(len(one.receipts)),
             _lines(_acknowledged(one)),
@@ -144,6 +144,12 @@ def _orders(report: ReportContents) -> Markup:
         for one in others
     )
     return table(texts.HEAD_ORDERS, rows)
+
+
+def _order_words(order: OrderEntry) -> str:
+    name = texts.order_name(order.kind)
+    words = texts.sent_again(name) if order.is_repeat else name
+    return f"{words}: {order.text}" if order.text else words
 
 
 def _acknowledged(order: OrderEntry) -> Iterable[str]:

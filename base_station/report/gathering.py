@@ -288,7 +288,7 @@ class _Gathering:
             )
             if described is not None:
                 kind, text = described
-                is_urgent = details.get("order") == texts.ORDER_NAMES["EVACUATE"]
+                is_urgent = details.get("order") in texts.URGENT_ORDERS
                 yield TimelineEntry(entry.t_ns, kind, self._shown(text), entry.by, is_urgent)
 
     def _order_details(self, entry: AuditEntry) -> Mapping[str, Any]:

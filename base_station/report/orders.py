@@ -14,6 +14,7 @@ from shared.messages import CommandKind, CommandState
 from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmation
 
 ASKED_PAR = CommandKind.PAR_REQUEST.name
+_STOPPED = CommandKind.END_ORDER.name  # a LOCATE: the timeline has it
 _UNKNOWN = CommandKind.UNKNOWN.name
 
 
@@ -23,22 +24,37 @@ def orders_of(entries: Sequence[AuditEntry], facts: LogFacts) -> tuple[OrderEntr
     for reply in facts.replies:
         replies.setdefault((reply.command_id, reply.unit_id), []).append(reply)
     by_radio = _confirmed_by_radio(entries)
+    repeat_ids = _repeat_ids(entries)
     found = []
     for entry in entries:
         sent = details_of(entry) if entry.action == SendCommand.__name__ else None
         if not sent:
             continue
         command_id = str(sent["command_id"])
-        units = sorted(facts.commands.get(command_id, {}))
+        ids = (command_id, *repeat_ids.get(command_id, ()))
+        units = sorted({unit_id for one in ids for unit_id in facts.commands.get(one, {})})
         receipts = tuple(
-            _receipt(unit_id, replies.get(key, ()), by_radio.get(key))
+            _receipt(
+                unit_id,
+                [reply for one in ids for reply in replies.get((one, unit_id), ())],
+                by_radio.get((command_id, unit_id)),
+            )
             for unit_id in units
-            for key in ((command_id, unit_id),)
         )
-        found.append(
-            OrderEntry(entry.t_ns, entry.by, kind_name(sent["kind"]), sent["text"], receipts)
-        )
+        kind, is_repeat = kind_name(sent["kind"]), bool(sent.get("repeats"))
+        if kind != _STOPPED:
+            found.append(OrderEntry(entry.t_ns, entry.by, kind, sent["text"], receipts, is_repeat))
     return tuple(found)
+
+
+def _repeat_ids(entries: Sequence[AuditEntry]) -> Mapping[str, list[str]]:
+    """Ids under which each order was sent again."""
+    found: dict[str, list[str]] = {}
+    for entry in entries:
+        sent = details_of(entry) if entry.action == SendCommand.__name__ else {}
+        if sent.get("repeats"):
+            found.setdefault(str(sent["repeats"]), []).append(str(sent["command_id"]))
+    return found
 
 
 def details_of(entry: AuditEntry) -> Mapping[str, Any]:

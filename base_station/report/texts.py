@@ -96,7 +96,10 @@ ORDER_NAMES = {
     "LOCATE": "Locate",
     "SET_POSITION_RATE": "Position rate",
     "RESET_ALARM": "Reset alarm",
+    "ALL_CLEAR": "All clear",
+    "END_ORDER": "Sound locator stopped",
 }
+URGENT_ORDERS = frozenset({ORDER_NAMES["EVACUATE"], ORDER_NAMES["ALL_CLEAR"]})
 
 
 # Why an alarm was resolved, by the codes of ``base_station.core.alarms.resolution_reasons``.
@@ -160,6 +163,10 @@ def order_name(kind: str) -> str:
     return ORDER_NAMES.get(kind, kind.lower().replace("_", " "))
 
 
+def sent_again(order: str) -> str:
+    return f"{order} (sent again)"
+
+
 def acknowledged(receipt: OrderReceipt, name: str, ordered_ns: int) -> str:
     if receipt.acknowledged_ns is not None:
         after = duration(max(receipt.acknowledged_ns - ordered_ns, 0) / 1e9)
@@ -212,6 +219,11 @@ def action_text(action: str, details: Details, name_of: NameOf) -> tuple[str, st
 
 
 def _order(details: Details, name_of: NameOf) -> tuple[str, str]:
+    if details.get("repeats"):
+        recipients = name_of(details["unit_id"]) if details["unit_id"] else "all without an answer"
+        return ORDER, f"{sent_again(details['order'])} to {recipients}"
+    if details.get("ended_command_id"):
+        return ORDER, details["order"]
     text = f": {details['text']}" if details["text"] else ""
     return ORDER, f"{details['order']} to {_to(details, name_of)}{text}"
 

@@ -129,4 +129,5 @@ class CommandSender:
             ended_command_id=order.ended_command_id,
             mayday_boot_id=order.mayday_boot_id,
             mayday_seq=order.mayday_seq,
+            repeats=order.repeats,
         )

@@ -100,6 +100,8 @@ def command_view(command: SentCommand, people: PersonLookup) -> CommandView:
         open=command.is_open,
         units=tuple(_delivery_view(command, one, people) for one in command.deliveries.values()),
         incident_id=command.incident_id,
+        ended_ms=to_ms_or_none(command.ended_ns),
+        ended_command_id=command.ended_command_id,
     )
 
 
@@ -115,6 +117,9 @@ def _delivery_view(command: SentCommand, delivery: Delivery, people: PersonLooku
         reason=delivery.reason,
         acknowledged_via=delivery.acknowledged_via,
         can_be_notified=delivery.can_be_notified,
+        repeated_ms=to_ms_or_none(delivery.repeated_ns),
+        ended_ms=to_ms_or_none(delivery.ended_ns),
+        signal=delivery.signal,
     )
 
 

@@ -285,6 +285,10 @@ class DeliveryView(Answer, frozen=True):
     # self: on the member's own unit; empty: not yet
     acknowledged_via: Annotated[str, one_of("self", "radio", "")]
     can_be_notified: bool | None  # as was known while more was to come; None: not known yet
+    repeated_ms: int | None = None  # when the order was sent again last
+    ended_ms: int | None = None  # the unit has answered that it knows that the order is over
+    # Of a LOCATE: how the unit signals its place; empty: not known.
+    signal: Annotated[str, one_of("sound", "light", "")] = ""
 
 
 class CommandView(Answer, frozen=True):
@@ -301,6 +305,8 @@ class CommandView(Answer, frozen=True):
     open: bool  # more is to come of it
     units: tuple[DeliveryView, ...]
     incident_id: str  # that was open when it was given; empty: none was
+    ended_ms: int | None = None  # all clear, stopped, or its incident closed; None: it stands
+    ended_command_id: str = ""  # of an all clear: the evacuation that it has ended
 
 
 class DispatchView(Answer, frozen=True):

@@ -14,13 +14,13 @@ from pathlib import Path
 import msgspec
 
 from shared.durable_names import sync_folder
-from shared.messages import ASKS_WEARER, Command, CommandKind
+from shared.messages import ANSWERED_BY_PRESS, Command, CommandKind
 from shared.own_files import read_own, write_own
 from shared.worker import UNTIL_WOKEN, Worker
 
 logger = logging.getLogger(__name__)
 
-NOTIFIES_WEARER = ASKS_WEARER | {CommandKind.LOCATE, CommandKind.ALARM_ACKNOWLEDGED}
+NOTIFIES_WEARER = ANSWERED_BY_PRESS | {CommandKind.ALARM_ACKNOWLEDGED}
 _MOST_KEPT = 100
 _CLOSE_TIMEOUT_S = 5.0  # a disk that hangs is left behind
 
@@ -32,6 +32,7 @@ class OpenCommand(msgspec.Struct, frozen=True):
     kind: CommandKind
     text: str
     expires_utc_ns: int  # station time; 0: never
+    repeats: str = ""  # id of the order that it sends again; empty: it is a new one
 
 
 class OpenCommands:
@@ -59,11 +60,15 @@ class OpenCommands:
         return self._read_fault
 
     def add(self, command: Command) -> None:
-        """Keep a command of a kind that the wearer is notified of; others are left out."""
+        """Keep a command of a kind that the wearer is notified of; others are left out.  An order
+        that is sent again takes the place of what it repeats.
+        """
         if command.kind not in NOTIFIES_WEARER or command.command_id in self._commands:
             return
+        if command.repeats:
+            self.close_one(command.repeats)
         self._commands[command.command_id] = OpenCommand(
-            command.command_id, command.kind, command.text, command.expires_utc_ns
+            command.command_id, command.kind, command.text, command.expires_utc_ns, command.repeats
         )
         while len(self._commands) > _MOST_KEPT:
             del self._commands[next(iter(self._commands))]
@@ -74,9 +79,10 @@ class OpenCommands:
         self._drop(tuple(self._commands))
 
     def close_one(self, command_id: str) -> None:
-        """Drop one that is over; one that is not there is none."""
-        if command_id in self._commands:
-            self._drop((command_id,))
+        """Drop one that is over, and what repeats it; one that is not there is none."""
+        self._drop(
+            tuple(one.command_id for one in self if command_id in (one.command_id, one.repeats))
+        )
 
     def expire(self, utc_ns: int) -> None:
         """Drop those whose time is over by the station's clock."""

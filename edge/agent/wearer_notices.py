@@ -18,6 +18,7 @@ _OF_COMMANDS = {
     CommandKind.PAR_REQUEST: Signal.PAR_REQUEST,
     CommandKind.TEXT: Signal.TEXT,
     CommandKind.LOCATE: Signal.LOCATE,
+    CommandKind.ALL_CLEAR: Signal.ALL_CLEAR,
     CommandKind.ALARM_ACKNOWLEDGED: Signal.ALARM_ACKNOWLEDGED,
 }
 

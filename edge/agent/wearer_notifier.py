@@ -11,10 +11,11 @@ from edge.agent.open_commands import OpenCommands
 from edge.agent.pipeline import TrackerPipeline
 from edge.agent.wearer_notices import WearerState, notices
 from edge.clocks.station import StationClock
-from edge.notifiers.outputs import Outputs
+from edge.notifiers.outputs import Outputs, PlayedNotice
+from edge.notifiers.signals import Signal
 from edge.storage.journal.journal import Journal
 from shared.clock import NS_PER_S
-from shared.messages import Command, CommandKind, CommandReply, Message
+from shared.messages import LIGHT, SOUND, Command, CommandKind, CommandReply, Message
 
 
 class WearerNotifier:
@@ -65,6 +66,9 @@ class WearerNotifier:
         match command.kind:
             case CommandKind.END_ORDER:
                 self._end(command.ended_command_id)
+            case CommandKind.ALL_CLEAR:
+                self._end_evacuations(command.ended_command_id)
+                self._open_commands.add(command)
             case CommandKind.MAYDAY_ACKNOWLEDGED:
                 if self._maydays.is_acknowledged_by(command):  # a repeat may come too late
                     self._maydays.note_acknowledged(command.command_id)
@@ -85,7 +89,10 @@ class WearerNotifier:
         """Bring the outputs up to date; return replies about what they have played."""
         self._open_commands.expire(self._clock.utc_ns())
         self._outputs.show(notices(self._state(), self._open_commands))
-        replies = (self._handler.note_notified(one.key) for one in self._outputs.take_played())
+        replies = (
+            self._handler.note_notified(one.notice.key, _signal_of(one))
+            for one in self._outputs.take_played()
+        )
         return tuple(reply for reply in replies if reply is not None)
 
     def close(self) -> None:
@@ -96,6 +103,16 @@ class WearerNotifier:
         """An order is over: the wearer has answered by radio, or the incident was closed."""
         self._open_commands.close_one(command_id)
         self._handler.end(command_id)
+
+    def _end_evacuations(self, command_id: str) -> None:
+        """All of them: the all clear is the station's last word."""
+        open_ids = [
+            one.repeats or one.command_id
+            for one in self._open_commands
+            if one.kind is CommandKind.EVACUATE
+        ]
+        for one in (command_id, *open_ids):
+            self._end(one)
 
     def _state(self) -> WearerState:
         now_ns = self._clock.monotonic_ns()
@@ -112,3 +129,10 @@ class WearerNotifier:
             maydays_received=self._maydays.received,
             mayday_acknowledgement=self._maydays.acknowledgement,
         )
+
+
+def _signal_of(played: PlayedNotice) -> str:
+    """How others perceive it, where it is to be perceived by them."""
+    if played.notice.signal is not Signal.LOCATE:
+        return ""
+    return SOUND if played.is_audible else LIGHT

@@ -112,6 +112,7 @@ def compose_agent(
             pipeline.set_position_rate if config.tracker != NO_TRACKER else None,
             answers_before(journal),
             maydays,
+            has_outputs=bool(outputs.kinds),
         )
         for detail in _quarantine_reports(folder, damaged):
             outbox.put((UnitEvent(stamper.header(), EventKind.STORAGE_FAULT, detail),))

@@ -33,3 +33,4 @@ class NotifierKind:
     scheme: str
     make: Callable[[str, Path], Notifier]  # argument, where sysfs is mounted; raises ConfigError
     argument: str  # what stands after the colon, for help texts
+    is_audible: bool = True

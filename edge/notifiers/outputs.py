@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
 from edge.notifiers.player import NoticePlayer
-from edge.notifiers.registry import open_notifier, output_kind
+from edge.notifiers.registry import is_audible, open_notifier, output_kind
 from edge.notifiers.signals import Notice
 from edge.sources.sysfs import SYSFS
+
+
+@dataclass(frozen=True, slots=True)
+class PlayedNotice:
+    """Notice that an output has played to its end."""
+
+    notice: Notice
+    is_audible: bool
 
 
 class Outputs:
@@ -19,6 +28,7 @@ class Outputs:
         """``texts``: as in the settings.  Raises ConfigError."""
         chosen = tuple(texts)
         self.kinds = tuple(dict.fromkeys(output_kind(text) for text in chosen))
+        self._is_audible = [is_audible(text) for text in chosen]
         self._players = [NoticePlayer(text, open_notifier(text, sysfs)) for text in chosen]
 
     def start(self) -> None:
@@ -30,9 +40,13 @@ class Outputs:
         for player in self._players:
             player.show(notices)
 
-    def take_played(self) -> tuple[Notice, ...]:
+    def take_played(self) -> tuple[PlayedNotice, ...]:
         """Return notices that an output has played since the last call, each once an output."""
-        return tuple(chain.from_iterable(player.take_played() for player in self._players))
+        return tuple(
+            PlayedNotice(notice, audible)
+            for player, audible in zip(self._players, self._is_audible, strict=True)
+            for notice in player.take_played()
+        )
 
     def take_faults(self) -> tuple[str, ...]:
         """Return new faults, a sentence each, for a person."""

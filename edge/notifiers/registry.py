@@ -15,11 +15,11 @@ from edge.sources.sysfs import SYSFS
 from shared.errors import ConfigError
 
 NOTIFIERS: tuple[NotifierKind, ...] = (
-    NotifierKind("led", LedNotifier, "NAME"),
+    NotifierKind("led", LedNotifier, "NAME", is_audible=False),
     NotifierKind("beeper", BeeperNotifier, "/dev/input/DEVICE"),
     NotifierKind("sound", SoundNotifier, "DEVICE (default, or another of `aplay -L`)"),
     NotifierKind("speech", SpeechNotifier, "VOICE"),
-    NotifierKind("terminal", TerminalNotifier, "TITLE"),
+    NotifierKind("terminal", TerminalNotifier, "TITLE", is_audible=False),
 )
 
 
@@ -31,6 +31,11 @@ def open_notifier(text: str, sysfs: Path = SYSFS) -> Notifier:
 def output_kind(text: str) -> str:
     """Return the scheme of an output, as a unit's description says it.  Raises ConfigError."""
     return _kind(text).scheme
+
+
+def is_audible(text: str) -> bool:
+    """True if others hear the output.  Raises ConfigError."""
+    return _kind(text).is_audible
 
 
 def _kind(text: str) -> NotifierKind:

@@ -21,6 +21,7 @@ class Signal(StrEnum):
     MAYDAY_CALLED = "mayday called"
     PAR_REQUEST = "PAR request"
     TEXT = "message"
+    ALL_CLEAR = "all clear"
     MAYDAY_ACKNOWLEDGED = "mayday acknowledged"
     ALARM_ACKNOWLEDGED = "alarm acknowledged"
     LOCATE = "locate"
@@ -42,6 +43,7 @@ _PAUSES_S = {
     Signal.LOCATE: 0.0,
     Signal.PAR_REQUEST: 10.0,
     Signal.TEXT: 30.0,
+    Signal.ALL_CLEAR: 30.0,
 }
 
 
@@ -77,6 +79,7 @@ PATTERNS: dict[Signal, tuple[Pulse, ...]] = {
     Signal.MAYDAY_CALLED: (Pulse(0.3, 0.1, _LOW_HZ), Pulse(0.9, 0.3, _HIGH_HZ)),
     Signal.PAR_REQUEST: (Pulse(0.4, 0.2, _MIDDLE_HZ), Pulse(0.4, 1.0, _HIGH_HZ)),
     Signal.TEXT: (Pulse(0.15, 0.1, _MIDDLE_HZ),) * 3 + (Pulse(0.15, 1.0, _MIDDLE_HZ),),
+    Signal.ALL_CLEAR: (Pulse(0.8, 0.2, _LOW_HZ),) * 2 + (Pulse(0.8, 1.0, _LOW_HZ),),
     Signal.LOCATE: (Pulse(1.0, 0.5, _HIGH_HZ),),
     # Like neither of the two before it: a mayday goes up, and its answer comes down in three steps.
     Signal.MAYDAY_ACKNOWLEDGED: (
@@ -98,6 +101,7 @@ _SENTENCES = {
     Signal.MAYDAY_CALLED: "Mayday called.",
     Signal.PAR_REQUEST: "PAR. Press the button if you are well.",
     Signal.TEXT: "Message:",
+    Signal.ALL_CLEAR: "All clear. The evacuation is over.",
     Signal.LOCATE: "You are being located.",
     Signal.MAYDAY_ACKNOWLEDGED: "The commander knows of your mayday.",
     Signal.ALARM_ACKNOWLEDGED: "The commander knows of your alarm.",

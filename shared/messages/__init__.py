@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from shared.messages.alarm import AlarmChange, AlarmParameters, AlarmState
 from shared.messages.command import (
+    ANSWERED_BY_PRESS,
     ASKS_WEARER,
+    LIGHT,
     OF_STATION,
+    SOUND,
     Command,
     CommandKind,
     CommandReply,
@@ -50,9 +53,12 @@ Message = (
 )
 
 __all__ = [
+    "ANSWERED_BY_PRESS",
     "ASKS_WEARER",
+    "LIGHT",
     "OF_STATION",
     "SCHEMA_REVISION",
+    "SOUND",
     "STATION_ID",
     "Activity",
     "AlarmChange",

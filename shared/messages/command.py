@@ -23,14 +23,28 @@ class CommandKind(IntEnum):
     MAYDAY_ACKNOWLEDGED = 7
     END_ORDER = 8
     ALARM_ACKNOWLEDGED = 9
+    ALL_CLEAR = 10
 
 
 # Done when the wearer has acknowledged it; the others are done when the unit has them.
-ASKS_WEARER = frozenset({CommandKind.EVACUATE, CommandKind.PAR_REQUEST, CommandKind.TEXT})
+ASKS_WEARER = frozenset(
+    {
+        CommandKind.EVACUATE,
+        CommandKind.PAR_REQUEST,
+        CommandKind.TEXT,
+        CommandKind.ALL_CLEAR,
+    }
+)
+# The wearer's press answers these; a LOCATE is stopped by it.
+ANSWERED_BY_PRESS = ASKS_WEARER | {CommandKind.LOCATE}
 # Those of the station itself, which follow from what an operator does; nobody orders them.
 OF_STATION = frozenset(
     {CommandKind.MAYDAY_ACKNOWLEDGED, CommandKind.END_ORDER, CommandKind.ALARM_ACKNOWLEDGED}
 )
+
+
+# How a unit signals its place, as the detail of its reply to a LOCATE.
+SOUND, LIGHT = "sound", "light"
 
 
 class CommandState(IntEnum):
@@ -49,10 +63,11 @@ class Command(msgspec.Struct, frozen=True):
     expires_utc_ns: int
     text: str = ""
     position_rate_hz: float = 0.0
-    ended_command_id: str = ""  # for END_ORDER
+    ended_command_id: str = ""  # for END_ORDER and ALL_CLEAR
     # For MAYDAY_ACKNOWLEDGED: the message by which the station last knew of the mayday.
     mayday_boot_id: int = 0
     mayday_seq: int = 0
+    repeats: str = ""  # id of the order that is sent again; empty: this is a new one
 
     def to_wire(self) -> command_pb2.Command:
         return command_pb2.Command(
@@ -66,6 +81,7 @@ class Command(msgspec.Struct, frozen=True):
             ended_command_id=self.ended_command_id,
             mayday_boot_id=self.mayday_boot_id,
             mayday_seq=self.mayday_seq,
+            repeats=self.repeats,
         )
 
     @staticmethod
@@ -81,6 +97,7 @@ class Command(msgspec.Struct, frozen=True):
             ended_command_id=wire.ended_command_id,
             mayday_boot_id=wire.mayday_boot_id,
             mayday_seq=wire.mayday_seq,
+            repeats=wire.repeats,
         )
 
 
@@ -90,6 +107,8 @@ class CommandReply(msgspec.Struct, frozen=True):
     state: CommandState
     detail: str = ""
     awaits_wearer: bool = False  # received; the wearer has yet to acknowledge it
+    repeats: str = ""  # as in the command
+    ended_command_id: str = ""  # of the evacuation that an ALL_CLEAR has ended
 
     def to_wire(self) -> command_pb2.CommandReply:
         return command_pb2.CommandReply(
@@ -98,6 +117,8 @@ class CommandReply(msgspec.Struct, frozen=True):
             state=int(self.state),  # type: ignore[arg-type]  # stubs want the generated enum
             detail=self.detail,
             awaits_wearer=self.awaits_wearer,
+            repeats=self.repeats,
+            ended_command_id=self.ended_command_id,
         )
 
     @staticmethod
@@ -108,4 +129,6 @@ class CommandReply(msgspec.Struct, frozen=True):
             state=known(CommandState, wire.state),
             detail=wire.detail,
             awaits_wearer=wire.awaits_wearer,
+            repeats=wire.repeats,
+            ended_command_id=wire.ended_command_id,
         )

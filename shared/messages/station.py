@@ -139,7 +139,11 @@ class ReportProblem(msgspec.Struct, frozen=True):
 
 
 class SendCommand(msgspec.Struct, frozen=True):
-    """To a unit, to people, or to everyone; in logs of earlier versions, to a crew by its name."""
+    """To a unit, to people, or to everyone; in logs of earlier versions, to a crew by its name.
+
+    An order that ``repeats`` goes to the unit, or to all who have not answered; one that ends
+    another goes to all whom that went to.
+    """
 
     command_id: str
     kind: CommandKind
@@ -151,6 +155,9 @@ class SendCommand(msgspec.Struct, frozen=True):
     lasts_s: float  # until it expires
     person_ids: tuple[str, ...] = ()
     incident_id: str = ""  # only to who is in this incident; empty: to all
+    repeats: str = ""  # id of the order that is sent again; empty: this is a new one
+    # Of ALL_CLEAR, the evacuation; of END_ORDER, the LOCATE that is stopped.
+    ended_command_id: str = ""
 
 
 class ConfirmCommand(msgspec.Struct, frozen=True):

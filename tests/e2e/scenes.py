@@ -344,6 +344,7 @@ def order(
     is_open: bool = True,
     incident_id: str = INCIDENT.incident_id,
     without_output: Collection[str] = (),
+    ended_ms: int | None = None,
 ) -> wire.CommandView:
     """To these units, a minute ago; some of them cannot notify their wearers."""
     return wire.CommandView(
@@ -361,6 +362,7 @@ def order(
             for unit, state in states.items()
         ),
         incident_id=incident_id,
+        ended_ms=ended_ms,
     )
 
 

@@ -13,6 +13,7 @@ from tests.e2e.console_page import (
     barriers,
     close,
     command,
+    confirm,
     press,
 )
 from tests.e2e.enlisting import NAME
@@ -60,7 +61,9 @@ def test_par_is_confirmed_by_radio_and_that_is_undone(page: Page, card: Locator)
     expect(card).to_contain_text(re.compile(r"PAR (10:00|09:\d\d)"))
 
 
-def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card: Locator) -> None:
+def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(
+    page: Page, card: Locator, wearable: Wearable
+) -> None:
     card.get_by_role("button", name=NAME).click()
     actions = card.get_by_role("group", name=f"For {NAME}")
     actions.get_by_role("button", name="To rehab").click()
@@ -71,20 +74,45 @@ def test_what_is_rarely_done_for_a_person_is_on_the_chosen_card(page: Page, card
     dialog = command(page, "Message")
     expect(dialog.get_by_role("table", name="Locate")).to_contain_text(DELIVERED)
     close(dialog)
+    wearable.notify("sound")
+    expect(card.locator(".card-commands")).to_contain_text("sounds since")
+    press(actions.get_by_role("button", name="Stop sound locator"))
+    expect(card.locator(".card-commands")).to_contain_text("stopped")
+    press(actions.get_by_role("button", name="Sound locator"))
+    expect(card.locator(".card-commands")).to_contain_text(DELIVERED)
+    wearable.notify("light")
+    expect(card.locator(".card-commands")).to_contain_text("no sound")
+    wearable.acknowledge()
+    expect(card.locator(".card-commands")).to_contain_text("stopped by the wearer")
 
 
-def test_an_evacuation_asks_first_and_may_be_answered_by_radio(page: Page, card: Locator) -> None:
+def test_an_evacuation_is_answered_by_radio_sent_again_and_ended_by_the_all_clear(
+    page: Page, card: Locator, wearable: Wearable
+) -> None:
     dialog = command(page, "Evacuate")
     expect(card).not_to_contain_text("Evacuate")
     dialog.get_by_role("button", name="Evacuate now").click()
     row = dialog.get_by_role("row", name=NAME).first
     expect(row).to_contain_text(DELIVERED)
+    press(row.get_by_role("button", name="Send again"))
+    expect(dialog).to_contain_text("sent again")
+    expect(row).to_contain_text(DELIVERED)
+    expect(dialog.locator("caption")).to_contain_text("0 of 1 acknowledged")
     answered = row.get_by_role("button", name=f"Confirm by radio: {NAME}")
     press(answered)
     expect(row).to_contain_text("acknowledgedby radio, admin")
     dialog.get_by_role("status").get_by_role("button", name="Undo").click()
     press(answered)
     expect(row).to_contain_text("acknowledgedby radio, admin")
+    close(dialog)
+    dialog = command(page, "Evacuate")
+    expect(dialog.get_by_role("table")).to_contain_text("acknowledged")  # and stands
+    assert barriers(page) == []
+    confirm(dialog, "All clear")
+    expect(dialog.get_by_role("table", name="All clear")).to_contain_text(DELIVERED)
+    wearable.acknowledge()
+    expect(dialog.get_by_role("table", name="All clear")).to_contain_text("own unit")
+    expect(dialog.get_by_role("table", name="Evacuate")).to_have_count(0)
     close(dialog)
     dialog = command(page, "Evacuate")
     expect(dialog.get_by_role("table")).to_have_count(0)  # it is over, and this would be another

@@ -33,7 +33,9 @@ def captions(page: Page, order: str) -> list[str]:
 def test_under_evacuate_now_no_other_order_has_ticks(stage: Stage) -> None:
     """They would be taken for this one's, also those of an evacuation that is over."""
     par = scenes.order("c1", "par_request", ACKNOWLEDGED, is_open=False)
-    over = scenes.order("c2", "evacuate", ACKNOWLEDGED, is_open=False)
+    over = scenes.order(
+        "c2", "evacuate", ACKNOWLEDGED, is_open=False, ended_ms=scenes.NOW_MS - 1000
+    )
     page, _ = stage.open(with_orders(par, over))
     assert captions(page, "Evacuate") == []
     assert captions(page, "PAR") == ["PAR"]
@@ -63,7 +65,7 @@ def test_of_an_evacuation_who_has_not_answered_stands_first(stage: Stage) -> Non
     station.expect_changes("/commands/c1/confirm")
 
 
-def test_an_evacuation_that_all_have_acknowledged_stays_where_it_was_sent(stage: Stage) -> None:
+def test_an_evacuation_that_all_have_acknowledged_stays_until_the_all_clear(stage: Stage) -> None:
     sent = scenes.order("c1", "evacuate", {"FF-01": "queued"})
     answers = {**ANSWERS, "POST /commands": msgspec.to_builtins(sent)}
     page, station = stage.open(scenes.quiet(), answers=answers)
@@ -73,6 +75,11 @@ def test_an_evacuation_that_all_have_acknowledged_stays_where_it_was_sent(stage:
     done = scenes.order("c1", "evacuate", {"FF-01": "acknowledged"}, is_open=False)
     station.change(commands=(done,))
     expect(dialog.locator("caption")).to_contain_text("1 of 1 acknowledged")
+    expect(page.locator(".command-bar")).to_contain_text("1 of 1 acknowledged")
+    ended = msgspec.structs.replace(done, ended_ms=scenes.NOW_MS)
+    clear = scenes.order("ac", "all_clear", {"FF-01": "notified"})
+    station.change(commands=(ended, clear))
+    expect(dialog.locator("caption")).to_contain_text(re.compile("All clear .*0 of 1 acknowledged"))
 
 
 @pytest.mark.parametrize("order", ["Evacuate", "PAR", "Message"])
@@ -85,21 +92,28 @@ def test_the_orders_of_a_closed_incident_stay_in_it(stage: Stage, order: str) ->
     assert captions(page, order) == []
 
 
-def test_locate_is_done_once_the_unit_has_signalled(stage: Stage) -> None:
+def test_the_signal_of_a_place_is_shown_until_it_is_stopped(stage: Stage) -> None:
     received = scenes.order("c1", "locate", {"FF-01": "received"})
     answers = {**ANSWERS, "POST /commands": msgspec.to_builtins(received)}
-    page, station = stage.open(with_orders(received), answers=answers)
+    page, station = stage.open(with_orders(), answers=answers)
     card = page.locator(".card", has_text="Astrid Lindqvist")
-    expect(card.locator(".card-commands")).to_have_text("Locatedelivered")
     card.get_by_role("button", name="Astrid Lindqvist").click()
     locate = card.get_by_role("button", name="Sound locator")
-    expect(locate).to_have_attribute("title", re.compile("such as a light or a sounder"))
+    expect(locate).to_have_attribute("title", re.compile("such as a sounder or a light"))
     locate.click()
     station.expect_changes("/commands")
-    dialog = command(page, "Message")
-    expect(dialog.locator("caption")).to_contain_text("0 of 1 signalled by the unit")
-    station.change(commands=(scenes.order("c1", "locate", {"FF-01": "notified"}, is_open=False),))
-    expect(dialog.locator("caption")).to_contain_text("1 of 1 signalled by the unit")
+    station.change(commands=(received,))
+    expect(card.locator(".card-commands")).to_have_text("Locatedelivered")
+    station.change(commands=(scenes.order("c1", "locate", {"FF-01": "notified"}),))
+    expect(card.locator(".card-commands")).to_contain_text("signals since")
+    assert barriers(page) == []
+    card.get_by_role("button", name="Stop sound locator").click()
+    station.expect_changes("/commands", "/commands/c1/stop")
+    notified = scenes.order("c1", "locate", {"FF-01": "notified"}, is_open=False)
+    ended = msgspec.structs.replace(notified, ended_ms=scenes.NOW_MS)
+    station.change(commands=(ended,))
+    expect(card.locator(".card-commands")).to_contain_text("stopping")
+    expect(locate).to_be_visible()
 
 
 def test_a_signal_of_the_unit_is_no_answer_of_its_wearer(stage: Stage) -> None:

@@ -16,8 +16,6 @@ from shared.envelope import Stamper
 from shared.messages import (
     Command,
     CommandKind,
-    CommandReply,
-    CommandState,
     EventKind,
     Heartbeat,
     Message,
@@ -82,10 +80,11 @@ class Wearable:
             )
         )
 
-    def notify(self) -> None:
+    def notify(self, signal: str = "") -> None:
         """An output has run for the command that came last."""
-        header = self._stamper.header()
-        self._say(CommandReply(header, self._last_command_id, CommandState.NOTIFIED))
+        reply = self._desk.note_notified(self._last_command_id, signal)
+        assert reply is not None
+        self._say(reply)
 
     def _walk(self) -> None:
         walked_m, steps = 0.0, 0

@@ -129,13 +129,17 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     wait_until("the second leads", two.second.leads)
     assert [one["name"] for one in two.second.get("/incidents")] == ["Mill Lane"]
     assert evacuate(two.second, "k1") == evacuation, "it is the same request"
-    assert evacuate(two.second, "k2") != evacuation
+    again = evacuate(two.second, "k2")
+    assert again != evacuation
+    two.second.post(f"/commands/{again}/all-clear", {})
     tell_everyone(two.second, "come out")
     wait_until("the units answer", lambda: two.second.delivered("come out") == {"anna", "bert"})
     with one.ticks():
         two.first.start()
     wait_until("the first follows", two.first.follows)
-    assert texts(two.first) == ["", "", "come out"]
+    assert texts(two.first) == ["", "", "", "come out"]
+    stands = {one["command_id"]: one["ended_ms"] is None for one in two.first.get("/commands")}
+    assert (stands[evacuation], stands[again]) == (False, False), "the all clear ends both"
     complete(two)
     end_and_compare(two, two.first)
     times_ns = [t_ns for t_ns, _, _ in two.first.logged().events]

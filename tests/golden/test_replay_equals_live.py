@@ -136,11 +136,28 @@ def _commands(script: Script, second: int) -> None:
         script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)
     if second == 90:
         script.act(ConfirmCommand("c1", "FF-03"))
+    _sent_again_and_ended(script, second)
     if second == 200:
         kind = CommandKind.LOCATE
         script.act(SendCommand("c2", kind, "", "", True, "", 0.0, lasts_s=60.0))
         script.reply("FF-01", "c2", CommandState.NOTIFIED)
         script.reply("FF-02", "c2", CommandState.RECEIVED)
+
+
+def _sent_again_and_ended(script: Script, second: int) -> None:
+    """The evacuation goes again to one, the all clear ends it, and one signal is stopped."""
+    everyone = "", "", True, "", 0.0, 60.0
+    if second == 110:
+        script.act(SendCommand("r1", CommandKind.EVACUATE, *everyone, repeats="c1"))
+    if second == 121:
+        script.command("FF-02", "r1")
+        script.reply("FF-02", "r1", CommandState.RECEIVED)
+    if second == 126:
+        script.act(SendCommand("ac", CommandKind.ALL_CLEAR, *everyone, ended_command_id="c1"))
+        script.reply("FF-01", "ac", CommandState.ACKNOWLEDGED)
+        script.reply("FF-02", "ac", CommandState.REFUSED, "this unit does not know it")
+    if second == 210:
+        script.act(SendCommand("s1", CommandKind.END_ORDER, *everyone, ended_command_id="c2"))
 
 
 @pytest.fixture(scope="module")
@@ -178,6 +195,11 @@ def test_the_incident_is_worth_replaying(told: Script) -> None:
     }  # fmt: skip
     assert command.deliveries["FF-01"].notified_ns is not None
     assert [one.can_be_notified for one in command.deliveries.values()] == [True, None, False]
+    assert (command.repeat_ids, command.ended_ns is not None) == (["r1"], True)
+    all_clear = told.pipeline.state.commands["ac"]
+    assert [all_clear.state_of(one) for one in all_clear.deliveries.values()] == [
+        "acknowledged", "refused", "expired"
+    ]  # fmt: skip
     locate = told.pipeline.state.commands["c2"]
     assert {one.unit_id: locate.state_of(one) for one in locate.deliveries.values()} == {
         "FF-01": "notified", "FF-02": "received", "FF-03": "expired"
@@ -196,7 +218,7 @@ def test_a_replay_shows_of_each_command_what_was_shown_live(told: Script) -> Non
         ]
         for script in (told, again)
     )
-    assert [view.command_id for view in live] == ["c1", "c2"]
+    assert [view.command_id for view in live] == ["c1", "ac", "c2"]
     assert replayed == live
 
 

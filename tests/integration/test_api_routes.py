@@ -73,6 +73,9 @@ LEAST: dict[str, dict[str, Role | None]] = {
                "GET /alarms/{alarm_id}/explanation": V,
                "POST /alarms/{alarm_id}/acknowledge": C, "POST /alarms/{alarm_id}/resolve": C},
     "commands": {"GET /commands": V, "POST /commands": C, "GET /commands/{command_id}": V,
+                 "POST /commands/{command_id}/repeat": C,
+                 "POST /commands/{command_id}/all-clear": C,
+                 "POST /commands/{command_id}/stop": C,
                  "POST /commands/{command_id}/confirm": C,
                  "POST /commands/{command_id}/confirm/undo": C,
                  "GET /units/{unit_id}/routes": V, "GET /guides": V,
@@ -340,6 +343,11 @@ async def act_on_an_incident(do: Do, station: DeskStation) -> None:
     told = await do("POST /commands", {"kind": "text", "text": "out", "target": unit})
     await do("POST /commands/{command_id}/confirm", unit, command_id=told["command_id"])
     await do("POST /commands/{command_id}/confirm/undo", unit, command_id=told["command_id"])
+    out = await do("POST /commands", {"kind": "evacuate", "target": {"everyone": True}})
+    await do("POST /commands/{command_id}/repeat", {}, command_id=out["command_id"])
+    await do("POST /commands/{command_id}/all-clear", {}, command_id=out["command_id"])
+    locate = await do("POST /commands", {"kind": "locate", "target": unit})
+    await do("POST /commands/{command_id}/stop", {}, command_id=locate["command_id"])
     await act_on_pins(do)
     for here in (unit, other):
         station.drive.hear(message_factory.position(Header(here["unit_id"], 7, 1, 4)))

@@ -19,6 +19,7 @@ from tests.rig.station_command import Agent, Browser, Command
 from tests.rig.waiting import until
 
 FF_01 = "u1"
+_SHORT_PRESS_S = 0.1
 _LONGER_S = 5.0  # than the pattern of an order takes
 
 
@@ -104,8 +105,8 @@ def test_an_order_reaches_the_wearer_the_station_is_told_and_a_restart_repeats_i
     assert again.stop() == 0
 
 
-def test_an_order_that_was_answered_by_radio_ends_and_one_entered_in_error_is_played_again(
-    browser, shown, started
+def test_an_order_ends_by_an_answer_by_radio_is_played_again_and_ends_by_the_all_clear(
+    browser, shown, started, panel: PanelButton
 ) -> None:
     agent = started("terminal:FF-01")
     until(lambda: "linked to the station" in agent.said(), "the link")
@@ -119,6 +120,25 @@ def test_an_order_that_was_answered_by_radio_ends_and_one_entered_in_error_is_pl
     browser.call("POST", f"/commands/{command_id}/confirm/undo", json={"unit_id": FF_01})
     until(lambda: agent.said().count("[evacuate]") > ended + 1, "the order again")
     until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was played again")
+    browser.call("POST", f"/commands/{command_id}/repeat", json={})
+    until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was sent again")
+    locate_id = order(browser, "locate")
+    until(lambda: delivery(browser, locate_id)["signal"] == "light", "the signal of the place")
+    browser.call("POST", f"/commands/{locate_id}/stop", json={})
+    until(lambda: delivery(browser, locate_id)["ended_ms"], "that the unit has stopped it")
+    clear_id = browser.call("POST", f"/commands/{command_id}/all-clear", json={})["command_id"]
+    until(lambda: "[all clear] All clear. The evacuation is over." in agent.said(), "the all clear")
+    cleared = agent.said().count("[evacuate]")
+    assert delivery(browser, command_id)["state"] == "expired"
+
+    def is_acknowledged() -> bool:
+        panel.press()
+        time.sleep(_SHORT_PRESS_S)
+        panel.release()
+        return bool(delivery(browser, clear_id)["state"] == "acknowledged")
+
+    until(is_acknowledged, "the answer to the all clear")
+    assert agent.said().count("[evacuate]") == cleared
     assert agent.stop() == 0
 
 
@@ -137,12 +157,18 @@ def test_a_mayday_that_is_acknowledged_in_an_outage_is_played_once_after_it(
     browser.call("POST", f"/alarms/{alarm['alarm_id']}/acknowledge", json=seen)
     (command,) = browser.call("GET", "/commands")
     assert (command["kind"], command["units"][0]["state"]) == ("mayday_acknowledged", "queued")
+    evacuation_id = order(browser, "evacuate")
+    clear = browser.call("POST", f"/commands/{evacuation_id}/all-clear", json={})
     until(lambda: "radio back" in agent.said(), "the end of the outage")
     until(
         lambda: delivery(browser, command["command_id"])["state"] == "notified",
         "that the wearer was notified",
     )
     assert agent.said().count("FF-01: [mayday acknowledged]") == 1
+    until(lambda: "[all clear]" in agent.said(), "the all clear, of what the unit had not received")
+    until(lambda: delivery(browser, clear["command_id"])["received_ms"], "that the unit has it")
+    assert "[evacuate]" not in agent.said()
+    assert delivery(browser, evacuation_id)["sent_ms"] is None
     assert agent.stop() == 0
 
 

@@ -94,6 +94,8 @@ def test_it_tells_what_happened_and_who_did_it(written: bytes) -> None:
         "22:14:01 Order Roll call (PAR) to everyone chief",
         "Alarm Mayday from Carl Berg (mayday)",
         "22:16:56 Order Evacuate to everyone: North exit chief",
+        f"22:17:11 Order Evacuate (sent again) to {HOSTILE}",
+        "22:17:41 Order All clear chief",
         "Alarm acknowledged: Mayday from Carl Berg chief",
         "Alarm resolved: Mayday from Carl Berg; found and helped; brought out chief",
         "Incident closed",
@@ -108,7 +110,12 @@ def test_roll_calls_and_orders_say_who_answered_and_how(written: bytes) -> None:
     assert par.endswith(f"{HOSTILE} (FF-02)")
     orders = section(written, "Orders")
     assert "Carl Berg (FF-03) (own unit, after 7 s)" in orders
-    assert f"Anna Vos (FF-01) (not received) {HOSTILE} (FF-02) (received)" in orders
+    sent_again = orders.index("Evacuate (sent again)")
+    first, again = orders[:sent_again], orders[sent_again:]
+    assert "Anna Vos (FF-01) (not received)" in first
+    assert f"{HOSTILE} (FF-02) (own unit, after 20 s)" in first, "its answers count for the first"
+    assert f"{HOSTILE} (FF-02) (own unit, after 5 s)" in again
+    assert "All clear chief 3 Carl Berg (FF-03) (own unit" in again
 
 
 def test_each_person_has_way_heat_and_radio_gaps(written: bytes) -> None:

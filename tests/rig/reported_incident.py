@@ -172,6 +172,18 @@ def _orders(script: Script, second: int) -> None:
         case 222:
             script.reply("FF-03", "c2", CommandState.ACKNOWLEDGED)
             script.reply("FF-02", "c2", CommandState.RECEIVED)
+        case 230:
+            kind = CommandKind.EVACUATE
+            script.act(SendCommand("r2", kind, "FF-02", "", False, "", 0.0, 60.0, repeats="c2"))
+            script.command("FF-02", "r2")
+        case 235:
+            script.reply("FF-02", "r2", CommandState.ACKNOWLEDGED)
+        case 260:
+            kind, ended = CommandKind.ALL_CLEAR, "c2"
+            script.act(SendCommand("ac", kind, "", "", True, "", 0.0, 60.0, ended_command_id=ended))
+            for unit_id in _UNITS:
+                script.command(unit_id, "ac")
+            script.reply("FF-03", "ac", CommandState.ACKNOWLEDGED)
         case 280:
             mayday = next(one for one in script.alarms if one.rule == "mayday")
             script.act(ResolveAlarm(mayday.alarm_id, "brought out", reason="found_and_helped"))

@@ -81,17 +81,29 @@ def members_of(target: object, station: Services) -> tuple[str, ...]:
     )
 
 
+Lasts = Annotated[float, Field(ge=1.0, le=86_400.0)]  # s
+
+
 class NewCommand(Form):
     kind: Kind
     target: Target
     text: Note = ""
     position_rate_hz: Annotated[float, Field(ge=0.1, le=50.0)] = 5.0  # for set_position_rate
     incident_id: PersonIdText | None = None  # only to its members; None: to all of the target
-    expires_s: Annotated[float, Field(ge=1.0, le=86_400.0)] = 600.0
+    expires_s: Lasts = 600.0
 
 
 class Confirmation(Form):
     unit_id: UnitIdText
+
+
+class Repeat(Form):
+    unit_id: UnitIdText | None = None  # None: all who have not answered
+    expires_s: Lasts = 600.0
+
+
+class AllClear(Form):
+    expires_s: Lasts = 600.0
 
 
 @router.get("/commands")
@@ -123,6 +135,33 @@ def send(new: NewCommand, station: Station, perform: Perform) -> CommandView:
     return _command_or_404(station, perform(action).created_id)
 
 
+@router.post("/commands/{command_id}/repeat")
+def repeat(command_id: Id, new: Repeat, station: Station, perform: Perform) -> CommandView:
+    """Send an order again, to one unit or to all that have not answered; they notify anew."""
+    order = _command_or_404(station, command_id)
+    unit_id = new.unit_id or ""
+    kind = CommandKind[order.kind.upper()]
+    perform(_later(kind, new.expires_s, unit_id=unit_id, repeats=command_id))
+    return _command_or_404(station, command_id)
+
+
+@router.post("/commands/{command_id}/all-clear", status_code=201)
+def give_all_clear(
+    command_id: Id, new: AllClear, station: Station, perform: Perform
+) -> CommandView:
+    """End an evacuation: all whom it was for are notified; answers with the all clear."""
+    _command_or_404(station, command_id)
+    action = _later(CommandKind.ALL_CLEAR, new.expires_s, ended_command_id=command_id)
+    return _command_or_404(station, perform(action).created_id)
+
+
+@router.post("/commands/{command_id}/stop", status_code=204)
+def stop(command_id: Id, station: Station, perform: Perform) -> None:
+    """Stop the signal of a locate order."""
+    _command_or_404(station, command_id)
+    perform(_later(CommandKind.END_ORDER, 600.0, ended_command_id=command_id))
+
+
 @router.post("/commands/{command_id}/confirm", status_code=204)
 def confirm(command_id: Id, by_radio: Confirmation, station: Station, perform: Perform) -> None:
     """The member answered by radio: that acknowledges the command."""
@@ -139,6 +178,29 @@ def undo_confirm(
     """
     _command_or_404(station, command_id)
     perform(UndoConfirmation(command_id, by_radio.unit_id))
+
+
+def _later(
+    kind: CommandKind,
+    lasts_s: float,
+    *,
+    unit_id: str = "",
+    repeats: str = "",
+    ended_command_id: str = "",
+) -> SendCommand:
+    """Order that refers to an earlier one."""
+    return SendCommand(
+        command_id=uuid.uuid4().hex,
+        kind=kind,
+        unit_id=unit_id,
+        crew="",
+        everyone=not unit_id,
+        text="",
+        position_rate_hz=0.0,
+        lasts_s=lasts_s,
+        repeats=repeats,
+        ended_command_id=ended_command_id,
+    )
 
 
 def _named(station: Services, incident_id: str | None) -> str:

@@ -79,6 +79,10 @@ export interface AlertReceipt {
   warnings: string[];
 }
 
+export interface AllClear {
+  expires_s?: number;
+}
+
 export interface AnchorForm {
   lat_deg: number;
   lon_deg: number;
@@ -178,6 +182,8 @@ export interface CommandView {
   open: boolean;
   units: DeliveryView[];
   incident_id: string;
+  ended_ms: number | null;
+  ended_command_id: string;
 }
 
 export interface Confirmation {
@@ -204,6 +210,9 @@ export interface DeliveryView {
   reason: string;
   acknowledged_via: string;
   can_be_notified: boolean | null;
+  repeated_ms: number | null;
+  ended_ms: number | null;
+  signal: string;
 }
 
 export interface Dismissal {
@@ -705,6 +714,11 @@ export interface Reference {
   unit_id: string;
   incident_id?: string | null;
   down_m?: number;
+}
+
+export interface Repeat {
+  unit_id?: string | null;
+  expires_s?: number;
 }
 
 export interface Replay {

@@ -190,6 +190,15 @@ export const setPositionRate = (unitId: string, rateHz: number) =>
     target: { unit_id: unitId },
     position_rate_hz: rateHz,
   });
+/** To one unit, or to all who have not answered. */
+export const repeatCommand = (commandId: string, unitId: string | null = null) =>
+  act<CommandView>("POST", `/commands/${id(commandId)}/repeat`, { unit_id: unitId });
+/** The evacuation is over. */
+export const giveAllClear = (commandId: string) =>
+  act<CommandView>("POST", `/commands/${id(commandId)}/all-clear`, {});
+/** The units signal their place no more. */
+export const stopCommand = (commandId: string) =>
+  act<void>("POST", `/commands/${id(commandId)}/stop`, {});
 export const confirmCommand = (commandId: string, unitId: string) =>
   act<void>("POST", `/commands/${id(commandId)}/confirm`, { unit_id: unitId });
 export const undoConfirmCommand = (commandId: string, unitId: string) =>

@@ -15,9 +15,10 @@ const COMMANDS: readonly (PlainKey | "")[] = [
   "order.mayday_acknowledged",
   "audit_value.end_of_order",
   "order.alarm_acknowledged",
+  "order.all_clear",
 ];
 /** Says nothing to a person. */
-const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "check_in_id", "entry_id", "term"]);
+const WITHOUT_MEANING = new Set(["pin_id", "command_id", "incident_id", "person_id", "check_in_id", "entry_id", "ended_command_id", "term"]);
 /** Where 0 is no number: it was left out. */
 const ZEROS = new Set(["after_t_ns", "last_raised_ms", "par_interval_s", "work_limit_s", "position_rate_hz"]);
 /** Where 0 is the beginning of the path. */
@@ -56,6 +57,7 @@ function said(name: string, value: unknown): string {
   if (Array.isArray(value) && value.length === 0) return "";
   if (value === 0 && name === FROM_START) return t("audit_value.start");
   if (value === 0 && ZEROS.has(name)) return "";
+  if (name === "repeats") return t("audit_value.sent_again");
   if (name === "resting") return t(value === true ? "audit_value.to_rehab" : "audit_value.return_to_duty");
   if (typeof value === "boolean") return value ? fieldWord(name) : "";
   if (name === "floor" && typeof value === "number") return floorName(value);

@@ -216,6 +216,9 @@ export interface DeliveryView {
   reason: string;
   acknowledged_via: "self" | "radio" | "";
   can_be_notified: boolean | null;
+  repeated_ms: number | null;
+  ended_ms: number | null;
+  signal: "sound" | "light" | "";
 }
 
 export interface CommandView {
@@ -230,6 +233,8 @@ export interface CommandView {
   open: boolean;
   units: DeliveryView[];
   incident_id: string;
+  ended_ms: number | null;
+  ended_command_id: string;
 }
 
 export interface DispatchView {

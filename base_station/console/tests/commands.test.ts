@@ -4,6 +4,8 @@ import {
   commandWord,
   crewsOf,
   current,
+  deliveryWord,
+  lastLocate,
   mayAnswerByRadio,
   newestFirst,
   notNotifiable,
@@ -11,6 +13,8 @@ import {
   progress,
   recipients,
   shownState,
+  stands,
+  unanswered,
   unansweredFirst,
 } from "../src/live/commands";
 import type { CommandView } from "../src/wire";
@@ -186,5 +190,71 @@ describe("commands", () => {
   it("puts the newest first", () => {
     const [old, young] = [command("o", {}), command("y", {}, { issued_ms: 5 })];
     expect(newestFirst([old, young])).toEqual([young, old]);
+  });
+});
+
+describe("an evacuation", () => {
+  const states = { a: "acknowledged", b: "received", c: "expired" } as const;
+
+  it("stands until the all clear, answered by all or not", () => {
+    expect(stands(command("x", { a: "acknowledged" }, { open: false }))).toBe(true);
+    expect(stands(command("x", states, { ended_ms: 5 }))).toBe(false);
+    expect(stands(command("x", states, { kind: "text" }))).toBe(false);
+  });
+
+  it("is sent again to those who have not answered, while it stands", () => {
+    const waited = (order: CommandView) => unanswered(order).map((one) => one.unit_id);
+    expect(waited(command("x", states))).toEqual(["b", "c"]);
+    expect(waited(command("x", states, { ended_ms: 5 }))).toEqual([]);
+    expect(waited(command("x", states, { kind: "locate", asks_wearer: false }))).toEqual([]);
+  });
+
+  it("is no missing answer once it has ended", () => {
+    const ended = command("x", states, { ended_ms: 5, open: false });
+    expect(ended.units.map((one) => shownState(ended, one))).toEqual([
+      "acknowledged",
+      "received",
+      "ended",
+    ]);
+    expect(ended.units.map((one) => mayAnswerByRadio(ended, one))).not.toContain(true);
+  });
+
+  it("has an all clear that a unit of an earlier version does not know", () => {
+    const clear = command("x", { a: "refused" }, { kind: "all_clear" });
+    expect(clear.units.map((one) => shownState(clear, one))).toEqual(["cannot_be_notified"]);
+  });
+});
+
+describe("the signal of a place", () => {
+  const locate = { kind: "locate", asks_wearer: false };
+  const words = (state: "received" | "notified" | "acknowledged", delivery: object, change: object = {}) => {
+    const order = command("x", { a: state }, { ...locate, ...change });
+    const [one] = order.units;
+    return deliveryWord(order, { ...one!, sent_ms: 0, ...delivery });
+  };
+
+  it("says what the unit does, and who has stopped it", () => {
+    expect(words("received", {})).toBe("delivered");
+    expect(words("notified", { notified_ms: 0, signal: "sound" })).toMatch(/^sounds since /);
+    expect(words("notified", { notified_ms: 0, signal: "light" })).toMatch(/^light since .*no sound/);
+    expect(words("notified", { notified_ms: 0 })).toMatch(/^signals since /);
+    expect(words("acknowledged", { acknowledged_ms: 0, acknowledged_via: "self" })).toMatch(
+      /^stopped by the wearer /,
+    );
+    expect(words("received", { can_be_notified: false })).toBe("no sounder");
+    const stopped = { open: false, ended_ms: 5 };
+    expect(words("notified", { notified_ms: 0 }, stopped)).toBe("stopping …");
+    expect(words("notified", { notified_ms: 0, ended_ms: 5 }, stopped)).toMatch(/^stopped /);
+    expect(words("notified", { notified_ms: 0 }, { open: false })).toMatch(/^signalled until /);
+  });
+
+  it("is the last one that went to the unit", () => {
+    const commands = [
+      command("first", { a: "notified" }, { ...locate, issued_ms: 1 }),
+      command("of another", { b: "notified" }, { ...locate, issued_ms: 3 }),
+      command("last", { a: "sent", b: "sent" }, { ...locate, issued_ms: 2 }),
+    ];
+    expect(lastLocate("a", commands)?.command.command_id).toBe("last");
+    expect(lastLocate("c", commands)).toBeNull();
   });
 });

@@ -155,8 +155,13 @@ export function command(
       reason: "",
       acknowledged_via: "",
       can_be_notified: true,
+      repeated_ms: null,
+      ended_ms: null,
+      signal: "",
     })),
     incident_id: "",
+    ended_ms: null,
+    ended_command_id: "",
     ...change,
   };
 }

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from base_station.core.commands import unit_commands
 from base_station.core.state import Alarm, StationState, UnitState
-from base_station.core.state.command import Delivery, SentCommand
+from base_station.core.state.command import SentCommand
 from shared.clock import NS_PER_S
 from shared.messages import AlarmState, CommandKind
 
@@ -30,22 +31,15 @@ def acknowledge(state: StationState, by: str, alarm: Alarm, incident_id: str) ->
         return None
     if not _is_of_wearer(alarm, unit, state.t_ns):
         return None
-    command = SentCommand(
-        command_id=f"alarm-{unit.unit_id}-{state.t_ns}",
-        kind=CommandKind.ALARM_ACKNOWLEDGED,
-        text="",
-        position_rate_hz=0.0,
-        issued_by=by,
-        issued_ns=state.t_ns,
-        expires_ns=state.t_ns + _LASTS_NS,
-        deliveries={
-            unit.unit_id: Delivery(unit.unit_id, can_be_notified=unit.can_be_notified),
-        },
-        incident_id=incident_id,
+    return unit_commands.create(
+        state,
+        CommandKind.ALARM_ACKNOWLEDGED,
+        by,
+        unit,
+        _LASTS_NS,
+        incident_id,
         alarm_id=alarm.alarm_id,
     )
-    state.commands[command.command_id] = command
-    return command
 
 
 def withdraw(state: StationState) -> Iterator[SentCommand]:

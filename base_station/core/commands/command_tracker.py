@@ -11,10 +11,11 @@ import math
 from collections.abc import Iterable, Iterator
 
 from base_station.core.commands import order_ends
+from base_station.core.commands.delivery_progress import acknowledge, delivery_of
 from base_station.core.commands.order_ends import WITHDRAWN
+from base_station.core.commands.order_repeats import command_of, current_id
 from base_station.core.state import ERASED_TEXT, StationState, UnitState
 from base_station.core.state.command import (
-    AnsweredBy,
     Delivery,
     DeliveryState,
     Order,
@@ -22,7 +23,10 @@ from base_station.core.state.command import (
 )
 from shared.clock import NS_PER_S
 from shared.errors import UserError
-from shared.messages import OF_STATION, Command, CommandKind, CommandReply, CommandState
+from shared.messages import (
+    OF_STATION,
+    CommandKind,
+)
 from shared.messages.station import ConfirmCommand, SendCommand, UndoConfirmation
 
 MAX_OPEN = 50  # and as many again for evacuations, which wait for nothing
@@ -32,7 +36,7 @@ _NOT_RECEIVED: frozenset[DeliveryState] = frozenset({"queued", "sent"})
 
 
 def send(state: StationState, by: str, action: SendCommand) -> SentCommand:
-    """Create a command.  Raises UserError where it makes no sense or has no recipient."""
+    """Create a new command.  Raises UserError where it makes no sense or has no recipient."""
     _check(state, action)
     recipients = _recipients(state, action)
     command = SentCommand(
@@ -72,7 +76,7 @@ def replace(state: StationState, later: SentCommand) -> Iterator[SentCommand]:
 
 def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand:
     """Acknowledge by radio.  Raises UserError where there is nothing to confirm."""
-    found = _delivery(state, action.unit_id, action.command_id)
+    found = delivery_of(state, action.unit_id, action.command_id)
     if found is None:
         raise UserError(f"no command {action.command_id} to {action.unit_id}")
     command, delivery = found
@@ -80,7 +84,7 @@ def confirm(state: StationState, by: str, action: ConfirmCommand) -> SentCommand
         raise UserError("such a command concerns the unit alone: it is not answered by radio")
     if delivery.acknowledged_ns is not None:
         raise UserError(f"{delivery.acknowledged_by} has acknowledged it already")
-    _acknowledge(delivery, state.t_ns, "radio", by)
+    acknowledge(delivery, state.t_ns, "radio", by)
     return command
 
 
@@ -100,6 +104,8 @@ def undo(state: StationState, action: UndoConfirmation) -> SentCommand | None:
     ]
     if entered and command.incident_id and not _is_open(state, command.incident_id):
         raise UserError("its incident is closed: what was entered in it stays as it is")
+    if entered and command.ended_ns is not None:
+        raise UserError("the order is over: what was entered for it stays as it is")
     for delivery in entered:
         delivery.acknowledged_ns, delivery.acknowledged_by = None, ""
         delivery.acknowledged_via = ""
@@ -125,56 +131,10 @@ def withdraw(state: StationState, incident_id: str) -> Iterator[SentCommand]:
         ]
         for delivery in open_ones:
             delivery.expired_ns, delivery.reason = state.t_ns, WITHDRAWN
-        if open_ones:
-            yield command
-
-
-def note_sent(state: StationState, unit_id: str, sent: Command) -> SentCommand | None:
-    """Record that the station sent it on the bus; None where that changes nothing."""
-    if sent.kind is CommandKind.END_ORDER:
-        order_ends.note_sent(state, unit_id, sent)
-        return None
-    found = _delivery(state, unit_id, sent.command_id)
-    if found is None or found[1].sent_ns is not None:
-        return None
-    command, delivery = found
-    delivery.sent_ns = state.t_ns
-    return command
-
-
-def note_reply(
-    state: StationState, unit: UnitState, reply: CommandReply, event_ns: int | None
-) -> SentCommand | None:
-    """Note a unit's answer of ``event_ns``, None: unknown.  Gives None where it changes nothing."""
-    found = _delivery(state, unit.unit_id, reply.command_id)
-    if found is None:
-        order_ends.note_reply(state, unit.unit_id, reply)
-        return None
-    command, delivery = found
-    match reply.state:
-        case CommandState.RECEIVED if delivery.received_ns is None:
-            delivery.received_ns = state.t_ns
-        case CommandState.NOTIFIED if delivery.notified_ns is None:
-            delivery.received_ns = delivery.received_ns or state.t_ns
-            delivery.notified_ns = state.t_ns
-        case CommandState.ACKNOWLEDGED if delivery.acknowledged_via != "self":
-            delivery.received_ns = delivery.received_ns or state.t_ns
-            _acknowledge(delivery, state.t_ns, "self", unit.name_at(event_ns))
-        case CommandState.REFUSED if delivery.refused_ns is None:
-            delivery.refused_ns, delivery.reason = state.t_ns, reply.detail
-        case _:
-            return None
-    return command
-
-
-def note_outputs(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
-    """The unit has described itself: whether it can notify its wearer of open commands."""
-    for command in state.commands.values():
-        delivery = command.deliveries.get(unit.unit_id)
-        if delivery is None or delivery.can_be_notified == unit.can_be_notified:
-            continue
-        if command.awaits(delivery):
-            delivery.can_be_notified = unit.can_be_notified
+        is_standing = is_of_it and command.ended_ns is None
+        if is_standing:
+            command.ended_ns = state.t_ns
+        if open_ones or is_standing:
             yield command
 
 
@@ -183,10 +143,15 @@ def expire(state: StationState) -> Iterator[SentCommand]:
     for command in state.commands.values():
         if state.t_ns < command.expires_ns or not command.is_open:
             continue
-        for delivery in command.deliveries.values():
-            if command.awaits(delivery):
-                delivery.expired_ns = state.t_ns
-        yield command
+        over = [
+            one
+            for one in command.deliveries.values()
+            if state.t_ns >= command.expires_ns_of(one) and command.awaits(one)
+        ]
+        for delivery in over:
+            delivery.expired_ns = state.t_ns
+        if over:
+            yield command
 
 
 def erase_names(state: StationState, unit: UnitState) -> Iterator[SentCommand]:
@@ -212,23 +177,21 @@ def open_orders(state: StationState) -> tuple[Order, ...]:
     begun = (
         Order(
             unit_id=delivery.unit_id,
-            command_id=command.command_id,
+            command_id=current_id(command, delivery),
             kind=command.kind,
             issued_by=command.issued_by,
-            expires_ns=command.expires_ns,
+            expires_ns=command.expires_ns_of(delivery),
             text="" if command.text == ERASED_TEXT else command.text,
             position_rate_hz=command.position_rate_hz,
             mayday_boot_id=command.mayday_boot_id,
             mayday_seq=command.mayday_seq,
+            ended_command_id=command.ended_command_id,
+            repeats=command.command_id if delivery.repeat_id else "",
         )
         for command in state.commands.values()
         for delivery in _undelivered(command)
     )
     return (*begun, *order_ends.owed(state))
-
-
-def _acknowledge(delivery: Delivery, t_ns: int, via: AnsweredBy, by: str) -> None:
-    delivery.acknowledged_ns, delivery.acknowledged_via, delivery.acknowledged_by = t_ns, via, by
 
 
 def _incident_of(state: StationState, units: Iterable[UnitState]) -> str:
@@ -241,17 +204,24 @@ def _is_open(state: StationState, incident_id: str) -> bool:
     return incident_id in {one.incident_id for one in state.open_incidents}
 
 
-def _check(state: StationState, action: SendCommand) -> None:
-    if not action.command_id or action.command_id in state.commands:
+def check_new(state: StationState, action: SendCommand) -> None:
+    """Raise UserError where an order has no id of its own, or no time in which it is answered."""
+    if not action.command_id or command_of(state, action.command_id) is not None:
         raise UserError(f"a command needs an id of its own, not {action.command_id!r}")
+    if not (math.isfinite(action.lasts_s) and 0.0 < action.lasts_s <= 86_400.0):
+        raise UserError(f"a command lasts up to a day, not {action.lasts_s} s")
+
+
+def _check(state: StationState, action: SendCommand) -> None:
+    check_new(state, action)
     if action.kind is CommandKind.UNKNOWN:
         raise UserError("this station does not know this kind of command")
     if action.kind in OF_STATION:
         raise UserError("the station sends this by itself; it cannot be ordered")
+    if action.kind is CommandKind.ALL_CLEAR:
+        raise UserError("an all clear ends an evacuation: name that")
     if action.kind is CommandKind.TEXT and not action.text.strip():
         raise UserError("a message needs a text")
-    if not (math.isfinite(action.lasts_s) and 0.0 < action.lasts_s <= 86_400.0):
-        raise UserError(f"a command lasts up to a day, not {action.lasts_s} s")
     if not math.isfinite(action.position_rate_hz):
         raise UserError("a position rate is no finite number")
     if sum(map(bool, (action.unit_id, action.crew, action.person_ids, action.everyone))) != 1:
@@ -296,28 +266,28 @@ def _is_in_use(unit: UnitState) -> bool:
     return unit.last_message_ns is not None and unit.stopped_ns is None
 
 
-def _delivery(
-    state: StationState, unit_id: str, command_id: str
-) -> tuple[SentCommand, Delivery] | None:
-    command = state.commands.get(command_id)
-    delivery = command.deliveries.get(unit_id) if command is not None else None
-    return None if command is None or delivery is None else (command, delivery)
-
-
 def _undelivered(command: SentCommand) -> list[Delivery]:
     """Recipients to whom it is still on its way, as far as is known."""
     return [one for one in command.deliveries.values() if command.state_of(one) in _NOT_RECEIVED]
 
 
-def _has_end_to_send(command: SentCommand, t_ns: int) -> bool:
-    return any(order_ends.is_owed(command, one, t_ns) for one in command.deliveries.values())
-
-
 def _drop_oldest_closed(state: StationState) -> None:
-    closed = [
-        one.command_id
-        for one in state.commands.values()
-        if not one.is_open and not _has_end_to_send(one, state.t_ns)
-    ]
-    for command_id in closed[: max(0, len(closed) - CLOSED_KEPT + 1)]:
-        del state.commands[command_id]
+    """Drop the oldest closed commands; evacuations that stand are counted apart: they can still be
+    ended.
+    """
+    closed = [one for one in state.commands.values() if _is_done_with(state, one)]
+    standing = [one for one in closed if _stands(one)]
+    over = [one for one in closed if not _stands(one)]
+    for commands in (standing, over):
+        for command in commands[: max(0, len(commands) - CLOSED_KEPT + 1)]:
+            del state.commands[command.command_id]
+
+
+def _is_done_with(state: StationState, command: SentCommand) -> bool:
+    if command.is_open:
+        return False
+    return not any(order_ends.is_owed(state, command, one) for one in command.deliveries.values())
+
+
+def _stands(command: SentCommand) -> bool:
+    return command.kind is CommandKind.EVACUATE and command.ended_ns is None

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from base_station.core.commands import unit_commands
 from base_station.core.state import Alarm, StationState, UnitState
-from base_station.core.state.command import Delivery, SentCommand
+from base_station.core.state.command import SentCommand
 from shared.clock import NS_PER_S
 from shared.messages import CommandKind
 
@@ -28,23 +29,16 @@ def acknowledge(state: StationState, by: str, alarm: Alarm, incident_id: str) ->
         return None
     if alarm.about != unit.wearer.from_ns(unit.mayday.dated_ns):
         return None
-    command = SentCommand(
-        command_id=f"mayday-{unit.unit_id}-{state.t_ns}",
-        kind=CommandKind.MAYDAY_ACKNOWLEDGED,
-        text="",
-        position_rate_hz=0.0,
-        issued_by=by,
-        issued_ns=state.t_ns,
-        expires_ns=state.t_ns + _LASTS_NS,
-        deliveries={
-            unit.unit_id: Delivery(unit.unit_id, can_be_notified=unit.can_be_notified),
-        },
-        incident_id=incident_id,
+    return unit_commands.create(
+        state,
+        CommandKind.MAYDAY_ACKNOWLEDGED,
+        by,
+        unit,
+        _LASTS_NS,
+        incident_id,
         mayday_boot_id=unit.mayday.boot_id,
         mayday_seq=unit.mayday.seq,
     )
-    state.commands[command.command_id] = command
-    return command
 
 
 def withdraw(state: StationState) -> Iterator[SentCommand]:

@@ -1,23 +1,47 @@
 """Ends of orders: sent to a unit that may still notify its wearer of an order that is over.
 
-An order is over for a unit when its answer by radio was entered, or when its incident was closed.
-The unit itself knows of answers of the wearer and of expired orders.
+An order is over for a unit when its answer by radio was entered, when its incident was closed, or
+when an operator has stopped the signal of a LOCATE.  After an all clear it is sent where the all
+clear itself does not reach the unit: one of an earlier version refuses that.  The unit itself knows
+of answers of the wearer and of expired orders.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from base_station.core.commands import all_clears
+from base_station.core.commands.all_clears import ALL_CLEAR
+from base_station.core.commands.order_repeats import command_of, current_id
 from base_station.core.state import StationState
 from base_station.core.state.command import Delivery, Order, SentCommand
+from shared.errors import UserError
 from shared.messages import Command, CommandKind, CommandReply
+from shared.messages.station import SendCommand
 
 WITHDRAWN = "its incident was closed"
+STOPPED = "stopped at the station"
 
 
-def is_owed(command: SentCommand, delivery: Delivery, t_ns: int) -> bool:
+def stop(state: StationState, action: SendCommand) -> SentCommand:
+    """Stop the signal of a LOCATE.  Raises UserError where none is on, or on its way."""
+    command = state.commands.get(action.ended_command_id)
+    if command is None or command.kind is not CommandKind.LOCATE:
+        raise UserError(f"there is no LOCATE {action.ended_command_id} to stop")
+    if not command.is_open:
+        raise UserError("no unit signals its place by this order any more")
+    command.ended_ns = state.t_ns
+    for delivery in command.deliveries.values():
+        if command.awaits(delivery):
+            delivery.expired_ns, delivery.reason = state.t_ns, STOPPED
+    return command
+
+
+def is_owed(state: StationState, command: SentCommand, delivery: Delivery) -> bool:
     """True if the end of the order is still to be sent to the unit."""
-    is_over = delivery.acknowledged_via == "radio" or delivery.reason == WITHDRAWN
+    is_over = delivery.acknowledged_via == "radio" or delivery.reason in {WITHDRAWN, STOPPED}
+    if delivery.reason == ALL_CLEAR:
+        is_over = not all_clears.is_delivered(state, delivery)
     may_notify = delivery.sent_ns is not None and delivery.refused_ns is None
     is_answered = delivery.ended_ns is not None
     return (
@@ -25,7 +49,7 @@ def is_owed(command: SentCommand, delivery: Delivery, t_ns: int) -> bool:
         and is_over
         and may_notify
         and not is_answered
-        and t_ns < command.expires_ns
+        and state.t_ns < command.expires_ns_of(delivery)
     )
 
 
@@ -33,22 +57,22 @@ def owed(state: StationState) -> Iterator[Order]:
     """Ends to send, and to repeat, until the units answer."""
     for command in state.commands.values():
         for delivery in command.deliveries.values():
-            if is_owed(command, delivery, state.t_ns):
+            if is_owed(state, command, delivery):
                 yield Order(
                     unit_id=delivery.unit_id,
                     command_id=_end_id(command, delivery),
                     kind=CommandKind.END_ORDER,
                     issued_by=delivery.acknowledged_by or command.issued_by,
-                    expires_ns=command.expires_ns,
+                    expires_ns=command.expires_ns_of(delivery),
                     text="",
                     position_rate_hz=0.0,
-                    ended_command_id=command.command_id,
+                    ended_command_id=current_id(command, delivery),
                 )
 
 
 def note_sent(state: StationState, unit_id: str, sent: Command) -> None:
     """Note that the station has sent an end; where it is none any more, the order goes again."""
-    command = state.commands.get(sent.ended_command_id)
+    command = command_of(state, sent.ended_command_id)
     delivery = None if command is None else command.deliveries.get(unit_id)
     if command is None or delivery is None:
         return
@@ -64,17 +88,19 @@ def send_again(delivery: Delivery) -> None:
         delivery.end_sent_ns = delivery.ended_ns = None
 
 
-def note_reply(state: StationState, unit_id: str, reply: CommandReply) -> bool:
-    """Note that a unit has answered an end; True where the reply is to one.
+def note_reply(state: StationState, unit_id: str, reply: CommandReply) -> SentCommand | None:
+    """Note that a unit has answered an end; gives the order, None where that is no news.
 
     A unit of an earlier version refuses it; there is no more to be done about that.
     """
     for command in state.commands.values():
         delivery = command.deliveries.get(unit_id)
-        if delivery is not None and _end_id(command, delivery) == reply.command_id:
-            delivery.ended_ns = delivery.ended_ns or state.t_ns
-            return True
-    return False
+        if delivery is None or delivery.ended_ns is not None:
+            continue
+        if _end_id(command, delivery) == reply.command_id:
+            delivery.ended_ns = state.t_ns
+            return command
+    return None
 
 
 def _end_id(command: SentCommand, delivery: Delivery) -> str:

@@ -12,6 +12,7 @@ AnsweredBy = Literal["", "self", "radio"]
 DeliveryState = Literal[
     "queued", "sent", "received", "notified", "acknowledged", "refused", "expired"
 ]
+Signal = Literal["", "sound", "light"]
 # The others concern the unit alone.
 NOTIFIES_WEARER = ASKS_WEARER | {
     CommandKind.LOCATE,
@@ -41,6 +42,11 @@ class Delivery(msgspec.Struct):
     can_be_notified: bool | None = None
     end_sent_ns: int | None = None  # the unit may know that the order is over for it
     ended_ns: int | None = None  # it has answered that it knows
+    repeat_id: str = ""  # under which it was sent again last; empty: it was not
+    repeated_ns: int | None = None
+    expires_ns: int | None = None  # of the repeat; None: as the command
+    all_clear_id: str = ""  # of the command that has ended this evacuation for the unit
+    signal: Signal = ""  # of LOCATE: what the wearer and others perceive; empty: not known
 
 
 class SentCommand(msgspec.Struct):
@@ -59,6 +65,10 @@ class SentCommand(msgspec.Struct):
     mayday_boot_id: int = 0
     mayday_seq: int = 0
     alarm_id: str = ""  # of ALARM_ACKNOWLEDGED
+    repeat_ids: list[str] = []  # under which it was sent again
+    ended_command_id: str = ""  # of ALL_CLEAR: the evacuation that it has ended
+    # All clear, closed incident, or signal stopped; None: it stands, answered or not.
+    ended_ns: int | None = None
 
     @property
     def asks_wearer(self) -> bool:
@@ -81,7 +91,13 @@ class SentCommand(msgspec.Struct):
             return True
         if self.asks_wearer:
             return state in {"received", "notified"}
+        if self.kind is CommandKind.LOCATE and state == "notified":
+            return delivery.expired_ns is None  # the unit signals until it is stopped
         return state == "received" and delivery.expired_ns is None and self._notifies(delivery)
+
+    def expires_ns_of(self, delivery: Delivery) -> int:
+        """Station time at which it expires for a unit."""
+        return self.expires_ns if delivery.expires_ns is None else delivery.expires_ns
 
     def _notifies(self, delivery: Delivery) -> bool:
         return self.notifies_wearer and bool(delivery.can_be_notified)
@@ -112,6 +128,7 @@ class Order(msgspec.Struct, frozen=True):
     expires_ns: int
     text: str
     position_rate_hz: float
-    ended_command_id: str = ""  # of END_ORDER
+    ended_command_id: str = ""  # of END_ORDER and ALL_CLEAR
     mayday_boot_id: int = 0  # of MAYDAY_ACKNOWLEDGED
     mayday_seq: int = 0
+    repeats: str = ""  # id of the order that is sent again; empty: this is a new one

@@ -1,5 +1,6 @@
 /** What units were told, as the screen needs it.  Pure. */
 import type { CommandView, DeliveryState, DeliveryView, IncidentView, UnitView } from "../wire";
+import { clockTime } from "../format";
 import { listed } from "../language/measures";
 import { label, t } from "../language/translate";
 import { nameAmong } from "./urgency";
@@ -28,6 +29,26 @@ export function current(
 ): CommandView[] {
   const openId = incident === null || incident.closed_ms !== null ? "" : incident.incident_id;
   return [...commands].filter((command) => command.open || command.incident_id === openId);
+}
+
+/** Whether it is an evacuation that no all clear has ended, answered by all or not. */
+export function stands(command: CommandView): boolean {
+  return command.kind === "evacuate" && command.ended_ms === null;
+}
+
+/** Who has not answered an order that can be sent again. */
+export function unanswered(command: CommandView): DeliveryView[] {
+  if (!command.asks_wearer || command.ended_ms !== null) return [];
+  return command.units.filter((one) => one.state !== "acknowledged");
+}
+
+/** The newest signal of its place that a unit was ordered to give. */
+export function lastLocate(unitId: string, commands: Iterable<CommandView>): UnitCommand | null {
+  const [last] = newestFirst(commands).filter(
+    (command) => command.kind === "locate" && command.units.some((one) => one.unit_id === unitId),
+  );
+  const delivery = last?.units.find((one) => one.unit_id === unitId);
+  return last === undefined || delivery === undefined ? null : { command: last, delivery };
 }
 
 /** The newest first. */
@@ -68,11 +89,14 @@ function doneState(command: CommandView): DeliveryState {
 }
 
 export const CANNOT_BE_NOTIFIED = "cannot_be_notified";
-export type ShownState = DeliveryState | typeof CANNOT_BE_NOTIFIED;
+export type ShownState = DeliveryState | typeof CANNOT_BE_NOTIFIED | "ended";
 
 /** However far it has got with a unit without an output, its wearer is not reached by that. */
 export function shownState(command: CommandView, delivery: DeliveryView): ShownState {
   const { state, can_be_notified } = delivery;
+  if (state === "expired" && command.kind === "evacuate" && command.ended_ms !== null) return "ended";
+  // A unit of an earlier version does not know it, and only the radio reaches its wearer.
+  if (state === "refused" && command.kind === "all_clear") return CANNOT_BE_NOTIFIED;
   const answered = state === "notified" || state === "acknowledged" || state === "refused";
   if (answered || !command.notifies_wearer || can_be_notified !== false) return state;
   return CANNOT_BE_NOTIFIED;
@@ -80,6 +104,7 @@ export function shownState(command: CommandView, delivery: DeliveryView): ShownS
 
 /** Whether the voice radio may still bring the answer: what only signals is done once it has. */
 export function mayAnswerByRadio(command: CommandView, delivery: DeliveryView): boolean {
+  if (command.kind === "evacuate" && command.ended_ms !== null) return false;
   return command.asks_wearer || (command.notifies_wearer && delivery.state !== "notified");
 }
 
@@ -135,6 +160,32 @@ export function commandWord(command: CommandView): string {
   const word = kindWord(command.kind);
   return command.text === "" ? word : t("order.with_text", { order: word, text: command.text });
 }
+
+/** How far it has got with somebody, in words. */
+export function deliveryWord(command: CommandView, delivery: DeliveryView): string {
+  return locateWord(command, delivery) ?? stateWord(shownState(command, delivery));
+}
+
+/** What a unit does that is to signal its place; null: nothing yet, or it is another order. */
+function locateWord(command: CommandView, delivery: DeliveryView): string | null {
+  const { acknowledged_ms: stoppedMs, acknowledged_via: via, notified_ms: sinceMs, ended_ms: endedMs } = delivery;
+  if (command.kind !== "locate") return null;
+  if (stoppedMs !== null && via === "self") return t("order.locate_stopped_by_wearer", { time: clockTime(stoppedMs) });
+  if (stoppedMs !== null) return null;
+  if (delivery.can_be_notified === false) return t("order.locate_no_sounder");
+  if (command.ended_ms !== null && delivery.sent_ms !== null) {
+    return endedMs === null ? t("order.locate_stopping") : t("order.locate_stopped", { time: clockTime(endedMs) });
+  }
+  if (sinceMs === null) return null;
+  if (!command.open) return t("order.locate_until", { time: clockTime(command.expires_ms) });
+  return t(SIGNALS[delivery.signal], { time: clockTime(sinceMs) });
+}
+
+const SIGNALS = {
+  sound: "order.locate_sounds",
+  light: "order.locate_lights",
+  "": "order.locate_signals", // by a unit of an earlier version
+} as const;
 
 export function stateWord(state: ShownState): string {
   return t(`delivery.${state}`);

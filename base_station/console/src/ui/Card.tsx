@@ -96,7 +96,7 @@ function Whole({ unit, chosen, short, picture }: WholeProps) {
       {unit.cloned && <TwoMachines />}
       {unit.registered && unit.can_be_notified === false && <NotNotifiable />}
       <NotReady unit={unit} chosen={chosen} />
-      <OpenCommands unitId={unitId} commands={picture.commands.value} />
+      <OpenCommands unitId={unitId} picture={picture} chosen={chosen} />
       {short ? (
         <BriefFacts unit={unit} picture={picture} />
       ) : (

@@ -2,6 +2,7 @@ import { attempt, live } from "../sessions";
 import { openDialog } from "../uiState";
 import * as api from "../api";
 import { take } from "../plan/tools";
+import { current, lastLocate } from "../live/commands";
 import { displayName } from "../live/urgency";
 import { confirmPar } from "../undo";
 import type { UnitView } from "../wire";
@@ -60,8 +61,18 @@ function incidentFor(unitId: string): string | null {
   return shown.incident.value?.incident_id ?? null;
 }
 
-/** Asks first where it cannot do what it is for. */
+/** Stops it where it is on; asks first where it cannot do what it is for. */
 function Locate({ unit: { unit_id: unitId, can_be_notified } }: { unit: UnitView }) {
+  const picture = live.value?.picture;
+  const commands = picture ? current(picture.commands.value.values(), picture.incident.value) : [];
+  const located = lastLocate(unitId, commands)?.command;
+  if (located?.open) {
+    return (
+      <button type="button" onClick={() => void attempt(api.stopCommand(located.command_id))}>
+        {t("order.stop_locate")}
+      </button>
+    );
+  }
   if (can_be_notified === false) {
     return (
       <button type="button" onClick={() => openDialog("locate", unitId)}>

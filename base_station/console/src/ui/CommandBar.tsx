@@ -1,12 +1,13 @@
 import { mayAct } from "../sessions";
 import { openDialog } from "../uiState";
-import { commandWord, newestFirst, progress } from "../live/commands";
+import { commandWord, current, newestFirst, progress, stands } from "../live/commands";
 import type { Picture } from "../live/picture";
 import { t } from "../language/translate";
 
 /** What a commander can tell everyone with two presses, and how far that has got. */
 export function CommandBar({ picture }: { picture: Picture }) {
-  const open = newestFirst(picture.commands.value.values()).filter((command) => command.open);
+  const commands = current(picture.commands.value.values(), picture.incident.value);
+  const open = newestFirst(commands).filter((command) => command.open || stands(command));
   if (!mayAct.value && open.length === 0) return null;
   return (
     <div class="command-bar" role="group" aria-label={t("order.commands")}>

@@ -9,6 +9,7 @@ import {
   kindWord,
   newestFirst,
   notNotifiable,
+  stands,
   type Target,
 } from "../live/commands";
 import { locale } from "../language/measures";
@@ -20,6 +21,7 @@ import { type PlainKey, t } from "../language/translate";
 import { Deliveries } from "./Deliveries";
 import { Dialog } from "./Dialog";
 import { Icon } from "./Icon";
+import { OrderActions } from "./OrderActions";
 import { useSinglePress } from "./useGuardedPress";
 import { fields } from "./useLoaded";
 
@@ -38,29 +40,35 @@ export function CommandDialog({ kind }: { kind: api.CommandKind }) {
   const picture = live.value?.picture;
   if (picture === undefined) return null;
   const orders = current(picture.commands.value.values(), picture.incident.value);
+  const sent = ({ command_id }: CommandView) => (sentHere.value = [...sentHere.peek(), command_id]);
   return (
     <Dialog title={kindWord(kind)}>
       {mayAct.value && (
         <CommandForm
           kind={kind}
           picture={picture}
-          sent={({ command_id }) => (sentHere.value = [...sentHere.peek(), command_id])}
+          sent={sent}
         />
       )}
       {newestFirst(orders)
         .filter((command) => isShown(command, kind, sentHere.value))
         .map((command) => (
-          <Deliveries key={command.command_id} command={command} picture={picture} />
+          <section key={command.command_id} class="order">
+            <OrderActions command={command} sent={sent} />
+            <Deliveries command={command} picture={picture} />
+          </section>
         ))}
     </Dialog>
   );
 }
 
 /** Under *Evacuate now* the ticks of another order, or of an evacuation that is over, would be taken
- * for this one's.  All orders of the incident stand under *Message*. */
+ * for this one's.  An all clear is shown until all have answered it.  All orders of the incident stand
+ * under *Message*. */
 function isShown(command: CommandView, kind: api.CommandKind, sentHere: readonly string[]): boolean {
   if (kind === "evacuate") {
-    return command.kind === kind && (command.open || sentHere.includes(command.command_id));
+    const isAllClear = command.kind === "all_clear";
+    return stands(command) || (isAllClear && (command.open || sentHere.includes(command.command_id)));
   }
   return kind === "text" || command.kind === kind;
 }

@@ -1,12 +1,15 @@
 import {
   commandWord,
+  current,
+  deliveryWord,
+  lastLocate,
   newestFirst,
   openTo,
   shownState,
-  stateWord,
   type ShownState,
+  type UnitCommand,
 } from "../live/commands";
-import type { CommandView } from "../wire";
+import type { Picture } from "../live/picture";
 import { t } from "../language/translate";
 import { Icon, type IconName } from "./Icon";
 
@@ -19,33 +22,40 @@ const ICONS: Record<ShownState, IconName> = {
   refused: "cross",
   expired: "cross",
   cannot_be_notified: "bellOff",
+  ended: "cross",
 };
 
 /** How far a command has got with somebody. */
-export function CommandState({ state }: { state: ShownState }) {
+export function CommandState({ command, delivery }: UnitCommand) {
+  const state = shownState(command, delivery);
   return (
     <span class={`command-state ${state}`}>
       <Icon name={ICONS[state]} />
-      {stateWord(state)}
+      {deliveryWord(command, delivery)}
     </span>
   );
 }
 
 interface Props {
   unitId: string;
-  commands: ReadonlyMap<string, CommandView>;
+  picture: Picture;
+  chosen: boolean;
 }
 
-/** On a person's card: what is asked of this person now. */
-export function OpenCommands({ unitId, commands }: Props) {
-  const open = openTo(unitId, newestFirst(commands.values()));
+/** On a person's card: what is asked of this person now; on the chosen one also what became of the
+ * last signal of its place. */
+export function OpenCommands({ unitId, picture, chosen }: Props) {
+  const commands = current(picture.commands.value.values(), picture.incident.value);
+  const open = openTo(unitId, newestFirst(commands));
+  const located = chosen ? lastLocate(unitId, commands) : null;
+  if (located !== null && !located.command.open) open.push(located);
   if (open.length === 0) return null;
   return (
     <ul class="card-commands" aria-label={t("order.open_to")}>
       {open.map(({ command, delivery }) => (
         <li key={command.command_id}>
           <span class="command-word">{commandWord(command)}</span>
-          <CommandState state={shownState(command, delivery)} />
+          <CommandState command={command} delivery={delivery} />
         </li>
       ))}
     </ul>

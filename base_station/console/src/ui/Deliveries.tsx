@@ -1,6 +1,6 @@
 import { attempt, mayAct } from "../sessions";
 import * as api from "../api";
-import { commandWord, mayAnswerByRadio, progress, shownState, unansweredFirst } from "../live/commands";
+import { CANNOT_BE_NOTIFIED, commandWord, mayAnswerByRadio, progress, shownState, unanswered, unansweredFirst } from "../live/commands";
 import type { Picture } from "../live/picture";
 import { displayName, nameAmong } from "../live/urgency";
 import { confirmAnswer } from "../undo";
@@ -10,7 +10,7 @@ import { rich, t } from "../language/translate";
 import { ByRadio } from "./ByRadio";
 import { CommandState } from "./CommandState";
 import { ConfirmButton } from "./ConfirmButton";
-import { useGuardedPress } from "./useGuardedPress";
+import { useGuardedPress, useSinglePress } from "./useGuardedPress";
 
 interface Props {
   command: CommandView;
@@ -41,7 +41,7 @@ export function Deliveries({ command, picture }: Props) {
           <tr key={delivery.unit_id}>
             <th scope="row">{nameOf(delivery.unit_id, picture)}</th>
             <td>
-              <CommandState state={shownState(command, delivery)} />
+              <CommandState command={command} delivery={delivery} />
             </td>
             <td>
               <Answer command={command} delivery={delivery} place={place} picture={picture} />
@@ -71,20 +71,49 @@ function Answer({ command, delivery, place, picture }: AnswerProps) {
   if (delivery.acknowledged_ms !== null) {
     return <Acknowledged command={command} delivery={delivery} name={name} />;
   }
-  if (reason !== "") return <>{reason}</>;
+  const state = shownState(command, delivery);
+  if (state === "ended") return null;
+  if (reason !== "" && state !== CANNOT_BE_NOTIFIED) return <>{reason}</>;
   if (!mayAnswerByRadio(command, delivery) || !mayAct.value) return null;
   return (
-    <ByRadio
-      label={t("order.answered_by_radio")}
-      about={name}
-      members={unit === undefined ? [] : [unit]}
-      question={t("card.has_answered", { name })}
-      onConfirm={steady(() => void confirmAnswer(command.command_id, unitId, name))}
-    />
+    <span class="answered">
+      <ByRadio
+        label={t("order.answered_by_radio")}
+        about={name}
+        members={unit === undefined ? [] : [unit]}
+        question={t("card.has_answered", { name })}
+        onConfirm={steady(() => void confirmAnswer(command.command_id, unitId, name))}
+      />
+      <SendAgain command={command} delivery={delivery} name={name} />
+    </span>
   );
 }
 
-function Acknowledged({ command, delivery, name }: Omit<Props, "picture"> & { delivery: DeliveryView; name: string }) {
+/** To one member; others answer, and move the row. */
+function SendAgain({ command, delivery, name }: Named) {
+  const once = useSinglePress();
+  const { unit_id: unitId, repeated_ms: repeatedMs } = delivery;
+  if (!unanswered(command).includes(delivery)) return null;
+  const about = t("order.send_again_about", { order: commandWord(command), name });
+  return (
+    <button
+      type="button"
+      aria-label={t("common.about", { action: t("order.send_again"), what: about })}
+      title={repeatedMs === null ? "" : t("order.sent_again", { time: clockTime(repeatedMs) })}
+      onClick={() => once(() => attempt(api.repeatCommand(command.command_id, unitId)))}
+    >
+      {t("order.send_again")}
+    </button>
+  );
+}
+
+interface Named {
+  command: CommandView;
+  delivery: DeliveryView;
+  name: string;
+}
+
+function Acknowledged({ command, delivery, name }: Named) {
   const { acknowledged_by: by, acknowledged_ms: atMs, acknowledged_via: via } = delivery;
   const radio = via === "radio";
   return (

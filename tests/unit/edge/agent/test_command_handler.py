@@ -76,7 +76,13 @@ def test_what_is_remembered_is_bounded_and_is_the_newest(command_handler, rates)
     assert rates == [10.0]
 
 
-ASKING = [CommandKind.EVACUATE, CommandKind.PAR_REQUEST, CommandKind.TEXT]
+ASKING = [
+    CommandKind.EVACUATE,
+    CommandKind.PAR_REQUEST,
+    CommandKind.TEXT,
+    CommandKind.LOCATE,
+    CommandKind.ALL_CLEAR,
+]
 
 
 @pytest.mark.parametrize("kind", [kind for kind in CommandKind if kind is not CommandKind.UNKNOWN])
@@ -102,3 +108,12 @@ def test_one_press_answers_everything_that_is_asked(command_handler):
     for number in range(3):
         command_handler.take(command(CommandKind.TEXT, f"c{number}"))
     assert [answer.command_id for answer in command_handler.acknowledge()] == ["c0", "c1", "c2"]
+
+
+def test_a_unit_without_outputs_refuses_to_signal_its_place(rates):
+    handler = CommandHandler(Stamper("u1", 1, ManualClock()), rates.append, has_outputs=False)
+    reply = handler.take(command(CommandKind.LOCATE))
+    assert (reply.state, reply.detail) == (
+        CommandState.REFUSED, "this unit has no sounder and no light"
+    )  # fmt: skip
+    assert handler.take(command(CommandKind.EVACUATE, "c2")).state is CommandState.RECEIVED

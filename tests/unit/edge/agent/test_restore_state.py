@@ -303,7 +303,7 @@ def test_damage_in_one_boot_hides_no_answer_of_another(tmp_path):
     for number in range(6):
         one = DeskBoot(tmp_path)
         for each in range(40):  # some pages of each
-            one.take(f"c{number}.{each}", CommandKind.LOCATE)
+            one.take(f"c{number}.{each}", CommandKind.RESET_ALARM)
         one.journal.close()
     path = tmp_path / "journal.sqlite"
     whole = len(answers_before(Journal(path, BOOTS.__next__, 0, 10**8)))

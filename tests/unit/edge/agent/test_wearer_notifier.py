@@ -14,6 +14,7 @@ from edge.agent.command_handler import CommandHandler
 from edge.agent.mayday_progress import MaydayProgress
 from edge.agent.open_commands import OpenCommands
 from edge.agent.wearer_notifier import WearerNotifier
+from edge.notifiers.outputs import PlayedNotice
 from edge.notifiers.signals import Notice, Signal
 from shared.clock import NS_PER_S, ManualClock
 from shared.envelope import Stamper
@@ -36,6 +37,7 @@ class Outputs:
     def __init__(self) -> None:
         self.shown: tuple[Notice, ...] = ()
         self.played: list[Notice] = []
+        self.is_audible = True
 
     def start(self) -> None:
         pass
@@ -43,9 +45,9 @@ class Outputs:
     def show(self, notices: tuple[Notice, ...]) -> None:
         self.shown = notices
 
-    def take_played(self) -> tuple[Notice, ...]:
-        played, self.played = tuple(self.played), []
-        return played
+    def take_played(self) -> tuple[PlayedNotice, ...]:
+        played, self.played = self.played, []
+        return tuple(PlayedNotice(one, self.is_audible) for one in played)
 
     def close(self) -> None:
         pass
@@ -247,3 +249,97 @@ def test_an_alarm_that_was_acknowledged_is_played_and_not_again_after_a_restart(
     with closing(last.notifier):
         last.notifier.start()
         assert last.signals() == []
+
+
+def sent_again(kind: CommandKind, repeat_id: str) -> Command:
+    return Command(HEADER, repeat_id, kind, "ada", 0, repeats=kind.name)
+
+
+def all_clear(evacuation: str = "EVACUATE") -> Command:
+    return Command(HEADER, "ac", CommandKind.ALL_CLEAR, "ada", 0, ended_command_id=evacuation)
+
+
+def test_an_order_that_is_sent_again_is_played_anew_in_place_of_the_first(rig: Rig) -> None:
+    rig.notifier.take_command(command(CommandKind.EVACUATE))
+    rig.signals()
+    reply = rig.notifier.take_command(sent_again(CommandKind.EVACUATE, "r1"))
+    assert (reply.state, reply.repeats) == (CommandState.RECEIVED, "EVACUATE")
+    rig.notifier.take_command(sent_again(CommandKind.EVACUATE, "r2"))
+    assert rig.signals() == [Signal.EVACUATE]
+    assert [notice.key for notice in rig.outputs.shown] == ["r2"]
+    replies = rig.notifier.acknowledge()
+    assert [(one.command_id, one.repeats) for one in replies] == [
+        ("EVACUATE", ""), ("r1", "EVACUATE"), ("r2", "EVACUATE")
+    ]  # fmt: skip
+    assert rig.signals() == []
+
+
+@pytest.mark.parametrize("first", ["EVACUATE", "r1"])
+def test_an_order_that_was_acknowledged_does_not_alarm_again_also_after_a_restart(
+    tmp_path: Path, first: str
+) -> None:
+    """Whether the unit got the order itself or only a repeat of it."""
+    before = Rig(tmp_path)
+    with closing(before.notifier):
+        begun = (
+            command(CommandKind.EVACUATE)
+            if first == "EVACUATE"
+            else sent_again(CommandKind.EVACUATE, first)
+        )
+        before.notifier.take_command(begun)
+        acknowledged = before.notifier.acknowledge()
+    after = Rig(tmp_path, acknowledged)
+    with closing(after.notifier):
+        reply = after.notifier.take_command(sent_again(CommandKind.EVACUATE, "r2"))
+        assert (reply.state, reply.awaits_wearer) == (CommandState.ACKNOWLEDGED, False)
+        assert after.signals() == []
+
+
+def test_the_end_of_an_order_ends_what_repeats_it(rig: Rig) -> None:
+    rig.notifier.take_command(command(CommandKind.EVACUATE))
+    rig.notifier.take_command(sent_again(CommandKind.EVACUATE, "r1"))
+    rig.notifier.take_command(end("EVACUATE"))
+    assert rig.signals() == []
+    assert rig.notifier.acknowledge() == ()
+
+
+def test_the_all_clear_ends_every_evacuation_and_is_acknowledged(rig: Rig) -> None:
+    rig.notifier.take_command(Command(HEADER, "earlier", CommandKind.EVACUATE, "ada", 0))
+    rig.notifier.take_command(command(CommandKind.EVACUATE))
+    rig.notifier.take_command(sent_again(CommandKind.EVACUATE, "r1"))
+    reply = rig.notifier.take_command(all_clear())
+    assert (reply.state, reply.awaits_wearer) == (CommandState.RECEIVED, True)
+    assert rig.signals() == [Signal.ALL_CLEAR]
+    rig.outputs.played += rig.outputs.shown
+    assert [one.state for one in rig.notifier.step()] == [CommandState.NOTIFIED]
+    assert [one.command_id for one in rig.notifier.acknowledge()] == ["ac"]
+    assert rig.signals() == []
+
+
+def test_an_evacuation_that_comes_behind_its_all_clear_is_never_played(tmp_path: Path) -> None:
+    """From a station that does not know of the all clear, also after a restart of the agent."""
+    before = Rig(tmp_path)
+    with closing(before.notifier):
+        reply = before.notifier.take_command(all_clear())
+    after = Rig(tmp_path, (reply,))
+    with closing(after.notifier):
+        for late in (command(CommandKind.EVACUATE), sent_again(CommandKind.EVACUATE, "r1")):
+            assert after.notifier.take_command(late).state is CommandState.REFUSED
+        assert after.signals() == [Signal.ALL_CLEAR]
+        another = Command(HEADER, "another", CommandKind.EVACUATE, "ada", 0)
+        after.notifier.take_command(another)
+        assert Signal.EVACUATE in after.signals()
+
+
+def test_locate_reports_light_then_sound_and_that_the_wearer_has_stopped_it(rig: Rig) -> None:
+    rig.notifier.take_command(command(CommandKind.LOCATE))
+    rig.signals()
+    details = []
+    for is_audible in (False, True, True):
+        rig.outputs.is_audible = is_audible
+        rig.outputs.played += rig.outputs.shown
+        details += [one.detail for one in rig.notifier.step()]
+    assert details == ["light", "sound"]
+    (stopped,) = rig.notifier.acknowledge()
+    assert (stopped.command_id, stopped.state) == ("LOCATE", CommandState.ACKNOWLEDGED)
+    assert rig.signals() == []

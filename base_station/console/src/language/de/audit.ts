@@ -115,4 +115,5 @@ export const audit_value: Part<"audit_value"> = {
   rate: "{value} Hz",
   reset_alarm: "Alarm zurückgesetzt",
   end_of_order: "Ende eines Befehls",
+  sent_again: "erneut gesendet",
 };

@@ -8,9 +8,9 @@ export const order: Part<"order"> = {
   set_position_rate: "Positionsrate",
   mayday_acknowledged: "Mayday quittiert",
   alarm_acknowledged: "Alarm quittiert",
+  all_clear: "Räumung aufgehoben",
   with_text: "{order}: {text}",
-  locate_hint:
-    "Das Gerät macht mit seinen Signalgebern auf sich aufmerksam, etwa Licht oder Ton. Erledigt, sobald es das getan hat.",
+  locate_hint: "Das Gerät macht mit seinen Signalgebern auf sich aufmerksam, etwa Ton oder Licht, bis es hier oder am Gerät beendet wird.",
   evacuate_hint: "Alle sofort heraus. Jede Einsatzkraft muss bestätigen.",
   par_hint: "Fordert eine Vollzähligkeitsmeldung (PAR) an. Nur die eigene Antwort der Einsatzkraft zählt.",
   text_hint: "Jede Einsatzkraft muss bestätigen.",
@@ -38,6 +38,20 @@ export const order: Part<"order"> = {
   undo_about: "Antwort von {name} über Funk",
   undo_question: "{name} hat nicht geantwortet?",
   everyone_in: "Alle in {incident}",
+  send_again_all: "Erneut senden an {count, number}",
+  send_again: "Erneut senden",
+  send_again_about: "{order} an {name}",
+  sent_again: "erneut gesendet {time}",
+  all_clear_question: "Ist die Räumung vorbei? Alle, denen sie galt, werden benachrichtigt.",
+  stop_locate: "Ortungssignal beenden",
+  locate_sounds: "Ton seit {time}",
+  locate_lights: "Licht seit {time}, kein Ton",
+  locate_signals: "Signal seit {time}",
+  locate_stopped_by_wearer: "am Gerät beendet {time}",
+  locate_no_sounder: "kein Tongeber",
+  locate_stopped: "beendet {time}",
+  locate_stopping: "wird beendet …",
+  locate_until: "Signal bis {time}",
 };
 
 export const delivery: Part<"delivery"> = {
@@ -49,4 +63,5 @@ export const delivery: Part<"delivery"> = {
   refused: "abgelehnt",
   expired: "keine Antwort",
   cannot_be_notified: "nicht benachrichtigbar",
+  ended: "durch Aufhebung beendet",
 };

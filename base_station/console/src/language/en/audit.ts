@@ -114,4 +114,5 @@ export const audit_value = {
   rate: "{value} Hz",
   reset_alarm: "reset alarm",
   end_of_order: "end of an order",
+  sent_again: "sent again",
 } as const;

@@ -7,8 +7,9 @@ export const order = {
   set_position_rate: "Position rate",
   mayday_acknowledged: "Mayday acknowledged",
   alarm_acknowledged: "Alarm acknowledged",
+  all_clear: "All clear",
   with_text: "{order}: {text}",
-  locate_hint: "The unit signals its place with its outputs, such as a light or a sounder. Done once it has.",
+  locate_hint: "The unit signals its place with its outputs, such as a sounder or a light, until you or its wearer stop it.",
   evacuate_hint: "Orders everyone out at once. Each firefighter must acknowledge.",
   par_hint: "Requests a PAR. Only the firefighter’s own answer counts.",
   text_hint: "Each firefighter must acknowledge.",
@@ -36,6 +37,20 @@ export const order = {
   undo_about: "answer of {name} by radio",
   undo_question: "{name} has not answered?",
   everyone_in: "Everyone in {incident}",
+  send_again_all: "Send again to {count, number}",
+  send_again: "Send again",
+  send_again_about: "{order} to {name}",
+  sent_again: "sent again {time}",
+  all_clear_question: "Is the evacuation over? All whom it was for are told.",
+  stop_locate: "Stop sound locator",
+  locate_sounds: "sounds since {time}",
+  locate_lights: "light since {time}, no sound",
+  locate_signals: "signals since {time}",
+  locate_stopped_by_wearer: "stopped by the wearer {time}",
+  locate_no_sounder: "no sounder",
+  locate_stopped: "stopped {time}",
+  locate_stopping: "stopping …",
+  locate_until: "signalled until {time}",
 } as const;
 
 export const delivery = {
@@ -47,4 +62,5 @@ export const delivery = {
   refused: "refused",
   expired: "no answer",
   cannot_be_notified: "cannot be notified",
+  ended: "ended by the all clear",
 } as const;

@@ -115,4 +115,5 @@ export const audit_value: Part<"audit_value"> = {
   rate: "{value} Hz",
   reset_alarm: "alarme réinitialisée",
   end_of_order: "fin d’un ordre",
+  sent_again: "renvoyé",
 };

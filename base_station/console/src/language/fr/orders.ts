@@ -8,9 +8,9 @@ export const order: Part<"order"> = {
   set_position_rate: "Cadence des positions",
   mayday_acknowledged: "Mayday acquitté",
   alarm_acknowledged: "Alarme acquittée",
+  all_clear: "Fin d’évacuation",
   with_text: "{order}\u00a0: {text}",
-  locate_hint:
-    "Le boîtier signale sa position par ses sorties, lumière ou son par exemple. Terminé dès qu’il l’a fait.",
+  locate_hint: "Le boîtier signale sa position par ses sorties, son ou lumière par exemple, jusqu’à l’arrêt ici ou par la personne.",
   evacuate_hint: "Fait sortir tout le monde immédiatement. Chaque personne doit confirmer.",
   par_hint: "Demande un contrôle des effectifs (PAR). Seule la réponse de la personne elle-même compte.",
   text_hint: "Chaque personne doit confirmer.",
@@ -38,6 +38,20 @@ export const order: Part<"order"> = {
   undo_about: "réponse de {name} par radio",
   undo_question: "{name} n’a pas répondu\u00a0?",
   everyone_in: "Tous dans {incident}",
+  send_again_all: "Renvoyer à {count, number}",
+  send_again: "Renvoyer",
+  send_again_about: "{order} à {name}",
+  sent_again: "renvoyé {time}",
+  all_clear_question: "L’évacuation est-elle terminée\u00a0? Toutes les personnes concernées seront prévenues.",
+  stop_locate: "Arrêter le signal",
+  locate_sounds: "sonne depuis {time}",
+  locate_lights: "lumière depuis {time}, sans son",
+  locate_signals: "signale depuis {time}",
+  locate_stopped_by_wearer: "arrêté par la personne {time}",
+  locate_no_sounder: "pas d’avertisseur sonore",
+  locate_stopped: "arrêté {time}",
+  locate_stopping: "arrêt en cours …",
+  locate_until: "signalé jusqu’à {time}",
 };
 
 export const delivery: Part<"delivery"> = {
@@ -49,4 +63,5 @@ export const delivery: Part<"delivery"> = {
   refused: "refusé",
   expired: "pas de réponse",
   cannot_be_notified: "ne peut pas être prévenu",
+  ended: "terminé par la fin d’évacuation",
 };

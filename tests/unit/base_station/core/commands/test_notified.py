@@ -138,7 +138,7 @@ def test_an_answer_by_radio_that_is_taken_back_leaves_what_the_unit_did() -> Non
 @pytest.mark.parametrize(
     ("outputs", "after_received"), [(("led", "beeper"), True), ((), False), (None, False)]
 )
-def test_locate_is_done_when_notified_where_the_unit_can_be(
+def test_locate_goes_on_once_it_is_signalled_until_it_is_stopped(
     outputs: tuple[str, ...] | None, after_received: bool
 ) -> None:
     script = sent(CommandKind.LOCATE, outputs)
@@ -146,6 +146,19 @@ def test_locate_is_done_when_notified_where_the_unit_can_be(
     assert is_open(script) is after_received
     assert not open_orders(script.pipeline.state), "it is not sent again for that"
     script.reply(U, "c1", NOTIFIED)
+    assert (state(script), is_open(script)) == ("notified", True)
+    script.reply(U, "c1", ACKNOWLEDGED)
+    assert (state(script), is_open(script)) == ("acknowledged", False)
+
+
+def test_a_signal_of_its_place_that_nobody_stops_ends_with_its_time() -> None:
+    script = sent(CommandKind.LOCATE, ("led", "beeper"))
+    signals = []
+    for detail in ("light", "light", "sound", "light"):
+        script.reply(U, "c1", NOTIFIED, detail)
+        signals.append(delivery(script).signal)
+    assert signals == ["light", "light", "sound", "sound"]
+    script.wait(61)
     assert (state(script), is_open(script)) == ("notified", False)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from base_station.core.commands.command_tracker import CLOSED_KEPT, open_orders
+from base_station.core.events import CommandChanged, Refused
 from base_station.core.state.command import Delivery, Order
 from shared.channels import COMMAND
 from shared.codec import encode
@@ -143,3 +144,30 @@ def test_many_later_orders_do_not_make_an_end_forgotten() -> None:
         script.act(SendCommand(name, CommandKind.LOCATE, U, "", False, "", 0.0, LASTS_S))
         script.reply(U, name, CommandState.NOTIFIED)
     assert [one.ended_command_id for one in orders(script)] == ["c1"]
+
+
+def stop(command_id: str = "c1") -> SendCommand:
+    kind = CommandKind.END_ORDER
+    return SendCommand("s1", kind, "", "", True, "", 0.0, LASTS_S, ended_command_id=command_id)
+
+
+def test_a_signal_of_the_place_is_stopped_in_the_unit() -> None:
+    script = sent(CommandKind.LOCATE)
+    script.reply(U, "c1", CommandState.NOTIFIED, "sound")
+    script.act(stop())
+    command = script.pipeline.state.commands["c1"]
+    assert (command.is_open, command.state_of(delivery(script))) == (False, "notified")
+    end = send_end(script)
+    script.now_s += 1.0
+    outputs = script.reply(U, end.command_id, CommandState.RECEIVED)
+    assert CommandChanged("c1") in outputs, "the console shows that it has stopped"
+    assert (orders(script), delivery(script).ended_ns) == ([], script.t_ns)
+
+
+@pytest.mark.parametrize("kind", [CommandKind.EVACUATE, CommandKind.LOCATE])
+def test_only_a_signal_that_is_on_is_stopped(kind: CommandKind) -> None:
+    script = sent(kind)
+    script.reply(U, "c1", CommandState.ACKNOWLEDGED)
+    for command_id in ("c1", "none"):
+        (refused,) = script.act(stop(command_id))
+        assert isinstance(refused, Refused)
