@@ -38,8 +38,8 @@ NO_ANCHOR = "The site has no place on the Earth: north in the pictures is north 
 NO_ALARMS = "No alarm was raised."
 NO_DEFECTS = "None found: every segment of the log is there and can be read."
 NO_ASSESSMENT = (
-    "Not worked out. With `muster base assess` or 'How good?' in the console it is, and the next "
-    "report has it."
+    "Not worked out. With `muster base assess` or 'Accuracy report' in the console it is, and the "
+    "next report has it."
 )
 IMPORTS_KEY = (
     "Files from elsewhere: this station has not measured what is in them. The hash is of the file "
@@ -144,7 +144,9 @@ def when_and_by(t_ns: int, by: str) -> str:
 
 
 def from_to(from_ns: int, until_ns: int) -> str:
-    return f"{clock_time(from_ns)} to {clock_time(until_ns)}"
+    """One time where both are the same second, as of a photograph."""
+    first, last = clock_time(from_ns), clock_time(until_ns)
+    return first if first == last else f"{first} to {last}"
 
 
 def alarms_of_which(alarms: int, urgent: int) -> str:

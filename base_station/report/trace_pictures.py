@@ -79,7 +79,7 @@ def _strip(
         )
         return element("g", content)
     content += [
-        element("text", f"{value:.0f}", x=_LEFT - 4.0, y=y_of(value) + 3.0, **RIGHT)
+        element("text", f"{value:z.0f}", x=_LEFT - 4.0, y=y_of(value) + 3.0, **RIGHT)
         for value in (max(values), min(values))
         if value == max(values) or y_of(min(values)) - y_of(max(values)) > 9.0
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from contextlib import ExitStack, closing
 from pathlib import Path
@@ -129,6 +130,18 @@ def test_any_reader_finds_the_audio_and_the_files(data: Path, tmp_path: Path) ->
     assert {one.data for one in attached if one.name.endswith(".original")} == {
         path.read_bytes() for path in originals
     }
+
+
+def test_the_report_names_the_files_and_the_moment_of_a_photograph(
+    data: Path, tmp_path: Path
+) -> None:
+    page = tmp_path / "report.html"
+    muster("report", "i1", "--data", data, "--html", page)
+    text = page.read_text("utf-8")
+    rows = text[text.index("<h2>Brought in") : text.index("<h2>Quality")]
+    drone, door = (rows[rows.index(name) :] for name in ("drone.gpx", "door.jpg"))
+    assert re.search(r">(\d\d:\d\d:\d\d) to (?!\1)\d\d:\d\d:\d\d<", drone[: drone.index("</tr>")])
+    assert re.search(r">\d\d:\d\d:\d\d<", door[: door.index("</tr>")])
 
 
 def test_audio_that_the_station_has_deleted_goes_from_the_backup_too(
