@@ -111,6 +111,23 @@ describe("people in a side section", () => {
     expect(section.floors.flatMap(({ marks }) => marks)).toHaveLength(2);
   });
 
+  it("have a bar without an end where it goes on beyond the drawing", () => {
+    const section = drawn([
+      unit("A", { position: at(5, 0, { std_down_m: 0.3 }) }),
+      unit("B", { position: at(15, 2, { std_down_m: 40 }) }),
+    ]);
+    const cut = section.floors.flatMap(({ marks }) => marks.map(({ key, isBarCut }) => [key, isBarCut]));
+    expect(Object.fromEntries(cut)).toEqual({
+      A: { top: false, bottom: false },
+      B: { top: true, bottom: true },
+    });
+  });
+
+  it("are shown from the south where no plan says which side is longer, however they stand", () => {
+    const line = [0, 20, 40].map((north_m, i) => unit(`U${i}`, { position: position({ north_m, floor: 0 }) }));
+    expect(drawn(line, { plan: null, axis: "longest" }).right).toBe("east");
+  });
+
   it("are on no floor where it is uncertain", () => {
     const section = drawn([unit("A", { position: at(5, 1, { floor_probability: 0.4 }) })]);
     const [mark] = floorNamed(section, "floor unknown").marks;

@@ -28,6 +28,7 @@ export interface DrawnMark {
   footYPx: number;
   barTopPx: number;
   barBottomPx: number;
+  isBarCut: { top: boolean; bottom: boolean }; // it goes on beyond the drawing
   name: { text: string; xPx: number; yPx: number } | null;
 }
 
@@ -71,9 +72,7 @@ export interface SectionInput {
 }
 
 export function drawnSection({ scene, plan, levels, axis, size, textWidthPx }: SectionInput): DrawnSection {
-  const places = placesOf(plan);
-  const standing = scene.units.flatMap(({ position }) => (position ? [[position.east_m, position.north_m]] : []));
-  const headingRad = axisHeadingRad(axis, places.length > 0 ? places : standing);
+  const headingRad = axisHeadingRad(axis, placesOf(plan));
   const spans = floorSpans(plan, headingRad);
   const building = united([...spans.values()]);
   const members = membersOf(scene, headingRad);
@@ -171,7 +170,7 @@ function named(
             xPx: Math.round(mark.xPx + at.offset[0]),
             yPx: Math.round(mark.yPx + at.offset[1] + beyond * Math.sign(at.offset[1])),
           };
-    return { ...drawnMark(mark, scene.nowMs), name };
+    return { ...drawnMark(mark, scene.nowMs, frame), name };
   });
 }
 
@@ -186,7 +185,7 @@ function nameOf(members: readonly Member[], nowMs: number, beyond: -1 | 0 | 1): 
   return beyond === 0 ? text : beyond < 0 ? `◂ ${text}` : `${text} ▸`;
 }
 
-function drawnMark(mark: SectionMark, nowMs: number): Omit<DrawnMark, "name"> {
+function drawnMark(mark: SectionMark, nowMs: number, frame: Frame): Omit<DrawnMark, "name"> {
   const { members } = mark;
   const worst = members[0] as Member; // they are joined in the order of their need
   const single = members.length === 1;
@@ -208,6 +207,7 @@ function drawnMark(mark: SectionMark, nowMs: number): Omit<DrawnMark, "name"> {
     footYPx: Math.round(mark.footYPx),
     barTopPx: Math.round(mark.barTopPx),
     barBottomPx: Math.round(mark.barBottomPx),
+    isBarCut: { top: mark.barTopPx <= frame.topPx, bottom: mark.barBottomPx >= frame.bottomPx },
   };
 }
 

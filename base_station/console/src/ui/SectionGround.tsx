@@ -62,10 +62,12 @@ function Bar({ mark, markPx }: { mark: DrawnMark; markPx: number }) {
   const { xPx, yPx, footXPx, footYPx, barTopPx, barBottomPx, urgency } = mark;
   const isAside = xPx !== footXPx || yPx !== footYPx - Math.round(markPx / 2);
   const x = isAside ? footXPx : footXPx - markPx / 2 - BESIDE_PX;
+  const { isBarCut } = mark;
   const cap = (y: number) => `M${x - CAP_PX},${y}h${2 * CAP_PX}`;
+  const caps = (isBarCut.top ? "" : cap(barTopPx)) + (isBarCut.bottom ? "" : cap(barBottomPx));
   return (
     <g class={`bar ${urgency} ${mark.old ? "old" : ""} ${mark.chosen ? "chosen" : ""}`}>
-      <path d={`M${x},${barTopPx}V${barBottomPx}${cap(barTopPx)}${cap(barBottomPx)}${cap(footYPx)}`} />
+      <path d={`M${x},${barTopPx}V${barBottomPx}${caps}${cap(footYPx)}`} />
       {isAside && <path class="aside" d={`M${footXPx},${footYPx}L${xPx},${yPx}`} />}
     </g>
   );
