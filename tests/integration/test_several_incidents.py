@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,8 @@ from tests.rig.station_command import Browser, Command, Unit
 from tests.rig.waiting import PATIENCE_S, until
 
 PEOPLE = {"FF-01": ("Anna Vos", "Engine 1"), "FF-02": ("Carl Berg", "Engine 2")}
+# The positions that the station has judged are those of both, without the names of the other.
+LANE_UNIT = re.compile(r'<tr><td><span class="one-line">FF-01</span></td>.*?</tr>')
 
 
 @pytest.fixture
@@ -52,6 +55,20 @@ def report(browser: Browser, incident_id: str) -> str:
     answer = httpx.get(address, headers={"Cookie": browser.cookie()}, timeout=PATIENCE_S)
     assert answer.status_code == 200, answer.text
     return answer.text
+
+
+def erase(browser: Browser, incident_id: str, name: str) -> str:
+    """What the station says of the erasure when it is done."""
+    asked = browser.call("POST", f"/incidents/{incident_id}/forget", json={"name": name})
+
+    def job() -> dict[str, Any]:
+        jobs = {one["forgetting_id"]: one for one in browser.call("GET", "/forgettings")}
+        found: dict[str, Any] = jobs[asked["forgetting_id"]]
+        return found
+
+    until(lambda: job()["state"] in ("done", "failed"), "the incident is erased")
+    assert job()["state"] == "done", job()["problem"]
+    return str(job()["problem"])
 
 
 def replayed(browser: Browser, incident_id: str) -> dict[str, Any]:
@@ -138,10 +155,20 @@ def test_two_incidents_at_once(
             "alarms": set(),
             "has_plan": False,
         }
-        assert replayed(browser, harbour) == {
+        of_harbour = {
             "incident": "Harbour",
             "people": {"Carl Berg"},
             "alarms": {"FF-02"},
             "has_plan": True,
         }
+        assert replayed(browser, harbour) == of_harbour
+        of_lane, page = report(browser, lane), report(browser, harbour)
+        kept = erase(browser, lane, "Mill Lane")
+        assert "while another incident was open stays" in kept
+        assert replayed(browser, harbour) == of_harbour
+        browser.call("GET", f"/incidents/{harbour}/assessment")  # it is worked out again
+        assert report(browser, harbour) == LANE_UNIT.sub("", page)
+        assert "Anna Vos" in of_lane
+        assert "Anna Vos" not in report(browser, lane)
+        assert replayed(browser, lane)["people"] == set()
     assert station.stop() == 0
