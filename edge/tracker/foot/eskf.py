@@ -31,7 +31,7 @@ from edge.tracker.foot.state import (
     new_filter_state,
     new_progress,
 )
-from edge.tracker.foot.zupt.stance_detection import measure_motion, stride_minimum
+from edge.tracker.foot.zupt.stance_detection import add_readings, measure_motion, stride_minimum
 from edge.tracker.interface import TrackBatch
 from edge.tracker.preprocessing.preprocess import limits_of, new_input_state, preprocess_batch
 from edge.tracker.preprocessing.sample_ring import Ring, new_ring, reach, span
@@ -151,6 +151,7 @@ def work(
         slot = k & (len(ring) - 1)
         stop = min(memory.cleaned, reach(ring, k))
         ring[slot].t_s = regular_time(ring, k, stop, config.timing.late_delivery_s)
+        add_readings(ring, k)
         memory.timed = k + 1
     while memory.measured < memory.timed:
         k = memory.measured

@@ -190,7 +190,7 @@ def _predict(
     propagate_hidden_turn(state, dt_s)
     state.swing_rad += dt_s * math.sqrt(dot(state.gyro_radps, state.gyro_radps))
     speed_mps = math.sqrt(dot(state.velocity_n_mps, state.velocity_n_mps))
-    level_mps = math.hypot(state.velocity_n_mps[0], state.velocity_n_mps[1])
+    level_mps = math.sqrt(state.velocity_n_mps[0] ** 2 + state.velocity_n_mps[1] ** 2)
     state.swing_speed_mps = max(state.swing_speed_mps, speed_mps)
     state.swing_level_speed_mps = max(state.swing_level_speed_mps, level_mps)
     _add_noise(ring, progress, state, k, dt_s, config)

@@ -29,6 +29,7 @@ Trail: TypeAlias = NDArray[Any]  # (slots,) of STEP, for an eighth of the ring's
 Step: TypeAlias = Any  # one record of STEP
 Bridge: TypeAlias = Any  # one record of BRIDGE
 Progress: TypeAlias = Any  # one record of PROGRESS
+Window: TypeAlias = Any  # one record of WINDOW
 FilterState: TypeAlias = Any  # one record of FILTER
 Aid: TypeAlias = Any  # one record of COMPASS, BELIEF or BAROMETER
 
@@ -130,12 +131,11 @@ SCALE_ERROR_STATE = np.dtype(
         ("heading_sensitivity", np.float64, SCALE_ERRORS),  # heading by each error so far
         ("heading_column", np.float64, SCALE_ERRORS),  # the covariance times that
         ("position_sensitivity", np.float64, (2, SCALE_ERRORS)),  # position north and east
+        ("position_column", np.float64, (2, SCALE_ERRORS)),  # the covariance times those
         ("estimate", np.float64, SCALE_ERRORS),
         ("covariance", np.float64, (SCALE_ERRORS, SCALE_ERRORS)),
         ("compass_used", np.bool_),  # a compass
         ("down_b", np.float64, 3),  # at the last sample
-        # Scratch.
-        ("column", np.float64, SCALE_ERRORS),
     ],
     align=True,
 )
@@ -256,6 +256,7 @@ FILTER = np.dtype(
         # Scratch.
         ("error", np.float64, SIZE),  # correction gathered at one instant
         ("column", np.float64, SIZE),
+        ("velocity_column", np.float64, (3, SIZE)),
         ("force_n_mps2", np.float64, 3),
         ("accel_mps2", np.float64, 3),
         ("gyro_radps", np.float64, 3),
@@ -271,6 +272,9 @@ FILTER = np.dtype(
     align=True,
 )
 
+# Samples around one, found from those around the sample before; see stance_detection.
+WINDOW = np.dtype([("first", np.int64), ("last", np.int64)], align=True)
+
 PROGRESS = np.dtype(
     [
         ("received", np.int64),  # samples in the ring so far
@@ -282,6 +286,8 @@ PROGRESS = np.dtype(
         ("minimum_at", np.int64),  # sample with the smallest statistic of the stride
         ("minimum_from", np.int64),  # first sample of the stride around
         ("minimum_to", np.int64),  # one past its last
+        ("motion_window", WINDOW),  # around the sample last measured
+        ("unrest_window", WINDOW),  # around the last still one
         ("steps", np.int64),
         ("rest_norm_mps2", np.float64),  # what the accelerometer shows at rest
         ("temperature_degc", np.float64),  # smoothed; NaN while unknown

@@ -16,6 +16,7 @@ from numba import njit
 from edge.samples import Floats
 
 GRAVITY_MPS2 = 9.80665
+SERIES_MAX_RAD2 = 0.01  # below, what the series of sine and cosine leave out is rounded away
 
 
 @njit()
@@ -28,12 +29,12 @@ def dot(a: Floats, b: Floats) -> float:
 def rotate_attitude(quaternion_nb: Floats, angle_b_rad: Floats) -> None:
     """Turn ``quaternion_nb`` (4,) in place by a rotation vector (3,) in sensor axes."""
     x, y, z = angle_b_rad[0], angle_b_rad[1], angle_b_rad[2]
-    half_squared = 0.25 * (x * x + y * y + z * z)
-    if half_squared < 1e-6:
-        scale = 0.5 * (1.0 - half_squared / 6.0)
-        c = 1.0 - half_squared * (0.5 - half_squared / 24.0)
+    s = 0.25 * (x * x + y * y + z * z)  # square of half the angle
+    if s < SERIES_MAX_RAD2:
+        scale = 0.5 - s / 12.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0)))
+        c = 1.0 - s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0)))
     else:
-        half = math.sqrt(half_squared)
+        half = math.sqrt(s)
         scale = 0.5 * math.sin(half) / half
         c = math.cos(half)
     x, y, z = scale * x, scale * y, scale * z

@@ -50,9 +50,12 @@ RING = np.dtype(
         ("quality", np.uint8),
         ("reasons", np.uint32),
         ("rest_norm_mps2", np.float64),  # what was known of it when this was measured
-        ("motion_sum_m2ps4", np.float64),  # of this and all samples before
-        ("rate_sum_radps", np.float64, 3),  # the same
-        ("rate_square_sum_rad2ps2", np.float64),  # the same
+        # Of this and all samples before; see stance_detection.
+        ("force_sum_mps2", np.float64, 3),
+        ("force_square_sum_m2ps4", np.float64),
+        ("rate_sum_radps", np.float64, 3),
+        ("rate_square_sum_rad2ps2", np.float64),
+        ("motion_sum_m2ps4", np.float64),
         ("unrest_m2ps4", np.float64),  # the same over a longer time, whatever the bias
         ("interval_s", np.float64),  # since the sample before; negative after a long gap
     ],

@@ -151,27 +151,51 @@ def heading_variance(covariance: Floats) -> float:
 
 
 @njit()
-def update_with_lever(
-    covariance: Floats,
-    error: Floats,
-    index: int,
+def update_velocity(
+    state: FilterState,
     lever_row: Floats,
-    residual: float,
+    residual_mps: Floats,
     variance: float,
-    column: Floats,
     gain: Floats,
-) -> tuple[float, float]:
-    """Use one scalar measurement of error ``index`` minus ``lever_row`` (3,) times the lever's."""
-    a, b, c = lever_row[0], lever_row[1], lever_row[2]
+    weight: Floats,
+) -> None:
+    """Use a measurement of the velocity (3,) minus ``lever_row`` (3, 3) times the lever.
+
+    It is that of three scalars, one after the other; the covariance, which must be symmetric, is
+    touched once for all of them, and one half of it.  ``residual_mps`` (3,) leaves as the
+    innovations, ``weight`` (3,) as their inverse variances; the rest is as in ``update_one``.
+    """
+    p, error, columns = state.covariance, state.error, state.velocity_column
+    for axis in range(3):
+        index, column, row = VELOCITY + axis, columns[axis], lever_row[axis]
+        a, b, c = row[0], row[1], row[2]
+        velocity, first, second, third = p[index], p[LEVER], p[LEVER + 1], p[LEVER + 2]
+        for i in range(SIZE):
+            column[i] = velocity[i] - a * first[i] - b * second[i] - c * third[i]
+        for before in range(axis):
+            taken = weight[before] * _beyond_lever(columns[before], index, row)
+            for i in range(SIZE):
+                column[i] -= taken * columns[before, i]
+        residual_mps[axis] -= _beyond_lever(error, index, row)
+        weight[axis] = 1.0 / (_beyond_lever(column, index, row) + variance)
+        for i in range(SIZE):
+            gain[axis, i] = column[i] * weight[axis]
+            error[i] += gain[axis, i] * residual_mps[axis]
     for i in range(SIZE):
-        row = covariance[i]
-        column[i] = row[index] - a * row[LEVER] - b * row[LEVER + 1] - c * row[LEVER + 2]
-    innovation = residual - error[index]
-    innovation += a * error[LEVER] + b * error[LEVER + 1] + c * error[LEVER + 2]
-    measured = column[index] - a * column[LEVER] - b * column[LEVER + 1] - c * column[LEVER + 2]
-    weight = 1.0 / (measured + variance)
-    _apply(covariance, error, column, innovation, weight, gain)
-    return innovation, weight
+        c0, c1, c2 = columns[0, i], columns[1, i], columns[2, i]
+        for j in range(i, SIZE):
+            p[i, j] -= c0 * gain[0, j] + c1 * gain[1, j] + c2 * gain[2, j]
+    for i in range(SIZE):
+        for j in range(i + 1, SIZE):
+            p[j, i] = p[i, j]
+
+
+@njit()
+def _beyond_lever(errors: Floats, index: int, lever_row: Floats) -> float:
+    """Return element ``index`` of ``errors`` (22,) minus ``lever_row`` (3,) times the lever's."""
+    lever = lever_row[0] * errors[LEVER]
+    lever += lever_row[1] * errors[LEVER + 1] + lever_row[2] * errors[LEVER + 2]
+    return float(errors[index] - lever)
 
 
 @njit()

@@ -23,7 +23,7 @@ from edge.tracker.foot.error_state import (
 )
 from edge.tracker.foot.filter.bridge_scale import correct_bridges, update_bridges
 from edge.tracker.foot.filter.correction_tracking import apply_clone_correction, update_clone
-from edge.tracker.foot.filter.error_model import update_heading, update_one, update_with_lever
+from edge.tracker.foot.filter.error_model import update_heading, update_one, update_velocity
 from edge.tracker.foot.filter.scale_misalignment import update_scale_errors
 from edge.tracker.foot.state import FilterState, Step
 from edge.tracker.mechanization.strapdown import rotate_navigation, rotation_matrix
@@ -65,30 +65,22 @@ def measure_heading(step: Step, state: FilterState, residual_rad: float, varianc
 
 
 @njit()
-def measure_with_lever(
-    step: Step,
-    state: FilterState,
-    axis: int,
-    lever_row: Floats,
-    residual_mps: float,
-    variance: float,
+def measure_velocity(
+    step: Step, state: FilterState, residual_mps: Floats, variance: float
 ) -> float:
-    """Use one axis of the sensor's velocity beyond what ``lever_row`` (3,) and the lever tell.
+    """Use the sensor's velocity (3,) beyond what ``step.lever_row`` and the lever tell.
 
-    Returns the innovation squared by its variance.
+    Returns the sum of the innovations squared by their variances.
     """
-    innovation, weight = update_with_lever(
-        state.covariance,
-        state.error,
-        VELOCITY + axis,
-        lever_row,
-        residual_mps,
-        variance,
-        state.column,
-        step.update_gain[step.updates],
+    weight = state.angle_rad  # as scratch
+    update_velocity(
+        state, step.lever_row, residual_mps, variance, step.update_gain[step.updates :], weight
     )
-    _note(step, state, VELOCITY + axis, innovation, weight)
-    return float(innovation * innovation * weight)
+    nis = 0.0
+    for axis in range(3):
+        _note(step, state, VELOCITY + axis, residual_mps[axis], weight[axis])
+        nis += residual_mps[axis] * residual_mps[axis] * weight[axis]
+    return nis
 
 
 @njit()

@@ -43,15 +43,27 @@ def propagate_scale_errors(state: FilterState, dt_s: float, config: EskfConfig) 
             scale_errors.heading_sensitivity[g] += rate
             scale_errors.heading_sensitivity[g + 9] += force
             known_rad += scale_errors.estimate[g] * rate + scale_errors.estimate[g + 9] * force
-    north_m, east_m = dt_s * state.velocity_n_mps[0], dt_s * state.velocity_n_mps[1]
-    for g in range(SCALE_ERRORS):
-        scale_errors.position_sensitivity[0, g] -= scale_errors.heading_sensitivity[g] * east_m
-        scale_errors.position_sensitivity[1, g] += scale_errors.heading_sensitivity[g] * north_m
     project(scale_errors, scale_errors.heading_sensitivity, scale_errors.heading_column)
+    north_m, east_m = dt_s * state.velocity_n_mps[0], dt_s * state.velocity_n_mps[1]
+    _propagate_position(
+        scale_errors.position_sensitivity, scale_errors.heading_sensitivity, north_m, east_m
+    )
+    _propagate_position(scale_errors.position_column, scale_errors.heading_column, north_m, east_m)
     state.covariance[TURN, TURN] = along(
         scale_errors.heading_sensitivity, scale_errors.heading_column
     )
     return known_rad
+
+
+@njit()
+def _propagate_position(position: Floats, heading: Floats, north_m: float, east_m: float) -> None:
+    """Turn the way of an interval by ``heading`` (18,) and add it to ``position`` (2, 18).
+
+    The covariance does not change meanwhile, so its products go along with what they are of.
+    """
+    for g in range(SCALE_ERRORS):
+        position[0, g] -= heading[g] * east_m
+        position[1, g] += heading[g] * north_m
 
 
 @njit()
@@ -64,12 +76,13 @@ def project(scale_errors: Any, vector: Floats, column: Floats) -> None:
         for g in range(SCALE_ERRORS):
             column[g] = vector[g]
         return
+    covariance = scale_errors.covariance
     for g in range(SCALE_ERRORS):
         column[g] = 0.0
-    for h in range(SCALE_ERRORS):
-        share = vector[h]
+    for h in range(0, SCALE_ERRORS, 3):  # so that every element is loaded and stored less often
+        a, b, c = vector[h], vector[h + 1], vector[h + 2]
         for g in range(SCALE_ERRORS):
-            column[g] += scale_errors.covariance[h, g] * share
+            column[g] += covariance[h, g] * a + covariance[h + 1, g] * b + covariance[h + 2, g] * c
 
 
 @njit()
@@ -112,4 +125,6 @@ def update_scale_errors(state: FilterState) -> None:
         for h in range(SCALE_ERRORS):
             scale_errors.covariance[h, g] -= taken * column[g] * column[h]
     project(scale_errors, scale_errors.heading_sensitivity, column)
+    for i in range(2):
+        project(scale_errors, scale_errors.position_sensitivity[i], scale_errors.position_column[i])
     state.covariance[TURN, TURN] = kept

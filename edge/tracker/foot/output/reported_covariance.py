@@ -17,7 +17,7 @@ from edge.tracker.foot.config import EskfConfig
 from edge.tracker.foot.error_state import SIZE, TURN
 from edge.tracker.foot.filter.error_model import heading_variance
 from edge.tracker.foot.filter.initial_gyro_bias import unobserved_heading_variance
-from edge.tracker.foot.filter.scale_misalignment import along, project
+from edge.tracker.foot.filter.scale_misalignment import along
 from edge.tracker.foot.state import FilterState, Step
 from edge.tracker.foot.zupt.zupt_residuals import noise_inflation, reported_gain_inflation
 from edge.tracker.preprocessing.sample_ring import Ring
@@ -66,11 +66,10 @@ def report_covariance(
     scale_excess = reported_gain_inflation(state, config)
     length_excess = max(scale_excess, 1.0)  # a scale of the accelerometer leaves landings alone
     for j in range(2):
-        project(scale_errors, scale_errors.position_sensitivity[j], scale_errors.column)
         for i in range(j, 2):
             more_m2 = noise_excess * state.covariance[i, j]
             more_m2 += scale_excess * along(
-                scale_errors.position_sensitivity[i], scale_errors.column
+                scale_errors.position_sensitivity[i], scale_errors.position_column[j]
             )
             more_m2 += (
                 length_excess * scale_errors.std**2 * state.position_n_m[i] * state.position_n_m[j]

@@ -16,67 +16,74 @@ from numba import njit
 
 from edge.samples import Floats
 from edge.tracker.foot.config import EskfConfig
-from edge.tracker.foot.state import FilterState, Progress
+from edge.tracker.foot.state import FilterState, Progress, Window
+from edge.tracker.mechanization.strapdown import dot
 from edge.tracker.preprocessing.sample_ring import Ring, reach, span
 
 
 @njit()
 def measure_motion(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> None:
-    """Write the statistic of sample ``k``, and the sums up to it that ``unrest`` takes means of."""
+    """Write the statistic of sample ``k``, and their sum up to it."""
     mask = len(ring) - 1
     here, before = k & mask, (k - 1) & mask
-    stop = min(progress.timed, reach(ring, k))
-    ring[here].motion_m2ps4 = motion_statistic(ring, progress, k, stop, config)
+    ring[here].motion_m2ps4 = motion_statistic(ring, progress, k, config)
     ring[here].rest_norm_mps2 = progress.rest_norm_mps2
     ring[here].motion_sum_m2ps4 = ring[before].motion_sum_m2ps4 + ring[here].motion_m2ps4
-    squares = ring[before].rate_square_sum_rad2ps2
-    for i in range(3):
-        rate_radps = ring[here].gyro_radps[i]
-        ring[here].rate_sum_radps[i] = ring[before].rate_sum_radps[i] + rate_radps
-        squares += rate_radps * rate_radps
-    ring[here].rate_square_sum_rad2ps2 = squares
 
 
 @njit()
-def motion_statistic(
-    ring: Ring, progress: Progress, k: int, stop: int, config: EskfConfig
-) -> float:
-    """Return the statistic of sample ``k``; samples from ``stop`` on are not looked at."""
+def add_readings(ring: Ring, k: int) -> None:
+    """Write the sums of readings up to sample ``k``, whose differences are those of a window.
+
+    After a day at 200 Hz a square of the force is rounded by 1e-7 m^2/s^4.
+    """
+    here, before = ring[k & (len(ring) - 1)], ring[(k - 1) & (len(ring) - 1)]
+    for i in range(3):
+        here.force_sum_mps2[i] = before.force_sum_mps2[i] + here.accel_mps2[i]
+        here.rate_sum_radps[i] = before.rate_sum_radps[i] + here.gyro_radps[i]
+    here.force_square_sum_m2ps4 = before.force_square_sum_m2ps4 + dot(
+        here.accel_mps2, here.accel_mps2
+    )
+    here.rate_square_sum_rad2ps2 = before.rate_square_sum_rad2ps2 + dot(
+        here.gyro_radps, here.gyro_radps
+    )
+
+
+@njit()
+def _move_window(ring: Ring, window: Window, k: int, stop: int, half_s: float) -> None:
+    """Move ``window`` on to the samples within ``half_s`` of ``k`` and before ``stop``."""
     mask = len(ring) - 1
     now_s = ring[k & mask].t_s
-    first = k
-    while first > 0 and now_s - ring[(first - 1) & mask].t_s <= config.detection.half_window_s:
-        first -= 1
-        if k - first > span(ring):
-            break
-    mean_x = 0.0
-    mean_y = 0.0
-    mean_z = 0.0
-    squares = 0.0
-    rates = 0.0
-    turn_x = 0.0
-    turn_y = 0.0
-    turn_z = 0.0
-    count = 0
-    for i in range(first, stop):
-        slot = i & mask
-        if ring[slot].t_s - now_s > config.detection.half_window_s:
-            break
-        x, y, z = ring[slot].accel_mps2[0], ring[slot].accel_mps2[1], ring[slot].accel_mps2[2]
-        mean_x += x
-        mean_y += y
-        mean_z += z
-        squares += x * x + y * y + z * z
-        x, y, z = ring[slot].gyro_radps[0], ring[slot].gyro_radps[1], ring[slot].gyro_radps[2]
-        rates += x * x + y * y + z * z
-        turn_x += x
-        turn_y += y
-        turn_z += z
-        count += 1
-    mean_norm = math.sqrt(mean_x * mean_x + mean_y * mean_y + mean_z * mean_z) / count
+    first, last = max(window.first, k - span(ring)), max(window.last, k)
+    while now_s - ring[first & mask].t_s > half_s:
+        first += 1
+    while last + 1 < stop and ring[(last + 1) & mask].t_s - now_s <= half_s:
+        last += 1
+    window.first, window.last = first, last
+
+
+@njit()
+def motion_statistic(ring: Ring, progress: Progress, k: int, config: EskfConfig) -> float:
+    """Return the statistic of sample ``k``."""
+    mask = len(ring) - 1
+    window = progress.motion_window
+    stop = min(progress.timed, reach(ring, k))
+    _move_window(ring, window, k, stop, config.detection.half_window_s)
+    count = window.last + 1 - window.first
+    to, before = ring[window.last & mask], ring[(window.first - 1) & mask]
+    squares = to.force_square_sum_m2ps4 - before.force_square_sum_m2ps4
+    rates = to.rate_square_sum_rad2ps2 - before.rate_square_sum_rad2ps2
+    square_of_sum = 0.0
+    steady = 0.0
+    for i in range(3):
+        force = to.force_sum_mps2[i] - before.force_sum_mps2[i]
+        rate = to.rate_sum_radps[i] - before.rate_sum_radps[i]
+        square_of_sum += force * force
+        steady += rate * rate
+    steady /= count * count
+    mean_norm = math.sqrt(square_of_sum) / count
     agitation = max(squares / count - mean_norm * mean_norm, 0.0)
-    agitation += config.detection.rate_weight_m2ps2 * rates / count
-    steady = (turn_x * turn_x + turn_y * turn_y + turn_z * turn_z) / (count * count)
+    agitation += config.detection.rate_weight_m2ps2 * max(rates, 0.0) / count
     off_mps2 = mean_norm - progress.rest_norm_mps2
     unsteady = agitation - config.detection.rate_weight_m2ps2 * steady
     if (
@@ -137,26 +144,17 @@ def unrest(ring: Ring, progress: Progress, state: FilterState, k: int, config: E
     counts as far as its mean is off the bias that is known.
     """
     mask = len(ring) - 1
-    now_s = ring[k & mask].t_s
+    window = progress.unrest_window
     stop = min(progress.measured, reach(ring, k))
-    first = k
-    while first > 0 and k - first < span(ring):
-        if now_s - ring[(first - 1) & mask].t_s > config.zupt.unrest_half_window_s:
-            break
-        first -= 1
-    last = k
-    while (
-        last + 1 < stop and ring[(last + 1) & mask].t_s - now_s <= config.zupt.unrest_half_window_s
-    ):
-        last += 1
-    before = (first - 1) & mask
-    count = last + 1 - first
-    total = ring[last & mask].motion_sum_m2ps4 - ring[before].motion_sum_m2ps4
+    _move_window(ring, window, k, stop, config.zupt.unrest_half_window_s)
+    count = window.last + 1 - window.first
+    to, before = ring[window.last & mask], ring[(window.first - 1) & mask]
+    total = to.motion_sum_m2ps4 - before.motion_sum_m2ps4
     by_bias = 0.0  # of the mean square rate
-    squares = ring[last & mask].rate_square_sum_rad2ps2 - ring[before].rate_square_sum_rad2ps2
+    squares = to.rate_square_sum_rad2ps2 - before.rate_square_sum_rad2ps2
     state.rest_rate_var_rad2ps2 = squares / count
     for i in range(3):
-        mean = (ring[last & mask].rate_sum_radps[i] - ring[before].rate_sum_radps[i]) / count
+        mean = (to.rate_sum_radps[i] - before.rate_sum_radps[i]) / count
         off = mean - state.gyro_bias_radps[i]
         by_bias += mean * mean - off * off
         state.rest_rate_radps[i] = mean

@@ -20,7 +20,7 @@ from edge.tracker.foot.filter.measurement_update import (
     begin_updates,
     end_updates,
     measure,
-    measure_with_lever,
+    measure_velocity,
 )
 from edge.tracker.foot.state import FilterState, Progress, Step
 from edge.tracker.mechanization.strapdown import dot
@@ -41,8 +41,7 @@ def apply_zupt(ring: Ring, step: Step, state: FilterState, slot: int, config: Es
         state.gyro_radps[i] = ring[slot].gyro_radps[i] - state.gyro_bias_radps[i]
     begin_updates(state)
     velocity_variance = stance_velocity_noise(ring, slot, motion, config) / interval_s
-    for i in range(3):
-        state.stance_nis += _measure_velocity(step, state, i, velocity_variance)
+    state.stance_nis += _measure_velocity(step, state, velocity_variance)
     rate_noise = config.zupt.stance_rate_radps_rthz**2
     rate_noise += config.zupt.stance_rate_per_unrest**2 * ring[slot].unrest_m2ps4 ** 3
     rate_variance = rate_noise / interval_s
@@ -120,8 +119,10 @@ def lever_velocity_row(rotation_nb: Floats, rate_b_radps: Floats, axis: int, row
 
 
 @njit()
-def _measure_velocity(step: Step, state: FilterState, axis: int, variance: float) -> float:
-    row = step.lever_row[axis]
-    lever_velocity_row(state.rotation_nb, state.gyro_radps, axis, row)
-    residual_mps = dot(row, state.lever_b_m) - state.velocity_n_mps[axis]
-    return measure_with_lever(step, state, axis, row, residual_mps, variance)
+def _measure_velocity(step: Step, state: FilterState, variance: float) -> float:
+    residual_mps = state.accel_mps2  # as scratch
+    for axis in range(3):
+        row = step.lever_row[axis]
+        lever_velocity_row(state.rotation_nb, state.gyro_radps, axis, row)
+        residual_mps[axis] = dot(row, state.lever_b_m) - state.velocity_n_mps[axis]
+    return measure_velocity(step, state, residual_mps, variance)

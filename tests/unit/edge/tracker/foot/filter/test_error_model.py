@@ -26,7 +26,7 @@ from edge.tracker.foot.filter.error_model import (
     transition_matrix,
     update_heading,
     update_one,
-    update_with_lever,
+    update_velocity,
 )
 from edge.tracker.foot.state import new_filter_state
 from edge.tracker.foot.zupt.zupt import lever_velocity_row
@@ -128,35 +128,56 @@ def test_sparse_propagation_is_the_dense_product(seed):
     assert np.array_equal(filtered["covariance"], filtered["covariance"].T)
 
 
+def _joseph(before, row, variance):
+    """Covariance and gain of a scalar measurement, for any gain that is used."""
+    gain = before @ row / (row @ before @ row + variance)
+    kept = np.eye(SIZE) - np.outer(gain, row)
+    return kept @ before @ kept.T + variance * np.outer(gain, gain), gain
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("index", [POSITION, VELOCITY + 1, GYRO_BIAS + 2])
-@pytest.mark.parametrize("lever_row", [None, (0.4, -1.1, 0.2)])
-def test_scalar_update_is_the_joseph_form(index, lever_row):
+def test_scalar_update_is_the_joseph_form(index):
     noise = np.random.default_rng(index)
     root = noise.standard_normal((SIZE, SIZE))
     before = root @ root.T
-    row = np.zeros(SIZE)
-    row[index] = 1.0
-    if lever_row is not None:
-        row[LEVER : LEVER + 3] = -np.array(lever_row)
+    row = np.eye(SIZE)[index]
     variance = 0.3
-    gain = before @ row / (row @ before @ row + variance)
-    kept = np.eye(SIZE) - np.outer(gain, row)
-    expected = kept @ before @ kept.T + variance * np.outer(gain, gain)
+    expected, gain = _joseph(before, row, variance)
     gathered = noise.standard_normal(SIZE)
     after, error = before.copy(), gathered.copy()
     column, found = np.zeros(SIZE), np.zeros(SIZE)
-    if lever_row is None:
-        innovation, weight = update_one(after, error, index, 2.0, variance, column, found)
-    else:
-        innovation, weight = update_with_lever(
-            after, error, index, np.array(lever_row), 2.0, variance, column, found
-        )
+    innovation, weight = update_one(after, error, index, 2.0, variance, column, found)
     np.testing.assert_allclose(after, expected, atol=1e-9)
     np.testing.assert_allclose(error, gathered + gain * (2.0 - row @ gathered))
     np.testing.assert_allclose(found, gain)
     assert innovation == pytest.approx(2.0 - row @ gathered)
     assert weight == pytest.approx(1.0 / (row @ before @ row + variance))
+
+
+@pytest.mark.slow
+def test_velocity_update_is_three_scalar_ones():
+    noise = np.random.default_rng(7)
+    root = noise.standard_normal((SIZE, SIZE))
+    lever_row, residual, variance = noise.standard_normal((3, 3)), np.array([2.0, -1.0, 0.5]), 0.3
+    state = new_filter_state()[0]
+    covariance = root @ root.T
+    state["covariance"] = covariance
+    error = noise.standard_normal(SIZE)
+    state["error"] = error
+    found, weight, innovation = np.zeros((3, SIZE)), np.zeros(3), residual.copy()
+    update_velocity(state, lever_row, innovation, variance, found, weight)
+    for axis in range(3):
+        row = np.eye(SIZE)[VELOCITY + axis]
+        row[LEVER : LEVER + 3] = -lever_row[axis]
+        assert innovation[axis] == pytest.approx(residual[axis] - row @ error)
+        assert weight[axis] == pytest.approx(1.0 / (row @ covariance @ row + variance))
+        covariance, gain = _joseph(covariance, row, variance)
+        np.testing.assert_allclose(found[axis], gain, atol=1e-9)
+        error = error + gain * innovation[axis]
+    np.testing.assert_allclose(state["error"], error, atol=1e-9)
+    np.testing.assert_allclose(state["covariance"], covariance, atol=1e-9)
+    assert np.array_equal(state["covariance"], state["covariance"].T)
 
 
 def test_a_compass_measures_attitude_and_turn_together():

@@ -118,6 +118,12 @@ def test_what_a_compass_told_goes_on_turning_the_walk():
     column = np.zeros(SCALE_ERRORS)
     project(state["scale_errors"], added, column)
     assert added @ column < added @ added
+    scale_errors = state["scale_errors"]
+    np.testing.assert_allclose(
+        scale_errors["position_column"],
+        scale_errors["position_sensitivity"] @ scale_errors["covariance"],
+        atol=1e-12,
+    )
 
 
 def stated(description, imu):
