@@ -27,6 +27,7 @@ RECORDED, SIMULATED, WORSE = "recorded", "simulated", "worse sensor"
 AIDS = ("mag_ut", "pressure_pa", "imu_temperature_degc")
 AIDED = ("search-ground-floor", "lift", "stairs", "tower")  # with magnetometer and barometer
 AIDED_S = 60.0
+_SENSORS = (CONSUMER_SENSORS, UNCALIBRATED_SENSORS)  # calibrated and by the data sheet, in turn
 _EVERY_S = 0.5
 _START_S = 2.0  # more than the tracker looks ahead
 
@@ -52,15 +53,31 @@ def score_walk(walk: Walk, rows: TrackBatch) -> Score:
 
 def all_walks(data: Path) -> list[Walk]:
     """Return recorded walks, simulated ones, and recorded ones of worse sensors."""
+    return [*recorded_walks(data), *hard_walks(), *_aided(), *_worse(_trials(data))]
+
+
+def recorded_walks(data: Path) -> list[Walk]:
+    """Return walks and runs of all datasets, no more than a bench has the time for."""
+    recorded = [_recorded(path) for path in _some(_trials(data))]
+    # One walk out and back of each person, at 100 Hz by a link that loses samples.
+    feet = {path.parent.name.split("-")[0]: path for path in data.glob("body/ipol/*/left_foot.*")}
+    return recorded + [_recorded(path) for _, path in sorted(feet.items())]
+
+
+def hard_walks() -> list[Walk]:
+    """Return one walk of each simulated hard motion, whose name it has."""
+    return [
+        _inertial(scenario.name, inertial_walk(scenario, sensors=sensors))
+        for scenario, sensors in zip(HARD_MOTIONS, cycle(_SENSORS), strict=False)
+    ]
+
+
+def _trials(data: Path) -> list[Path]:
     folders = sorted(path.parent for path in data.glob("*/*/*/imu.csv.gz"))
     trials = [path for path in folders if path.parents[1].name in ("walks", "hard")]
     if not trials:
         raise UserError(f"no walks and hard below {data}; give the folder of both")
-    recorded = [_recorded(path) for path in _some(trials)]
-    # One walk out and back of each person, at 100 Hz by a link that loses samples.
-    feet = {path.parent.name.split("-")[0]: path for path in data.glob("body/ipol/*/left_foot.*")}
-    recorded += [_recorded(path) for _, path in sorted(feet.items())]
-    return [*recorded, *_simulated(), *_worse(trials)]
+    return trials
 
 
 def _some(trials: list[Path]) -> Iterator[Path]:
@@ -83,16 +100,12 @@ def _recorded(path: Path) -> Walk:
     )
 
 
-def _simulated() -> Iterator[Walk]:
-    """Hard motions, and walks with every aid, by calibrated and by data-sheet sensors in turn."""
-    sensors = cycle((CONSUMER_SENSORS, UNCALIBRATED_SENSORS))
-    for scenario in HARD_MOTIONS:
-        yield _inertial(inertial_walk(scenario, sensors=next(sensors)))
-    for name in AIDED:
-        yield _inertial(inertial_walk(name, sensors=next(sensors), lasts_s=AIDED_S), *AIDS)
+def _aided() -> Iterator[Walk]:
+    for name, sensors in zip(AIDED, cycle(_SENSORS), strict=False):
+        yield _inertial(name, inertial_walk(name, sensors=sensors, lasts_s=AIDED_S), *AIDS)
 
 
-def _inertial(walk: InertialWalk, *aids: str) -> Walk:
+def _inertial(name: str, walk: InertialWalk, *aids: str) -> Walk:
     description = replace(
         walk.description,
         mag_present="mag_ut" in aids,
@@ -107,7 +120,7 @@ def _inertial(walk: InertialWalk, *aids: str) -> Walk:
     way_m, _ = true_way_m(np.repeat(start.quaternion_nb[:1], len(truth.t_s), axis=0), truth)
     return Walk(
         kind=SIMULATED,
-        name=walk.description.name,
+        name=name,
         description=description,
         imu=imu,
         truth=RecordedTruth(truth.t_s, way_m),

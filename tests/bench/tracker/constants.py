@@ -102,9 +102,9 @@ def constants() -> dict[str, float]:
     return named
 
 
-def changed(constant: str, factor: float) -> EskfConfig:
-    """Return the default with one constant times ``factor``."""
-    default = EskfConfig()
+def changed(constant: str, factor: float, default: EskfConfig | None = None) -> EskfConfig:
+    """Return ``default``, or that of the tracker, with one constant times ``factor``."""
+    default = default or EskfConfig()
     part, _, name = constant.partition(".")
     if not name:
         return default._replace(**{part: factor * getattr(default, part)})

@@ -136,6 +136,7 @@ def stated(description, imu):
 def test_a_calibrated_sensor_is_stated_surer():
     made = walk(strides=30)
     poor_m, poor_rad = stated(made.description, made.imu)
-    good_m, good_rad = stated(replace(made.description, gain_std=0.002), made.imu)
+    # Landings as quiet as these show an undescribed sensor to be as good as 0.002, and no better.
+    good_m, good_rad = stated(replace(made.description, gain_std=0.001), made.imu)
     assert good_m < 0.6 * poor_m
     assert good_rad < poor_rad
