@@ -21,7 +21,7 @@ BENCHES = {
     "floors": "tests.bench.floors:bench_floors",
     "fusion": "tests.bench.fusion.command:bench_fusion",
     "instructions": "tests.bench.tracker.instructions:bench_instructions",
-    "leave-one-out": "tests.bench.tracker.leave_one_out:bench_leave_one_out",
+    "motions": "tests.bench.tracker.motions:bench_motions",
     "past": "tests.bench.past.command:bench_past",
     "published": "tests.bench.tracker.published:bench_published",
     "replay": "tests.bench.past.replay:bench_replay",

@@ -1,4 +1,4 @@
-"""``muster bench leave-one-out``: how a motion fares with constants that were tuned without it.
+"""``muster bench motions``: how a motion fares with constants that were tuned without it.
 
 One kind of motion is taken out of all walks, recorded and simulated.  The constants in ``TUNED``
 are
@@ -99,7 +99,7 @@ class Study:
         return silent, statistics.fmean(mean_log_error(outcomes) for outcomes in by_motion)
 
 
-def bench_leave_one_out(
+def bench_motions(
     data: Annotated[
         Path, typer.Argument(help="Folder with walks, hard and body/ipol, such as shared/data.")
     ],

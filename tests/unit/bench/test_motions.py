@@ -1,10 +1,10 @@
-"""``muster bench leave-one-out``: no kind of motion has a say in the constants it is scored by."""
+"""``muster bench motions``: no kind of motion has a say in the constants it is scored by."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.bench.tracker.leave_one_out import (
+from tests.bench.tracker.motions import (
     MOST_CHANGES,
     TUNED,
     LeftOutMotion,
