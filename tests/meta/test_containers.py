@@ -180,7 +180,7 @@ def test_a_unit_finds_its_settings_enrolment_and_data() -> None:
 def test_compiled_code_is_kept_where_a_container_may_write(name: str) -> None:
     (folder,) = re.findall(r"NUMBA_CACHE_DIR=(\S+)", STAGES["runtime"])
     mounted = {volume.split(":")[1] for volume in SERVICES[name]["volumes"]}
-    assert folder in mounted or name == "department"  # which works out no positions
+    assert folder in mounted
 
 
 def test_every_file_that_is_mounted_is_there_or_made_by_the_script(tmp_path: Path) -> None:
