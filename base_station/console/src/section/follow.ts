@@ -6,13 +6,15 @@ import { floorNames, units } from "../language/measures";
 import { t } from "../language/translate";
 import { guarded } from "../live/faults";
 import type { Picture } from "../live/picture";
-import { atMostEvery, REDRAW_MS } from "../plan/redrawing";
+import { atMostEvery } from "../plan/redrawing";
 import { selectedUnit } from "../uiState";
 import { drawnSection, type DrawnSection } from "./drawing";
 import { levelsOf, type Level } from "./levels";
 import { axis } from "./shown";
 
 export const NAME_FONT = "600 14px system-ui, sans-serif";
+/** Half as often as the plan, beside which it may stand. */
+const SECTION_REDRAW_MS = 400;
 const MARK_PX = 30;
 const GLOVED_MARK_PX = 57; // 15 mm
 /** Less wide than this, floors have their short names. */
@@ -32,7 +34,7 @@ export function followSection(
 ): () => void {
   let levels: readonly Level[] = [];
   let ground: unknown = null; // on which the levels were learnt
-  const redraw = atMostEvery(REDRAW_MS, () =>
+  const draw = () =>
     guarded(t("section.title"), () => {
       const { widthPx, heightPx } = window.peek();
       if (widthPx === 0 || heightPx === 0) return; // not on the screen
@@ -60,16 +62,22 @@ export function followSection(
         textWidthPx: (text) => measureTextWidth(NAME_FONT, text),
       });
       if (JSON.stringify(next) !== JSON.stringify(drawn.peek())) drawn.value = next;
+    });
+  const redraw = atMostEvery(SECTION_REDRAW_MS, draw);
+  const ends = [
+    effect(() => {
+      void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value, picture.nowMs.value];
+      redraw.ask();
     }),
-  );
-  const end = effect(() => {
-    void [picture.unitsChanged.value, picture.alarms.value, picture.plan.value, picture.nowMs.value];
-    void [selectedUnit.value, axis.value, window.value, gloves.value, floorNames.value, units.value];
-    void t("section.title"); // another language
-    redraw.ask();
-  });
+    effect(() => {
+      // What a person does is seen at once.
+      void [selectedUnit.value, axis.value, window.value, gloves.value, floorNames.value, units.value];
+      void t("section.title"); // another language
+      draw();
+    }),
+  ];
   return () => {
-    end();
+    ends.forEach((end) => end());
     redraw.cancel();
   };
 }
