@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 import msgspec
 
 from base_station.department_wire import Event, EventBatch, EventReceipt, pack, unpack
+from base_station.forwarders.connection_status import ConnectionStatus
 from base_station.forwarders.department.collector import ReportCollector
 from base_station.forwarders.department.config import DepartmentConfig
 from base_station.forwarders.department.outbox import DepartmentOutbox, StoredEvent
@@ -39,17 +39,6 @@ _CLOSE_S = 5.0
 logger = logging.getLogger(__name__)
 
 
-@dataclass(slots=True)
-class _LinkStatus:
-    """State of the connection; written by the sender's thread alone."""
-
-    state: str = "connecting"
-    since_ns: int | None = None  # station time of the last change
-    away_since_ns: int | None = None  # monotonic; None: connected, or not to be
-    reason: str = ""
-    stored: int = 0  # events that the department has stored since the start
-
-
 class DepartmentForwarder:
     """A ``Forwarder`` for ``[department]``."""
 
@@ -61,7 +50,7 @@ class DepartmentForwarder:
         self._outbox = DepartmentOutbox(surroundings.data / OUTBOX)
         self._collector = ReportCollector(self._outbox, surroundings.people, surroundings.read_log)
         self._summary_due_ns = 0
-        self._status = _LinkStatus(away_since_ns=self._clock.monotonic_ns())
+        self._status = ConnectionStatus(f"department {self._enrolment.connect[0]}", self._clock)
         self._collecting = Worker(
             "department-collector", self._collect, "nothing is collected for the department"
         )
@@ -106,17 +95,14 @@ class DepartmentForwarder:
             address=", ".join(self._enrolment.connect),
             state=status.state,
             since_ms=to_ms_or_none(status.since_ns),
-            sent=status.stored,
+            sent=status.sent,
             received=0,
             refused=0,
             text=status.reason or self._collecting.fault,
         )
 
     def problem(self) -> str:
-        since_ns = self._status.away_since_ns
-        if since_ns is None:
-            return ""
-        away_s = (self._clock.monotonic_ns() - since_ns) / NS_PER_S
+        away_s = self._status.away_s
         if away_s < self._config.alarm_after_s:
             return ""
         return (
@@ -149,26 +135,26 @@ class DepartmentForwarder:
         """Hand over a batch; gives the pause until the next one."""
         assert self._bus is not None
         if not self._leads():
-            self._set_state("standby")
+            self._status.set("standby")
             self._outbox.keep_newest(_KEPT_BY_STANDBY)
             return _RETRY_S
         if not self._bus.has_subscriber(department_summary_key(self._enrolment.name)):
-            self._set_state("connecting", self._why_away())
+            self._status.set("connecting", self._why_away())
             return _RETRY_S
         batch = self._outbox.next_batch(_MAX_EVENTS, _MAX_BYTES)
         if not batch:
-            self._set_state("connected")
+            self._status.set("connected")
             return _RETRY_S
         receipt = self._hand_over(self._bus, batch)
         if receipt is None:
-            self._set_state("connecting", "it does not acknowledge events")
+            self._status.set("connecting", "it does not acknowledge events")
             return _RETRY_S
         if receipt.refusal or receipt.epoch != self._outbox.epoch:
-            self._set_state("connected", receipt.refusal or "it answers another station")
+            self._status.set("connected", receipt.refusal or "it answers another station")
             return _RETRY_S
         self._outbox.acknowledge(receipt.stored_seq)
-        self._status.stored += sum(one.seq <= receipt.stored_seq for one in batch)
-        self._set_state("connected")
+        self._status.sent += sum(one.seq <= receipt.stored_seq for one in batch)
+        self._status.set("connected")
         return 0.0
 
     def _hand_over(self, bus: Bus, batch: tuple[StoredEvent, ...]) -> EventReceipt | None:
@@ -199,17 +185,6 @@ class DepartmentForwarder:
             "it does not answer; is it switched on, does the network lead there, and has it "
             f"enrolled {self._enrolment.name}, which is not revoked?"
         )
-
-    def _set_state(self, state: str, reason: str = "") -> None:
-        status = self._status
-        if state != status.state:
-            status.state, status.since_ns = state, self._clock.utc_ns()
-            logger.info("department %s: %s %s", self._enrolment.connect[0], state, reason)
-        if state == "connecting" and status.away_since_ns is None:
-            status.away_since_ns = self._clock.monotonic_ns()
-        elif state != "connecting":
-            status.away_since_ns = None
-        status.reason = reason
 
 
 def _station_enrolment(path: Path) -> Enrolment:

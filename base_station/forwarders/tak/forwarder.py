@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from dataclasses import dataclass
 
+from base_station.forwarders.connection_status import ConnectionStatus
 from base_station.forwarders.interface import Surroundings
 from base_station.forwarders.mailbox import Mailbox
 from base_station.forwarders.tak.config import TakConfig
@@ -34,17 +34,6 @@ _CLOSE_S = 5.0
 logger = logging.getLogger(__name__)
 
 
-@dataclass(slots=True)
-class _Status:
-    """State of the connection; written by the forwarder's thread alone."""
-
-    state: str = "connecting"
-    since_ns: int | None = None  # station time of the last change
-    away_since_ns: int | None = None  # monotonic; None: connected, or not to be
-    reason: str = ""
-    sent: int = 0
-
-
 class TakForwarder:
     """A ``Forwarder`` for one ``[tak.NAME]``."""
 
@@ -58,7 +47,7 @@ class TakForwarder:
             name, config.uid_prefix, config.within_m, surroundings.note_external
         )
         self._mailbox = Mailbox()
-        self._status = _Status(away_since_ns=self._clock.monotonic_ns())
+        self._status = ConnectionStatus(f"TAK {name} ({config.url})", self._clock)
         self._retry_s = _FIRST_RETRY_S
         self._awake: asyncio.Event | None = None  # of the connection that is open
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -106,10 +95,7 @@ class TakForwarder:
         )
 
     def problem(self) -> str:
-        since_ns = self._status.away_since_ns
-        if since_ns is None:
-            return ""
-        away_s = (self._clock.monotonic_ns() - since_ns) / NS_PER_S
+        away_s = self._status.away_s
         if away_s < self._config.alarm_after_s:
             return ""
         return (
@@ -131,29 +117,18 @@ class TakForwarder:
     def _step(self) -> float:
         """One connection from beginning to end; gives the pause before the next one."""
         if not self._leads():
-            self._set_state("standby")
+            self._status.set("standby")
             return _STANDBY_S
         if self._status.state == "standby":
-            self._set_state("connecting")
+            self._status.set("connecting")
         try:
             asyncio.run(self._connect_and_serve())
         except ConnectionLostError as error:
-            self._set_state("connecting", str(error))
+            self._status.set("connecting", str(error))
         else:
             return 0.0  # another one leads, or the station stops
         pause_s, self._retry_s = self._retry_s, min(2.0 * self._retry_s, _RETRY_MAX_S)
         return pause_s
-
-    def _set_state(self, state: str, reason: str = "") -> None:
-        status = self._status
-        if state != status.state:
-            status.state, status.since_ns = state, self._clock.utc_ns()
-            logger.info("TAK %s (%s): %s %s", self._name, self._config.url, state, reason)
-        if state == "connecting" and status.away_since_ns is None:
-            status.away_since_ns = self._clock.monotonic_ns()
-        elif state != "connecting":
-            status.away_since_ns = None
-        status.reason = reason
 
     async def _connect_and_serve(self) -> None:
         """Raises ConnectionLostError when the connection is over."""
@@ -162,7 +137,7 @@ class TakForwarder:
         self._last_received_ns = None
         self._outbox.begin_connection()
         self._inbox.begin_connection()
-        self._set_state("connected")
+        self._status.set("connected")
         receiving = asyncio.create_task(self._receive(connection))
         sending = asyncio.create_task(self._send(connection))
         try:

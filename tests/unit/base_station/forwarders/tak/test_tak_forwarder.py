@@ -182,7 +182,7 @@ def test_a_connection_that_is_long_away_is_a_problem_until_it_is_back(closing: E
     (report,) = forwarders.changes({})
     assert (report.part, "away for 61 s" in report.text) == ("forwarder-county", True)
     assert list(forwarders.changes({"forwarder-county": report.text})) == [], "it is reported"
-    forwarder._set_state("connected")
+    forwarder._status.set("connected")
     (well,) = forwarders.changes({"forwarder-county": report.text})
     assert well.text == ""
     (gone,) = Forwarders([]).changes({"forwarder-other": "x", "log": "y"})
