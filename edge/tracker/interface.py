@@ -109,14 +109,14 @@ class WornSensor:
 
 @dataclass(frozen=True, slots=True)
 class BodyDimensions:
-    """What is known of a person in advance; ``None``: nobody says."""
+    """Measures of a person that are known in advance; ``None``: unknown."""
 
     height_m: float | None = None
     leg_length_m: float | None = None  # hip joint to sole, in shoes
 
 
 class MultiSensorTracker(Protocol):
-    """Tracker of one person by several sensors, which are told apart by name.
+    """Tracker of one person by several sensors, which are identified by name.
 
     The times of all sensors are those of one clock.  The rows are those of the person, one for each
     sample of the leading sensor, or of another while the leading one is silent.  Any batching and

@@ -91,7 +91,7 @@ def _level(state: BodyState, dt_s: float, config: BodyConfig) -> None:
 
 @njit()
 def _bridge_gap(state: BodyState, gap_s: float) -> None:
-    """Begin levelling again; nobody knows what the wearer did meanwhile."""
+    """Begin levelling again, as the motion in the gap is unknown."""
     state.settled_s = 0.0
     state.covariance[HEADING, HEADING] += (_LOST_TURN_RAD * min(gap_s, 1.0)) ** 2
     state.swings = 0

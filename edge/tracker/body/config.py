@@ -55,7 +55,7 @@ class BodyConfig(NamedTuple):
     # Path: what it may be off by.
     gain_std: float = 0.01  # of a turn, where the description has none
     heading_walk_rad: float = 0.015  # in a root second
-    iron_std_ut: float = 25.0  # an axis, of what is worn with a sensor that nobody calibrated
+    iron_std_ut: float = 25.0  # an axis, of iron worn near a sensor that was not calibrated
     iron_least_ut: float = 2.0  # ... and after a calibration
     iron_walk_ut: float = 0.2  # in a root second
     bend_std_ut: float = 8.0  # an axis, of the level magnetic field in a building

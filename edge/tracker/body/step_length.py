@@ -48,7 +48,7 @@ def step_length(
 def _turning(state: BodyState, now_rad: float, now_s: float, config: BodyConfig) -> float:
     """Return the square of the turn rate over a stride, as the pelvis swings about in each step.
 
-    Whoever turns on the spot lifts their trunk too, and goes nowhere.
+    A turn on the spot lifts the trunk, too, without a distance.
     """
     since_s = now_s - state.turned_s[0]
     rate_radps = (now_rad - state.turned_rad[0]) / max(since_s, config.shortest_step_s)

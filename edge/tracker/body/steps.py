@@ -2,7 +2,7 @@
 
 Every part of the trunk rises and sinks once a step, and so does what a hand holds; the velocity has
 little of the heel strike's ringing and nothing of the sensor's own orientation.  A step is where it
-begins to rise.  Two in a row make a walk: one alone is somebody who sits down.
+begins to rise.  Two in a row make a walk: one alone may be sitting down.
 """
 
 from __future__ import annotations

@@ -85,7 +85,7 @@ class MountRecogniser:
                 self.place = shown
 
     def _decide_late(self, end_ns: int) -> None:
-        """After a while decide by what there is, as nobody is located meanwhile; go on where
+        """After a while decide by what there is, as the wearer is not located before; go on where
         nothing has walked yet.
         """
         if self.place is not None or self.moved_ns is None:

@@ -25,7 +25,7 @@ def propagate(covariance: Floats, dt_s: float, noise: float, rate_noise: float) 
 
 @njit()
 def update(covariance: Floats, measured: int, off: float, variance: float, error: Floats) -> None:
-    """Write into ``error`` (2,) what ``off`` tells of the pair (3.18, 3.19), and take it in.
+    """Write into ``error`` (2,) the estimate of the pair (3.18, 3.19) by ``off``, and take it in.
 
     ``measured``: 0 where the quantity is, 1 where its rate is.
     """

@@ -1,6 +1,6 @@
 """Constraints of a building with straight corridors and right angles (section 3.3.1).
 
-They are off unless somebody sets them: on open ground, or where corridors bend, they turn a right
+They are off by default: on open ground, or where corridors bend, they turn a right
 path into a wrong one.  Headings are those of two steps, in which the twist of the hip cancels out.
 """
 

@@ -1,8 +1,8 @@
 """Front of the torso, by what pushes it when its speed changes.
 
-The axis that the path takes for the front is only the sensor's most level one.  Whoever starts,
-turns or stops is pushed along the true way: what the acceleration adds up to over a stride, and
-the change of velocity by shank and heading, differ by the angle between the two.
+The axis that the path takes for the front is only the sensor's most level one.  A start, a turn or
+a stop accelerates along the true direction: the integral of the acceleration over a stride and the
+change of velocity by shank and heading differ by the angle between the two.
 """
 
 from __future__ import annotations

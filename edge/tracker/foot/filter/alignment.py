@@ -1,8 +1,8 @@
 """Initial alignment: attitude from gravity in the stillest window at hand.
 
-Nobody stands still on command, and a unit may be switched on while its wearer runs.  The attitude
-comes from the mean specific force of the stillest short window, and its standard deviation from how
-still that window was.
+No wearer stands still on command, and a unit may be switched on while its wearer runs.  The
+attitude comes from the mean specific force of the stillest short window, and its standard deviation
+from how still that window was.
 """
 
 from __future__ import annotations

@@ -85,7 +85,7 @@ def _is_flat(progress: Progress, state: FilterState, config: EskfConfig) -> bool
         progress.mean_sink_m = 0.0
         return False
     if stride_m <= config.floor.gate_m and not progress.level_constraint_suspended:
-        return True  # a foot that stays where it is tells of no ramp
+        return True  # a foot that stays where it is shows no ramp
     progress.mean_sink_m += (sink_m - progress.mean_sink_m) / config.floor.ramp_strides
     if _is_ramp(progress, sink_m, 0.5 * least_m, config):
         return False
