@@ -36,7 +36,7 @@ _TIMES_SLOWER = 2.0  # to reach, of live data
 _WARM_S = 4.0
 _PIECE_S = 0.5
 _STALLED_S = 15.0  # nothing more comes: what was lost is told
-_TOLD_LATE_S = 2.0  # the console hears so late of how much was stepped, at most
+_REPORTED_LATE_S = 2.0  # the console hears so late of how much was stepped, at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def measure(
         others = [BenchUnit(name, members.endpoint_of(name), closing) for name in names]
         for name in [*names, _BACKLOG_UNIT]:
             station.api.post("/units", {"unit_id": name})
-        wait_until("the station listens", lambda: all(unit.is_heard for unit in others))
+        wait_until("the station listens", lambda: all(unit.is_received for unit in others))
         [console] = watching(station.api, 1, closing)
         return _fetch(
             station,
@@ -106,11 +106,11 @@ def _fetch(
     before_ns = time.time_ns()
     speak_in_turn(others, rate_hz, seconds, lambda: None)
     began_ns = time.time_ns()
-    known = station.api.get("/health")["messages"] - _said_by(others)
+    known = station.api.get("/health")["messages"] - _stated_by(others)
     station.begin_measuring()
     backlog.appear()
     progress.update(task, description="fetching")
-    nearly = backlog.count - round(_TOLD_LATE_S * rate_hz)
+    nearly = backlog.count - round(_REPORTED_LATE_S * rate_hz)
     for fetched in _coming(others, console, known):
         backlog.speak()
         progress.update(task, completed=fetched)
@@ -118,12 +118,12 @@ def _fetch(
             break
     cpu_share = station.cpu_share()
     end_ns = time.time_ns()
-    time.sleep(_TOLD_LATE_S)
+    time.sleep(_REPORTED_LATE_S)
     console.close()
     station.stop()
     recorded = station.recorded()
     fetched, took_s = _fetched(station.log, began_ns)
-    sent = _said_by(others) + backlog.said
+    sent = _stated_by(others) + backlog.output
     return BackfillReport(
         units=len(others),
         backlog=backlog.count,
@@ -145,13 +145,13 @@ def _coming(others: Sequence[BenchUnit], console: Console, known: int) -> Iterat
     fetched, came_s = 0, time.perf_counter()
     while time.perf_counter() - came_s < _STALLED_S:
         speak_in_turn(others, _MESSAGES_HZ * len(others), _PIECE_S, lambda: None)
-        now = console.messages_stepped - known - _said_by(others)
+        now = console.messages_stepped - known - _stated_by(others)
         if now > fetched:
             fetched, came_s = now, time.perf_counter()
         yield fetched
 
 
-def _said_by(units: Sequence[BenchUnit]) -> int:
+def _stated_by(units: Sequence[BenchUnit]) -> int:
     return sum(unit.sent.messages for unit in units)
 
 
@@ -173,7 +173,7 @@ class _Backlog:
         self._serving = self._bus.serve(f"{prefix}/**", self._replies)
 
     @property
-    def said(self) -> int:
+    def output(self) -> int:
         """Messages, the backlog and what was said live."""
         return len(self._entries)
 
@@ -191,7 +191,7 @@ class _Backlog:
     def _next(self) -> Message:
         self._clock.advance(1.0 / _MESSAGES_HZ)
         message = self._wearer.next_message()
-        entry = JournalEntry(self.said + 1, channel_of(message).suffix, encode(message))
+        entry = JournalEntry(self.output + 1, channel_of(message).suffix, encode(message))
         self._entries.append(entry)
         return message
 
@@ -202,10 +202,10 @@ class _Backlog:
         if what == "acknowledge":
             self._acknowledged = int(asked["to"])
         if what in ("index", "acknowledge"):
-            boot = JournalBoot(self._boot_id, 1, self.said, self._acknowledged, 0)
+            boot = JournalBoot(self._boot_id, 1, self.output, self._acknowledged, 0)
             yield JournalIndex((boot,)).to_bytes()
             return
-        first, last = int(asked["from"]), min(int(asked["to"]), self.said)
+        first, last = int(asked["from"]), min(int(asked["to"]), self.output)
         if what == "urgent":
             yield JournalChunk(self._boot_id, first, last, (), urgent_only=True).to_bytes()
             return

@@ -94,7 +94,7 @@ def floors_shown(people: list[Person], way: str) -> list[list[tuple[int | None, 
     station = _Station(people, way)
     shown: list[list[tuple[int | None, float]]] = [[] for _ in people]
     for row in range(len(people[0].truth.t_s)):
-        station.hear_reference(people[0], row)
+        station.receive_reference(people[0], row)
         for number, person in enumerate(people):
             station.update(person, row)
             fused = station.pipeline.state.units[person.unit_id].place.fused
@@ -124,7 +124,7 @@ class _Station:
                 start = SetStart(person.unit_id, north_m, east_m, 0.0, 0.0, ENGINE_STD_M, math.pi)
                 self._act(start)
 
-    def hear_reference(self, person: Person, row: int) -> None:
+    def receive_reference(self, person: Person, row: int) -> None:
         """A unit that lies at the engine."""
         pressure_pa = pressure_pa_at(float(person.weather_m[row]))
         t_mono_ns = message_factory.mono_ns(float(person.truth.t_s[row]))

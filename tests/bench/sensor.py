@@ -107,7 +107,7 @@ def measure(sensor: str, source: str, tracker: str, seconds: float, walk: Walk) 
             *("--data", f"{machine}/edge", "--connect", f"tcp/127.0.0.1:{free_port()}"),
         )
         with EmulatedAgent(machine, machine / "agent.txt", *flags) as agent:
-            until(lambda: "samples/s" in agent.said(), "the agent with its sensor")
+            until(lambda: "samples/s" in agent.output(), "the agent with its sensor")
             time.sleep(_SETTLED_S)
             begun_s, spent_s = time.monotonic(), agent.cpu_s()
             time.sleep(seconds)

@@ -118,7 +118,7 @@ class _Site:
         began_s = time.monotonic()
         order = {"kind": "text", "text": text, "target": {"unit_id": UNIT}}
         command_id = self.browser.call("POST", "/commands", json=order)["command_id"]
-        _wait_for(lambda: f"Message: {text}\n" in self.agent.said())
+        _wait_for(lambda: f"Message: {text}\n" in self.agent.output())
         took_s = time.monotonic() - began_s
         self.browser.call("POST", f"/commands/{command_id}/confirm", json={"unit_id": UNIT})
         return took_s
@@ -159,7 +159,7 @@ def _site(source: str) -> Iterator[_Site]:
                 *("--output", f"terminal:{UNIT}"),
             )
         )
-        until(lambda: "linked to the station" in agent.said(), "the link")
+        until(lambda: "linked to the station" in agent.output(), "the link")
         live = connect(
             f"{browser.address.replace('http', 'ws', 1)}/api/v1/live",
             additional_headers={"Cookie": browser.cookie(), "Origin": browser.address},
@@ -172,11 +172,11 @@ def _site(source: str) -> Iterator[_Site]:
 
 def _with_outage(site: _Site, figures: WearerFigures) -> WearerFigures:
     """Call a mayday while the radio is away; measure from its return."""
-    until(lambda: "radio down" in site.agent.said(), "the outage")
+    until(lambda: "radio down" in site.agent.output(), "the outage")
     site.button.press()
-    until(lambda: "mayday called" in site.agent.said(), "the mayday in the unit")
+    until(lambda: "mayday called" in site.agent.output(), "the mayday in the unit")
     site.button.release()
-    _wait_for(lambda: _RADIO_BACK in site.agent.said())
+    _wait_for(lambda: _RADIO_BACK in site.agent.output())
     back_s = time.monotonic()
     until(lambda: site.maydays, "the mayday on the screen")
     time.sleep(5.0)  # a second one would come

@@ -42,7 +42,7 @@ def measure_whole_unit(seconds: float, steps: int, machine: Path, walk: Walk) ->
     """Measure the agent's processor time for some seconds, then temperature steps."""
     with _whole_unit(machine, walk) as (agent, shown, thermocouple):
         until(lambda: shown.card.get("ambient_sensors"), "the temperatures on the console")
-        until(lambda: "check at the start" in agent.said(), "the end of the check at the start")
+        until(lambda: "check at the start" in agent.output(), "the end of the check at the start")
         begun_s, spent_s = time.monotonic(), agent.cpu_s()
         time.sleep(seconds)
         cores = (agent.cpu_s() - spent_s) / (time.monotonic() - begun_s)

@@ -155,7 +155,7 @@ def test_a_unit_that_nobody_registered_is_not_believed() -> None:
     assert {alarm.rule for alarm in raised} == {"unknown-unit", "cloned-unit"}
 
 
-def test_it_knows_nothing_of_a_unit_never_heard(rule: AlarmRule) -> None:
+def test_it_knows_nothing_of_a_unit_never_received(rule: AlarmRule) -> None:
     assert not isinstance(rule.judge(UnitState("FF-01", registered=True), T_NS, ""), Finding)
 
 

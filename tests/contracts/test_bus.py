@@ -10,7 +10,7 @@ import pytest
 
 from shared.channels import POSITION, Qos
 from shared.errors import BusError
-from tests.rig.bus_ends import Ends, Heard, publish_until_heard
+from tests.rig.bus_ends import Ends, Heard, publish_until_received
 from tests.rig.waiting import until
 
 KEY = POSITION.key("anna")
@@ -18,33 +18,33 @@ KEY = POSITION.key("anna")
 
 @pytest.mark.parametrize("qos", [Qos.LIVE, Qos.ALERT])
 def test_messages_arrive_once_whole_and_in_order(ends: Ends, qos: Qos) -> None:
-    heard = Heard()
-    ends.station.subscribe("muster/v1/*/up/**", heard)
-    publish_until_heard(ends.unit, KEY, heard)
+    received = Heard()
+    ends.station.subscribe("muster/v1/*/up/**", received)
+    publish_until_received(ends.unit, KEY, received)
     sent = [(KEY, number.to_bytes(2, "big") * number) for number in range(300)]
     for begin in range(0, len(sent), 2):
         # Faster than the link takes them, messages are dropped: the journal brings those.
         for key, payload in sent[begin : begin + 2]:
             ends.unit.publish(key, payload, qos)
-        until(partial(heard.has, begin + 2), "the messages so far")
-    assert heard.samples == sent
+        until(partial(received.has, begin + 2), "the messages so far")
+    assert received.samples == sent
 
 
 def test_the_station_reaches_a_unit(ends: Ends) -> None:
-    heard = Heard()
-    ends.unit.subscribe("muster/v1/anna/command/**", heard)
-    publish_until_heard(ends.station, "muster/v1/anna/command/send", heard)
+    received = Heard()
+    ends.unit.subscribe("muster/v1/anna/command/**", received)
+    publish_until_received(ends.station, "muster/v1/anna/command/send", received)
     ends.station.publish("muster/v1/ben/command/send", b"not hers", Qos.ALERT)
     ends.station.publish("muster/v1/anna/command/send", b"evacuate", Qos.ALERT)
-    until(lambda: bool(heard.samples), "the command")
-    assert heard.samples == [("muster/v1/anna/command/send", b"evacuate")]
+    until(lambda: bool(received.samples), "the command")
+    assert received.samples == [("muster/v1/anna/command/send", b"evacuate")]
 
 
 def test_an_end_is_not_given_what_it_publishes_for_others_alone(ends: Ends) -> None:
     own, at_station = Heard(), Heard()
     ends.unit.subscribe(KEY, own)
     ends.station.subscribe(KEY, at_station)
-    publish_until_heard(ends.unit, KEY, at_station)
+    publish_until_received(ends.unit, KEY, at_station)
     ends.unit.publish(KEY, b"for others", Qos.LIVE, remote_only=True)
     ends.unit.publish(KEY, b"for all", Qos.LIVE)
     until(lambda: (KEY, b"for all") in own.samples, "its own")
@@ -53,13 +53,13 @@ def test_an_end_is_not_given_what_it_publishes_for_others_alone(ends: Ends) -> N
     assert [payload for _, payload in at_station.samples] == [b"for others", b"for all"]
 
 
-def test_units_do_not_hear_each_other(ends: Ends) -> None:
+def test_units_do_not_receive_each_other(ends: Ends) -> None:
     ben = ends.fabric.unit()
     at_station, at_ben = Heard(), Heard()
     ends.station.subscribe("muster/v1/**", at_station)
     ben.subscribe("muster/v1/**", at_ben)
-    publish_until_heard(ends.station, "muster/v1/all/command/send", at_ben)
-    publish_until_heard(ends.unit, KEY, at_station)
+    publish_until_received(ends.station, "muster/v1/all/command/send", at_ben)
+    publish_until_received(ends.unit, KEY, at_station)
     assert KEY not in [key for key, _ in at_ben.samples]
 
 
@@ -83,16 +83,16 @@ def test_key_expressions_select_as_in_zenoh(ends: Ends, expression: str, matches
     selected, everything = Heard(), Heard()
     ends.station.subscribe(expression, selected)
     ends.station.subscribe("muster/v1/*/up/*", everything)
-    publish_until_heard(ends.unit, KEY, everything)
+    publish_until_received(ends.unit, KEY, everything)
     until(lambda: bool(selected.samples) or not matches, "the selected message")
     assert bool(selected.samples) is matches
 
 
-def test_after_close_a_subscription_hears_nothing(ends: Ends) -> None:
+def test_after_close_a_subscription_receives_nothing(ends: Ends) -> None:
     closed, still_open = Heard(), Heard()
     subscription = ends.station.subscribe("muster/v1/**", closed)
     ends.station.subscribe("muster/v1/**", still_open)
-    publish_until_heard(ends.unit, KEY, still_open)
+    publish_until_received(ends.unit, KEY, still_open)
     subscription.close()
     closed.samples.clear()
     ends.unit.publish(KEY, b"after", Qos.LIVE)
@@ -125,7 +125,7 @@ def test_closing_waits_for_a_call_under_way(ends: Ends) -> None:
 def test_a_failing_handler_is_logged_once_and_stops_nothing(
     ends: Ends, caplog: pytest.LogCaptureFixture
 ) -> None:
-    heard = Heard()
+    received = Heard()
     failed: list[str] = []
 
     def failing(key: str, payload: bytes) -> None:
@@ -133,11 +133,11 @@ def test_a_failing_handler_is_logged_once_and_stops_nothing(
         raise ValueError("a bug")
 
     ends.station.subscribe("muster/v1/**", failing)
-    ends.station.subscribe("muster/v1/**", heard)
+    ends.station.subscribe("muster/v1/**", received)
     with caplog.at_level(logging.ERROR):
-        publish_until_heard(ends.unit, KEY, heard)
+        publish_until_received(ends.unit, KEY, received)
         ends.unit.publish(KEY, b"later", Qos.LIVE)
-        until(lambda: bool(heard.samples), "a message beside a failing handler")
+        until(lambda: bool(received.samples), "a message beside a failing handler")
         until(lambda: len(failed) > 1, "it has failed again")  # each handler has its own thread
     assert [record.exc_info is not None for record in caplog.records] == [True]
 
@@ -167,15 +167,15 @@ def test_a_closed_bus_says_so(ends: Ends) -> None:
 
 
 def test_a_handler_may_close_its_own_subscription(ends: Ends) -> None:
-    heard, once = Heard(), Heard()
+    received, once = Heard(), Heard()
 
     def close_after_one(key: str, payload: bytes) -> None:
         once(key, payload)
         subscription.close()
 
     subscription = ends.station.subscribe(KEY, close_after_one)
-    ends.station.subscribe(KEY, heard)
-    publish_until_heard(ends.unit, KEY, heard)
+    ends.station.subscribe(KEY, received)
+    publish_until_received(ends.unit, KEY, received)
     ends.unit.publish(KEY, b"later", Qos.LIVE)
-    until(lambda: bool(heard.samples), "a message after closing")
+    until(lambda: bool(received.samples), "a message after closing")
     assert len(once.samples) == 1

@@ -16,15 +16,15 @@ ALIVE = alive_key("anna")
 
 
 def test_tokens_appear_and_vanish(ends: Ends) -> None:
-    told: list[tuple[str, bool]] = []
-    ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: told.append((key, alive)))
+    reported: list[tuple[str, bool]] = []
+    ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: reported.append((key, alive)))
     token = ends.unit.declare_alive(ALIVE)
-    until(lambda: told == [(ALIVE, True)], "the token")
+    until(lambda: reported == [(ALIVE, True)], "the token")
     token.close()
-    until(lambda: told == [(ALIVE, True), (ALIVE, False)], "the end of the token")
+    until(lambda: reported == [(ALIVE, True), (ALIVE, False)], "the end of the token")
 
 
-def test_a_late_watcher_hears_of_tokens_that_are_there(ends: Ends) -> None:
+def test_a_late_watcher_receives_of_tokens_that_are_there(ends: Ends) -> None:
     early: list[str] = []
     late: list[tuple[str, bool]] = []
     ends.station.watch_alive("muster/v1/*/alive", lambda key, _: early.append(key))
@@ -35,12 +35,12 @@ def test_a_late_watcher_hears_of_tokens_that_are_there(ends: Ends) -> None:
 
 
 def test_a_unit_that_closes_takes_its_token_along(ends: Ends) -> None:
-    told: list[tuple[str, bool]] = []
-    ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: told.append((key, alive)))
+    reported: list[tuple[str, bool]] = []
+    ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: reported.append((key, alive)))
     _token = ends.unit.declare_alive(ALIVE)
-    until(lambda: told == [(ALIVE, True)], "the token")
+    until(lambda: reported == [(ALIVE, True)], "the token")
     ends.unit.close()
-    until(lambda: told == [(ALIVE, True), (ALIVE, False)], "the end of the token")
+    until(lambda: reported == [(ALIVE, True), (ALIVE, False)], "the end of the token")
 
 
 def test_queries_are_answered_in_order(ends: Ends) -> None:
@@ -71,23 +71,23 @@ def test_what_is_asked_without_waiting_is_answered_in_order_and_ended_once(
     ends: Ends, urgent: bool
 ) -> None:
     ends.unit.serve("muster/v1/anna/journal", lambda *_: (b"%d" % n for n in range(100)))
-    heard: list[bytes | None] = []
+    received: list[bytes | None] = []
 
     def answered() -> bool:
-        heard.clear()
-        ends.station.ask("muster/v1/anna/journal", b"", 10.0, heard.append, urgent=urgent)
-        until(lambda: None in heard, "the end of the replies")
-        return len(heard) > 1
+        received.clear()
+        ends.station.ask("muster/v1/anna/journal", b"", 10.0, received.append, urgent=urgent)
+        until(lambda: None in received, "the end of the replies")
+        return len(received) > 1
 
     until(answered, "replies")
-    assert heard == [*(b"%d" % n for n in range(100)), None]
+    assert received == [*(b"%d" % n for n in range(100)), None]
 
 
 def test_what_nobody_answers_ends_all_the_same(ends: Ends) -> None:
-    heard: list[bytes | None] = []
-    ends.station.ask("muster/v1/nobody/journal", b"", 0.5, heard.append)
-    until(lambda: bool(heard), "the end of the replies")
-    assert heard == [None]
+    received: list[bytes | None] = []
+    ends.station.ask("muster/v1/nobody/journal", b"", 0.5, received.append)
+    until(lambda: bool(received), "the end of the replies")
+    assert received == [None]
 
 
 def test_a_query_handler_that_fails_answers_nothing(
@@ -110,7 +110,7 @@ def test_a_query_handler_that_fails_answers_nothing(
     assert len(caplog.records) == 1
 
 
-def test_one_knows_whether_anybody_else_listens(ends: Ends) -> None:
+def test_one_knows_whether_anyone_else_listens(ends: Ends) -> None:
     ends.unit.subscribe("muster/v1/anna/command/**", Heard())
     assert not ends.unit.has_subscriber(KEY)
     listening = ends.station.subscribe("muster/v1/*/up/**", Heard())

@@ -165,7 +165,7 @@ def test_the_reader_hands_over_what_the_wearer_means(emulated, request) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "reported"),
     [
         ("AB Button", "Known are evdev:"),
         ("evdef:AB Button", "did you mean evdev:?"),
@@ -177,7 +177,7 @@ def test_the_reader_hands_over_what_the_wearer_means(emulated, request) -> None:
         ("socket:/run/button?hold=nan", "1.5 to 5"),
     ],
 )
-def test_settings_that_cannot_work_are_explained(text: str, said: str) -> None:
+def test_settings_that_cannot_work_are_explained(text: str, reported: str) -> None:
     with pytest.raises(ConfigError) as caught:
         open_button(text, SystemClock())
-    assert said in str(caught.value)
+    assert reported in str(caught.value)

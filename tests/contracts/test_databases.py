@@ -62,7 +62,7 @@ def contents(store: Database) -> dict[str, list[Any]]:
         }
 
 
-def test_a_story_is_told_by_the_tables(store: Database, clock: ManualClock) -> None:
+def test_a_story_is_reported_by_the_tables(store: Database, clock: ManualClock) -> None:
     projection = SqlProjection(store)
     for part in STORY:
         projection.project(part)
@@ -115,7 +115,7 @@ def test_who_asks_for_what_was_decided_waits_for_no_position(store: Database) ->
     projection.close()
 
 
-def test_a_projection_that_cannot_be_written_is_said_and_holds_up_no_other(
+def test_a_projection_that_cannot_be_written_is_stated_and_holds_up_no_other(
     store: Database, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     projection = SqlProjection(store)

@@ -143,7 +143,7 @@ def test_a_path_that_jumps_is_not_followed(kind: FuserKind, walk: Walk) -> None:
     assert math.dist((before.north_m, before.east_m), (after.north_m, after.east_m)) < 1.0
 
 
-def test_what_is_said_last_is_followed_though_the_clock_was_ahead_before(
+def test_what_is_stated_last_is_followed_though_the_clock_was_ahead_before(
     kind: FuserKind, walk: Walk
 ) -> None:
     fuser = kind.new()

@@ -125,7 +125,7 @@ def test_the_wearer_is_found_to_step_as_often_as_the_tracker_counts(name):
 
 
 @pytest.mark.parametrize("gone", [0, 1])
-def test_a_sensor_that_goes_is_said_and_the_walk_goes_on_where_it_can(name, gone):
+def test_a_sensor_that_goes_is_stated_and_the_walk_goes_on_where_it_can(name, gone):
     tracker, samples = made(name, FIFTY)
     place = places_of(name)[gone]
     imu = samples[place]

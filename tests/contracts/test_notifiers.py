@@ -83,21 +83,21 @@ def emulated_beeper(folder: Path, _: pytest.MonkeyPatch) -> Emulated:
 
 
 def emulated_sound_card(text: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> Emulated:
-    card, heard = folder / "asound.conf", folder / "heard.wav"
+    card, received = folder / "asound.conf", folder / "heard.wav"
     card.write_text(
         "pcm.quiet { type null }\n"
-        f'pcm.default {{ type file slave.pcm "quiet" file "{heard}" format "wav" }}\n'
+        f'pcm.default {{ type file slave.pcm "quiet" file "{received}" format "wav" }}\n'
     )
     monkeypatch.setenv("ALSA_CONFIG_PATH", str(card))
 
-    def was_heard() -> bool:
-        with wave.open(str(heard)) as sound:
+    def was_received() -> bool:
+        with wave.open(str(received)) as sound:
             samples = sound.readframes(sound.getnframes())
             return len(set(samples)) > 1 and sound.getnframes() > (
                 SOUND_SHORTEST_S * sound.getframerate()
             )
 
-    return Emulated(text, folder, was_heard, lambda: True, card.unlink)
+    return Emulated(text, folder, was_received, lambda: True, card.unlink)
 
 
 def emulated_terminal(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Emulated:
@@ -192,7 +192,7 @@ def test_a_description_names_the_kind() -> None:
     assert output_kind("led:helmet:red") == "led"
 
 
-def test_patterns_can_be_told_apart() -> None:
+def test_patterns_can_be_distinguished() -> None:
     assert set(PATTERNS) == set(Signal)
     rhythms = {
         tuple((round(pulse.on_s, 3), round(pulse.off_s, 3)) for pulse in pattern)

@@ -137,6 +137,6 @@ def test_the_concepts_say_which_source_gives_what() -> None:
     for quantity in Quantity:
         row = next(one for one in table if one.startswith(f"| {quantity} |"))
         cells = [cell.strip() for cell in row.strip("|").split("|")][1 : 1 + len(schemes)]
-        told = {scheme for scheme, cell in zip(schemes, cells, strict=True) if cell == "yes"}
+        reported = {scheme for scheme, cell in zip(schemes, cells, strict=True) if cell == "yes"}
         assert set(cells) <= {"yes", "no"}, row
-        assert told == {one for one in schemes if quantity in DECLARED[one]}, row
+        assert reported == {one for one in schemes if quantity in DECLARED[one]}, row

@@ -16,19 +16,19 @@ from edge.sources.gnss.reader import GnssReader
 from edge.sources.gnss.registry import RECEIVERS, open_receiver
 from shared.clock import ManualClock, SystemClock
 from shared.errors import ConfigError
-from tests.rig.gps_receiver import NAN, GpsdServer, Told, burst, gpsd_report
+from tests.rig.gps_receiver import NAN, GpsdServer, Reported, burst, gpsd_report
 from tests.rig.waiting import PATIENCE_S, until
 from tests.rig.ximu3_device import PtyDevice, TcpDevice
 
 Device = GpsdServer | TcpDevice | PtyDevice
-Saying = Callable[[Told], bytes]
+Saying = Callable[[Reported], bytes]
 # How each is pretended, what it says of a fix, and how it is named.
 PRETENDED: dict[str, tuple[Callable[[Iterable[bytes]], Device], Saying]] = {
-    "gpsd": (lambda said: GpsdServer(said, hangs=True), gpsd_report),
-    "nmea on TCP": (lambda said: TcpDevice(said, hangs=True), burst),
+    "gpsd": (lambda stated: GpsdServer(stated, hangs=True), gpsd_report),
+    "nmea on TCP": (lambda stated: TcpDevice(stated, hangs=True), burst),
     "nmea on a serial port": (PtyDevice, burst),
 }
-HERE = Told()
+HERE = Reported()
 LATER = replace(HERE, of_day_s=HERE.of_day_s + 1.0)
 NO_FIX = replace(HERE, mode=1, quality=0, lat_deg=NAN, lon_deg=NAN, height_m=NAN, satellites=0)
 
@@ -42,17 +42,17 @@ def fixes(request: pytest.FixtureRequest) -> Iterator[Callable[..., list[GpsSamp
     make, saying = PRETENDED[request.param]
     opened: list[tuple[Device, GnssReader]] = []
 
-    def heard(*told: Told, held_s: float = 0.0) -> list[GpsSample]:
-        clock, first_is_heard = ManualClock(), Event()
+    def received(*reported: Reported, held_s: float = 0.0) -> list[GpsSample]:
+        clock, first_is_received = ManualClock(), Event()
 
-        def said() -> Iterator[bytes]:
-            yield saying(told[0])
+        def stated() -> Iterator[bytes]:
+            yield saying(reported[0])
             if held_s:
-                assert first_is_heard.wait(PATIENCE_S)
+                assert first_is_received.wait(PATIENCE_S)
                 clock.advance(held_s)
-            yield b"".join(map(saying, told[1:]))
+            yield b"".join(map(saying, reported[1:]))
 
-        device = make(said())
+        device = make(stated())
         reader = open_receiver(f"{request.param.split()[0]}:{device.source}", clock)
         opened.append((device, reader))
         reader.start()
@@ -61,15 +61,15 @@ def fixes(request: pytest.FixtureRequest) -> Iterator[Callable[..., list[GpsSamp
         def all_there() -> bool:
             found.extend(reader.take())
             if found:
-                first_is_heard.set()
-            return len(found) >= len(told)
+                first_is_received.set()
+            return len(found) >= len(reported)
 
         until(all_there, "every fix")
         assert reader.take_faults() == ()
         assert reader.garbled == 0
         return found
 
-    yield heard
+    yield received
     for device, reader in opened:
         with closing(device):
             reader.close()
@@ -80,7 +80,7 @@ def test_every_kind_is_pretended() -> None:
     assert {name.split()[0] for name in PRETENDED} == {kind.scheme for kind in RECEIVERS}
 
 
-def test_a_fix_is_what_the_receiver_said(fixes) -> None:
+def test_a_fix_is_what_the_receiver_stated(fixes) -> None:
     (fix,) = fixes(replace(HERE, std_m=1.3, vertical_std_m=2.2))
     assert (fix.lat_deg, fix.lon_deg) == pytest.approx((57.7, 11.97), abs=1e-8)
     assert fix.height_m == pytest.approx(42.5)
@@ -90,7 +90,7 @@ def test_a_fix_is_what_the_receiver_said(fixes) -> None:
     assert math.degrees(fix.course_rad) == pytest.approx(77.5)
 
 
-def test_all_sides_of_the_earth_are_told_apart(fixes) -> None:
+def test_all_sides_of_the_earth_are_distinguished(fixes) -> None:
     places = [(57.7, 11.97), (-33.9, 151.2), (-22.9, -43.2), (40.7, -74.0)]
     found = fixes(
         *(
@@ -127,7 +127,7 @@ def test_two_dimensions_have_no_height(fixes) -> None:
     assert math.isnan(fix.height_m)
 
 
-def test_no_fix_is_said_as_such(fixes) -> None:
+def test_no_fix_is_stated_as_such(fixes) -> None:
     (fix,) = fixes(NO_FIX)
     assert (fix.fix_type, fix.satellites) == (0, 0)
     assert math.isnan(fix.lat_deg)
@@ -135,14 +135,14 @@ def test_no_fix_is_said_as_such(fixes) -> None:
 
 def test_fixes_that_the_line_held_up_are_of_their_own_instants(fixes) -> None:
     """Ten a second, over midnight; as they came they would be no time apart."""
-    told = [replace(HERE, of_day_s=86_399.5 + 0.1 * k) for k in range(10)]
-    found = fixes(*told, held_s=0.9)
+    reported = [replace(HERE, of_day_s=86_399.5 + 0.1 * k) for k in range(10)]
+    found = fixes(*reported, held_s=0.9)
     steps_ns = [after.t_ns - before.t_ns for before, after in pairwise(found)]
     assert steps_ns == [100_000_000] * 9
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "stated"),
     [
         ("gpds://127.0.0.1", "did you mean gpsd:"),
         ("gpsd", "Known are gpsd://HOST:PORT"),
@@ -159,7 +159,7 @@ def test_fixes_that_the_line_held_up_are_of_their_own_instants(fixes) -> None:
         ("nmea:/dev/ttyUSB0?speed=2", "unknown option 'speed'"),
     ],
 )
-def test_a_text_that_names_no_receiver_is_explained(text: str, said: str) -> None:
+def test_a_text_that_names_no_receiver_is_explained(text: str, stated: str) -> None:
     with pytest.raises(ConfigError) as caught:
         open_receiver(text, SystemClock())
-    assert said in str(caught.value)
+    assert stated in str(caught.value)

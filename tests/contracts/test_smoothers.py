@@ -141,7 +141,7 @@ def test_a_start_and_pins_are_enough(smoother: Smoother, heading_std_rad: float)
     }
 
 
-def test_a_pin_that_contradicts_is_said_and_changes_nothing(smoother: Smoother) -> None:
+def test_a_pin_that_contradicts_is_stated_and_changes_nothing(smoother: Smoother) -> None:
     walk = a_walk(4)
     good = evidence_of(walk, 4, [(0.0, 60.0)], places=(pin_at(walk, 200.0),))
     bad = replace(good, places=(*good.places, pin_at(walk, 250.0, off_m=150.0, name="bad")))
@@ -153,7 +153,7 @@ def test_a_pin_that_contradicts_is_said_and_changes_nothing(smoother: Smoother) 
     assert verdict.sigmas > 4.0
 
 
-def test_walls_that_held_somebody_are_heeded_and_a_pin_overrules_them(smoother: Smoother) -> None:
+def test_walls_that_held_person_are_heeded_and_a_pin_overrules_them(smoother: Smoother) -> None:
     """The live estimate was surer than the path alone can be; the second time, wrongly so."""
     walk = a_walk(10)
     plain = evidence_of(walk, 10, [(0.0, 40.0)])
@@ -163,10 +163,10 @@ def test_walls_that_held_somebody_are_heeded_and_a_pin_overrules_them(smoother: 
     wrong = replace(plain, path=replace(plain.path, shown_m=truth + np.array([0.0, 3.0]), **sure))
     pinned = replace(wrong, places=(pin_at(walk, 200.0),))
     alone = replace(plain, places=pinned.places)
-    told = {"plain": plain, "right": right, "pinned": pinned, "alone": alone}
+    reported = {"plain": plain, "right": right, "pinned": pinned, "alone": alone}
     errors = {
         name: errors_of(walk, smoother.solve({"a": evidence}).paths["a"])[-60:].mean()
-        for name, evidence in told.items()
+        for name, evidence in reported.items()
     }
     assert errors["right"] < min(0.6, errors["plain"])
     assert errors["pinned"] == pytest.approx(errors["alone"], abs=0.1)

@@ -211,7 +211,7 @@ def test_radio_outages_are_in_order(source: Source) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "reported"),
     [
         ("recordin:walk", "did you mean recording:"),
         ("recording", "nothing after recording:"),
@@ -240,10 +240,10 @@ def test_radio_outages_are_in_order(source: Source) -> None:
         ("iio:bmi160/accel", "write the device alone"),
     ],
 )
-def test_a_text_that_names_no_source_is_explained(text: str, said: str) -> None:
+def test_a_text_that_names_no_source_is_explained(text: str, reported: str) -> None:
     with pytest.raises(ConfigError) as caught:
         open_source(text)
-    assert said in str(caught.value)
+    assert reported in str(caught.value)
 
 
 @pytest.mark.parametrize("scheme", [kind.scheme for kind in SOURCES])

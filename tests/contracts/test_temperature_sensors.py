@@ -152,7 +152,7 @@ def test_what_is_no_number_is_a_fault(sensor, tree, opened) -> None:
     assert reader.take() == ()
 
 
-def test_a_sensor_that_does_not_answer_is_a_fault_said_once(sensor, tree, opened) -> None:
+def test_a_sensor_that_does_not_answer_is_a_fault_stated_once(sensor, tree, opened) -> None:
     break_attribute(sensor.make(tree), sensor.attribute)
     reader = opened(sensor.text)
     assert "not answer" in fault(reader)
@@ -164,9 +164,9 @@ def test_one_that_is_missing_is_named_with_those_that_are_there(sensor, tree, op
     tree.hwmon(3, "1-0050", name="sht3x", temp1_input="20000")
     tree.iio(3, "spi0.3", name="max31856", in_temp_raw="1", in_temp_scale="7.8125")
     tree.w1("28-00000000cafe", temperature="20000")
-    said = fault(opened(sensor.text))
-    assert sensor.text.partition(":")[2] in said
-    assert any(there in said for there in ("sht3x", "max31856", "28-00000000cafe")), said
+    reported = fault(opened(sensor.text))
+    assert sensor.text.partition(":")[2] in reported
+    assert any(there in reported for there in ("sht3x", "max31856", "28-00000000cafe")), reported
 
 
 def test_one_that_is_missing_where_there_is_nothing_at_all(sensor, opened) -> None:
@@ -194,7 +194,7 @@ def test_one_that_is_removed_has_no_reading_until_it_is_back(sensor, tree, opene
     taken(reader)
 
 
-def test_permission_that_is_missing_is_said_with_the_rule(sensor, tree, opened, monkeypatch):
+def test_permission_that_is_missing_is_stated_with_the_rule(sensor, tree, opened, monkeypatch):
     """The tests may run as root, who may read everything."""
     device = sensor.make(tree)
     allowed = Path.read_text
@@ -205,13 +205,13 @@ def test_permission_that_is_missing_is_said_with_the_rule(sensor, tree, opened, 
         return allowed(path, *arguments, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(Path, "read_text", refused)
-    said = fault(opened(sensor.text))
-    assert "60-muster.rules" in said
+    reported = fault(opened(sensor.text))
+    assert "60-muster.rules" in reported
     assert device.exists()
 
 
 @pytest.mark.parametrize(
-    ("texts", "said"),
+    ("texts", "reported"),
     [
         (["tmp102"], "Known are hwmon:"),
         (["hwmom:tmp102"], "did you mean hwmon:?"),
@@ -228,13 +228,13 @@ def test_permission_that_is_missing_is_said_with_the_rule(sensor, tree, opened, 
         (["iio:max31856/ambient"], "cold junction"),
     ],
 )
-def test_settings_that_cannot_work_are_explained(texts, said, tree) -> None:
+def test_settings_that_cannot_work_are_explained(texts, reported, tree) -> None:
     with pytest.raises(ConfigError) as caught:
         open_temperature_reader(texts, SystemClock(), tree.root)
-    assert said in str(caught.value)
+    assert reported in str(caught.value)
 
 
-def test_one_that_hangs_is_said_while_the_others_are_read(tree) -> None:
+def test_one_that_hangs_is_stated_while_the_others_are_read(tree) -> None:
     """A named pipe that nobody writes to stands for a driver that never returns."""
     clock = ManualClock()
     device = tree.hwmon(0, name="tmp102")
@@ -245,8 +245,8 @@ def test_one_that_hangs_is_said_while_the_others_are_read(tree) -> None:
     taken(reader)
     clock.advance(6.0)
     until(reader.take, "the other one is still read")
-    said = [one for one in reader.take_faults() if "front" in one]
-    assert "no reading for 6 s: it hangs" in said[0]
+    reported = [one for one in reader.take_faults() if "front" in one]
+    assert "no reading for 6 s: it hangs" in reported[0]
     assert not any("front" in one for one in reader.take_faults())
     (device / "temp1_input").write_text("25000\n")  # so that its thread can end
     reader.close()

@@ -91,16 +91,16 @@ def complaints(page: Page) -> Iterator[list[str]]:
 
     At the end there must be none that a test did not expect, and take out.
     """
-    said: list[str] = []
+    stated: list[str] = []
 
     def note(message: ConsoleMessage) -> None:
         if message.type == "error" and not any(one in message.text for one in STATION_AWAY):
-            said.append(f"{message.text} {message.location.get('url', '')}")
+            stated.append(f"{message.text} {message.location.get('url', '')}")
 
     page.on("console", note)
-    page.on("pageerror", lambda error: said.append(str(error)))
-    yield said
-    assert said == []
+    page.on("pageerror", lambda error: stated.append(str(error)))
+    yield stated
+    assert stated == []
 
 
 @pytest.fixture(scope="module")

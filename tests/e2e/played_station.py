@@ -68,10 +68,12 @@ class PlayedStation:
 
     def change(self, **what: object) -> None:
         """Something happens: a delta goes out."""
-        said = {"seq": self._picture.seq + 1, "now_ms": self._picture.now_ms, **what}
-        changes = self._unit_changes.of(Delta(**said))  # type: ignore[arg-type]
-        whole = {name: self._whole(name, said[name]) for name in _ID_OF.keys() & said.keys()}
-        self._picture = msgspec.structs.replace(self._picture, **said | whole)
+        reported = {"seq": self._picture.seq + 1, "now_ms": self._picture.now_ms, **what}
+        changes = self._unit_changes.of(Delta(**reported))  # type: ignore[arg-type]
+        whole = {
+            name: self._whole(name, reported[name]) for name in _ID_OF.keys() & reported.keys()
+        }
+        self._picture = msgspec.structs.replace(self._picture, **reported | whole)
         for socket in self._sockets:
             socket.send(msgspec.json.encode(changes).decode())
 

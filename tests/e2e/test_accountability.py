@@ -30,7 +30,7 @@ def roll_call(page: Page) -> None:
 
 
 @pytest.mark.parametrize("screen", SCREENS)
-def test_who_was_never_heard_is_not_shown_as_confirmed(stage: Stage, screen: str) -> None:
+def test_who_was_never_received_is_not_shown_as_confirmed(stage: Stage, screen: str) -> None:
     page, _ = stage.open(just_opened(), screen)
     assert flaws(page) == []
     clock = page.locator(".par-clock")
@@ -51,7 +51,7 @@ def test_who_was_never_heard_is_not_shown_as_confirmed(stage: Stage, screen: str
     )
 
 
-def test_whoever_is_in_alarm_is_confirmed_only_on_a_second_word(stage: Stage) -> None:
+def test_anyone_is_in_alarm_is_confirmed_only_on_a_second_word(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     roll_call(page)
     dialog = page.get_by_role("dialog")
@@ -111,9 +111,9 @@ def test_a_question_to_which_an_alarm_has_come_is_asked_anew(stage: Stage) -> No
     page.wait_for_timeout(600)
     mayday = scenes.alarm(1, "mayday", 1, f"Mayday from {DOWN}", 0)
     down = shown.units[1]
-    told = msgspec.structs.replace(down, alarms=(*down.alarms, mayday.alarm_id))
+    reported = msgspec.structs.replace(down, alarms=(*down.alarms, mayday.alarm_id))
     page.evaluate(PRESS_AS_SOON_AS_SHOWN, ["Mayday", "Yes, answered by radio"])
-    station.change(alarms=(mayday,), units=(told,))
+    station.change(alarms=(mayday,), units=(reported,))
     expect(row.get_by_role("group")).to_contain_text("Mayday")
     page.wait_for_function("() => window.pressed === true")
     station.expect_changes()

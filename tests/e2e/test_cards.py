@@ -27,12 +27,12 @@ def test_who_is_in_danger_is_first_and_whole_among_forty(stage: Stage) -> None:
     expect(calm).not_to_have_class(re.compile("brief"))  # who is chosen is shown whole
 
 
-def test_what_somebody_silent_did_last_says_how_old_it_is(stage: Stage) -> None:
+def test_what_person_silent_did_last_says_how_old_it_is(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute())
     silent = page.locator(".card", has_text="Tomas Novak").locator(".activity")
     expect(silent).to_contain_text("1 min old")
-    heard = page.locator(".card", has_text="Mira Okafor").locator(".activity")
-    expect(heard).to_have_text("Walking")
+    received = page.locator(".card", has_text="Mira Okafor").locator(".activity")
+    expect(received).to_have_text("Walking")
 
 
 def test_a_figure_and_the_word_behind_it_are_two_words_to_who_listens(stage: Stage) -> None:
@@ -65,7 +65,7 @@ def test_a_unit_that_was_switched_off_in_order_is_calm(stage: Stage) -> None:
     assert painted(page, "--quiet") < 4000, "the plan is not hatched for them"
 
 
-def test_whoever_is_chosen_is_in_sight_with_all_that_can_be_done(stage: Stage) -> None:
+def test_anyone_is_chosen_is_in_sight_with_all_that_can_be_done(stage: Stage) -> None:
     page, _ = stage.open(scenes.crowd())
     lost = scenes.crowd().alarms[3]
     page.locator(".card").last.scroll_into_view_if_needed()
@@ -91,14 +91,14 @@ def test_what_can_be_done_stays_in_sight_however_low_the_screen(stage: Stage) ->
     expect(actions.get_by_role("button", name="Message")).to_be_in_viewport(ratio=1)
 
 
-def test_who_is_overdue_is_said_to_be_so_once(stage: Stage) -> None:
+def test_who_is_overdue_is_stated_to_be_so_once(stage: Stage) -> None:
     page, station = stage.open(scenes.overdue())
     card = page.locator(".card", has_text=scenes.NAMES[0])
     expect(card).to_contain_text(re.compile(r"PAR overdue \d+:\d+"))
     expect(card.get_by_label("Open alarms of this person")).to_have_count(0)
-    heard = scenes.unit(0).duty
+    received = scenes.unit(0).duty
     late = station.picture.units[0]
-    station.change(units=(msgspec.structs.replace(late, duty=heard),))
+    station.change(units=(msgspec.structs.replace(late, duty=received),))
     open_alarms = card.get_by_label("Open alarms of this person")
     expect(open_alarms.get_by_role("listitem")).to_have_text(["PAR overdue"])
 
@@ -135,7 +135,7 @@ def test_of_who_switched_off_it_says_how_long_they_were_inside(stage: Stage) -> 
     expect(card).to_contain_text("Was inside4 min")
 
 
-def test_who_is_given_a_unit_is_told_to_wear_another(stage: Stage) -> None:
+def test_who_is_given_a_unit_is_ordered_to_wear_another(stage: Stage) -> None:
     """Chosen by a slip, they would be looked for where that unit is."""
     page, _ = stage.open(scenes.quiet())
     worn_by = menu(page, "Units").get_by_label("Assign FF-01 to")

@@ -78,9 +78,9 @@ def test_each_kind_of_trail_is_drawn_and_taken_away(page: Page, card: Locator) -
         ("Post-processed", "smoothed", "--watch"),
     ):
         before = painted(page, colour)
-        with page.expect_response(re.compile(rf"trails\?kind={kind}")) as said:
+        with page.expect_response(re.compile(rf"trails\?kind={kind}")) as stated:
             kinds.get_by_label(word).check()
-        (trail,) = said.value.json()["trails"]
+        (trail,) = stated.value.json()["trails"]
         assert (trail["unit_id"], len(trail["points"]) > 1) == (UNIT, True)
         expect(kinds).not_to_contain_text("is worked out")
         until(partial(draws, page, colour, before), kind)
@@ -183,8 +183,8 @@ def test_the_plan_is_put_on_the_earth_by_a_map_given_for_it(
 
 def clicked_places(form: Locator) -> list[tuple[float, float]]:
     """North and east, as the panel says them."""
-    said = form.text_content() or ""
-    found = re.findall(r"([\d.]+)\s+m (north|south), ([\d.]+)\s+m (east|west)", said)
+    stated = form.text_content() or ""
+    found = re.findall(r"([\d.]+)\s+m (north|south), ([\d.]+)\s+m (east|west)", stated)
     assert len(found) == 2
     return [
         (

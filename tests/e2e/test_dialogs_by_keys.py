@@ -127,7 +127,7 @@ def test_a_menu_that_lies_over_the_alarms_goes_with_escape_and_with_a_press_besi
     expect(units).to_be_hidden()
 
 
-def test_a_dialog_says_that_the_station_is_not_heard(stage: Stage) -> None:
+def test_a_dialog_says_that_the_station_is_not_received(stage: Stage) -> None:
     """The red banner stands behind it, and who ticks people off would not see it."""
     page, station = stage.open(scenes.bad_minute(), answers=ALL)
     page.locator(".par-clock").press("Enter")
@@ -138,7 +138,7 @@ def test_a_dialog_says_that_the_station_is_not_heard(stage: Stage) -> None:
     expect(lost).to_contain_text(re.compile(r"\d\ss ago"))
 
 
-def test_times_that_were_changed_are_said_to_be(stage: Stage) -> None:
+def test_times_that_were_changed_are_stated_to_be(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "Incidents").click()
     dialog = page.get_by_role("dialog")
@@ -151,7 +151,7 @@ def test_times_that_were_changed_are_said_to_be(stage: Stage) -> None:
     expect(done).to_have_count(0)
 
 
-def test_times_that_were_refused_are_not_said_to_be_changed(stage: Stage) -> None:
+def test_times_that_were_refused_are_not_stated_to_be_changed(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     refusal = {"detail": "It is closed."}
     page.route("**/accountability", lambda route: route.fulfill(status=409, json=refusal))
@@ -162,7 +162,7 @@ def test_times_that_were_refused_are_not_said_to_be_changed(stage: Stage) -> Non
     expect(dialog.get_by_text("The times are changed.")).to_have_count(0)
 
 
-def test_a_new_password_of_a_user_is_said_to_be_set(stage: Stage) -> None:
+def test_a_new_password_of_a_user_is_stated_to_be_set(stage: Stage) -> None:
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "Account").click()
     page.get_by_role("button", name="Users").click()
@@ -182,14 +182,14 @@ def change_own_password(page: Page) -> None:
     dialog.get_by_role("button", name="Change password").click()
 
 
-def test_who_mistypes_the_old_password_is_told_so_and_goes_on_watching(stage: Stage) -> None:
+def test_who_mistypes_the_old_password_is_reported_so_and_goes_on_watching(stage: Stage) -> None:
     page, _ = stage.open(scenes.bad_minute(), answers=ALL)
     refusal = {"detail": "The old password is wrong."}
     page.route("**/me/password", lambda route: route.fulfill(status=403, json=refusal))
     change_own_password(page)
     dialog = page.get_by_role("dialog")
-    said = dialog.get_by_role("alert").filter(has_text="The old password is wrong.")
-    expect(said).to_be_visible()
+    reported = dialog.get_by_role("alert").filter(has_text="The old password is wrong.")
+    expect(reported).to_be_visible()
     expect(page.get_by_role("region", name="Open alarms")).to_be_visible()
 
 
@@ -217,7 +217,7 @@ def test_a_form_that_comes_in_place_of_a_button_takes_the_focus_and_gives_it_bac
     expect(button).to_be_focused()
 
 
-def test_another_rate_of_positions_is_said_to_be_set(stage: Stage) -> None:
+def test_another_rate_of_positions_is_stated_to_be_set(stage: Stage) -> None:
     """The list says no more which one it was."""
     page, _ = stage.open(scenes.quiet(), answers=ALL)
     entry(page, "Units").click()
@@ -226,7 +226,7 @@ def test_another_rate_of_positions_is_said_to_be_set(stage: Stage) -> None:
     expect(row.get_by_role("status")).to_have_text("5 Hz requested.")
 
 
-def test_a_base_map_that_was_set_is_said_to_be(stage: Stage, tmp_path: Path) -> None:
+def test_a_base_map_that_was_set_is_stated_to_be(stage: Stage, tmp_path: Path) -> None:
     page, _ = stage.open(scenes.quiet(), answers={**ALL, "PUT /site/base-map": BASE_MAP})
     entry(page, "Site").click()
     dialog = page.get_by_role("dialog")

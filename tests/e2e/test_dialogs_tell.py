@@ -35,7 +35,7 @@ def test_escape_ends_a_dialog_and_not_what_was_begun_on_the_plan(stage: Stage) -
     expect(panel).to_have_count(0)
 
 
-def test_what_a_dialog_could_not_do_is_said_in_it(stage: Stage) -> None:
+def test_what_a_dialog_could_not_do_is_stated_in_it(stage: Stage) -> None:
     """Behind it nobody could read or close it."""
     page, _ = stage.open(scenes.bad_minute())
     menu(page, "Incidents").get_by_role("button", name="Accuracy report").click()

@@ -61,10 +61,10 @@ def send(folder: Path, station: StationProcess, token: str, content: str) -> str
 def test_a_report_is_offered_with_what_the_station_knows_of_it(
     page: Page, station: StationProcess, token: str, tmp_path: Path, complaints: list[str]
 ) -> None:
-    said = send(tmp_path, station, token, json.dumps(REPORT))
-    assert "offered" in said
-    assert "not known at this station: E12, L4" in said
-    assert '"dispatched" has no time zone' in said
+    reported = send(tmp_path, station, token, json.dumps(REPORT))
+    assert "offered" in reported
+    assert "not known at this station: E12, L4" in reported
+    assert '"dispatched" has no time zone' in reported
     bar = page.get_by_role("status", name="Dispatch")
     expect(bar).to_contain_text(f"Dispatch {NUMBER}")
     expect(bar).to_contain_text("Structure fire, Main St 5, E12, L4")

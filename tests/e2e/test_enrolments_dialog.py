@@ -116,7 +116,7 @@ def test_a_renewal_says_first_that_the_old_one_goes_on(stage: Stage, enrolment: 
     station.expect_changes("/enrolments")
 
 
-def test_a_refusal_is_said_in_the_dialog(stage: Stage, enrolment: Enrolment) -> None:
+def test_a_refusal_is_stated_in_the_dialog(stage: Stage, enrolment: Enrolment) -> None:
     page, _ = opened(stage, enrolment)
     reason = "An enrolment holds a private key: serve the console over TLS."
     page.route(

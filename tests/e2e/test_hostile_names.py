@@ -21,17 +21,17 @@ TRAP = "<img src=x onerror=\"window.sprung='yes'\">"
 WRITTEN = {"name", "crew", "role", "note", "text", "label", "username", "target", "problems"}
 
 
-def trapped(said: object, field: str = "") -> object:
+def trapped(stated: object, field: str = "") -> object:
     """The same with the trap behind all that people may have written, at any depth."""
-    match said:
+    match stated:
         case dict():
-            return {name: trapped(value, name) for name, value in said.items()}
+            return {name: trapped(value, name) for name, value in stated.items()}
         case list() | tuple():
-            return [trapped(value, field) for value in said]
+            return [trapped(value, field) for value in stated]
         case str() if field in WRITTEN:
-            return f"{said} {TRAP}"
+            return f"{stated} {TRAP}"
         case _:
-            return said
+            return stated
 
 
 def hostile() -> Snapshot:

@@ -15,7 +15,7 @@ from tests.e2e.console_page import menu
 from tests.e2e.stage import ANSWERS, PAST, Stage
 
 
-def test_an_incident_is_saved_or_it_is_said_why_not_and_the_console_stays(stage: Stage) -> None:
+def test_an_incident_is_saved_or_it_is_stated_why_not_and_the_console_stays(stage: Stage) -> None:
     saved = {
         f"{PAST}/export/csv?fused": "unit_id,person",
         f"{PAST}/export/csv?smoothed": "known since",

@@ -146,7 +146,7 @@ def test_a_replay_that_the_station_has_ended_meanwhile_is_begun_again(stage: Sta
     expect(page.locator(".console")).to_have_class(re.compile("live"))
 
 
-def test_nobody_else_gets_the_replay_that_somebody_looked_at(stage: Stage) -> None:
+def test_nobody_else_gets_the_replay_that_person_looked_at(stage: Stage) -> None:
     page, station = replay_an_incident(stage, "deputy")
     log_in(page, "deputy")
     expect(page.get_by_role("region", name="Replay")).to_have_count(0)
@@ -154,7 +154,7 @@ def test_nobody_else_gets_the_replay_that_somebody_looked_at(stage: Stage) -> No
     station.expect_changes("/replays", "/login")
 
 
-def test_nobody_else_gets_what_somebody_was_writing(stage: Stage) -> None:
+def test_nobody_else_gets_what_person_was_writing(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute(), answers=answers("deputy"))
     write_a_message(page)
     station.end_logins()

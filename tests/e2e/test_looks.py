@@ -48,16 +48,16 @@ def test_nothing_is_cut_covered_or_too_small(stage: Stage, scene: Callable[[], S
 def test_a_long_crew_and_role_take_two_lines_of_a_card_until_it_is_chosen(stage: Stage) -> None:
     page, _ = stage.open(scenes.one_word())
     card = page.locator(f"[data-unit='{scenes.unit_id(1)}']")
-    told = card.locator(".under-name .quiet")
+    reported = card.locator(".under-name .quiet")
     lines = "one => one.clientHeight / parseFloat(getComputedStyle(one).lineHeight)"
     for width, height in SCREENS.values():
         page.set_viewport_size({"width": width, "height": height})
-        assert told.evaluate(lines) <= 2.1
+        assert reported.evaluate(lines) <= 2.1
     page.set_viewport_size({"width": 1280, "height": 800})
-    expect(told).to_have_attribute("title", f"{'W' * 80} · {'W' * 80}")
+    expect(reported).to_have_attribute("title", f"{'W' * 80} · {'W' * 80}")
     card.get_by_role("button").first.click()
-    assert told.evaluate("one => one.scrollHeight <= one.clientHeight + 1")
-    assert told.evaluate(lines) > 3
+    assert reported.evaluate("one => one.scrollHeight <= one.clientHeight + 1")
+    assert reported.evaluate(lines) > 3
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_everybody_can_use_every_scene(stage: Stage, scene: Callable[[], Snapsho
 
 
 @pytest.mark.parametrize("letters_px", [20, 24])  # browsers set 16 where nobody says otherwise
-def test_letters_are_as_large_as_somebody_has_set_them(stage: Stage, letters_px: int) -> None:
+def test_letters_are_as_large_as_person_has_set_them(stage: Stage, letters_px: int) -> None:
     page, _ = stage.open(scenes.bad_minute())
     devtools = page.context.new_cdp_session(page)
     devtools.send("Page.setFontSizes", {"fontSizes": {"standard": letters_px}})

@@ -35,8 +35,8 @@ def test_a_picture_of_before_a_sleep_says_when_it_was(stage: Stage) -> None:
     page.wait_for_timeout(600)  # the page's own clock has gone on
     page.clock.run_for(6_000)  # the message is confirmed, the station asked, and not heard
     banner = page.get_by_role("alert").filter(has_text="Connection to the station lost")
-    heard = page.evaluate(f"new Date({scenes.NOW_MS}).toTimeString().slice(0, 8)")
-    expect(banner).to_contain_text(f"This picture is from {heard} ")
+    received = page.evaluate(f"new Date({scenes.NOW_MS}).toTimeString().slice(0, 8)")
+    expect(banner).to_contain_text(f"This picture is from {received} ")
 
 
 def test_a_picture_of_before_a_sleep_is_old_at_once_when_the_machine_wakes(stage: Stage) -> None:
@@ -49,7 +49,7 @@ def test_a_picture_of_before_a_sleep_is_old_at_once_when_the_machine_wakes(stage
     expect(page.locator(".card").first).to_contain_text("1 h 00 min old")
 
 
-def test_whose_login_has_ended_is_told_so(stage: Stage) -> None:
+def test_whose_login_has_ended_is_reported_so(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     station.end_logins()
     expect(page.get_by_role("status").filter(has_text="This login has ended")).to_be_visible()

@@ -133,16 +133,16 @@ def test_before_an_order_is_sent_it_names_whom_only_the_radio_reaches(
 ) -> None:
     page, _ = stage.open(scenes.without_outputs())
     dialog = command(page, order)
-    said = dialog.locator(".not-notifiable")
-    expect(said).to_have_text(
+    reported = dialog.locator(".not-notifiable")
+    expect(reported).to_have_text(
         "2 of 5 cannot be notified: use the voice radio: Astrid Lindqvist, Mira Okafor"
     )
     assert flaws(page) == []
     assert barriers(page) == []
     dialog.get_by_label("To").select_option(label="Rescue 3")
-    expect(said).to_have_text("1 of 1 cannot be notified: use the voice radio: Mira Okafor")
+    expect(reported).to_have_text("1 of 1 cannot be notified: use the voice radio: Mira Okafor")
     dialog.get_by_label("To").select_option(label="Jonas Bergman")
-    expect(said).to_have_text("")
+    expect(reported).to_have_text("")
 
 
 def test_a_card_shows_that_its_wearer_cannot_be_notified(stage: Stage) -> None:
@@ -186,7 +186,7 @@ def test_who_cannot_be_notified_is_not_reached_until_the_answer_by_radio(stage: 
     expect(row).not_to_contain_text("cannot be notified")
 
 
-def test_an_incident_is_closed_over_somebody_only_by_name(stage: Stage) -> None:
+def test_an_incident_is_closed_over_person_only_by_name(stage: Stage) -> None:
     page, station = stage.open(scenes.bad_minute())
     dialog = menu(page, "Incidents")
     dialog.get_by_role("button", name="Close this incident").click()

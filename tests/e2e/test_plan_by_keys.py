@@ -71,7 +71,7 @@ def test_after_a_place_on_the_earth_keys_go_on_where_the_dialog_was_opened(
     expect(page.get_by_role("button", name=opener, exact=True)).to_be_focused()
 
 
-def test_a_point_that_was_clicked_is_said_in_words(stage: Stage) -> None:
+def test_a_point_that_was_clicked_is_stated_in_words(stage: Stage) -> None:
     page, _ = stage.open(msgspec.structs.replace(scenes.quiet(), plan=None))
     open_site(page, "laptop")
     page.get_by_role("dialog").get_by_role("button", name="Align by two points").press("Enter")

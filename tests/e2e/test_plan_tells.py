@@ -34,7 +34,7 @@ def test_a_floor_says_how_many_of_those_on_it_are_in_danger(stage: Stage) -> Non
     expect(floors.nth(1)).to_have_accessible_name("Floor G, 20 people")
 
 
-def test_what_is_looked_at_by_keys_stays_until_somebody_asks_for_all(stage: Stage) -> None:
+def test_what_is_looked_at_by_keys_stays_until_person_asks_for_all(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     scale = page.locator(".ol-scale-line-inner")
     expect(scale).to_have_text("10 m")

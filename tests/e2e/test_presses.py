@@ -40,7 +40,7 @@ def press_twice(page: Page, button: Locator, between: object) -> None:
         page.mouse.click(x, y)
 
 
-def heard(one: UnitView) -> UnitView:
+def received(one: UnitView) -> UnitView:
     """The same person once somebody has heard from them."""
     assert one.duty is not None
     due_ms = scenes.NOW_MS + 20 * scenes.MINUTE_MS
@@ -57,12 +57,14 @@ def test_two_presses_tick_off_one_person(stage: Stage) -> None:
     expect(names).to_have_text([first, second, third])
     stop_time(page)
 
-    def heard_of() -> None:
-        station.change(units=(heard(crew[0]),))
+    def received_of() -> None:
+        station.change(units=(received(crew[0]),))
         expect(names).to_have_text([second, third, first])
 
     press_twice(
-        page, page.get_by_role("dialog").get_by_text("Confirm by radio", exact=True).first, heard_of
+        page,
+        page.get_by_role("dialog").get_by_text("Confirm by radio", exact=True).first,
+        received_of,
     )
     station.expect_changes("/check-ins")
     let_time_go_on(page)
@@ -202,7 +204,7 @@ def test_everybody_is_ticked_off_once(stage: Stage) -> None:
     station.expect_changes("/check-ins")
 
 
-def test_whom_to_choose_from_is_listed_where_somebody_chooses(stage: Stage) -> None:
+def test_whom_to_choose_from_is_listed_where_person_chooses(stage: Stage) -> None:
     """Each unit with each person would be a quarter of a million entries of 500."""
     page, _ = stage.open(scenes.quiet())
     worn = menu(page, "Units").get_by_role("combobox", name="Assign ")
@@ -221,7 +223,7 @@ def test_whom_arrow_keys_only_pass_is_given_no_unit(stage: Stage) -> None:
     worn.focus()
     worn.press("ArrowDown")
     worn.press("ArrowDown")
-    station.change(units=(heard(quiet.units[0]),))
+    station.change(units=(received(quiet.units[0]),))
     expect(worn).to_have_value("p2")
     worn.press("ArrowUp")
     worn.press("ArrowUp")

@@ -50,7 +50,7 @@ def test_on_a_phone_what_is_live_leaves_a_replay_its_name(stage: Stage) -> None:
     assert box["height"] < 50, "two lines, and no column of words"
 
 
-def test_what_cannot_wait_is_said_over_a_replay_as_live_and_leads_there(stage: Stage) -> None:
+def test_what_cannot_wait_is_stated_over_a_replay_as_live_and_leads_there(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     banner = begin_replay(page)
     dialog = menu(page, "Account")
@@ -117,10 +117,10 @@ def test_what_is_not_as_it_was_reaches_who_does_not_see_the_terminal(
     stage: Stage, screen: str
 ) -> None:
     page, _ = stage.open(over_a_day(MISSING, TORN), screen)
-    told = page.get_by_role("region", name="Replay").get_by_role("button", name="Not all is as")
-    expect(told).to_have_text("Not all is as it was: 2")
+    reported = page.get_by_role("region", name="Replay").get_by_role("button", name="Not all is as")
+    expect(reported).to_have_text("Not all is as it was: 2")
     assert flaws(page) == []
-    told.click()
+    reported.click()
     dialog = page.get_by_role("dialog")
     expect(dialog.get_by_role("listitem")).to_have_text([MISSING, TORN])
     assert flaws(page) == []

@@ -27,7 +27,7 @@ def test_nobody_ticks_off_who_is_down_without_a_word(stage: Stage) -> None:
     station.expect_changes()
 
 
-def test_a_crew_with_somebody_down_is_ticked_off_on_a_second_word(stage: Stage) -> None:
+def test_a_crew_with_person_down_is_ticked_off_on_a_second_word(stage: Stage) -> None:
     shown = scenes.bad_minute(7)  # two of each crew
     page, station = stage.open(shown)
     page.locator(".par-clock").click()

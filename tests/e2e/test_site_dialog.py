@@ -53,7 +53,7 @@ def test_a_place_is_set_at_once_where_the_plan_has_none(stage: Stage) -> None:
     station.expect_changes("/site/anchor")
 
 
-def test_a_plan_is_replaced_by_who_has_said_so(stage: Stage, tmp_path: Path) -> None:
+def test_a_plan_is_replaced_by_who_has_stated_so(stage: Stage, tmp_path: Path) -> None:
     page, station = stage.open(scenes.bad_minute())
     site = menu(page, "Site")
     file = site.get_by_label("New plan")

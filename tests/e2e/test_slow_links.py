@@ -16,7 +16,7 @@ def never(_: Route) -> None:
     """An answer that is still on its way."""
 
 
-def test_who_wears_a_unit_is_said_before_the_list_of_people_is_there(stage: Stage) -> None:
+def test_who_wears_a_unit_is_stated_before_the_list_of_people_is_there(stage: Stage) -> None:
     """An empty field would say that nobody does."""
     page, _ = stage.open(scenes.quiet())
     page.route("**/api/v1/people", never)
@@ -57,7 +57,7 @@ def test_a_list_that_the_station_could_not_give_is_there_once_it_can(
     expect(dialog.get_by_role("row", name=row).first).to_be_visible()
 
 
-def test_that_a_list_could_not_be_had_is_not_said_of_a_station_that_is_back(stage: Stage) -> None:
+def test_that_a_list_could_not_be_had_is_not_stated_of_a_station_that_is_back(stage: Stage) -> None:
     page, station = stage.open(scenes.quiet())
     page.route("**/api/v1/people", lambda route: route.abort())
     dialog = menu(page, "People")
@@ -68,7 +68,7 @@ def test_that_a_list_could_not_be_had_is_not_said_of_a_station_that_is_back(stag
     expect(notice).to_have_count(0)
 
 
-def test_that_nobody_knows_whether_something_was_done_stays_said(stage: Stage) -> None:
+def test_that_nobody_knows_whether_something_was_done_stays_stated(stage: Stage) -> None:
     """Who orders an evacuation and looks away must find out that it may not have gone out."""
     page, station = stage.open(scenes.quiet())
     page.route("**/api/v1/commands", lambda route: route.abort())

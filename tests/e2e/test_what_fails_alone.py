@@ -95,10 +95,10 @@ def test_a_dialog_that_fails_closes_and_says_so(stage: Stage) -> None:
 BAD_UNIT = '{"type": "field_delta", "seq": 0, "after_seq": SEQ, "units": {"FF-01": 5}}'
 
 
-@pytest.mark.parametrize("said", [BAD_UNIT, "no JSON", "null"])
-def test_a_message_that_fails_costs_itself_alone(stage: Stage, said: str) -> None:
+@pytest.mark.parametrize("reported", [BAD_UNIT, "no JSON", "null"])
+def test_a_message_that_fails_costs_itself_alone(stage: Stage, reported: str) -> None:
     page, station = stage.open(scenes.quiet(3))
-    station.say(said.replace("SEQ", str(station.picture.seq)))
+    station.say(reported.replace("SEQ", str(station.picture.seq)))
     expect(page.locator(".faults")).to_contain_text("A message of the station cannot be shown:")
     first = station.picture.units[0]
     assert first.person is not None

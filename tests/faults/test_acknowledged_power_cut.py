@@ -79,10 +79,10 @@ class Unit:
         seq = 0
         while not self._stop.wait(0.03):
             seq += 1
-            said = self._make(header=Header(U, BOOT, seq, seq * NS_PER_S // 30))
-            self.journal.append([JournalRow(seq, POSITION, seq, encode(said))])
+            stated = self._make(header=Header(U, BOOT, seq, seq * NS_PER_S // 30))
+            self.journal.append([JournalRow(seq, POSITION, seq, encode(stated))])
             if seq % 3:
-                station.publish(said)
+                station.publish(stated)
 
     def close(self) -> None:
         self._stop.set()
@@ -120,10 +120,10 @@ def test_what_a_unit_may_forget_is_in_the_log_after_a_power_cut(
 
         def replies(key: str, parameters: str, payload: bytes) -> Iterator[bytes]:
             if key.endswith("acknowledge"):
-                said = dict(pair.split("=") for pair in parameters.split(";"))
+                stated = dict(pair.split("=") for pair in parameters.split(";"))
                 to = tmp_path / f"cut-{len(cuts)}"
                 disk.cut(station.recorder.folder, to)
-                cuts.append((int(said["to"]), to))
+                cuts.append((int(stated["to"]), to))
             return server.replies(key, parameters, payload)
 
         station.router.attach_unit().serve(server.key_expression, replies)
@@ -139,11 +139,11 @@ def test_what_a_unit_may_forget_is_in_the_log_after_a_power_cut(
             station.feed.close()
             station.backfill.close()
     assert cuts[-1][0] > 20
-    for told, log in cuts:
-        assert set(range(1, told + 1)) <= there(log)
+    for reported, log in cuts:
+        assert set(range(1, reported + 1)) <= there(log)
 
 
-def test_while_one_units_backlog_comes_others_are_told_what_they_may_forget(
+def test_while_one_units_backlog_comes_others_are_reported_what_they_may_forget(
     tmp_path: Path, hasty: None, unit: Unit, make_position: MakePosition
 ) -> None:
     server = JournalServer(U, unit.journal)
@@ -154,8 +154,8 @@ def test_while_one_units_backlog_comes_others_are_told_what_they_may_forget(
         for seq in count(1):
             if ending.is_set():
                 return
-            said = make_position(header=Header("FF-02", BOOT, seq, seq))
-            feed.deliver(backfilled_key("FF-02", POSITION.suffix), encode(said))
+            stated = make_position(header=Header("FF-02", BOOT, seq, seq))
+            feed.deliver(backfilled_key("FF-02", POSITION.suffix), encode(stated))
 
     with Station(tmp_path / "data") as station:
         station.router.attach_unit().serve(server.key_expression, server.replies)

@@ -11,7 +11,7 @@ import pytest
 from tests.bench.faults.bus_identities import UNIT
 from tests.bench.faults.fault_scenarios import FAULTS, TEN_MINUTES, BadLink
 from tests.bench.faults.site import Site
-from tests.rig.bad_link_checks import BUSY_S, TOLD_S, assert_nothing_is_lost
+from tests.rig.bad_link_checks import BUSY_S, REPORTED_S, assert_nothing_is_lost
 from tests.rig.console_client import Console
 from tests.rig.lossy_link import CLEAN, DARK
 from tests.rig.waiting import until
@@ -38,9 +38,9 @@ def test_a_console_shows_within_seconds_that_nothing_comes_any_more_and_that_it_
         console = troubled.link.station.call(lambda: Console(troubled.station.api, closing))
         wait_shown(console, "live", PATIENCE_S)
         troubled.link.set(DARK)
-        wait_shown(console, "stale", TOLD_S + BUSY_S)
+        wait_shown(console, "stale", REPORTED_S + BUSY_S)
         troubled.link.set(CLEAN)
-        wait_shown(console, "live", TOLD_S + BUSY_S)
+        wait_shown(console, "live", REPORTED_S + BUSY_S)
 
 
 def wait_shown(console: Console, link: str, patience_s: float) -> None:

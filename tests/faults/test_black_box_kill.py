@@ -43,10 +43,10 @@ def kill_a_writer(folder: Path, after_s: float) -> int:
     writer.stdout.readline()
     time.sleep(after_s)
     os.kill(writer.pid, signal.SIGKILL)
-    told = writer.stdout.read().split()
+    reported = writer.stdout.read().split()
     writer.stdout.close()
     writer.wait()
-    return int(told[-2])  # the last one may be cut
+    return int(reported[-2])  # the last one may be cut
 
 
 def test_at_most_a_second_of_samples_is_lost(tmp_path):

@@ -213,7 +213,7 @@ def walk(request: pytest.FixtureRequest) -> Walk:
 def position(north_m: float, header: Header) -> Position:
     spoken = Script()
     spoken.position(U, north_m, 0.0, header=header)
-    return spoken.said(Position)[0]
+    return spoken.published(Position)[0]
 
 
 def assert_in_order(script: Script) -> None:
@@ -247,7 +247,7 @@ def test_a_station_set_forward_by_a_day_keeps_the_order_and_is_of_now_again(walk
     assert walk.script.pipeline.state.units[U].link == "live"
 
 
-def test_what_was_said_before_is_placed_before_when_it_comes_out_of_the_journal(
+def test_what_was_stated_before_is_placed_before_when_it_comes_out_of_the_journal(
     walk: Walk,
 ) -> None:
     script = walk.script
@@ -268,8 +268,8 @@ def test_what_was_said_before_is_placed_before_when_it_comes_out_of_the_journal(
 
 
 def test_the_heartbeat_says_how_the_clocks_stand() -> None:
-    said = Heartbeat(Header(U, 1, 1, 1), 1, 9, -604_800.25, 0.0021, -4.2e-5)
-    heard = Heartbeat.from_wire(said.to_wire())
-    assert heard.clock_ahead_s == pytest.approx(-604_800.25)
-    assert heard.clock_std_s == pytest.approx(0.0021)
-    assert heard.clock_drift == pytest.approx(-4.2e-5)
+    reported = Heartbeat(Header(U, 1, 1, 1), 1, 9, -604_800.25, 0.0021, -4.2e-5)
+    received = Heartbeat.from_wire(reported.to_wire())
+    assert received.clock_ahead_s == pytest.approx(-604_800.25)
+    assert received.clock_std_s == pytest.approx(0.0021)
+    assert received.clock_drift == pytest.approx(-4.2e-5)

@@ -82,9 +82,9 @@ def test_both_paths_are_kept_and_only_one_is_shown(
     script: Script, pair: tuple[Machine, Machine]
 ) -> None:
     both_walk(script, *pair, seconds=10.0)
-    said = script.said(Position)
-    assert {p.header.boot_id for p in said if p.north_m < 0.0} == {22}
-    assert {p.header.boot_id for p in said if p.north_m > 0.0} == {11}
+    reported = script.published(Position)
+    assert {p.header.boot_id for p in reported if p.north_m < 0.0} == {22}
+    assert {p.header.boot_id for p in reported if p.north_m > 0.0} == {11}
     unit = script.pipeline.state.units[U]
     assert unit.position is not None
     assert unit.position.header.boot_id == 22
@@ -148,7 +148,7 @@ def test_messages_of_the_boot_before_that_come_late_are_no_second_machine(script
     assert alarms(script) == []
 
 
-def test_what_is_said_again_or_backdated_is_no_second_machine(script: Script) -> None:
+def test_what_is_stated_again_or_backdated_is_no_second_machine(script: Script) -> None:
     recorded = Machine(script, 1, 0.0)
     unheard = [recorded.header(0.5 * number) for number in range(100)]
     for header in unheard[:50]:
@@ -167,7 +167,7 @@ def test_what_is_said_again_or_backdated_is_no_second_machine(script: Script) ->
     assert alarms(script) == []
 
 
-def test_a_recording_of_a_boot_never_heard_is_no_second_machine(script: Script) -> None:
+def test_a_recording_of_a_boot_never_received_is_no_second_machine(script: Script) -> None:
     """The unit knew the station's time, so its messages say how old they are."""
     machine = Machine(script, 1, 0.0)
     old_ns = script.t_ns - 3600 * NS_PER_S

@@ -84,7 +84,7 @@ def test_a_unit_links_at_once_beside_a_flood_of_connections(
             until(lambda: bus.router.refused.total > before, "the count of who was refused")
 
 
-def test_links_come_back_at_once_when_somebody_is_enrolled_under_a_flood(bus: Bus) -> None:
+def test_links_come_back_at_once_when_person_is_enrolled_under_a_flood(bus: Bus) -> None:
     with closing(unit(bus.anna)) as anna:
         until(lambda: anna.has_subscriber(KEY), "the link")
         with (
@@ -105,7 +105,7 @@ def next_outage_s(anna: ZenohBus) -> float:
     return time.monotonic() - closed_s
 
 
-def test_refused_connections_are_told_with_where_they_come_from(bus: Bus) -> None:
+def test_refused_connections_are_reported_with_where_they_come_from(bus: Bus) -> None:
     with connection_flood("garbage", "127.0.0.1", bus.port, 60.0, held=0, per_s=200):
         until(lambda: any("127.0.1.1" in one for one in bus.router.problems()), "the problem")
     [problem] = bus.router.problems()

@@ -104,7 +104,7 @@ def test_the_change_at_which_the_disk_is_found_full_is_done_too(
         assert on_disk(path, "SELECT username FROM sessions") == [("mia",)]
 
 
-def test_what_others_changed_in_the_file_meanwhile_stays_and_a_clash_is_said(
+def test_what_others_changed_in_the_file_meanwhile_stays_and_a_clash_is_stated(
     path: Path, clock: ManualClock
 ) -> None:
     with a_user(path, clock):

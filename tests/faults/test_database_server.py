@@ -119,10 +119,10 @@ def test_a_station_goes_on_without_its_database_and_brings_it_up_to_date_afterwa
         until(lambda: not any(AWAY in one for one in walk.problems), "it is over")
         assert login(browser, data).is_success
     assert station.stop() == 0
-    assert server.password not in station.said()
+    assert server.password not in station.output()
     there = logged(data / "log")
     assert len(there) == len(set(there))
-    assert walk.said <= set(there)
+    assert walk.stated <= set(there)
     require_all(address, data, tmp_path)
     with ServerStore(address) as store, store.read() as session:
         assert session.scalars(select(PersonRow.name)).all() == ["Ada"]
@@ -242,7 +242,7 @@ def test_what_cannot_be_used_is_refused_in_a_sentence_without_the_password(
     assert "guessed" not in str(refused.value)
 
 
-def test_a_server_that_is_not_there_is_said_at_the_start(tmp_path: Path) -> None:
+def test_a_server_that_is_not_there_is_stated_at_the_start(tmp_path: Path) -> None:
     address = ServerAddress(f"postgresql+psycopg://fire@/muster?host={tmp_path}")
     with pytest.raises(DatabaseAwayError, match=r"does not answer.*see address, user"):
         ServerStore(address)
@@ -261,7 +261,7 @@ def test_two_stations_do_not_share_a_database(
     ServerStore(address, is_station=True).close()
 
 
-def test_a_full_disk_of_the_server_is_said_and_nothing_is_lost(
+def test_a_full_disk_of_the_server_is_stated_and_nothing_is_lost(
     address: ServerAddress, server: DatabaseServer
 ) -> None:
     """A trigger refuses with the code and the words of a server whose disk is full."""

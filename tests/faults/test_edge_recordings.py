@@ -134,7 +134,7 @@ def test_the_agent_goes_on_to_the_end_and_says_what_was_wrong(spoil, reason, tmp
     assert all(abs(position.north_m) < 1000.0 for position in positions)
 
 
-def test_a_gap_is_flagged_and_told(tmp_path):
+def test_a_gap_is_flagged_and_reported(tmp_path):
     rows = np.delete(walk(), slice(800, 1100), axis=0)
     messages = run_agent_on(rows, tmp_path)
     faults = [event for event in of(messages, UnitEvent) if event.kind is EventKind.SENSOR_FAULT]

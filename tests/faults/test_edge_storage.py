@@ -95,7 +95,7 @@ class Running:
         self._thread.start()
         until(lambda: self.station.count(Position) > 5)
 
-    def told_to_stop(self) -> None:
+    def ordered_to_stop(self) -> None:
         self._stop.set()
 
     def ends_within(self, seconds: float) -> bool:
@@ -139,7 +139,7 @@ def test_a_full_disk_under_the_journal(running):
     assert running.parts.journal_writer.never_saved == 0
 
 
-def test_what_a_full_disk_cost_is_said_with_the_heartbeat(running, monkeypatch):
+def test_what_a_full_disk_cost_is_stated_with_the_heartbeat(running, monkeypatch):
     monkeypatch.setattr("edge.storage.journal.writer._UNSAVED_MAX", 3)
     set_room(running, 1)
     until(lambda: any(beat.never_saved > 0 for beat in running.station.heartbeats()))
@@ -236,7 +236,9 @@ def started_before(disk: Path) -> None:
 
 
 @pytest.mark.parametrize("knows_the_disk", [True, False])
-def test_a_unit_that_is_started_with_a_full_disk_is_heard(disk: Path, knows_the_disk: bool) -> None:
+def test_a_unit_that_is_started_with_a_full_disk_is_received(
+    disk: Path, knows_the_disk: bool
+) -> None:
     if knows_the_disk:
         started_before(disk)
     else:
@@ -244,7 +246,7 @@ def test_a_unit_that_is_started_with_a_full_disk_is_heard(disk: Path, knows_the_
     fill(disk)
     running = Running(disk)
     try:
-        assert_told_and_made_good(running, (disk / "filler").unlink)
+        assert_reported_and_made_good(running, (disk / "filler").unlink)
     finally:
         running.end()
 
@@ -273,28 +275,28 @@ def test_a_disk_that_is_full_of_old_recordings_takes_what_a_person_is_shown(disk
         running.end()
 
 
-def test_a_unit_whose_disk_can_only_be_read_is_heard(disk: Path) -> None:
+def test_a_unit_whose_disk_can_only_be_read_is_received(disk: Path) -> None:
     started_before(disk)
     remount(disk, "ro")
     running = Running(disk)
     try:
-        assert_told_and_made_good(running, lambda: remount(disk, "rw"))
+        assert_reported_and_made_good(running, lambda: remount(disk, "rw"))
     finally:
         running.end()
 
 
-def test_a_unit_whose_disk_hangs_is_heard(freezing_disk: Path) -> None:
+def test_a_unit_whose_disk_hangs_is_received(freezing_disk: Path) -> None:
     running = Running(freezing_disk)
     freeze(freezing_disk)
     try:
-        assert_told_and_made_good(running, lambda: thaw(freezing_disk))
+        assert_reported_and_made_good(running, lambda: thaw(freezing_disk))
     finally:
         with suppress(subprocess.CalledProcessError):
             thaw(freezing_disk)
         running.end()
 
 
-def test_a_unit_whose_disk_hangs_stops_when_it_is_told_to(
+def test_a_unit_whose_disk_hangs_stops_when_it_is_reported_to(
     freezing_disk: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Its service would kill it in the end, and the station would never hear that it was meant."""
@@ -304,15 +306,15 @@ def test_a_unit_whose_disk_hangs_stops_when_it_is_told_to(
         assert running.ends_within(ENDING_S)
         assert running.station.how_it_stopped() == "stopped by a signal"
         assert not running.station.is_alive
-    told = [record.getMessage() for record in caplog.records]
-    assert any("messages are not kept" in one for one in told)
+    reported = [record.getMessage() for record in caplog.records]
+    assert any("messages are not kept" in one for one in reported)
 
 
 def test_what_waits_at_the_end_for_a_disk_that_comes_back_is_kept(freezing_disk: Path) -> None:
     running = Running(freezing_disk)
     with frozen(freezing_disk):
         time.sleep(1.5)
-        running.told_to_stop()
+        running.ordered_to_stop()
         time.sleep(1.0)
     assert running.ends_within(ENDING_S)
     journal = Journal(freezing_disk / "u1" / "journal.sqlite", lambda: 1, 0, 10**9)
@@ -327,7 +329,7 @@ def test_what_waits_at_the_end_for_a_disk_that_comes_back_is_kept(freezing_disk:
     assert last.kind is EventKind.STOPPED
 
 
-def assert_told_and_made_good(running: Running, mend: Callable[[], object]) -> None:
+def assert_reported_and_made_good(running: Running, mend: Callable[[], object]) -> None:
     until(running.station.faults)
     before = running.station.count(Position)
     until(lambda: running.station.count(Position) > before + 20)

@@ -21,7 +21,7 @@ from tests.rig.gps_receiver import (
     DEVICE,
     GpsdServer,
     Hasty,
-    Told,
+    Reported,
     burst,
     gga,
     gpsd_report,
@@ -31,7 +31,7 @@ from tests.rig.gps_receiver import (
 from tests.rig.waiting import until
 from tests.rig.ximu3_device import PtyDevice, TcpDevice
 
-HERE = Told()
+HERE = Reported()
 Device = GpsdServer | TcpDevice | PtyDevice
 OneDevice = TypeVar("OneDevice", GpsdServer, TcpDevice, PtyDevice)
 MANY = [replace(HERE, of_day_s=HERE.of_day_s + k) for k in range(40)]
@@ -57,7 +57,7 @@ class Heard:
         self._faults += self.reader.take_faults()
         return self._faults
 
-    def hears(self, words: str) -> None:
+    def receives(self, words: str) -> None:
         until(lambda: any(words in fault for fault in self.faults), words)
 
     def has(self, count: int) -> None:
@@ -81,59 +81,61 @@ class Ears:
 
 
 @pytest.fixture
-def hear() -> Iterator[Ears]:
+def receive() -> Iterator[Ears]:
     ears = Ears()
     yield ears
-    for heard in ears.listening:
-        heard.reader.close()
-        assert not heard.reader.is_alive
+    for received in ears.listening:
+        received.reader.close()
+        assert not received.reader.is_alive
     for device in ears.pretended:
         device.close()
 
 
-def test_half_lines_and_noise_cost_what_they_hit(hear: Ears) -> None:
+def test_half_lines_and_noise_cost_what_they_hit(receive: Ears) -> None:
     """Eleven bursts: half of the first one, one of which a byte is wrong, noise between."""
     first, *others = map(burst, MANY[:11])
     others[4] = others[4].replace(b"5742", b"5743", 1)
-    said = b"".join([first[150:], *others[:7], b"\xff\x00\n\x81\n", *others[7:]])
-    device = hear.pretend(TcpDevice([said], hangs=True))
-    heard = hear(f"nmea:{device.source}")
-    heard.has(10)
-    assert {fix.fix_type for fix in heard.fixes} == {3}
-    assert sum(math.isnan(fix.speed_mps) for fix in heard.fixes) == 1, "one has lost its RMC"
-    assert all(fix.lat_deg == pytest.approx(57.7) for fix in heard.fixes)
-    assert heard.reader.garbled == 4
-    assert heard.faults == []
+    stated = b"".join([first[150:], *others[:7], b"\xff\x00\n\x81\n", *others[7:]])
+    device = receive.pretend(TcpDevice([stated], hangs=True))
+    received = receive(f"nmea:{device.source}")
+    received.has(10)
+    assert {fix.fix_type for fix in received.fixes} == {3}
+    assert sum(math.isnan(fix.speed_mps) for fix in received.fixes) == 1, "one has lost its RMC"
+    assert all(fix.lat_deg == pytest.approx(57.7) for fix in received.fixes)
+    assert received.reader.garbled == 4
+    assert received.faults == []
 
 
-def test_a_line_that_loses_much_is_told(hear: Ears) -> None:
-    def said() -> Iterator[bytes]:
-        for told in MANY:
+def test_a_line_that_loses_much_is_reported(receive: Ears) -> None:
+    def stated() -> Iterator[bytes]:
+        for reported in MANY:
             time.sleep(0.05)  # a second, at the hasty clock's pace
-            yield burst(told) + b"$GNRMC,0927\n" * 2
+            yield burst(reported) + b"$GNRMC,0927\n" * 2
 
-    device = hear.pretend(TcpDevice(said(), hangs=True))
-    hear(f"nmea:{device.source}", hasty=True).hears("could not be read, such as b'$GNRMC,0927'")
+    device = receive.pretend(TcpDevice(stated(), hangs=True))
+    receive(f"nmea:{device.source}", hasty=True).receives(
+        "could not be read, such as b'$GNRMC,0927'"
+    )
 
 
-def test_a_receiver_that_is_not_there_yet_is_waited_for(hear: Ears) -> None:
+def test_a_receiver_that_is_not_there_yet_is_waited_for(receive: Ears) -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    heard = hear(f"gpsd://127.0.0.1:{port}")
-    heard.hears("no fixes: the connection is refused")
-    server = hear.pretend(GpsdServer([gpsd_report(HERE)], port=port, hangs=True))
-    heard.has(1)
+    received = receive(f"gpsd://127.0.0.1:{port}")
+    received.receives("no fixes: the connection is refused")
+    server = receive.pretend(GpsdServer([gpsd_report(HERE)], port=port, hangs=True))
+    received.has(1)
     assert server.asked[0].startswith(b"?WATCH=")
-    assert len([fault for fault in heard.faults if "refused" in fault]) == 1
+    assert len([fault for fault in received.faults if "refused" in fault]) == 1
 
 
-def test_gpsd_that_is_restarted_is_told_and_taken_up_again(hear: Ears) -> None:
+def test_gpsd_that_is_restarted_is_reported_and_taken_up_again(receive: Ears) -> None:
     sessions = [gpsd_report(MANY[0])], [gpsd_report(MANY[5])]
-    server = hear.pretend(GpsdServer(*sessions))
-    heard = hear(f"gpsd:{server.source}")
-    heard.has(2)
-    heard.hears("it has ended the connection")
-    steps_s = np.diff([fix.t_ns for fix in heard.fixes]) * 1e-9
+    server = receive.pretend(GpsdServer(*sessions))
+    received = receive(f"gpsd:{server.source}")
+    received.has(2)
+    received.receives("it has ended the connection")
+    steps_s = np.diff([fix.t_ns for fix in received.fixes]) * 1e-9
     assert 0.0 < steps_s[0] < 10.0
 
 
@@ -143,7 +145,7 @@ STUCK = [gga(HERE)] * 20
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("stated", "reported"),
     [
         ([], "the line is open and nothing comes"),
         ([NOISE], "what comes is no receiver's"),
@@ -154,18 +156,18 @@ STUCK = [gga(HERE)] * 20
     ],
     ids=["nothing", "noise", "binary", "others", "stuck", "silent"],
 )
-def test_a_line_without_fixes_is_told_and_opened_again(
-    hear: Ears, said: Iterable[bytes], told: str
+def test_a_line_without_fixes_is_reported_and_opened_again(
+    receive: Ears, stated: Iterable[bytes], reported: str
 ) -> None:
     again = replace(HERE, of_day_s=HERE.of_day_s + 60.0)
-    device = hear.pretend(TcpDevice(said, [burst(again)], hangs=True))
-    heard = hear(f"nmea:{device.source}", hasty=True)
-    heard.hears(told)
-    until(lambda: any(math.isfinite(fix.speed_mps) for fix in heard.fixes), "a fix")
+    device = receive.pretend(TcpDevice(stated, [burst(again)], hangs=True))
+    received = receive(f"nmea:{device.source}", hasty=True)
+    received.receives(reported)
+    until(lambda: any(math.isfinite(fix.speed_mps) for fix in received.fixes), "a fix")
 
 
 @pytest.mark.parametrize(
-    ("devices", "said", "told"),
+    ("devices", "stated", "reported"),
     [
         ((), [], "gpsd has no receiver; is it plugged in"),
         ((DEVICE,), [], "gpsd receives nothing from its receiver"),
@@ -174,52 +176,54 @@ def test_a_line_without_fixes_is_told_and_opened_again(
     ],
     ids=["no device", "silent device", "unplugged", "odd words"],
 )
-def test_gpsd_without_a_receiver_is_told(
-    hear: Ears, devices: tuple[str, ...], said: Iterable[bytes], told: str
+def test_gpsd_without_a_receiver_is_reported(
+    receive: Ears, devices: tuple[str, ...], stated: Iterable[bytes], reported: str
 ) -> None:
-    server = hear.pretend(GpsdServer(said, [gpsd_report(HERE)], devices=devices, hangs=True))
-    heard = hear(f"gpsd:{server.source}", hasty=True)
-    heard.hears(told)
-    heard.has(1)
+    server = receive.pretend(GpsdServer(stated, [gpsd_report(HERE)], devices=devices, hangs=True))
+    received = receive(f"gpsd:{server.source}", hasty=True)
+    received.receives(reported)
+    received.has(1)
 
 
-def test_what_is_no_gpsd_is_told(hear: Ears) -> None:
-    server = hear.pretend(TcpDevice([b"SSH-2.0-OpenSSH_9.6\r\n"]))
-    hear(f"gpsd://127.0.0.1:{server.port}").hears("is this the port of gpsd")
+def test_what_is_no_gpsd_is_reported(receive: Ears) -> None:
+    server = receive.pretend(TcpDevice([b"SSH-2.0-OpenSSH_9.6\r\n"]))
+    receive(f"gpsd://127.0.0.1:{server.port}").receives("is this the port of gpsd")
     with socket.create_server(("127.0.0.1", 0)) as silent:
         port = silent.getsockname()[1]
-        hear(f"gpsd://127.0.0.1:{port}", hasty=True).hears("the line is open and nothing comes")
+        receive(f"gpsd://127.0.0.1:{port}", hasty=True).receives(
+            "the line is open and nothing comes"
+        )
 
 
-def test_another_speed_than_said_is_garbage_on_a_serial_line(hear: Ears) -> None:
-    device = hear.pretend(PtyDevice([NOISE]))
-    hear(f"nmea:{device.source}?baud=38400", hasty=True).hears("?baud= right")
+def test_another_speed_than_stated_is_garbage_on_a_serial_line(receive: Ears) -> None:
+    device = receive.pretend(PtyDevice([NOISE]))
+    receive(f"nmea:{device.source}?baud=38400", hasty=True).receives("?baud= right")
 
 
-def test_a_cable_that_is_pulled_is_told(hear: Ears) -> None:
-    device = hear.pretend(PtyDevice(map(burst, MANY[:3])))
-    heard = hear(f"nmea:{device.source}")
-    heard.has(3)
+def test_a_cable_that_is_pulled_is_reported(receive: Ears) -> None:
+    device = receive.pretend(PtyDevice(map(burst, MANY[:3])))
+    received = receive(f"nmea:{device.source}")
+    received.has(3)
     device.close()
-    heard.hears("no fixes: it went away; is the cable in")
+    received.receives("no fixes: it went away; is the cable in")
 
 
-def test_a_receiver_is_plugged_in_again(hear: Ears, tmp_path: Path) -> None:
+def test_a_receiver_is_plugged_in_again(receive: Ears, tmp_path: Path) -> None:
     """As udev names it: the same name for another terminal."""
     name = tmp_path / "gps"
-    heard = None
-    for told in (MANY[0], MANY[9]):
-        device = PtyDevice([burst(told)])
+    received = None
+    for reported in (MANY[0], MANY[9]):
+        device = PtyDevice([burst(reported)])
         name.unlink(missing_ok=True)
         name.symlink_to(device.source)
-        heard = heard or hear(f"nmea:{name}")
-        count = len(heard.fixes)
-        heard.has(count + 1)
+        received = received or receive(f"nmea:{name}")
+        count = len(received.fixes)
+        received.has(count + 1)
         device.close()
 
 
-def test_what_is_no_serial_port_is_told(hear: Ears, tmp_path: Path) -> None:
+def test_what_is_no_serial_port_is_reported(receive: Ears, tmp_path: Path) -> None:
     plain = tmp_path / "file"
     plain.write_bytes(burst(HERE))
-    hear(f"nmea:{plain}").hears("it is no serial port")
-    hear(f"nmea:{tmp_path / 'ttyACM7'}").hears("there is no such device")
+    receive(f"nmea:{plain}").receives("it is no serial port")
+    receive(f"nmea:{tmp_path / 'ttyACM7'}").receives("there is no such device")

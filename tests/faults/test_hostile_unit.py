@@ -81,7 +81,7 @@ class Scene:
         }
         for name in [*names, EVIL, *self.others]:
             self.station.api.post("/units", {"unit_id": name})
-        wait_until("the station listens", lambda: all(unit.is_heard for unit in self.units))
+        wait_until("the station listens", lambda: all(unit.is_received for unit in self.units))
         wait_until("to the other one too", lambda: self.evil.has_subscriber(POSITION.key(EVIL)))
         for name, bus in self.others.items():
             wait_until(f"and to {name}", lambda: bus.has_subscriber(POSITION.key(name)))  # noqa: B023
@@ -103,7 +103,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scene]:
 
 
 @pytest.mark.parametrize(
-    ("say", "told"),
+    ("say", "reported"),
     [
         (say_position, "evil sends more than any unit does"),
         (say_another_boot, "A unit's program starts more often"),
@@ -111,7 +111,9 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scene]:
         (say_16_mb, ""),
     ],
 )
-def test_others_are_heard_and_the_station_does_not_grow(scene: Scene, say: Say, told: str) -> None:
+def test_others_are_received_and_the_station_does_not_grow(
+    scene: Scene, say: Say, reported: str
+) -> None:
     before_mb = scene.station.memory_mb()
     sent = sum(unit.sent.messages for unit in scene.units)
     over = Event()
@@ -122,7 +124,7 @@ def test_others_are_heard_and_the_station_does_not_grow(scene: Scene, say: Say, 
             for unit in scene.units:
                 unit.speak()
             time.sleep(1.0 / 7.0)
-        wait_until("a person is told", lambda: told in scene.problems())
+        wait_until("a person is told", lambda: reported in scene.problems())
         assert scene.station.memory_mb() < before_mb + GROWN_MB
     finally:
         over.set()
@@ -139,7 +141,7 @@ def maydays(scene: Scene) -> int:
     return sum(f"/{EVIL}/" in key and "alert/" in key for _, key, _ in read_log(scene.station.log))
 
 
-def test_a_journal_that_never_ends_fills_no_disk_and_is_told(scene: Scene) -> None:
+def test_a_journal_that_never_ends_fills_no_disk_and_is_reported(scene: Scene) -> None:
     boot_id = secrets.randbits(63)
     serving = scene.evil.serve(f"muster/v1/{EVIL}/journal/**", mayday_journal(EVIL, boot_id))
     token = scene.evil.declare_alive(alive_key(EVIL))  # who has a link is asked
@@ -175,7 +177,7 @@ def log_mb(scene: Scene) -> float:
     ],
     ids=["urgent", "ordinary"],
 )
-def test_large_messages_of_a_journal_fill_no_disk_and_are_told(
+def test_large_messages_of_a_journal_fill_no_disk_and_are_reported(
     scene: Scene, name: str, journal_of: Callable[[str, int], QueryHandler], most_mb: float
 ) -> None:
     before_mb, before_ns, began_s = log_mb(scene), time.time_ns(), time.monotonic()
@@ -213,7 +215,7 @@ def delays_s(scene: Scene, since_ns: int) -> list[float]:
     ]
 
 
-def test_others_are_heard_at_once_beside_a_token_that_comes_and_goes(scene: Scene) -> None:
+def test_others_are_received_at_once_beside_a_token_that_comes_and_goes(scene: Scene) -> None:
     """Last: afterwards the unit is shut out."""
     before_mb, began_ns = scene.station.memory_mb(), time.time_ns()
     over = Event()

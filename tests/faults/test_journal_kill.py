@@ -43,11 +43,11 @@ def kill_a_writer(path: Path, after_s: float) -> tuple[int, int]:
     boot_id = int(writer.stdout.readline().split()[1])
     time.sleep(after_s)
     os.kill(writer.pid, signal.SIGKILL)
-    told = [line.split() for line in writer.stdout.read().splitlines()]
+    reported = [line.split() for line in writer.stdout.read().splitlines()]
     writer.stdout.close()
     writer.wait()
     # The last line may be cut: of it, only a whole number that was told before counts.
-    whole = [int(words[1]) for words in told[:-1] if len(words) == 2]
+    whole = [int(words[1]) for words in reported[:-1] if len(words) == 2]
     return boot_id, max(whole, default=0)
 
 

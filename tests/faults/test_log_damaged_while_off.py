@@ -34,7 +34,7 @@ class Site:
 
     def __init__(self, folder: Path, journal: Journal, held: ExitStack) -> None:
         self.data, self._port = folder / "station", free_port()
-        self._said, self._held = folder / "said.txt", held
+        self._stated, self._held = folder / "said.txt", held
         self._config = folder / "station.toml"
         self._config.write_text(
             f'data = "{self.data}"\n[log]\nsegment_s = 1.0\n'
@@ -52,7 +52,7 @@ class Site:
 
     def start(self) -> None:
         self.station = self._held.enter_context(
-            Command(self._said, "serve", "--config", str(self._config))
+            Command(self._stated, "serve", "--config", str(self._config))
         )
         self.browser = self._held.enter_context(Browser(self.station.wait_ready(), self.data))
 

@@ -104,7 +104,7 @@ def test_closing_on_a_full_disk_says_what_is_left_behind(tmp_path: Path) -> None
     assert writer.problem
 
 
-def test_what_a_recorder_lost_is_said_until_it_starts_anew(tmp_path: Path) -> None:
+def test_what_a_recorder_lost_is_stated_until_it_starts_anew(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path, SystemClock(), SegmentPolicy(waiting_bytes_max=2000))
     with files_of_at_most(0):
         for number in range(100):
@@ -145,7 +145,7 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
 ) -> None:
     unit, boot, policy = "FF-01", 0xB007, SegmentPolicy(waiting_bytes_max=1_000_000)
 
-    def said(seq: int) -> Position:
+    def stated(seq: int) -> Position:
         return make_position(header=Header(unit, boot, seq, seq * NS_PER_S), north_m=float(seq))
 
     def reported() -> list[Run]:
@@ -153,7 +153,7 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
 
     with LiveStation(tmp_path, policy) as station:
         station.act(RegisterUnit(unit, "one"))
-        station.publish(said(1))
+        station.publish(stated(1))
         until(lambda: reported() == [Run(1, 1)])
         with files_of_at_most(0):
             for _ in range(6):  # what nobody can read is logged, too
@@ -161,7 +161,7 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
                 time.sleep(0.1)
             until(lambda: station.recorder.problem)
             for seq in range(2, 100):
-                station.publish(said(seq))
+                station.publish(stated(seq))
             until(lambda: station.recorder.lost >= 98)
             # nobody goes blind because a disk is full
             until(lambda: north_of_one_m(station) == pytest.approx(99.0))
@@ -172,7 +172,7 @@ def test_what_the_log_refused_is_shown_and_missing_and_comes_from_the_journal_wh
         assert missing == [Run(2, 99)]
         for run in missing:
             for seq in range(run.first, run.last + 1):
-                station.feed.deliver(backfilled_key(unit, POSITION.suffix), encode(said(seq)))
+                station.feed.deliver(backfilled_key(unit, POSITION.suffix), encode(stated(seq)))
         until(lambda: list(seen.runs()) == [Run(1, 99)])
     with LiveStation(tmp_path) as again:  # what is counted as there is on the disk
         seen = again.pipeline.state.units[unit].boots[0].seen
@@ -187,7 +187,7 @@ def test_a_station_that_starts_on_a_full_disk_tells_no_unit_that_anything_is_saf
 ) -> None:
     unit, boot = "FF-01", 0xB007
 
-    def said(seq: int) -> Position:
+    def stated(seq: int) -> Position:
         return make_position(header=Header(unit, boot, seq, seq * NS_PER_S), north_m=float(seq))
 
     with LiveStation(tmp_path) as station:
@@ -197,7 +197,7 @@ def test_a_station_that_starts_on_a_full_disk_tells_no_unit_that_anything_is_saf
     with files_of_at_most(0):
         station = LiveStation(tmp_path)
         with station:
-            station.publish(said(1))
+            station.publish(stated(1))
             until(lambda: north_of_one_m(station) == pytest.approx(1.0))
             until(lambda: station.recorder.problem)
             assert unit not in station.reported
@@ -278,22 +278,22 @@ def test_a_state_that_cannot_be_saved_leaves_the_room_to_the_log(tmp_path: Path)
     assert latest.t_ns == 100
 
 
-def test_a_disk_that_was_nearly_full_before_is_told_to_be_full_in_the_end(
+def test_a_disk_that_was_nearly_full_before_is_ordered_to_be_full_in_the_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Who was told that there is little room, and can wait with that, must hear of the rest."""
     monkeypatch.setattr("base_station.storage.recorder._LITTLE_FREE_BYTES", 1 << 62)
     with LiveStation(tmp_path, SegmentPolicy(waiting_bytes_max=1_000_000)) as station:
 
-        def told(words: str) -> bool:
+        def stated(words: str) -> bool:
             return words in "; ".join(list(station.pipeline.state.problems.values()))
 
-        until(lambda: told("MB are free for the log"))
+        until(lambda: stated("MB are free for the log"))
         with files_of_at_most(0):
             station.bus.publish(POSITION.key("FF-02"), os.urandom(200_000), Qos.LIVE)
-            until(lambda: told("cannot be written"))
+            until(lambda: stated("cannot be written"))
             for _ in range(6):
                 station.bus.publish(POSITION.key("FF-02"), os.urandom(200_000), Qos.LIVE)
-            until(lambda: told("records are missing in the log"))
+            until(lambda: stated("records are missing in the log"))
         alarms = [key for key, one in station.pipeline.state.alarms.items() if one.is_open]
         assert alarms == ["station|disk", "station|log"]

@@ -148,7 +148,7 @@ def any_boot(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.timeout(1800)  # a million, beside all other tests
-def test_the_station_keeps_counts_and_shows_whatever_is_said(tmp_path: Path) -> None:
+def test_the_station_keeps_counts_and_shows_whatever_is_stated(tmp_path: Path) -> None:
     log, screen, pipeline = Written(keeps=False), Screen(), make_pipeline()
     feed = say(COUNT, log, screen, pipeline, tmp_path)
     state = pipeline.state
@@ -160,7 +160,7 @@ def test_the_station_keeps_counts_and_shows_whatever_is_said(tmp_path: Path) -> 
     assert health.undecodable == state.counts.undecodable == log.unreadable > 0
 
 
-def test_what_was_said_is_decided_the_same_in_a_replay(tmp_path: Path) -> None:
+def test_what_was_stated_is_decided_the_same_in_a_replay(tmp_path: Path) -> None:
     log = Written(keeps=True)
     say(FEWER, log, Screen(), make_pipeline(), tmp_path)
     assert len(log.records) > FEWER / 2

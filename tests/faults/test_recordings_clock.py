@@ -74,7 +74,7 @@ def found(server: RecordingServer, from_s: float) -> list[str]:
 
 @pytest.mark.parametrize("began_ns", [60 * NS_PER_S, 4_102_444_800 * NS_PER_S])
 @pytest.mark.parametrize("set_at_s", [400.0, -1.0], ids=["set right", "never set"])
-def test_a_window_is_found_whatever_the_clock_said_when(
+def test_a_window_is_found_whatever_the_clock_stated_when(
     tmp_path: Path, began_ns: int, set_at_s: float
 ) -> None:
     folder, machine = UnitDataFolder(tmp_path), Machine(utc_ns=began_ns)

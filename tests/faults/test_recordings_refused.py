@@ -18,7 +18,7 @@ from tests.rig.recorded_unit import SECONDS, RecordedUnit, U, begin, finish
 
 
 @pytest.mark.parametrize(("from_s", "to_s"), [(-900.0, -800.0), (SECONDS + 900, SECONDS + 1900)])
-def test_a_window_without_a_recording_is_said(
+def test_a_window_without_a_recording_is_stated(
     unit: RecordedUnit, tmp_path: Path, from_s: float, to_s: float
 ) -> None:
     fetch = finish(begin(unit, tmp_path, unit.window(from_s, to_s)))

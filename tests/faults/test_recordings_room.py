@@ -15,7 +15,7 @@ from tests.rig.changing_recordings import TellingUnit
 from tests.rig.recorded_unit import RecordedUnit, U, begin, finish
 
 
-def test_a_disk_that_has_no_room_is_said_before_anything_is_pulled(
+def test_a_disk_that_has_no_room_is_stated_before_anything_is_pulled(
     unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fetch = begin(unit, tmp_path)
@@ -49,7 +49,7 @@ def test_a_disk_on_which_the_log_grows_meanwhile_is_left_to_it(
         assert (tmp_path / U / unit.boot.name / one.name).read_bytes() == one.read_bytes()
 
 
-def test_a_disk_that_gets_full_on_the_way_is_said_and_what_came_is_kept(
+def test_a_disk_that_gets_full_on_the_way_is_stated_and_what_came_is_kept(
     unit: RecordedUnit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fetch = begin(unit, tmp_path)

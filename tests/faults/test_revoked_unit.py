@@ -22,7 +22,7 @@ from shared.mcap_log import read_log
 from tests.rig.loaded_program import launch_loaded
 from tests.rig.station_command import Agent
 from tests.rig.station_process import free_port, station_process
-from tests.rig.unit_journal import MessageOfUnit, said_by
+from tests.rig.unit_journal import MessageOfUnit, stated_by
 from tests.rig.waiting import until
 
 LOST, OTHER = "FF-01", "FF-02"
@@ -58,8 +58,8 @@ def test_nothing_more_of_it_comes_in_and_the_other_loses_nothing(
     (listen,) = pki.registry().connect
     log = tmp_path / "station" / "log"
 
-    def said(unit_id: str) -> set[MessageOfUnit]:
-        return said_by(tmp_path / "units" / unit_id / "journal.sqlite")
+    def reported(unit_id: str) -> set[MessageOfUnit]:
+        return stated_by(tmp_path / "units" / unit_id / "journal.sqlite")
 
     chief = pki.enroll("chief", Holder.OPERATOR)
     shown_ns: list[int] = []
@@ -73,16 +73,16 @@ def test_nothing_more_of_it_comes_in_and_the_other_loses_nothing(
         pki.revoke(LOST)
         pki.revoke("chief", Holder.OPERATOR)
         revoked_ns = time.time_ns()
-        before = len(said(LOST))
-        until(lambda: len(said(LOST)) > before + 50, "the lost one speaks on")
+        before = len(reported(LOST))
+        until(lambda: len(reported(LOST)) > before + 50, "the lost one speaks on")
         assert agents[OTHER].stop() == 0
-        until(lambda: said(OTHER) <= logged(log)[OTHER].keys(), "the log has all of the other")
-        assert len(said(LOST)) > before + 50
+        until(lambda: reported(OTHER) <= logged(log)[OTHER].keys(), "the log has all of the other")
+        assert len(reported(LOST)) > before + 50
     assert set(logged(log)[OTHER].values()) == {1}
-    heard = logged(log)[LOST]
-    assert set(heard.values()) == {1}
-    assert said(LOST) - heard.keys()
-    assert last_said_ns(log, LOST) < revoked_ns + REOPENED_S * NS_PER_S
+    received = logged(log)[LOST]
+    assert set(received.values()) == {1}
+    assert reported(LOST) - received.keys()
+    assert last_stated_ns(log, LOST) < revoked_ns + REOPENED_S * NS_PER_S
     assert shown_ns[-1] < revoked_ns + REOPENED_S * NS_PER_S
 
 
@@ -97,11 +97,11 @@ def logged(log: Path) -> dict[str, Counter[MessageOfUnit]]:
     return messages
 
 
-def last_said_ns(log: Path, wanted: str) -> int:
+def last_stated_ns(log: Path, wanted: str) -> int:
     """By the unit's clock, which is the station's here."""
-    said = ((parse_key(key), payload) for _, key, payload in read_log(log))
+    reported = ((parse_key(key), payload) for _, key, payload in read_log(log))
     return max(
         decode(channel, payload).header.t_utc_ns
-        for (unit_id, channel), payload in said
+        for (unit_id, channel), payload in reported
         if unit_id == wanted and channel.direction is Direction.UP
     )

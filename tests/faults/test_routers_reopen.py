@@ -37,15 +37,15 @@ class End:
     pki: PkiFolder
     process: RouterProcess
     bus: ZenohBus
-    heard: set[str] = field(default_factory=set)
+    received: set[str] = field(default_factory=set)
 
     def note(self, key: str, payload: bytes) -> None:
-        self.heard.add(payload.decode())
+        self.received.add(payload.decode())
 
-    def hears(self, other: End, words: str) -> bool:
+    def receives(self, other: End, words: str) -> bool:
         other.bus.publish(f"muster/v1/{other.name}/up/status", words.encode(), Qos.LIVE)
         time.sleep(0.02)
-        return words in self.heard
+        return words in self.received
 
     def open_again(self, chance: random.Random, authority: PkiFolder) -> None:
         """Some time within the next second or two; killed, or because somebody was enrolled."""
@@ -57,9 +57,9 @@ class End:
         self.pki.take_registry(authority.registry())
 
 
-def wait_heard(one: End, other: End, words: str) -> None:
+def wait_received(one: End, other: End, words: str) -> None:
     what = f"{one.name} hears {other.name} in {words}"
-    until(lambda: one.hears(other, words), what)
+    until(lambda: one.receives(other, words), what)
 
 
 @pytest.fixture
@@ -93,5 +93,5 @@ def test_two_routers_that_open_again_at_any_instant_link_again(ends: tuple[End, 
             end.open_again(chance, first.pki)
         second.pki.take_registry(first.pki.registry())
         time.sleep(SPREAD_S)
-        wait_heard(first, second, f"round {number}")
-        wait_heard(second, first, f"round {number}")
+        wait_received(first, second, f"round {number}")
+        wait_received(second, first, f"round {number}")

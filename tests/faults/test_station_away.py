@@ -35,18 +35,18 @@ def journal(tmp_path: Path, make_position: MakePosition) -> Iterator[Journal]:
     with closing(Journal(tmp_path / "journal.sqlite", lambda: BOOT, 0, 10**9)) as journal:
         seq = 0
         for second in range(AWAY_S):
-            said: list[JournalRow] = []
+            stated: list[JournalRow] = []
             for number in range(POSITIONS_HZ + 1):
                 seq += 1
                 since_ns = second * NS_PER_S + number * NS_PER_S // POSITIONS_HZ
                 header = Header(U, BOOT, seq, since_ns, began_ns + since_ns, 0.01)
                 if number < POSITIONS_HZ:
                     position = encode(make_position(header=header))
-                    said.append(JournalRow(seq, POSITION, since_ns, position))
+                    stated.append(JournalRow(seq, POSITION, since_ns, position))
                 else:
                     beat = encode(Heartbeat(header, 1, seq))
-                    said.append(JournalRow(seq, HEARTBEAT, since_ns, beat))
-            journal.append(said)
+                    stated.append(JournalRow(seq, HEARTBEAT, since_ns, beat))
+            journal.append(stated)
         yield journal
 
 

@@ -54,7 +54,7 @@ class Ground:
     def say(self) -> None:
         self.unit.say(Temperature(self.unit.stamper.header(), 21.0))
 
-    def problem_said(self, words: str) -> bool:
+    def problem_stated(self, words: str) -> bool:
         self.say()
         problems: list[str] = self.browser.call("GET", "/health")["problems"]
         return any(words in problem for problem in problems)
@@ -77,20 +77,20 @@ def test_a_clock_that_is_set_in_an_incident_makes_nobody_missing_and_ends_no_log
     ground: Ground,
 ) -> None:
     ground.dress()
-    until(lambda: ground.problem_said("plain TCP"), "the unit is heard")
+    until(lambda: ground.problem_stated("plain TCP"), "the unit is heard")
     ground.clock.set_ahead(DAY_S)
-    until(lambda: ground.problem_said("24 hours ahead"), "a clock set forward is said")
+    until(lambda: ground.problem_stated("24 hours ahead"), "a clock set forward is said")
     assert ground.alarms() == []
     ground.clock.set_ahead(-DAY_S)
-    until(lambda: ground.problem_said("24 hours behind"), "a clock set back is said")
+    until(lambda: ground.problem_stated("24 hours behind"), "a clock set back is said")
     ground.station.kill()
     ground.clock.set_ahead(-time.time())  # no battery: it starts in 1970
     ground.start()
-    until(lambda: ground.problem_said("days behind"), "a clock that is not set is said")
+    until(lambda: ground.problem_stated("days behind"), "a clock that is not set is said")
     assert not [rule for rule, _ in ground.alarms() if rule != "link-lost"]
     ground.clock.set_ahead(0.0)
     assert ground.browser.close_incident(ground.incident_id) == 204  # now it may leap
-    until(lambda: not ground.problem_said("This machine"), "a clock set right is no problem")
+    until(lambda: not ground.problem_stated("This machine"), "a clock set right is no problem")
     ground.station.stop()
     times_ns = ground.times_ns()
     assert all(one <= following for one, following in pairwise(times_ns))

@@ -88,10 +88,10 @@ def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
     assert station.stop() == 0
     there = logged(data / "log")
     assert len(there) == len(set(there))
-    assert walk.said <= set(there)
+    assert walk.stated <= set(there)
 
 
-def test_a_station_whose_disk_hangs_ends_when_it_is_told_to_and_says_what_is_not_kept(
+def test_a_station_whose_disk_hangs_ends_when_it_is_ordered_to_and_says_what_is_not_kept(
     disk: Path, served: Served, tmp_path: Path
 ) -> None:
     """Its service would kill it in the end, and nobody would hear what the log lacks."""
@@ -103,7 +103,7 @@ def test_a_station_whose_disk_hangs_ends_when_it_is_told_to_and_says_what_is_not
         with frozen(disk):
             until(lambda: any(HANGS in one for one in walk.problems), "it is told")
             os.kill(station.pid, signal.SIGTERM)
-            until(lambda: NOT_KEPT in station.said(), "what is not kept", ENDING_S)
+            until(lambda: NOT_KEPT in station.output(), "what is not kept", ENDING_S)
             until(lambda: not router.is_running(), "the end of the bus", BUSY_S)
             with pytest.raises(httpx.ConnectError):
                 httpx.get(browser.address, timeout=PATIENCE_S)

@@ -100,7 +100,7 @@ def wait_for_ticks(station: LiveStation) -> None:
 
 
 @pytest.mark.parametrize("refuses", [False, True])
-def test_no_journal_hears_of_what_may_not_be_on_the_disk(
+def test_no_journal_receives_of_what_may_not_be_on_the_disk(
     tmp_path: Path, make_position: MakePosition, monkeypatch: pytest.MonkeyPatch, refuses: bool
 ) -> None:
     """Its unit would forget it; what there is room for in memory only is asked for alerts."""
@@ -117,7 +117,7 @@ def test_no_journal_hears_of_what_may_not_be_on_the_disk(
         until(lambda: U in station.reported)
 
 
-def test_somebody_is_forgotten_when_what_is_being_saved_is_over(
+def test_person_is_forgotten_when_what_is_being_saved_is_over(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It has them in it, and would be read at the next start."""

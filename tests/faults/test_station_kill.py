@@ -92,7 +92,7 @@ def test_what_was_written_and_what_was_promised_outlives_a_kill(tmp_path: Path) 
     assert len(list((data / "log").glob("*.torn"))) == KILLS
 
 
-def test_a_folder_in_use_is_said_in_a_sentence(tmp_path: Path) -> None:
+def test_a_folder_in_use_is_stated_in_a_sentence(tmp_path: Path) -> None:
     arguments = ("serve", "--data", str(tmp_path / "data"), "--insecure")
     first = (*arguments, "--listen", f"tcp/127.0.0.1:{free_port()}", "--http", "127.0.0.1:0")
     with Command(tmp_path / "first.txt", *first) as station:
@@ -100,5 +100,5 @@ def test_a_folder_in_use_is_said_in_a_sentence(tmp_path: Path) -> None:
         second = (*arguments, "--listen", f"tcp/127.0.0.1:{free_port()}", "--http", "127.0.0.1:0")
         with Command(tmp_path / "second.txt", *second) as refused:
             assert refused.wait() == 2
-            assert f"(process {station.pid})" in refused.said()
-            assert "Traceback" not in refused.said()
+            assert f"(process {station.pid})" in refused.output()
+            assert "Traceback" not in refused.output()

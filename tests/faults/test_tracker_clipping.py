@@ -30,7 +30,7 @@ def test_a_clipped_accelerometer_is_flagged():
 
 
 @pytest.mark.parametrize("rate_hz", [67.0, 100.0, 200.0])
-def test_clipping_that_nobody_told_shows_by_its_plateaus(rate_hz):
+def test_clipping_that_nobody_reported_shows_by_its_plateaus(rate_hz):
     t_ns, accel, gyro = copy()
     every = round(200.0 / rate_hz)
     t_ns, accel, gyro = t_ns[::every], accel[::every], gyro[::every]
@@ -99,7 +99,7 @@ def in_counts(readings, full_scale):
 
 @pytest.mark.parametrize("rate_hz", [67.0, 100.0, 200.0])
 @pytest.mark.parametrize("sensor", ["clips", "filters", "counts"])
-def test_a_full_scale_of_forces_that_nobody_told_shows_by_its_plateaus(rate_hz, sensor):
+def test_a_full_scale_of_forces_that_nobody_reported_shows_by_its_plateaus(rate_hz, sensor):
     t_ns, accel, gyro = copy()
     every = round(200.0 / rate_hz)
     t_ns, accel, gyro = t_ns[::every], accel[::every], gyro[::every]
@@ -126,13 +126,13 @@ def test_forces_that_a_slow_sensor_holds_are_no_full_scale(every):
     assert not flagged(run(t_ns, held, gyro), Reason.ACCEL_SATURATED).any()
 
 
-def test_what_is_found_untold_is_bridged_and_doubted_as_if_told():
+def test_what_is_found_unreported_is_bridged_and_doubted_as_if_reported():
     t_ns, accel, gyro = copy()
     full_scale = 0.75 * np.abs(accel).max()
     clipped = np.clip(accel, -full_scale, full_scale)
-    told = SensorDescription("told", 200.0, accel_full_scale_mps2=full_scale)
+    reported = SensorDescription("told", 200.0, accel_full_scale_mps2=full_scale)
     more = SensorDescription("told too much", 200.0, accel_full_scale_mps2=10.0 * full_scale)
-    known = run(t_ns, clipped, gyro, told)
+    known = run(t_ns, clipped, gyro, reported)
     whole = run(t_ns, accel, gyro)
     assert known.position_cov_m2[-1, 0, 0] > 2.0 * whole.position_cov_m2[-1, 0, 0]
     for description in (WALK.description, more):

@@ -32,7 +32,7 @@ def test_what_hangs_mid_swing_is_noticed(accel_axes, gyro_axes):
     assert off_m < 2.5 * np.sqrt(np.trace(rows.position_cov_m2[-1, :2, :2]))
 
 
-def test_who_is_not_heard_of_is_not_known_to_stand():
+def test_who_is_not_received_of_is_not_known_to_stand():
     """The filter's own time stands still meanwhile."""
     t_ns, accel, gyro = copy()
     first = index(IN_SWING)

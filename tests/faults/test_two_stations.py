@@ -27,7 +27,7 @@ from tests.rig.settable_clock import MachineClock
 from tests.rig.two_stations import two_stations
 
 APART_S = 3.0
-TOLD_S = 3.0  # a beat that names a new unit comes within a fifth of that on a busy machine, too
+REPORTED_S = 3.0  # a beat that names a new unit comes within a fifth of that on a busy machine, too
 DAY_S, HOUR_S = 86_400.0, 3_600.0
 OLD_BOOT, BACKLOG = 0xABCD, 40_000
 
@@ -82,9 +82,9 @@ def count_old(station: Station) -> int:
 
 def complete(two: TwoStations) -> None:
     """Wait until both logs have everything that the units have said by now."""
-    said = two.said()
-    assert len(said) > 100
-    wait_until("nothing is missing", lambda: two.both_have(said))
+    stated = two.output()
+    assert len(stated) > 100
+    wait_until("nothing is missing", lambda: two.both_have(stated))
 
 
 def end_and_compare(two: TwoStations, ends_first: Station) -> None:
@@ -116,7 +116,7 @@ def test_the_other_station_takes_over_and_the_first_comes_back(
     assert "ahead" in str(two.second.get("/health")["problems"])
     two.start_unit("anna", two.first)
     two.start_unit("bert", two.second)
-    two.wait_heard(two.first)
+    two.wait_received(two.first)
     two.first.post("/incidents", {"name": "Mill Lane"})
     evacuation = evacuate(two.first, "k1")
     wait_until("the second knows of it", lambda: two.second.get("/commands"))
@@ -151,7 +151,7 @@ def test_both_are_killed_at_any_instant_and_both_logs_are_whole(
     tmp_path: Path, closing: ExitStack
 ) -> None:
     report = kill_both("both", tmp_path, units=2, closing=closing, rounds=1)
-    assert report.said > 100
+    assert report.stated > 100
     assert report.lost == report.duplicates == (0, 0)
     assert report.same_logs
 
@@ -168,12 +168,12 @@ def apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TwoStation
         two = two_stations(tmp_path_factory.mktemp("two"), (first, second), closing)
         two.start()
         two.start_unit("anna", two.first)
-        two.wait_heard(two.first)
-        time.sleep(TOLD_S)  # a standby that knows of no unit does not wait for one
+        two.wait_received(two.first)
+        time.sleep(REPORTED_S)  # a standby that knows of no unit does not wait for one
         yield two, link
 
 
-def test_a_standby_that_hears_nobody_waits_for_a_person(
+def test_a_standby_that_receives_nobody_waits_for_a_person(
     apart: tuple[TwoStations, LossyLink],
 ) -> None:
     two, link = apart
@@ -192,7 +192,7 @@ def test_a_cut_cable_leaves_two_that_lead_and_heals_to_one(
 ) -> None:
     two, link = apart
     two.start_unit("bert", two.second)
-    two.wait_heard(two.first)
+    two.wait_received(two.first)
     link.set(DARK)
     wait_until("the second leads too", two.second.leads)
     tell_everyone(two.first, "said at the first")

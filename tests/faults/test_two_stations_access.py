@@ -28,7 +28,7 @@ REMOVED, DEMOTED, RENEWED, ENDED, KEPT = "removed", "demoted", "renewed", "ended
 USERS = (REMOVED, DEMOTED, RENEWED, ENDED, KEPT)
 COPIED_S = 3.0  # accounts are copied once a second
 UNHEARD_S = 3.0  # several messages of a unit
-TOLD_S = 3.0  # a beat that names a new unit
+REPORTED_S = 3.0  # a beat that names a new unit
 
 
 class People:
@@ -106,8 +106,8 @@ def call(at: Station, who: dict[str, str], method: str, path: str, body: Any = N
 
     def send() -> Any:
         with urllib.request.urlopen(request, timeout=PATIENCE_S) as answer:
-            said = answer.read()
-        return json.loads(said) if said else None
+            reported = answer.read()
+        return json.loads(reported) if reported else None
 
     return at.place.call(send)
 
@@ -130,22 +130,22 @@ def assert_shut_out(at: Station, people: People) -> None:
     assert role(at, log_in(at, RENEWED, ANOTHER)) == "commander"
 
 
-def heard(at: Station, unit_id: str) -> int:
+def received(at: Station, unit_id: str) -> int:
     return sum(unit == unit_id for unit, _, _ in at.logged().messages)
 
 
-def assert_unheard(at: Station, unit_id: str, other: str) -> None:
+def assert_unreceived(at: Station, unit_id: str, other: str) -> None:
     """While another one is heard on the same way."""
-    before = heard(at, other)
+    before = received(at, other)
 
     def of_the_one_while_the_other_speaks() -> int:
-        before_it, before_other = heard(at, unit_id), heard(at, other)
+        before_it, before_other = received(at, unit_id), received(at, other)
         time.sleep(UNHEARD_S)
-        assert heard(at, other) > before_other
-        return heard(at, unit_id) - before_it
+        assert received(at, other) > before_other
+        return received(at, unit_id) - before_it
 
     wait_until("nothing more of it is heard", lambda: of_the_one_while_the_other_speaks() == 0)
-    assert heard(at, other) > before
+    assert received(at, other) > before
 
 
 def test_whom_the_first_shut_out_before_it_died_alone_is_out_at_both_when_it_is_back(
@@ -155,7 +155,7 @@ def test_whom_the_first_shut_out_before_it_died_alone_is_out_at_both_when_it_is_
     two.start()
     for unit_id in ("lost", "bert"):
         two.start_unit(unit_id, two.second)
-    two.wait_heard(two.first)
+    two.wait_received(two.first)
     people = People(two.first)
     people.log_in(two.first)
     time.sleep(COPIED_S)
@@ -169,12 +169,12 @@ def test_whom_the_first_shut_out_before_it_died_alone_is_out_at_both_when_it_is_
     two.second.start()
     wait_until("the second leads", two.second.leads)
     assert people.let_in(two.second) == EVERYBODY, "nobody has told it"
-    wait_until("it is heard there", lambda: heard(two.second, "lost"))
+    wait_until("it is heard there", lambda: received(two.second, "lost"))
     two.first.start()
     wait_until("the first follows", two.first.follows)
     assert_shut_out(two.second, people)
     assert_shut_out(two.first, people)
-    assert_unheard(two.second, "lost", "bert")
+    assert_unreceived(two.second, "lost", "bert")
     for again in two.both:  # the other leads meanwhile
         again.stop()
         again.start()
@@ -198,10 +198,10 @@ def test_whom_one_of_two_that_lead_shut_out_is_out_at_both_though_it_follows_the
     two.start()
     for unit_id, near in (("anna", two.first), ("bert", two.second)):
         two.start_unit(unit_id, near)
-    two.wait_heard(two.first)
+    two.wait_received(two.first)
     people = People(two.first)
     people.log_in(two.first)
-    time.sleep(COPIED_S + TOLD_S)
+    time.sleep(COPIED_S + REPORTED_S)
     people.log_in(two.second)
     link.set(DARK)
     wait_until("the second leads too", two.second.leads)

@@ -53,8 +53,8 @@ def test_a_leader_that_lost_its_database_has_its_users_back_from_the_standby(
     before = note.read_text()
     two.first.start()
     wait_until("it leads, with an administrator that it made", lambda: note.read_text() != before)
-    assert "users and their passwords" in two.first.said()
-    assert "come back when it is reachable" in two.first.said()
+    assert "users and their passwords" in two.first.output()
+    assert "come back when it is reachable" in two.first.output()
     two.second.start()
     wait_until("one leads and the other follows", lambda: two.leader() is not None)
     for one in two.both:

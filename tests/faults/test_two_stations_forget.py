@@ -28,7 +28,7 @@ def two(tmp_path: Path, closing: ExitStack) -> TwoStations:
     two = two_stations(tmp_path, (Place(), Place()), closing)
     two.start()
     two.start_unit("anna", two.first)
-    two.wait_heard(two.first)
+    two.wait_received(two.first)
     return two
 
 

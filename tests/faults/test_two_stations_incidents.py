@@ -84,7 +84,7 @@ def test_a_takeover_keeps_both_incidents_with_their_people_par_clocks_and_plans(
     two.start()
     for unit_id in CREWS:
         two.start_unit(unit_id, two.first)
-    two.wait_heard(two.first)
+    two.wait_received(two.first)
     lane, harbour = record_incident(two.first)
     kept = take_over(two, two.first, two.second)
     assert [one["incident_id"] for one in kept["incidents"]] == [lane, harbour]

@@ -19,7 +19,7 @@ from shared.messages import Heartbeat, Message, Position
 from tests.rig.settable_clock import MachineClock
 from tests.rig.station_command import Agent, Browser, Command
 from tests.rig.station_process import free_port
-from tests.rig.unit_journal import MessageOfUnit, said_by
+from tests.rig.unit_journal import MessageOfUnit, stated_by
 from tests.rig.waiting import PATIENCE_S, until
 
 UNIT = "anna"
@@ -55,8 +55,8 @@ class Ground:
         closing.callback(agent.kill)
 
     def start_station(self) -> None:
-        said = self._folder / f"station-{time.monotonic_ns()}.txt"
-        self._station = self._closing.enter_context(Command(said, *self._serve))
+        reported = self._folder / f"station-{time.monotonic_ns()}.txt"
+        self._station = self._closing.enter_context(Command(reported, *self._serve))
         address = self._station.wait_ready()
         with Browser(address, self._data) as browser:
             browser.call("POST", "/units", json={"unit_id": UNIT})
@@ -64,24 +64,26 @@ class Ground:
     def kill_station(self) -> None:
         self._station.kill()
 
-    def said(self) -> set[MessageOfUnit]:
-        return said_by(self._folder / "agent" / UNIT / "journal.sqlite")
+    def output(self) -> set[MessageOfUnit]:
+        return stated_by(self._folder / "agent" / UNIT / "journal.sqlite")
 
     def logged(self) -> list[Logged]:
-        records = ((t_ns, *parse_key(key), key, said) for t_ns, key, said in read_log(self._log))
+        records = (
+            (t_ns, *parse_key(key), key, reported) for t_ns, key, reported in read_log(self._log)
+        )
         return [
-            Logged(t_ns, decode(channel, said), is_backfilled(key))
-            for t_ns, unit_id, channel, key, said in records
+            Logged(t_ns, decode(channel, reported), is_backfilled(key))
+            for t_ns, unit_id, channel, key, reported in records
             if unit_id == UNIT
         ]
 
-    def has(self, said: set[MessageOfUnit]) -> bool:
-        return said <= {one.number for one in self.logged()}
+    def has(self, reported: set[MessageOfUnit]) -> bool:
+        return reported <= {one.number for one in self.logged()}
 
-    def is_heard(self) -> bool:
+    def is_received(self) -> bool:
         return sum(isinstance(one.message, Position) for one in self.logged()) > 30
 
-    def is_said_to_be_ahead(self, by_s: float) -> bool:
+    def is_stated_to_be_ahead(self, by_s: float) -> bool:
         """Live, by the unit."""
         beats = [one.message for one in self.logged() if not one.late]
         return any(isinstance(b, Heartbeat) and abs(b.clock_ahead_s - by_s) < 60 for b in beats)
@@ -94,25 +96,25 @@ def ground(tmp_path: Path) -> Iterator[Ground]:
 
 
 def test_a_day_ahead_and_a_day_back_with_and_without_its_station(ground: Ground) -> None:
-    until(ground.is_heard, "the unit is heard", COMPILING_S)
+    until(ground.is_received, "the unit is heard", COMPILING_S)
     for ahead_s in (DAY_S, -DAY_S):
         ground.clock.set_ahead(ahead_s)
-        until(partial(ground.is_said_to_be_ahead, ahead_s), "the clock is set")
+        until(partial(ground.is_stated_to_be_ahead, ahead_s), "the clock is set")
         ground.kill_station()
         time.sleep(ALONE_S / 2)
         ground.clock.set_ahead(0.0)
         time.sleep(ALONE_S / 2)
         ground.clock.set_ahead(ahead_s)
         ground.start_station()
-        said = ground.said()
-        until(partial(ground.has, said), "the log has all")
+        reported = ground.output()
+        until(partial(ground.has, reported), "the log has all")
 
     logged = ground.logged()
     assert len(logged) == len({one.number for one in logged})
     assert sum(one.late for one in logged) > 10
     for one in logged:
-        said_ago_s = (one.t_ns - one.message.header.t_utc_ns) / NS_PER_S
-        assert -1.0 < said_ago_s < PATIENCE_S
+        stated_ago_s = (one.t_ns - one.message.header.t_utc_ns) / NS_PER_S
+        assert -1.0 < stated_ago_s < PATIENCE_S
     headers = [one.message.header for one in logged]
     offsets_ns = [header.t_utc_ns - header.t_mono_ns for header in headers]
     assert max(offsets_ns) - min(offsets_ns) < NS_PER_S

@@ -49,7 +49,7 @@ class Listener:
     def times_ns(self) -> np.ndarray:
         return np.concatenate([batch.imu.t_ns for batch in self.batches])
 
-    def hears(self, words: str) -> None:
+    def receives(self, words: str) -> None:
         until(lambda: any(words in fault for fault in self.faults), words)
 
     def close(self) -> None:
@@ -75,8 +75,8 @@ def listen() -> Iterator[Callable[..., Listener]]:
 
 
 def test_half_lines_and_noise_cost_what_they_hit(listen) -> None:
-    said = at_rest(300)
-    hit = b"".join([said[0][7:], *said[1:50], b"\xff\x00\n", said[50][:20], *said[51:]])
+    stated = at_rest(300)
+    hit = b"".join([stated[0][7:], *stated[1:50], b"\xff\x00\n", stated[50][:20], *stated[51:]])
     with closing(TcpDevice([hit])) as device:
         listener = listen(device.source)
         until(lambda: listener.faults)
@@ -86,14 +86,14 @@ def test_half_lines_and_noise_cost_what_they_hit(listen) -> None:
     assert (np.diff(listener.times_ns) > 0).all()
 
 
-def test_a_device_that_restarts_is_told_and_goes_on(listen) -> None:
+def test_a_device_that_restarts_is_reported_and_goes_on(listen) -> None:
     """It is switched off and on again: its clock begins anew, the unit's does not."""
     sessions = at_rest(300, first=100_000), at_rest(300)
     with closing(TcpDevice(*sessions)) as device:
         listener = listen(device.source)
         until(lambda: listener.source.taken == 599, "both sessions but the message in doubt")
-        listener.hears("it has ended the connection")
-        listener.hears("its clock went back by 250.7 s: it was started anew")
+        listener.receives("it has ended the connection")
+        listener.receives("its clock went back by 250.7 s: it was started anew")
         listener.close()
     assert (np.diff(listener.times_ns) > 0).all()
 
@@ -102,7 +102,7 @@ def test_a_device_that_is_not_there_yet_is_waited_for(listen) -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     listener = listen(f"tcp://127.0.0.1:{port}")
-    listener.hears("the connection is refused")
+    listener.receives("the connection is refused")
     with closing(TcpDevice(at_rest(100), port=port, hangs=True)):
         until(lambda: listener.source.taken == 100, "it is there")
         listener.close()
@@ -110,7 +110,7 @@ def test_a_device_that_is_not_there_yet_is_waited_for(listen) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("stated", "reported"),
     [
         ([], "the line is open and nothing comes"),
         ([np.random.default_rng(1).bytes(4000)], "what comes is no x-IMU3's"),
@@ -118,31 +118,31 @@ def test_a_device_that_is_not_there_yet_is_waited_for(listen) -> None:
         (at_rest(50), "it has fallen silent"),
     ],
 )
-def test_a_line_without_samples_is_told_and_opened_again(listen, said, told) -> None:
-    with closing(TcpDevice(said, at_rest(100, first=200), hangs=True)) as device:
+def test_a_line_without_samples_is_reported_and_opened_again(listen, stated, reported) -> None:
+    with closing(TcpDevice(stated, at_rest(100, first=200), hangs=True)) as device:
         listener = listen(device.source, hasty=True)
-        listener.hears(told)
+        listener.receives(reported)
         until(lambda: listener.source.taken >= 100, "the second time is a good one")
         listener.close()
 
 
-def test_another_speed_than_said_is_garbage_on_a_serial_line(listen) -> None:
+def test_another_speed_than_stated_is_garbage_on_a_serial_line(listen) -> None:
     with closing(PtyDevice([np.random.default_rng(2).bytes(3000)])) as device:
         listener = listen(f"{device.source}?baud=9600", hasty=True)
-        listener.hears("on a serial line the right ?baud=")
+        listener.receives("on a serial line the right ?baud=")
         listener.close()
 
 
-def test_a_cable_that_is_pulled_is_told(listen) -> None:
+def test_a_cable_that_is_pulled_is_reported(listen) -> None:
     with closing(PtyDevice(at_rest(200))) as device:
         listener = listen(device.source)
         until(lambda: listener.source.taken == 200, "it works")
         device.close()
-        listener.hears("is the cable in")
+        listener.receives("is the cable in")
         listener.close()
 
 
-def test_samples_at_another_rate_than_said_are_told_once(listen) -> None:
+def test_samples_at_another_rate_than_stated_are_reported_once(listen) -> None:
     slow = [text_message("I", 8 * k * STEP_US, 0, 0, 0, 0, 0, 1.0 + k % 2) for k in range(3000)]
 
     def parts() -> Iterator[bytes]:
@@ -152,33 +152,33 @@ def test_samples_at_another_rate_than_said_are_told_once(listen) -> None:
 
     with closing(TcpDevice(parts())) as device:
         listener = listen(device.source, hasty=True)
-        listener.hears("it sends 50 samples a second, configured are 400")
+        listener.receives("it sends 50 samples a second, configured are 400")
         listener.close()
     assert len([fault for fault in listener.faults if "a second and" in fault]) == 1
 
 
 def test_what_the_device_reports_is_passed_on(listen) -> None:
     with closing(TcpDevice([b"F,5,Battery \x07low\r\n"], hangs=True)) as device:
-        listen(device.source).hears("it reports an error: Battery ?low")
+        listen(device.source).receives("it reports an error: Battery ?low")
 
 
 def test_what_the_device_reports_again_and_again_is_passed_on_once(listen) -> None:
-    said = [b"F,5,SD card full\r\n"] * 30 + [b"F,6,Battery low\r\n"]
-    with closing(TcpDevice(said, hangs=True)) as device:
+    stated = [b"F,5,SD card full\r\n"] * 30 + [b"F,6,Battery low\r\n"]
+    with closing(TcpDevice(stated, hangs=True)) as device:
         listener = listen(device.source)
-        listener.hears("Battery low")
+        listener.receives("Battery low")
     assert len([fault for fault in listener.faults if "SD card full" in fault]) == 1
 
 
-def test_what_is_no_serial_port_is_told(listen, tmp_path: Path) -> None:
+def test_what_is_no_serial_port_is_reported(listen, tmp_path: Path) -> None:
     plain = tmp_path / "file"
     plain.write_text("I,1,0,0,0,0,0,1\r\n")
-    listen(str(plain)).hears("it is no serial port")
-    listen(str(tmp_path / "ttyACM7")).hears("there is no such device")
+    listen(str(plain)).receives("it is no serial port")
+    listen(str(tmp_path / "ttyACM7")).receives("there is no such device")
 
 
 @pytest.mark.parametrize(
-    ("error", "told"),
+    ("error", "reported"),
     [
         (PermissionError(errno.EACCES, "Permission denied"), "dialout"),
         (TimeoutError("timed out"), "does not answer"),
@@ -188,5 +188,5 @@ def test_what_is_no_serial_port_is_told(listen, tmp_path: Path) -> None:
         (OSError(errno.ENOSPC, "No space left on device"), "No space left"),
     ],
 )
-def test_each_failure_of_a_line_has_a_sentence(error: OSError, told: str) -> None:
-    assert told in explain_os_error(error, parse_settings("tcp://imu.local").line)
+def test_each_failure_of_a_line_has_a_sentence(error: OSError, reported: str) -> None:
+    assert reported in explain_os_error(error, parse_settings("tcp://imu.local").line)

@@ -12,7 +12,7 @@ from tests.rig.round_walk import Walk
 from tests.rig.station_script import Record, Script
 
 
-def told() -> Walk:
+def reported() -> Walk:
     """Pins of every kind, one of them wrong, one removed, while two people walk."""
     walk = Walk("FF-01", "FF-02", turn_rad=0.4)
     for unit_id in walk.units:
@@ -46,7 +46,7 @@ def logged(walk: Walk) -> list[Record]:
 
 
 def test_a_replay_of_pins_decides_the_same() -> None:
-    walk = told()
+    walk = reported()
     state = walk.script.pipeline.state
     assert {pin_id: one.state for pin_id, one in state.site.pin_verdicts.items()}[
         "bad"

@@ -142,8 +142,8 @@ def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
 
 @pytest.mark.parametrize("script", [eventful, pinned], ids=["eventful", "pinned"])
 def test_what_is_played_is_what_deciding_again_shows(script: Any, tmp_path: Path) -> None:
-    told: Script = script()
-    records = with_console(told.records, make_pipeline())
+    reported: Script = script()
+    records = with_console(reported.records, make_pipeline())
     times = [t_ns for t_ns, key, _ in records if key in {DELTA_TOPIC, SNAPSHOT_TOPIC}]
     assert sum(key == SNAPSHOT_TOPIC for _, key, _ in records) >= 2
     recorded, recomputed = players(records, tmp_path)
@@ -156,9 +156,9 @@ def test_what_is_played_is_what_deciding_again_shows(script: Any, tmp_path: Path
 
 def test_what_is_played_is_what_was_live(tmp_path: Path) -> None:
     """Through bus, threads and log of a real engine."""
-    told = incident()
-    actions = [decode(OPERATOR, one[2]) for one in told.records if one[1].endswith("/operator")]
-    messages = [one for one in told.records if "/up/" in one[1] or "/alert/" in one[1]][:600]
+    reported = incident()
+    actions = [decode(OPERATOR, one[2]) for one in reported.records if one[1].endswith("/operator")]
+    messages = [one for one in reported.records if "/up/" in one[1] or "/alert/" in one[1]][:600]
     live: list[tuple[int, Snapshot]] = []
     with LiveStation(tmp_path) as station:
         for action in actions[:11]:

@@ -161,7 +161,7 @@ def _sent_again_and_ended(script: Script, second: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def told() -> Script:
+def reported() -> Script:
     return incident()
 
 
@@ -180,76 +180,76 @@ def logged(script: Script) -> list[Record]:
     return records
 
 
-def test_the_incident_is_worth_replaying(told: Script) -> None:
-    rules = {alarm.rule for alarm in told.alarms}
+def test_the_incident_is_worth_replaying(reported: Script) -> None:
+    rules = {alarm.rule for alarm in reported.alarms}
     assert rules >= {
         "mayday", "no-motion", "heat", "link-lost", "tracker-degraded", "unknown-unit",
         "missed-check-in", "rest-due",
     }  # fmt: skip
-    assert len(told.fused) > 500
-    assert {fused.floor for fused in told.fused} == {0, 1}
-    assert any(fused.since_gps_s is not None for fused in told.fused)
-    command = told.pipeline.state.commands["c1"]
+    assert len(reported.fused) > 500
+    assert {fused.floor for fused in reported.fused} == {0, 1}
+    assert any(fused.since_gps_s is not None for fused in reported.fused)
+    command = reported.pipeline.state.commands["c1"]
     assert {one.unit_id: command.state_of(one) for one in command.deliveries.values()} == {
         "FF-01": "acknowledged", "FF-02": "expired", "FF-03": "acknowledged"
     }  # fmt: skip
     assert command.deliveries["FF-01"].notified_ns is not None
     assert [one.can_be_notified for one in command.deliveries.values()] == [True, None, False]
     assert (command.repeat_ids, command.ended_ns is not None) == (["r1"], True)
-    all_clear = told.pipeline.state.commands["ac"]
+    all_clear = reported.pipeline.state.commands["ac"]
     assert [all_clear.state_of(one) for one in all_clear.deliveries.values()] == [
         "acknowledged", "refused", "expired"
     ]  # fmt: skip
-    locate = told.pipeline.state.commands["c2"]
+    locate = reported.pipeline.state.commands["c2"]
     assert {one.unit_id: locate.state_of(one) for one in locate.deliveries.values()} == {
         "FF-01": "notified", "FF-02": "received", "FF-03": "expired"
     }  # fmt: skip
 
 
-def test_a_replay_shows_of_each_command_what_was_shown_live(told: Script) -> None:
+def test_a_replay_shows_of_each_command_what_was_shown_live(reported: Script) -> None:
     again = Script(make_pipeline())
-    for t_ns, key, payload in told.records:
-        again.now_s = (t_ns - told.records[0][0]) / 1e9
+    for t_ns, key, payload in reported.records:
+        again.now_s = (t_ns - reported.records[0][0]) / 1e9
         again.record(key, payload)
     live, replayed = (
         [
             command_view(command, person_lookup({}))
             for command in script.pipeline.state.commands.values()
         ]
-        for script in (told, again)
+        for script in (reported, again)
     )
     assert [view.command_id for view in live] == ["c1", "ac", "c2"]
     assert replayed == live
 
 
-def test_a_replay_of_the_log_decides_the_same(told: Script) -> None:
-    records = logged(told)
+def test_a_replay_of_the_log_decides_the_same(reported: Script) -> None:
+    records = logged(reported)
     assert any(is_decision(key) for _, key, _ in records)
     assert list(compare(records, make_pipeline())) == []
 
 
-def test_a_changed_rule_is_noticed(told: Script) -> None:
+def test_a_changed_rule_is_noticed(reported: Script) -> None:
     fewer = StationPipeline(ALARMS[1:], FUSERS[0])
-    differences = list(compare(logged(told), fewer))
+    differences = list(compare(logged(reported), fewer))
     assert differences
     assert any(isinstance(d.logged, AlarmChange) and d.logged.rule == "mayday" for d in differences)
 
 
 @pytest.mark.parametrize("part", [0.1, 0.37, 0.8])
-def test_a_checkpoint_goes_on_with_the_very_same_decisions(told: Script, part: float) -> None:
-    cut = round(len(told.records) * part)
+def test_a_checkpoint_goes_on_with_the_very_same_decisions(reported: Script, part: float) -> None:
+    cut = round(len(reported.records) * part)
     straight, first = Script(make_pipeline()), Script(make_pipeline())
-    for t_ns, key, payload in told.records[:cut]:
+    for t_ns, key, payload in reported.records[:cut]:
         for script in (straight, first):
-            script.now_s = (t_ns - told.records[0][0]) / 1e9
+            script.now_s = (t_ns - reported.records[0][0]) / 1e9
             script.record(key, payload)
     saved = read_checkpoint(first.pipeline.checkpoint())
     assert saved is not None
     second = Script(make_pipeline(saved))
     straight.outputs.clear()
-    for t_ns, key, payload in told.records[cut:]:
+    for t_ns, key, payload in reported.records[cut:]:
         for script in (straight, second):
-            script.now_s = (t_ns - told.records[0][0]) / 1e9
+            script.now_s = (t_ns - reported.records[0][0]) / 1e9
             script.record(key, payload)
     assert len(second.outputs) > 100
     assert second.outputs == straight.outputs
@@ -257,11 +257,11 @@ def test_a_checkpoint_goes_on_with_the_very_same_decisions(told: Script, part: f
 
 
 def test_what_ran_live_replays_the_same_through_bus_threads_and_log(
-    tmp_path: Path, told: Script
+    tmp_path: Path, reported: Script
 ) -> None:
     """The real drive on the real clock: whatever time it was, the log tells it again."""
-    actions = [r for r in told.records if r[1].endswith("/operator")]
-    messages = [r for r in told.records if "/up/" in r[1] or "/alert/" in r[1]][:1500]
+    actions = [r for r in reported.records if r[1].endswith("/operator")]
+    messages = [r for r in reported.records if "/up/" in r[1] or "/alert/" in r[1]][:1500]
     with LiveStation(tmp_path) as station:
         for _, _, payload in actions[:8]:
             action = decode(OPERATOR, payload)

@@ -73,7 +73,7 @@ def unit(port: int) -> Iterator[Unit]:
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def reported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A station's folder with people in it, and a log of several segments."""
     folder = Story(tmp_path_factory.mktemp("told") / "station").folder
     split_log(DataFolder(folder).log, 4)

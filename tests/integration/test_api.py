@@ -122,7 +122,7 @@ async def test_an_alarm_is_acknowledged_and_resolved(
 ) -> None:
     await commander.post("/units", json={"unit_id": "FF-01"})
     header = make_position().header
-    station.drive.hear(UnitEvent(header, EventKind.MAYDAY))
+    station.drive.receive(UnitEvent(header, EventKind.MAYDAY))
     station.projection.flush()
     (alarm,) = (await commander.get("/alarms")).json()
     assert (alarm["priority"], alarm["state"]) == (1, "raised")
@@ -133,9 +133,9 @@ async def test_an_alarm_is_acknowledged_and_resolved(
     clock.advance(1.0)
     found = seen | {"note": "found"}
     assert (await commander.post(f"{path}/resolve", json=found)).status_code == 204
-    told = (await commander.get(path)).json()
-    assert [one["state"] for one in told["changes"]] == ["raised", "acknowledged", "resolved"]
-    assert told["changes"][1]["by"] == "commander"
+    reported = (await commander.get(path)).json()
+    assert [one["state"] for one in reported["changes"]] == ["raised", "acknowledged", "resolved"]
+    assert reported["changes"][1]["by"] == "commander"
 
 
 async def acknowledge(commander: httpx.AsyncClient, alarm_id: str, seen_ms: int) -> httpx.Response:
@@ -149,12 +149,12 @@ async def test_an_alarm_that_was_raised_anew_is_not_dealt_with_as_it_was_seen_be
 ) -> None:
     await commander.post("/units", json={"unit_id": "FF-01"})
     stamper = Stamper("FF-01", 1, clock)
-    station.drive.hear(Temperature(stamper.header(), 120.0))
+    station.drive.receive(Temperature(stamper.header(), 120.0))
     station.projection.flush()
     (seen,) = (await commander.get("/alarms")).json()
     assert seen["last_raised_ms"] == seen["raised_ms"]
     clock.advance(5.0)
-    station.drive.hear(Temperature(stamper.header(), 170.0))
+    station.drive.receive(Temperature(stamper.header(), 170.0))
     as_seen = {"last_raised_ms": seen["last_raised_ms"]}
     path = f"/alarms/{seen['alarm_id']}"
     refused = await commander.post(f"{path}/{what}", json=as_seen)
@@ -190,11 +190,11 @@ async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
     def hot(degc: float, *times_s: float) -> None:
         for passed_s in times_s:
             clock.advance(passed_s)
-            station.drive.hear(Temperature(stamper.header(), degc))
+            station.drive.receive(Temperature(stamper.header(), degc))
 
     def mayday() -> None:
         clock.advance(1.0)
-        station.drive.hear(UnitEvent(stamper.header(), EventKind.MAYDAY))
+        station.drive.receive(UnitEvent(stamper.header(), EventKind.MAYDAY))
 
     def now_ms() -> int:
         return clock.utc_ns() // NS_PER_MS
@@ -219,8 +219,8 @@ async def test_an_incident_s_alarms_say_when_they_were_raised_anew(
     assert (await acknowledge(commander, pressed["alarm_id"], again_ms)).status_code == 204
     mayday()
     station.projection.flush()
-    told = (await commander.get(f"{path}/alarms")).json()
-    raisings = {one["rule"]: one["raisings"] for one in told}
+    reported = (await commander.get(f"{path}/alarms")).json()
+    raisings = {one["rule"]: one["raisings"] for one in reported}
     assert [one["t_ms"] for one in raisings["mayday"]] == [pressed_ms, again_ms]
     assert [one["t_ms"] for one in raisings["heat"]] == [first_ms, worse_ms]
     at_first, worse = (one["text"] for one in raisings["heat"])
@@ -258,7 +258,7 @@ async def _walk(
     incident = (await commander.post("/incidents", json={"name": "Kitchen <1>"})).json()
     for step in range(11):
         clock.advance(1.0)
-        station.drive.hear(make_position(north_m=float(step)))
+        station.drive.receive(make_position(north_m=float(step)))
     await close_over_all(commander, f"/incidents/{incident['incident_id']}")
     return str(incident["incident_id"])
 

@@ -16,7 +16,7 @@ from tests.rig.desk_station import DeskStation
 
 def pass_time(station: DeskStation, clock: ManualClock, time_s: float) -> None:
     clock.advance(time_s)
-    station.drive.hear(Tick(Header(STATION_ID, 1, 1, 0), clock.utc_ns()))
+    station.drive.receive(Tick(Header(STATION_ID, 1, 1, 0), clock.utc_ns()))
 
 
 async def open_incident(commander: AsyncClient) -> str:
@@ -75,7 +75,7 @@ async def test_nobody_is_confirmed_by_being_given_a_unit(
             )  # fmt: skip
             assert not member["located"]
         clock.advance(1.0)
-        station.drive.hear(Heartbeat(Header("FF-01", 7, 1, 0), 0, 0))
+        station.drive.receive(Heartbeat(Header("FF-01", 7, 1, 0), 0, 0))
         listed = (await commander.get("/accountability")).json()
         assert {one["unit_id"]: one["located"] for one in listed} == {
             "FF-01": True, "FF-02": False

@@ -38,14 +38,14 @@ async def test_every_route_refuses_a_parameter_that_it_does_not_take(
     tried = 0
     async with station.client(Role.ADMINISTRATOR) as client:
         for method, path in addresses():
-            said = await refusal(client, method, f"{path}?{GUESSED}=1")
-            assert said.startswith(f"{GUESSED} is not a parameter here"), (method, path)
+            reported = await refusal(client, method, f"{path}?{GUESSED}=1")
+            assert reported.startswith(f"{GUESSED} is not a parameter here"), (method, path)
             tried += 1
     assert tried > 80
 
 
 @pytest.mark.parametrize(
-    ("path", "said"),
+    ("path", "reported"),
     [
         (f"{INCIDENT}/export/csv?person=Ada", "person is not a parameter here; known here: "),
         ("/alarms?limt=3", "limt is not a parameter here; did you mean limit?"),
@@ -58,10 +58,10 @@ async def test_every_route_refuses_a_parameter_that_it_does_not_take(
     ],
 )
 async def test_the_refusal_names_what_was_probably_meant(
-    station: DeskStation, path: str, said: str
+    station: DeskStation, path: str, reported: str
 ) -> None:
     async with station.client(Role.VIEWER) as viewer:
-        assert (await refusal(viewer, "GET", path)).startswith(said)
+        assert (await refusal(viewer, "GET", path)).startswith(reported)
 
 
 async def test_an_upload_with_a_wrong_parameter_is_refused_and_not_stored(
@@ -92,7 +92,9 @@ async def test_head_is_answered_wherever_get_is(station: DeskStation) -> None:
                 assert head.headers["content-length"] == get.headers["content-length"], path
 
 
-async def test_a_method_that_is_not_answered_is_told_those_that_are(station: DeskStation) -> None:
+async def test_a_method_that_is_not_answered_is_reported_those_that_are(
+    station: DeskStation,
+) -> None:
     """All of the address, though each method is a route of its own."""
     known: dict[str, set[str]] = {}
     for method, path in addresses():

@@ -51,7 +51,7 @@ async def scene(station: DeskStation, clock: ManualClock) -> AsyncIterator[Scene
         incident = (await commander.post("/incidents", json={"name": "Kitchen"})).json()
         clock.advance(1.0)
         station.projection.flush()
-        station.drive.hear(UnitEvent(Header("FF-01", 7, 1, 5), EventKind.MAYDAY))
+        station.drive.receive(UnitEvent(Header("FF-01", 7, 1, 5), EventKind.MAYDAY))
         (mayday,) = station.drive.picture().alarms
         clock.advance(1.0)
         seen = {"last_raised_ms": mayday.last_raised_ms}
@@ -123,7 +123,7 @@ async def test_while_the_database_hangs_people_are_answered_and_it_has_all_of_it
 
 @pytest.mark.usefixtures("slow_database")
 @pytest.mark.parametrize(
-    ("request_", "read", "told"),
+    ("request_", "read", "reported"),
     [
         (("POST", "/alarms/{mayday}/acknowledge", None), "/alarms", '"state":"acknowledged"'),
         (("POST", "/alarms/{mayday}/acknowledge", None), "/alarms/{mayday}", '"acknowledged"'),
@@ -153,17 +153,17 @@ async def test_who_was_answered_finds_it_in_what_is_read_next(
     scene: Scene,
     request_: tuple[str, str, object],
     read: str,
-    told: str,
+    reported: str,
 ) -> None:
     method, path, body = request_
     if "close" in path:
         await act(scene, "POST", "/alarms/{mayday}/resolve", scene.seen)
     read = read.format(mayday=scene.mayday_id, incident=scene.incident_id)
     before = await scene.commander.get(read)
-    assert told not in before.text
+    assert reported not in before.text
     await act(scene, method, path, scene.seen if "acknowledge" in path else body)
     after = await scene.commander.get(read)
-    assert (after.status_code, told in after.text) == (200, True), after.text
+    assert (after.status_code, reported in after.text) == (200, True), after.text
 
 
 @pytest.mark.usefixtures("slow_database")
@@ -200,7 +200,7 @@ async def test_a_database_that_does_not_keep_up_is_read_as_it_is(
 
 
 @pytest.mark.parametrize("what", ["acknowledge", "resolve"])
-async def test_an_alarm_that_is_unknown_is_told_from_one_that_is_over(
+async def test_an_alarm_that_is_unknown_is_distinguished_from_one_that_is_over(
     scene: Scene, clock: ManualClock, what: str
 ) -> None:
     for n in range(30):  # more than the picture keeps

@@ -35,19 +35,19 @@ async def test_a_map_is_set_seen_and_removed(station: DeskStation) -> None:
         assert (await admin.get("/site/base-map")).json() is None
         answer = await admin.put(address(), content=picture(), headers=PNG)
         assert answer.status_code == 200, answer.text
-        said = answer.json()
-        assert said["upper_left"] == pytest.approx([52.0 + 4.5e-6, 4.0 - 8e-6])
-        assert said["upper_right"] == pytest.approx([52.0 + 4.5e-6, 4.0 + 199.5 * 1.6e-5])
-        assert said["lower_left"] == pytest.approx([52.0 - 99.5 * 9e-6, 4.0 - 8e-6])
-        assert (await admin.get("/site/base-map")).json() == said
-        image = await admin.get(said["image_url"].removeprefix("/api/v1"))
+        reported = answer.json()
+        assert reported["upper_left"] == pytest.approx([52.0 + 4.5e-6, 4.0 - 8e-6])
+        assert reported["upper_right"] == pytest.approx([52.0 + 4.5e-6, 4.0 + 199.5 * 1.6e-5])
+        assert reported["lower_left"] == pytest.approx([52.0 - 99.5 * 9e-6, 4.0 - 8e-6])
+        assert (await admin.get("/site/base-map")).json() == reported
+        image = await admin.get(reported["image_url"].removeprefix("/api/v1"))
         assert image.headers["content-type"] == "image/webp"
         assert image.headers["x-content-type-options"] == "nosniff"
         assert image.headers["cache-control"] == "private, max-age=86400"
         assert Image.open(io.BytesIO(image.content)).size == (200, 100)
         assert (await admin.delete("/site/base-map")).status_code == 204
         assert (await admin.delete("/site/base-map")).status_code == 404
-        gone = await admin.get(said["image_url"].removeprefix("/api/v1"))
+        gone = await admin.get(reported["image_url"].removeprefix("/api/v1"))
         assert gone.status_code == 404
 
 
@@ -55,11 +55,11 @@ async def test_a_large_map_is_made_smaller_and_stays_where_it_is(station: DeskSt
     world = (8e-6, 0.0, 0.0, -4.5e-6, 4.0, 52.0)
     async with station.client(Role.ADMINISTRATOR) as admin:
         answer = await admin.put(address(world), content=picture("JPEG", (8192, 4096)), headers=PNG)
-        said = answer.json()
+        reported = answer.json()
         corners = corners_of(world, "EPSG:4326", 8192, 4096)
         for name in ("upper_left", "upper_right", "lower_left"):
-            assert said[name] == pytest.approx(getattr(corners, name), abs=1e-9)
-        image = await admin.get(said["image_url"].removeprefix("/api/v1"))
+            assert reported[name] == pytest.approx(getattr(corners, name), abs=1e-9)
+        image = await admin.get(reported["image_url"].removeprefix("/api/v1"))
         assert max(Image.open(io.BytesIO(image.content)).size) == 4096
 
 

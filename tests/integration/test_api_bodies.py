@@ -41,9 +41,9 @@ async def chunks(count: int) -> AsyncIterator[bytes]:
 async def test_a_body_without_end_is_refused(
     commander: httpx.AsyncClient, method: str, path: str, most: int
 ) -> None:
-    told = await commander.request(method, path, content=b"x" * (most + 1), headers=JSON)
+    reported = await commander.request(method, path, content=b"x" * (most + 1), headers=JSON)
     untold = await commander.request(method, path, content=chunks(most // 100_000 + 1))
-    for answer in (told, untold):
+    for answer in (reported, untold):
         assert (answer.status_code, answer.json()["status"]) == (413, 413)
         assert answer.json()["detail"].startswith("This is too large: a picture, a plan or a map")
         assert answer.headers["content-type"] == "application/problem+json"
@@ -128,7 +128,7 @@ FORM = b'{"name": "Ada"}'
     ],
 )
 @pytest.mark.parametrize(("method", "path"), [("POST", "/people"), ("PUT", "/site/plan")])
-async def test_who_sends_no_json_is_told_to(
+async def test_who_sends_no_json_is_reported_to(
     commander: httpx.AsyncClient, method: str, path: str, body: bytes, kind: str | None
 ) -> None:
     headers = {} if kind is None else {"content-type": kind}
@@ -141,7 +141,7 @@ async def test_who_sends_no_json_is_told_to(
 @pytest.mark.parametrize(
     ("body", "kind"), [(b"", None), (b"[1]", "application/json"), (b"\xff", "application/json")]
 )
-async def test_who_sends_no_picture_is_told_to(
+async def test_who_sends_no_picture_is_reported_to(
     commander: httpx.AsyncClient, body: bytes, kind: str | None
 ) -> None:
     headers = {} if kind is None else {"content-type": kind}

@@ -30,11 +30,11 @@ async def open_incident(commander: AsyncClient, name: str = "Ana") -> str:
 
 def walk_in(station: DeskStation) -> None:
     header = Header("FF-01", 7, 1, 5)
-    station.drive.hear(message_factory.position(header, north_m=9.0, distance_m=9.0))
+    station.drive.receive(message_factory.position(header, north_m=9.0, distance_m=9.0))
 
 
 def mayday(station: DeskStation, seq: int = 2) -> None:
-    station.drive.hear(UnitEvent(Header("FF-01", 7, seq, 5 + seq), EventKind.MAYDAY))
+    station.drive.receive(UnitEvent(Header("FF-01", 7, seq, 5 + seq), EventKind.MAYDAY))
 
 
 def open_alarms(station: DeskStation) -> list[AlarmView]:
@@ -75,7 +75,7 @@ async def test_a_mayday_and_who_is_inside_are_named_before_it_is_closed(
     assert open_alarms(station) == [alarm], "the alarm stays open"
 
 
-async def test_what_has_come_up_since_somebody_looked_is_named(
+async def test_what_has_come_up_since_person_looked_is_named(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:

@@ -15,7 +15,7 @@ from tests.rig.desk_station import DeskStation
 EVACUATE = {"kind": "evacuate", "target": {"everyone": True}, "expires_s": 60}
 
 
-async def test_a_crew_is_told_and_its_answers_are_shown(
+async def test_a_crew_is_reported_and_its_answers_are_shown(
     station: DeskStation, clock: ManualClock
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
@@ -34,7 +34,7 @@ async def test_a_crew_is_told_and_its_answers_are_shown(
         assert command["expires_ms"] - command["issued_ms"] == 60_000
         assert [unit["state"] for unit in command["units"]] == ["queued", "queued"]
         clock.advance(1.0)
-        station.drive.hear(
+        station.drive.receive(
             CommandReply(Header("FF-01", 7, 1, 0), command["command_id"], CommandState.ACKNOWLEDGED)
         )
         path = f"/commands/{command['command_id']}"
@@ -53,7 +53,7 @@ async def test_a_crew_is_told_and_its_answers_are_shown(
     assert {"SendCommand", "ConfirmCommand"} <= {entry["action"] for entry in entries}
 
 
-async def test_a_floor_is_told_and_so_is_whose_floor_is_not_known(
+async def test_a_floor_is_reported_and_so_is_whose_floor_is_not_known(
     station: DeskStation, clock: ManualClock
 ) -> None:
     """A plan of two floors; FF-01 is on the upper one, of FF-03 no position has come."""
@@ -72,7 +72,7 @@ async def test_a_floor_is_told_and_so_is_whose_floor_is_not_known(
                 await commander.put(f"/units/{unit_id}/start", json=start)
                 clock.advance(1.0)
                 header = Header(unit_id, 7, 1, 1)
-                station.drive.hear(message_factory.position(header))
+                station.drive.receive(message_factory.position(header))
         floors = {
             one.unit_id: one.position.floor
             for one in station.drive.picture().units
@@ -80,8 +80,8 @@ async def test_a_floor_is_told_and_so_is_whose_floor_is_not_known(
         }
         assert floors == {"FF-01": 1, "FF-02": 0}
         order = {"kind": "evacuate", "target": {"floor": 1}}
-        told = (await commander.post("/commands", json=order)).json()["units"]
-        assert [unit["unit_id"] for unit in told] == ["FF-01", "FF-03"]
+        reported = (await commander.post("/commands", json=order)).json()["units"]
+        assert [unit["unit_id"] for unit in reported] == ["FF-01", "FF-03"]
 
 
 async def test_of_a_unit_it_is_shown_whether_it_can_notify_and_that_it_has(
@@ -91,13 +91,13 @@ async def test_of_a_unit_it_is_shown_whether_it_can_notify_and_that_it_has(
         for unit_id, outputs in (("FF-01", ("led",)), ("FF-02", ())):
             await commander.post("/units", json={"unit_id": unit_id})
             header = Header(unit_id, 7, 1, 0)
-            station.drive.hear(message_factory.description(header, outputs=outputs))
+            station.drive.receive(message_factory.description(header, outputs=outputs))
         order = {"kind": "locate", "target": {"everyone": True}, "expires_s": 60}
         command = (await commander.post("/commands", json=order)).json()
         assert command["notifies_wearer"]
         assert [unit["can_be_notified"] for unit in command["units"]] == [True, False]
         clock.advance(1.0)
-        station.drive.hear(
+        station.drive.receive(
             CommandReply(Header("FF-01", 7, 2, 0), command["command_id"], CommandState.NOTIFIED)
         )
         first, second = (await commander.get(f"/commands/{command['command_id']}")).json()["units"]

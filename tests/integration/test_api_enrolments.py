@@ -135,7 +135,7 @@ async def test_on_the_stations_own_machine_it_needs_no_tls(
         assert (await client.post("/enrolments", json=UNIT)).status_code == 201
 
 
-async def test_without_an_authority_it_is_said_how_to_make_one(
+async def test_without_an_authority_it_is_stated_how_to_make_one(
     station: DeskStation, tmp_path: Path
 ) -> None:
     set_services(station, pki=PkiFolder(tmp_path))

@@ -87,7 +87,7 @@ async def test_a_key_that_came_with_another_request_is_refused(
     assert len((await commander.get("/commands")).json()) == 1
 
 
-async def test_the_same_said_of_another_thing_is_another_request(
+async def test_the_same_stated_of_another_thing_is_another_request(
     station: DeskStation, commander: httpx.AsyncClient
 ) -> None:
     station.drive.submit("station", ReportProblem("log", "It fails"))
@@ -145,14 +145,14 @@ async def test_quotes_are_none_of_the_key(commander: httpx.AsyncClient) -> None:
 
 
 @pytest.mark.parametrize("key", ["", '""', "a b", "x" * 129, '"x'])
-async def test_what_is_no_key_is_told_so(commander: httpx.AsyncClient, key: str) -> None:
+async def test_what_is_no_key_is_reported_so(commander: httpx.AsyncClient, key: str) -> None:
     refused = await commander.post("/commands", json=EVACUATE, headers={"Idempotency-Key": key})
     assert refused.status_code == 422
     assert refused.json()["detail"].startswith("Idempotency-Key must be 1 to 128 letters")
     assert (await commander.get("/commands")).json() == []
 
 
-async def test_who_gave_a_key_and_had_no_answer_is_told_to_ask_again(
+async def test_who_gave_a_key_and_had_no_answer_is_ordered_to_ask_again(
     station: DeskStation, commander: httpx.AsyncClient, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     waiting: Future[ActionResult] = Future()

@@ -52,7 +52,7 @@ async def test_a_file_with_a_fault_adds_no_person(station: DeskStation) -> None:
         assert "more than 2000 people" in many.json()["detail"]
 
 
-async def test_whoever_wears_a_unit_is_shown_with_the_new_crew(station: DeskStation) -> None:
+async def test_anyone_wears_a_unit_is_shown_with_the_new_crew(station: DeskStation) -> None:
     async with station.client(Role.COMMANDER) as client:
         person = (await client.post("/people", json={"name": "Ada"})).json()
         await client.post("/units", json={"unit_id": "FF-01"})

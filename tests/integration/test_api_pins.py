@@ -29,7 +29,7 @@ async def walk(
             position = make_position()  # type: ignore[operator]  # a fixture's function
             assert isinstance(position, Position)
             header = Header(unit_id, 7, second + 1, second * NS_PER_S)
-            station.drive.hear(
+            station.drive.receive(
                 msgspec.structs.replace(
                     position, header=header, north_m=1.0 * second, east_m=0.0, down_m=0.0
                 )
@@ -94,19 +94,25 @@ async def test_the_audit_says_whose_pin_was_removed(
     ]
 
 
-async def test_what_a_move_leaves_out_stays_as_it_was_said(
+async def test_what_a_move_leaves_out_stays_as_it_was_stated(
     station: DeskStation, clock: ManualClock, make_position: object
 ) -> None:
     async with station.client(Role.COMMANDER) as commander:
         await walk(station, clock, commander, make_position)
-        said = {"std_m": 3.0, "floor": 2, "heading_rad": 1.0, "heading_std_rad": 0.1, "note": "A"}
+        reported = {
+            "std_m": 3.0,
+            "floor": 2,
+            "heading_rad": 1.0,
+            "heading_std_rad": 0.1,
+            "note": "A",
+        }
         here = {"unit_id": "FF-01", "north_m": 5.0, "east_m": 0.0}
-        pin = (await commander.post("/pins", json=here | said)).json()
+        pin = (await commander.post("/pins", json=here | reported)).json()
         clock.advance(5.0)
         path = f"/pins/{pin['pin_id']}"
         moved = (await commander.put(path, json=here | {"north_m": 6.0})).json()
         assert moved["north_m"] == 6.0
-        kept = ("t_ms", *said)
+        kept = ("t_ms", *reported)
         assert {name: moved[name] for name in kept} == {name: pin[name] for name in kept}
         unsaid = {"floor": None, "heading_rad": None, "note": "", "t_ms": None}
         again = (await commander.put(path, json=here | unsaid)).json()
@@ -143,12 +149,12 @@ async def test_beacons_are_placed_moved_and_removed(station: DeskStation) -> Non
         placed = await commander.put("/beacons/door-3", json={"north_m": 3.0, "east_m": 4.0})
         assert placed.status_code == 200, placed.text
         assert placed.json()["reach_m"] == 3.0
-        said = {"label": "D3", "floor": 1, "std_m": 0.2, "reach_m": 5.0}
-        for body in (said | {"north_m": 5.0, "east_m": 4.0}, {"north_m": 6.0, "east_m": 4.0}):
+        reported = {"label": "D3", "floor": 1, "std_m": 0.2, "reach_m": 5.0}
+        for body in (reported | {"north_m": 5.0, "east_m": 4.0}, {"north_m": 6.0, "east_m": 4.0}):
             await commander.put("/beacons/door-3", json=body)
         (beacon,) = (await commander.get("/beacons")).json()
         assert beacon["north_m"] == 6.0
-        assert {name: beacon[name] for name in said} == said, "what a move leaves out stays"
+        assert {name: beacon[name] for name in reported} == reported, "what a move leaves out stays"
         assert (await commander.delete("/beacons/door-3")).status_code == 204
         assert (await commander.delete("/beacons/door-3")).status_code == 404
 

@@ -132,7 +132,9 @@ async def test_what_makes_no_sense_is_refused_in_words(
         assert words in refused.text
 
 
-async def test_an_incident_as_a_file_has_audio_for_whom_may_hear_it(station: DeskStation) -> None:
+async def test_an_incident_as_a_file_has_audio_for_whom_may_receive_it(
+    station: DeskStation,
+) -> None:
     address = "/incidents/i-1/incident.mcap"
     async with station.client(Role.VIEWER) as viewer:
         assert (await viewer.get(address, params={"radio": True})).status_code == 403

@@ -65,7 +65,7 @@ async def test_a_viewer_only_looks_on(station: DeskStation) -> None:
 
 
 @pytest.mark.parametrize(
-    ("form", "code", "said"),
+    ("form", "code", "reported"),
     [
         (WINDOW | {"unit_id": "FF-99"}, 404, "no unit FF-99"),
         ({"unit_id": "FF-01"}, 422, "which window"),
@@ -76,12 +76,12 @@ async def test_a_viewer_only_looks_on(station: DeskStation) -> None:
     ],
 )
 async def test_what_makes_no_sense_is_refused_in_words(
-    station: DeskStation, form: dict[str, object], code: int, said: str
+    station: DeskStation, form: dict[str, object], code: int, reported: str
 ) -> None:
     async with station.client(Role.COMMANDER) as client:
         answer = await client.post("/recordings", json=form)
     assert answer.status_code == code
-    assert said in answer.text
+    assert reported in answer.text
 
 
 async def test_one_pull_a_unit_at_a_time(station: DeskStation) -> None:

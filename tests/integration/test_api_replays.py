@@ -47,9 +47,9 @@ async def test_a_viewer_moves_and_ends_only_the_own_replay(
         ):
             assert refused.status_code == 403
             assert "commander's" in refused.json()["detail"]
-        assert (others_player.told, others_player.closed) == ([], False)
+        assert (others_player.reported, others_player.closed) == ([], False)
         assert (await viewer.post(own, json={"playing": False})).status_code == 204
-        assert own_player.told == ["pause"]
+        assert own_player.reported == ["pause"]
         assert (await viewer.delete(own)).status_code == 204
         assert own_player.closed
     assert [one.begun_by for one in replays.all()] == ["commander"]
@@ -62,7 +62,7 @@ async def test_a_commander_ends_any_replay_by_name_and_moves_none_of_others(
     others, player = begun_by(replays, "viewer")
     async with station.client(role) as commander:
         assert (await commander.post(others, json={"speed": 8.0})).status_code == 403
-        assert player.told == []
+        assert player.reported == []
         assert (await commander.delete(others)).status_code == 204
         assert (await commander.delete(others)).status_code == 404
     (entry,) = station.services.records.audit_entries(Window(0, 2**62), 10)
@@ -77,7 +77,7 @@ async def test_the_replay_that_a_station_shows_belongs_to_all_and_is_ended_by_no
     path, player = begun_by(replays, "")
     async with station.client(role) as client:
         assert (await client.post(path, json={"playing": True})).status_code == 204
-        assert player.told == ["play"]
+        assert player.reported == ["play"]
         refused = await client.delete(path)
         assert refused.status_code == 403
         assert "ends with the command" in refused.json()["detail"]

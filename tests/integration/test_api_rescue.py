@@ -40,7 +40,7 @@ async def commander(
             clock.advance(1.0)
             for number, unit_id in enumerate(UNITS):
                 north_m = float(min(second, 50 - 10 * number))
-                station.drive.hear(
+                station.drive.receive(
                     msgspec.structs.replace(
                         make_position(),
                         header=Header(unit_id, 7, second, second * NS_PER_S),
@@ -73,7 +73,7 @@ async def test_who_is_in_danger_is_not_sent(
 ) -> None:
     clock.advance(1.0)
     header = Header("FF-02", 7, 90, 70 * NS_PER_S)
-    station.drive.hear(UnitEvent(header, EventKind.MAYDAY))
+    station.drive.receive(UnitEvent(header, EventKind.MAYDAY))
     nearest = (await commander.get("/units/FF-01/routes")).json()
     assert [route["unit_id"] for route in nearest] == ["FF-03", "FF-04", "FF-05"]
 
@@ -86,7 +86,7 @@ async def test_without_a_known_way_the_straight_line_is_named_as_such(
 ) -> None:
     """FF-03 stood still for a minute without contact, and is elsewhere."""
     clock.advance(60.0)
-    station.drive.hear(
+    station.drive.receive(
         msgspec.structs.replace(
             make_position(),
             header=Header("FF-03", 7, 200, 130 * NS_PER_S),
@@ -138,7 +138,7 @@ async def test_pieces_of_the_way_are_sent_as_the_rescuer_advances(
         clock.advance(1.0)
         header = Header("FF-02", 7, second, second * NS_PER_S)
         east_m = float(second - 60)
-        station.drive.hear(
+        station.drive.receive(
             msgspec.structs.replace(make_position(), header=header, north_m=40.0, east_m=east_m)
         )
     monkeypatch.setattr(route_finder, "KEPT_S", 0.0)
@@ -157,7 +157,7 @@ async def test_guidance_is_over_with_the_alarms_of_the_member(
 ) -> None:
     clock.advance(1.0)
     header = Header("FF-01", 7, 90, 70 * NS_PER_S)
-    station.drive.hear(UnitEvent(header, EventKind.MAYDAY))
+    station.drive.receive(UnitEvent(header, EventKind.MAYDAY))
     await commander.post("/units/FF-01/guides", json={"rescuer_id": "FF-02"})
     guidance = station.app.state.guidance
     guidance.step(station.services)

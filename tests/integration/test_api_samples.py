@@ -68,29 +68,29 @@ async def node(station: DeskStation, browser: httpx.AsyncClient) -> httpx.AsyncC
 
 
 @pytest.fixture
-def heard(station: DeskStation) -> Heard:
+def received(station: DeskStation) -> Heard:
     """What a tracking agent is given."""
-    heard = Heard()
+    received = Heard()
     bus = station.router.attach_station()
     for channel in (IMU, DESCRIPTION):
-        bus.subscribe(channel.key(U), heard)
-    return heard
+        bus.subscribe(channel.key(U), received)
+    return received
 
 
-def published(heard: Heard) -> list[RawImu]:
-    messages = (decode(IMU, payload) for key, payload in heard.samples if key == IMU.key(U))
+def published(received: Heard) -> list[RawImu]:
+    messages = (decode(IMU, payload) for key, payload in received.samples if key == IMU.key(U))
     return [message for message in messages if isinstance(message, RawImu)]
 
 
 async def test_posted_samples_are_taken_and_go_onto_the_bus(
-    station: DeskStation, node: httpx.AsyncClient, heard: Heard
+    station: DeskStation, node: httpx.AsyncClient, received: Heard
 ) -> None:
     answer = await node.post(PATH, json=body(batch(1), batch(2)))
     assert answer.status_code == 200
     assert answer.json() == {"accepted": 2, "repeated": 0, "samples": 100}
-    assert [one.header.seq for one in published(heard)] == [1, 2]
-    np.testing.assert_allclose(published(heard)[0].accel_mps2[0], (0.0, 0.0, -9.81))
-    description = decode(DESCRIPTION, heard.samples[0][1])
+    assert [one.header.seq for one in published(received)] == [1, 2]
+    np.testing.assert_allclose(published(received)[0].accel_mps2[0], (0.0, 0.0, -9.81))
+    description = decode(DESCRIPTION, received.samples[0][1])
     assert isinstance(description, UnitDescription)
     assert description.rate_hz == pytest.approx(RATE_HZ)
     assert description.tracker == NO_TRACKER
@@ -108,16 +108,16 @@ async def test_a_batch_that_is_sent_again_is_kept_once(node: httpx.AsyncClient) 
 
 
 async def test_messages_of_the_bus_are_taken_as_they_are(
-    node: httpx.AsyncClient, heard: Heard
+    node: httpx.AsyncClient, received: Heard
 ) -> None:
     sent = [raw(1), raw(2)]
     answer = await node.post(PATH, content=delimited(sent), headers=PROTOBUF)
     assert answer.json() == {"accepted": 2, "repeated": 0, "samples": 100}
-    assert [encode(one) for one in published(heard)] == [encode(one) for one in sent]
+    assert [encode(one) for one in published(received)] == [encode(one) for one in sent]
 
 
 async def test_a_missed_value_and_further_sensors_arrive(
-    node: httpx.AsyncClient, heard: Heard
+    node: httpx.AsyncClient, received: Heard
 ) -> None:
     sent = batch(
         1,
@@ -128,7 +128,7 @@ async def test_a_missed_value_and_further_sensors_arrive(
         imu_temperature_degc=[31.5, 31.5],
     )
     assert (await node.post(PATH, json=body(sent))).status_code == 200
-    [arrived] = published(heard)
+    [arrived] = published(received)
     assert np.isnan(arrived.accel_mps2[0, 0])
     assert arrived.mag_ut is not None
     assert arrived.pressure_pa is not None
@@ -150,12 +150,12 @@ async def test_a_missed_value_and_further_sensors_arrive(
     ],
 )
 async def test_samples_that_make_no_sense_are_refused_in_words(
-    node: httpx.AsyncClient, heard: Heard, wrong: dict[str, Any], sentence: str
+    node: httpx.AsyncClient, received: Heard, wrong: dict[str, Any], sentence: str
 ) -> None:
     answer = await node.post(PATH, json=body(wrong))
     assert answer.status_code == 422
     assert sentence in answer.json()["detail"]
-    assert heard.samples == []
+    assert received.samples == []
 
 
 @pytest.mark.parametrize(
@@ -264,7 +264,7 @@ async def test_a_unit_has_only_so_many_tokens_and_none_before_it_is_registered(
         assert (await administrator.post("/units/FF-09/samples", json={})).status_code == 404
 
 
-async def test_a_node_that_starts_again_and_again_is_told_so(node: httpx.AsyncClient) -> None:
+async def test_a_node_that_starts_again_and_again_is_reported_so(node: httpx.AsyncClient) -> None:
     for boot_id in range(1, 17):
         answer = await node.post(PATH, json=body(batch(1), boot_id=boot_id))
         assert answer.status_code == 200

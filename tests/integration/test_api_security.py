@@ -191,7 +191,7 @@ async def test_security_headers_are_on_every_answer(station: DeskStation) -> Non
         assert (await client.get("/me")).headers["cache-control"] == "no-store"
 
 
-async def test_over_tls_browsers_are_told_to_stay_with_it(station: DeskStation) -> None:
+async def test_over_tls_browsers_are_ordered_to_stay_with_it(station: DeskStation) -> None:
     services = dataclasses.replace(station.services, secure=True)
     app = create_app(services, started=lambda _: None)
     transport = httpx.ASGITransport(app)

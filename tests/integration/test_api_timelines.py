@@ -162,6 +162,6 @@ def test_a_station_reads_the_same_in_a_process_of_its_own(
         third = len(content) // 3
         content[third : third + 1000] = bytes(1000)  # more than lies between two chunks
         damaged.write_bytes(content)
-        told = TimelineProcess(replace(log_process, log=str(tmp_path / "log"))).read(request)
-    assert any(damaged.name in one for one in told.defects)
+        reported = TimelineProcess(replace(log_process, log=str(tmp_path / "log"))).read(request)
+    assert any(damaged.name in one for one in reported.defects)
     assert any(damaged.name in one for one in damage)

@@ -35,14 +35,14 @@ async def station(tmp_path: Path, clock: ManualClock) -> AsyncIterator[DeskStati
     station = DeskStation(tmp_path, clock)
     station.hub.connect(asyncio.get_running_loop(), station.drive)
     records: list[Record] = []
-    hear = station.drive.hear
+    receive = station.drive.receive
 
     def recorded(message: Message) -> object:
         key = channel_of(message).key(message.header.unit_id)
         records.append((clock.utc_ns(), key, encode(message)))
-        return hear(message)
+        return receive(message)
 
-    station.drive.hear = recorded  # type: ignore[method-assign,assignment]  # beside the real one
+    station.drive.receive = recorded  # type: ignore[method-assign,assignment]  # beside the real one
     archive = Archive(
         lambda t_ns: [one for one in records if one[0] >= t_ns],
         Checkpoints(tmp_path / "checkpoints"),
@@ -70,7 +70,7 @@ async def worked(
             walked = msgspec.structs.replace(
                 position, header=header, north_m=1.0 * second, east_m=0.0
             )
-            station.drive.hear(walked)
+            station.drive.receive(walked)
         pin = {"unit_id": "FF-01", "north_m": 58.0, "east_m": 2.0, "std_m": 0.5}
         assert (await commander.post("/pins", json=pin)).status_code == 201
         incident_id: str = opened.json()["incident_id"]
@@ -124,7 +124,7 @@ async def test_an_assessment_and_an_export_of_the_smoothed_trail(
         assert files[0].content != files[1].content
 
 
-async def test_an_incident_in_which_nobody_was_heard_yet_has_no_trails(
+async def test_an_incident_in_which_nobody_was_received_yet_has_no_trails(
     station: DeskStation,
 ) -> None:
     """And pins that wait: the smoother is not asked about nobody."""
@@ -143,7 +143,7 @@ async def test_an_incident_in_which_nobody_was_heard_yet_has_no_trails(
         assert report.json()["units"] == []
 
 
-async def test_what_cannot_be_is_said(station: DeskStation) -> None:
+async def test_what_cannot_be_is_stated(station: DeskStation) -> None:
     async with station.client(Role.VIEWER) as viewer:
         for path in ("trails", "assessment"):
             assert (await viewer.get(f"/incidents/none/{path}")).status_code == 404
@@ -163,7 +163,7 @@ async def test_a_station_without_a_log_says_so(tmp_path: Path, clock: ManualCloc
     station.close()
 
 
-async def test_what_came_since_is_told_until_it_is_worked_out(
+async def test_what_came_since_is_reported_until_it_is_worked_out(
     station: DeskStation, clock: ManualClock, make_position
 ) -> None:
     incident_id = await worked(station, clock, make_position(), closed=True)

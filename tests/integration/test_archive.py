@@ -193,9 +193,9 @@ def test_a_bucket_without_rights_is_named_and_takes_nothing(
     succeeded("archive", "copy", address, "--data", data)
     for asker in ("reader", "nobody"):
         ask_as(asker)
-        said = refusal("archive", "copy", f"{address}-other", "--data", data)
-        assert "s3:PutObject" in said
-        assert "AWS_ACCESS_KEY_ID" in said
+        reported = refusal("archive", "copy", f"{address}-other", "--data", data)
+        assert "s3:PutObject" in reported
+        assert "AWS_ACCESS_KEY_ID" in reported
     assert "s3:ListBucket" in refusal("archive", "list", address)
     ask_as("reader")
     assert "2 incidents" not in succeeded("archive", "verify", address)
@@ -333,7 +333,7 @@ def test_a_disk_s_copy_that_is_torn_is_found_and_made_again(data: Path, tmp_path
     assert "see that the disk is there" in refusal("archive", "list", tmp_path / "none")
 
 
-def test_whoever_is_forgotten_is_gone_from_the_copy_with_the_next_one(
+def test_anyone_is_forgotten_is_gone_from_the_copy_with_the_next_one(
     data: Path, tmp_path: Path
 ) -> None:
     records = list(LogFeed(data / "log").records())

@@ -27,7 +27,7 @@ def test_a_station_goes_on_from_a_backup_that_was_made_while_it_ran(
         with Command(
             tmp_path / "said.txt", "backup", str(target), "--data", str(data)
         ) as backing_up:
-            assert backing_up.wait() == 0, backing_up.said()
+            assert backing_up.wait() == 0, backing_up.output()
     shutil.copy(data / "first-login.txt", tmp_path)  # whoever knows the password logs in again
     station.kill()
     shutil.rmtree(data)

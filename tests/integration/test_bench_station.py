@@ -20,9 +20,9 @@ def test_what_wearers_say_in_compressed_time_is_in_the_log(tmp_path: Path) -> No
         assert station.messages == 5 * 7 * 3
         assert station.console_messages > 0
     keys = [key for _, key, _ in read_log(tmp_path / "log")]
-    said = [key for key in keys if parse_key(key)[0] != STATION_ID]
-    assert len(said) == 5 * 7 * 3
-    positions = sum(parse_key(key)[1] is POSITION for key in said)
+    reported = [key for key in keys if parse_key(key)[0] != STATION_ID]
+    assert len(reported) == 5 * 7 * 3
+    positions = sum(parse_key(key)[1] is POSITION for key in reported)
     assert keys.count(FUSED.key(STATION_ID)) == positions > 0
 
 

@@ -31,7 +31,7 @@ from tests.rig.secured_bus import (
     Site,
     assert_powerless,
     assert_speechless,
-    publish_until_heard,
+    publish_until_received,
     say_forged,
 )
 from tests.rig.waiting import until
@@ -43,7 +43,7 @@ def site(tmp_path: Path) -> Iterator[Site]:
         yield Site(tmp_path, stack)
 
 
-def test_an_enrolled_unit_speaks_lives_hears_its_commands_and_answers(site: Site) -> None:
+def test_an_enrolled_unit_speaks_lives_receives_its_commands_and_answers(site: Site) -> None:
     enrolment = site.pki.enroll("anna")
     site.open()
     unit = site.unit(enrolment)
@@ -52,7 +52,7 @@ def test_an_enrolled_unit_speaks_lives_hears_its_commands_and_answers(site: Site
         unit.subscribe(COMMAND.key(name), lambda k, p: commands.append((k, p)))
     token = unit.declare_alive(alive_key("anna"))
     unit.serve("muster/v1/anna/journal/**", lambda *_: [b"entry"])
-    publish_until_heard(site, unit, "anna")
+    publish_until_received(site, unit, "anna")
     until(lambda: site.alive == {alive_key("anna")}, "the token")
     for name in ("anna", EVERY_UNIT):
         key = COMMAND.key(name)
@@ -80,8 +80,8 @@ def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
     for expression in ("muster/v1/**", "muster/v1/bert/**", "muster/v1/*/command/**"):
         unit.subscribe(expression, lambda key, payload: overheard.append((key, payload)))
     token = unit.declare_alive(alive_key("bert"))
-    publish_until_heard(site, unit, "anna")
-    publish_until_heard(site, other, "bert")
+    publish_until_received(site, unit, "anna")
+    publish_until_received(site, other, "bert")
     until(lambda: site.station.has_subscriber(COMMAND.key("bert")), "bert's interest")
     forged = (
         POSITION.key("bert"),
@@ -94,8 +94,8 @@ def test_a_unit_can_do_nothing_in_anothers_name(site: Site) -> None:
         say_forged(unit, key)
     site.station.publish(COMMAND.key("bert"), b"true", Qos.ALERT)
     until(lambda: commanded == [b"true"], "the true command")
-    publish_until_heard(site, other, "bert")
-    assert b"forged" not in {payload for _, payload in site.heard}
+    publish_until_received(site, other, "bert")
+    assert b"forged" not in {payload for _, payload in site.received}
     assert commanded == [b"true"]
     assert alive_key("bert") not in site.alive
     # A session hears what it publishes itself; the rest would be the other's.
@@ -126,8 +126,8 @@ def test_wildcards_deletes_and_the_buss_own_keys_open_nothing(site: Site) -> Non
         query.reply(query.key_expr, b"forged")
 
     watching = site.station._session.declare_subscriber("**", note)
-    publish_until_heard(site, unit, "anna")
-    publish_until_heard(site, other, "bert")
+    publish_until_received(site, unit, "anna")
+    publish_until_received(site, other, "bert")
     session = unit._session
     beat = f"{STATIONS_ROOT}/first/beat"
     wide = ("muster/v1/*/up/position", "muster/v1/**", "muster/**", "**", f"{STATIONS_ROOT}/**")
@@ -138,7 +138,7 @@ def test_wildcards_deletes_and_the_buss_own_keys_open_nothing(site: Site) -> Non
     queryables = [session.declare_queryable(key, forge) for key in wide]
     subscribers = [session.declare_subscriber(key) for key in (*wide, "@/**")]
     time.sleep(QUIET_S)
-    publish_until_heard(site, other, "bert")
+    publish_until_received(site, other, "bert")
     answers = list(site.station.query("muster/v1/bert/journal/range", b"", QUIET_S))
     assert answers == [b"entry"]
     for key in (*wide, "@/**", beat):
@@ -157,30 +157,32 @@ def test_wildcards_deletes_and_the_buss_own_keys_open_nothing(site: Site) -> Non
     assert set(kinds) == {(POSITION.key("anna"), True), (POSITION.key("bert"), True)}
 
 
-def test_a_tracking_agent_hears_its_units_raw_stream_and_speaks_as_itself_only(site: Site) -> None:
+def test_a_tracking_agent_receives_its_units_raw_stream_and_speaks_as_itself_only(
+    site: Site,
+) -> None:
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
     enrolment = site.pki.enroll("anna", Holder.TRACKER)
     site.open()
     units = {"anna": site.unit(anna), "bert": site.unit(bert)}
     ears = site.join(ClientEndpoint(enrolment.connect, enrolment.identity))
     bystander = site.join(ClientEndpoint(bert.connect, bert.identity))
-    heard: list[str] = []
+    received: list[str] = []
     overheard: list[str] = []
     for expression in ("muster/v1/**", IMU.key("anna"), DESCRIPTION.key("anna"), IMU.key("bert")):
-        ears.subscribe(expression, lambda key, _: heard.append(key))
+        ears.subscribe(expression, lambda key, _: received.append(key))
         bystander.subscribe(expression, lambda key, _: overheard.append(key))
 
-    def raw_is_heard() -> bool:
+    def raw_is_received() -> bool:
         for name, unit in units.items():
             for channel in (IMU, DESCRIPTION, GPS, POSITION):
                 unit.publish(channel.key(name), b"of " + name.encode(), Qos.LIVE)
-        return {IMU.key("anna"), DESCRIPTION.key("anna")} <= set(heard)
+        return {IMU.key("anna"), DESCRIPTION.key("anna")} <= set(received)
 
-    until(raw_is_heard, "the raw stream")
+    until(raw_is_received, "the raw stream")
     mouth = site.unit(enrolment)
-    publish_until_heard(site, mouth, tracker_id("anna"))
+    publish_until_received(site, mouth, tracker_id("anna"))
     time.sleep(QUIET_S)
-    assert set(heard) == {IMU.key("anna"), DESCRIPTION.key("anna")}
+    assert set(received) == {IMU.key("anna"), DESCRIPTION.key("anna")}
     assert IMU.key("anna") not in overheard
     token = mouth.declare_alive(alive_key("anna"))
     mouth.serve("muster/v1/anna/journal/**", lambda *_: [b"forged"])
@@ -188,10 +190,10 @@ def test_a_tracking_agent_hears_its_units_raw_stream_and_speaks_as_itself_only(s
         say_forged(mouth, key)
     say_forged(units["bert"], POSITION.key(tracker_id("anna")))
     say_forged(units["anna"], POSITION.key(tracker_id("anna")))
-    publish_until_heard(site, mouth, tracker_id("anna"))
-    publish_until_heard(site, units["bert"], "bert")
+    publish_until_received(site, mouth, tracker_id("anna"))
+    publish_until_received(site, units["bert"], "bert")
     time.sleep(QUIET_S)
-    assert b"forged" not in {payload for _, payload in site.heard}
+    assert b"forged" not in {payload for _, payload in site.received}
     assert alive_key("anna") not in site.alive
     assert list(site.station.query("muster/v1/anna/journal/range", b"", QUIET_S)) == []
     token.close()
@@ -210,7 +212,7 @@ def test_a_tracking_agent_fetches_raw_samples_of_its_unit_and_nothing_else(site:
         assert list(ears.query(other, b"", QUIET_S)) == []
 
 
-def test_a_unit_is_told_the_time_under_its_own_key_only(site: Site) -> None:
+def test_a_unit_is_reported_the_time_under_its_own_key_only(site: Site) -> None:
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
     site.open()
     site.station.serve(clock_key("*"), lambda *_: [b"the time"])
@@ -235,10 +237,10 @@ def test_a_revoked_unit_is_out_once_the_router_reopens(site: Site) -> None:
     anna, bert = site.pki.enroll("anna"), site.pki.enroll("bert")
     site.open()
     lost, kept = site.unit(anna), site.unit(bert)
-    publish_until_heard(site, lost, "anna")
+    publish_until_received(site, lost, "anna")
     site.pki.revoke("anna")
     site.reopen()
-    publish_until_heard(site, kept, "bert")
+    publish_until_received(site, kept, "bert")
     until(lost.is_linked, "the lost unit's link")
     assert_speechless(site, lost, "anna")
 
@@ -249,18 +251,18 @@ def test_the_stolen_certificate_stays_out_when_the_name_is_enrolled_again(site: 
     again = site.pki.enroll("anna")
     site.open()
     assert_powerless(site, stolen)
-    publish_until_heard(site, site.unit(again), "anna")
+    publish_until_received(site, site.unit(again), "anna")
 
 
 def test_a_renewed_and_the_old_certificate_both_work(site: Site) -> None:
     old = site.pki.enroll("anna")
     new = site.pki.renew("anna")
     site.open()
-    publish_until_heard(site, site.unit(old), "anna")
-    publish_until_heard(site, site.unit(new), "anna")
+    publish_until_received(site, site.unit(old), "anna")
+    publish_until_received(site, site.unit(new), "anna")
 
 
-def test_an_operator_hears_and_says_nothing(site: Site) -> None:
+def test_an_operator_receives_and_says_nothing(site: Site) -> None:
     anna, operator = site.pki.enroll("anna"), site.pki.enroll("chief", Holder.OPERATOR)
     site.open()
     unit = site.unit(anna)
@@ -273,12 +275,12 @@ def test_an_operator_hears_and_says_nothing(site: Site) -> None:
     tokens: list[str] = []
     onlooker.subscribe("muster/v1/**", lambda key, _: seen.append(key))
     onlooker.watch_alive("muster/v1/*/alive", lambda key, _: tokens.append(key))
-    publish_until_heard(site, unit, "anna")
+    publish_until_received(site, unit, "anna")
     until(lambda: POSITION.key("anna") in seen and tokens == [alive_key("anna")], "what happens")
     say_forged(onlooker, COMMAND.key("anna"))
     say_forged(onlooker, POSITION.key("anna"))
     assert list(onlooker.query("muster/v1/anna/journal/range", b"", QUIET_S)) == []
     time.sleep(QUIET_S)
     assert commands == []
-    assert b"forged" not in {payload for _, payload in site.heard}
+    assert b"forged" not in {payload for _, payload in site.received}
     token.close()

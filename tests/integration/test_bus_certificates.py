@@ -21,7 +21,7 @@ from shared.channels import (
 from shared.enrolment import Enrolment
 from shared.errors import BusError
 from shared.tls import TlsIdentity
-from tests.rig.secured_bus import QUIET_S, Site, assert_never_linked, publish_until_heard
+from tests.rig.secured_bus import QUIET_S, Site, assert_never_linked, publish_until_received
 from tests.rig.waiting import until
 
 
@@ -42,13 +42,13 @@ def test_a_link_ends_with_its_certificate(site: Site) -> None:
     enrolment = site.pki.enroll("anna", valid=timedelta(seconds=4))
     site.open()
     unit = site.unit(enrolment)
-    publish_until_heard(site, unit, "anna")
+    publish_until_received(site, unit, "anna")
     until(lambda: datetime.now(UTC) > ends(enrolment), "the end of the certificate")
     until(lambda: not unit.is_linked(), "the end of the link")
-    site.heard.clear()
+    site.received.clear()
     unit.publish(POSITION.key("anna"), b"late", Qos.LIVE)
     time.sleep(QUIET_S)
-    assert site.heard == []
+    assert site.received == []
 
 
 def test_a_certificate_of_another_authority_is_refused(site: Site, tmp_path: Path) -> None:

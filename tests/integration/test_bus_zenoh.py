@@ -24,13 +24,13 @@ def address() -> str:
     return f"tcp/127.0.0.1:{free_port()}"
 
 
-def publish_until_heard(unit: ZenohBus, station: ZenohBus, what: str) -> None:
-    heard: list[str] = []
-    station.subscribe("muster/v1/**", lambda key, _: heard.append(key))
+def publish_until_received(unit: ZenohBus, station: ZenohBus, what: str) -> None:
+    received: list[str] = []
+    station.subscribe("muster/v1/**", lambda key, _: received.append(key))
 
     def arrived() -> bool:
         unit.publish("muster/v1/anna/up/status", b"", Qos.LIVE)
-        return bool(heard)
+        return bool(received)
 
     until(arrived, what)
 
@@ -40,19 +40,19 @@ def test_a_unit_opens_before_its_station_and_finds_it_again_after_a_restart(addr
         unit.publish("muster/v1/anna/up/status", b"to nobody", Qos.LIVE)
         for start in ("first start", "restart"):
             with closing(ZenohBus(StationEndpoint((address,)))) as station:
-                publish_until_heard(unit, station, f"a message after the {start}")
+                publish_until_received(unit, station, f"a message after the {start}")
 
 
-def test_what_is_said_again_and_again_travels_without_its_key(address: str) -> None:
+def test_what_is_stated_again_and_again_travels_without_its_key(address: str) -> None:
     """A thin link carries it, and a router would look up way and rights for each message."""
     with (
         closing(ZenohBus(StationEndpoint((address,)))) as station,
         relayed(address) as (through, sent),
         closing(ZenohBus(UnitEndpoint((through,)))) as unit,
     ):
-        publish_until_heard(unit, station, "a message")
+        publish_until_received(unit, station, "a message")
         before = len(sent)
-        publish_until_heard(unit, station, "another one")
+        publish_until_received(unit, station, "another one")
         until(lambda: len(sent) > before, "the relay has noted it")
         assert b"status" in sent[:before]
         assert b"status" not in sent[before:]
@@ -100,7 +100,7 @@ def test_a_closed_bus_leaves_no_thread_that_could_abort_the_program_as_it_ends(
     kept.close()
 
 
-def test_a_taken_port_is_said_in_words(address: str) -> None:
+def test_a_taken_port_is_stated_in_words(address: str) -> None:
     with (
         closing(ZenohBus(StationEndpoint((address,)))),
         pytest.raises(BusError, match=r"another program uses this port.*choose another port"),
@@ -108,19 +108,19 @@ def test_a_taken_port_is_said_in_words(address: str) -> None:
         ZenohBus(StationEndpoint((address,)))
 
 
-def test_an_address_that_makes_no_sense_is_said_in_words() -> None:
+def test_an_address_that_makes_no_sense_is_stated_in_words() -> None:
     with pytest.raises(BusError, match="nonsense"):
         ZenohBus(StationEndpoint(("nonsense",)))
 
 
-def test_an_address_of_another_machine_is_said_without_a_place_in_the_library() -> None:
+def test_an_address_of_another_machine_is_stated_without_a_place_in_the_library() -> None:
     with pytest.raises(BusError, match=r"cannot listen on tcp/192\.0\.2\.1:7447") as refused:
         ZenohBus(StationEndpoint(("tcp/192.0.2.1:7447",)))
     assert ".rs" not in str(refused.value)
 
 
-def test_a_message_too_large_for_anybody_is_not_taken_and_the_link_stays(address: str) -> None:
-    assert sizes_heard(address, "muster/stations/v1/a/have", (500_000, 3_000_000, 5)) == [
+def test_a_message_too_large_for_anyone_is_not_taken_and_the_link_stays(address: str) -> None:
+    assert sizes_received(address, "muster/stations/v1/a/have", (500_000, 3_000_000, 5)) == [
         500_000,
         5,
     ]
@@ -131,23 +131,23 @@ def test_what_is_larger_than_any_units_message_ends_at_the_router(
     address: str, suffix: str
 ) -> None:
     sizes = (MOST_PUBLISHED_BYTES, MOST_PUBLISHED_BYTES + 1, 16_000_000, 5)
-    assert sizes_heard(address, f"muster/v1/anna/{suffix}", sizes) == [MOST_PUBLISHED_BYTES, 5]
+    assert sizes_received(address, f"muster/v1/anna/{suffix}", sizes) == [MOST_PUBLISHED_BYTES, 5]
 
 
-def sizes_heard(address: str, key: str, sizes: Sequence[int]) -> list[int]:
+def sizes_received(address: str, key: str, sizes: Sequence[int]) -> list[int]:
     """What comes through a router of messages of these sizes, the last of which is small."""
-    heard: list[int] = []
+    received: list[int] = []
     with (
         closing(ZenohBus(StationEndpoint((address,)))),
         closing(ZenohBus(ClientEndpoint((address,)))) as station,
         closing(ZenohBus(ClientEndpoint((address,)))) as rogue,
     ):
-        station.subscribe("muster/**", lambda _, payload: heard.append(len(payload)))
+        station.subscribe("muster/**", lambda _, payload: received.append(len(payload)))
         until(lambda: rogue.has_subscriber(key))
         for size in sizes:
             rogue._session.put(key, bytes(size), congestion_control=zenoh.CongestionControl.BLOCK)
-        until(lambda: sizes[-1] in heard)
-    return heard
+        until(lambda: sizes[-1] in received)
+    return received
 
 
 def test_a_unit_that_asks_all_the_time_is_answered_a_few_times_a_second(address: str) -> None:
@@ -182,11 +182,11 @@ def test_an_answer_that_is_larger_than_any_units_ends_at_the_router(address: str
         closing(ZenohBus(ClientEndpoint((address,)))) as rogue,
     ):
         rogue.serve(key, lambda *_: (bytes(size) for size in sizes))
-        heard: list[int] = []
+        received: list[int] = []
 
         def answered() -> bool:
-            heard[:] = [len(reply) for reply in station.query(key, b"", 2.0)]
-            return bool(heard)
+            received[:] = [len(reply) for reply in station.query(key, b"", 2.0)]
+            return bool(received)
 
         until(answered)
-    assert heard == [MOST_ANSWERED_BYTES, 5]
+    assert received == [MOST_ANSWERED_BYTES, 5]

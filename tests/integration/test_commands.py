@@ -34,7 +34,7 @@ class Unit:
     def __init__(self, router: MemoryRouter, boot_id: int = 1) -> None:
         self.bus: MemoryBus = router.attach_unit()
         self.rates: list[float] = []
-        self.heard: list[Command] = []
+        self.received: list[Command] = []
         self.is_mute = False
         self.desk = CommandHandler(Stamper(U, boot_id, SystemClock()), self.rates.append)
         self._hearing: Subscription | None = None
@@ -56,7 +56,7 @@ class Unit:
     def _take(self, _key: str, payload: bytes) -> None:
         command = decode(COMMAND, payload)
         assert isinstance(command, Command)
-        self.heard.append(command)
+        self.received.append(command)
         reply = self.desk.take(command)
         if not self.is_mute:
             self.say(reply)
@@ -86,9 +86,9 @@ def test_a_par_is_sent_received_and_acknowledged(tmp_path: Path) -> None:
         until(lambda: state(station) == "received")
         unit.press()
         until(lambda: state(station) == "acknowledged")
-        assert len(unit.heard) == 1
-        told = [one.commands[0].units[0].state for one in station.screen.deltas if one.commands]
-        assert told[-1] == "acknowledged"
+        assert len(unit.received) == 1
+        reported = [one.commands[0].units[0].state for one in station.screen.deltas if one.commands]
+        assert reported[-1] == "acknowledged"
     records = list(station.log.records())
     keys = [key for _, key, _ in records]
     assert keys.count(COMMAND.key(U)) == 1
@@ -96,23 +96,23 @@ def test_a_par_is_sent_received_and_acknowledged(tmp_path: Path) -> None:
     assert list(compare(records, make_pipeline())) == []
 
 
-def test_it_is_said_again_until_the_unit_answers_and_done_once(tmp_path: Path) -> None:
+def test_it_is_stated_again_until_the_unit_answers_and_done_once(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         unit = Unit(station.router)
         unit.is_mute = True
         unit.come()
         station.act(order(CommandKind.SET_POSITION_RATE, 10.0))
-        until(lambda: len(unit.heard) >= 4)
+        until(lambda: len(unit.received) >= 4)
         assert state(station) == "sent"
         unit.is_mute = False
         until(lambda: state(station) == "received")
-        count = len(unit.heard)
+        count = len(unit.received)
         assert unit.rates == [10.0]
-        assert [one.command_id for one in unit.heard] == ["c1"] * count
+        assert [one.command_id for one in unit.received] == ["c1"] * count
 
 
-def test_a_unit_that_comes_back_is_told_what_it_missed(tmp_path: Path) -> None:
+def test_a_unit_that_comes_back_is_reported_what_it_missed(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         unit = Unit(station.router)
@@ -124,7 +124,7 @@ def test_a_unit_that_comes_back_is_told_what_it_missed(tmp_path: Path) -> None:
         unit.go()
 
 
-def test_what_nobody_heard_expires_and_is_said_no_more(tmp_path: Path) -> None:
+def test_what_nobody_received_expires_and_is_stated_no_more(tmp_path: Path) -> None:
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit(U, "one"))
         station.act(order(CommandKind.EVACUATE, lasts_s=0.3))
@@ -133,7 +133,7 @@ def test_what_nobody_heard_expires_and_is_said_no_more(tmp_path: Path) -> None:
         unit.come()
         station.act(ConfirmCommand("c1", U))
         assert state(station) == "acknowledged"
-        assert unit.heard == []
+        assert unit.received == []
 
 
 def test_a_bus_that_fails_for_a_while_ends_nothing(
@@ -190,13 +190,13 @@ def test_repeats_wait_for_a_reply_and_not_beyond_the_end(
     counts = []
     for _ in range(14):
         down.send_due(orders)
-        counts.append(len(unit.heard))
+        counts.append(len(unit.received))
         clock.advance(0.5)
     assert counts == [1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3]
-    assert [one.header.seq for one in unit.heard] == [1, 2, 3]
+    assert [one.header.seq for one in unit.received] == [1, 2, 3]
 
 
-def test_who_was_away_is_told_at_once(
+def test_who_was_away_is_reported_at_once(
     link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 100 * 10**9)
@@ -207,10 +207,10 @@ def test_who_was_away_is_told_at_once(
         happens()
         down.send_due(orders)
         clock.advance(0.1)
-    assert len(unit.heard) == 2
+    assert len(unit.received) == 2
 
 
-def test_one_that_cannot_be_told_keeps_nobody_else_from_being_told(
+def test_one_that_cannot_be_reported_keeps_nobody_else_from_being_reported(
     link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Nor are the others told again and again for it."""
@@ -230,10 +230,10 @@ def test_one_that_cannot_be_told_keeps_nobody_else_from_being_told(
     for _ in range(3):
         down.send_due(orders)
         clock.advance(0.2)
-    assert len(unit.heard) == 1
+    assert len(unit.received) == 1
 
 
-def test_what_a_unit_has_answered_is_not_said_again(
+def test_what_a_unit_has_answered_is_not_stated_again(
     link: tuple[CommandSender, Unit, ManualClock], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command_sender, "_AGAIN_AFTER_NS", 0)
@@ -243,10 +243,10 @@ def test_what_a_unit_has_answered_is_not_said_again(
     another = msgspec.structs.replace(one, command_id="c2")
     down.start()
     down.report([one])
-    until(lambda: unit.heard)
+    until(lambda: unit.received)
     down.report([another])  # the first is answered
-    until(lambda: unit.heard[-1].command_id == "c2")
-    count = len(unit.heard)
-    until(lambda: len(unit.heard) > count + 3)
+    until(lambda: unit.received[-1].command_id == "c2")
+    count = len(unit.received)
+    until(lambda: len(unit.received) > count + 3)
     down.close()
-    assert {one.command_id for one in unit.heard[count:]} == {"c2"}
+    assert {one.command_id for one in unit.received[count:]} == {"c2"}

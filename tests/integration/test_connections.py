@@ -174,7 +174,7 @@ async def test_who_comes_new_gets_in_though_strangers_hold_all_they_can(
 async def test_a_websocket_that_ended_soon_is_minded_no_more(secure_port: int) -> None:
     """Nor is one that goes on: what it says is not waited for."""
     troubles: list[object] = []
-    asyncio.get_running_loop().set_exception_handler(lambda _, told: troubles.append(told))
+    asyncio.get_running_loop().set_exception_handler(lambda _, reported: troubles.append(reported))
     refused, open_one = [await connect(secure_port, secured=trusting()) for _ in range(2)]
     for path, stream in ((b"/refused", refused), (b"/", open_one)):
         stream[1].write(b"GET " + path + UPGRADE)
@@ -242,8 +242,8 @@ async def test_all_together_have_only_so_many(port: int, monkeypatch: pytest.Mon
 
 async def test_who_asks_is_who_connected_whatever_a_header_says(port: int) -> None:
     stream = await connect(port)
-    said = b"X-Forwarded-For: 192.0.2.1\r\nX-Forwarded-Proto: https\r\n\r\n"
-    stream[1].write(GET.replace(b"/ ", b"/who ") + said)
+    stated = b"X-Forwarded-For: 192.0.2.1\r\nX-Forwarded-Proto: https\r\n\r\n"
+    stream[1].write(GET.replace(b"/ ", b"/who ") + stated)
     answer = await stream[0].readuntil(b"here")
     assert b"127.0.0.1 http here" in answer
     stream[1].close()

@@ -266,7 +266,9 @@ def test_a_folder_may_be_called_anything(tmp_path: Path, clock: ManualClock, nam
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
-def test_a_full_disk_is_said_and_nothing_is_half_written(store: Store, clock: ManualClock) -> None:
+def test_a_full_disk_is_stated_and_nothing_is_half_written(
+    store: Store, clock: ManualClock
+) -> None:
     roster = Roster(store, clock)
     _limit_pages(store)
     with pytest.raises(StoreError, match="full"):
@@ -284,7 +286,7 @@ def _limit_pages(store: Store, pages: int = 0) -> None:
 # ---- the projection
 
 
-def test_a_store_that_fails_is_said_and_catches_up(store: Store, clock: ManualClock) -> None:
+def test_a_store_that_fails_is_stated_and_catches_up(store: Store, clock: ManualClock) -> None:
     projection = SqlProjection(store)
     projection.project(STORY[0])
     assert projection.flush()

@@ -36,18 +36,18 @@ def processes_of(folder: Path) -> list[str]:
     return found
 
 
-def test_in_a_script_it_hears_five_units_and_leaves_nothing_running(tmp_path):
+def test_in_a_script_it_receives_five_units_and_leaves_nothing_running(tmp_path):
     demo = start_demo(tmp_path, "--for", "12")
     output, _ = demo.communicate(timeout=240)
     assert demo.returncode == 0, output
-    heard = re.search(r"(\d+) messages of 5 units, 0 of them not understood", output)
-    assert heard is not None, output
-    assert int(heard[1]) > 100
+    received = re.search(r"(\d+) messages of 5 units, 0 of them not understood", output)
+    assert received is not None, output
+    assert int(received[1]) > 100
     assert "muster base replay" in output
     assert processes_of(tmp_path) == []
 
 
-def test_with_a_second_station_it_hears_them_too(tmp_path):
+def test_with_a_second_station_it_receives_them_too(tmp_path):
     """The one that leads has its first login only once it leads."""
     demo = start_demo(tmp_path, "--standby", "--for", "3")
     output, _ = demo.communicate(timeout=240)

@@ -48,8 +48,8 @@ def test_a_station_reports_under_its_own_key_alone_and_one_of_another_department
     department = DepartmentSite(tmp_path / "city", closing)
     engine_7, engine_8 = department.enrol("engine-7"), department.enrol("engine-8")
     department.open()
-    heard: list[str] = []
-    department.bus.subscribe("muster/**", lambda key, _: heard.append(key))
+    received: list[str] = []
+    department.bus.subscribe("muster/**", lambda key, _: received.append(key))
     asked: list[str] = []
     asked_of = department_events_key("engine-8")
 
@@ -63,11 +63,11 @@ def test_a_station_reports_under_its_own_key_alone_and_one_of_another_department
     other.subscribe("muster/**", lambda key, _: overheard.append(key))
     own = department_summary_key("engine-7")
 
-    def is_heard() -> bool:
+    def is_received() -> bool:
         bus.publish(own, b"mine", Qos.LIVE)
-        return own in heard
+        return own in received
 
-    until(is_heard, "a summary of its own")
+    until(is_received, "a summary of its own")
     until(other.is_linked, "the other station's link")
     deadline_s = time.monotonic() + QUIET_S
     while time.monotonic() < deadline_s:
@@ -77,7 +77,7 @@ def test_a_station_reports_under_its_own_key_alone_and_one_of_another_department
         time.sleep(0.05)
     assert list(bus.query(asked_of, b"", 0.5)) == []
     assert list(bus.query(clock_key("FF-01"), b"", 0.5)) == []
-    assert set(heard) == {own}
+    assert set(received) == {own}
     assert (overheard, asked) == ([], [])
 
     stranger = DepartmentSite(tmp_path / "county", closing).enrol("engine-7")

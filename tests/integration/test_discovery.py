@@ -207,7 +207,7 @@ def test_a_station_and_a_unit_as_they_are_run(tmp_path: Path, port: int) -> None
         Agent(tmp_path / "unit.txt", *unit, *walk, "--tracker", "none") as agent,
         Browser(station.wait_ready(), data) as browser,
     ):
-        until(lambda: "linked to the station" in agent.said(), "the unit finds its station")
+        until(lambda: "linked to the station" in agent.output(), "the unit finds its station")
         until(lambda: browser.call("GET", "/health")["messages"] > 0, "it is heard")
         assert agent.stop() == 0
         assert station.stop() == 0

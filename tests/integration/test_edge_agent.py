@@ -95,7 +95,7 @@ def start(port: int, tmp_path: Path) -> Iterator[Callable[..., Agent]]:
     yield start_agent
     for agent in agents:
         agent.kill()
-        print(agent.said())  # shown beside a failure
+        print(agent.output())  # shown beside a failure
 
 
 def test_after_a_kill_the_journal_of_both_boots_is_served(station, start):
@@ -119,17 +119,17 @@ def test_after_a_kill_the_journal_of_both_boots_is_served(station, start):
     assert second.stop() == 0
 
 
-def test_what_was_said_before_the_station_was_there_is_in_the_journal(port, start):
+def test_what_was_stated_before_the_station_was_there_is_in_the_journal(port, start):
     agent = start()
-    until(lambda: "no link: 127.0.0.1 is there but nothing listens" in agent.said(), "the reason")
-    assert "not secured" in agent.said()
+    until(lambda: "no link: 127.0.0.1 is there but nothing listens" in agent.output(), "the reason")
+    assert "not secured" in agent.output()
     station = Station(port)
     try:
         until(lambda: station.of(Position))
-        first_heard = min(seq for _, seq in station.raw)
-        assert first_heard > 1
+        first_received = min(seq for _, seq in station.raw)
+        assert first_received > 1
         boot_id = station.messages[0].header.boot_id
-        assert list(station.journal(boot_id, first_heard)) == list(range(1, first_heard + 1))
+        assert list(station.journal(boot_id, first_received)) == list(range(1, first_received + 1))
         assert agent.stop(signal.SIGINT) == 0
         until(lambda: station.of(UnitEvent))
         last = station.of(UnitEvent)[-1]
@@ -215,14 +215,14 @@ def test_a_radio_outage_interrupts_the_bus_and_not_the_journal(station, start):
     start("simulated:loses-radio", "--speed", "10")
     until(lambda: station.alive == [True, False, True])
     until(lambda: len(station.of(Position)) > 150)
-    heard = sorted(seq for _, seq in station.raw)
-    missed = set(range(heard[0], heard[-1] + 1)) - set(heard)
+    arrived = sorted(seq for _, seq in station.raw)
+    missed = set(range(arrived[0], arrived[-1] + 1)) - set(arrived)
     assert len(missed) > 200  # 45 s of messages, at ten times their rate
     boot_id = station.messages[0].header.boot_id
-    assert missed <= set(station.journal(boot_id, heard[-1]))
+    assert missed <= set(station.journal(boot_id, arrived[-1]))
 
 
-def test_a_source_that_ends_is_said_and_ends_the_agent(station, start):
+def test_a_source_that_ends_is_stated_and_ends_the_agent(station, start):
     agent = start("simulated:straight", "--speed", "20")
     assert agent.wait() == 0
     until(lambda: len(station.of(UnitEvent)) >= 2)
@@ -232,7 +232,7 @@ def test_a_source_that_ends_is_said_and_ends_the_agent(station, start):
 
 def test_a_second_agent_with_the_same_folder_is_refused(start):
     first = start()
-    until(lambda: "no link" in first.said(), "the first runs")
+    until(lambda: "no link" in first.output(), "the first runs")
     second = start()
     assert second.wait() == 2
-    assert "another agent is using" in second.said()
+    assert "another agent is using" in second.output()

@@ -44,10 +44,10 @@ def start(tmp_path: Path) -> Iterator[Callable[..., Agent]]:
     yield start_agent
     for agent in agents:
         agent.kill()
-        print(agent.said())  # shown beside a failure
+        print(agent.output())  # shown beside a failure
 
 
-def test_an_enrolled_agent_is_heard_lives_and_serves_its_journal(site, start):
+def test_an_enrolled_agent_is_received_lives_and_serves_its_journal(site, start):
     site.open()
     agent = start("--enrolment", str(site.enrolment))
     until(lambda: len(site.positions) >= 5, "positions")
@@ -55,40 +55,40 @@ def test_an_enrolled_agent_is_heard_lives_and_serves_its_journal(site, start):
     until(lambda: site.alive == [True], "the liveliness token")
     assert list(site.bus.query(f"{ROOT}/u1/journal/index", b"", 10.0))
     until(lambda: site.utc_std_s > 0.0, "the station's time, in its headers")
-    until(lambda: "linked to the station" in agent.said(), "the agent's word")
-    assert "not secured" not in agent.said()
+    until(lambda: "linked to the station" in agent.output(), "the agent's word")
+    assert "not secured" not in agent.output()
     assert agent.stop() == 0
 
 
-def test_an_agent_of_another_authority_is_not_heard_and_says_why(site, start, tmp_path, port):
+def test_an_agent_of_another_authority_is_not_received_and_says_why(site, start, tmp_path, port):
     site.open()
     (tmp_path / "other").mkdir()
     other = PkiFolder(tmp_path / "other")
     other.create("Other", hosts=[], connect=[f"tls/127.0.0.1:{port}"])
     other.enroll("u1").write(tmp_path / "foreign.toml")
     agent = start("--enrolment", str(tmp_path / "foreign.toml"))
-    until(lambda: "no link:" in agent.said(), "the reason")
-    assert "is not the one that enrolled this unit" in agent.said()
+    until(lambda: "no link:" in agent.output(), "the reason")
+    assert "is not the one that enrolled this unit" in agent.output()
     assert not site.positions
 
 
 @pytest.mark.parametrize(
-    ("flags", "said"),
+    ("flags", "output"),
     [
         (("--unit", "u2"), "enrols unit u1, not u2"),
         (("--connect", "tcp/127.0.0.1:1"), "tls/ only"),
     ],
 )
-def test_flags_that_contradict_the_enrolment_are_refused(site, start, flags, said):
+def test_flags_that_contradict_the_enrolment_are_refused(site, start, flags, reported):
     agent = start("--enrolment", str(site.enrolment), *flags)
     assert agent.wait() == 2
-    assert said in agent.said()
+    assert reported in agent.output()
 
 
 def test_a_secure_station_needs_an_enrolment(start):
     agent = start("--unit", "u1", "--connect", "tls/127.0.0.1:1")
     assert agent.wait() == 2
-    assert "needs the unit's enrolment" in agent.said()
+    assert "needs the unit's enrolment" in agent.output()
 
 
 def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, start, tmp_path):
@@ -96,19 +96,19 @@ def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, 
     site.pki.enroll("u1", Holder.TRACKER).write(file)
     site.open()
     tracker = start("--enrolment", str(file), source="bus:u1")
-    until(lambda: "waiting for the raw stream of u1" in tracker.said(), "the agent")
+    until(lambda: "waiting for the raw stream of u1" in tracker.output(), "the agent")
     for boots in (1, 2):
         unit = start("--enrolment", str(site.enrolment), "--tracker", "none")
-        until(partial(site.has_heard_boots, boots), "positions of this run")
+        until(partial(site.has_received_boots, boots), "positions of this run")
         assert unit.stop() == 0
-    assert "u1 has started again" in tracker.said()
+    assert "u1 has started again" in tracker.output()
     assert set(site.positions) == {POSITION.key(tracker_id("u1"))}
     assert list(site.bus.query(f"{ROOT}/{tracker_id('u1')}/journal/index", b"", 10.0))
     assert tracker.stop() == 0
 
 
 @pytest.mark.parametrize(
-    ("holder", "source", "said"),
+    ("holder", "source", "output"),
     [
         (Holder.UNIT, "bus:u2", "not a tracking agent, which --source bus:u2 needs"),
         (Holder.TRACKER, "bus:u3", "is for tracking u2, not u3"),
@@ -116,16 +116,16 @@ def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, 
     ],
 )
 def test_an_enrolment_is_good_for_what_it_was_made_for_only(
-    site, start, tmp_path, holder, source, said
+    site, start, tmp_path, holder, source, reported
 ):
     file = tmp_path / "u2.toml"
     site.pki.enroll("u2", holder).write(file)
     agent = start("--enrolment", str(file), source=source)
     assert agent.wait() == 2
-    assert said in " ".join(agent.said().split())
+    assert reported in " ".join(agent.output().split())
 
 
-def test_an_agent_that_waits_for_its_unit_ends_when_told(start, port):
+def test_an_agent_that_waits_for_its_unit_ends_when_reported(start, port):
     agent = start("--connect", f"tcp/127.0.0.1:{port}", source="bus:u1")
-    until(lambda: "trying again every second" in agent.said(), "the agent")
+    until(lambda: "trying again every second" in agent.output(), "the agent")
     assert agent.stop() == 0

@@ -39,7 +39,7 @@ def check(tmp_path: Path, site: EnrolledSite) -> Callable[..., UnitCheck]:
 def test_a_unit_beside_its_station_is_checked_and_leaves_no_trace(site, check) -> None:
     site.open()
     with check() as checked:
-        assert checked.wait() == 0, checked.said()
+        assert checked.wait() == 0, checked.output()
         for line in (
             "ok      certificate: valid to",
             "ok      sample rate: 200.0 samples/s of 200",
@@ -49,7 +49,7 @@ def test_a_unit_beside_its_station_is_checked_and_leaves_no_trace(site, check) -
             "the station's",
             "Unit u1 works; read the warnings",
         ):
-            assert line in checked.said()
+            assert line in checked.output()
     assert not site.positions
     assert not site.alive
 
@@ -57,7 +57,7 @@ def test_a_unit_beside_its_station_is_checked_and_leaves_no_trace(site, check) -
 def test_a_station_that_is_away_fails_the_check_and_a_script_sees_it(check) -> None:
     with check("--json") as checked:
         assert checked.wait() == 1
-        printed = checked.said()
+        printed = checked.output()
     report = json.loads(printed[printed.index("{") :])
     assert (report["unit"], report["level"]) == ("u1", "failed")
     (link,) = (one for one in report["findings"] if one["subject"] == "link")
@@ -68,7 +68,7 @@ def test_a_station_that_is_away_fails_the_check_and_a_script_sees_it(check) -> N
 def test_a_unit_whose_agent_runs_is_not_checked(site, check, tmp_path: Path) -> None:
     with closing(UnitDataFolder(tmp_path / "units" / "u1")), check() as checked:
         assert checked.wait() == 2
-        assert "stop it" in checked.said()
+        assert "stop it" in checked.output()
 
 
 @pytest.mark.skipif(not has_umockdev(), reason="no umockdev: install the package umockdev")
@@ -87,10 +87,10 @@ def test_devices_of_the_kernel_are_checked(tmp_path: Path, port: int) -> None:
     machine = EmulatedAgent(tree.root.parent, tmp_path / "check.txt", *flags, command="check")
     with machine as checked:
         until(lambda: not checked.runs(), "the end of the check")
-        assert "ok      temperature front: 25.0 °C" in checked.said()
-        assert "failed  battery: 12% of BAT0" in checked.said()
-        assert "there is no 1-wire sensor 28-000000000001" in checked.said()
-        assert "NOT ready" in checked.said()
+        assert "ok      temperature front: 25.0 °C" in checked.output()
+        assert "failed  battery: 12% of BAT0" in checked.output()
+        assert "there is no 1-wire sensor 28-000000000001" in checked.output()
+        assert "NOT ready" in checked.output()
 
 
 def test_a_unit_checks_itself_at_its_start_and_its_card_shows_what_is_missing(
@@ -112,4 +112,4 @@ def test_a_unit_checks_itself_at_its_start_and_its_card_shows_what_is_missing(
         assert preflight["text"].startswith("battery: no reading; ")
         assert "temperature: the unit has no sensor" in preflight["text"]
         assert "sample rate" not in preflight["text"]
-        assert "check at the start: output: the unit has none" in agent.said()
+        assert "check at the start: output: the unit has none" in agent.output()

@@ -42,7 +42,7 @@ from shared.messages import (
     UnitEvent,
 )
 from shared.messages.station import RegisterUnit
-from tests.rig.gps_receiver import GpsdServer, Told, burst, gpsd_report
+from tests.rig.gps_receiver import GpsdServer, Reported, burst, gpsd_report
 from tests.rig.waiting import until
 from tests.rig.ximu3_device import TcpDevice, paced, played
 
@@ -117,8 +117,8 @@ def walked() -> tuple[ImuBatch, list[GpsSample]]:
     ]
 
 
-def said_of(fix: GpsSample) -> Told:
-    return Told(
+def stated_of(fix: GpsSample) -> Reported:
+    return Reported(
         of_day_s=BEGAN_S + (fix.t_ns - BEGIN_NS) / NS_PER_S,
         lat_deg=fix.lat_deg,
         lon_deg=fix.lon_deg,
@@ -150,14 +150,14 @@ def worn(config: EdgeConfig, folder: UnitDataFolder, station: Station) -> Iterat
 def test_fixes_of_a_receiver_place_a_walk(kind: str, tmp_path: Path) -> None:
     compile_trackers()
     imu, fixes = walked()
-    due = [((fix.t_ns - BEGIN_NS) / NS_PER_S + LATE_S, said_of(fix)) for fix in fixes]
+    due = [((fix.t_ns - BEGIN_NS) / NS_PER_S + LATE_S, stated_of(fix)) for fix in fixes]
     pretend, say = (GpsdServer, gpsd_report) if kind == "gpsd" else (TcpDevice, burst)
     station = Station()
     with ExitStack() as held:
         sensor = held.enter_context(closing(TcpDevice(paced(played(imu)))))
         folder = held.enter_context(closing(UnitDataFolder(tmp_path / "u1")))
-        said = paced((due_s, say(told)) for due_s, told in due)
-        receiver = held.enter_context(closing(pretend(said, hangs=True)))
+        stated = paced((due_s, say(reported)) for due_s, reported in due)
+        receiver = held.enter_context(closing(pretend(stated, hangs=True)))
         config = EdgeConfig(
             source=f"ximu3:{sensor.source}?rate=200",
             gps=f"{kind}:{receiver.source}",

@@ -126,7 +126,7 @@ def test_the_agent_outlives_its_sensor_and_says_why(
             count = len(station.positions())
             until(lambda: len(station.positions()) > count, "positions after its return")
         assert agent.runs()
-        assert agent.stop() == 0, agent.said()
+        assert agent.stop() == 0, agent.output()
     for position in station.positions():
         assert all(map(math.isfinite, (position.north_m, position.east_m, position.down_m)))
     (boot,) = (tmp_path / "edge" / "u1" / "black_box").iterdir()
@@ -156,5 +156,5 @@ def test_a_unit_with_two_devices_is_checked(tree, devices, started) -> None:
             "ok      air pressure: 1013.",
             "25.0 °C",
         ):
-            assert line in checked.said()
-        assert "failed  sensors" not in checked.said()
+            assert line in checked.output()
+        assert "failed  sensors" not in checked.output()

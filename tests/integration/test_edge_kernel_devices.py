@@ -66,7 +66,7 @@ def test_temperatures_reach_the_console(tree, shown, started) -> None:
         status = shown.card["status"]
         assert (status["battery"], status["battery_left_s"]) == (0.42, 5400)
         assert status["battery_state"] == "discharging"
-        assert "there is no 1-wire sensor 28-000000000001" in agent.said()
+        assert "there is no 1-wire sensor 28-000000000001" in agent.output()
 
         latencies_s = []
         for degc in (120.0, 1250.0, -40.0):

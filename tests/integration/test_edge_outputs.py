@@ -67,7 +67,7 @@ def started(
     yield started
     for agent in agents:
         agent.kill()
-        print(agent.said())  # shown beside a failure
+        print(agent.output())  # shown beside a failure
 
 
 def order(browser: Browser, kind: str, **fields: Any) -> str:
@@ -85,23 +85,23 @@ def delivery(browser: Browser, command_id: str) -> dict[str, Any]:
     return dict(unit)
 
 
-def test_an_order_reaches_the_wearer_the_station_is_told_and_a_restart_repeats_it(
+def test_an_order_reaches_the_wearer_the_station_is_reported_and_a_restart_repeats_it(
     browser, shown, started
 ) -> None:
     agent = started("terminal:FF-01")
-    until(lambda: "linked to the station" in agent.said(), "the link")
+    until(lambda: "linked to the station" in agent.output(), "the link")
     command_id = order(browser, "evacuate")
     until(
-        lambda: "FF-01: [evacuate] Evacuate. Leave the building now." in agent.said(), "the order"
+        lambda: "FF-01: [evacuate] Evacuate. Leave the building now." in agent.output(), "the order"
     )
     until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was played")
     text_id = order(browser, "text", text="stairs are gone")
-    until(lambda: "FF-01: [message] Message: stairs are gone" in agent.said(), "the message")
+    until(lambda: "FF-01: [message] Message: stairs are gone" in agent.output(), "the message")
     until(lambda: delivery(browser, text_id)["state"] == "notified", "that it was played, too")
     agent.kill()
     again = started("terminal:FF-01")
-    until(lambda: "[evacuate]" in again.said(), "the order after a restart")
-    until(lambda: "stairs are gone" in again.said(), "the message after a restart")
+    until(lambda: "[evacuate]" in again.output(), "the order after a restart")
+    until(lambda: "stairs are gone" in again.output(), "the message after a restart")
     assert again.stop() == 0
 
 
@@ -109,16 +109,16 @@ def test_an_order_ends_by_an_answer_by_radio_is_played_again_and_ends_by_the_all
     browser, shown, started, panel: PanelButton
 ) -> None:
     agent = started("terminal:FF-01")
-    until(lambda: "linked to the station" in agent.said(), "the link")
+    until(lambda: "linked to the station" in agent.output(), "the link")
     command_id = order(browser, "evacuate")
     until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was played")
     browser.call("POST", f"/commands/{command_id}/confirm", json={"unit_id": FF_01})
-    until(lambda: "END_ORDER" in agent.said(), "the end of the order")
-    ended = agent.said().count("[evacuate]")
+    until(lambda: "END_ORDER" in agent.output(), "the end of the order")
+    ended = agent.output().count("[evacuate]")
     time.sleep(_LONGER_S)
-    assert agent.said().count("[evacuate]") <= ended + 1, "one may have begun"
+    assert agent.output().count("[evacuate]") <= ended + 1, "one may have begun"
     browser.call("POST", f"/commands/{command_id}/confirm/undo", json={"unit_id": FF_01})
-    until(lambda: agent.said().count("[evacuate]") > ended + 1, "the order again")
+    until(lambda: agent.output().count("[evacuate]") > ended + 1, "the order again")
     until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was played again")
     browser.call("POST", f"/commands/{command_id}/repeat", json={})
     until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was sent again")
@@ -127,8 +127,10 @@ def test_an_order_ends_by_an_answer_by_radio_is_played_again_and_ends_by_the_all
     browser.call("POST", f"/commands/{locate_id}/stop", json={})
     until(lambda: delivery(browser, locate_id)["ended_ms"], "that the unit has stopped it")
     clear_id = browser.call("POST", f"/commands/{command_id}/all-clear", json={})["command_id"]
-    until(lambda: "[all clear] All clear. The evacuation is over." in agent.said(), "the all clear")
-    cleared = agent.said().count("[evacuate]")
+    until(
+        lambda: "[all clear] All clear. The evacuation is over." in agent.output(), "the all clear"
+    )
+    cleared = agent.output().count("[evacuate]")
     assert delivery(browser, command_id)["state"] == "expired"
 
     def is_acknowledged() -> bool:
@@ -138,7 +140,7 @@ def test_an_order_ends_by_an_answer_by_radio_is_played_again_and_ends_by_the_all
         return bool(delivery(browser, clear_id)["state"] == "acknowledged")
 
     until(is_acknowledged, "the answer to the all clear")
-    assert agent.said().count("[evacuate]") == cleared
+    assert agent.output().count("[evacuate]") == cleared
     assert agent.stop() == 0
 
 
@@ -146,28 +148,30 @@ def test_a_mayday_that_is_acknowledged_in_an_outage_is_played_once_after_it(
     browser, shown, started, panel: PanelButton
 ) -> None:
     agent = started("terminal:FF-01", source="simulated:loses-radio")
-    until(lambda: "linked to the station" in agent.said(), "the link")
+    until(lambda: "linked to the station" in agent.output(), "the link")
     panel.press()
-    until(lambda: "[mayday called]" in agent.said(), "the mayday in the unit")
+    until(lambda: "[mayday called]" in agent.output(), "the mayday in the unit")
     panel.release()
     until(lambda: any("Mayday" in text for text in shown.alarms.values()), "the alarm")
     (alarm,) = browser.call("GET", "/alarms")
-    until(lambda: "radio down" in agent.said(), "the outage")
+    until(lambda: "radio down" in agent.output(), "the outage")
     seen = {"last_raised_ms": alarm["last_raised_ms"]}
     browser.call("POST", f"/alarms/{alarm['alarm_id']}/acknowledge", json=seen)
     (command,) = browser.call("GET", "/commands")
     assert (command["kind"], command["units"][0]["state"]) == ("mayday_acknowledged", "queued")
     evacuation_id = order(browser, "evacuate")
     clear = browser.call("POST", f"/commands/{evacuation_id}/all-clear", json={})
-    until(lambda: "radio back" in agent.said(), "the end of the outage")
+    until(lambda: "radio back" in agent.output(), "the end of the outage")
     until(
         lambda: delivery(browser, command["command_id"])["state"] == "notified",
         "that the wearer was notified",
     )
-    assert agent.said().count("FF-01: [mayday acknowledged]") == 1
-    until(lambda: "[all clear]" in agent.said(), "the all clear, of what the unit had not received")
+    assert agent.output().count("FF-01: [mayday acknowledged]") == 1
+    until(
+        lambda: "[all clear]" in agent.output(), "the all clear, of what the unit had not received"
+    )
     until(lambda: delivery(browser, clear["command_id"])["received_ms"], "that the unit has it")
-    assert "[evacuate]" not in agent.said()
+    assert "[evacuate]" not in agent.output()
     assert delivery(browser, evacuation_id)["sent_ms"] is None
     assert agent.stop() == 0
 
@@ -184,7 +188,7 @@ def test_a_wearer_who_fell_is_notified_of_the_acknowledgement(browser, shown, st
         lambda: delivery(browser, command["command_id"])["state"] == "notified",
         "that the wearer was notified",
     )
-    assert "[alarm acknowledged] The commander knows of your alarm." in agent.said()
+    assert "[alarm acknowledged] The commander knows of your alarm." in agent.output()
     why = {**seen, "reason": "found_and_helped", "note": "at the stairs"}
     browser.call("POST", f"/alarms/{alarm['alarm_id']}/resolve", json=why)
     resolved = browser.call("GET", f"/alarms/{alarm['alarm_id']}")
@@ -210,7 +214,7 @@ def test_a_message_is_spoken_on_the_sound_card(
     )
     monkeypatch.setenv("ALSA_CONFIG_PATH", str(card))
     agent = started("speech:en")
-    until(lambda: "linked to the station" in agent.said(), "the link")
+    until(lambda: "linked to the station" in agent.output(), "the link")
     command_id = order(browser, "text", text="come out by the window")
     until(lambda: delivery(browser, command_id)["state"] == "notified", "that it was spoken")
     with wave.open(str(sound)) as spoken:
@@ -225,7 +229,7 @@ def test_without_a_sound_card_nobody_was_notified_and_the_reason_is_an_alarm(
     (tmp_path / "asound.conf").write_text("")
     monkeypatch.setenv("ALSA_CONFIG_PATH", str(tmp_path / "asound.conf"))
     agent = started("speech:en")
-    until(lambda: "linked to the station" in agent.said(), "the link")
+    until(lambda: "linked to the station" in agent.output(), "the link")
     command_id = order(browser, "text", text="come out by the window")
     until(lambda: "output speech:en" in str(shown.alarms), "the alarm of the broken output")
     assert delivery(browser, command_id)["state"] == "received"

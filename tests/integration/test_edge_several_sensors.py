@@ -91,7 +91,7 @@ def test_one_sensor_of_two_dies_and_the_unit_goes_on(
         until(lambda: gone in details(messages, EventKind.SENSOR_FAULT), "the foot is missed")
     finally:
         agent.kill()
-        print(agent.said())
+        print(agent.output())
     kept_messages = journalled(tmp_path / "data" / "u1" / "journal.sqlite")
     description = next(one for one in kept_messages if isinstance(one, UnitDescription))
     assert [(one.name, one.place) for one in description.sensors] == [

@@ -28,15 +28,15 @@ def at_its_pace() -> Iterator[bytes]:
 
 def test_the_agent_outlives_its_sensor_and_says_why(port: int, tmp_path: Path) -> None:
     compile_trackers()
-    heard: list[Message] = []
+    received: list[Message] = []
 
     def take(key: str, payload: bytes) -> None:
         channel = parse_key(key)[1]
         if channel is not COMMAND:
-            heard.append(decode(channel, payload))
+            received.append(decode(channel, payload))
 
     def faults() -> str:
-        events = [message for message in list(heard) if isinstance(message, UnitEvent)]
+        events = [message for message in list(received) if isinstance(message, UnitEvent)]
         return "\n".join(e.detail for e in events if e.kind is EventKind.SENSOR_FAULT)
 
     sensor_port = free_port()
@@ -45,13 +45,15 @@ def test_the_agent_outlives_its_sensor_and_says_why(port: int, tmp_path: Path) -
     with closing(ZenohBus(StationEndpoint((f"tcp/127.0.0.1:{port}",)))) as station:
         station.subscribe(f"{ROOT}/u1/**", take)
         with Agent(tmp_path / "agent.txt", *flags, *where) as agent:
-            until(lambda: heard, "the agent without its sensor")
+            until(lambda: received, "the agent without its sensor")
             with closing(TcpDevice(at_its_pace(), port=sensor_port)):
-                until(lambda: any(isinstance(one, Position) for one in list(heard)), "a position")
+                until(
+                    lambda: any(isinstance(one, Position) for one in list(received)), "a position"
+                )
             until(lambda: "it has ended the connection" in faults(), "that it is gone")
             until(lambda: "the connection is refused" in faults(), "that it does not come back")
             assert agent.runs()
             assert agent.stop() == 0
-    positions = [one for one in heard if isinstance(one, Position)]
+    positions = [one for one in received if isinstance(one, Position)]
     assert all(0 < one.header.t_mono_ns < time.monotonic_ns() for one in positions)
-    assert any(one.battery == 0.875 for one in heard if isinstance(one, Status))
+    assert any(one.battery == 0.875 for one in received if isinstance(one, Status))

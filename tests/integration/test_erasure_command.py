@@ -15,7 +15,7 @@ def forget(tmp_path: Path, data: Path, what: str, *, confirmed: str) -> tuple[in
     """Its exit code and what it said."""
     flags = ("forget", what, "--data", str(data))
     with Command(tmp_path / "forget.txt", *flags, stdin=f"{confirmed}\n") as command:
-        return command.wait(), command.said()
+        return command.wait(), command.output()
 
 
 def test_a_running_station_forgets_who_wears_a_unit(
@@ -24,17 +24,19 @@ def test_a_running_station_forgets_who_wears_a_unit(
     with Browser(serve().wait_ready(), data) as browser:
         incident_id = prepare(browser)
         browser.call("GET", f"/incidents/{incident_id}")  # the command reads the database itself
-        code, said = forget(tmp_path, data, "Ada", confirmed="Ada")
-        assert (code, "the incident Kitchen is open; close it first" in said) == (2, True), said
+        code, reported = forget(tmp_path, data, "Ada", confirmed="Ada")
+        assert (code, "the incident Kitchen is open; close it first" in reported) == (2, True), (
+            reported
+        )
         browser.call("POST", f"/incidents/{incident_id}/close")
         browser.call("GET", f"/incidents/{incident_id}")
-        code, said = forget(tmp_path, data, "Ada", confirmed="Bea")
-        assert (code, "nothing was deleted" in said) == (2, True), said
+        code, reported = forget(tmp_path, data, "Ada", confirmed="Bea")
+        assert (code, "nothing was deleted" in reported) == (2, True), reported
         assert browser.call("GET", "/people") != []
 
-        code, said = forget(tmp_path, data, "Ada", confirmed="Ada")
-        assert code == 0, said
-        assert "forgotten: person" in said
+        code, reported = forget(tmp_path, data, "Ada", confirmed="Ada")
+        assert code == 0, reported
+        assert "forgotten: person" in reported
         assert browser.call("GET", "/people") == []
         (unit,) = browser.call("GET", "/units")
         assert unit["person_id"] is None

@@ -46,10 +46,10 @@ def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> No
         forgetter = forgetter_of(data, store, records)
 
         def forget_until(progress: int) -> None:
-            told = iter(range(progress))
+            reported = iter(range(progress))
 
             def go_on(_: float) -> None:
-                if next(told, None) is None:
+                if next(reported, None) is None:
                     raise PowerCut
 
             forgetter.person("ada", "p-77", go_on)
@@ -62,7 +62,7 @@ def test_cut_short_anywhere_and_done_again_no_byte_is_left(tmp_path: Path) -> No
                 cuts += 1
     assert cuts > 4
     assert names_in(story.stored(), ANA) == []
-    assert [payload for payload in story.ana_said if payload in story.stored()] == []
+    assert [payload for payload in story.ana_stated if payload in story.stored()] == []
     assert 0 < sum(1 for _ in read_log(data.log)) < whole
 
 
@@ -80,8 +80,8 @@ def forgotten_in_tries(folder: Path, kind: str, subject_id: str, cut_at: Collect
                 assert desk._work_on_first(desk._jobs.under_way()) > 0.0, "it is tried again"
             desk = ErasureQueue(forgetter, data.forgettings, lambda _: "", lambda _: None)
         assert desk._work_on_first(desk._jobs.under_way()) == 0.0
-        (said,) = [one for one in records.audit_entries(EVER) if one.action.startswith("Forgot")]
-        return said.detail
+        (stated,) = [one for one in records.audit_entries(EVER) if one.action.startswith("Forgot")]
+        return stated.detail
 
 
 def _third_segment() -> Callable[..., int]:
@@ -105,9 +105,9 @@ BROKEN: dict[str, Callable[[Store, Records], tuple[Any, str, Any]]] = {
 @pytest.mark.parametrize("cut_at", [["log"], ["store"], ["compact"], ["audit"], [*BROKEN]])
 @pytest.mark.parametrize(("kind", "subject_id"), [("person", "p-77"), ("incident", "i1")])
 def test_in_many_tries_the_same_goes_and_the_audit_says_the_same(
-    tmp_path: Path, told: Path, kind: str, subject_id: str, cut_at: list[str]
+    tmp_path: Path, reported: Path, kind: str, subject_id: str, cut_at: list[str]
 ) -> None:
-    at_once, in_tries = (shutil.copytree(told, tmp_path / name) for name in ("once", "tries"))
+    at_once, in_tries = (shutil.copytree(reported, tmp_path / name) for name in ("once", "tries"))
     whole = forgotten_in_tries(at_once, kind, subject_id, [])
     assert forgotten_in_tries(in_tries, kind, subject_id, cut_at) == whole
     assert int(whole.split()[2]) > 10
@@ -125,9 +125,9 @@ def begun_in(folder: Path) -> Path:
 
 
 def test_who_was_there_is_kept_until_all_is_gone_and_nobody_is_forgotten_by_halves(
-    tmp_path: Path, told: Path
+    tmp_path: Path, reported: Path
 ) -> None:
-    folder = shutil.copytree(told, tmp_path / "station")
+    folder = shutil.copytree(reported, tmp_path / "station")
     data = DataFolder(folder)
     with Store(data.database) as store, pytest.MonkeyPatch.context() as patched:
         forgetter = forgetter_of(data, store, Records(store, SystemClock()))
@@ -142,11 +142,11 @@ def test_who_was_there_is_kept_until_all_is_gone_and_nobody_is_forgotten_by_halv
 
 
 @pytest.mark.parametrize("cut_at", [[], ["log"], ["audit"]])
-def test_what_cannot_be_read_of_the_log_is_told(
-    tmp_path: Path, told: Path, cut_at: list[str]
+def test_what_cannot_be_read_of_the_log_is_reported(
+    tmp_path: Path, reported: Path, cut_at: list[str]
 ) -> None:
     """It goes with what is written anew: nobody takes that for whole as it was."""
-    folder = shutil.copytree(told, tmp_path / "station")
+    folder = shutil.copytree(reported, tmp_path / "station")
     paths = segment_paths(DataFolder(folder).log)
     for path, chunk in ((paths[1], 1), (paths[-1], 0)):
         with SegmentReader(path) as reader:

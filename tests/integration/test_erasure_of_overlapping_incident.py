@@ -57,7 +57,7 @@ from tests.rig.station_script import Record, Script, new_pipeline
 
 PEOPLE = {"p-ana": "Anastazja Kovač", "p-bo": "Bo Lind", "p-cem": "Cem Öz", "p-dan": "Dan Moe"}
 UNITS = dict(zip(("FF-01", "FF-02", "FF-03"), PEOPLE, strict=False))
-HEARD_FIRST = "FF-04"  # before it is registered, while the lane alone is open
+RECEIVED_FIRST = "FF-04"  # before it is registered, while the lane alone is open
 LANE, HARBOUR = "i-lane", "i-harbour"
 
 
@@ -124,11 +124,11 @@ def play() -> _Scene:
     scene.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
     scene.act(*(Assign(*worn) for worn in UNITS.items()))
     scene.act(OpenIncident(LANE, "Mill Lane"))
-    scene.script.position(HEARD_FIRST, 0.0, 0.0)
+    scene.script.position(RECEIVED_FIRST, 0.0, 0.0)
     scene.act(OpenIncident(HARBOUR, "Harbour", beside_others=True))
     scene.act(SetPlan(plan(), HARBOUR), AssignIncident(HARBOUR, ("FF-02", "FF-03")))
-    scene.script.register(HEARD_FIRST)
-    scene.act(Assign(HEARD_FIRST, "p-dan"))
+    scene.script.register(RECEIVED_FIRST)
+    scene.act(Assign(RECEIVED_FIRST, "p-dan"))
     scene.act(*map(start, UNITS))
     scene.walk(20, FF_01=lane, FF_02=harbour, FF_03=harbour)
     scene.act(SetPin("pin-bo", "FF-02", 0, 3.25, 4.5, 1.0, None, None, 0.3, "Bo stands here"))
@@ -341,8 +341,8 @@ def test_done_again_nothing_changes_and_the_other_one_can_be_erased_after_it(
     assert list(read_log(folder / "log")) == once
     assert "stays" not in str(erase(HARBOUR))
     stored = stored_in(folder)
-    said = (*erased.scene.of_lane, *erased.scene.of_harbour)
-    assert [one for one in said if one[2] in stored] == []
+    reported = (*erased.scene.of_lane, *erased.scene.of_harbour)
+    assert [one for one in reported if one[2] in stored] == []
     station_app.rebuild(folder, lambda _: None)
     for incident_id in (LANE, HARBOUR):
         assert kept_of(folder, incident_id)["worn"] == []

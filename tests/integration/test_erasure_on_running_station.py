@@ -109,12 +109,12 @@ def test_what_was_wished_before_an_incident_opened_waits_for_its_end(tmp_path: P
 
 @pytest.mark.parametrize("comes", [True, False])
 def test_what_is_lost_of_a_segment_is_fetched_from_the_other_station_first(
-    tmp_path: Path, told: Path, monkeypatch: pytest.MonkeyPatch, comes: bool
+    tmp_path: Path, reported: Path, monkeypatch: pytest.MonkeyPatch, comes: bool
 ) -> None:
     """Written anew without it the segment would look whole.  Nobody waits for it in vain."""
     monkeypatch.setattr("base_station.privacy.erasure_queue._AGAIN_S", 0.05)
     monkeypatch.setattr("base_station.app.station_storage.REPAIR_RETENTION", 10**9 if comes else 2)
-    folder, clock = DataFolder(shutil.copytree(told, tmp_path / "station")), SystemClock()
+    folder, clock = DataFolder(shutil.copytree(reported, tmp_path / "station")), SystemClock()
     damaged = segment_paths(folder.log)[1]
     whole = damaged.read_bytes()
     with SegmentReader(damaged) as reader:
@@ -142,10 +142,10 @@ def test_what_is_lost_of_a_segment_is_fetched_from_the_other_station_first(
 
 
 def test_what_is_saved_is_removed_when_the_running_station_has_forgotten(
-    tmp_path: Path, told: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, reported: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What it saves before that has everything in it."""
-    data, happened = DataFolder(shutil.copytree(told, tmp_path / "station")), list[str]()
+    data, happened = DataFolder(shutil.copytree(reported, tmp_path / "station")), list[str]()
 
     class Acted(Future[ActionResult]):
         def result(self, timeout: float | None = None) -> ActionResult:
@@ -176,11 +176,11 @@ def test_a_recording_that_is_being_pulled_does_not_come_back(tmp_path: Path) -> 
     def ask(unit_id: str, question: str) -> bytes | None:
         asked.append(f"{unit_id} {question}")
         what, _, parameters = question.partition("?")
-        told = dict(pair.split("=", 1) for pair in parameters.split(";"))
+        reported = dict(pair.split("=", 1) for pair in parameters.split(";"))
         if what == "index":
             file = RecordedFile("day/000001.mcap", 100_000_000)  # it lasts
             return RecordingIndex((file,), 1).to_bytes()
-        offset, data = int(told["offset"]), b"somebody walked" * 50
+        offset, data = int(reported["offset"]), b"somebody walked" * 50
         digest = hashlib.sha256(data).digest()
         return RecordingPiece(offset, data, digest, gone=False).to_bytes()
 

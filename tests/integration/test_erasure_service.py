@@ -50,14 +50,14 @@ def test_no_byte_is_left_of_a_person(story: Story) -> None:
     before = story.stored()
     assert names_in(before, ANA)
     assert any(piece in before for piece in pieces(story.photo))
-    assert all(payload in before for payload in story.ana_said)
+    assert all(payload in before for payload in story.ana_stated)
 
     forget(story, "p-77")
 
     after = story.stored()
     assert names_in(after, ANA) == []
     assert not any(piece in after for piece in pieces(story.photo))
-    assert [payload for payload in story.ana_said if payload in after] == []
+    assert [payload for payload in story.ana_stated if payload in after] == []
     of_bo = [one for one in fused_in(story) if one.unit_id == "FF-01"]
     assert of_bo
     assert len(of_bo) < len([one for one in fused_in(story) if one.unit_id == "FF-02"])
@@ -116,7 +116,7 @@ def test_the_audit_keeps_who_did_what(story: Story) -> None:
     with Store(story.folder / "station.sqlite") as store:
         records = Records(store, SystemClock())
         audit = records.audit_entries(EVER)
-        said = [(entry.by, entry.action) for entry in audit]
+        reported = [(entry.by, entry.action) for entry in audit]
         assert records.track("FF-02", EVER)
         (mayday,) = [one for one in records.alarms(EVER) if one.rule == "mayday"]
         roster = Roster(store, SystemClock())
@@ -124,8 +124,8 @@ def test_the_audit_keeps_who_did_what(story: Story) -> None:
         assert roster.photo("p-77") is None
         worn = {one.person_id: roster.wearer(one).name for one in roster.assignments(0, FOREVER_NS)}
     for action in ("Assign", "SetPin", "ResolveAlarm", "AddedPerson"):
-        assert ("chief", action) in said
-    assert ("muster base forget", "ForgotPerson") in said
+        assert ("chief", action) in reported
+    assert ("muster base forget", "ForgotPerson") in reported
     assert mayday.text == ERASED_TEXT
     assert mayday.state == "resolved"
     assert worn == {"p-77": ERASED_TEXT, "p-bo": BO, "p-cem": CEM}
@@ -146,9 +146,11 @@ def test_the_tables_made_again_from_the_log_know_no_more(story: Story) -> None:
 def test_an_incident_is_forgotten_with_everybody_in_it(story: Story) -> None:
     forget(story, "i1")
     after = story.stored()
-    assert [payload for payload in story.ana_said if payload in after] == []
-    said = [one.message for one in story.events()]
-    assert {type(one) for one in said if channel_of(one).direction is Direction.UP} == {Heartbeat}
+    assert [payload for payload in story.ana_stated if payload in after] == []
+    reported = [one.message for one in story.events()]
+    assert {type(one) for one in reported if channel_of(one).direction is Direction.UP} == {
+        Heartbeat
+    }
     assert fused_in(story) == []
     pipeline = make_pipeline()
     worn = []
@@ -184,9 +186,9 @@ def test_an_incident_is_forgotten_again_when_a_unit_brings_more_of_it(story: Sto
         last = max((one for one in headers if one.unit_id == unit_id), key=lambda one: one.seq)
         late = encode(message_factory.status(msgspec.structs.replace(last, seq=10_000)))
         with LiveStation(story.folder) as station:
-            heard = station.pipeline.state.units[unit_id]
+            received = station.pipeline.state.units[unit_id]
             station.feed.offer(backfilled_key(unit_id, STATUS.suffix), late)
-            until(partial(heard.has, last.boot_id, 10_000))
+            until(partial(received.has, last.boot_id, 10_000))
         assert late in story.stored()
         forget(story, "i1")
         assert late not in story.stored()
@@ -270,7 +272,7 @@ def test_what_a_command_left_half_done_the_station_goes_on_with(
     assert (job.by, job.subject_id, job.began) == ("muster base forget", what, True)
     forget(story, what)
     stored = story.stored()
-    assert [payload for payload in story.ana_said if payload in stored] == []
+    assert [payload for payload in story.ana_stated if payload in stored] == []
     (job,) = JobList(story.folder / "forgetting.json", ErasureJob).all()
     assert job.state is ErasureState.DONE
     with Store(story.folder / "station.sqlite") as store:

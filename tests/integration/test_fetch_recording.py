@@ -40,14 +40,14 @@ class Running:
         flags += ["--data", str(folder / "units")]
         self.agent = stack.enter_context(Agent(folder / "agent.txt", *flags))
         self.began_ms = round(time.time() * 1000) - 60_000
-        until(lambda: "linked to the station" in self.agent.said(), "the unit is linked")
+        until(lambda: "linked to the station" in self.agent.output(), "the unit is linked")
         until(lambda: self._recorded_bytes() > 20_000, "the unit has recorded")
 
     def fetch(self, *arguments: str) -> tuple[int, str]:
         with Command(
             self.folder / "fetch.txt", "fetch-recording", *arguments, *self.where
         ) as command:
-            return command.wait(), command.said()
+            return command.wait(), command.output()
 
     def pulled(self) -> list[Path]:
         return [boot for boot in (self.data / "recordings" / UNIT).glob("2*") if boot.is_dir()]
@@ -63,8 +63,8 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
 
 
 def test_the_command_pulls_what_the_unit_has_recorded(running: Running) -> None:
-    code, said = running.fetch(UNIT, "--from", "2020-01-01T00:00+00:00")
-    assert code == 0, said
+    code, reported = running.fetch(UNIT, "--from", "2020-01-01T00:00+00:00")
+    assert code == 0, reported
     (boot,) = running.pulled()
     assert boot.name in {one.name for one in (running.folder / "units" / UNIT).glob("*/*")}
     assert segment_paths(boot)
@@ -89,7 +89,7 @@ def test_the_api_pulls_it_too_and_consoles_see_how_far_it_is(running: Running) -
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "reported"),
     [
         (["bert", "--from", "2020-01-01"], "there is no unit bert; known are: anna"),
         ([UNIT], "say which window"),
@@ -100,11 +100,11 @@ def test_the_api_pulls_it_too_and_consoles_see_how_far_it_is(running: Running) -
     ],
 )
 def test_what_cannot_be_is_refused_in_words(
-    running: Running, arguments: list[str], said: str
+    running: Running, arguments: list[str], reported: str
 ) -> None:
     result = CliRunner().invoke(app, ["fetch-recording", *arguments, *running.where])
     assert isinstance(result.exception, UserError)
-    assert said in str(result.exception)
+    assert reported in str(result.exception)
 
 
 def test_a_refusal_is_one_sentence_and_no_success(running: Running) -> None:

@@ -58,7 +58,7 @@ def server() -> Iterator[DatabaseServer]:
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def stated(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A station's folder with people in it, whose tables are in a file."""
     folder = Story(tmp_path_factory.mktemp("told") / "station", older=False).folder
     with Store(folder / "station.sqlite") as store:
@@ -73,10 +73,10 @@ def address(server: DatabaseServer, tmp_path: Path) -> ServerAddress:
 
 
 @pytest.fixture
-def moved(told: Path, address: ServerAddress, tmp_path: Path) -> Path:
+def moved(stated: Path, address: ServerAddress, tmp_path: Path) -> Path:
     """The folder, once a station has run on it with the server in its settings."""
     folder = tmp_path / "station"
-    shutil.copytree(told, folder)
+    shutil.copytree(stated, folder)
     announced = start(folder, address)
     assert any("were copied from" in line for line in announced)
     assert start(folder, address) == []
@@ -104,10 +104,10 @@ def rows(store: Database, tables: list[type[Base]]) -> dict[str, list[str]]:
 
 
 def test_users_people_and_projections_go_to_the_server_and_come_back_in_a_backup(
-    moved: Path, told: Path, address: ServerAddress, tmp_path: Path
+    moved: Path, stated: Path, address: ServerAddress, tmp_path: Path
 ) -> None:
     kept = [one.class_ for one in Base.registry.mappers if one.class_ not in PROJECTIONS]
-    with Store(told / "station.sqlite") as file, ServerStore(address) as store:
+    with Store(stated / "station.sqlite") as file, ServerStore(address) as store:
         assert rows(store, LOGGED) == rows(file, LOGGED)
         assert rows(store, kept) == rows(file, kept)
     back_up(moved, tmp_path / "backup", lambda _: None)
@@ -238,7 +238,9 @@ def test_a_password_file_belongs_to_a_database(tmp_path: Path) -> None:
         ServerStore(address)
 
 
-def test_a_missing_library_is_said_with_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_library_is_stated_with_how_to_install_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr("base_station.storage.db.server_engine.find_spec", lambda _: None)
     with pytest.raises(StoreError, match=r"requirements-postgresql\.lock"):
         ServerStore(ServerAddress("postgresql+psycopg://db/muster"))

@@ -89,10 +89,10 @@ def generated(
     with Browser(address, data) as browser:
         administrator = {"name": "client", "role": "administrator"}
         token = browser.call("POST", "/tokens", json=administrator)["token"]
-    said = generate(
+    stated = generate(
         httpx.get(f"{address}/api/v1/openapi.json", timeout=PATIENCE_S).content, tmp_path
     )
-    assert "WARNING" not in said
+    assert "WARNING" not in stated
     monkeypatch.syspath_prepend(str(tmp_path))
     made = Generated(address, token)
     with made.client, made.stranger:
@@ -128,8 +128,8 @@ def work(muster: Generated) -> str:
     again = call("incidents.open_incident", body=fire, idempotency_key="once")
     assert again.incident_id == incident.incident_id
     target = models.UnitTarget(unit_id="FF-01")
-    told = models.NewCommand(kind=models.Kind.EVACUATE, target=target)
-    command = call("commands.send", body=told)
+    reported = models.NewCommand(kind=models.Kind.EVACUATE, target=target)
+    command = call("commands.send", body=reported)
     assert [one.unit_id for one in command.units] == ["FF-01"]
     assert call("alarms.list_alarms", limit=5) == []
     assert call("health.get_health").consoles == 0

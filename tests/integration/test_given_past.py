@@ -124,7 +124,7 @@ def test_one_file_is_enough_where_all_of_it_is_in_that(tmp_path: Path) -> None:
     assert "FF-02" in judged.output
 
 
-def test_what_is_no_log_is_said(given: Path, tmp_path: Path) -> None:
+def test_what_is_no_log_is_stated(given: Path, tmp_path: Path) -> None:
     def refusal(data: Path) -> str:
         result = run("assess", "i1", data)
         assert isinstance(result.exception, LogError)
@@ -148,7 +148,7 @@ def test_what_is_no_log_is_said(given: Path, tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def told() -> list[str]:
+def reported() -> list[str]:
     return []
 
 
@@ -158,52 +158,54 @@ def closing_at_end() -> Iterator[ExitStack]:
         yield stack
 
 
-def test_what_a_log_lacks_is_told(copy: Path, told: list[str], closing_at_end: ExitStack) -> None:
+def test_what_a_log_lacks_is_reported(
+    copy: Path, reported: list[str], closing_at_end: ExitStack
+) -> None:
     paths = segment_paths(copy / "log")
     paths[1].unlink()
     paths[2].unlink()
     torn = paths[-1]
     torn.write_bytes(torn.read_bytes()[:300])
-    opened = _open(copy, "i1", told, closing_at_end)
-    missing = [one for one in told if "missing" in one]
+    opened = _open(copy, "i1", reported, closing_at_end)
+    missing = [one for one in reported if "missing" in one]
     assert len(missing) == 1
     assert missing[0].startswith("segments 2 to 3 of the log are missing: what happened from 2023-")
-    assert any(one.startswith(torn.name) for one in told)
-    assert list(opened.archive().flaws()) == [one for one in told if "database" not in one]
+    assert any(one.startswith(torn.name) for one in reported)
+    assert list(opened.archive().flaws()) == [one for one in reported if "database" not in one]
 
 
 def test_a_whole_log_has_nothing_to_tell_of(
-    copy: Path, told: list[str], closing_at_end: ExitStack
+    copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     station_app.rebuild(copy, lambda _: None)
-    opened = _open(copy, "i1", told, closing_at_end)
-    assert told == []
+    opened = _open(copy, "i1", reported, closing_at_end)
+    assert reported == []
     assert opened.keeps_result
     segment_paths(copy / "log")[-1].unlink()
-    _open(copy, "i1", told, closing_at_end)
-    assert any("missing" in one for one in told), "only the database knows of it"
+    _open(copy, "i1", reported, closing_at_end)
+    assert any("missing" in one for one in reported), "only the database knows of it"
 
 
-def test_damage_is_told_when_it_is_come_by_and_once(
-    copy: Path, told: list[str], closing_at_end: ExitStack
+def test_damage_is_reported_when_it_is_come_by_and_once(
+    copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     station_app.rebuild(copy, lambda _: None)
     path = segment_paths(copy / "log")[1]
     data = bytearray(path.read_bytes())
     data[len(data) // 2] ^= 0xFF
     path.write_bytes(data)
-    opened = _open(copy, "i1", told, closing_at_end)
+    opened = _open(copy, "i1", reported, closing_at_end)
     for _ in range(2):
         assert list(opened.log.records())
-    (damage,) = (one for one in told if path.name in one)
+    (damage,) = (one for one in reported if path.name in one)
     assert damage in opened.archive().flaws(), "and on the screen, by then"
 
 
 def test_damage_that_a_seek_passes_over_is_found_by_looking_on(
-    copy: Path, told: list[str], closing_at_end: ExitStack
+    copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     station_app.rebuild(copy, lambda _: None)
-    archive = _open(copy, "i1", told, closing_at_end).archive()
+    archive = _open(copy, "i1", reported, closing_at_end).archive()
     path = segment_paths(copy / "log")[1]
     data = bytearray(path.read_bytes())
     data[len(data) // 2] ^= 0xFF
@@ -213,7 +215,7 @@ def test_damage_that_a_seek_passes_over_is_found_by_looking_on(
         pass
     (damage,) = archive.flaws()
     assert damage.startswith(f"a part of the log cannot be read: {path.name}: the chunk at byte")
-    assert told == [damage]
+    assert reported == [damage]
 
 
 def emptied(path: Path) -> None:
@@ -232,7 +234,7 @@ def of_another_time(path: Path) -> None:
 
 
 def test_a_segment_of_another_station_behind_the_log_lengthens_no_replay(
-    tmp_path: Path, told: list[str], closing_at_end: ExitStack
+    tmp_path: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """With the next number and a later time, of an incident that is not closed in the log."""
     data, is_open = tmp_path / "station", len(walked()) - 200
@@ -243,27 +245,29 @@ def test_a_segment_of_another_station_behind_the_log_lengthens_no_replay(
     number = len(segment_paths(data / "log")) + 1
     beside = segment_path(data / "log", number, segment_began_ns(elsewhere))
     shutil.move(tmp_path / "other.mcap", beside)
-    opened = _open(data, "i1", told, closing_at_end)
-    assert [beside.name in one for one in told].count(True) == 1, told
-    assert f"{beside.name} is no segment of this log and is left out: it is of another log" in told
+    opened = _open(data, "i1", reported, closing_at_end)
+    assert [beside.name in one for one in reported].count(True) == 1, reported
+    assert (
+        f"{beside.name} is no segment of this log and is left out: it is of another log" in reported
+    )
     assert max(one.end_ns for one in opened.folder.segments()) == end_ns
 
 
 @pytest.mark.parametrize("is_station", [True, False])
 def test_files_that_cannot_be_of_the_log_are_named(
-    is_station: bool, copy: Path, told: list[str], closing_at_end: ExitStack
+    is_station: bool, copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """In a station's folder, or among files that somebody gives."""
     log = copy / "log"
     of_another_time(copy / "foreign.mcap")
     shutil.move(copy / "foreign.mcap", log)
     (log / "empty.mcap").touch()
-    opened = _open(copy if is_station else log, "i1", told, closing_at_end)
+    opened = _open(copy if is_station else log, "i1", reported, closing_at_end)
     for name in ("foreign.mcap", "empty.mcap"):
-        (said,) = (one for one in told if name in one)
-        assert f"{name} is no segment of this log and is left out" in said
+        (stated,) = (one for one in reported if name in one)
+        assert f"{name} is no segment of this log and is left out" in stated
     assert len(list(opened.folder.segments())) == len(segment_paths(log))
-    assert set(told) <= {*opened.defects(), *told[-1:]}
+    assert set(reported) <= {*opened.defects(), *reported[-1:]}
 
 
 def cut_short(path: Path) -> None:
@@ -280,37 +284,37 @@ def cut_short(path: Path) -> None:
     ],
 )
 @pytest.mark.parametrize("has_database", [True, False])
-def test_whatever_became_of_a_segment_is_told_and_the_replay_is_as_long_as_before(
+def test_whatever_became_of_a_segment_is_reported_and_the_replay_is_as_long_as_before(
     damage: Callable[[Path], None],
     words: str,
     has_database: bool,
     copy: Path,
-    told: list[str],
+    reported: list[str],
     closing_at_end: ExitStack,
 ) -> None:
     if has_database:
         station_app.rebuild(copy, lambda _: None)
     end_ns = max(one.end_ns for one in DataFolder(copy).segments())
     damage(segment_paths(copy / "log")[1])
-    opened = _open(copy, "i1", told, closing_at_end)
-    assert any(words in one for one in told), told
-    assert not any("decides otherwise" in one for one in told)
+    opened = _open(copy, "i1", reported, closing_at_end)
+    assert any(words in one for one in reported), reported
+    assert not any("decides otherwise" in one for one in reported)
     assert max(one.end_ns for one in opened.folder.segments()) == end_ns
 
 
 def test_a_part_of_a_log_from_its_middle_is_no_other_program(
-    copy: Path, told: list[str], closing_at_end: ExitStack
+    copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """It lacks what was before, and that is told."""
     _log(copy / "decided", list(logged()), SegmentPolicy(segment_s=30.0))
     segment_paths(copy / "decided" / "log")[0].rename(copy / "first.mcap")
     (middle, *_) = segment_paths(copy / "decided" / "log")
-    _open(middle, "i1", told, closing_at_end)
-    assert not any("decides otherwise" in one for one in told)
+    _open(middle, "i1", reported, closing_at_end)
+    assert not any("decides otherwise" in one for one in reported)
 
 
 def test_a_log_of_which_only_the_index_is_cut_has_lost_nothing(
-    copy: Path, told: list[str], closing_at_end: ExitStack
+    copy: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     path = segment_paths(copy / "log")[1]
     with SegmentReader(path) as reader:
@@ -324,12 +328,12 @@ def test_a_log_of_which_only_the_index_is_cut_has_lost_nothing(
     path.write_bytes(content[:-40])
     assert recover_log(copy / "log")[0].bytes_lost == 0
     assert str(recover_log(copy / "log")) == "[]"
-    _open(copy, "i1", told, closing_at_end)
-    assert not any("lost" in one or "cannot be read" in one for one in told)
+    _open(copy, "i1", reported, closing_at_end)
+    assert not any("lost" in one or "cannot be read" in one for one in reported)
 
 
 def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
-    tmp_path: Path, told: list[str], closing_at_end: ExitStack
+    tmp_path: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """As where the log was copied again and the database was not."""
     script = Script()
@@ -343,27 +347,31 @@ def test_a_database_that_is_older_than_the_log_is_not_believed_about_it(
     _log(tmp_path, script.records[:half])
     station_app.rebuild(tmp_path, lambda _: None)
     _log(tmp_path, script.records[half:])
-    opened = _open(tmp_path, "i2", told, closing_at_end)
+    opened = _open(tmp_path, "i2", reported, closing_at_end)
     assert Records(opened.store, SystemClock()).require_incident("i2").name == "Church Street"
     assert not opened.keeps_result
-    assert Records(_open(tmp_path, "i1", told, closing_at_end).store, SystemClock()).incident("i1")
+    assert Records(_open(tmp_path, "i1", reported, closing_at_end).store, SystemClock()).incident(
+        "i1"
+    )
 
 
-def test_another_program_that_decides_otherwise_is_told(
-    tmp_path: Path, told: list[str], closing_at_end: ExitStack
+def test_another_program_that_decides_otherwise_is_reported(
+    tmp_path: Path, reported: list[str], closing_at_end: ExitStack
 ) -> None:
     """Nobody may take what it shows for what was shown."""
     _log(tmp_path, list(logged(north(2.0))))
-    opened = _open(tmp_path, "i1", told, closing_at_end)
-    assert any("decides otherwise than the station did" in one for one in told)
+    opened = _open(tmp_path, "i1", reported, closing_at_end)
+    assert any("decides otherwise than the station did" in one for one in reported)
     assert any("decides otherwise" in one for one in opened.archive().flaws())
 
 
-def _open(data: Path, incident_id: str, told: list[str], stack: ExitStack) -> Any:
-    return open_offline_log(data, incident_id, stack, told.append, lambda _: None, in_place=True)
+def _open(data: Path, incident_id: str, reported: list[str], stack: ExitStack) -> Any:
+    return open_offline_log(
+        data, incident_id, stack, reported.append, lambda _: None, in_place=True
+    )
 
 
-def test_a_replay_that_is_told_to_end_as_it_begins_leaves_no_copy_of_people_s_data(
+def test_a_replay_that_is_ordered_to_end_as_it_begins_leaves_no_copy_of_people_s_data(
     copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scratch = tmp_path / "scratch"
@@ -396,7 +404,7 @@ def test_a_replay_leaves_the_folder_as_it_was(
     flags = ("--data", str(copy), "--http", "127.0.0.1:0")
     with CommandByModes(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
         address = replaying.wait_ready()
-        (line,) = (one for one in replaying.said().splitlines() if "login" in one)
+        (line,) = (one for one in replaying.output().splitlines() if "login" in one)
         _, username, password = (part.split()[0] for part in line.split(": "))
         headers = {"Origin": address}
         with httpx.Client(
@@ -410,7 +418,7 @@ def test_a_replay_leaves_the_folder_as_it_was(
     assert {one: one.stat().st_mtime_ns for one in folders} == folders
 
 
-def test_whoever_was_given_another_stations_folder_can_log_in(copy: Path, tmp_path: Path) -> None:
+def test_anyone_was_given_another_stations_folder_can_log_in(copy: Path, tmp_path: Path) -> None:
     """Nobody here knows its passwords, and they are not to be changed in what was given."""
     station_app.rebuild(copy, lambda _: None)
     with Store(copy / "station.sqlite") as store:
@@ -419,7 +427,7 @@ def test_whoever_was_given_another_stations_folder_can_log_in(copy: Path, tmp_pa
     flags = ("--data", str(copy), "--http", "127.0.0.1:0")
     with Command(tmp_path / "replay.txt", "replay", "i1", *flags) as replaying:
         address = replaying.wait_ready()
-        (line,) = (one for one in replaying.said().splitlines() if "login" in one)
+        (line,) = (one for one in replaying.output().splitlines() if "login" in one)
         _, username, password = (part.split()[0] for part in line.split(": "))
         headers = {"Origin": address}
         with httpx.Client(

@@ -17,14 +17,14 @@ from edge.sources.gnss.reader import GnssReader
 from edge.sources.gnss.registry import open_receiver
 from shared.clock import NS_PER_S, SystemClock
 from shared.messages import FixType
-from tests.rig.gps_receiver import Told, burst
+from tests.rig.gps_receiver import Reported, burst
 from tests.rig.station_process import free_port
 from tests.rig.waiting import until
 from tests.rig.ximu3_device import PtyDevice, paced
 
 LONG_S = 120  # longer than any of this takes
 STD_M = 2.0
-HERE = Told(std_m=STD_M, vertical_std_m=3.0)
+HERE = Reported(std_m=STD_M, vertical_std_m=3.0)
 
 
 class Gpsd:
@@ -71,15 +71,15 @@ def sure_fix(reader: GnssReader) -> GpsSample:
     """The first of which gpsd has heard the receiver's own accuracy."""
     found: list[GpsSample] = []
 
-    def heard() -> bool:
+    def received() -> bool:
         found.extend(fix for fix in reader.take() if fix.horizontal_std_m == STD_M)
         return bool(found)
 
-    until(heard, "a fix with the receiver's own accuracy")
+    until(received, "a fix with the receiver's own accuracy")
     return found[0]
 
 
-def test_a_fix_is_what_the_receiver_said(reader: GnssReader) -> None:
+def test_a_fix_is_what_the_receiver_stated(reader: GnssReader) -> None:
     fix = sure_fix(reader)
     assert (fix.lat_deg, fix.lon_deg) == pytest.approx((HERE.lat_deg, HERE.lon_deg), abs=1e-6)
     assert fix.height_m == pytest.approx(HERE.height_m, abs=0.1)  # above the ellipsoid
@@ -88,7 +88,7 @@ def test_a_fix_is_what_the_receiver_said(reader: GnssReader) -> None:
     assert abs(fix.t_ns - SystemClock().monotonic_ns()) < 5 * NS_PER_S
 
 
-def test_one_that_is_begun_again_is_heard_again(gpsd: Gpsd, reader: GnssReader) -> None:
+def test_one_that_is_begun_again_is_received_again(gpsd: Gpsd, reader: GnssReader) -> None:
     sure_fix(reader)
     gpsd.end()
     until(reader.take_faults, "word of its end")

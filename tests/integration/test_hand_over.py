@@ -84,7 +84,7 @@ def opened_offline(path: Path, incident_id: str, closing_all: ExitStack) -> Offl
     ids=["file", "archive", "backup"],
 )
 @pytest.mark.parametrize("radio", [("--radio",), ()], ids=["with audio", "without"])
-def test_who_gets_it_has_what_was_brought_in_and_hears_the_radio(
+def test_who_gets_it_has_what_was_brought_in_and_receives_the_radio(
     data: Path,
     tmp_path: Path,
     command: tuple[str, ...],

@@ -17,7 +17,7 @@ async def nothing(_scope: Scope, _receive: Receive, _send: Send) -> None:
     """No application: nobody asks it anything."""
 
 
-async def test_a_failure_is_told_and_tried_again(
+async def test_a_failure_is_reported_and_tried_again(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr("base_station.api.server._HOUSEKEEPING_S", 0.01)
@@ -32,10 +32,10 @@ async def test_a_failure_is_told_and_tried_again(
             os.kill(os.getpid(), signal.SIGTERM)
         raise StoreError("the database cannot be read")
 
-    said: list[str] = []
+    reported: list[str] = []
     server = ConsoleServer(nothing, bind("127.0.0.1", 0))
     async with asyncio.timeout(20.0):
-        await serve_until_stopped(server, said.append, keep_house)
+        await serve_until_stopped(server, reported.append, keep_house)
     assert tries >= 3
-    assert [line.split()[0] for line in said] == ["ready"]
+    assert [line.split()[0] for line in reported] == ["ready"]
     assert "the database cannot be read" in caplog.text

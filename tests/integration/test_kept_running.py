@@ -13,7 +13,7 @@ from tests.rig.waiting import PATIENCE_S
 
 
 @pytest.fixture
-def heard(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], str]]:
+def received(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], str]]:
     """Gives what was said next; the socket is in the environment of what is started."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listening:
         listening.bind(str(tmp_path / "notify"))
@@ -23,19 +23,19 @@ def heard(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[
 
 
 def test_a_station_says_that_it_is_ready_and_goes_on_saying_that_it_works(
-    heard: Callable[[], str], serve: Callable[..., Command]
+    received: Callable[[], str], serve: Callable[..., Command]
 ) -> None:
     station = serve()
-    said = {heard()}
-    while "READY=1" not in said:
-        said.add(heard())
+    stated = {received()}
+    while "READY=1" not in stated:
+        stated.add(received())
     station.wait_ready()
-    assert [heard() for _ in range(3)] == ["WATCHDOG=1"] * 3
+    assert [received() for _ in range(3)] == ["WATCHDOG=1"] * 3
     assert station.stop() == 0
 
 
-def test_an_agent_says_so_without_a_station(heard: Callable[[], str], tmp_path: Path) -> None:
+def test_an_agent_says_so_without_a_station(received: Callable[[], str], tmp_path: Path) -> None:
     flags = ("--unit", "FF-01", "--source", "simulated:straight", "--data", str(tmp_path))
     with Agent(tmp_path / "said.txt", *flags) as agent:
-        assert [heard() for _ in range(3)] == ["READY=1", "WATCHDOG=1", "WATCHDOG=1"]
+        assert [received() for _ in range(3)] == ["READY=1", "WATCHDOG=1", "WATCHDOG=1"]
         assert agent.stop() == 0

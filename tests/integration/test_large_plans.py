@@ -27,7 +27,7 @@ class _Shown(msgspec.Struct):
     position: _Place | None = None
 
 
-class _Told(msgspec.Struct):
+class _Reported(msgspec.Struct):
     type: str
     units: list[_Shown] = []
 
@@ -62,7 +62,7 @@ def test_positions_are_shown_while_a_plan_of_11_mb_is_laid(
                     if len(text) > PLAN_BYTES:
                         plans.append(len(text))
                         continue
-                    units, now_s = msgspec.json.decode(text, type=_Told).units, time.time()
+                    units, now_s = msgspec.json.decode(text, type=_Reported).units, time.time()
                     places = [one.position for one in units if one.position is not None]
                     ages_s.extend(now_s - place.t_ms / 1000.0 for place in places)
 

@@ -55,9 +55,9 @@ def router(pki: PkiFolder, anna: Enrolment) -> Iterator[None]:
 
 
 def test_nothing_listens(anna: Enrolment, now: datetime) -> None:
-    said = why_no_link(anna.connect, anna.identity, now)
-    assert "nothing listens on port" in said
-    assert "does the station run?" in said
+    reported = why_no_link(anna.connect, anna.identity, now)
+    assert "nothing listens on port" in reported
+    assert "does the station run?" in reported
 
 
 @pytest.mark.usefixtures("router")
@@ -67,8 +67,8 @@ def test_all_is_well(anna: Enrolment, now: datetime) -> None:
 
 @pytest.mark.usefixtures("router")
 def test_the_station_belongs_to_another_authority(foreign: Enrolment, now: datetime) -> None:
-    said = why_no_link(foreign.connect, foreign.identity, now)
-    assert "is not the one that enrolled this unit" in said
+    reported = why_no_link(foreign.connect, foreign.identity, now)
+    assert "is not the one that enrolled this unit" in reported
 
 
 @pytest.mark.usefixtures("router")
@@ -78,17 +78,17 @@ def test_the_station_does_not_know_the_authority(
     mixed = TlsIdentity(
         anna.identity.authority, foreign.identity.certificate, foreign.identity.private_key
     )
-    said = why_no_link(anna.connect, mixed, now)
-    assert "enrol at this station" in said
-    assert "the station" in said
+    reported = why_no_link(anna.connect, mixed, now)
+    assert "enrol at this station" in reported
+    assert "the station" in reported
 
 
 @pytest.mark.usefixtures("router")
 def test_the_certificate_does_not_stand_for_the_address(anna: Enrolment, now: datetime) -> None:
     unnamed = anna.connect[0].replace("127.0.0.1", "127.0.0.2")
-    said = why_no_link([unnamed], anna.identity, now)
-    assert "does not stand for 127.0.0.2" in said
-    assert "renew-station --host 127.0.0.2" in said
+    reported = why_no_link([unnamed], anna.identity, now)
+    assert "does not stand for 127.0.0.2" in reported
+    assert "renew-station --host 127.0.0.2" in reported
 
 
 @pytest.mark.usefixtures("router")
@@ -101,9 +101,9 @@ def test_the_stations_clock_says_expired(pki: PkiFolder, now: datetime) -> None:
 
 
 def test_the_clock_here_is_behind(anna: Enrolment, now: datetime) -> None:
-    said = why_no_link(anna.connect, anna.identity, datetime(1970, 1, 1, tzinfo=UTC))
-    assert "is not valid before" in said
-    assert "1970-01-01" in said
+    reported = why_no_link(anna.connect, anna.identity, datetime(1970, 1, 1, tzinfo=UTC))
+    assert "is not valid before" in reported
+    assert "1970-01-01" in reported
 
 
 @pytest.mark.usefixtures("router")
@@ -112,8 +112,8 @@ def test_no_enrolment_where_one_is_wanted(anna: Enrolment, now: datetime) -> Non
 
 
 def test_a_name_that_nobody_knows(anna: Enrolment, now: datetime) -> None:
-    said = why_no_link(["tls/station.invalid:7447"], anna.identity, now)
-    assert "the name station.invalid is not known" in said
+    reported = why_no_link(["tls/station.invalid:7447"], anna.identity, now)
+    assert "the name station.invalid is not known" in reported
 
 
 def test_something_else_listens(anna: Enrolment, now: datetime) -> None:
@@ -130,6 +130,6 @@ def test_something_else_listens(anna: Enrolment, now: datetime) -> None:
         thread = Thread(target=answer)
         thread.start()
         port = other.getsockname()[1]
-        said = why_no_link([f"tls/127.0.0.1:{port}"], anna.identity, now)
+        reported = why_no_link([f"tls/127.0.0.1:{port}"], anna.identity, now)
         thread.join()
-    assert "does not speak TLS" in said
+    assert "does not speak TLS" in reported

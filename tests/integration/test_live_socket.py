@@ -46,7 +46,7 @@ def token_of(station: DeskStation, role: Role = Role.VIEWER) -> dict[str, str]:
     return {"Authorization": f"Bearer {secret}"}
 
 
-async def heard(console: ClientConnection) -> dict[str, Any]:
+async def received(console: ClientConnection) -> dict[str, Any]:
     message: dict[str, Any] = json.loads(await asyncio.wait_for(console.recv(), 5.0))
     SCHEMA.validate(message)
     return message
@@ -77,13 +77,13 @@ async def test_a_snapshot_and_then_deltas_and_a_snapshot_when_asked(
 ) -> None:
     headers = token_of(station)
     async with connect(f"ws://{address}/api/v1/live", additional_headers=headers) as console:
-        first = await heard(console)
+        first = await received(console)
         assert first["type"] == "snapshot"
         await act(station, "kitchen")
-        delta = await heard(console)
+        delta = await received(console)
         assert (delta["type"], delta["seq"]) == ("delta", first["seq"] + 1)
         await console.send('{"type": "snapshot"}')
-        again = await heard(console)
+        again = await received(console)
         assert (again["type"], again["seq"]) == ("snapshot", delta["seq"])
         assert again["incident"]["name"] == "kitchen"
 
@@ -93,27 +93,27 @@ async def test_a_console_that_confirms_gets_what_came_meanwhile_as_one(
 ) -> None:
     url, headers = f"ws://{address}/api/v1/live?deltas=fields", token_of(station)
     async with connect(url, additional_headers=headers) as slow:
-        first = await heard(slow)
+        first = await received(slow)
         for unit in range(4):
             await act_unit(station, f"FF-0{unit}")
         with pytest.raises(TimeoutError):
             await asyncio.wait_for(slow.recv(), 0.3)
         await slow.send('{"type": "shown", "count": 1}')
-        merged = await heard(slow)
+        merged = await received(slow)
         assert (merged["type"], merged["after_seq"]) == ("field_delta", first["seq"])
         assert merged["seq"] == first["seq"] + 4
         assert {unit["label"] for unit in merged["units"].values()} == set(merged["units"])
         await slow.send('{"type": "shown", "count": 2}')
         await act_unit(station, "FF-04")
-        assert list((await heard(slow))["units"]) == ["FF-04"]
+        assert list((await received(slow))["units"]) == ["FF-04"]
     # Torn off, it begins with a picture that has everything, and its count anew.
     async with connect(url, additional_headers=headers) as again:
-        picture = await heard(again)
+        picture = await received(again)
         assert (picture["type"], picture["seq"]) == ("snapshot", merged["seq"] + 1)
         assert len(picture["units"]) == 5
         await again.send('{"type": "shown", "count": 1}')
         await act_unit(station, "FF-05")
-        assert (await heard(again))["after_seq"] == picture["seq"]
+        assert (await received(again))["after_seq"] == picture["seq"]
 
 
 async def test_messages_are_compressed_for_consoles_that_offer_it(
@@ -129,7 +129,7 @@ async def test_messages_are_compressed_for_consoles_that_offer_it(
         agreed = offering.response.headers["Sec-WebSocket-Extensions"]
         assert "server_no_context_takeover" in agreed
         assert "Sec-WebSocket-Extensions" not in plain.response.headers
-        assert await heard(offering) == await heard(plain)
+        assert await received(offering) == await received(plain)
 
 
 async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: str) -> None:
@@ -141,7 +141,7 @@ async def test_a_browser_is_known_by_its_cookie(station: DeskStation, address: s
     url = f"ws://{address}/api/v1/live"
     own, foreign = f"http://{address}", "http://evil.example"
     async with connect(url, additional_headers=headers, origin=own) as console:  # type: ignore[arg-type]  # a str will do
-        assert (await heard(console))["type"] == "snapshot"
+        assert (await received(console))["type"] == "snapshot"
     with pytest.raises(InvalidStatus):
         async with connect(url, additional_headers=headers, origin=foreign):  # type: ignore[arg-type]  # a str will do
             pass
@@ -165,7 +165,7 @@ async def test_with_a_generated_password_nothing_is_seen_before_it_is_changed(
     accounts.change_user("first", f"{PASSWORD}!", None)
     headers = {"Cookie": f"{COOKIE}={accounts.begin_session('first')}"}
     async with connect(url, additional_headers=headers, origin=own) as console:  # type: ignore[arg-type]  # a str will do
-        assert (await heard(console))["type"] == "snapshot"
+        assert (await received(console))["type"] == "snapshot"
 
 
 @pytest.mark.parametrize("path", ["live", "replays/none/live"])
@@ -179,7 +179,7 @@ async def test_a_token_for_another_part_of_the_api_sees_nothing_live(
         headers = {"Authorization": f"Bearer {secret}"}
         async with connect(url, additional_headers=headers) as console:
             if path == "live" and scopes == {"live"}:
-                assert (await heard(console))["type"] == "snapshot"
+                assert (await received(console))["type"] == "snapshot"
             else:
                 assert await close_code(console) == code
 
@@ -187,7 +187,7 @@ async def test_a_token_for_another_part_of_the_api_sees_nothing_live(
 async def test_nothing_large_is_read_from_a_console(station: DeskStation, address: str) -> None:
     url = f"ws://{address}/api/v1/live"
     async with connect(url, additional_headers=token_of(station)) as console:
-        await heard(console)
+        await received(console)
         await console.send('{"type": "snapshot"}' + " " * 5000)
         assert await close_code(console) == 1009
 
@@ -206,7 +206,7 @@ async def test_what_is_no_request_ends_the_connection(
 ) -> None:
     url = f"ws://{address}/api/v1/live"
     async with connect(url, additional_headers=token_of(station)) as console:
-        await heard(console)
+        await received(console)
         await console.send(message)
         assert await close_code(console) == live.NOT_UNDERSTOOD
 
@@ -218,7 +218,7 @@ async def test_the_end_of_a_session_ends_its_socket(
     headers = token_of(station)
     url = f"ws://{address}/api/v1/live"
     async with connect(url, additional_headers=headers) as console:
-        await heard(console)
+        await received(console)
         (token,) = station.services.accounts.tokens("viewer")
         station.services.accounts.remove_token("viewer", token.token_id)
         assert await close_code(console) == live.NOT_LOGGED_IN
@@ -238,7 +238,7 @@ async def test_a_disk_that_fails_blinds_nobody_who_was_let_in_and_lets_nobody_in
     monkeypatch.setattr(live, "CHECK_LOGIN_S", 0.02)
     headers, url = token_of(station), f"ws://{address}/api/v1/live"
     async with connect(url, additional_headers=headers) as console:
-        await heard(console)
+        await received(console)
         with monkeypatch.context() as broken:
             broken.setattr(station.services.accounts, "of_token", fail)
             async with connect(url, additional_headers=headers) as refused:
@@ -246,7 +246,7 @@ async def test_a_disk_that_fails_blinds_nobody_who_was_let_in_and_lets_nobody_in
             while len(tries) < 5:
                 await asyncio.sleep(0.02)
         await act(station, "kitchen")
-        assert (await heard(console))["type"] == "delta"
+        assert (await received(console))["type"] == "delta"
         (token,) = station.services.accounts.tokens("viewer")
         station.services.accounts.remove_token("viewer", token.token_id)
         assert await close_code(console) == live.NOT_LOGGED_IN
@@ -275,14 +275,14 @@ async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(
         ) as stuck,
         connect(url, additional_headers=headers, max_queue=100_000) as reading,
     ):
-        await heard(stuck)
-        last = (await heard(reading))["seq"]
+        await received(stuck)
+        last = (await received(reading))["seq"]
         name = "x" * 60_000
         end_s = time.monotonic() + 20.0
         while station.hub.watchers == 2:
             assert time.monotonic() < end_s, "it was not cut off"
             await act(station, name)
-            while (message := await heard(reading))["type"] == "snapshot":
+            while (message := await received(reading))["type"] == "snapshot":
                 pass
             assert message["seq"] == last + 1
             last = message["seq"]
@@ -297,7 +297,7 @@ async def test_the_server_stops_with_consoles_connected(station: DeskStation) ->
     await server.wait_started()
     url = f"ws://127.0.0.1:{port}/api/v1/live"
     async with connect(url, additional_headers=token_of(station)) as console:
-        await heard(console)
+        await received(console)
         server.stop()
         await asyncio.wait_for(task, 10.0)
         assert await close_code(console) in (1001, 1012)

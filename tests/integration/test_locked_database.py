@@ -55,8 +55,8 @@ def test_people_are_answered_and_the_log_has_it_while_the_database_is_locked(
             return [one["state"] for one in browser.call("GET", "/alarms")]
 
         until(lambda: stored() == ["acknowledged"], "the database has it")
-        told = browser.call("GET", path)
-        assert [one["state"] for one in told["changes"]] == ["raised", "acknowledged"]
+        reported = browser.call("GET", path)
+        assert [one["state"] for one in reported["changes"]] == ["raised", "acknowledged"]
     assert station.stop() == 0
     events = (event_of(*record) for record in read_log(DataFolder(data).log))
     messages = [event.message for event in events if isinstance(event, Received)]

@@ -98,8 +98,8 @@ def test_what_a_disk_lost_of_the_log_comes_from_the_other_station(
     pair.damage(number, at, 3000)
     assert pair.events() != events
     pair.look_at_all()
-    (said,) = pair.check.problems()
-    assert pair.mine.segments()[number].path.name in said
+    (reported,) = pair.check.problems()
+    assert pair.mine.segments()[number].path.name in reported
     pair.mending.look(Event())
     assert pair.events() == events
     assert pair.mended_ns == [pair.mine.segments()[number].end_ns]

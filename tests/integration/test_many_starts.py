@@ -34,7 +34,7 @@ def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
     tmp_path: Path,
 ) -> None:
     boot_ids = itertools.count(1)
-    said: list[bytes] = []
+    stated: list[bytes] = []
     with LiveStation(tmp_path / "station") as station, ExitStack() as stack:
         station.act(RegisterUnit(U, "one"))
         for run in range(RUNS):
@@ -47,10 +47,10 @@ def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
             journal.append(
                 [JournalRow(one.header.seq, POSITION, 0, encode(one)) for one in messages]
             )
-            said += map(encode, messages)
+            stated += map(encode, messages)
             for one in messages:
                 station.publish(one)
-        live = set(said[: STARTS_KEPT * MESSAGES])
+        live = set(stated[: STARTS_KEPT * MESSAGES])
         until(lambda: live <= {one for _, _, one in station.log.records()}, "what came live")
         until(  # an earlier report would have what is there fetched again
             lambda: reported_complete(station) == STARTS_KEPT, "what came live is reported"
@@ -65,7 +65,7 @@ def test_every_message_is_in_the_log_once_however_often_the_program_has_started(
         def counts() -> set[int]:
             backfill.report(station.reported)
             logged = Counter(payload for _, _, payload in station.log.records())
-            return {logged[payload] for payload in said}
+            return {logged[payload] for payload in stated}
 
         until(lambda: counts() == {1}, "all of it is there")
         for _ in range(3):

@@ -34,7 +34,7 @@ class Scene:
         self._browser = browser
         self._unit = unit
         self._make_position = make_position
-        self.told: list[UnitCommand] = []
+        self.reported: list[UnitCommand] = []
         self.mayday: dict[str, Any] = {}
 
     def play(self) -> None:
@@ -76,7 +76,7 @@ class Scene:
         def take(_key: str, payload: bytes) -> None:
             command = decode(COMMAND, payload)
             assert isinstance(command, UnitCommand)
-            self.told.append(command)
+            self.reported.append(command)
             header = unit.stamper.header()
             reply = CommandReply(header, command.command_id, CommandState.ACKNOWLEDGED, "")
             unit.bus.publish(REPLY.key("FF-01"), encode(reply), REPLY.qos)
@@ -101,7 +101,7 @@ def test_a_new_log_has_nobodys_name_in_any_record(
         scene.play()
         shown = _everything_shown(browser, scene.incident_id)
         assert scene.mayday["text"] == f"Mayday from {ANA}"
-        texts = [one.text for one in scene.told if one.text]
+        texts = [one.text for one in scene.reported if one.text]
         assert texts == [f"{ANA}, come out, {BO} waits"], "the wearer gets the names"
         assert browser.close_incident(scene.incident_id) == 204
         replayed = _replayed(browser, scene.incident_id)
@@ -137,9 +137,9 @@ def _everything_shown(browser: Browser, incident_id: str) -> dict[str, str]:
         "/alarms", "/audit", "/assignments", "/units", "/incidents", "/people", "/commands",
         "/pins", f"/incidents/{incident_id}/alarms",
     )  # fmt: skip
-    told = {path: _text(browser, path) for path in paths}
-    told |= {path.rpartition("/")[2]: _text(browser, path) for path in exports}
-    return told | {"live": str(snapshot(browser))}
+    reported = {path: _text(browser, path) for path in paths}
+    reported |= {path.rpartition("/")[2]: _text(browser, path) for path in exports}
+    return reported | {"live": str(snapshot(browser))}
 
 
 def _replayed(browser: Browser, incident_id: str) -> str:

@@ -100,8 +100,10 @@ def desk(tmp_path: Path, make_position) -> Iterator[Desk]:
         station.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.1))
         for step in range(40):
             header = Header("FF-01", 7, step + 1, step * NS_PER_S // 10)
-            said = msgspec.structs.replace(position, header=header, north_m=0.1 * step, east_m=0.0)
-            station.publish(said)
+            stated = msgspec.structs.replace(
+                position, header=header, north_m=0.1 * step, east_m=0.0
+            )
+            station.publish(stated)
         until(lambda: station.pipeline.state.counts.messages >= 40)
         station.act(SetPin("p", "FF-01", 0, 0.5, 0.5, 0.5, None, None, 0.0, "door"))
         station.act(CloseIncident("i1"))
@@ -142,7 +144,7 @@ def test_what_the_log_lacks_is_in_the_report(desk: Desk, processes: ReplayProces
     assert again.flaws == report.flaws
 
 
-def test_of_an_open_incident_it_is_told_and_not_kept(
+def test_of_an_open_incident_it_is_reported_and_not_kept(
     desk: Desk, processes: ReplayProcesses
 ) -> None:
     is_open = IncidentRow(
@@ -192,7 +194,7 @@ class KilledAtWork(ReplayProcesses):
         return line
 
 
-def test_one_that_is_killed_is_told_and_whoever_asks_again_gets_it(desk: Desk) -> None:
+def test_one_that_is_killed_is_reported_and_anyone_asks_again_gets_it(desk: Desk) -> None:
     with KilledAtWork() as processes:
         post_processor = desk.beside(processes)
         with pytest.raises(StoreError, match="the process that did so has ended; ask again"):
@@ -218,21 +220,21 @@ class AtWork(ReplayProcesses):
 
 
 def test_a_station_that_stops_does_not_wait_for_it(desk: Desk) -> None:
-    processes, told = AtWork(), list[str]()
+    processes, reported = AtWork(), list[str]()
     post_processor, incident = desk.beside(processes), desk.incident
 
     def ask() -> None:
         try:
             post_processor.smoothed(incident)
         except StoreError as error:
-            told.append(str(error))
+            reported.append(str(error))
 
     asking = threading.Thread(target=ask)
     asking.start()
     assert processes.begun.wait(60.0)
     post_processor.close()
     asking.join(60.0)
-    assert told == ["the station is stopping"]
+    assert reported == ["the station is stopping"]
     assert processes.far_end is not None
     assert processes.far_end.recv(1) == b""  # whoever works there learns of it
     processes.far_end.close()

@@ -109,7 +109,7 @@ def test_prometheus_reads_a_station_and_evaluates_the_rules(tmp_path: Path) -> N
         ExitStack() as closing,
     ):
         unit = BenchUnit("FF-01", UnitEndpoint((bus,)), closing)
-        until(lambda: unit.is_heard, "the unit is linked", PATIENCE_S)
+        until(lambda: unit.is_received, "the unit is linked", PATIENCE_S)
         unit.introduce()
         until(lambda: number(address, "up") == 1.0, "the station is scraped", PATIENCE_S)
 

@@ -41,7 +41,7 @@ from shared.errors import StoreError
 from shared.mcap_log import SegmentInfo, SegmentState
 from shared.messages import STATION_ID, AlarmChange, AlarmState, OperatorAction
 from shared.messages.station import Action, Assign, OpenIncident, RegisterUnit
-from tests.rig import message_factory as said_by_bench
+from tests.rig import message_factory as stated_by_bench
 from tests.rig.desk_station import PASSWORD
 from tests.rig.waiting import PATIENCE_S
 
@@ -55,12 +55,12 @@ def test_what_was_last_stored_is_shown_and_nothing_can_be_changed(
     monkeypatch.setattr(module, "_ANNOUNCE_EVERY_S", 0.0)
     monkeypatch.setattr(module, "_RECORDS_PER_REPORT", 1)
     monkeypatch.setattr(stored_snapshot, "_PUBLISH_EVERY_NS", 0)
-    said: list[str] = []
+    stated: list[str] = []
     folder = DataFolder(tmp_path)
     recorder = Recorder(tmp_path, clock)
     with bind("127.0.0.1", 0) as listening, ExitStack() as closing:
         closing.callback(recorder.close)
-        disk = open_storage(folder, recorder, clock, said.append, closing)
+        disk = open_storage(folder, recorder, clock, stated.append, closing)
         store_what_happened(disk)
         address = f"http://127.0.0.1:{listening.getsockname()[1]}"
         config = StationConfig(data=tmp_path)
@@ -75,13 +75,13 @@ def test_what_was_last_stored_is_shown_and_nothing_can_be_changed(
             listening,
             HttpConfig(),
             lambda: startup_application(config, disk),
-            said.append,
+            stated.append,
         ) as watched:
             assert [t_ns for t_ns, _, _ in watched(records())] == [1000, 2000, 3000]
         with pytest.raises(httpx.TransportError):
             httpx.get(address, timeout=0.3)
         assert listening.fileno() >= 0
-    assert said[-1] == "reading the log: 50%"
+    assert stated[-1] == "reading the log: 50%"
 
 
 def store_what_happened(disk: StationStorage, raised_before_s: float = 0.0) -> None:
@@ -99,7 +99,7 @@ def store_what_happened(disk: StationStorage, raised_before_s: float = 0.0) -> N
                 for number, action in enumerate(actions)
             ),
             last_messages=(("FF-01", t_ns),),
-            tracks=(said_by_bench.fused(header, "FF-01", north_m=3.0, east_m=4.0),),
+            tracks=(stated_by_bench.fused(header, "FF-01", north_m=3.0, east_m=4.0),),
             alarms=(
                 AlarmChange(
                     header,
@@ -130,7 +130,7 @@ class Nobody:
         pass
 
 
-def test_who_was_last_heard_of_long_ago_in_this_incident_is_shown_where_that_was(
+def test_who_was_last_received_of_long_ago_in_this_incident_is_shown_where_that_was(
     tmp_path: Path, clock: ManualClock
 ) -> None:
     """And an alarm that had been raised when somebody opened it."""
@@ -155,7 +155,7 @@ def test_who_was_last_heard_of_long_ago_in_this_incident_is_shown_where_that_was
         assert [one.text for one in picture.alarms] == ["MAYDAY"]
 
 
-def test_where_they_can_be_by_now_grows_while_nobody_is_heard(
+def test_where_they_can_be_by_now_grows_while_nobody_is_received(
     tmp_path: Path, clock: ManualClock
 ) -> None:
     with ExitStack() as closing:
@@ -255,13 +255,13 @@ def never() -> NoReturn:
 
 def test_a_quick_start_shows_no_page(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "_StartupServer", None)
-    said: list[str] = []
+    stated: list[str] = []
     with (
         bind("127.0.0.1", 0) as listening,
-        serve_while_recovering([SEGMENT], listening, HttpConfig(), never, said.append) as watched,
+        serve_while_recovering([SEGMENT], listening, HttpConfig(), never, stated.append) as watched,
     ):
         assert list(watched(iter([(1000, "key", b"")]))) == [(1000, "key", b"")]
-    assert said == []
+    assert stated == []
 
 
 def test_a_greeting_of_tls_under_way_leaves_nothing_behind_when_the_log_is_read(
@@ -294,7 +294,7 @@ async def no_page(_scope: Scope, _receive: Receive, _send: Send) -> None:
 
 def first_words() -> bytes:
     """Of a client that greets over TLS."""
-    said, context = MemoryBIO(), SSLContext(PROTOCOL_TLS_CLIENT)
+    stated, context = MemoryBIO(), SSLContext(PROTOCOL_TLS_CLIENT)
     with pytest.raises(SSLWantReadError):
-        context.wrap_bio(MemoryBIO(), said, server_hostname="x").do_handshake()
-    return said.read()
+        context.wrap_bio(MemoryBIO(), stated, server_hostname="x").do_handshake()
+    return stated.read()

@@ -100,8 +100,8 @@ class Air:
         self.source = source = BusSource(U)
         assert source.follow(self.listener, Event())
         agent = pipeline(tracker_id(U), "eskf", boot_id=9, sensor=source.description)
-        said = run(agent, source.batches())
-        return positions(said)
+        stated = run(agent, source.batches())
+        return positions(stated)
 
 
 def positions(messages: Iterable[Message]) -> list[Position]:
@@ -141,17 +141,17 @@ def end_of_run() -> Sequence[Message]:
 
 
 def test_it_sends_everything_but_positions_and_raw_batches_at_the_channels_rate() -> None:
-    said = weak_unit(one_by_one=True)
+    stated = weak_unit(one_by_one=True)
     itself = strong_unit()
-    raw = [message for message in said if isinstance(message, RawImu)]
-    assert not positions(said)
+    raw = [message for message in stated if isinstance(message, RawImu)]
+    assert not positions(stated)
     for kind in (Temperature, GpsFix, Status):
         count = sum(isinstance(message, kind) for message in itself)
-        assert sum(isinstance(message, kind) for message in said) == count
+        assert sum(isinstance(message, kind) for message in stated) == count
     duration_s = (raw[-1].t_ns[-1] - raw[0].t_ns[0]) / NS_PER_S
     assert len(raw) / duration_s == pytest.approx(IMU.rate_hz, rel=0.05)
-    seqs = [message.header.seq for message in said]
-    assert seqs == list(range(1, len(said) + 1))
+    seqs = [message.header.seq for message in stated]
+    assert seqs == list(range(1, len(stated) + 1))
 
 
 @pytest.mark.parametrize("one_by_one", [False, True])
@@ -164,10 +164,10 @@ def test_the_positions_are_those_of_a_unit_that_tracks_itself(air: Air, one_by_o
 
 
 def test_a_hole_in_the_raw_stream_is_flagged(air: Air) -> None:
-    said = weak_unit()
-    raw = [message for message in said if isinstance(message, RawImu)]
+    stated = weak_unit()
+    raw = [message for message in stated if isinstance(message, RawImu)]
     lost = raw[200:240]
-    air.send(message for message in said if not any(message is one for one in lost))
+    air.send(message for message in stated if not any(message is one for one in lost))
     air.send(end_of_run())
     found = air.track()
     doubted = [p for p in found if Reason.SAMPLE_GAP in p.reasons]
@@ -179,11 +179,11 @@ def test_a_hole_in_the_raw_stream_is_flagged(air: Air) -> None:
 def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
     air: Air, journal: Journal, lost: slice
 ) -> None:
-    said = weak_unit()
-    raw = [message for message in said if isinstance(message, RawImu)]
-    air.keep(journal, said)
+    stated = weak_unit()
+    raw = [message for message in stated if isinstance(message, RawImu)]
+    air.keep(journal, stated)
     missed = {id(message) for message in raw[lost]}
-    air.send(message for message in said if id(message) not in missed)
+    air.send(message for message in stated if id(message) not in missed)
     air.send(end_of_run())
     itself = positions(strong_unit())
     assert contents(air.track()) == contents(itself)
@@ -193,11 +193,11 @@ def test_what_the_radio_lost_is_fetched_and_the_path_is_whole(
 def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(
     air: Air, journal: Journal
 ) -> None:
-    said = weak_unit()
-    raw = [message for message in said if isinstance(message, RawImu)]
-    air.keep(journal, said)
+    stated = weak_unit()
+    raw = [message for message in stated if isinstance(message, RawImu)]
+    air.keep(journal, stated)
     late = raw[100:110]
-    for message in said:
+    for message in stated:
         if not any(message is one for one in late):
             air.send((message,))
         if message is raw[130]:
@@ -209,10 +209,10 @@ def test_a_piece_that_comes_late_after_it_was_fetched_is_left_out(
 
 
 def test_what_the_journal_has_given_up_stays_a_hole(air: Air, journal: Journal) -> None:
-    said = weak_unit()
-    raw = [message for message in said if isinstance(message, RawImu)]
+    stated = weak_unit()
+    raw = [message for message in stated if isinstance(message, RawImu)]
     lost = raw[200:240]
-    kept = [message for message in said if not any(message is one for one in lost)]
+    kept = [message for message in stated if not any(message is one for one in lost)]
     air.keep(journal, kept)
     air.send(kept)
     air.send(end_of_run())
@@ -221,9 +221,9 @@ def test_what_the_journal_has_given_up_stays_a_hole(air: Air, journal: Journal) 
 
 
 def test_what_comes_twice_or_too_late_is_left_out(air: Air) -> None:
-    said = weak_unit()
-    raw = [message for message in said if isinstance(message, RawImu)]
-    for message in said:
+    stated = weak_unit()
+    raw = [message for message in stated if isinstance(message, RawImu)]
+    for message in stated:
         air.send((message,))
         if message is raw[50]:
             air.send((raw[50], raw[20]))
@@ -276,12 +276,12 @@ def test_of_two_machines_under_one_name_the_newest_is_tracked_and_then_the_one_t
 
 
 def test_raw_samples_wait_for_the_description(air: Air) -> None:
-    said = weak_unit()
-    air.send(message for message in said if isinstance(message, RawImu))
+    stated = weak_unit()
+    air.send(message for message in stated if isinstance(message, RawImu))
     stop = Event()
     stop.set()
     assert not BusSource(U).follow(air.listener, stop)
-    air.send(said[:2])
+    air.send(stated[:2])
     air.send(end_of_run())
     assert len(air.track()) > 50
 

@@ -62,13 +62,13 @@ def unit(enrolment: Enrolment) -> ZenohBus:
 def test_enrolling_and_revoking_take_effect_while_it_runs(
     process: RouterProcess, pki: PkiFolder, listen: tuple[str, ...]
 ) -> None:
-    heard: list[str] = []
+    received: list[str] = []
     with closing(station(pki, listen)) as base:
-        base.subscribe("muster/v1/**", lambda key, _: heard.append(key))
+        base.subscribe("muster/v1/**", lambda key, _: received.append(key))
         with closing(unit(pki.enroll("anna"))) as anna:
             until(lambda: anna.has_subscriber(KEY), "the right to speak")
             anna.publish(KEY, b"", Qos.LIVE)
-            until(lambda: heard == [KEY], "the message")
+            until(lambda: received == [KEY], "the message")
             pki.revoke("anna")
             until(lambda: not anna.is_linked(), "the end of the link")
             refused = process.refused.total
@@ -76,7 +76,7 @@ def test_enrolling_and_revoking_take_effect_while_it_runs(
             assert not anna.is_linked()
             anna.publish(KEY, b"", Qos.LIVE)
             time.sleep(0.5)
-    assert heard == [KEY]
+    assert received == [KEY]
 
 
 def test_revoking_one_leaves_the_links_of_the_others_as_they_are(
@@ -138,10 +138,10 @@ def test_it_ends_when_its_parent_is_killed(
 def test_it_ends_without_a_word_where_its_parent_was_killed_before_it_was_open(
     tmp_path: Path, endpoint: str
 ) -> None:
-    said = tmp_path / "said.txt"
+    reported = tmp_path / "said.txt"
     reading, writing = os.pipe()
     settings = RouterSettings(str(tmp_path), (endpoint.format(port=free_port()),), (), ())
-    with said.open("wb") as errors:
+    with reported.open("wb") as errors:
         router = subprocess.Popen(
             [sys.executable, "-m", "base_station.security.router"],
             stdin=subprocess.PIPE,
@@ -154,8 +154,8 @@ def test_it_ends_without_a_word_where_its_parent_was_killed_before_it_was_open(
     os.close(reading)
     os.close(writing)
     router.wait(PATIENCE_S)
-    assert "Traceback" not in said.read_text()
-    assert "Broken" not in said.read_text()
+    assert "Traceback" not in reported.read_text()
+    assert "Broken" not in reported.read_text()
 
 
 def test_one_that_gets_no_settings_ends_in_order() -> None:
@@ -173,7 +173,7 @@ def test_one_that_has_loaded_before_is_the_first(
         assert running.pid == loading.pid
 
 
-def test_one_that_ended_while_it_loaded_is_said(
+def test_one_that_ended_while_it_loaded_is_stated(
     tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...]
 ) -> None:
     loading = start_loading()
@@ -183,12 +183,12 @@ def test_one_that_ended_while_it_loaded_is_said(
         RouterProcess(tmp_path, listen, loading=loading).wait_open()
 
 
-def test_what_keeps_it_from_opening_is_said(tmp_path: Path, listen: tuple[str, ...]) -> None:
+def test_what_keeps_it_from_opening_is_stated(tmp_path: Path, listen: tuple[str, ...]) -> None:
     with pytest.raises(BusError, match="no certificate authority; make one with `muster pki init`"):
         RouterProcess(tmp_path, listen).wait_open()
 
 
-def test_a_taken_port_is_said_and_nothing_else(
+def test_a_taken_port_is_stated_and_nothing_else(
     process: RouterProcess,
     tmp_path: Path,
     listen: tuple[str, ...],
@@ -259,7 +259,7 @@ def test_the_station_finds_its_router_on_the_loopback(tmp_path: Path) -> None:
         assert station_endpoint(tmp_path, listen).connect == (found,)
 
 
-def test_a_station_that_its_own_certificate_keeps_out_is_told_at_once(tmp_path: Path) -> None:
+def test_a_station_that_its_own_certificate_keeps_out_is_reported_at_once(tmp_path: Path) -> None:
     pki = PkiFolder(tmp_path)
     pki.create("Test", hosts=["192.0.2.7", "Station.local", "fd00::7"], connect=[])
     for host in ("0.0.0.0", "[::]", "192.0.2.7", "station.LOCAL", "[fd00:0::7]", "localhost"):
@@ -270,7 +270,7 @@ def test_a_station_that_its_own_certificate_keeps_out_is_told_at_once(tmp_path: 
 
 
 @pytest.mark.parametrize("option", ["iface=no-such-one", "rubbish=1", "iface=lo;rubbish=1"])
-def test_an_option_of_the_endpoint_that_cannot_be_kept_is_said(
+def test_an_option_of_the_endpoint_that_cannot_be_kept_is_stated(
     tmp_path: Path, pki: PkiFolder, listen: tuple[str, ...], option: str
 ) -> None:
     with pytest.raises(MusterError, match=r"cannot listen on|only #iface=INTERFACE"):

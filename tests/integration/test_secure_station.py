@@ -111,14 +111,14 @@ def test_a_station_takes_its_renewed_certificate_up_before_the_old_one_ends(
     with closing(join(pki.enroll("FF-01"))) as unit, Browser(address, data) as browser:
         until(lambda: unit.has_subscriber(key), "the unit is let in")
         pki.renew_station()
-        until(lambda: station.said().count("ready ") == 2, "the station begins again")
+        until(lambda: station.output().count("ready ") == 2, "the station begins again")
 
-        def heard() -> bool:
+        def received() -> bool:
             unit.publish(key, encode(make_position()), Qos.LIVE)
             return bool(browser.call("GET", "/health")["messages"])
 
-        until(heard, "the unit is heard again")
-    assert station.said().count("taken up") == 1
+        until(received, "the unit is heard again")
+    assert station.output().count("taken up") == 1
     assert station.stop() == 0
 
 
@@ -128,8 +128,8 @@ def test_without_an_authority_the_station_says_how_to_make_one(
     station = serve()
     assert station.wait() == 2
     assert not data.exists()
-    assert "make one with `muster pki init`" in station.said()
-    assert "Traceback" not in station.said()
+    assert "make one with `muster pki init`" in station.output()
+    assert "Traceback" not in station.output()
 
 
 def test_the_console_can_be_served_with_the_stations_certificate(
@@ -158,4 +158,4 @@ def test_a_station_whose_certificate_has_ended_says_so_at_once(
     PkiFolder(data).create("Test", [], [address], valid=timedelta(seconds=-1))
     station = serve("--listen", address)
     assert station.wait() == 2
-    assert "renew-station" in station.said()
+    assert "renew-station" in station.output()

@@ -29,7 +29,7 @@ def test_a_par_goes_to_the_unit_and_its_answer_comes_back(tmp_path: Path) -> Non
     flags = ("serve", "--data", str(data), "--http", "127.0.0.1:0", "--listen", listen)
     station = Command(tmp_path / "output.txt", *flags)
     desk = CommandHandler(Stamper(U, 1, SystemClock()), lambda _: None)
-    heard: list[UnitCommand] = []
+    received: list[UnitCommand] = []
     try:
         with (
             Browser(station.wait_ready(), data) as browser,
@@ -42,7 +42,7 @@ def test_a_par_goes_to_the_unit_and_its_answer_comes_back(tmp_path: Path) -> Non
             def take(_key: str, payload: bytes) -> None:
                 command = decode(COMMAND, payload)
                 assert isinstance(command, UnitCommand)
-                heard.append(command)
+                received.append(command)
                 say(desk.take(command))
 
             def state() -> str:
@@ -61,10 +61,10 @@ def test_a_par_goes_to_the_unit_and_its_answer_comes_back(tmp_path: Path) -> Non
             for reply in desk.acknowledge():
                 say(reply)
             until(lambda: state() == "acknowledged", "the wearer has answered")
-            (told,) = browser.call("GET", "/commands")
-            assert told["units"][0]["sent_ms"] is not None  # the station heard itself say it
+            (reported,) = browser.call("GET", "/commands")
+            assert reported["units"][0]["sent_ms"] is not None  # the station heard itself say it
             hearing.close()
-        assert heard[0].issued_by == "admin"
+        assert received[0].issued_by == "admin"
         assert station.stop() == 0
     finally:
         station.kill()

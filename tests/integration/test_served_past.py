@@ -181,7 +181,7 @@ def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
         tmp_path / "copied.txt", "replay", incident_id, "--data", str(copy), *flags
     ) as replaying:
         replaying.wait_ready()
-        assert "login for this replay" in replaying.said()
+        assert "login for this replay" in replaying.output()
         assert replaying.stop() == 0
     assert [path.name for path in copy.iterdir()] == ["log"]
     alone = tmp_path / "elsewhere" / "incident.mcap"
@@ -190,7 +190,7 @@ def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
     assert exported.exit_code == 0, exported.output
     with Command(tmp_path / "alone.txt", "replay", str(alone), *flags) as replaying:
         address = replaying.wait_ready()
-        login = re.search(r"this replay: (\S+)\s+password: (\S+)", replaying.said())
+        login = re.search(r"this replay: (\S+)\s+password: (\S+)", replaying.output())
         assert login is not None
         (alone.parent / "first-login.txt").write_text(
             "username: {}\npassword: {}".format(*login.groups())
@@ -203,7 +203,7 @@ def test_a_replay_station_runs_beside_the_live_one_and_from_a_copy(
         tmp_path / "none.txt", "replay", "no-such", "--data", str(copy), *flags
     ) as replaying:
         assert replaying.wait() == 2
-        assert incident_id in replaying.said()
+        assert incident_id in replaying.output()
 
 
 def test_an_incident_that_is_open_is_replayed_to_what_was_recorded_last(tmp_path: Path) -> None:
@@ -241,19 +241,19 @@ def test_rebuilding_gives_the_same_tables(
             *("/incidents", "/alarms", "/units", "/assignments", "/people"),
             f"/incidents/{incident_id}/tracks",
         )
-        before = [told(browser, path) for path in paths]
+        before = [reported(browser, path) for path in paths]
     assert station.stop() == 0
     with Command(tmp_path / "rebuild.txt", "rebuild", "--data", str(data)) as rebuilding:
         assert rebuilding.wait() == 0
-        assert "log records projected" in rebuilding.said()
+        assert "log records projected" in rebuilding.output()
     again = serve()
     with Browser(again.wait_ready(), data) as browser:
-        after = [told(browser, path) for path in paths]
+        after = [reported(browser, path) for path in paths]
     assert after == before
     assert again.stop() == 0
 
 
-def told(browser: Browser, path: str) -> Any:
+def reported(browser: Browser, path: str) -> Any:
     """But for alarms that only say that the unit has been silent since."""
     answer = browser.call("GET", path)
     return [one for one in answer if one["rule"] != "link-lost"] if path == "/alarms" else answer

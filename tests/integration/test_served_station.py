@@ -99,8 +99,8 @@ def test_a_second_station_is_refused(
         *("--listen", f"tcp/127.0.0.1:{free_port()}"),
     ) as second:
         assert second.wait() == 2
-        assert "another station" in second.said()
-        assert "Traceback" not in second.said()
+        assert "another station" in second.output()
+        assert "Traceback" not in second.output()
 
 
 @pytest.mark.parametrize("taken", ["http", "bus"])
@@ -114,8 +114,8 @@ def test_a_port_in_use_is_named(tmp_path: Path, taken: str) -> None:
             *("--listen", f"tcp/127.0.0.1:{bus}"),
         ) as station:
             assert station.wait() == 2
-            assert str(port) in station.said()
-            assert "Traceback" not in station.said()
+            assert str(port) in station.output()
+            assert "Traceback" not in station.output()
 
 
 def test_plain_connections_from_elsewhere_must_be_asked_for(tmp_path: Path) -> None:
@@ -124,7 +124,7 @@ def test_plain_connections_from_elsewhere_must_be_asked_for(tmp_path: Path) -> N
         *("serve", "--data", str(tmp_path / "data"), "--listen", "tcp/0.0.0.0:7447"),
     ) as station:
         assert station.wait() == 2
-        assert "--insecure" in station.said()
+        assert "--insecure" in station.output()
 
 
 def test_what_cannot_be_read_is_counted_and_kept(
@@ -156,10 +156,10 @@ def test_users_are_added_while_the_station_runs(
     address = station.wait_ready()
     flags = ("users", "add", "mia", "--role", "viewer", "--data", str(data))
     with Command(tmp_path / "add.txt", *flags, stdin="a long password\n") as adding:
-        assert adding.wait() == 0, adding.said()
+        assert adding.wait() == 0, adding.output()
     with Command(tmp_path / "again.txt", *flags, stdin="a long password\n") as adding:
         assert adding.wait() == 2
-        assert "already" in adding.said()
+        assert "already" in adding.output()
     elsewhere = ("users", "list", "--data", str(tmp_path / "typo"))
     with Command(tmp_path / "typo.txt", *elsewhere) as listing:
         assert listing.wait() == 2
@@ -170,7 +170,7 @@ def test_users_are_added_while_the_station_runs(
         with watch(browser) as socket_:
             remove = ("users", "remove", "mia", "--data", str(data))
             with Command(tmp_path / "remove.txt", *remove) as removing:
-                assert removing.wait() == 0, removing.said()
+                assert removing.wait() == 0, removing.output()
             assert close_code(socket_) == NOT_LOGGED_IN
     with Browser(address, data) as browser:
         entries = browser.call("GET", "/audit")
@@ -209,4 +209,4 @@ def test_over_tls_the_cookie_never_leaves_it(
     certificate.write_text("no certificate")
     broken = serve("--config", str(settings))
     assert broken.wait() == 2
-    assert "cannot be used" in broken.said()
+    assert "cannot be used" in broken.output()

@@ -18,8 +18,8 @@ from tests.rig.waiting import until
 def set_in(browser: Browser) -> list[dict[str, Any]]:
     """What the audit has of thresholds, oldest first."""
     entries = browser.call("GET", "/audit")
-    said = [json.loads(one["detail"]) for one in entries if one["action"] == "SetThresholds"]
-    return said[::-1]
+    reported = [json.loads(one["detail"]) for one in entries if one["action"] == "SetThresholds"]
+    return reported[::-1]
 
 
 def fusers_set_in(browser: Browser) -> list[str]:
@@ -86,6 +86,6 @@ def test_a_setting_that_makes_no_sense_starts_no_station(
     settings.write_text(toml)
     refused = serve("--config", str(settings))
     assert refused.wait() == 2
-    assert problem in refused.said()
-    assert "Traceback" not in refused.said()
+    assert problem in refused.output()
+    assert "Traceback" not in refused.output()
     assert not data.exists()

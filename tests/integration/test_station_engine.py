@@ -92,15 +92,15 @@ def test_what_came_live_while_it_was_fetched_is_in_the_log_once(tmp_path: Path) 
         for seq in (1, 2, 2):
             station.feed.deliver(backfilled_key(U, EVENT.suffix), encode(mayday(seq)))
         station.publish(mayday(3))
-        until(lambda: len(said_keys(station)) == 3)
-        assert said_keys(station) == [
+        until(lambda: len(stated_keys(station)) == 3)
+        assert stated_keys(station) == [
             EVENT.key(U),
             backfilled_key(U, EVENT.suffix),
             EVENT.key(U),
         ]
 
 
-def said_keys(station: LiveStation) -> list[str]:
+def stated_keys(station: LiveStation) -> list[str]:
     return [key for _, key, _ in station.log.records() if key.endswith(EVENT.suffix)]
 
 
@@ -115,9 +115,9 @@ def test_what_is_replayed_is_in_the_log_once_and_counted_even_after_a_restart(
     with LiveStation(tmp_path) as station:
         for seq in (2, 1, 3):
             station.publish(mayday(seq))
-        until(lambda: len(said_keys(station)) == 3)
+        until(lambda: len(stated_keys(station)) == 3)
         until(lambda: repeated(station) == 2)
-        assert said_keys(station) == [EVENT.key(U)] * 3
+        assert stated_keys(station) == [EVENT.key(U)] * 3
 
 
 def repeated(station: LiveStation) -> int:
@@ -133,8 +133,8 @@ def test_deltas_are_numbered_and_a_snapshot_carries_the_last_number(
             station.publish(make_position())
         until(lambda: len(station.screen.deltas) > 3)
         seq = station.snapshot().seq
-        told = [delta.seq for delta in station.screen.deltas]
-    assert told[:seq] == list(range(1, seq + 1))
+        reported = [delta.seq for delta in station.screen.deltas]
+    assert reported[:seq] == list(range(1, seq + 1))
 
 
 def test_opening_an_incident_or_a_plan_begins_the_picture_again(tmp_path: Path) -> None:
@@ -356,7 +356,7 @@ class Pressing:
 
 
 @pytest.mark.parametrize("dealt_with", [AcknowledgeAlarm, lambda one: ResolveAlarm(one, "seen")])
-def test_a_mayday_that_came_while_somebody_dealt_with_another_is_raised(
+def test_a_mayday_that_came_while_person_dealt_with_another_is_raised(
     tmp_path: Path, dealt_with: Callable[[str], Action]
 ) -> None:
     clock = ManualClock(utc_ns=1_700_000_000 * NS_PER_S)

@@ -27,8 +27,8 @@ def link_up(station: LiveStation, unit_id: str = U) -> Subscription:
 
 def ticks(station: LiveStation) -> list[Tick]:
     key = TICK.key(STATION_ID)
-    told = [decode(TICK, said) for _, its, said in station.log.records() if its == key]
-    return [tick for tick in told if isinstance(tick, Tick)]
+    stated = [decode(TICK, stated) for _, its, stated in station.log.records() if its == key]
+    return [tick for tick in stated if isinstance(tick, Tick)]
 
 
 def unlinked(station: LiveStation) -> tuple[str, ...]:

@@ -41,12 +41,12 @@ def record(data: Path, incident: str) -> None:
 
 
 @contextmanager
-def opened(data: Path, said: list[str] | None = None) -> Iterator[StationStorage]:
+def opened(data: Path, stated: list[str] | None = None) -> Iterator[StationStorage]:
     clock = ManualClock(START_NS)
     with ExitStack() as closing:
         recorder = Recorder(data, clock)
         closing.callback(recorder.close)
-        tell = (said if said is not None else []).append
+        tell = (stated if stated is not None else []).append
         yield open_storage(DataFolder(data), recorder, clock, tell, closing)
 
 
@@ -60,18 +60,18 @@ def test_a_database_that_is_gone_or_empty_is_made_again(tmp_path: Path, left: by
     record(tmp_path, "Mill Lane")
     if left is not None:
         (tmp_path / "station.sqlite").write_bytes(left)
-    said: list[str] = []
+    stated: list[str] = []
     for _ in range(2):
-        before = len(said)
-        with opened(tmp_path, said) as disk:
+        before = len(stated)
+        with opened(tmp_path, stated) as disk:
             assert [one.name for one in disk.records.incidents()] == ["Mill Lane"]
-            assert bool(disk.store.problem) == (len(said) > before), "in the run that made it"
+            assert bool(disk.store.problem) == (len(stated) > before), "in the run that made it"
             if not disk.accounts.users():
                 disk.accounts.add_user("mia", "something long enough", Role.ADMINISTRATOR)
-    assert len(said) == 2, "once"
-    assert "made again from the log" in said[0]
+    assert len(stated) == 2, "once"
+    assert "made again from the log" in stated[0]
     for what in ("users and their passwords", "the roster: people's names", "first-login.txt"):
-        assert what in said[1]
+        assert what in stated[1]
     with opened(tmp_path) as disk:  # whoever comes later finds it
         assert "MadeDatabaseAgain" in [one.action for one in disk.records.audit_entries(EVER)]
 
@@ -168,22 +168,22 @@ def set_aside(data: Path) -> list[Path]:
 def test_what_can_be_read_of_a_damaged_database_is_kept(served: Path, table: str) -> None:
     spoil(served, table)
     damaged = (served / "station.sqlite").read_bytes()
-    said: list[str] = []
-    with opened(served, said) as disk:
+    stated: list[str] = []
+    with opened(served, stated) as disk:
         assert [one.name for one in disk.records.incidents()] == ["Mill Lane"]
         assert [one.username for one in disk.accounts.users()] == ["mia"]
         assert [one.name for one in disk.roster.people()] == ["Ada"]
         assert f"The database was damaged ({table}: " in disk.store.problem
-        assert disk.store.problem in said
+        assert disk.store.problem in stated
         assert ("are lost" in disk.store.problem) == (table == "audit")
     (aside,) = set_aside(served)
     assert aside.read_bytes() == damaged
-    assert aside.name in said[-1]
+    assert aside.name in stated[-1]
     assert incidents(served) == ["Mill Lane"], "once: now it is whole"
     assert len(set_aside(served)) == 1
 
 
-def test_who_loses_the_table_of_users_is_told_how_to_get_in(served: Path) -> None:
+def test_who_loses_the_table_of_users_is_reported_how_to_get_in(served: Path) -> None:
     with opened(served) as disk:
         disk.accounts.add_token("mia", "wall", Role.VIEWER, None)
         assert disk.accounts.log_in("mia", "something long enough")
@@ -232,7 +232,7 @@ def test_a_salvage_that_is_cut_short_is_gone_on_with(
     }
 
 
-def test_damage_that_is_met_later_is_said_and_rebuilding_mends_it(served: Path) -> None:
+def test_damage_that_is_met_later_is_stated_and_rebuilding_mends_it(served: Path) -> None:
     with opened(served) as disk:
         spoil(served, "units")
         assert isinstance(disk.store, Store)
@@ -241,9 +241,9 @@ def test_damage_that_is_met_later_is_said_and_rebuilding_mends_it(served: Path) 
             disk.roster.units()
         assert "The database is damaged" in disk.projection.problem()
         assert "muster base rebuild" in disk.projection.problem()
-    said: list[str] = []
-    station_folder.rebuild(served, lambda _: None, said.append)
-    assert "users and people were kept" in said[0]
+    stated: list[str] = []
+    station_folder.rebuild(served, lambda _: None, stated.append)
+    assert "users and people were kept" in stated[0]
     with opened(served) as disk:
         assert [unit.unit_id for unit, _ in disk.roster.units()] == ["anna"]
         assert disk.store.problem == ""
@@ -251,11 +251,11 @@ def test_damage_that_is_met_later_is_said_and_rebuilding_mends_it(served: Path) 
 
 def test_a_past_beside_a_damaged_database_is_read_from_the_log(served: Path) -> None:
     spoil(served, "incidents")
-    said: list[str] = []
+    stated: list[str] = []
     with ExitStack() as closing_:
         given = open_offline_log(
-            served, "Mill Lane", closing_, said.append, lambda _: None, in_place=True
+            served, "Mill Lane", closing_, stated.append, lambda _: None, in_place=True
         )
         assert Records(given.store, ManualClock()).incident("Mill Lane")
-    assert any("the database is damaged" in one for one in said)
+    assert any("the database is damaged" in one for one in stated)
     assert not set_aside(served), "a station may be running here"

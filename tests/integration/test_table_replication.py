@@ -197,7 +197,7 @@ def test_of_two_new_passwords_the_later_holds_and_no_login_with_the_other(
         assert one.accounts.log_in("ada", "the later battery") is not None
 
 
-def test_somebody_else_who_has_got_a_removed_one_s_name_stays(sides: tuple[HaMode, HaMode]) -> None:
+def test_person_else_who_has_got_a_removed_one_s_name_stays(sides: tuple[HaMode, HaMode]) -> None:
     leads, follows = sides
     follows.accounts.add_user("chief", PASSWORD, Role.ADMINISTRATOR)
     follows.accounts.add_user("ada", PASSWORD, Role.COMMANDER)
@@ -372,11 +372,11 @@ def test_what_one_has_lost_with_its_database_comes_back_from_the_other(
             assert one.base_maps.image("map") == b"webp"
             assert "there" in audit_of(one)
             assert one.tables.lost() == ()
-    [told] = pair.taken_back
-    assert "user" in told
+    [reported] = pair.taken_back
+    assert "user" in reported
 
 
-def test_what_a_leader_has_lost_stays_at_the_standby_though_it_never_heard_of_it(
+def test_what_a_leader_has_lost_stays_at_the_standby_though_it_never_received_of_it(
     sides: tuple[HaMode, HaMode],
 ) -> None:
     leads, follows = sides
@@ -483,22 +483,22 @@ def test_the_audit_of_a_machine_that_took_the_other_one_s_place_comes_from_its_b
         assert len(audit_of(standby)) == 4
 
 
-def test_what_the_other_has_forgotten_is_heard_of_until_it_is_noted(
+def test_what_the_other_has_forgotten_is_received_of_until_it_is_noted(
     sides: tuple[HaMode, HaMode],
 ) -> None:
     active, standby = sides
     active.records.audit("ada", "ForgotPerson", "person p9: 3 records of the log in 1 files")
-    heard: list[str] = []
+    received: list[str] = []
 
     def full_disk(what: str) -> None:
-        heard.append(what)
+        received.append(what)
         raise StoreError("the disk is full")
 
     with pytest.raises(StoreError):
         copy_over_the_bus(active, standby, full_disk).look(Event())
-    copy_over_the_bus(active, standby, heard.append).look(Event())  # as after a kill
-    copy_over_the_bus(active, standby, heard.append).look(Event())
-    assert heard == ["person p9", "person p9"]
+    copy_over_the_bus(active, standby, received.append).look(Event())  # as after a kill
+    copy_over_the_bus(active, standby, received.append).look(Event())
+    assert received == ["person p9", "person p9"]
 
 
 @pytest.mark.parametrize(("leads", "heeds"), [("active", ["person p8"]), (None, [])])
@@ -508,9 +508,9 @@ def test_what_the_other_forgot_as_this_one_asked_is_heeded_again_by_who_has_copi
     """And by no other: the two would ask each other for ever."""
     active, standby = sides
     active.records.audit(BY_OTHER_STATION, "ForgotPerson", "person p8: as this one had asked")
-    heard: list[str] = []
-    copy_over_the_bus(active, standby, heard.append, leads).look(Event())
-    assert heard == heeds
+    received: list[str] = []
+    copy_over_the_bus(active, standby, received.append, leads).look(Event())
+    assert received == heeds
 
 
 def test_the_base_map_is_the_active_stations(sides: tuple[HaMode, HaMode]) -> None:

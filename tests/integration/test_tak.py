@@ -173,7 +173,7 @@ def test_an_open_server_elsewhere_is_refused_at_the_start(
 ) -> None:
     station = serve("--config", settings(tmp_path, "tcp://192.0.2.1:8087"))
     assert station.wait() != 0
-    assert "plain = true" in station.said()
+    assert "plain = true" in station.output()
 
 
 def test_other_teams_are_on_the_plan_live_and_in_the_replay(

@@ -70,7 +70,7 @@ def running(folder: Path, unit: Unit) -> Iterator[tuple[LiveStation, Backfill]]:
             backfill.close()
 
 
-def heard(station: LiveStation, backfill: Backfill, rounds: int) -> None:
+def received(station: LiveStation, backfill: Backfill, rounds: int) -> None:
     """So many reports of what the station has."""
     for _ in range(rounds):
         station.reported = {}
@@ -90,13 +90,13 @@ def test_what_cannot_be_read_is_fetched_once_whatever_is_started_again(
     with running(tmp_path / "station", unit) as (station, backfill):
         station.act(RegisterUnit(U, "one"))
         station.publish(unit.position(1))
-        heard(station, backfill, 4)
+        received(station, backfill, 4)
         until(lambda: kept(station, unit) == [1] * len(unit.kept), "all is in the log")
         assert backfill.fetched == len(unit.kept)
         assert station.pipeline.state.counts.undecodable == 5
     with running(tmp_path / "station", unit) as (station, backfill):
         station.publish(unit.position(9))
-        heard(station, backfill, 4)
+        received(station, backfill, 4)
         assert backfill.fetched == 0
         assert kept(station, unit) == [1] * len(unit.kept)
 

@@ -13,7 +13,9 @@ IMPORT = re.compile(r'(?:from|import)\s+"(\.[^"]+)"')
 
 def imported(file: Path) -> set[Path]:
     """The files of the console that this one imports, types too."""
-    places = [file.parent / said for said in IMPORT.findall(file.read_text(encoding="utf-8"))]
+    places = [
+        file.parent / reported for reported in IMPORT.findall(file.read_text(encoding="utf-8"))
+    ]
     candidates = [place.with_name(place.name + end).resolve() for place in places for end in ENDS]
     return {candidate for candidate in candidates if candidate.is_file()}
 

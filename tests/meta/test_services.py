@@ -51,7 +51,7 @@ def test_compiled_code_is_kept_where_a_service_may_write(service: Path) -> None:
     assert settings["Environment"] == f"NUMBA_CACHE_DIR=%C/{settings['CacheDirectory']}"
 
 
-def test_the_station_alone_is_told_to_stop() -> None:
+def test_the_station_alone_is_ordered_to_stop() -> None:
     """Told at once, its router would be gone before what is on its way has come through."""
     station = next(service for service in SERVICES if service.stem == "muster-station")
     assert read(station)["KillMode"] == "mixed"

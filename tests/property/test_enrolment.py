@@ -22,14 +22,14 @@ def enrolment(tmp_path_factory: pytest.TempPathFactory) -> Enrolment:
 
 
 def assert_itself_or_a_sentence(text: str, original: Enrolment) -> None:
-    said = ""
+    reported = ""
     name = ""
     try:
         name = parse_enrolment(text).identity.common_name()
     except ConfigError as error:
-        said = str(error)
-    assert name == original.name or said
-    assert "\n" not in said
+        reported = str(error)
+    assert name == original.name or reported
+    assert "\n" not in reported
 
 
 @given(text=st.text())

@@ -87,19 +87,19 @@ def filled(found: dict[int, Picture], times_ns: Iterable[int]) -> dict[int, Pict
     return {t_ns: (shown := found.get(t_ns, shown)) for t_ns in times_ns}
 
 
-def first_heard(records: list[Record]) -> dict[str, int]:
+def first_received(records: list[Record]) -> dict[str, int]:
     """As the service reads it from the log."""
-    heard: dict[str, int] = {}
+    received: dict[str, int] = {}
     for t_ns, key, _ in records:
         for unit_id in UNITS:
             if key == POSITION.key(unit_id):
-                heard.setdefault(unit_id, t_ns)
-    return heard
+                received.setdefault(unit_id, t_ns)
+    return received
 
 
 def erasure_from(records: list[Record], incident_id: str) -> Erasure:
     actions = [one for one in records if one[1] == OPERATOR.key(STATION_ID)]
-    return erasure_of_incident(actions, incident_id, first_heard(records))
+    return erasure_of_incident(actions, incident_id, first_received(records))
 
 
 def erased(records: list[Record], erasure: Erasure) -> list[Record]:

@@ -133,7 +133,7 @@ def test_what_was_flushed_before_a_tear_is_there(
 @pytest.mark.slow
 @settings(MANY, suppress_health_check=FIXTURES)
 @given(at=st.floats(0.0, 1.0, exclude_max=True), bit=st.integers(0, 7), end=st.booleans())
-def test_a_flipped_bit_costs_one_chunk_at_most_and_is_told(
+def test_a_flipped_bit_costs_one_chunk_at_most_and_is_reported(
     tmp_path: Path, whole: Path, unfinished: Path, at: float, bit: int, end: bool
 ) -> None:
     content = bytearray((whole if end else unfinished).read_bytes())
@@ -207,7 +207,7 @@ PAGE = 4096  # a disk gives so much or none of it
 
 
 @pytest.mark.parametrize("end", [False, True])
-def test_what_a_disk_does_not_give_costs_what_stands_there_and_is_told(
+def test_what_a_disk_does_not_give_costs_what_stands_there_and_is_reported(
     tmp_path: Path, whole: Path, unfinished: Path, monkeypatch: pytest.MonkeyPatch, end: bool
 ) -> None:
     content = (whole if end else unfinished).read_bytes()

@@ -74,8 +74,8 @@ def any_evidence(rng: np.random.Generator, unit_id: str) -> UnitEvidence:
     )
     start = Start(0.0, 0.0, 0.0, 1.0, float(rng.choice([0.0, 1e3])), float(rng.choice([0.0, 4.0])))
     grid = FloorGrid.of(PLAN) if rng.random() < 0.5 else None
-    said = start if rng.random() < 0.5 else None
-    return UnitEvidence(path, said, int(path.t_ns[0]), places, grid)
+    stated = start if rng.random() < 0.5 else None
+    return UnitEvidence(path, stated, int(path.t_ns[0]), places, grid)
 
 
 @pytest.mark.slow
@@ -96,5 +96,5 @@ def test_every_place_and_every_uncertainty_is_a_number(smoother: Smoother) -> No
             assert all((np.isfinite(std) & (std > 0.0)).all() for std in stds), seed
             assert all(math.isfinite(value) for value in path.posterior.mean), seed
             assert np.isfinite(path.posterior.covariance).all(), seed
-        told = {place.name for unit in units.values() for place in unit.places}
-        assert told <= solution.verdicts.keys(), seed
+        reported = {place.name for unit in units.values() for place in unit.places}
+        assert reported <= solution.verdicts.keys(), seed

@@ -253,7 +253,7 @@ def test_only_the_wearer_or_the_chief_acknowledges_a_command(deeds: list[Deed]) 
         deed(script)
     acknowledged = {
         (reply.header.unit_id, reply.command_id)
-        for reply in script.said(CommandReply)
+        for reply in script.published(CommandReply)
         if reply.state is CommandState.ACKNOWLEDGED
     }
     for command in script.pipeline.state.commands.values():
@@ -274,14 +274,14 @@ def test_only_a_person_completes_a_roll_call(deeds: list[Deed]) -> None:
     for deed in deeds:
         script.now_s += 0.3
         before = vouched(script)
-        replied = len(script.said(CommandReply))
-        acted = len(script.said(OperatorAction))
+        replied = len(script.published(CommandReply))
+        acted = len(script.published(OperatorAction))
         deed(script)
         by_button = any(
             reply.state is CommandState.ACKNOWLEDGED
-            for reply in script.said(CommandReply)[replied:]
+            for reply in script.published(CommandReply)[replied:]
         )
-        if len(script.said(OperatorAction)) == acted and not by_button:
+        if len(script.published(OperatorAction)) == acted and not by_button:
             assert vouched(script) == before
 
 

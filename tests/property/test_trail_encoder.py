@@ -53,8 +53,8 @@ def test_what_is_kept_is_what_the_trail_is(changes: list[Change]) -> None:
         if much % 2:
             trails.update_if_behind(unit)
         else:
-            said = msgspec.json.decode(trails.of(unit))
-            assert said == [
+            reported = msgspec.json.decode(trails.of(unit))
+            assert reported == [
                 [one.t_ns // 1_000_000, round(one.north_m, 2), round(one.east_m, 2), one.floor]
                 for one in unit.trails.shown
             ]

@@ -33,14 +33,14 @@ FORCES = st.floats(-ACCEL_FULL_SCALE_G, ACCEL_FULL_SCALE_G, width=32)
 INERTIAL = st.builds(Inertial, TIMES, st.tuples(*[RATES] * 3), st.tuples(*[FORCES] * 3))
 
 
-def only(said: bytes) -> bytes:
-    (frame,) = Frames().push(said)
+def only(reported: bytes) -> bytes:
+    (frame,) = Frames().push(reported)
     return frame
 
 
 # The manual's own examples, each at one second.
 @pytest.mark.parametrize(
-    ("said", "meant"),
+    ("reported", "meant"),
     [
         (
             b"I,1000000,0.0000,0.0000,0.0000,0.0000,0.0000,1.0000\r\n",
@@ -73,14 +73,14 @@ def only(said: bytes) -> bytes:
         (b'{"ping":null}\r\n', OtherMessage()),
     ],
 )
-def test_the_manuals_examples(said: bytes, meant: object) -> None:
-    assert message_of(only(said)) == meant
+def test_the_manuals_examples(reported: bytes, meant: object) -> None:
+    assert message_of(only(reported)) == meant
 
 
 @given(INERTIAL)
 def test_binary_is_read_back_to_the_last_bit(meant: Inertial) -> None:
-    said = binary_message("I", meant.t_us, *meant.gyro_dps, *meant.accel_g)
-    assert message_of(only(said)) == meant
+    reported = binary_message("I", meant.t_us, *meant.gyro_dps, *meant.accel_g)
+    assert message_of(only(reported)) == meant
 
 
 @given(INERTIAL)
@@ -94,7 +94,7 @@ def test_text_is_read_back_to_its_four_places(meant: Inertial) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "why"),
+    ("reported", "why"),
     [
         (b"\r\n", "empty"),
         (b"I,1,0,0,0,0,0,1\n", "without its end"),
@@ -117,9 +117,9 @@ def test_text_is_read_back_to_its_four_places(meant: Inertial) -> None:
         (b"\xc9\x01\n", "begin otherwise"),
     ],
 )
-def test_what_is_no_message_is_refused_with_a_reason(said: bytes, why: str) -> None:
+def test_what_is_no_message_is_refused_with_a_reason(reported: bytes, why: str) -> None:
     with pytest.raises(WireError, match=why):
-        message_of(only(said))
+        message_of(only(reported))
 
 
 SOME = b"".join(at_rest(20)) + binary_message("I", 60_000, 1, 2, 3, 0.1, 0.2, 0.3)
@@ -140,9 +140,9 @@ def test_mutated_bytes_cost_what_they_hit_and_no_more(data: st.DataObject) -> No
     at = data.draw(st.integers(0, len(SOME)))
     lost = data.draw(st.integers(0, 30))
     noise = data.draw(st.binary(max_size=30))
-    said = SOME[:at] + noise + SOME[at + lost :]
+    reported = SOME[:at] + noise + SOME[at + lost :]
     read = []
-    for frame in Frames().push(said):
+    for frame in Frames().push(reported):
         try:
             message = message_of(frame)
         except WireError:

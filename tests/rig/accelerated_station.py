@@ -171,7 +171,7 @@ class _Wearers:
                 self._changed.wait_for(lambda: self._woken or not self._is_over(), timeout_s)
                 self._woken = False
                 return []
-        return self._said()
+        return self._stated()
 
     def wake(self) -> None:
         with self._changed:
@@ -181,7 +181,7 @@ class _Wearers:
     def _is_over(self) -> bool:
         return self._clock.monotonic_ns() >= self._until_ns
 
-    def _said(self) -> list[Record]:
+    def _stated(self) -> list[Record]:
         before_s = time.thread_time()
         self._clock.advance(_STEP_S)
         since_s = (self._clock.monotonic_ns() - self._began_ns) / NS_PER_S

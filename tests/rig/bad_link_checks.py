@@ -8,18 +8,18 @@ from tests.bench.faults.site import Site
 from tests.rig.lossy_link import CLEAN
 from tests.rig.unit_journal import MessageOfUnit
 
-TOLD_S = 3.0  # that the link is gone, by the lease, and that the unit is heard again
+REPORTED_S = 3.0  # that the link is gone, by the lease, and that the unit is heard again
 BUSY_S = 2.0  # that a busy machine may take besides; silence alone tells after ten seconds
 
 
 def assert_nothing_is_lost(site: Site, fault: BadLink, patience_s: float) -> None:
     """Let it happen; afterwards every message is in the log once, what matters most first."""
-    before = site.said()
+    before = site.output()
     report = suffer(site, fault, patience_s)
     assert (report.lost, report.duplicates) == (0, 0)
-    assert report.heard_s is not None
+    assert report.received_s is not None
     if fault.link.dark and fault.after == CLEAN:
-        assert report.heard_s < TOLD_S + BUSY_S
+        assert report.received_s < REPORTED_S + BUSY_S
     assert report.complete_s is not None
     assert report.sent > fault.seconds * 5  # positions alone
     assert report.alerts > 0

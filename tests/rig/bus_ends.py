@@ -56,15 +56,15 @@ class ZenohFabric:
 
 def wait_linked(station: Bus, unit: Bus) -> None:
     """Messages and tokens go both ways."""
-    heard: list[str] = []
-    watch = station.watch_alive("probe/*", lambda key, _: heard.append(key))
+    received: list[str] = []
+    watch = station.watch_alive("probe/*", lambda key, _: received.append(key))
     token = unit.declare_alive(f"probe/{id(unit)}")
-    until(lambda: bool(heard), "the unit's token at the station")
-    echo = unit.subscribe("echo", lambda key, _: heard.append(key))
+    until(lambda: bool(received), "the unit's token at the station")
+    echo = unit.subscribe("echo", lambda key, _: received.append(key))
 
     def echoed() -> bool:
         station.publish("echo", b"", Qos.LIVE)
-        return "echo" in heard
+        return "echo" in received
 
     until(echoed, "the station's message at the unit")
     for declared in (watch, token, echo):
@@ -91,14 +91,14 @@ class Heard:
         return len(self.samples) >= count
 
 
-def publish_until_heard(publisher: Bus, key: str, heard: Heard) -> None:
+def publish_until_received(publisher: Bus, key: str, received: Heard) -> None:
     """A subscription takes a moment to reach the other side; then it stands."""
 
     def arrived() -> bool:
         publisher.publish(key, b"probe", Qos.LIVE)
-        return any(sample[0] == key for sample in heard.samples)
+        return any(sample[0] == key for sample in received.samples)
 
     until(arrived, f"a first message under {key}")
     publisher.publish(key, b"end of probes", Qos.LIVE)
-    until(lambda: (key, b"end of probes") in heard.samples, "the last probe")
-    heard.samples.clear()
+    until(lambda: (key, b"end of probes") in received.samples, "the last probe")
+    received.samples.clear()

@@ -28,16 +28,16 @@ class TellingUnit:
 
     def ask(self, _: str, question: str) -> bytes:
         self.before(question)
-        what, _, said = question.partition("?")
-        values = dict(pair.split("=") for pair in said.split(";"))
+        what, _, stated = question.partition("?")
+        values = dict(pair.split("=") for pair in stated.split(";"))
         if what == "index":
             files = (RecordedFile(name, len(content)) for name, content in self.files.items())
             return RecordingIndex(tuple(files), 1).to_bytes()
         content = self.files.get(values["path"])
         if what == "digest":
             size = int(values["size"])
-            told = b"" if content is None else hashlib.sha256(content[:size]).digest()
-            return RecordingDigest(size, told).to_bytes()
+            reported = b"" if content is None else hashlib.sha256(content[:size]).digest()
+            return RecordingDigest(size, reported).to_bytes()
         offset, length = int(values["offset"]), int(values["length"])
         self.pieces.append(length)
         if content is None:

@@ -16,18 +16,18 @@ def digest() -> str:
     from base_station.views.station import StationFacts, snapshot  # noqa: PLC0415
     from tests.golden import test_pins_replay, test_replay_equals_live  # noqa: PLC0415
 
-    told = hashlib.sha256()
+    reported = hashlib.sha256()
     everything = test_replay_equals_live.incident()
     for records in (
         test_replay_equals_live.logged(everything),
-        test_pins_replay.logged(test_pins_replay.told()),
+        test_pins_replay.logged(test_pins_replay.reported()),
     ):
         for t_ns, key, payload in records:
-            told.update(f"{t_ns} {key} ".encode() + payload)
-    told.update(everything.pipeline.checkpoint())
+            reported.update(f"{t_ns} {key} ".encode() + payload)
+    reported.update(everything.pipeline.checkpoint())
     shown = snapshot(everything.pipeline.state, 1, StationFacts(), person_lookup({}), None)
-    told.update(repr((shown.units, shown.alarms, shown.commands)).encode())
-    return told.hexdigest()
+    reported.update(repr((shown.units, shown.alarms, shown.commands)).encode())
+    return reported.hexdigest()
 
 
 def compiled_modules() -> int:

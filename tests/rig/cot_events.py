@@ -19,10 +19,10 @@ def cot_event(
 ) -> bytes:
     """At the anchor of ``tak_scene``, at its time, and stale a minute later."""
     contact = f"<contact callsign={quoteattr(callsign)}/>" if callsign else ""
-    said = "".join(one for one in escape(remarks) if one.isprintable())
+    reported = "".join(one for one in escape(remarks) if one.isprintable())
     return (
         f'<event version="2.0" uid={quoteattr(uid)} type="{kind}" how="m-g" time="{time}" '
         f'start="{time}" stale="{stale}">'
         f'<point lat="{lat}" lon="{lon}" hae="40.0" ce="5.0" le="9999999.0"/>'
-        f"<detail>{contact}<remarks>{said}</remarks>{detail}</detail></event>"
+        f"<detail>{contact}<remarks>{reported}</remarks>{detail}</detail></event>"
     ).encode()

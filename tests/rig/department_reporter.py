@@ -30,7 +30,7 @@ class DepartmentReporter:
         self._seq = 0
 
     @property
-    def is_heard(self) -> bool:
+    def is_received(self) -> bool:
         """The department listens."""
         return self._bus.has_subscriber(department_summary_key(self.name))
 

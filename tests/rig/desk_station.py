@@ -90,7 +90,7 @@ class DeskDrive:
         self._lock = threading.RLock()
         self._seq = 0
 
-    def hear(self, message: Message) -> list[Output]:
+    def receive(self, message: Message) -> list[Output]:
         """Step the pipeline with a message, as if it had come now."""
         with self._lock:
             t_ns = self._clock.utc_ns()
@@ -132,18 +132,18 @@ class DeskDrive:
             admissions.append(classify(key, event, self._pipeline.state))
             if admissions[-1] is Admission.ACCEPT:
                 assert isinstance(event, Received)
-                self.hear(event.message)
+                self.receive(event.message)
         done: Future[DeliveryResult] = Future()
         done.set_result(DeliveryResult(tuple(admissions)))
         return done
 
     def note_external(self, markers: tuple[ExternalMarker, ...], removed: tuple[str, ...]) -> None:
-        self.hear(ExternalMarkers(self._stamper.header(), markers, removed))
+        self.receive(ExternalMarkers(self._stamper.header(), markers, removed))
 
     def _do(self, by: str, action: Action, action_id: str) -> ActionResult:
         header = self._stamper.header()
         action_id = action_id or f"action-{header.seq}"
-        outputs = self.hear(OperatorAction(header, action_id, by, action))
+        outputs = self.receive(OperatorAction(header, action_id, by, action))
         refused = next((one for one in outputs if isinstance(one, Refused)), None)
         return ActionResult(
             action_id, self._clock.utc_ns(), refused, idempotency.created_id_of(action)

@@ -37,7 +37,7 @@ class EnrolledSite:
     def _note_heartbeat(self, _: str, payload: bytes) -> None:
         self.utc_std_s = decode(HEARTBEAT, payload).header.utc_std_s
 
-    def has_heard_boots(self, count: int) -> bool:
+    def has_received_boots(self, count: int) -> bool:
         return len(self.boot_ids) == count
 
     def open(self) -> None:

@@ -51,7 +51,7 @@ class Walker:
         self._station = station
         self._unit_id = unit_id
         self._makes = Script()
-        self.said: list[bytes] = []
+        self.stated: list[bytes] = []
 
     def walk(self, steps: int, east_m: float) -> None:
         for step in range(steps):
@@ -63,7 +63,7 @@ class Walker:
             at.position(self._unit_id, 0.731 * step, east_m)
             at.gps(self._unit_id, 52.0 + 1e-5 * step, 4.0)
             for _, key, payload in at.records:
-                self.said.append(payload)
+                self.stated.append(payload)
                 self._station.feed.offer(key, payload)
         seq = self._makes.header(self._unit_id).seq - 1
         last = Header(self._unit_id, 7, seq, 0)
@@ -93,7 +93,7 @@ class Story:
     def __init__(self, folder: Path, *, older: bool = True) -> None:
         self.folder = folder
         self._older = older
-        self.ana_said: list[bytes] = []
+        self.ana_stated: list[bytes] = []
         self.photo = some_photo()
         with LiveStation(folder) as station:
             self._tell(station)
@@ -127,7 +127,7 @@ class Story:
         shared.press_mayday()
         alarm = next(iter(station.pipeline.state.alarms.values()))
         act(ResolveAlarm(alarm.alarm_id, f"spoke with {ANA.upper()}"))
-        self.ana_said, shared.said = shared.said[:], []
+        self.ana_stated, shared.stated = shared.stated[:], []
         act(Unassign("FF-01"))
         act(Assign("FF-01", "p-bo", BO, "Engine 2", "Search"))
         shared.walk(20, 9.0)

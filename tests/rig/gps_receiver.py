@@ -16,7 +16,7 @@ DAY_S = 86_400
 
 
 @dataclass(frozen=True)
-class Told:
+class Reported:
     """One fix, as a test wants it to be said; NaN is left empty."""
 
     of_day_s: float = 34_045.0  # 09:27:25
@@ -52,11 +52,11 @@ def clock_time(of_day_s: float) -> str:
     return f"{hour:02d}{minute:02d}{second:02d}.{rest:02d}"
 
 
-def place_words(told: Told) -> str:
-    if math.isnan(told.lat_deg):
+def place_words(reported: Reported) -> str:
+    if math.isnan(reported.lat_deg):
         return ",,,"
     words = []
-    for value, digits, sides in ((told.lat_deg, 2, "NS"), (told.lon_deg, 3, "EW")):
+    for value, digits, sides in ((reported.lat_deg, 2, "NS"), (reported.lon_deg, 3, "EW")):
         degrees, minutes = divmod(round(abs(value) * 60.0, 7), 60.0)
         words += [f"{int(degrees):0{digits}d}{minutes:010.7f}", sides[value < 0.0]]
     return ",".join(words)
@@ -66,50 +66,54 @@ def number(value: float, digits: int = 2) -> str:
     return "" if math.isnan(value) else f"{value:.{digits}f}"
 
 
-def gga(told: Told) -> bytes:
-    sea_m = told.height_m - told.sep_m
-    height = f"{number(sea_m, 3)},M,{number(told.sep_m, 3)},M"
+def gga(reported: Reported) -> bytes:
+    sea_m = reported.height_m - reported.sep_m
+    height = f"{number(sea_m, 3)},M,{number(reported.sep_m, 3)},M"
     return sentence(
-        f"{told.talker}GGA,{clock_time(told.of_day_s)},{place_words(told)},{told.quality},"
-        f"{told.satellites:02d},{number(told.hdop)},{height},,"
+        f"{reported.talker}GGA,{clock_time(reported.of_day_s)},{place_words(reported)},{reported.quality},"
+        f"{reported.satellites:02d},{number(reported.hdop)},{height},,"
     )
 
 
-def rmc(told: Told) -> bytes:
-    status, mode = ("A", "A") if told.mode > 1 else ("V", "N")
-    knots = told.speed_mps * 3600.0 / 1852.0
+def rmc(reported: Reported) -> bytes:
+    status, mode = ("A", "A") if reported.mode > 1 else ("V", "N")
+    knots = reported.speed_mps * 3600.0 / 1852.0
     return sentence(
-        f"{told.talker}RMC,{clock_time(told.of_day_s)},{status},{place_words(told)},"
-        f"{number(knots, 3)},{number(told.course_deg)},211126,,,{mode},V"
+        f"{reported.talker}RMC,{clock_time(reported.of_day_s)},{status},{place_words(reported)},"
+        f"{number(knots, 3)},{number(reported.course_deg)},211126,,,{mode},V"
     )
 
 
-def gsa(told: Told, system: int = 1) -> bytes:
-    dops = f"{number(1.6)},{number(told.hdop)},{number(told.vdop)}"
-    return sentence(f"{told.talker}GSA,A,{told.mode},02,05,07,13,15,20,29,30,,,,,{dops},{system}")
+def gsa(reported: Reported, system: int = 1) -> bytes:
+    dops = f"{number(1.6)},{number(reported.hdop)},{number(reported.vdop)}"
+    return sentence(
+        f"{reported.talker}GSA,A,{reported.mode},02,05,07,13,15,20,29,30,,,,,{dops},{system}"
+    )
 
 
-def gst(told: Told) -> bytes:
+def gst(reported: Reported) -> bytes:
     """Empty, as a u-blox says it without a fix, where nothing is known."""
     return sentence(
-        f"{told.talker}GST,{clock_time(told.of_day_s)},19,,,,{number(told.std_m)},"
-        f"{number(told.std_m)},{number(told.vertical_std_m)}"
+        f"{reported.talker}GST,{clock_time(reported.of_day_s)},19,,,,{number(reported.std_m)},"
+        f"{number(reported.std_m)},{number(reported.vertical_std_m)}"
     )
 
 
-def burst(told: Told) -> bytes:
+def burst(reported: Reported) -> bytes:
     """One second of a multi-constellation u-blox as delivered, with GST where it has one."""
     parts = [
-        rmc(told),
-        sentence(f"{told.talker}VTG,,T,,M,0.023,N,0.043,K,A"),
-        gga(told),
-        *(gsa(told, system) for system in (1, 2, 3)),
+        rmc(reported),
+        sentence(f"{reported.talker}VTG,,T,,M,0.023,N,0.043,K,A"),
+        gga(reported),
+        *(gsa(reported, system) for system in (1, 2, 3)),
         sentence("GPGSV,1,1,02,02,35,291,42,05,61,067,45,1"),
         sentence("GAGSV,1,1,01,13,40,120,38,7"),
         sentence("GBGSV,1,1,01,20,20,222,30,1"),
-        sentence(f"{told.talker}GLL,{place_words(told)},{clock_time(told.of_day_s)},A,A"),
+        sentence(
+            f"{reported.talker}GLL,{place_words(reported)},{clock_time(reported.of_day_s)},A,A"
+        ),
     ]
-    return b"".join(parts if math.isnan(told.std_m) else [*parts, gst(told)])
+    return b"".join(parts if math.isnan(reported.std_m) else [*parts, gst(reported)])
 
 
 DEVICE = "/dev/ttyACM0"
@@ -117,12 +121,12 @@ DEVICE = "/dev/ttyACM0"
 
 def json_line(cls: str, **members: object) -> bytes:
     """What is NaN is left out, as gpsd does it."""
-    said = {
+    stated = {
         name: value
         for name, value in members.items()
         if not (isinstance(value, float) and math.isnan(value))
     }
-    return json.dumps({"class": cls, **said}).encode("ascii") + b"\r\n"
+    return json.dumps({"class": cls, **stated}).encode("ascii") + b"\r\n"
 
 
 def iso(of_day_s: float) -> str:
@@ -130,35 +134,37 @@ def iso(of_day_s: float) -> str:
     return f"2026-11-21T{text[:2]}:{text[2:4]}:{text[4:6]}.{text[7:]}0Z"
 
 
-def gpsd_report(told: Told, device: str = DEVICE) -> bytes:
+def gpsd_report(reported: Reported, device: str = DEVICE) -> bytes:
     """A fix with the sky before it, and GST where there is one."""
-    sky = json_line("SKY", device=device, hdop=told.hdop, vdop=told.vdop, uSat=told.satellites)
+    sky = json_line(
+        "SKY", device=device, hdop=reported.hdop, vdop=reported.vdop, uSat=reported.satellites
+    )
     errors = json_line(
         "GST",
         device=device,
-        time=iso(told.of_day_s),
-        lat=told.std_m,
-        lon=told.std_m,
-        alt=told.vertical_std_m,
+        time=iso(reported.of_day_s),
+        lat=reported.std_m,
+        lon=reported.std_m,
+        alt=reported.vertical_std_m,
     )
     tpv = json_line(
         "TPV",
         device=device,
-        mode=told.mode,
-        time=iso(told.of_day_s),
-        lat=told.lat_deg,
-        lon=told.lon_deg,
-        altHAE=told.height_m,
-        altMSL=told.height_m - told.sep_m,
-        geoidSep=told.sep_m,
-        eph=told.hdop * 19.0,
-        epv=told.vdop * 23.0,
-        epx=told.hdop * 10.0,
-        epy=told.hdop * 10.0,
-        speed=told.speed_mps,
-        track=told.course_deg,
+        mode=reported.mode,
+        time=iso(reported.of_day_s),
+        lat=reported.lat_deg,
+        lon=reported.lon_deg,
+        altHAE=reported.height_m,
+        altMSL=reported.height_m - reported.sep_m,
+        geoidSep=reported.sep_m,
+        eph=reported.hdop * 19.0,
+        epv=reported.vdop * 23.0,
+        epx=reported.hdop * 10.0,
+        epy=reported.hdop * 10.0,
+        speed=reported.speed_mps,
+        track=reported.course_deg,
     )
-    return sky + (b"" if math.isnan(told.std_m) else errors) + tpv
+    return sky + (b"" if math.isnan(reported.std_m) else errors) + tpv
 
 
 def gpsd_devices(*paths: str) -> bytes:

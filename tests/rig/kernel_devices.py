@@ -125,7 +125,7 @@ class EmulatedAgent:
         """Return what it has spent so far."""
         return cpu_s(self._process.pid)
 
-    def said(self) -> str:
+    def output(self) -> str:
         return self._output.read_text(errors="replace")
 
     def stop(self) -> int:

@@ -35,7 +35,7 @@ class Conditions(msgspec.Struct, frozen=True):
     dark: bool = False  # nothing passes
 
 
-class Told(msgspec.Struct, frozen=True):
+class Reported(msgspec.Struct, frozen=True):
     """What the link is to be like from now on."""
 
     there: Conditions  # from the first device to the second
@@ -88,29 +88,29 @@ def forward(first: int, second: int, seed: int) -> None:
     there = Direction(first, second, f"{seed} there")
     back = Direction(second, first, f"{seed} back")
     sources = {first: there, second: back}
-    told = sys.stdin.fileno()
+    reported = sys.stdin.fileno()
 
-    def hear() -> bool:
+    def receive() -> bool:
         line = sys.stdin.buffer.readline()
         if line:
-            conditions = msgspec.json.decode(line, type=Told)
+            conditions = msgspec.json.decode(line, type=Reported)
             there.set(conditions.there)
             back.set(conditions.back)
             print("set", flush=True)
         return bool(line)
 
-    if not hear():  # nothing can be read from a device before it is up
+    if not receive():  # nothing can be read from a device before it is up
         return
     poll = select.poll()
-    for readable in (told, *sources):
+    for readable in (reported, *sources):
         poll.register(readable, select.POLLIN)
     while True:
         dues_s = [due_s for one in (there, back) if (due_s := one.due_s()) is not None]
         wait_s = max(0.0, min(dues_s) - time.monotonic()) if dues_s else None
         for ready, _ in poll.poll(None if wait_s is None else wait_s * 1000.0):
-            if ready != told:
+            if ready != reported:
                 sources[ready].take(time.monotonic())
-            elif not hear():
+            elif not receive():
                 return
         for one in (there, back):
             one.give(time.monotonic())

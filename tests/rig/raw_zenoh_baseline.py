@@ -104,6 +104,6 @@ def _subscribe(address: str, far_end: Connection) -> None:
             count = len(arrivals)
             time.sleep(_QUIET_S)
         span_s = (arrivals[-1][1] - arrivals[0][1]) / 1e9 if arrivals else 0.0
-        far_end.send((count, span_s, tuple((heard - sent) / 1e6 for sent, heard in arrivals)))
+        far_end.send((count, span_s, tuple((arrived - sent) / 1e6 for sent, arrived in arrivals)))
     subscription.close()
     bus.close()

@@ -22,8 +22,8 @@ def recording_hz(count: int) -> float:
     """Messages of usual kinds a second of processor time, from ``write`` until on the disk."""
     clock = ManualClock()
     wearers = [Wearer(name, clock) for name in unit_names(_UNITS)]
-    said = [wearer.next_message() for _ in range(_TURNS) for wearer in wearers]
-    messages = [(channel_of(one).key(one.header.unit_id), encode(one)) for one in said]
+    reported = [wearer.next_message() for _ in range(_TURNS) for wearer in wearers]
+    messages = [(channel_of(one).key(one.header.unit_id), encode(one)) for one in reported]
     with TemporaryDirectory(prefix="muster-bench-") as folder:
         recorder = Recorder(Path(folder), SystemClock())
         first_ns, before_s = clock.utc_ns(), time.process_time()

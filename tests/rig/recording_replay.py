@@ -10,21 +10,21 @@ from base_station.views.wire import ReplayView, Snapshot
 
 class NotedReplay:
     def __init__(self) -> None:
-        self.told: list[str] = []
+        self.reported: list[str] = []
         self.closed = False
         self.is_over = False
 
     def play(self) -> None:
-        self.told.append("play")
+        self.reported.append("play")
 
     def pause(self) -> None:
-        self.told.append("pause")
+        self.reported.append("pause")
 
     def seek(self, t_ns: int) -> None:
-        self.told.append(f"seek {t_ns}")
+        self.reported.append(f"seek {t_ns}")
 
     def set_speed(self, speed: float) -> None:
-        self.told.append(f"speed {speed}")
+        self.reported.append(f"speed {speed}")
 
     def view(self) -> ReplayView:
         return ReplayView("i-1", 0, 1, 0, 1.0, playing=True)

@@ -28,7 +28,7 @@ class Site:
         self.pki = PkiFolder(data)
         self.pki.create("Test", hosts=[], connect=[f"tls/{self.address}"])
         self._stack = stack
-        self.heard: list[tuple[str, bytes]] = []
+        self.received: list[tuple[str, bytes]] = []
         self.alive: set[str] = set()
 
     def open(self) -> None:
@@ -37,7 +37,7 @@ class Site:
         self.station = self.join(
             ClientEndpoint((f"tls/{self.address}",), self.pki.station_identity())
         )
-        self.station.subscribe("muster/v1/**", lambda k, p: self.heard.append((k, p)))
+        self.station.subscribe("muster/v1/**", lambda k, p: self.received.append((k, p)))
         self.station.watch_alive("muster/v1/**", self._token)
 
     def reopen(self) -> None:
@@ -63,20 +63,20 @@ class Site:
     def unit(self, enrolment: Enrolment) -> ZenohBus:
         return self.join(UnitEndpoint(enrolment.connect, enrolment.identity))
 
-    def heard_under(self, key: str) -> list[bytes]:
-        return [payload for heard, payload in self.heard if heard == key]
+    def received_under(self, key: str) -> list[bytes]:
+        return [payload for received, payload in self.received if received == key]
 
     def _token(self, key: str, alive: bool) -> None:
         (self.alive.add if alive else self.alive.discard)(key)
 
 
-def publish_until_heard(site: Site, unit: ZenohBus, unit_id: str) -> None:
+def publish_until_received(site: Site, unit: ZenohBus, unit_id: str) -> None:
     key = POSITION.key(unit_id)
-    before = len(site.heard_under(key))
+    before = len(site.received_under(key))
 
     def arrived() -> bool:
         unit.publish(key, b"here", Qos.LIVE)
-        return len(site.heard_under(key)) > before
+        return len(site.received_under(key)) > before
 
     until(arrived, f"a message of {unit_id}")
 
@@ -95,9 +95,9 @@ def assert_powerless(site: Site, enrolment: Enrolment) -> None:
 
 
 def assert_speechless(site: Site, unit: ZenohBus, name: str) -> None:
-    site.heard.clear()
-    heard: list[str] = []
-    unit.subscribe(COMMAND.key(name), lambda key, _: heard.append(key))
+    site.received.clear()
+    received: list[str] = []
+    unit.subscribe(COMMAND.key(name), lambda key, _: received.append(key))
     token = unit.declare_alive(alive_key(name))
     unit.serve(f"muster/v1/{name}/journal/**", lambda *_: [b"forged"])
     deadline = time.monotonic() + QUIET_S
@@ -107,8 +107,8 @@ def assert_speechless(site: Site, unit: ZenohBus, name: str) -> None:
         time.sleep(0.02)
     assert not unit.has_subscriber(POSITION.key(name))
     assert list(site.station.query(f"muster/v1/{name}/journal/range", b"", 0.5)) == []
-    assert site.heard_under(POSITION.key(name)) == []
-    assert heard == []
+    assert site.received_under(POSITION.key(name)) == []
+    assert received == []
     assert site.alive == set()
     token.close()
 
@@ -120,4 +120,4 @@ def assert_never_linked(site: Site, endpoint: UnitEndpoint) -> None:
         unit.publish(POSITION.key("anna"), b"forged", Qos.LIVE)
         assert not unit.is_linked()
         time.sleep(0.02)
-    assert site.heard == []
+    assert site.received == []

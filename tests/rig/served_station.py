@@ -20,11 +20,11 @@ MakePosition = Callable[..., Position]
 def greet(browser: Browser, unit: Unit, make_position: MakePosition) -> None:
     """Until the unit is linked, what it says is lost."""
 
-    def is_heard() -> bool:
+    def is_received() -> bool:
         unit.say(make_position(header=unit.stamper.header()))
         return bool(browser.call("GET", "/health")["messages"])
 
-    until(is_heard, "the unit is heard")
+    until(is_received, "the unit is heard")
 
 
 def walk(unit: Unit, make_position: MakePosition, from_m: int, to_m: int) -> None:

@@ -61,8 +61,8 @@ class SimulatedStation:
         self._opened_ms = DepartmentReporter.now_ms()
 
     @property
-    def is_heard(self) -> bool:
-        return self._reporter.is_heard
+    def is_received(self) -> bool:
+        return self._reporter.is_received
 
     def begin(self) -> None:
         """Open an incident and name everybody."""
@@ -130,7 +130,7 @@ def main(folder: Path, units: int) -> None:
                 lambda path: SimulatedStation(path, units, closing), sorted(folder.glob("*.toml"))
             )
         )
-        until(lambda: all(one.is_heard for one in stations), "the department hears all")
+        until(lambda: all(one.is_received for one in stations), "the department hears all")
         for station in stations:
             station.begin()
         began_s, turn, summaries = time.monotonic(), 0, 0

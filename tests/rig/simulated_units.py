@@ -119,7 +119,7 @@ class BenchUnit:
         self._token = self._bus.declare_alive(alive_key(unit_id))
 
     @property
-    def is_heard(self) -> bool:
+    def is_received(self) -> bool:
         """The station listens."""
         return self._bus.has_subscriber(POSITION.key(self.unit_id))
 

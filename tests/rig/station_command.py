@@ -57,24 +57,24 @@ class Command:
     def runs(self) -> bool:
         return self._program.poll() is None
 
-    def said(self) -> str:
+    def output(self) -> str:
         return self._output.read_text(errors="replace")
 
     def wait_ready(self) -> str:
         """The address of the console."""
         until(
-            lambda: "\nready " in f"\n{self.said()}" or not self.runs(),
+            lambda: "\nready " in f"\n{self.output()}" or not self.runs(),
             "the station is ready or has ended",
         )
-        assert self.runs(), f"the station ended:\n{self.said()}"
-        (line,) = (line for line in self.said().splitlines() if line.startswith("ready "))
+        assert self.runs(), f"the station ended:\n{self.output()}"
+        (line,) = (line for line in self.output().splitlines() if line.startswith("ready "))
         return line.removeprefix("ready ")
 
     def wait(self) -> int:
         try:
             return self._program.wait(PATIENCE_S)
         except TimeoutError as error:
-            raise AssertionError(f"it has not ended:\n{self.said()}") from error
+            raise AssertionError(f"it has not ended:\n{self.output()}") from error
 
     def stop(self, by: signal.Signals = signal.SIGTERM) -> int:
         self._program.send_signal(by)
@@ -173,15 +173,15 @@ class Unit:
     def __init__(self, port: int, unit_id: str, boot_id: int = 1) -> None:
         self.bus = ZenohBus(UnitEndpoint((f"tcp/127.0.0.1:{port}",)))
         self.stamper = Stamper(unit_id, boot_id, SystemClock())
-        self._heard = False
+        self._received = False
 
     def say(self, message: Message) -> None:
         """The first time it waits for the link: what is said without one is gone."""
         channel = channel_of(message)
         key = channel.key(self.stamper.unit_id)
-        if not self._heard:
+        if not self._received:
             until(lambda: self.bus.has_subscriber(key), "a station listens")
-            self._heard = True
+            self._received = True
         self.bus.publish(key, encode(message), channel.qos)
 
     def close(self) -> None:

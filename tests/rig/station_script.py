@@ -67,7 +67,7 @@ class Script:
     def fused(self) -> list[FusedPosition]:
         return [output for output in self.outputs if isinstance(output, FusedPosition)]
 
-    def said(self, kind: type[M]) -> list[M]:
+    def published(self, kind: type[M]) -> list[M]:
         """The messages of a kind that were stepped."""
         events = [event_of(*record) for record in self.records]
         messages = [event.message for event in events if isinstance(event, Received)]

@@ -13,5 +13,5 @@ from tests.rig.loaded_program import launch_loaded
 def two_stations(folder: Path, places: tuple[Place, Place], closing: ExitStack) -> TwoStations:
     """They are ended with ``closing``, and what they said is shown with a test that fails."""
     two = TwoStations(folder, places, closing, launch_loaded)
-    closing.callback(lambda: print(two.first.said(), two.second.said(), sep="\n"))
+    closing.callback(lambda: print(two.first.output(), two.second.output(), sep="\n"))
     return two

@@ -9,7 +9,7 @@ from pathlib import Path
 MessageOfUnit = tuple[int, int]  # boot id, sequence number
 
 
-def said_by(journal: Path) -> set[MessageOfUnit]:
+def stated_by(journal: Path) -> set[MessageOfUnit]:
     """Of an agent that may be writing to it, or has not begun to."""
     if not journal.exists():
         return set()

@@ -27,7 +27,7 @@ class Walk:
         self._unit = unit
         self._socket = closing.enter_context(watch(browser))
         self._ending = threading.Event()
-        self.said: set[int] = set()  # sequence numbers
+        self.stated: set[int] = set()  # sequence numbers
         self.shown = 0  # deltas with the unit in it
         self.problems: list[str] = []
         self.alarms: dict[str, str] = {}  # state by kind
@@ -43,7 +43,7 @@ class Walk:
 
     def _header(self) -> Header:
         header = self._unit.stamper.header()
-        self.said.add(header.seq)
+        self.stated.add(header.seq)
         return header
 
     def _walk(self) -> None:

@@ -72,7 +72,7 @@ class Work:
         self._threads: list[Thread] = []
 
     def start(self, maydays_hz: float) -> None:
-        until(lambda: all(unit.is_heard for unit in self._units), "the station listens")
+        until(lambda: all(unit.is_received for unit in self._units), "the station listens")
         for unit in self._units:
             unit.introduce()
         for work, rate_hz in ((self._walk, _MESSAGES_HZ), (self._press, maydays_hz)):

@@ -31,16 +31,16 @@ def binary_message(kind: str, t_us: int, *values: float) -> bytes:
 
 def at_rest(count: int, first: int = 0) -> list[bytes]:
     """Messages of a device on a table, with what comes beside the inertial ones."""
-    said = []
+    reported = []
     for k in range(first, first + count):
         t_us = k * STEP_US
-        said.append(text_message("I", t_us, 0.01 * (k % 7), 0.02, -0.03, 0.001, 0.002, 1.0))
+        reported.append(text_message("I", t_us, 0.01 * (k % 7), 0.02, -0.03, 0.001, 0.002, 1.0))
         if k % 20 == 0:
-            said.append(text_message("M", t_us, 0.4, 0.0, 0.9))
+            reported.append(text_message("M", t_us, 0.4, 0.0, 0.9))
         if k % 80 == 0:
-            said.append(text_message("B", t_us, 87.5, 4.1, 0.0))
-            said.append(text_message("T", t_us, 31.25))
-    return said
+            reported.append(text_message("B", t_us, 87.5, 4.1, 0.0))
+            reported.append(text_message("T", t_us, 31.25))
+    return reported
 
 
 def played(imu: ImuBatch, binary: bool = False) -> Iterator[tuple[float, bytes]]:
@@ -93,10 +93,10 @@ class TcpDevice:
 class PtyDevice:
     """A serial port, on which something is said when somebody has opened and set it up."""
 
-    def __init__(self, said: Iterable[bytes]) -> None:
+    def __init__(self, reported: Iterable[bytes]) -> None:
         self._ours, self._theirs = pty.openpty()
         self.source = os.ttyname(self._theirs)
-        self._said = said
+        self._stated = reported
         self._closed = Event()
         self._thread = Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -114,7 +114,7 @@ class PtyDevice:
         while termios.tcgetattr(self._ours)[3] & termios.ICANON:
             if self._closed.wait(0.01):
                 return
-        for part in self._said:
+        for part in self._stated:
             if self._closed.is_set():
                 return
             os.write(self._ours, part)

@@ -34,7 +34,7 @@ def simulation() -> Simulation:
 
 
 @pytest.fixture(scope="module")
-def said(simulation: Simulation) -> Said:
+def stated(simulation: Simulation) -> Said:
     identity = UnitIdentity("1", "passes-beacons", "eskf", (FittedSensor(simulation.description),))
     tracker = make_tracker("eskf", simulation.description)
     unit = TrackerPipeline(
@@ -42,20 +42,20 @@ def said(simulation: Simulation) -> Said:
     )
     batches = islice(simulation.batches(1.0), LASTS_S)
     messages = [message for batch in batches for message in unit.step(batch)]
-    told = [one for one in messages if isinstance(one, Position | Sighting)]
-    return [(one.header.t_mono_ns / NS_PER_S, one) for one in told]
+    reported = [one for one in messages if isinstance(one, Position | Sighting)]
+    return [(one.header.t_mono_ns / NS_PER_S, one) for one in reported]
 
 
-def told(simulation: Simulation, said: Said, *, with_beacons: bool) -> Script:
+def reported(simulation: Simulation, stated: Said, *, with_beacons: bool) -> Script:
     """A station whose unit begins where it does; which way it looked is off by ten degrees."""
     script = Script()
     script.register("FF-01")
     script.act(OpenIncident("i1", "Mill Lane"))
     script.act(SetPlan(PLAN))
     north_m, east_m, _ = simulation.truth(np.zeros(1)).position_n_m[0].tolist()
-    first = next(one for _, one in said if isinstance(one, Position))
+    first = next(one for _, one in stated if isinstance(one, Position))
     second = simulation.truth(np.array([6.0, 9.0])).position_n_m
-    own = [one for t_s, one in said if isinstance(one, Position) and 6.0 <= t_s <= 9.0]
+    own = [one for t_s, one in stated if isinstance(one, Position) and 6.0 <= t_s <= 9.0]
     true_rad = np.arctan2(*(second[1] - second[0])[1::-1])
     own_rad = np.arctan2(own[-1].east_m - own[0].east_m, own[-1].north_m - own[0].north_m)
     heading_rad = float(true_rad - own_rad) + 0.17
@@ -65,7 +65,7 @@ def told(simulation: Simulation, said: Said, *, with_beacons: bool) -> Script:
         for one in simulation.scenario.beacons:
             floor = round(-one.down_m / 3.2)
             script.act(PlaceBeacon(one.beacon_id, "", one.north_m, one.east_m, floor, 0.3, 5.0))
-    for t_s, message in said:
+    for t_s, message in stated:
         script.now_s = t_s
         script.say(message)
     return script
@@ -81,9 +81,9 @@ def trail_off_m(simulation: Simulation, script: Script) -> float:
     return float(np.linalg.norm(off, axis=1).mean())
 
 
-def test_beacons_on_the_way_correct_the_trail(simulation: Simulation, said: Said) -> None:
-    plain = told(simulation, said, with_beacons=False)
-    pinned = told(simulation, said, with_beacons=True)
+def test_beacons_on_the_way_correct_the_trail(simulation: Simulation, stated: Said) -> None:
+    plain = reported(simulation, stated, with_beacons=False)
+    pinned = reported(simulation, stated, with_beacons=True)
     state = pinned.pipeline.state
     verdicts = [state.site.pin_verdicts[pin_id].state for pin_id in state.site.pins]
     assert {pin.other_id for pin in state.site.pins.values()} >= {"entrance", "corridor-west"}
@@ -92,9 +92,9 @@ def test_beacons_on_the_way_correct_the_trail(simulation: Simulation, said: Said
 
 
 def test_beacons_that_nobody_placed_wait_and_count_once_they_are(
-    simulation: Simulation, said: Said
+    simulation: Simulation, stated: Said
 ) -> None:
-    script = told(simulation, said, with_beacons=False)
+    script = reported(simulation, stated, with_beacons=False)
     state = script.pipeline.state
     assert {one.state for one in state.site.pin_verdicts.values()} == {"waiting"}
     script.act(PlaceBeacon("corridor-west", "", 7.0, 3.0, 0, 0.3, 5.0))
@@ -103,9 +103,9 @@ def test_beacons_that_nobody_placed_wait_and_count_once_they_are(
     assert {one.state for one in state.site.pin_verdicts.values()} == {"waiting"}
 
 
-def test_a_seed_hears_the_same_again(simulation: Simulation) -> None:
-    heard = []
+def test_a_seed_receives_the_same_again(simulation: Simulation) -> None:
+    received = []
     for _ in range(2):
         batches = islice(simulation.batches(1.0), 30)
-        heard.append([one for batch in batches for one in batch.others])
-    assert str(heard[0]) == str(heard[1])
+        received.append([one for batch in batches for one in batch.others])
+    assert str(received[0]) == str(received[1])

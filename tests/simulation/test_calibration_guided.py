@@ -43,16 +43,16 @@ class Person:
     def __init__(self, seed: int) -> None:
         self._unit = HandledUnit(seed)
         self._hand = np.random.default_rng(seed)
-        self._heard = "moved"
+        self._received = "moved"
         self.handled_s = 0.0
 
-    def hear(self, words: str) -> None:
-        self._heard = words
+    def receive(self, words: str) -> None:
+        self._received = words
 
     def batches(self) -> Iterator[SensorBatch]:
         yield from cut(self._unit.turning(2))
         while True:
-            for movement in self._movement(self._heard):
+            for movement in self._movement(self._received):
                 self.handled_s += len(movement) / 200.0
                 yield from cut(iter((movement,)))
 
@@ -72,13 +72,13 @@ class Person:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_who_only_does_what_is_said_is_done_in_minutes(seed):
+def test_who_only_does_what_is_stated_is_done_in_minutes(seed):
     person = Person(seed)
     batches = person.batches()
     steps: list[Step] = [StillStep(), PosesStep(), TurningStep()]
     for step in steps:
-        person.hear(step.instruction)
-        run_step(step, batches, LIMIT_S, person.hear)
+        person.receive(step.instruction)
+        run_step(step, batches, LIMIT_S, person.receive)
         assert step.wanted() is None
     assert person.handled_s < 300.0
     calibration = solve(steps, "u1", "s", datetime.now(UTC))

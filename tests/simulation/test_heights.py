@@ -102,7 +102,7 @@ def test_half_way_between_two_storeys_neither_is_taken() -> None:
     assert height.down_m == pytest.approx(-1.6)
 
 
-def test_the_weather_is_told_by_whoever_stays_and_nobody_moves_by_joining() -> None:
+def test_the_weather_is_reported_by_anyone_stays_and_nobody_moves_by_joining() -> None:
     weather = Weather()
     for second in range(600):
         rise_m = 0.01 * second
@@ -122,8 +122,8 @@ def test_a_reference_tells_the_weather_and_only_it(position: Position) -> None:
         t_ns = second * NS_PER_S
         for unit_id, extra_pa in (("REF", 0.0), ("FF-01", 25.0)):
             pressure_pa = pressure_pa_at(SITE_M) + added_pa + extra_pa
-            said = msgspec.structs.replace(position, pressure_pa=pressure_pa)
-            air = barometers.update(unit_id, t_ns, said, is_outside=True)
+            reported = msgspec.structs.replace(position, pressure_pa=pressure_pa)
+            air = barometers.update(unit_id, t_ns, reported, is_outside=True)
     assert air is not None
     assert air.referenced
     first = down_of(25.0) - SITE_M
@@ -132,5 +132,5 @@ def test_a_reference_tells_the_weather_and_only_it(position: Position) -> None:
 
 def test_a_pressure_that_cannot_be_is_left_alone(position: Position) -> None:
     for pressure_pa in (None, 0.5, 1e6, math.nan):
-        said = msgspec.structs.replace(position, pressure_pa=pressure_pa)
-        assert Barometers().update("FF-01", 0, said, is_outside=True) is None
+        reported = msgspec.structs.replace(position, pressure_pa=pressure_pa)
+        assert Barometers().update("FF-01", 0, reported, is_outside=True) is None

@@ -104,13 +104,13 @@ def test_walls_of_a_wing_leave_open_who_is_right(kind: FuserKind, angle_deg: flo
     assert estimates[-1].heading_std_rad > math.radians(0.4 * angle_deg)
 
 
-@pytest.mark.parametrize("is_said", [True, False], ids=["a start is said", "nothing is"])
+@pytest.mark.parametrize("is_stated", [True, False], ids=["a start is said", "nothing is"])
 def test_who_is_in_a_frame_of_their_own_tells_nothing_of_the_building(
-    kind: FuserKind, is_said: bool
+    kind: FuserKind, is_stated: bool
 ) -> None:
     """Rooms round and round, and nothing says where the own frame lies."""
     fuser, learnt, place = kind.new(), LearntBuilding(), 0j
-    if is_said:
+    if is_stated:
         fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.03))
     for row in range(600):
         place += 0.5 * 1j ** (row // 12)
@@ -120,7 +120,7 @@ def test_who_is_in_a_frame_of_their_own_tells_nothing_of_the_building(
             message_factory.position(header, north_m=north_m, east_m=east_m, distance_m=way_m)
         )
         learnt = fuser.match_building(learnt)
-    assert (learnt.axis is not None) is is_said
+    assert (learnt.axis is not None) is is_stated
 
 
 def _through_two_buildings(fuser: Fuser, outside_m: int, angle_rad: float) -> Iterator[Estimate]:

@@ -108,7 +108,7 @@ def test_what_one_has_learnt_holds_for_the_other(people: People) -> None:
     assert people.sure("FF-02") > alone.sure("FF-02")
 
 
-def test_a_learnt_storey_holds_whoever_comes_back_to_it(people: People) -> None:
+def test_a_learnt_storey_holds_anyone_comes_back_to_it(people: People) -> None:
     """Stairs that are seen a tenth too high, over and over, do not lead away from the floors."""
     for _ in range(4):
         people.climb("FF-01", -3, STOREY_M * 1.05)
@@ -119,7 +119,7 @@ def test_a_learnt_storey_holds_whoever_comes_back_to_it(people: People) -> None:
     assert people.seen()[0] == pytest.approx(0.0, abs=0.5)
 
 
-def test_it_is_learnt_again_without_whoever_is_forgotten(people: People) -> None:
+def test_it_is_learnt_again_without_anyone_is_forgotten(people: People) -> None:
     people.walk("FF-02", 20)
     people.script.act(CloseIncident("i1"))
     people.script.act(ForgetWearers("FF-01"))
@@ -153,7 +153,7 @@ def test_what_a_person_says_of_a_floor_numbers_it_until_the_pin_is_removed(
     assert people.floor("FF-01") == 3
 
 
-def test_a_pin_that_contradicts_where_somebody_was_numbers_no_floors(people: People) -> None:
+def test_a_pin_that_contradicts_where_person_was_numbers_no_floors(people: People) -> None:
     script = people.script
     script.act(SetPin("p1", "FF-01", script.t_ns, 0.0, 500.0, 1.0, 2, None, 0.0, ""))
     assert script.pipeline.state.site.pin_verdicts["p1"].state == "conflict"
@@ -175,7 +175,7 @@ def test_who_begins_upstairs_tells_nothing_of_the_ground(people: People) -> None
     assert people.seen()[0] == pytest.approx(0.0, abs=0.3)
 
 
-def test_of_a_unit_that_nobody_said_where_it_began_the_floor_is_assumed(people: People) -> None:
+def test_of_a_unit_that_nobody_stated_where_it_began_the_floor_is_assumed(people: People) -> None:
     people.walk("FF-02", 20)
     assert people.floor("FF-02") == 0
     assert people.sure("FF-02") < 0.5

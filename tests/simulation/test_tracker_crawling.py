@@ -60,7 +60,7 @@ def standing(motion_m2ps4, speed_mps):
     [(0.7, 1.0, True), (0.7, 0.2, False), (0.03, 1.0, False), (0.7, -1.0, True)],
     ids=["is_gliding", "stands nearly", "the stillest of all around", "backwards"],
 )
-def test_a_glide_is_told_by_a_velocity_that_is_known(motion_m2ps4, speed_mps, is_one):
+def test_a_glide_is_reported_by_a_velocity_that_is_known(motion_m2ps4, speed_mps, is_one):
     ring, state = standing(motion_m2ps4, speed_mps)
     assert is_gliding(ring, new_progress()[0], state, 0, EskfConfig()) is is_one
 

@@ -78,13 +78,13 @@ def test_a_rest_before_the_walk_leaves_nothing_to_doubt():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_who_starts_on_the_move_is_told_to_stand_still_until_he_has(seed):
+def test_who_starts_on_the_move_is_ordered_to_stand_still_until_he_has(seed):
     rows, _, _ = walked(seed, np.radians(0.5))
-    told = unsettled(rows)
+    reported = unsettled(rows)
     strides = np.flatnonzero(~rows.stationary)
     stands = strides[np.diff(strides, append=0) > 3.0 * RATE_HZ][0]
-    assert told[round(10.0 * RATE_HZ) : stands].all()
-    assert not told[stands + round(5.0 * RATE_HZ) :].any()
+    assert reported[round(10.0 * RATE_HZ) : stands].all()
+    assert not reported[stands + round(5.0 * RATE_HZ) :].any()
 
 
 def unsettled(rows):

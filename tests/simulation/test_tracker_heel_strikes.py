@@ -45,8 +45,8 @@ def rms_rise_m(rows):
 def clipped(description, imu):
     """The same by a gyroscope that hides the fastest tenth of most swings, and says so."""
     full_scale = 0.9 * float(np.abs(imu.gyro_radps).max())
-    told = replace(description, gyro_full_scale_radps=full_scale)
-    return told, replace(imu, gyro_radps=np.clip(imu.gyro_radps, -full_scale, full_scale))
+    reported = replace(description, gyro_full_scale_radps=full_scale)
+    return reported, replace(imu, gyro_radps=np.clip(imu.gyro_radps, -full_scale, full_scale))
 
 
 @pytest.mark.parametrize("clips", [False, True])

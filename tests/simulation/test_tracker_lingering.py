@@ -26,7 +26,7 @@ def test_small_slow_steps_on_one_spot_add_up(seed):
 
 
 @pytest.mark.parametrize("leg", [Kneel(20.0), Sit(60.0)], ids=["kneels", "sits"])
-def test_whoever_gets_up_again_is_on_his_floor(leg):
+def test_anyone_gets_up_again_is_on_his_floor(leg):
     for calibrated in (True, False):
         one = stray(Wearer("lingers", (Stand(4.0), leg, Stand(3.0))), 101, calibrated)
         assert one.error_m < 0.15

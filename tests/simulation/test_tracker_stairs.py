@@ -74,7 +74,7 @@ def test_what_stairs_may_add_up_is_stated():
     ],
     ids=["winding", "two at once", "running", "running, two at once"],
 )
-def test_whoever_climbs_in_his_own_way_keeps_his_height(legs):
+def test_anyone_climbs_in_his_own_way_keeps_his_height(legs):
     height_m, _, true_m = tracked(legs, seed=7)
     assert np.abs(height_m - true_m).max() < 0.06 * true_m.max()
     for seed in range(3):  # and by sensors of a data sheet it is said how far it may be off

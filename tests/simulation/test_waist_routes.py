@@ -29,7 +29,7 @@ def test_errors_stay_below_three_per_cent_of_the_way(route, seed):
     assert score.silently_wrong == 0.0
 
 
-def test_floors_of_four_metres_are_told_apart():
+def test_floors_of_four_metres_are_distinguished():
     rows, truth = tracked("five-floors?seed=0")
     height_m = np.interp(truth.t_s, rows.t_ns * 1e-9, -rows.position_n_m[:, 2])
     error_m = height_m - height_m[0] + truth.position_n_m[:, 2] - truth.position_n_m[0, 2]

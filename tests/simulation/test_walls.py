@@ -106,7 +106,7 @@ def _storeys(person: Person) -> Floats:
 
 
 @pytest.mark.parametrize(("seed", "which"), [(8016, 5), (61010, 4)])
-def test_whoever_walls_would_hold_in_the_wrong_rooms_is_found(
+def test_anyone_walls_would_hold_in_the_wrong_rooms_is_found(
     kind: FuserKind, seed: int, which: int
 ) -> None:
     """Three standard deviations off at the door: both were minutes 8 to 12 m off with 1 m stated,

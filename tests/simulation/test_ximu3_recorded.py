@@ -25,8 +25,8 @@ class PlayedLine:
         self.clock = ManualClock()
         self.clock.advance(1000.0)
         self.source = Ximu3Source("/dev/played", self.clock)
-        said = list(played(imu, binary))
-        self._chunks = [said[k : k + CHUNK] for k in range(0, len(said), CHUNK)]
+        reported = list(played(imu, binary))
+        self._chunks = [reported[k : k + CHUNK] for k in range(0, len(reported), CHUNK)]
         self._now_s = 0.0
 
     def read(self) -> bytes | None:

@@ -109,7 +109,7 @@ def _run_station(
 ) -> BusReport:
     for unit in units:
         station.api.post("/units", {"unit_id": unit.unit_id})
-    wait_until("the station listens", lambda: all(unit.is_heard for unit in units))
+    wait_until("the station listens", lambda: all(unit.is_received for unit in units))
     consoles = watching(station.api, load.consoles, closing)
     onlookers = Onlookers(station.api, load.onlookers, load.slow)
     for unit in units:

@@ -98,7 +98,7 @@ def _measure(
     for unit in units:
         station.api.post("/units", {"unit_id": unit.unit_id})
     station.api.post("/incidents", {"name": "Bench"})
-    wait_until("the station listens", lambda: all(unit.is_heard for unit in units))
+    wait_until("the station listens", lambda: all(unit.is_received for unit in units))
     for unit in units:
         unit.introduce()
     began_s = time.perf_counter()

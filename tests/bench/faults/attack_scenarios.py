@@ -144,9 +144,9 @@ class Photographs:
 def _link_again(site: Site) -> None:
     """The unit's agent, from its start."""
     site.agent.kill()
-    before = site.agent.said()
+    before = site.agent.output()
     site.agent.start()
-    wait_until("the agent has begun", lambda: site.agent.said() > before)
+    wait_until("the agent has begun", lambda: site.agent.output() > before)
     time.sleep(_LINKED_WITHIN_S)
 
 

@@ -43,7 +43,7 @@ class FaultReport:
     duplicates: int  # messages that are more than once in the log
     forged: int  # messages in the log of somebody who may not say them
     fetched: int  # of those that arrived, from the journal
-    heard_s: float | None  # from the fault's end to the first message that came live
+    received_s: float | None  # from the fault's end to the first message that came live
     complete_s: float | None  # from the fault's end until all said before it is in the log
     alerts: int
     alert_worst_s: float | None  # from being said, or from the fault's end where that is later
@@ -98,38 +98,38 @@ def measure(
 
 def suffer(one: Site, fault: Fault, patience_s: float) -> FaultReport:
     """Let a fault happen, wait for the rest to arrive, and count."""
-    before = one.said()
+    before = one.output()
     one.ask_par()  # the wearer answers some seconds later, so when it is bad
     time.sleep(_BEFORE_S)
     fault.happen(one)
     one.link.set(fault.after)
-    over_ns, said_then = time.time_ns(), one.said()
-    one.wait_logged(said_then, patience_s)
-    one.wait_heard(patience_s, over_ns)
+    over_ns, stated_then = time.time_ns(), one.output()
+    one.wait_logged(stated_then, patience_s)
+    one.wait_received(patience_s, over_ns)
     memory_mb = one.station.memory_mb()
     one.link.set(CLEAN)
-    said = one.said()
-    one.wait_logged(said, patience_s)
-    return _report(one, fault, before, said, said_then, over_ns, memory_mb)
+    stated = one.output()
+    one.wait_logged(stated, patience_s)
+    return _report(one, fault, before, stated, stated_then, over_ns, memory_mb)
 
 
 def _report(
     one: Site,
     fault: Fault,
     before: set[MessageOfUnit],
-    said: set[MessageOfUnit],
-    said_before_end: set[MessageOfUnit],
+    stated: set[MessageOfUnit],
+    stated_before_end: set[MessageOfUnit],
     over_ns: int,
     memory_mb: float,
 ) -> FaultReport:
     """What was said ``before`` must still be there; else it was lost now."""
     logged = list(one.logged())
     arrived_ns = {record.message: record.t_ns for record in reversed(logged)}
-    sent = said - before
+    sent = stated - before
     records = [record for record in logged if record.message in sent]
     heard_ns = [r.t_ns for r in records if r.live and r.t_ns > over_ns]
-    complete = said_before_end <= arrived_ns.keys()
-    complete_ns = max(arrived_ns[one] for one in said_before_end) if complete else None
+    complete = stated_before_end <= arrived_ns.keys()
+    complete_ns = max(arrived_ns[one] for one in stated_before_end) if complete else None
     alerts_s = [
         (r.t_ns - (max(r.said_ns, over_ns) if r.t_ns > over_ns else r.said_ns)) / NS_PER_S
         for r in records
@@ -140,11 +140,11 @@ def _report(
         seconds=fault.seconds,
         sent=len(sent),
         arrived=len(sent & arrived_ns.keys()),
-        lost=len(said - arrived_ns.keys()),
+        lost=len(stated - arrived_ns.keys()),
         duplicates=len(logged) - len(arrived_ns),
         forged=one.forged(),
         fetched=sum(not record.live for record in records),
-        heard_s=(min(heard_ns) - over_ns) / NS_PER_S if heard_ns else None,
+        received_s=(min(heard_ns) - over_ns) / NS_PER_S if heard_ns else None,
         complete_s=None if complete_ns is None else max(0.0, (complete_ns - over_ns) / NS_PER_S),
         alerts=len(alerts_s),
         alert_worst_s=max(alerts_s, default=None),
@@ -168,7 +168,7 @@ def table_of(reports: Sequence[FaultReport]) -> Table:
         table.add_column(title, justify="right", no_wrap=True)
     for one in reports:
         counts = (one.sent, one.arrived, one.lost, one.duplicates, one.forged, one.fetched)
-        times_s = (one.heard_s, one.complete_s, one.alert_worst_s)
+        times_s = (one.received_s, one.complete_s, one.alert_worst_s)
         table.add_row(
             one.fault,
             *(f"{count:,}" for count in counts),

@@ -91,7 +91,7 @@ class Kills:
                 site.start_station()
             if self.agent:
                 site.agent.start()
-            site.wait_heard(START_PATIENCE_S, began_ns)
+            site.wait_received(START_PATIENCE_S, began_ns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,22 +104,22 @@ class Clone:
     after: Conditions = CLEAN
 
     def happen(self, site: Site) -> None:
-        before = site.clone.said()
+        before = site.clone.output()
         site.clone.start()
         end_s = time.monotonic() + START_PATIENCE_S
-        while time.monotonic() < end_s and len(site.clone.said() - before) < 50:
+        while time.monotonic() < end_s and len(site.clone.output() - before) < 50:
             time.sleep(0.5)
         time.sleep(10.0)
         site.link.set(DARK)
         time.sleep(6.0)
         site.link.set(CLEAN)
-        site.wait_logged(site.said(), START_PATIENCE_S)
+        site.wait_logged(site.output(), START_PATIENCE_S)
         site.clone.stop()  # killed, it would take with it what it has just said
         for _ in range(_RESTARTS):  # stopped without a link, it has the rest in its journal
-            if site.wait_logged(site.clone.said(), _LAST_MESSAGES_S):
+            if site.wait_logged(site.clone.output(), _LAST_MESSAGES_S):
                 return
             site.clone.start()
-            site.wait_logged(site.said(), START_PATIENCE_S)
+            site.wait_logged(site.output(), START_PATIENCE_S)
             site.clone.stop()
 
 
@@ -137,7 +137,7 @@ class ClockJump:
         site.agent.kill()
         began_ns = time.time_ns()
         site.agent.start_with_jumping_clock(self.days, _DAY_AFTER_S)
-        site.wait_heard(START_PATIENCE_S, began_ns)
+        site.wait_received(START_PATIENCE_S, began_ns)
         site.link.set(DARK)
         time.sleep(self.seconds)
 
@@ -193,7 +193,7 @@ class DamagedLog:
         site.damage_log(random.Random(self.name))  # no secret
         began_ns = time.time_ns()
         site.start_station()
-        site.wait_heard(START_PATIENCE_S, began_ns)
+        site.wait_received(START_PATIENCE_S, began_ns)
 
 
 TEN_MINUTES = BadLink("outage of 600 s", DARK, 600.0)

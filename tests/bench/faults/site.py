@@ -27,7 +27,7 @@ from tests.rig.connection_flood import connection_flood
 from tests.rig.lossy_link import LossyLink
 from tests.rig.program import Launch, Program, end_hard, launch_installed
 from tests.rig.station_process import StationProcess, station_process
-from tests.rig.unit_journal import MessageOfUnit, said_by
+from tests.rig.unit_journal import MessageOfUnit, stated_by
 
 START_PATIENCE_S = 200.0  # the first agent on a machine compiles its tracker
 _PORT = 7447
@@ -59,7 +59,7 @@ class Agent:
 
     def __init__(self, link: LossyLink, folder: Path, enrolment: str, launch: Launch) -> None:
         self.journal = folder / UNIT / "journal.sqlite"
-        self._said = folder.with_suffix(".txt")
+        self._stated = folder.with_suffix(".txt")
         arguments = ["run", "--enrolment", enrolment, "--data", str(folder)]
         self._arguments = [*arguments, "--source", "simulated:search-ground-floor"]
         self._network = link.units
@@ -68,7 +68,7 @@ class Agent:
 
     def start(self, before: str = "") -> None:
         """``before``: what Python is to do first."""
-        self._program = self._launch("edge", self._arguments, self._said, self._network, before)
+        self._program = self._launch("edge", self._arguments, self._stated, self._network, before)
 
     def start_with_jumping_clock(self, days: int, after_s: float) -> None:
         self.start(_AGENT_OF_JUMPS.format(days=days, after_s=after_s))
@@ -88,9 +88,9 @@ class Agent:
         assert self._program is not None
         _set_disk_full(self._program.pid, full=full)
 
-    def said(self) -> set[MessageOfUnit]:
+    def output(self) -> set[MessageOfUnit]:
         """All that it has ever said, by its journal."""
-        return said_by(self.journal)
+        return stated_by(self.journal)
 
 
 class Site:
@@ -161,8 +161,8 @@ class Site:
         module = [sys.executable, "-m", "tests.bench.faults.attacker", what, membership]
         command = [*self.link.units.inside(), *module, names, str(self._data / "log"), str(seconds)]
         subprocess.run(command, check=True)
-        heard = {unit_id for unit_id, _, _ in self._numbers()}
-        for name in {*names.split(",")} & MEMBERS - heard:
+        received = {unit_id for unit_id, _, _ in self._numbers()}
+        for name in {*names.split(",")} & MEMBERS - received:
             raise BusError(f"{name} who may speak for itself is not heard, so nothing was tried")
 
     def attack(self, what: str, enrolment: str, seconds: float) -> None:
@@ -189,8 +189,8 @@ class Site:
         with connection_flood(kind, host, _PORT, seconds, held=held, per_s=per_s, inside=inside):
             yield
 
-    def said(self) -> set[MessageOfUnit]:
-        return self.agent.said() | self.clone.said()
+    def output(self) -> set[MessageOfUnit]:
+        return self.agent.output() | self.clone.output()
 
     def logged(self) -> Iterator[Logged]:
         for t_ns, key, payload in read_log(self._data / "log"):
@@ -233,7 +233,7 @@ class Site:
                 changes.append(message)
         return changes
 
-    def wait_heard(self, patience_s: float, since_ns: int = 0) -> bool:
+    def wait_received(self, patience_s: float, since_ns: int = 0) -> bool:
         """Until a message comes live; False when the patience is over."""
         end_s = time.monotonic() + patience_s
         while not any(one.live and one.t_ns > since_ns for one in self.logged()):
@@ -266,7 +266,7 @@ def site(folder: Path, seed: int, launch: Launch = launch_installed) -> Iterator
         members = Members(folder, link.station.address, address)
         one = Site(folder, link, members, address, stack, launch)
         one.agent.start()
-        if not one.wait_heard(START_PATIENCE_S):
+        if not one.wait_received(START_PATIENCE_S):
             raise BusError("the unit to be measured is not heard")
         yield one
 

@@ -38,7 +38,7 @@ class StandbyReport:
     take_over_s: float  # from the fault until the other says that it leads
     back_s: float  # from the first one's return until it has everything
     back_cpu_s: float  # of that one's processor time, children included: starting costs most of it
-    said: int  # messages that the units have put into their journals
+    stated: int  # messages that the units have put into their journals
     lost: tuple[int, int]  # of these, not in the log of the first and of the second
     duplicates: tuple[int, int]
     same_logs: bool  # one is the beginning of the other, event for event
@@ -104,7 +104,7 @@ def _running(
     two.start()
     for number in range(units):
         two.start_unit(f"unit-{number}", two.both[number % 2])
-    two.wait_heard(two.first)
+    two.wait_received(two.first)
     time.sleep(_BEFORE_S)
     return two
 
@@ -155,9 +155,9 @@ def _compared(
     name: str, two: TwoStations, take_over_s: float, back_s: float, back_cpu_s: float
 ) -> StandbyReport:
     """Both are ended: the one that follows first, so that its log is the beginning of the other."""
-    said = two.said()
+    stated = two.output()
     with suppress(StoreError):  # what has not come by then is lost
-        wait_until("both have everything", lambda: two.both_have(said))
+        wait_until("both have everything", lambda: two.both_have(stated))
     two.stop_units()
     follows, leads = two.both[::-1] if two.first.leads() else two.both
     follows.stop()
@@ -169,8 +169,8 @@ def _compared(
         take_over_s=take_over_s,
         back_s=back_s,
         back_cpu_s=back_cpu_s,
-        said=len(said),
-        lost=(len(said - one.messages.keys()), len(said - other.messages.keys())),
+        stated=len(stated),
+        lost=(len(stated - one.messages.keys()), len(stated - other.messages.keys())),
         duplicates=(one.duplicates, other.duplicates),
         same_logs=short.events == long.events[: len(short.events)],
     )
@@ -193,7 +193,7 @@ def _table(reports: list[StandbyReport]) -> Table:
             f"{one.take_over_s:.1f} s",
             f"{one.back_s:.1f} s",
             f"{one.back_cpu_s:.1f} s",
-            f"{one.said:,}",
+            f"{one.stated:,}",
             f"{one.lost[0]} / {one.lost[1]}",
             f"{one.duplicates[0]} / {one.duplicates[1]}",
             "yes" if one.same_logs else "NO",

@@ -140,7 +140,7 @@ class Station:
         standing = self.standing()
         return standing.get("role") == "standby" and bool(standing["in_step"])
 
-    def said(self) -> str:
+    def output(self) -> str:
         return (self.folder / f"{self.name}.txt").read_text(errors="replace")
 
     def logged(self) -> Logged:

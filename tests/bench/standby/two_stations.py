@@ -15,7 +15,7 @@ from tests.rig.first_login import first_login
 from tests.rig.pacing import wait_until
 from tests.rig.program import Launch, Program, end_hard, launch_installed
 from tests.rig.station_process import free_port
-from tests.rig.unit_journal import said_by
+from tests.rig.unit_journal import stated_by
 
 
 class TwoStations:
@@ -78,31 +78,31 @@ class TwoStations:
         """With the addresses of these stations."""
         return self._pki.enroll(unit_id, connect=[one.bus for one in stations])
 
-    def wait_heard(self, station: Station) -> None:
+    def wait_received(self, station: Station) -> None:
         """And known as ours."""
 
-        def all_heard() -> bool:
+        def all_received() -> bool:
             units = station.get("/units")
-            heard = {u["unit_id"] for u in units if u["last_heard_ms"] and u["registered"]}
-            return heard >= self.units.keys()
+            received = {u["unit_id"] for u in units if u["last_heard_ms"] and u["registered"]}
+            return received >= self.units.keys()
 
-        wait_until(f"all units are heard at {station.name}", all_heard)
+        wait_until(f"all units are heard at {station.name}", all_received)
 
     def stop_units(self) -> None:
         for unit in self.units.values():
             end_hard(unit)
 
-    def both_have(self, said: set[MessageId]) -> bool:
+    def both_have(self, reported: set[MessageId]) -> bool:
         """Whether these messages are in both logs."""
-        return all(said <= one.logged().messages.keys() for one in self.both)
+        return all(reported <= one.logged().messages.keys() for one in self.both)
 
-    def said(self) -> set[MessageId]:
+    def output(self) -> set[MessageId]:
         """What the units have ever said, by their journals."""
         units = self._folder / "units"
         return {
             (unit_id, boot_id, seq)
             for unit_id in self.units
-            for boot_id, seq in said_by(units / unit_id / "journal.sqlite")
+            for boot_id, seq in stated_by(units / unit_id / "journal.sqlite")
         }
 
     def _both_ready(self) -> bool:

@@ -57,7 +57,7 @@ def bench_activity(
         console.print(_table(f"{title}, settled", score.settled))
         console.print(_table(f"{title}, every instant", score.every))
         console.print(
-            f"{score.falls_told} falls told, {score.falls_done} labelled, in "
+            f"{score.falls_reported} falls told, {score.falls_done} labelled, in "
             f"{score.duration_s / 60.0:.1f} minutes\n"
         )
     write_figures(json_file, {title: _as_json(score) for title, score in report.items()})
@@ -108,7 +108,7 @@ def _table(title: str, confusion: Confusion) -> Table:
     for done in kinds:
         if not confusion.of(done):
             continue
-        counts = (confusion.counts.get((done, said), 0) for said in kinds)
+        counts = (confusion.counts.get((done, reported), 0) for reported in kinds)
         cells = (str(count) if count else "" for count in counts)
         table.add_row(_name(done), *cells, f"{100.0 * confusion.recall(done):.1f}")
     return table
@@ -127,9 +127,9 @@ def _as_json(score: ActivityScore) -> dict[str, Any]:
             "recall": {_name(done): confusion.recall(done) for done in done_kinds},
             "counts": {
                 _name(done): {
-                    _name(said): confusion.counts[done, said]
-                    for said in kinds
-                    if (done, said) in confusion.counts
+                    _name(reported): confusion.counts[done, reported]
+                    for reported in kinds
+                    if (done, reported) in confusion.counts
                 }
                 for done in done_kinds
             },
@@ -139,6 +139,6 @@ def _as_json(score: ActivityScore) -> dict[str, Any]:
         "settled": matrix(score.settled),
         "every_instant": matrix(score.every),
         "falls_labelled": score.falls_done,
-        "falls_told": score.falls_told,
+        "falls_told": score.falls_reported,
         "duration_s": score.duration_s,
     }

@@ -34,8 +34,8 @@ class Confusion:
 
     counts: dict[tuple[Activity, Activity], int] = field(default_factory=dict)
 
-    def add(self, done: Activity, said: Activity) -> None:
-        self.counts[done, said] = self.counts.get((done, said), 0) + 1
+    def add(self, done: Activity, reported: Activity) -> None:
+        self.counts[done, reported] = self.counts.get((done, reported), 0) + 1
 
     def of(self, done: Activity) -> int:
         return sum(count for (kind, _), count in self.counts.items() if kind is done)
@@ -45,7 +45,7 @@ class Confusion:
 
     @property
     def accuracy(self) -> float:
-        right = sum(count for (done, said), count in self.counts.items() if done is said)
+        right = sum(count for (done, reported), count in self.counts.items() if done is reported)
         return right / max(sum(self.counts.values()), 1)
 
 
@@ -56,7 +56,7 @@ class ActivityScore:
     every: Confusion = field(default_factory=Confusion)
     settled: Confusion = field(default_factory=Confusion)
     falls_done: int = 0
-    falls_told: int = 0
+    falls_reported: int = 0
     duration_s: float = 0.0
 
 
@@ -80,7 +80,7 @@ def score_activity(
         begin_ns = t_ns if begin_ns is None else begin_ns
         if t_ns - begin_ns > until_s * NS_PER_S:
             break
-        score.falls_told += monitor.push(imu, tracker.push(imu))
+        score.falls_reported += monitor.push(imu, tracker.push(imu))
         if asked_ns is not None and t_ns - asked_ns < _ASKED_EVERY_NS:
             continue
         asked_ns = t_ns
@@ -88,12 +88,12 @@ def score_activity(
         if now is not done:
             done, since_s = now, t_ns / NS_PER_S
             score.falls_done += done is Activity.FALLING
-        said = monitor.activity(t_ns)
+        reported = monitor.activity(t_ns)
         if done is None:
             continue
-        score.every.add(done, said)
+        score.every.add(done, reported)
         if t_ns / NS_PER_S - since_s >= _SETTLED_S:
-            score.settled.add(done, said)
+            score.settled.add(done, reported)
     if begin_ns is not None and t_ns is not None:
         score.duration_s += (t_ns - begin_ns) / NS_PER_S
 

@@ -105,7 +105,7 @@ def _probing(command: tuple[str, ...]) -> Iterator[subprocess.Popen[str]]:
         late = Timer(_LONGEST_S, process.kill)
         late.start()
         try:
-            _hear(process, "ready")
+            _receive(process, "ready")
             yield process
             assert process.stdin is not None
             process.stdin.close()
@@ -122,16 +122,16 @@ def _track(process: subprocess.Popen[str], count: int) -> None:
         process.stdin.flush()
     except BrokenPipeError:
         raise CannotCountError("the counted process ended") from None
-    _hear(process, "done")
+    _receive(process, "done")
 
 
-def _hear(process: subprocess.Popen[str], word: str) -> None:
+def _receive(process: subprocess.Popen[str], word: str) -> None:
     assert process.stdout is not None
-    said = process.stdout.readline().strip()
-    if said != word:
+    reported = process.stdout.readline().strip()
+    if reported != word:
         raise CannotCountError(
-            f"the counted process said '{said}' instead of '{word}'"
-            if said
+            f"the counted process said '{reported}' instead of '{word}'"
+            if reported
             else "the counted process ended, or took too long"
         )
 

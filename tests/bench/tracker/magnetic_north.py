@@ -28,7 +28,7 @@ class NorthFound:
     """Over walks of one kind, root mean squares where it was said at all."""
 
     walks: str
-    said: float  # share of the time
+    reported: float  # share of the time
     off_deg: float
     std_deg: float  # as stated, median
     stated: float  # off by its stated deviation; 1 is honest, more is too sure
@@ -49,7 +49,7 @@ def find_north(
     tracker: str,
 ) -> NorthFound:
     """Calibrate each simulated unit by the book and track its walk with the field known."""
-    offs, stds, said = [], [], []
+    offs, stds, reported = [], [], []
     for simulation in simulations:
         calibration = calibration_of(simulation)
         made = make_tracker(tracker, calibration.described(simulation.description))
@@ -58,13 +58,13 @@ def find_north(
         off_rad, std_rad, share = _north_of(join_rows([made.push(imu), made.finish()]), simulation)
         offs.append(off_rad)
         stds.append(std_rad)
-        said.append(share)
+        reported.append(share)
     off_rad, std_rad = np.concatenate(offs), np.concatenate(stds)
     if not len(off_rad):
         return NorthFound(walks, 0.0, 0.0, 0.0, 0.0)
     return NorthFound(
         walks,
-        said=float(np.mean(said)),
+        reported=float(np.mean(reported)),
         off_deg=float(np.degrees(rms(off_rad))),
         std_deg=float(np.degrees(np.median(std_rad))),
         stated=rms(off_rad / std_rad),
@@ -88,9 +88,9 @@ def north_table(found: Sequence[NorthFound]) -> Table:
     for title in ("walks", "said", "off, deg", "stated, deg"):
         table.add_column(title)
     for one in found:
-        if one.said == 0.0:
+        if one.reported == 0.0:
             table.add_row(one.walks, "never", "", "")
             continue
         off = f"{one.off_deg:.1f} ({one.stated:.1f})"
-        table.add_row(one.walks, f"{100.0 * one.said:.0f} %", off, f"{one.std_deg:.1f}")
+        table.add_row(one.walks, f"{100.0 * one.reported:.0f} %", off, f"{one.std_deg:.1f}")
     return table

@@ -96,8 +96,8 @@ def thrice_the_noise(
 def gyro_clipped(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
     full_scale = CLIPPED_AT * float(np.nanmax(np.abs(imu.gyro_radps)))
     clipped = np.clip(imu.gyro_radps, -full_scale, full_scale)
-    told = replace(description, gyro_full_scale_radps=full_scale)
-    return told, _with(imu, imu.accel_mps2, clipped)
+    reported = replace(description, gyro_full_scale_radps=full_scale)
+    return reported, _with(imu, imu.accel_mps2, clipped)
 
 
 def gyro_clipped_undeclared(
@@ -110,8 +110,8 @@ def gyro_clipped_undeclared(
 def accel_clipped(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
     full_scale = CLIPPED_AT * float(np.nanmax(np.abs(imu.accel_mps2)))
     clipped = np.clip(imu.accel_mps2, -full_scale, full_scale)
-    told = replace(description, accel_full_scale_mps2=full_scale)
-    return told, _with(imu, clipped, imu.gyro_radps)
+    reported = replace(description, accel_full_scale_mps2=full_scale)
+    return reported, _with(imu, clipped, imu.gyro_radps)
 
 
 def accel_clipped_undeclared(
@@ -193,14 +193,14 @@ def slower(rate_hz: float, *, filtered: bool) -> Change:
 
     def change(description: SensorDescription, imu: ImuBatch, _: np.random.Generator) -> Made:
         every = max(1, round(description.rate_hz / rate_hz))
-        told = replace(description, rate_hz=description.rate_hz / every)
+        reported = replace(description, rate_hz=description.rate_hz / every)
         if not filtered:
-            return told, ImuBatch(
+            return reported, ImuBatch(
                 imu.t_ns[::every], imu.accel_mps2[::every], imu.gyro_radps[::every]
             )
         even = _evenly(imu, description.rate_hz)
         count = len(even) // every * every
-        return told, ImuBatch(
+        return reported, ImuBatch(
             even.t_ns[:count].reshape(-1, every).mean(axis=1).astype(np.int64),
             even.accel_mps2[:count].reshape(-1, every, 3).mean(axis=1),
             even.gyro_radps[:count].reshape(-1, every, 3).mean(axis=1),

@@ -20,8 +20,8 @@ from tests.rig.incident.people import BESIDE_ENGINE_M, RATE_HZ, Truth
 
 Floats = NDArray[np.float64]
 
-ENGINE_SAID_STD_M = 0.4  # how well a commander says where the engine stands, each axis
-ENGINE_STD_M = math.hypot(ENGINE_SAID_STD_M, BESIDE_ENGINE_M)
+ENGINE_STATED_STD_M = 0.4  # how well a commander says where the engine stands, each axis
+ENGINE_STD_M = math.hypot(ENGINE_STATED_STD_M, BESIDE_ENGINE_M)
 # North, east, heading, drift rate and scale; then pairs: the receiver's slow error, what walls add,
 # what all receivers share, the roof receiver's slow error, all of unit variance; the engine.
 _HEADING, _DRIFT, _SCALE, _SLOW, _WALL, _COMMON, _ROOF, _ENGINE, _STATES = (
@@ -53,9 +53,9 @@ def bound_m2(
     came afterwards too (Rauch, Tung and Striebel 1965).
     """
     begin = [ENGINE_STD_M] * 2 + [math.pi, errors.DRIFT_STD_RADPS, errors.SCALE_STD, *[1.0] * 8]
-    spread = np.diag(np.square([*begin, ENGINE_SAID_STD_M, ENGINE_SAID_STD_M]))
+    spread = np.diag(np.square([*begin, ENGINE_STATED_STD_M, ENGINE_STATED_STD_M]))
     for axis in (0, 1):
-        spread[axis, _ENGINE + axis] = spread[_ENGINE + axis, axis] = ENGINE_SAID_STD_M**2
+        spread[axis, _ENGINE + axis] = spread[_ENGINE + axis, axis] = ENGINE_STATED_STD_M**2
     fades = np.ones(_STATES)
     for first, lasts_s in _LAST_S.items():
         fades[first : first + 2] = math.exp(-1.0 / RATE_HZ / lasts_s)

@@ -20,7 +20,7 @@ from shared.geo import pressure_altitude_m
 from shared.messages import Position
 from tests.rig import message_factory
 from tests.rig.incident.building import Place, SteelBuilding, draw_building
-from tests.rig.incident.cramer_rao_bound import ENGINE_SAID_STD_M, ENGINE_STD_M
+from tests.rig.incident.cramer_rao_bound import ENGINE_STATED_STD_M, ENGINE_STD_M
 from tests.rig.incident.people import PEOPLE, Truth, draw_engine, live_through
 from tests.rig.incident.scores import normalised2
 from tests.rig.incident.sensors import (
@@ -66,7 +66,7 @@ def draw_incident(rng: np.random.Generator, walkers: Walkers = drawn_walks) -> l
     air, sky_m = draw_air(rng, t_s), draw_sky_m(rng, t_s)
     weather_m = _weather_m(t_s, reference_pa(rng, air))
     engine_fixes = engine_fixes_of(rng, t_s, engine_m, sky_m)
-    said_m = rng.normal(engine_m, ENGINE_SAID_STD_M)
+    stated_m = rng.normal(engine_m, ENGINE_STATED_STD_M)
     return [
         Person(
             building,
@@ -75,7 +75,7 @@ def draw_incident(rng: np.random.Generator, walkers: Walkers = drawn_walks) -> l
             walk.turn_rad,
             fixes_of(rng, walk.truth, building, sky_m),
             weather_m,
-            (float(said_m[0]), float(said_m[1])),
+            (float(stated_m[0]), float(stated_m[1])),
             engine_fixes,
         )
         for number, walk in enumerate(walks)
@@ -133,13 +133,13 @@ class Site:
     learnt: LearntBuilding = field(default_factory=LearntBuilding)
     common_mode_error: CommonModeError = field(default_factory=CommonModeError)
 
-    def hear_engine(self, person: Person, row: int) -> None:
+    def receive_engine(self, person: Person, row: int) -> None:
         """The receiver on the engine's roof."""
         fix = person.engine_fixes.get(row)
         if fix is not None:
             off_m = fix.north_m - person.engine_m[0], fix.east_m - person.engine_m[1]
             self.common_mode_error.update(
-                fix.t_mono_ns, off_m, fix.horizontal_std_m, ENGINE_SAID_STD_M
+                fix.t_mono_ns, off_m, fix.horizontal_std_m, ENGINE_STATED_STD_M
             )
 
 
@@ -201,7 +201,7 @@ def fuse_all(kind: FuserKind, people: Sequence[Person], timing: Timing, known: K
     site = Site()
     for row in range(len(people[0].truth.t_s)):
         if known.engine:
-            site.hear_engine(people[0], row)
+            site.receive_engine(people[0], row)
         for follower in followers:
             follower.step(row, site)
     return [follower.run for follower in followers]

@@ -111,9 +111,9 @@ class FloorScores:
         storeys = -truth.place_m[:, 2] / building.storey_m
         on_storey = np.abs(storeys - np.rint(storeys)) * building.storey_m < ON_FLOOR_M
         inside = (truth.t_s > truth.goes_in_s) & (truth.t_s < truth.comes_out_s)
-        said = np.array([-99 if floor is None else floor for floor in floors])
+        reported = np.array([-99 if floor is None else floor for floor in floors])
         rows = on_storey & inside
-        self.right.append(said[rows] == np.rint(storeys[rows]))
+        self.right.append(reported[rows] == np.rint(storeys[rows]))
         self.stated.append(stated[rows])
 
     def add(self, other: FloorScores) -> None:

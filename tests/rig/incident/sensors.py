@@ -206,15 +206,15 @@ def draw_air(rng: np.random.Generator, t_s: Floats) -> Air:
 def pressures_pa(rng: np.random.Generator, air: Air, truth: Truth) -> Floats:
     """What one person's barometer says (n,)."""
     inside = (truth.t_s > truth.goes_in_s) & (truth.t_s < truth.comes_out_s)
-    return _said_pa(rng, -truth.place_m[:, 2], air.weather_pa + air.inside_pa * inside)
+    return _stated_pa(rng, -truth.place_m[:, 2], air.weather_pa + air.inside_pa * inside)
 
 
 def reference_pa(rng: np.random.Generator, air: Air) -> Floats:
     """What the station's own barometer says (n,)."""
-    return _said_pa(rng, np.zeros(len(air.weather_pa)), air.weather_pa)
+    return _stated_pa(rng, np.zeros(len(air.weather_pa)), air.weather_pa)
 
 
-def _said_pa(rng: np.random.Generator, height_m: Floats, added_pa: Floats) -> Floats:
+def _stated_pa(rng: np.random.Generator, height_m: Floats, added_pa: Floats) -> Floats:
     pa_per_m = pressure_pa_at(SITE_M + 1.0) - pressure_pa_at(SITE_M)
     true_pa = pressure_pa_at(SITE_M) + pa_per_m * height_m + added_pa
     noise_pa = rng.normal(0.0, OFFSET_STD_PA) + NOISE_PA * rng.normal(size=len(height_m))

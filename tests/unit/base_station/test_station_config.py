@@ -33,7 +33,7 @@ def test_a_plain_bus_is_a_problem_even_where_only_this_machine_reaches_it(tmp_pa
 
 
 @pytest.mark.parametrize(
-    ("toml", "said"),
+    ("toml", "reported"),
     [
         ("[http]\nlistne = '127.0.0.1:80'\n", "did you mean"),
         ("[log]\nsegment_min = 15\n", "segment_s"),
@@ -51,10 +51,12 @@ def test_a_plain_bus_is_a_problem_even_where_only_this_machine_reaches_it(tmp_pa
         ("log_level = 'LOUD'\n", "WARNING"),
     ],
 )
-def test_a_wrong_setting_is_named_with_the_right_one(tmp_path: Path, toml: str, said: str) -> None:
+def test_a_wrong_setting_is_named_with_the_right_one(
+    tmp_path: Path, toml: str, reported: str
+) -> None:
     with pytest.raises(ConfigError) as error:
         load_config(written(tmp_path, toml), StationConfig)
-    assert said in str(error.value)
+    assert reported in str(error.value)
     assert "station.toml" in str(error.value)
 
 

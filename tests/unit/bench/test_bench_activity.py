@@ -13,8 +13,8 @@ from tests.bench.tracker.activity_scoring import Confusion
 
 def test_a_confusion_counts_and_shares():
     confusion = Confusion()
-    for said in (Activity.STILL, Activity.STILL, Activity.WALKING):
-        confusion.add(Activity.STILL, said)
+    for reported in (Activity.STILL, Activity.STILL, Activity.WALKING):
+        confusion.add(Activity.STILL, reported)
     confusion.add(Activity.WALKING, Activity.WALKING)
     assert confusion.accuracy == pytest.approx(0.75)
     assert confusion.recall(Activity.STILL) == pytest.approx(2 / 3)
@@ -30,6 +30,6 @@ def test_one_wearer_is_enough_for_all_activities(tmp_path, capsys):
     assert kinds <= set(figures["settled"]["recall"])
     assert min(figures["settled"]["recall"][kind] for kind in kinds) > 0.85
     assert figures["falls_told"] == figures["falls_labelled"] == 1
-    said = capsys.readouterr().out
-    assert "stairs down" in said
-    assert "1 falls told, 1 labelled" in said
+    reported = capsys.readouterr().out
+    assert "stairs down" in reported
+    assert "1 falls told, 1 labelled" in reported

@@ -33,8 +33,8 @@ def test_every_perturbation_gives_a_recording_and_the_same_each_time(perturbatio
 
 @pytest.mark.parametrize("full_scale", [None, 9.0])
 def test_another_mount_is_a_rotation(full_scale):
-    told = SensorDescription("walk", 200.0, gyro_full_scale_radps=full_scale)
-    _, imu = other_mount(told, WALK.imu, seed())
+    reported = SensorDescription("walk", 200.0, gyro_full_scale_radps=full_scale)
+    _, imu = other_mount(reported, WALK.imu, seed())
     turn = np.linalg.lstsq(WALK.imu.gyro_radps, imu.gyro_radps, rcond=None)[0]
     np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-9)
     assert np.linalg.det(turn) == pytest.approx(1.0)
@@ -49,18 +49,18 @@ def test_a_slow_sensor_that_filters_turns_by_as_much():
     np.testing.assert_allclose(turned, WALK.imu.gyro_radps.sum(axis=0) / 200.0, atol=0.05)
 
 
-def test_clipping_is_told_with_its_scale():
+def test_clipping_is_reported_with_its_scale():
     description, imu = gyro_clipped(WALK.description, WALK.imu, seed())
     assert np.abs(imu.gyro_radps).max() == description.gyro_full_scale_radps
 
 
 def test_silent_is_wrong_without_a_word():
-    def outcome(right, said):
-        return Outcome("noise x 3", "made", "straight", 1.0, right, said)
+    def outcome(right, stated):
+        return Outcome("noise x 3", "made", "straight", 1.0, right, stated)
 
-    assert outcome(right=False, said=False).silent
-    assert not outcome(right=False, said=True).silent
-    assert not outcome(right=True, said=False).silent
+    assert outcome(right=False, stated=False).silent
+    assert not outcome(right=False, stated=True).silent
+    assert not outcome(right=True, stated=False).silent
     table = perturbed_table([outcome(True, True), outcome(False, True), outcome(False, False)])
     cells = [next(iter(column.cells)) for column in table.columns]
     assert cells == ["noise x 3", "1.000", "1", "1", "1"]

@@ -38,7 +38,7 @@ def foot(peak_radps, stride):
         (13.0, 0.7, "sprinting"),
     ],
 )
-def test_a_recorded_motion_is_told_by_rate_and_stride(peak_radps, stride, motion):
+def test_a_recorded_motion_is_reported_by_rate_and_stride(peak_radps, stride, motion):
     walk = foot(peak_radps, stride)
     assert stride_s(walk.imu) == pytest.approx(stride, abs=0.02)
     assert motion_of(walk) == motion

@@ -38,7 +38,7 @@ def test_an_output_that_is_gone_is_made_again(stamp: Stamp) -> None:
     assert not stamp.holds([stamp.root / "made.txt"])
 
 
-def test_what_a_failed_tool_said_is_in_the_error(tmp_path: Path) -> None:
+def test_what_a_failed_tool_stated_is_in_the_error(tmp_path: Path) -> None:
     with pytest.raises(BuildError, match=r"it could not be made; sh said:\n+no paper left"):
         run(["sh", "-c", "echo no paper left >&2; exit 3"], tmp_path, {}, "it could not be made")
 
@@ -77,7 +77,7 @@ def test_without_the_machines_node_the_wheels_is_taken(monkeypatch: pytest.Monke
     assert all(Path(part).is_file() for part in node.npm)
 
 
-def test_machine_code_without_a_compiler_is_told_what_to_do(
+def test_machine_code_without_a_compiler_is_reported_what_to_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
@@ -85,7 +85,7 @@ def test_machine_code_without_a_compiler_is_told_what_to_do(
         c_compiler()
 
 
-def test_machine_code_without_pythons_headers_is_told_what_to_do(
+def test_machine_code_without_pythons_headers_is_reported_what_to_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sysconfig, "get_path", lambda _: str(tmp_path))

@@ -42,7 +42,7 @@ def muster_edge(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize(
-    ("flags", "said"),
+    ("flags", "reported"),
     [
         ({}, "the unit has no name"),
         ({"unit": "all"}, "unit id 'all' cannot be used"),
@@ -61,11 +61,11 @@ def muster_edge(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
         ({"enrolment": Path("nothing.toml")}, "there is no such enrolment file"),
     ],
 )
-def test_settings_that_cannot_work_are_one_sentence(flags, said, tmp_path):
+def test_settings_that_cannot_work_are_one_sentence(flags, reported, tmp_path):
     config = load_config(None, EdgeConfig, {"source": WALK, "data": tmp_path, **flags})
     with pytest.raises(MusterError) as caught:
         run_agent(config, Event(), for_s=0.0, paced=True)
-    assert said in str(caught.value)
+    assert reported in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
@@ -96,7 +96,7 @@ def test_a_file_gives_settings_and_flags_overrule_it(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "reported"),
     [
         ('conect = ["tcp/a:1"]', "connect"),
         ("position_rate_mhz = 5000", "position_rate_hz"),
@@ -104,10 +104,10 @@ def test_a_file_gives_settings_and_flags_overrule_it(tmp_path):
         ("[storage]\njournal_gb = 1", "journal_mb"),
     ],
 )
-def test_a_wrong_key_is_named_with_the_right_one(line, said, tmp_path):
+def test_a_wrong_key_is_named_with_the_right_one(line, reported, tmp_path):
     file = tmp_path / "unit.toml"
     file.write_text(f'unit = "u1"\nsource = "x"\n{line}\n')
-    with pytest.raises(ConfigError, match=said):
+    with pytest.raises(ConfigError, match=reported):
         load_config(file, EdgeConfig)
 
 
@@ -129,14 +129,14 @@ def test_settings_that_cannot_work_leave_nothing_behind(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("unit", "sensor", "said"),
+    ("unit", "sensor", "reported"),
     [("u2", "", "is for unit 'u2', and this is 'u1'"), ("", "other", "is for sensor 'other'")],
 )
-def test_the_calibration_of_another_unit_is_refused(unit, sensor, said, tmp_path):
+def test_the_calibration_of_another_unit_is_refused(unit, sensor, reported, tmp_path):
     path = tmp_path / "c.toml"
     write_calibration(Calibration(unit, sensor, datetime(2026, 1, 1, tzinfo=UTC)), path)
     flags = {"unit": "u1", "calibration": path, "source": WALK, "data": tmp_path / "data"}
-    with pytest.raises(ConfigError, match=said):
+    with pytest.raises(ConfigError, match=reported):
         run_agent(load_config(None, EdgeConfig, flags), Event(), for_s=0.0, paced=True)
 
 
@@ -150,7 +150,7 @@ def test_calibrating_without_a_source_says_what_to_give(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "reported"),
     [
         (("calibrate", "--source", "bench:1", "--out", "c.toml", "--speed", "0"), "--speed"),
         (("calibrate", "--source", "bench:1", "--out", "c.toml", "--speed", "nan"), "--speed"),
@@ -163,10 +163,10 @@ def test_calibrating_without_a_source_says_what_to_give(tmp_path):
     ],
 )
 def test_numbers_and_names_that_cannot_be_are_refused_before_anything_is_done(
-    arguments, said, tmp_path
+    arguments, reported, tmp_path
 ):
     result = muster_edge(*arguments, cwd=tmp_path)
     assert result.returncode == 2
-    assert said in result.stderr
+    assert reported in result.stderr
     assert "Traceback" not in result.stderr
     assert list(tmp_path.iterdir()) == []

@@ -9,22 +9,22 @@ from shared.channels import Qos
 def test_without_a_link_what_is_published_is_gone() -> None:
     router = MemoryRouter()
     station, unit = router.attach_station(), router.attach_unit()
-    heard: list[bytes] = []
-    station.subscribe("**", lambda _, payload: heard.append(payload))
+    received: list[bytes] = []
+    station.subscribe("**", lambda _, payload: received.append(payload))
     unit.link_down()
     unit.publish("a", b"lost", Qos.LIVE)
     unit.link_up()
     unit.publish("a", b"heard", Qos.LIVE)
-    assert heard == [b"heard"]
+    assert received == [b"heard"]
 
 
-def test_an_unlinked_endpoint_still_hears_itself() -> None:
+def test_an_unlinked_endpoint_still_receives_itself() -> None:
     unit = MemoryRouter().attach_unit()
-    heard: list[bytes] = []
-    unit.subscribe("**", lambda _, payload: heard.append(payload))
+    received: list[bytes] = []
+    unit.subscribe("**", lambda _, payload: received.append(payload))
     unit.link_down()
     unit.publish("a", b"own", Qos.LIVE)
-    assert heard == [b"own"]
+    assert received == [b"own"]
 
 
 def test_tokens_vanish_and_return_with_the_link_on_both_sides() -> None:
@@ -51,30 +51,30 @@ def test_an_unlinked_unit_answers_no_query() -> None:
     assert list(station.query("journal", b"", 1.0)) == []
 
 
-def test_a_pumped_router_delivers_only_when_told_in_the_order_of_publishing() -> None:
+def test_a_pumped_router_delivers_only_when_reported_in_the_order_of_publishing() -> None:
     router = MemoryRouter(pumped=True)
     station, anna, ben = router.attach_station(), router.attach_unit(), router.attach_unit()
-    heard: list[bytes] = []
-    station.subscribe("**", lambda _, payload: heard.append(payload))
+    received: list[bytes] = []
+    station.subscribe("**", lambda _, payload: received.append(payload))
     ben.publish("a", b"1", Qos.LIVE)
     anna.publish("a", b"2", Qos.ALERT)
-    assert heard == []
+    assert received == []
     assert router.pump() == 2
-    assert heard == [b"1", b"2"]
+    assert received == [b"1", b"2"]
     assert router.pump() == 0
 
 
 def test_what_a_handler_publishes_comes_after_what_was_under_way() -> None:
     router = MemoryRouter()
     station, unit = router.attach_station(), router.attach_unit()
-    heard: list[str] = []
+    received: list[str] = []
 
     def answer(key: str, _: bytes) -> None:
-        heard.append(f"first {key}")
+        received.append(f"first {key}")
         if key == "question":
             station.publish("answer", b"", Qos.LIVE)
 
     station.subscribe("**", answer)
-    station.subscribe("**", lambda key, _: heard.append(f"second {key}"))
+    station.subscribe("**", lambda key, _: received.append(f"second {key}"))
     unit.publish("question", b"", Qos.LIVE)
-    assert heard == ["first question", "second question", "first answer", "second answer"]
+    assert received == ["first question", "second question", "first answer", "second answer"]

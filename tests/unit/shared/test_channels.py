@@ -24,7 +24,7 @@ def test_every_key_leads_back_to_its_channel(channel):
     assert parse_key(channel.key("FF-01")) == ("FF-01", channel)
 
 
-def test_a_message_from_a_journal_keeps_its_channel_and_is_told_apart():
+def test_a_message_from_a_journal_keeps_its_channel_and_is_distinguished():
     live, fetched = POSITION.key("FF-01"), backfilled_key("FF-01", POSITION.suffix)
     assert parse_key(fetched) == parse_key(live)
     assert is_backfilled(fetched)

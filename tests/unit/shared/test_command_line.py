@@ -78,5 +78,5 @@ def test_what_the_system_says_of_a_file_is_one_sentence_too(tmp_path):
     file.write_text("")
     result = run("demo", "--data", str(file))
     assert result.returncode == 2
-    said = f"{file / 'output'}: Not a directory; check the path and the disk"
-    assert result.stderr == f"muster: {said}\n"
+    reported = f"{file / 'output'}: Not a directory; check the path and the disk"
+    assert result.stderr == f"muster: {reported}\n"

@@ -23,7 +23,7 @@ sys.stdin.read()
 """
 
 
-def test_a_second_holder_is_told_who_holds_the_folder(tmp_path: Path) -> None:
+def test_a_second_holder_is_reported_who_holds_the_folder(tmp_path: Path) -> None:
     lock = FolderLock(tmp_path)
     with pytest.raises(
         DataFolderInUseError, match=rf"another station .*\(process {os.getpid()}\): stop it"
@@ -58,7 +58,7 @@ def test_the_folder_is_free_when_its_holder_was_killed(tmp_path: Path) -> None:
     FolderLock(tmp_path).close()
 
 
-def test_a_folder_that_cannot_be_made_is_said_in_words(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_is_stated_in_words(tmp_path: Path) -> None:
     (tmp_path / "data").write_text("a file")
     with pytest.raises(LogError, match="cannot be used"):
         FolderLock(tmp_path / "data")

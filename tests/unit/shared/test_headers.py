@@ -32,7 +32,7 @@ def test_what_can_be_read_and_makes_no_sense_is_refused_in_words() -> None:
         decode(OPERATOR, wire.SerializeToString())
 
 
-def test_who_said_it_is_known_where_the_rest_is_not() -> None:
+def test_who_stated_it_is_known_where_the_rest_is_not() -> None:
     payload = encode(Temperature(Header("FF-01", 7, 3, 5), 20.0))
     header = header_of(payload)
     assert header is not None
@@ -41,7 +41,7 @@ def test_who_said_it_is_known_where_the_rest_is_not() -> None:
 
 
 @pytest.mark.parametrize("number", range(2, 16))
-def test_who_said_it_is_known_whatever_stands_behind_the_header(number: int) -> None:
+def test_who_stated_it_is_known_whatever_stands_behind_the_header(number: int) -> None:
     """No field of one kind of message is taken for that of another."""
     header = Header("FF-01", 7, 3, 5).to_wire()
     begins = header_pb2.AnyMessage(header=header).SerializeToString()

@@ -56,9 +56,9 @@ def test_a_traceback_follows_its_line(capsys: pytest.CaptureFixture[str]) -> Non
 @pytest.mark.parametrize("character", "\x00\b\x1b\r\x7f\x85\x9b\u2028\u202e")
 def test_what_others_say_forges_no_line_and_moves_no_terminal(character: str) -> None:
     record = logging.LogRecord("bus", logging.INFO, "", 0, "from %s", (f"an{character}na",), None)
-    said = OneLineFormatter().format(record)
-    assert character not in said
-    assert len(said.splitlines()) == 1
+    reported = OneLineFormatter().format(record)
+    assert character not in reported
+    assert len(reported.splitlines()) == 1
 
 
 def test_json_has_one_object_a_line_with_the_traceback_inside(

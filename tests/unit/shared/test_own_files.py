@@ -110,7 +110,7 @@ def test_what_root_makes_is_the_stations(tmp_path: Path, act: Callable[[Path], N
     assert {(one.stat().st_uid, one.stat().st_gid) for one in made} == {(STATION, STATION)}, made
 
 
-def test_a_database_is_its_owners_alone_whoever_may_read_new_files(tmp_path: Path) -> None:
+def test_a_database_is_its_owners_alone_anyone_may_read_new_files(tmp_path: Path) -> None:
     """It holds people's names and photos, and what passwords are checked by."""
     before = os.umask(0)
     try:

@@ -20,7 +20,7 @@ def manager_socket(tmp_path: Path) -> Iterator[socket.socket]:
         yield listening
 
 
-def test_it_hears_that_the_program_is_ready_and_works(manager_socket):
+def test_it_receives_that_the_program_is_ready_and_works(manager_socket):
     manager = ServiceManager({"NOTIFY_SOCKET": manager_socket.getsockname()})
     manager.ready()
     manager.working()
@@ -36,7 +36,7 @@ def test_an_address_without_a_file_is_understood():
         assert listening.recv(100) == b"READY=1"
 
 
-def test_without_one_nothing_is_said():
+def test_without_one_nothing_is_stated():
     ServiceManager({}).ready()
 
 

@@ -140,7 +140,7 @@ def test_worker_that_never_started_closes_at_once() -> None:
     assert Worker("tested", lambda: UNTIL_WOKEN, "it fails").close()
 
 
-def test_step_that_waits_is_told_of_the_end() -> None:
+def test_step_that_waits_is_reported_of_the_end() -> None:
     waiting, stopped = Event(), list[bool]()
 
     def step() -> float:

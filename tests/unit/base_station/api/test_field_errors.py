@@ -25,7 +25,7 @@ COMMAND = {"kind": "text", "target": {"everyone": True}}
 
 
 @pytest.mark.parametrize(
-    ("form", "sent", "said"),
+    ("form", "sent", "reported"),
     [
         (PersonForm, {}, "name is missing; fill it in"),
         (PersonForm, {"name": ""}, "name is empty; fill it in"),
@@ -60,24 +60,24 @@ COMMAND = {"kind": "text", "target": {"everyone": True}}
     ],
 )
 def test_a_wrong_field_is_named_with_what_to_do(
-    form: type[forms.Form], sent: dict[str, Any], said: str
+    form: type[forms.Form], sent: dict[str, Any], reported: str
 ) -> None:
     with pytest.raises(ValidationError) as refused:
         form.model_validate(sent)
     sentences = [
         error_sentence(one | {"loc": ("body", *one["loc"])}) for one in refused.value.errors()
     ]
-    assert any(sentence.startswith(said) for sentence in sentences), sentences
+    assert any(sentence.startswith(reported) for sentence in sentences), sentences
 
 
-def test_every_pattern_of_a_form_is_said_in_words() -> None:
+def test_every_pattern_of_a_form_is_stated_in_words() -> None:
     ids = (forms.UnitIdText, forms.UnitIdOrNone, forms.Id, forms.AlarmId)
     kinds = (forms.Name, forms.ShortText, forms.Note, forms.IdempotencyKeyText, *ids)
     patterns = {TypeAdapter(kind).json_schema()["pattern"] for kind in kinds}
     assert patterns == set(forms.PATTERN_DESCRIPTIONS)
 
 
-def test_what_has_no_words_yet_is_said_as_it_came() -> None:
+def test_what_has_no_words_yet_is_stated_as_it_came() -> None:
     error = {"loc": ("query", "x"), "type": "odd", "msg": "is {odd}", "ctx": {"odd": 1}}
     assert error_sentence(error) == "x is {odd}"
     assert not re.search("[{}]", error_sentence(error | {"type": "missing"}))

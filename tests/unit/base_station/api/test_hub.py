@@ -288,7 +288,7 @@ async def test_trails_wait_for_whatever_is_new(source: Source, walked: Client) -
     assert [(await next_one(walked))["unit_id"] for _ in range(2)] == ["FF-1", "FF-2"]
 
 
-async def test_a_trail_that_was_told_anew_does_not_come_again(
+async def test_a_trail_that_was_reported_anew_does_not_come_again(
     hub: Hub, source: Source, walked: Client
 ) -> None:
     source.seq += 1

@@ -242,18 +242,20 @@ def test_a_folder_without_a_station_has_nothing_to_copy(tmp_path: Path) -> None:
         run(tmp_path / "nothing", tmp_path / "backup")
 
 
-def test_what_was_set_aside_and_is_told_since_is_not_kept_twice(data: Path, tmp_path: Path) -> None:
+def test_what_was_set_aside_and_is_reported_since_is_not_kept_twice(
+    data: Path, tmp_path: Path
+) -> None:
     """Put back, it would be told once more; and what is forgotten in it would stay."""
     target = tmp_path / "backup"
-    part, told = data / "apart" / "1-1-1", data / "apart" / "1-1-1.told"
+    part, reported = data / "apart" / "1-1-1", data / "apart" / "1-1-1.told"
     part.mkdir()
     (part / SECOND).write_text("of Ada")
     run(data, target)
-    part.rename(told)
+    part.rename(reported)
     run(data, target)
     (target / "apart" / part.name).mkdir()  # as it once was kept
     (target / "apart" / part.name / SECOND).write_text("of Ada")
-    (told / SECOND).write_text("(forgotten)")
+    (reported / SECOND).write_text("(forgotten)")
     run(data, target)
     assert files(target / "apart") == {SECOND, f"1-1-1.told/{SECOND}"}
     assert (target / "apart" / "1-1-1.told" / SECOND).read_text() == "(forgotten)"

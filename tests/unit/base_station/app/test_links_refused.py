@@ -176,8 +176,8 @@ def test_a_command_says_so_and_stops(
     of, _, name = command.partition(" ")
     paths = {"FILE": station.parent / "FILE", "COPY": tmp_path / "COPY", "OUT": tmp_path / "OUT"}
     paths["ARCHIVE"] = tmp_path / "ARCHIVE"
-    told = [str(paths.get(one, one)) for one in arguments]
-    flags = [*name.split(), *told, "--data", str(station)]
+    reported = [str(paths.get(one, one)) for one in arguments]
+    flags = [*name.split(), *reported, "--data", str(station)]
     refused, mask = set(), os.umask(0o022)
     everywhere = {*FOLDERS, *FILES}
     of_pki = {place for place in everywhere if place.startswith("pki")}

@@ -42,14 +42,14 @@ class Source:
 
 
 def test_a_forwarder_begins_with_the_picture_and_gets_what_consoles_get() -> None:
-    screen, heard, picture = Screen(), Heard(), Scene().picture()
-    shown = LiveFanOut(screen, Forwarders([cast("Forwarder", heard)]))
+    screen, received, picture = Screen(), Heard(), Scene().picture()
+    shown = LiveFanOut(screen, Forwarders([cast("Forwarder", received)]))
     source = Source(picture)
     shown.start(cast("LiveSource", source))
     change = delta()
     shown.delta(change)
     shown.reset(picture, {})
-    assert heard.given == [picture, "started", change, picture]
+    assert received.given == [picture, "started", change, picture]
     assert (screen.deltas, screen.resets) == ([change], [picture])
 
 

@@ -33,8 +33,8 @@ def data(tmp_path: Path) -> Path:
 
 
 def test_init_tells_where_units_will_connect(tmp_path: Path) -> None:
-    said = run("init", "--data", tmp_path, "--host", "fd00::7", "--port", "7000")
-    assert "tls/[fd00::7]:7000" in said
+    reported = run("init", "--data", tmp_path, "--host", "fd00::7", "--port", "7000")
+    assert "tls/[fd00::7]:7000" in reported
     assert PkiFolder(tmp_path).registry().connect == ("tls/[fd00::7]:7000",)
 
 
@@ -73,14 +73,16 @@ def test_init_refuses_what_is_no_host(tmp_path: Path, host: str) -> None:
 
 def test_enroll_writes_one_file(data: Path, tmp_path: Path) -> None:
     out = tmp_path / "carried"
-    said = run("enroll", "FF-01", "--data", data, "--out", out)
-    assert "muster edge run --enrolment carried" in said
+    reported = run("enroll", "FF-01", "--data", data, "--out", out)
+    assert "muster edge run --enrolment carried" in reported
     enrolment = read_enrolment(out)
     assert (enrolment.holder, enrolment.name) == (Holder.UNIT, "FF-01")
     assert enrolment.connect == ("tls/station.local:7447",)
 
 
-def test_enroll_names_other_ends_of_the_bus_where_it_is_told(data: Path, tmp_path: Path) -> None:
+def test_enroll_names_other_ends_of_the_bus_where_it_is_reported(
+    data: Path, tmp_path: Path
+) -> None:
     ends = ("tls/192.0.2.9:7447", "tls/[fd00::7]:7000", "tls/station.local:1")
     flags = [flag for end in ends for flag in ("--connect", end)]
     run("enroll", "FF-01", "--data", data, "--out", tmp_path / "1", *flags)
@@ -92,7 +94,7 @@ def test_enroll_names_other_ends_of_the_bus_where_it_is_told(data: Path, tmp_pat
     "end", ["192.0.2.9:7447", "tls/192.0.2.9", "tls/192.0.2.9:0", "tls/192.0.2.9:65536", "tls/:1",
             "tcp/192.0.2.9:7447", 'tls/a"b:7447', "tls/192.0.2.900:7447"],
 )  # fmt: skip
-def test_an_end_that_no_unit_could_find_is_seen_before_anybody_is_enrolled(
+def test_an_end_that_no_unit_could_find_is_seen_before_anyone_is_enrolled(
     data: Path, tmp_path: Path, end: str
 ) -> None:
     with pytest.raises(ConfigError, match=r"is no (end of a bus|host)"):
@@ -113,9 +115,9 @@ def test_a_tracking_agent_is_enrolled_beside_its_unit_and_ended_without_it(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     run("enroll", "FF-01", "--data", data)
-    said = run("enroll", "FF-01", "--tracker", "--data", data, "--days", "2")
+    reported = run("enroll", "FF-01", "--tracker", "--data", data, "--days", "2")
     file = "FF-01@tracker.enrolment.toml"
-    assert f"muster edge run --enrolment {file} --source bus:FF-01" in said
+    assert f"muster edge run --enrolment {file} --source bus:FF-01" in reported
     enrolment = read_enrolment(tmp_path / file)
     assert (enrolment.holder, enrolment.name) == (Holder.TRACKER, "FF-01")
     assert "muster pki renew --tracker FF-01" in run("show", "--data", data)
@@ -134,8 +136,8 @@ def test_enroll_shows_a_code_and_writes_no_file(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    said = run("enroll", "FF-01", "--data", data, "--qr", "--png", "code.png")
-    assert "█" in said
+    reported = run("enroll", "FF-01", "--data", data, "--qr", "--png", "code.png")
+    assert "█" in reported
     assert {path.name for path in tmp_path.iterdir()} == {"data", "code.png"}
     assert stat.S_IMODE((tmp_path / "code.png").stat().st_mode) == 0o600  # it holds the key
 
@@ -153,7 +155,7 @@ def test_of_a_code_for_which_there_is_no_room_nothing_is_left(data: Path, tmp_pa
     assert code.stat().st_size > 2000
 
 
-def test_a_file_in_the_way_is_seen_before_anybody_is_enrolled(data: Path, tmp_path: Path) -> None:
+def test_a_file_in_the_way_is_seen_before_anyone_is_enrolled(data: Path, tmp_path: Path) -> None:
     out = tmp_path / "carried"
     out.write_text("precious")
     for place, problem in ((out, "is there already"), (tmp_path / "no" / "x", "cannot write")):
@@ -196,10 +198,10 @@ def test_who_is_enrolled_is_shown_whole_however_narrow_the_window(
     assert f"{valid.valid_to:%Y-%m-%d}" in row
 
 
-def test_an_operator_is_told_apart(data: Path, tmp_path: Path) -> None:
-    said = run("enroll", "chief", "--operator", "--data", data, "--out", tmp_path / "1")
-    assert "operator chief" in said
-    assert "muster edge" not in said
+def test_an_operator_is_distinguished(data: Path, tmp_path: Path) -> None:
+    reported = run("enroll", "chief", "--operator", "--data", data, "--out", tmp_path / "1")
+    assert "operator chief" in reported
+    assert "muster edge" not in reported
     with pytest.raises(ConfigError, match="no unit chief"):
         run("revoke", "chief", "--data", data)
     run("revoke", "chief", "--operator", "--data", data)
@@ -207,8 +209,8 @@ def test_an_operator_is_told_apart(data: Path, tmp_path: Path) -> None:
 
 def test_the_station_is_renewed_for_the_hosts_it_had_or_for_others(data: Path) -> None:
     assert "station.local" in run("renew-station", "--data", data)
-    said = run("renew-station", "--data", data, "--host", "192.0.2.9", "--port", "7000")
-    assert "station.local" not in said
+    reported = run("renew-station", "--data", data, "--host", "192.0.2.9", "--port", "7000")
+    assert "station.local" not in reported
     assert PkiFolder(data).registry().connect == ("tls/192.0.2.9:7000",)
     with pytest.raises(ConfigError, match="with --host where units reach it"):
         run("renew-station", "--data", data, "--port", "7001")

@@ -214,8 +214,8 @@ def test_missed_member_stays_missed_with_another_unit(script: Script) -> None:
     script.wait(61)
     script.register("FF-04")
     script.act(Assign("FF-04", "p1", "Person 1", "red", ""))
-    told = [(one.unit_id, one.state.name) for one in overdue(script)[3:]]
-    assert told == [("FF-01", "RESOLVED"), ("FF-04", "RAISED")]
+    reported = [(one.unit_id, one.state.name) for one in overdue(script)[3:]]
+    assert reported == [("FF-01", "RESOLVED"), ("FF-04", "RAISED")]
     script.act(CheckIn("FF-04", "", False))
     assert overdue(script)[-1].state is AlarmState.RESOLVED
 

@@ -96,12 +96,12 @@ def test_why_something_was_refused_is_forgotten_with_whom_it_names() -> None:
 
 
 def test_restarted_station_answers_repeated_requests(tmp_path: Path) -> None:
-    opened, told, refused = (idempotent_action_id("ada", key, b"x") for key in ("i", "c", "r"))
+    opened, reported, refused = (idempotent_action_id("ada", key, b"x") for key in ("i", "c", "r"))
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit("FF-01", "one"))
         station.act(Assign("FF-01", "p1", "Ada", "A", ""))
         station.act(OpenIncident("i1", "Kitchen"), action_id=opened)
-        first = station.act(EVACUATE, action_id=told)
+        first = station.act(EVACUATE, action_id=reported)
         why = station.act(OpenIncident("i2", "Cellar"), action_id=refused).refused
         assert why is not None
     for path in tmp_path.joinpath("checkpoints").iterdir():
@@ -135,11 +135,14 @@ def standby(tmp_path: Path) -> Iterator[tuple[StationEngine, StandbyFeed]]:
 def test_standby_answers_requests_repeated_from_the_other_station(
     tmp_path: Path, standby: tuple[StationEngine, StandbyFeed]
 ) -> None:
-    told, refused = idempotent_action_id("ada", "c", b"x"), idempotent_action_id("ada", "r", b"x")
+    reported, refused = (
+        idempotent_action_id("ada", "c", b"x"),
+        idempotent_action_id("ada", "r", b"x"),
+    )
     with LiveStation(tmp_path / "leader") as leader:
         leader.act(RegisterUnit("FF-01", "one"))
         leader.act(Assign("FF-01", "p1", "Ada", "A", ""))
-        first = leader.act(EVACUATE, action_id=told)
+        first = leader.act(EVACUATE, action_id=reported)
         why = leader.act(Assign("FF-02", "p1", "Ada", "A", ""), action_id=refused).refused
         leader.recorder.flush()
         followed = [record for record in leader.log.records() if is_event(record[1])]

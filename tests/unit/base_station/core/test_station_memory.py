@@ -58,7 +58,7 @@ class Station:
             self.pipeline, Room(), (self.publisher,), self.projector, HealthMonitor()
         )
         self.t_ns = 1000 * NS_PER_S
-        self.said = {STATION_ID: count(1), UNIT: count(1)}
+        self.stated = {STATION_ID: count(1), UNIT: count(1)}
         self.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
         self.act(RegisterUnit(UNIT, UNIT))
 
@@ -68,7 +68,7 @@ class Station:
         self.receive(OPERATOR.key(STATION_ID), done)
 
     def header(self, sender: str) -> Header:
-        return Header(sender, 1, next(self.said[sender]), self.t_ns, self.t_ns)
+        return Header(sender, 1, next(self.stated[sender]), self.t_ns, self.t_ns)
 
     def receive(self, key: str, message: Message) -> None:
         self.keeping.append_and_apply(self.t_ns, key, encode(message))

@@ -255,7 +255,7 @@ def test_positions_that_came_late_fill_the_trail_at_their_time(script: Remote) -
     walked = script.header(AGENT)
     script.wait(10, lambda: script.status(U))
     walk(script, 5)
-    late = Script.said(script, type(script.unit.position))[-1]
+    late = Script.published(script, type(script.unit.position))[-1]
     header = msgspec.structs.replace(walked, t_mono_ns=walked.t_mono_ns + 5 * NS_PER_S)
     payload = encode(msgspec.structs.replace(late, header=header, north_m=8.0))
     outputs = script.record(backfilled_key(AGENT, POSITION.suffix), payload)

@@ -71,12 +71,12 @@ def test_beyond_the_bound_live_data_is_dropped_and_counted_but_alerts_are_not() 
 def test_overflow_is_reported_while_it_lasts_and_for_a_minute() -> None:
     clock = ManualClock()
     feed = LiveFeed(clock, records_max=1)
-    told = []
+    reported = []
     for later_s in (0.0, 59.0, 61.0, 0.0):  # the first one has room
         feed.offer(KEY, b"")
         clock.advance(later_s)
-        told.append(feed.overflows)
-    assert told == [False, True, False, True]
+        reported.append(feed.overflows)
+    assert reported == [False, True, False, True]
     assert feed.overflowed == 3
 
 

@@ -13,16 +13,16 @@ WELL = {"log": ""}
 
 def reports(checks: list[dict[str, str]], known: dict[str, str] | None = None) -> list[str]:
     """What is reported over the checks, with the state that follows the reports."""
-    health, known, told = HealthMonitor(), dict(known or {}), []
+    health, known, reported = HealthMonitor(), dict(known or {}), []
     for now in checks:
         for report in health.check(now, known):
             assert isinstance(report, ReportProblem)
-            told.append(report.text)
+            reported.append(report.text)
             if report.text:
                 known[report.part] = report.text
             else:
                 del known[report.part]
-    return told
+    return reported
 
 
 def test_problem_is_reported_once_and_its_end_once() -> None:

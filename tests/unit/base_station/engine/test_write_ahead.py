@@ -110,6 +110,6 @@ def test_what_a_crash_kept_from_the_log_is_written_at_the_start(log: str, writte
         "event": (TICK.key(STATION_ID), encode(Tick(HEADER, T_NS))),
         "decision": (ALARM_CHANNEL.key(STATION_ID), encode(ALARM)),
     }
-    said = [(T_NS + number, *records[one]) for number, one in enumerate(log.split())]
-    assert over(disk, [ALARM]).rebuild(said, (0, 0)) == log.split().count("event")
+    reported = [(T_NS + number, *records[one]) for number, one in enumerate(log.split())]
+    assert over(disk, [ALARM]).rebuild(reported, (0, 0)) == log.split().count("event")
     assert disk.keys.count(ALARM_CHANNEL.key(STATION_ID)) == written

@@ -58,8 +58,8 @@ def desk(
 
 
 def test_it_says_how_far_it_is_and_what_came_of_it(tmp_path: Path) -> None:
-    worker, told = StubEraser(), list[ErasureJob]()
-    with desk(worker, tmp_path, on_done=told.append) as one:
+    worker, reported = StubEraser(), list[ErasureJob]()
+    with desk(worker, tmp_path, on_done=reported.append) as one:
         one.add("ada", "person", "p-1")
         worker.half.wait()
         (under_way,) = one.all()
@@ -69,7 +69,7 @@ def test_it_says_how_far_it_is_and_what_came_of_it(tmp_path: Path) -> None:
         until(lambda: one.all()[0].state is ErasureState.DONE)
         (done,) = one.all()
         assert (done.records, done.files, one.problems()) == (7, 2, ())
-    assert [one.subject_id for one in told] == ["p-1"]
+    assert [one.subject_id for one in reported] == ["p-1"]
 
 
 def test_the_same_wish_is_one_and_others_wait_their_turn(tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ def test_what_makes_no_sense_fails_with_its_reason(tmp_path: Path) -> None:
         assert one.all()[0].problem == "nobody knows that person"
 
 
-def test_a_store_that_fails_is_tried_again_and_told_once(
+def test_a_store_that_fails_is_tried_again_and_reported_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr("base_station.privacy.erasure_queue._AGAIN_S", 0.01)

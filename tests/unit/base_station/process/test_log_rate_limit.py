@@ -12,7 +12,7 @@ from shared.clock import ManualClock
 log = logging.getLogger("tested.seldom")
 
 
-def test_the_same_is_said_once_a_minute_and_how_often_it_was(
+def test_the_same_is_stated_once_a_minute_and_how_often_it_was(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     clock = ManualClock()
@@ -37,7 +37,7 @@ def test_the_same_is_said_once_a_minute_and_how_often_it_was(
     ]
 
 
-def test_a_mistake_of_the_program_is_said_each_time(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_mistake_of_the_program_is_stated_each_time(caplog: pytest.LogCaptureFixture) -> None:
     seldom = RateLimitFilter(ManualClock())
     log.addFilter(seldom)
     try:

@@ -221,7 +221,7 @@ def test_what_a_tracking_agent_brings_late_is_in_it(tmp_path: Path, in_time: Sta
 
 
 @pytest.mark.slow
-def test_who_was_never_heard_while_it_was_open_has_a_trail(
+def test_who_was_never_received_while_it_was_open_has_a_trail(
     tmp_path: Path, in_time: Station
 ) -> None:
     """A radio that was dead from the beginning on, and somebody who was placed all the same."""
@@ -294,7 +294,7 @@ def test_pins_of_a_debriefing_are_in_it(station: Station) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_said_for_the_next_incident_is_not(station: Station) -> None:
+def test_what_is_stated_for_the_next_incident_is_not(station: Station) -> None:
     """Where people begin, and where beacons hang now."""
     trail = station.trail("FF-02")
     pose = 50.0, 60.0, 0.5, None, None, 0.0, ""
@@ -325,7 +325,7 @@ def test_a_pin_of_the_past_is_none_of_the_next_incident(station: Station) -> Non
 
 
 @pytest.mark.slow
-def test_where_a_beacon_hung_may_be_said_afterwards(station: Station) -> None:
+def test_where_a_beacon_hung_may_be_stated_afterwards(station: Station) -> None:
     """It was passed out of reach, and nobody had placed it."""
     station.wait(60.0)
     station.back()

@@ -130,9 +130,9 @@ def test_a_disk_that_takes_no_state_only_costs_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.replay.playback.SAVED_APART", 20)
-    told: list[str] = []
+    reported: list[str] = []
     source = archive(walk_with_mayday(), tmp_path / "theirs")
-    own = Checkpoints(tmp_path / "own", told.append)
+    own = Checkpoints(tmp_path / "own", reported.append)
 
     def refuse(*_: object) -> None:
         raise OSError(28, "No space left on device")
@@ -143,5 +143,5 @@ def test_a_disk_that_takes_no_state_only_costs_time(
         for _ in playback.seek(START_NS + second * NS_PER_S):
             pass
         assert playback.pipeline.state.t_ns == START_NS + second * NS_PER_S
-    (said,) = told
-    assert "No space left on device" in said
+    (stated,) = reported
+    assert "No space left on device" in stated

@@ -195,7 +195,7 @@ class FullStore(SmoothedTracks):
 
 
 @pytest.mark.slow
-def test_on_a_full_disk_it_is_answered_told_once_and_kept_when_there_is_room(
+def test_on_a_full_disk_it_is_answered_reported_once_and_kept_when_there_is_room(
     past: Past, store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
     kept, clock = FullStore(store), ManualClock(utc_ns=0)
@@ -275,7 +275,7 @@ def test_the_own_path_begins_anew_where_its_unit_did(store: Store, tmp_path: Pat
     assert {one.quality for one in smoothed[:again]} == {"good"}
 
 
-def test_trails_are_of_the_incident_and_of_whom_it_heard(store: Store, tmp_path: Path) -> None:
+def test_trails_are_of_the_incident_and_of_whom_it_received(store: Store, tmp_path: Path) -> None:
     """Both were on before, and one was switched off by then."""
     script = Script()
     script.register("FF-01", "FF-02")
@@ -302,23 +302,23 @@ def test_trails_are_of_the_incident_and_of_whom_it_heard(store: Store, tmp_path:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("told", ["start", "pin", "fix", "nothing"])
-def test_whose_beginning_nothing_told_is_not_called_well_known(
-    told: str, store: Store, tmp_path: Path
+@pytest.mark.parametrize("reported", ["start", "pin", "fix", "nothing"])
+def test_whose_beginning_nothing_reported_is_not_called_well_known(
+    reported: str, store: Store, tmp_path: Path
 ) -> None:
     """As it was shown live: about the unit's own start."""
     script = Script()
     script.register("FF-01")
     script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
     script.act(OpenIncident("i1", "Mill Lane"))
-    if told == "start":
+    if reported == "start":
         script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.1))
     for second in range(40):
         script.now_s += 1.0
         script.position("FF-01", 1.0 * second, 0.0, distance_m=1.0 * second)
-        if told == "fix":
+        if reported == "fix":
             script.gps("FF-01", 52.0 + second / 111_275.0, 4.0, horizontal_std_m=1.5)
-    if told == "pin":
+    if reported == "pin":
         script.act(SetPin("p", "FF-01", script.t_ns, 40.0, 0.0, 0.5, None, None, 0.0, ""))
     script.act(CloseIncident("i1"))
     post_processor = hindsight_of(script, store, tmp_path)
@@ -326,7 +326,7 @@ def test_whose_beginning_nothing_told_is_not_called_well_known(
         incident_id="i1", name="Mill Lane", opened_ns=START_NS, closed_ns=script.t_ns
     )
     last = post_processor.smoothed(incident).tracks["FF-01"][-1]
-    assert last.quality == ("degraded" if told == "nothing" else "good")
+    assert last.quality == ("degraded" if reported == "nothing" else "good")
 
 
 @pytest.mark.slow

@@ -75,5 +75,5 @@ def test_when_the_database_cannot_be_read_it_is_tried_again(
 
     with PostProcessingWorker(cast("PostProcessor", work), at_last, shown):
         assert work.begun.wait(WAIT_S)
-    told = [one.message for one in caplog.records]
-    assert told == ["what closed lately cannot be looked up: the disk does not answer"]
+    reported = [one.message for one in caplog.records]
+    assert reported == ["what closed lately cannot be looked up: the disk does not answer"]

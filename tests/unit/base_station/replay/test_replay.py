@@ -155,7 +155,7 @@ def test_it_plays_to_the_end_and_stops_there(session: ReplaySession, screen: Scr
     assert all(delta.replay is not None for delta in screen.deltas)
 
 
-def test_what_consoles_hear_once_a_second_is_told_as_it_is_played(
+def test_what_consoles_receive_once_a_second_is_reported_as_it_is_played(
     tmp_path: Path, screen: Screen
 ) -> None:
     """Of a gap that the journal filled, and of what is wrong with the station."""
@@ -187,9 +187,9 @@ def test_what_consoles_hear_once_a_second_is_told_as_it_is_played(
     until(lambda: at_s(session) == 86.0)
     picture(session)
     session.close()
-    told = [delta.trails["FF-01"] for delta in screen.deltas if delta.trails]
-    assert told
-    drawn = msgspec.json.decode(told[-1], type=list[TrailPoint])
+    reported = [delta.trails["FF-01"] for delta in screen.deltas if delta.trails]
+    assert reported
+    drawn = msgspec.json.decode(reported[-1], type=list[TrailPoint])
     filled = [point for point in drawn if 42.0 < point.t_ms / 1e3 - START_NS / NS_PER_S < 60.0]
     assert len(filled) >= 8
     problems = [delta.health.problems for delta in screen.deltas if delta.health]
@@ -250,10 +250,10 @@ def test_its_pace_is_the_speed_asked_for(tmp_path: Path, screen: Screen) -> None
     until(lambda: at_s(session) == 32.0)
     session.pause()
     picture(session)
-    told = len(screen.deltas)
+    reported = len(screen.deltas)
     threading.Event().wait(0.3)
     assert at_s(session) == 32.0
-    assert len(screen.deltas) <= told + 3, "it rests"
+    assert len(screen.deltas) <= reported + 3, "it rests"
     session.close()
 
 

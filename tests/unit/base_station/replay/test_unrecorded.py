@@ -116,7 +116,7 @@ def picture(session: ReplaySession) -> Snapshot:
     return found[0]
 
 
-def test_who_seeks_into_a_hole_is_told_of_it(session: ReplaySession) -> None:
+def test_who_seeks_into_a_hole_is_reported_of_it(session: ReplaySession) -> None:
     session.pause()
     session.seek(at(97.7))
     seen = picture(session)

@@ -42,8 +42,8 @@ def logged(
         yield t_ns, key, payload
         for output in pipeline.step(event_of(t_ns, key, payload)):
             if isinstance(output, Decision):
-                said = change(output)
-                yield t_ns, channel_of(said).key(STATION_ID), encode(said)
+                reported = change(output)
+                yield t_ns, channel_of(reported).key(STATION_ID), encode(reported)
 
 
 def north(by_m: float) -> Change:
@@ -135,7 +135,9 @@ def opened_ns(records: Iterable[Record], incident_id: str) -> int:
     )
 
 
-def test_an_incident_that_another_version_recorded_behind_others_is_told(tmp_path: Path) -> None:
+def test_an_incident_that_another_version_recorded_behind_others_is_reported(
+    tmp_path: Path,
+) -> None:
     """The log's beginning is of this one."""
     second_ns = opened_ns(two_incidents(), "i2")
     mixed = [
@@ -160,7 +162,7 @@ def moved(decision: Decision) -> Decision:
 
 
 @pytest.mark.parametrize("incident", [False, True])
-def test_of_an_incident_behind_what_was_forgotten_nothing_is_told(
+def test_of_an_incident_behind_what_was_forgotten_nothing_is_reported(
     incident: bool, tmp_path: Path
 ) -> None:
     whole = list(logged(records=two_incidents()))

@@ -28,7 +28,7 @@ def follow(make_position: MakePosition) -> Callable[..., list[int]]:
     """At which of these positions somebody has walked far enough on the level."""
 
     def follow(walk: LevelWalk, *path: Walked, boot_id: int = 1) -> list[int]:
-        told = []
+        reported = []
         for number, (distance_m, down_m) in enumerate(path):
             position = msgspec.structs.replace(
                 make_position(),
@@ -37,8 +37,8 @@ def follow(make_position: MakePosition) -> Callable[..., list[int]]:
                 down_m=down_m,
             )
             if walk.follow(position):
-                told.append(number)
-        return told
+                reported.append(number)
+        return reported
 
     return follow
 
@@ -49,7 +49,7 @@ def test_six_metres_on_the_level_tell_a_height_again_and_again(
     assert follow(LevelWalk(), *((float(metre), 0.0) for metre in range(14))) == [6, 12]
 
 
-def test_on_stairs_a_ramp_or_a_ladder_nothing_is_told(follow: Callable[..., list[int]]) -> None:
+def test_on_stairs_a_ramp_or_a_ladder_nothing_is_reported(follow: Callable[..., list[int]]) -> None:
     for climb_m in (0.17, -0.17, 0.11):
         path = [(float(metre), climb_m * metre) for metre in range(40)]
         assert follow(LevelWalk(), *path) == []
@@ -61,7 +61,7 @@ def test_steps_up_and_down_again_are_the_same_level(follow: Callable[..., list[i
     assert follow(LevelWalk(), (0.0, 0.0), (2.0, -0.4), (4.0, 0.0), (6.0, 0.3)) == [3]
 
 
-def test_a_way_that_is_said_to_be_shorter_than_before_was_none(
+def test_a_way_that_is_stated_to_be_shorter_than_before_was_none(
     follow: Callable[..., list[int]],
 ) -> None:
     assert follow(LevelWalk(), (0.0, 0.0), (5.0, 0.0), (1.0, 0.0), (1.9, 0.0), (2.1, 0.0)) == [4]
@@ -187,7 +187,7 @@ def test_of_too_many_landings_the_oldest_of_where_there_are_most_go() -> None:
     assert building.landings[-1].t_ns == 10 + MOST_LANDINGS - 1
 
 
-def test_what_is_said_of_one_building_is_not_said_of_another() -> None:
+def test_what_is_stated_of_one_building_is_not_stated_of_another() -> None:
     floors = LearntFloors()
     for east_m in (0.0, 100.0):
         landed(floors, A, (0.0, east_m), -6.2)
@@ -200,7 +200,7 @@ def test_what_is_said_of_one_building_is_not_said_of_another() -> None:
     assert not floors.set_reported_floors([ReportedFloor(900.0, 0.0, -6.2, 1)]), "nobody was there"
 
 
-def test_who_was_elsewhere_or_is_forgotten_has_told_nothing() -> None:
+def test_who_was_elsewhere_or_is_forgotten_has_reported_nothing() -> None:
     floors = LearntFloors()
     for unit_id, down_m in ((A, -3.0), (B, -6.0)):
         landed(floors, unit_id, (0.0, 0.0), down_m)

@@ -14,13 +14,13 @@ GROUND = Height(0.0, 0.3)
 
 
 def storeys_of(
-    *downs_m: float, std_m: float = 0.2, said: tuple[tuple[float, int], ...] = ()
+    *downs_m: float, std_m: float = 0.2, reported: tuple[tuple[float, int], ...] = ()
 ) -> dict[int, Storey]:
     heights = [Height(down_m, std_m) for down_m in downs_m]
-    return {one.floor: one for one in number_levels(levels_of(heights), GROUND, said)}
+    return {one.floor: one for one in number_levels(levels_of(heights), GROUND, reported)}
 
 
-def test_before_anybody_climbed_there_is_a_ground_and_storeys_to_be_expected() -> None:
+def test_before_anyone_climbed_there_is_a_ground_and_storeys_to_be_expected() -> None:
     storeys = storeys_of()
     assert storeys[0].seen
     assert not storeys[1].seen
@@ -49,7 +49,7 @@ def test_a_storey_that_nobody_walked_on_is_counted() -> None:
     assert storeys[2].down_m == pytest.approx(-6.2, abs=0.2)
 
 
-def test_what_may_be_two_storeys_or_three_is_said_to_be_unsure() -> None:
+def test_what_may_be_two_storeys_or_three_is_stated_to_be_unsure() -> None:
     assert storeys_of(-8.4, std_m=0.5)[3].numbered < 0.9
     assert storeys_of(-8.4, std_m=0.5)[3].numbered > 0.3
 
@@ -69,15 +69,15 @@ def test_what_a_person_says_numbers_the_floors_between() -> None:
     """Without it they would be 1, 2 and 4."""
     heights = (-4.5, -7.6, -13.6)
     assert storeys_of(*heights)[4].seen
-    storeys = storeys_of(*heights, said=((-13.5, 3),))
+    storeys = storeys_of(*heights, reported=((-13.5, 3),))
     assert [one.floor for one in storeys.values() if one.seen] == [0, 1, 2, 3]
     assert storeys[3].numbered > 0.9
 
 
 def test_what_cannot_be_is_not_believed_of_a_person_either() -> None:
     """The first floor cannot be on the ground, nor two floors between three levels."""
-    assert storeys_of(-3.0, said=((0.0, 1),))[1].down_m == pytest.approx(-3.0)
-    above = storeys_of(-3.0, -6.0, said=((-6.0, 1),))
+    assert storeys_of(-3.0, reported=((0.0, 1),))[1].down_m == pytest.approx(-3.0)
+    above = storeys_of(-3.0, -6.0, reported=((-6.0, 1),))
     assert [one.floor for one in above.values() if one.seen] == [0, 1, 2]
 
 
@@ -166,13 +166,15 @@ def test_how_high_a_storey_is_becomes_known_by_walking_on_some() -> None:
     assert after < 0.6
 
 
-def test_whoever_says_what_is_known_anyway_changes_nothing() -> None:
-    assert storeys_of(-4.6, -7.6, said=((0.0, 0),)) == storeys_of(-4.6, -7.6)
-    assert storeys_of(-4.6, -7.6, said=((-20.0, 9),)) == storeys_of(-4.6, -7.6), "nobody was there"
+def test_anyone_says_what_is_known_anyway_changes_nothing() -> None:
+    assert storeys_of(-4.6, -7.6, reported=((0.0, 0),)) == storeys_of(-4.6, -7.6)
+    assert storeys_of(-4.6, -7.6, reported=((-20.0, 9),)) == storeys_of(-4.6, -7.6), (
+        "nobody was there"
+    )
 
 
 @pytest.mark.parametrize(
-    ("heights", "said", "floors"),
+    ("heights", "reported", "floors"),
     [
         ((6.2,), ((6.2, -1),), [-1, 0]),
         ((3.0,), ((3.0, 1),), [-1, 0]),
@@ -183,14 +185,16 @@ def test_whoever_says_what_is_known_anyway_changes_nothing() -> None:
         ((-3.1, -6.2), ((-3.1, 2), (-6.2, 2)), [0, 2, 3]),
     ],
 )
-def test_floors_that_are_said_are_believed_in_turn_as_far_as_they_rise(
-    heights: tuple[float, ...], said: tuple[tuple[float, int], ...], floors: list[int]
+def test_floors_that_are_stated_are_believed_in_turn_as_far_as_they_rise(
+    heights: tuple[float, ...], reported: tuple[tuple[float, int], ...], floors: list[int]
 ) -> None:
-    assert [one.floor for one in storeys_of(*heights, said=said).values() if one.seen] == floors
+    assert [
+        one.floor for one in storeys_of(*heights, reported=reported).values() if one.seen
+    ] == floors
 
 
 def test_what_two_people_say_has_the_storeys_between_spread_evenly() -> None:
-    storeys = storeys_of(-3.0, -12.0, said=((-3.0, 1), (-12.0, 4)))
+    storeys = storeys_of(-3.0, -12.0, reported=((-3.0, 1), (-12.0, 4)))
     assert storeys[2].down_m == pytest.approx(-6.0)
     assert storeys[3].down_m == pytest.approx(-9.0)
     assert not storeys[3].seen

@@ -43,7 +43,7 @@ def house() -> Plan:
     return read_plan(msgspec.json.encode(HOUSE))
 
 
-def test_storeys_are_told_apart_by_height(house: Plan) -> None:
+def test_storeys_are_distinguished_by_height(house: Plan) -> None:
     assert [house.floor_at(down_m, None) for down_m in (3.0, 0.3, -3.0, -50.0)] == [-1, 0, 1, 1]
 
 

@@ -71,19 +71,19 @@ class Leading:
 
     def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
         assert by == STATION_ID
-        told: Future[ActionResult] = Future()
+        reported: Future[ActionResult] = Future()
         before = ActionResult.before(self._state, action_id)
         if before is not None:
-            told.set_result(before)
-            return told
+            reported.set_result(before)
+            return reported
         self.done.append(action)
         if self.written:
             done = OperatorAction(Header(STATION_ID, 1, 1, 5), action_id, by, action)
             idempotency.record_result(self._state, done, "")
-            told.set_result(ActionResult("x", T0, None))
+            reported.set_result(ActionResult("x", T0, None))
         else:
-            self.waiting.append(told)
-        return told
+            self.waiting.append(reported)
+        return reported
 
     def _bring(self, key: str, payload: bytes) -> None:
         self.brought.append((key, payload))
@@ -119,8 +119,8 @@ def closed_by(person: str) -> Record:
 @pytest.fixture
 def leading(tmp_path: Path) -> Leading:
     """It finds messages of a unit, and behind them what Ada and the station did."""
-    said = [(T0 + number, EVENT.key("u"), b"%d" % number) for number in range(UNITS)]
-    return leading_with(tmp_path, [*said, closed_by("ada"), closed_by(STATION_ID)])
+    stated = [(T0 + number, EVENT.key("u"), b"%d" % number) for number in range(UNITS)]
+    return leading_with(tmp_path, [*stated, closed_by("ada"), closed_by(STATION_ID)])
 
 
 ALL = [(backfilled_key("u", EVENT.suffix), b"%d" % number) for number in range(UNITS)]
@@ -159,7 +159,7 @@ def test_what_a_person_did_is_written_down_and_not_done(leading: Leading) -> Non
         (Assign("FF-01", "p1", "Ada", "red", "leader"), "Assign FF-01, p1"),
     ],
 )
-def test_what_a_person_did_is_told_in_words(tmp_path: Path, action: Action, what: str) -> None:
+def test_what_a_person_did_is_reported_in_words(tmp_path: Path, action: Action, what: str) -> None:
     done = OperatorAction(Header(STATION_ID, 1, 1, 5), "a1", "ada", action)
     leading = leading_with(tmp_path, [(T0, OPERATOR.key(STATION_ID), encode(done))])
     leading.look()
@@ -180,7 +180,7 @@ def test_a_station_that_ends_meanwhile_takes_the_whole_part_another_time(
     assert parts(tmp_path) == []
 
 
-def test_a_part_is_not_told_of_before_what_it_brought_is_on_the_disk(
+def test_a_part_is_not_reported_of_before_what_it_brought_is_on_the_disk(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.settled = False
@@ -192,15 +192,15 @@ def test_a_part_is_not_told_of_before_what_it_brought_is_on_the_disk(
     assert parts(tmp_path) == []
 
 
-def test_a_part_is_not_told_of_before_what_people_did_there_is_written_down(
+def test_a_part_is_not_reported_of_before_what_people_did_there_is_written_down(
     leading: Leading, tmp_path: Path
 ) -> None:
     """A station that dies then would have told nobody of it."""
     leading.written = False
     looking = looking_until(leading, lambda: len(leading.waiting) == 2)
-    for told in leading.waiting:
+    for reported in leading.waiting:
         assert len(parts(tmp_path)) == 1
-        told.set_result(ActionResult("x", T0, None))
+        reported.set_result(ActionResult("x", T0, None))
     looking.join()
     assert parts(tmp_path) == []
 
@@ -210,8 +210,8 @@ def test_what_people_did_is_left_to_the_station_that_leads_by_then(
 ) -> None:
     leading.written = False
     looking = looking_until(leading, lambda: len(leading.waiting) == 2)
-    for told in leading.waiting:
-        told.set_exception(StoreError("the station is stopping"))
+    for reported in leading.waiting:
+        reported.set_exception(StoreError("the station is stopping"))
     looking.join()
     assert len(parts(tmp_path)) == 1
     leading.written = True
@@ -270,7 +270,7 @@ def test_a_station_that_ends_while_the_disk_does_not_take_it_tells_of_nothing(
 
 
 @pytest.mark.parametrize("name", [b"", b"..", b"../log", b"20990101"])
-def test_what_was_not_set_aside_is_neither_given_nor_told_of(
+def test_what_was_not_set_aside_is_neither_given_nor_reported_of(
     leading: Leading, tmp_path: Path, name: bytes
 ) -> None:
     before = sorted(tmp_path.rglob("*"))

@@ -35,7 +35,7 @@ class Site:
         self.now_s += after_s
         return self.election.decide(self.me, self.now_ns)
 
-    def hear_unit(self, after_s: float) -> None:
+    def receive_unit(self, after_s: float) -> None:
         self.now_s += after_s
         self.me = self.me._replace(unit_received_ns=self.now_ns)
         self.decide()
@@ -51,7 +51,7 @@ def test_alone_it_leads_after_a_while(preferred: bool, waits_s: float) -> None:
     assert site.decide(0.1) == "lead"
 
 
-def test_one_that_comes_back_waits_for_another_that_listens_and_is_not_heard_yet() -> None:
+def test_one_that_comes_back_waits_for_another_that_listens_and_is_not_received_yet() -> None:
     """The two routers have not linked: it would lead beside the one that leads."""
     site = Site(preferred=True)
     site.me = site.me._replace(other_listens=True)
@@ -98,7 +98,7 @@ def test_a_standby_takes_over_when_the_lease_is_over_and_not_before() -> None:
     site = Site()
     site.become("standby")
     site.receive("active")
-    site.hear_unit(after_s=1.0)
+    site.receive_unit(after_s=1.0)
     assert site.decide(LEASE_S - 1.1) == "stay"
     assert site.decide(0.1) == "lead"
 
@@ -109,12 +109,12 @@ def test_one_that_has_not_caught_up_waits_for_the_other_to_come_back() -> None:
     site.become("standby")
     hour = LogPosition(3600 * NS_PER_S, 1)
     site.receive("active", place=hour)
-    site.hear_unit(after_s=1.0)
+    site.receive_unit(after_s=1.0)
     assert site.decide(2 * LEASE_S) == "stay"
     assert site.election.lacks_log
     site.receive("waiting", place=hour)  # it has started again
     assert site.decide(1.0) == "stay"
-    site.hear_unit(after_s=1.0)
+    site.receive_unit(after_s=1.0)
     assert site.decide(20 * LEASE_S - 2.1) == "stay"
     assert site.decide(0.1) == "lead", "it does not come back"
 
@@ -125,7 +125,7 @@ def test_one_that_lacks_the_last_moments_does_not_wait(units: int) -> None:
     site.become("standby")
     site.receive("active", place=LogPosition(3600 * NS_PER_S, 1), units=units)
     site.me = site.me._replace(stepped=LogPosition(3570 * NS_PER_S, 1))
-    site.hear_unit(after_s=1.0)
+    site.receive_unit(after_s=1.0)
     assert site.decide(LEASE_S) == "lead"
 
 
@@ -133,7 +133,7 @@ def test_it_is_sooner_sure_when_the_token_is_gone_too() -> None:
     site = Site()
     site.become("standby")
     site.receive("active")
-    site.hear_unit(after_s=0.6)
+    site.receive_unit(after_s=0.6)
     site.election.note_token(there=False)
     assert site.decide(0.9) == "stay"  # the lease of a station without a token is over
     assert site.decide(0.1) == "lead"
@@ -148,24 +148,24 @@ def test_a_router_that_opens_again_takes_the_token_away_for_a_moment_only() -> N
         assert site.decide(0.5) == "stay"
 
 
-def test_who_hears_no_unit_though_the_active_station_had_some_is_cut_off_and_waits() -> None:
+def test_who_receives_no_unit_though_the_active_station_had_some_is_cut_off_and_waits() -> None:
     site = Site()
     site.become("standby")
     site.receive("active", units=2)
-    site.hear_unit(after_s=0.2)  # that had been said before the cable was cut
+    site.receive_unit(after_s=0.2)  # that had been said before the cable was cut
     assert site.decide(10 * LEASE_S) == "stay"
     assert site.election.is_cut_off(site.now_ns)
-    site.hear_unit(after_s=0.2)  # it has come over to this station's router
+    site.receive_unit(after_s=0.2)  # it has come over to this station's router
     assert site.decide(0.9) == "stay"
     assert site.decide(0.1) == "lead"
 
 
-def test_a_unit_that_is_heard_first_when_the_cable_is_whole_again_changes_nothing() -> None:
+def test_a_unit_that_is_received_first_when_the_cable_is_whole_again_changes_nothing() -> None:
     site = Site()
     site.become("standby")
     site.receive("active")
     assert site.decide(10 * LEASE_S) == "stay"
-    site.hear_unit(after_s=0.2)
+    site.receive_unit(after_s=0.2)
     assert site.decide(0.3) == "stay"
     site.receive("active")
     assert site.decide(2.0) == "stay"
@@ -258,7 +258,9 @@ def test_one_that_leads_does_not_step_back_for_one_that_follows() -> None:
         assert site.decide() == "stay"
 
 
-def test_it_is_said_to_be_cut_off_only_where_a_standby_hears_neither_station_nor_unit() -> None:
+def test_it_is_stated_to_be_cut_off_only_where_a_standby_receives_neither_station_nor_unit() -> (
+    None
+):
     site = Site()
 
     def is_cut_off() -> bool:
@@ -270,7 +272,7 @@ def test_it_is_said_to_be_cut_off_only_where_a_standby_hears_neither_station_nor
     assert not is_cut_off(), "the active station is heard"
     site.decide(LEASE_S)
     assert is_cut_off()
-    site.hear_unit(0.1)
+    site.receive_unit(0.1)
     site.decide(1.0)
     assert not is_cut_off(), "it is the other one that is gone"
     site.become("active")
@@ -278,11 +280,11 @@ def test_it_is_said_to_be_cut_off_only_where_a_standby_hears_neither_station_nor
     assert not is_cut_off(), "it leads"
 
 
-def test_what_units_said_before_the_other_was_heard_again_is_no_witness() -> None:
+def test_what_units_stated_before_the_other_was_received_again_is_no_witness() -> None:
     site = Site()
     site.receive("active")
     site.become("standby")
-    site.hear_unit(1.0)
+    site.receive_unit(1.0)
     site.receive("active")
-    site.hear_unit(0.1)
+    site.receive_unit(0.1)
     assert site.decide(LEASE_S) == "stay", "nobody has been heard for longer than the other"

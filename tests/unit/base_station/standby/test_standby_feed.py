@@ -20,7 +20,7 @@ def feed(clock: ManualClock) -> StandbyFeed:
     return StandbyFeed(LiveFeed(SteadyClock(clock)), clock)
 
 
-def test_the_other_log_comes_first_then_what_was_heard_then_the_bus(feed: StandbyFeed) -> None:
+def test_the_other_log_comes_first_then_what_was_received_then_the_bus(feed: StandbyFeed) -> None:
     feed.offer(EVENT.key("u"), b"heard")
     feed.deliver(EVENTS)
     feed.lead()

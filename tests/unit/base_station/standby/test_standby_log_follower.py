@@ -152,9 +152,9 @@ def test_a_log_that_went_its_own_way_confirms_nothing(pairing: Pairing) -> None:
     place = pairing.active.place
     pairing.active.begin(place, T0, [TakeOver(2, "a", place.t_ns, place.events)])
     pairing.standby.write(T0 + 50, TICKED, b"apart")
-    said: list[ReplicationAck] = []
+    stated: list[ReplicationAck] = []
     subscribed = pairing.router.attach_station().subscribe(
-        key_of("b", "have"), lambda _, payload: said.append(unpack(payload, ReplicationAck))
+        key_of("b", "have"), lambda _, payload: stated.append(unpack(payload, ReplicationAck))
     )
     pairing.follower.start()
     pairing.follower.follow(Leader("a", 1))
@@ -162,8 +162,8 @@ def test_a_log_that_went_its_own_way_confirms_nothing(pairing: Pairing) -> None:
     pairing.active.begin(place, T0, ())
     written(pairing.recorders[0], pairing.active, [(T0 + 50, TICKED, b"apart")])
     pairing.follower.follow(Leader("a", 2))
-    until(lambda: said != [])
-    assert {have.run for have in said} == {2}
+    until(lambda: stated != [])
+    assert {have.run for have in stated} == {2}
     subscribed.close()
 
 

@@ -59,8 +59,10 @@ def test_a_log_goes_on_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -
     recorder.close()
     kept = [r for r in LogFeed(tmp_path / "log").records() if r[1] == TICKED]
     assert kept == events(12)
-    said = [[payload for _, _, payload in read_part(tmp_path, name)] for name in parts(tmp_path)]
-    assert said == [[b"once"], [b"twice"]]
+    reported = [
+        [payload for _, _, payload in read_part(tmp_path, name)] for name in parts(tmp_path)
+    ]
+    assert reported == [[b"once"], [b"twice"]]
 
 
 def test_a_log_is_cut_between_two_events_of_one_time_though_a_segment_ends_there(

@@ -63,7 +63,7 @@ def ends() -> Ends:
     return Ends()
 
 
-def test_the_other_station_is_heard(ends: Ends) -> None:
+def test_the_other_station_is_received(ends: Ends) -> None:
     ends.beat()
     assert ends.election.other == OTHER
     assert ends.beats == 1
@@ -78,18 +78,18 @@ def test_its_own_beat_and_what_is_none_are_left_out(ends: Ends) -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "reported"),
     [
         ({"station": "a"}, "Two stations call themselves a"),
         ({"protocol": PROTOCOL + 1}, "Station b is of another version"),
     ],
 )
-def test_who_is_no_partner_is_told_of_while_it_is_there(
-    ends: Ends, changes: dict[str, object], said: str
+def test_who_is_no_partner_is_reported_of_while_it_is_there(
+    ends: Ends, changes: dict[str, object], reported: str
 ) -> None:
     ends.beat(**changes)
     assert ends.election.other is None
-    assert ends.hearing.stranger.startswith(said)
+    assert ends.hearing.stranger.startswith(reported)
     ends.clock.advance(6.0)
     assert ends.hearing.stranger == ""
 
@@ -107,7 +107,7 @@ def test_linked_units_are_counted(ends: Ends) -> None:
     assert ends.hearing.units == 0
 
 
-def test_another_station_that_said_goodbye_is_waited_for_half_as_long(ends: Ends) -> None:
+def test_another_station_that_stated_goodbye_is_waited_for_half_as_long(ends: Ends) -> None:
     token = ends.speaker.declare_alive(key_of("b", "alive"))
     own = ends.speaker.declare_alive(key_of("a", "alive"))
     ends.beat()

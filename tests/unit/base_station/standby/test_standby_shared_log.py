@@ -50,7 +50,7 @@ def test_what_stands_behind_any_place_is_served_from_memory_as_from_the_disk(
             place = place.next(records[done][0])
 
 
-def test_what_is_no_longer_at_hand_is_said_to_be_on_the_disk_only(
+def test_what_is_no_longer_at_hand_is_stated_to_be_on_the_disk_only(
     recorder: Recorder, log: SharedLog
 ) -> None:
     written(recorder, log, events(3))
@@ -70,7 +70,7 @@ def test_nothing_stays_in_memory_of_who_is_to_be_forgotten(
     assert log.behind(log.place, 10**6) == []
 
 
-def test_of_a_long_log_the_newest_stay_at_hand_and_the_rest_is_said_to_be_on_the_disk(
+def test_of_a_long_log_the_newest_stay_at_hand_and_the_rest_is_stated_to_be_on_the_disk(
     recorder: Recorder, log: SharedLog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.standby.shared_log._RECENT_BYTES", 300)
@@ -131,13 +131,13 @@ def test_a_log_that_follows_ends_where_the_disk_refused_and_has_no_hole() -> Non
 def test_a_log_that_leads_goes_on_behind_what_the_disk_refused_and_ships_what_it_has() -> None:
     disk, clock = FullDisk(), ManualClock()
     log = SharedLog(disk, clock)
-    disk.room, said = 3, events(9)
-    for t_ns, key, payload in said[:6]:
+    disk.room, reported = 3, events(9)
+    for t_ns, key, payload in reported[:6]:
         clock.advance(1.0)
         log.write(t_ns, key, payload)
     assert clock.monotonic_ns() - log.written_ns == 3 * NS_PER_S  # silent like one that hangs
     disk.room = 100
-    for record in said[6:]:
+    for record in reported[6:]:
         log.write(*record)
     assert not log.is_cut_short
-    assert log.behind(START, 10**6) == disk.kept == [*said[:3], *said[6:]]
+    assert log.behind(START, 10**6) == disk.kept == [*reported[:3], *reported[6:]]

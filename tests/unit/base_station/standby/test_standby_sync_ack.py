@@ -69,12 +69,12 @@ class TestConfirming:
 
     def test_an_action_waits_until_the_standby_has_it(self, copy: ReplicaProgress) -> None:
         copy.note(LogPosition(4, 1))
-        told = self.act(copy)
-        assert not told.done()
+        reported = self.act(copy)
+        assert not reported.done()
         copy.note(LogPosition(5, 1))
-        assert told.done()
+        assert reported.done()
 
-    def test_each_is_told_once_whatever_the_standby_says_after_it(
+    def test_each_is_reported_once_whatever_the_standby_says_after_it(
         self, copy: ReplicaProgress
     ) -> None:
         copy.note(LogPosition(4, 1))
@@ -96,18 +96,18 @@ class TestConfirming:
         assert copy.previous_report_is_durable()
         copy.note(LogPosition(1, 1))  # the new machine has only begun to fetch the log
         assert not copy.previous_report_is_durable()
-        told = self.act(copy)
-        assert not told.done()
+        reported = self.act(copy)
+        assert not reported.done()
         copy.note(LogPosition(5, 1))
-        assert told.done()
+        assert reported.done()
         assert copy.previous_report_is_durable()
 
     def test_when_the_station_ends_nobody_is_left_waiting(self, copy: ReplicaProgress) -> None:
         copy.note(LogPosition(4, 1))
-        told = [self.act(copy) for _ in range(3)]
-        assert not any(one.done() for one in told)
+        reported = [self.act(copy) for _ in range(3)]
+        assert not any(one.done() for one in reported)
         copy.close()
-        assert all(one.done() for one in told)
+        assert all(one.done() for one in reported)
         copy.check()
 
     @pytest.mark.parametrize(
@@ -135,31 +135,31 @@ class TestConfirming:
         copy.drain()
         assert clock.monotonic_ns() - began_ns == pytest.approx(waits_s * 1e9, abs=3e7)
 
-    def test_it_does_not_wait_for_long_and_that_is_said(
+    def test_it_does_not_wait_for_long_and_that_is_stated(
         self, copy: ReplicaProgress, clock: ManualClock
     ) -> None:
         copy.note(LogPosition(4, 1))
-        told = self.act(copy)
+        reported = self.act(copy)
         clock.advance(0.9)
         copy.check()
-        assert not told.done()
+        assert not reported.done()
         clock.advance(0.2)
         copy.check()
-        assert told.done()
+        assert reported.done()
         clock.advance(2.0)
         copy.check()
         assert copy.is_behind
 
-    def test_what_a_station_that_stops_does_not_do_is_said(self, copy: ReplicaProgress) -> None:
+    def test_what_a_station_that_stops_does_not_do_is_stated(self, copy: ReplicaProgress) -> None:
         class Stopping(Drive):
             def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
                 done: Future[ActionResult] = Future()
                 done.set_exception(StoreError("the station is stopping"))
                 return done
 
-        told = LeaderOnlyGate(Stopping(), copy, lambda: None).submit("ada", CloseIncident("i"))
+        reported = LeaderOnlyGate(Stopping(), copy, lambda: None).submit("ada", CloseIncident("i"))
         with pytest.raises(StoreError, match="stopping"):
-            told.result(0.0)
+            reported.result(0.0)
 
     def test_nobody_acts_at_a_standby(self, copy: ReplicaProgress) -> None:
         with pytest.raises(StoreError, match="this is the standby"):
@@ -169,10 +169,10 @@ class TestConfirming:
         self, copy: ReplicaProgress
     ) -> None:
         copy.note(LogPosition(4, 1))
-        told = LeaderOnlyGate(Drive(), copy, lambda: None).deliver([("key", b"samples")])
-        assert not told.done()
+        reported = LeaderOnlyGate(Drive(), copy, lambda: None).deliver([("key", b"samples")])
+        assert not reported.done()
         copy.note(LogPosition(5, 1))
-        assert told.result(0.0).count(Admission.ACCEPT) == 1
+        assert reported.result(0.0).count(Admission.ACCEPT) == 1
 
     def test_units_may_forget_only_what_both_have(self, copy: ReplicaProgress) -> None:
         copy.note_report_received()  # of what stands up to 5

@@ -77,8 +77,10 @@ def by_others(path: Path) -> Path:
     return path
 
 
-def seconds(data: DataFolder, told: list[str]) -> list[int]:
-    return [int(payload) for _, _, payload in LogFeed(data.log, on_damage=told.append).records()]
+def seconds(data: DataFolder, reported: list[str]) -> list[int]:
+    return [
+        int(payload) for _, _, payload in LogFeed(data.log, on_damage=reported.append).records()
+    ]
 
 
 @pytest.mark.parametrize("is_earlier", [False, True])
@@ -91,14 +93,14 @@ def test_what_stands_in_the_place_of_a_segment(
             by_earlier_version(path)
     own = segment_paths(data.log)
     shutil.copy(other, own[1])
-    told: list[str] = []
-    assert seconds(data, told) == [*range(10), *range(20, 40)]
+    reported: list[str] = []
+    assert seconds(data, reported) == [*range(10), *range(20, 40)]
     reason = (
         "its records begin at 2023-11-14 23:53:20 UTC, which is not when its name says"
         if is_earlier
         else OTHER_LOG
     )
-    assert told == [f"{own[1].name} is no segment of this log and is left out: {reason}"]
+    assert reported == [f"{own[1].name} is no segment of this log and is left out: {reason}"]
     assert max(one.end_ns for one in data.segments()) == T0_NS + 39 * NS_PER_S
 
 
@@ -207,10 +209,10 @@ def test_what_has_no_number(name: str, data: DataFolder, tmp_path: Path) -> None
         beside.touch()
     else:
         shutil.copy(elsewhere(tmp_path, 6000), beside)
-    told: list[str] = []
-    assert seconds(data, told) == [*range(40)]
+    reported: list[str] = []
+    assert seconds(data, reported) == [*range(40)]
     why = "its name is not that of a segment"
-    assert told == [f"{name} is no segment of this log and is left out: {why}"]
+    assert reported == [f"{name} is no segment of this log and is left out: {why}"]
     with closing(Recorder(data.path, ManualClock())) as recorder:
         assert recorder.foreign.keys() == {beside}
 
@@ -225,9 +227,9 @@ def test_any_reader_of_mcap_sees_of_which_log_a_segment_is(data: DataFolder) -> 
 
 def test_what_another_program_wrote(data: DataFolder) -> None:
     beside = by_others(segment_path(data.log, 5, T0_NS + 60 * NS_PER_S))
-    told: list[str] = []
-    assert seconds(data, told) == [*range(40)]
-    assert "written by another program (ros2)" in told[0]
+    reported: list[str] = []
+    assert seconds(data, reported) == [*range(40)]
+    assert "written by another program (ros2)" in reported[0]
     assert own_segments(data.log)[1].keys() == {beside}
 
 

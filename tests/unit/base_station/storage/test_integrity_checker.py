@@ -57,7 +57,7 @@ def test_what_breaks_later_is_found_by_the_next_round(
     assert looked(check, recorder, 60).damaged == (path,)
 
 
-def test_what_the_disk_does_not_open_is_told_and_keeps_no_station_from_its_start(
+def test_what_the_disk_does_not_open_is_reported_and_keeps_no_station_from_its_start(
     recorder: Recorder, tmp_path: Path
 ) -> None:
     shutil.copytree(recorder.folder, tmp_path / "elsewhere" / "log")
@@ -69,15 +69,15 @@ def test_what_the_disk_does_not_open_is_told_and_keeps_no_station_from_its_start
         assert sum(1 for _ in LogFeed(again.folder).records()) > 0
 
 
-def test_a_file_of_the_log_that_is_gone_when_the_station_starts_is_told(
+def test_a_file_of_the_log_that_is_gone_when_the_station_starts_is_reported(
     recorder: Recorder, tmp_path: Path
 ) -> None:
     shutil.copytree(recorder.folder, tmp_path / "elsewhere" / "log")
     assert looked(IntegrityChecker(""), recorder).problems() == ()
     (tmp_path / "elsewhere" / "log" / recorder.segments()[1].path.name).unlink()
     with closing(Recorder(tmp_path / "elsewhere", SystemClock())) as again:
-        (said,) = looked(IntegrityChecker(""), again).problems()
-        assert said.startswith("Files of the log are gone, by their numbers 2: check the disk")
+        (reported,) = looked(IntegrityChecker(""), again).problems()
+        assert reported.startswith("Files of the log are gone, by their numbers 2: check the disk")
 
 
 def test_what_a_reader_meets_is_looked_at_at_once(recorder: Recorder) -> None:

@@ -30,7 +30,7 @@ def asked_for(jobs: JobList[Job], name: str) -> Job:
     return jobs.add(lambda _: Job(name))
 
 
-def test_how_things_stand_is_told_while_the_disk_hangs(
+def test_how_things_stand_is_reported_while_the_disk_hangs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The live picture tells it."""
@@ -43,19 +43,19 @@ def test_how_things_stand_is_told_while_the_disk_hangs(
         asked.set()
         answers.wait()
 
-    told: list[tuple[Job, ...]] = []
+    reported: list[tuple[Job, ...]] = []
     with monkeypatch.context() as patched:
         patched.setattr("base_station.storage.job_queue.write_atomically", hang)
         saving = Thread(target=asked_for, args=(jobs, "second"))
         saving.start()
         assert asked.wait(PATIENCE_S)
-        looking = Thread(target=lambda: told.append(jobs.all()), daemon=True)
+        looking = Thread(target=lambda: reported.append(jobs.all()), daemon=True)
         looking.start()
         noting = Thread(target=lambda: jobs.note(first, save=False, share=0.5), daemon=True)
         noting.start()
         try:
-            until(lambda: told and first.share, patience_s=10.0)
-            assert [one.name for one in told[0]] == ["first"], "the second is not on the disk"
+            until(lambda: reported and first.share, patience_s=10.0)
+            assert [one.name for one in reported[0]] == ["first"], "the second is not on the disk"
         finally:
             answers.set()
         saving.join()
@@ -64,11 +64,11 @@ def test_how_things_stand_is_told_while_the_disk_hangs(
     again = JobList(tmp_path / "jobs.json", Job)
     assert [(one.name, one.share) for one in again.all()] == [("first", 1.0), ("second", 0.0)]
     again.note_each(lambda one: one.name == "first", share=0.0)
-    told_later = JobList(tmp_path / "jobs.json", Job).all()
-    assert [one.share for one in told_later] == [0.0, 0.0]
+    reported_later = JobList(tmp_path / "jobs.json", Job).all()
+    assert [one.share for one in reported_later] == [0.0, 0.0]
 
 
-def test_of_those_that_are_over_the_last_are_told_and_all_that_are_not(tmp_path: Path) -> None:
+def test_of_those_that_are_over_the_last_are_reported_and_all_that_are_not(tmp_path: Path) -> None:
     jobs = JobList(tmp_path / "jobs.json", Job)
     for number in range(50):
         asked_for(jobs, f"job {number}")

@@ -86,9 +86,9 @@ def test_a_check_tells_of_it_until_it_is_mended() -> None:
     check = IntegrityChecker("It is mended.")
     lacks = log_gaps([segment(1, 40), segment(2, 50), WHOLE[3]], KNOWN)
     check.note_lacks(FOLDER, lacks)
-    (said,) = check.problems()
-    assert said.startswith(f"A part of the log is lost: {WHOLE[0].path.name} has 40 of its 100")
-    assert said.endswith("It is mended.")
+    (reported,) = check.problems()
+    assert reported.startswith(f"A part of the log is lost: {WHOLE[0].path.name} has 40 of its 100")
+    assert reported.endswith("It is mended.")
     assert check.missing == (3,)
     first, second = (one.path for one in WHOLE[:2])
     assert list(check.damaged) == [first, second]
@@ -103,13 +103,13 @@ def test_a_check_tells_of_it_until_it_is_mended() -> None:
 def test_of_many_only_some_are_named() -> None:
     check = IntegrityChecker("")
     check.note_lacks(FOLDER, log_gaps([], [known(number) for number in range(1, 30)]))
-    (said,) = check.problems()
-    assert "; and 24 more" in said
+    (reported,) = check.problems()
+    assert "; and 24 more" in reported
 
 
 def test_what_is_no_segment_is_named() -> None:
     check = IntegrityChecker("")
     check.note_foreign({FOLDER / "000009-20231114T221320Z.mcap": "it is of another time"})
-    (said,) = check.problems()
-    assert "000009-20231114T221320Z.mcap" in said
+    (reported,) = check.problems()
+    assert "000009-20231114T221320Z.mcap" in reported
     assert check.damaged == ()

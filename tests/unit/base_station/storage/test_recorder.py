@@ -86,8 +86,8 @@ def test_what_was_written_before_the_segments_were_asked_for_is_in_them(
         go.set()
         (path,) = complete.result()
         with SegmentReader(path) as reader:
-            said = [payload for _, _, payload in reader.records()]
-    assert said == [b"1", b"2"]
+            stated = [payload for _, _, payload in reader.records()]
+    assert stated == [b"1", b"2"]
 
 
 def test_closing_writes_what_is_left(tmp_path: Path) -> None:
@@ -121,28 +121,28 @@ def test_a_segment_that_is_written_is_open_and_one_that_nobody_writes_is_torn(
         assert "torn" not in states(copy)
 
 
-def test_segments_are_told_of_when_they_are_complete(tmp_path: Path) -> None:
-    told: list[tuple[SegmentInfo, str]] = []
+def test_segments_are_reported_of_when_they_are_complete(tmp_path: Path) -> None:
+    reported: list[tuple[SegmentInfo, str]] = []
     recorder = Recorder(
         tmp_path,
         SystemClock(),
         SegmentPolicy(segment_s=10.0),
-        on_segment=lambda info, note: told.append((info, note)),
+        on_segment=lambda info, note: reported.append((info, note)),
     )
     for second in range(15):
         recorder.write(T0_NS + second * NS_PER_S, KEY, b"")
     recorder.flush()
-    assert [info.messages for info, _ in told] == [10]
+    assert [info.messages for info, _ in reported] == [10]
     assert [info.state for info in recorder.segments()] == [SegmentState.CLOSED, SegmentState.OPEN]
     recorder.close()
-    assert [info.messages for info, _ in told] == [10, 5]
+    assert [info.messages for info, _ in reported] == [10, 5]
 
-    told.clear()
-    Recorder(tmp_path, SystemClock(), on_segment=lambda *one: told.append(one)).close()
-    assert [(info.messages, note) for info, note in told] == [(10, ""), (5, "")]
+    reported.clear()
+    Recorder(tmp_path, SystemClock(), on_segment=lambda *one: reported.append(one)).close()
+    assert [(info.messages, note) for info, note in reported] == [(10, ""), (5, "")]
 
 
-def test_a_torn_segment_is_mended_at_the_start_and_told_of(tmp_path: Path) -> None:
+def test_a_torn_segment_is_mended_at_the_start_and_reported_of(tmp_path: Path) -> None:
     torn = SegmentWriter(tmp_path / LOG_FOLDER)
     torn.write(T0_NS, KEY, b"1", urgent=True)
     notes: list[str] = []
@@ -178,7 +178,7 @@ def test_a_recorder_that_fails_says_so_and_counts_what_it_refuses(tmp_path: Path
     recorder.close()
 
 
-def test_a_disk_that_hangs_is_said_and_hardly_waited_for(
+def test_a_disk_that_hangs_is_stated_and_hardly_waited_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock, answers, fsync = ManualClock(), Event(), os.fsync
@@ -206,7 +206,7 @@ def test_a_disk_that_hangs_is_said_and_hardly_waited_for(
     assert payloads(tmp_path) == [b"1", b"2"]
 
 
-def test_little_room_on_the_disk_is_said_and_is_no_failure(
+def test_little_room_on_the_disk_is_stated_and_is_no_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with recording(tmp_path) as recorder:

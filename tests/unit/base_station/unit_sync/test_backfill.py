@@ -39,7 +39,7 @@ def tell(backfill: Backfill, report: Report, *, alerts_only: bool = False) -> No
     until(lambda: backfill._report is None, "the report is looked at")
 
 
-def said(number: int) -> bytes:
+def reported(number: int) -> bytes:
     """Which message it is is all that counts here."""
     return encode(Temperature(Header("FF-01", BOOT, number, number), 20.0))
 
@@ -51,7 +51,7 @@ class Bench:
         router = MemoryRouter()
         self.unit_bus = router.attach_unit()
         self.journal = Journal(folder / "journal.sqlite", lambda: BOOT, 0, 10**9)
-        self.journal.append([JournalRow(n, POSITION, n, said(n)) for n in numbers])
+        self.journal.append([JournalRow(n, POSITION, n, reported(n)) for n in numbers])
         server = JournalServer("FF-01", self.journal)
         self.questions: list[str] = []  # for ranges
         self.acknowledged: list[str] = []
@@ -120,14 +120,14 @@ def test_what_is_only_under_way_is_not_asked_for(bench):
 
 def test_an_alert_is_fetched_though_the_stations_disk_takes_nothing(tmp_path):
     bench = Bench(tmp_path, [1, 2, 3, 5, 6])
-    bench.journal.append([JournalRow(4, EVENT, 4, said(4))])
+    bench.journal.append([JournalRow(4, EVENT, 4, reported(4))])
     for _ in range(4):
         bench.report(Run(1, 2), Run(6, 6), alerts_only=True)
     until(lambda: bench.delivered, "the alert")
     bench.report(Run(1, 2), Run(4, 4), Run(6, 6), alerts_only=True)
     bench.backfill.close()
     bench.journal.close()
-    assert bench.delivered == [(backfilled_key("FF-01", EVENT.suffix), said(4))]
+    assert bench.delivered == [(backfilled_key("FF-01", EVENT.suffix), reported(4))]
     assert (bench.questions, bench.acknowledged) == ([], [])
 
 
@@ -137,7 +137,7 @@ def test_a_station_that_has_everything_says_so_to_the_unit(bench):
     until(lambda: bench.journal.pending == 0)
 
 
-def test_a_unit_is_told_nothing_to_forget_before_it_may(tmp_path):
+def test_a_unit_is_reported_nothing_to_forget_before_it_may(tmp_path):
     """The standby has not got it, say."""
     may_forget: list[bool] = []
     bench = Bench(tmp_path, range(1, 11), lambda: bool(may_forget))
@@ -162,7 +162,7 @@ def test_what_the_log_refused_is_asked_for_again_once_and_surely():
     assert starts_over == [False, True, False, False]
 
 
-def test_a_boot_that_the_station_never_heard_of_is_fetched(bench):
+def test_a_boot_that_the_station_never_received_of_is_fetched(bench):
     for _ in range(3):
         tell(bench.backfill, {"FF-01": ()})
     until(lambda: sorted(bench.numbers) == list(range(1, 11)))
@@ -206,7 +206,7 @@ def test_a_unit_that_was_out_of_reach_is_asked_for_little_first(tmp_path):
     until(lambda: len(bench.delivered) == 299)
     before = len(bench.totals)
     tell(bench.backfill, {})
-    bench.journal.append([JournalRow(n, POSITION, n, said(n)) for n in range(301, 402)])
+    bench.journal.append([JournalRow(n, POSITION, n, reported(n)) for n in range(301, 402)])
     for _ in range(4):
         bench.report(Run(1, 300), Run(401, 401))
     until(lambda: len(bench.delivered) == 399)
@@ -218,15 +218,15 @@ def test_a_unit_that_was_out_of_reach_is_asked_for_little_first(tmp_path):
 
 def test_an_alert_comes_before_the_backlog_it_stands_in(tmp_path):
     bench = Bench(tmp_path, [1])
-    entries = [JournalRow(n, POSITION, n, said(n)) for n in range(2, 1001)]
-    entries[498] = JournalRow(500, EVENT, 500, said(500))
+    entries = [JournalRow(n, POSITION, n, reported(n)) for n in range(2, 1001)]
+    entries[498] = JournalRow(500, EVENT, 500, reported(500))
     bench.journal.append(entries)
     for _ in range(4):
         bench.report(Run(1, 1), Run(1000, 1000))
     until(lambda: len(bench.delivered) == 998)
     bench.backfill.close()
     bench.journal.close()
-    assert bench.delivered.pop(0) == (backfilled_key("FF-01", "alert/event"), said(500))
+    assert bench.delivered.pop(0) == (backfilled_key("FF-01", "alert/event"), reported(500))
     assert sorted(bench.numbers) == [n for n in range(2, 1000) if n != 500]
 
 
@@ -394,7 +394,7 @@ def test_how_quickly_a_unit_says_what_it_has_is_a_matter_of_the_link_alone():
 
 def test_what_does_not_say_which_message_it_is_has_that_in_its_key(tmp_path):
     bench = Bench(tmp_path, [1])
-    rotten = {2: b"rotten", 3: said(77), 4: b""}
+    rotten = {2: b"rotten", 3: reported(77), 4: b""}
     bench.journal.append([JournalRow(n, POSITION, n, rotten[n]) for n in rotten])
     for _ in range(4):
         bench.report(Run(1, 1))

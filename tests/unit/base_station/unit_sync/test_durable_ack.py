@@ -18,7 +18,7 @@ class Disk:
 @pytest.mark.parametrize(
     ("on_disk", "is_there"), [(0, False), (9, False), (10, True), (20, True), (30, True)]
 )
-def test_what_the_report_before_the_last_told_of_is_on_the_disk(on_disk, is_there):
+def test_what_the_report_before_the_last_reported_of_is_on_the_disk(on_disk, is_there):
     disk = Disk()
     reports = DurableAckGate(disk)
     for written in (5, 10, 20):

@@ -80,11 +80,11 @@ def test_alerts_count_by_themselves_and_an_empty_share_of_others_holds_up_none()
     assert watch.share.may_ask("evil", urgent=True)
 
 
-def test_it_is_told_with_its_name_while_it_lasts() -> None:
+def test_it_is_reported_with_its_name_while_it_lasts() -> None:
     watch = Watch()
     watch.fetch(60, 100_000, 10)
-    [(part, is_told)] = watch.changes()
-    assert is_told
+    [(part, is_reported)] = watch.changes()
+    assert is_reported
     assert "evil's journal brings more" in watch.known[part]
     assert "muster pki revoke evil" in watch.known[part]
     assert watch.changes() == []

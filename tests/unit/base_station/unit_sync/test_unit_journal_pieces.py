@@ -146,7 +146,7 @@ def test_how_much_is_asked_for_follows_from_how_large_messages_are() -> None:
     assert large < small / 3
 
 
-def test_what_came_behind_all_that_the_journal_told_of_has_its_holes_filled() -> None:
+def test_what_came_behind_all_that_the_journal_reported_of_has_its_holes_filled() -> None:
     journal = journal_of(Run(1, 100), last=100)
     held = Held(BOOT, (Run(1, 100), Run(151, 160)))
     journal.report((held,), 1)

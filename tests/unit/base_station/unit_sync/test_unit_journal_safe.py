@@ -29,8 +29,8 @@ def test_what_is_complete_is_acknowledged_when_it_is_on_the_disk(reports: int) -
         assert question is None
         return
     assert question is not None
-    said = (("epoch", BOOT), ("to", 100), ("newest", 0))
-    assert question == Question("acknowledge", said, urgent=False)
+    reported = (("epoch", BOOT), ("to", 100), ("newest", 0))
+    assert question == Question("acknowledge", reported, urgent=False)
     index = JournalIndex((JournalBoot(BOOT, 1, 101, 100, 0),)).to_bytes()
     journal.take(question, index, 1)
     journal.end(question, 1)
@@ -145,7 +145,7 @@ def test_what_was_fetched_and_did_not_come_into_the_log_is_asked_for_again() -> 
     assert (what, asked["from"], asked["to"]) == ("urgent", 11, 20)
 
 
-def test_nothing_is_told_to_be_safe_before_it_is_reported_anew() -> None:
+def test_nothing_is_ordered_to_be_safe_before_it_is_reported_anew() -> None:
     journal = journal_of(Run(1, 10), last=20)
     held = (Held(BOOT, (Run(1, 10),)),)
     asked_in_turn(journal, held[0], 20)

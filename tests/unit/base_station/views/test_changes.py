@@ -32,7 +32,7 @@ _SEEN = st.builds(
 )
 
 
-def told(*units: UnitView) -> list[FieldDelta]:
+def reported(*units: UnitView) -> list[FieldDelta]:
     changes = UnitChanges()
     return [changes.of(Delta(seq, seq, units=(unit,))) for seq, unit in enumerate(units, 1)]
 
@@ -41,7 +41,7 @@ def told(*units: UnitView) -> list[FieldDelta]:
 def test_one_message_changes_a_unit_as_those_that_it_was_made_of(
     seen: list[UnitView], begin: int
 ) -> None:
-    messages = told(*seen)
+    messages = reported(*seen)
     begin = min(begin, len(messages) - 1)
     one = merged(messages[begin:])
     before: object = None
@@ -51,7 +51,7 @@ def test_one_message_changes_a_unit_as_those_that_it_was_made_of(
     assert (one.after_seq, one.seq) == (begin, len(messages))
 
 
-def test_what_is_told_whole_is_as_it_was_told_last() -> None:
+def test_what_is_reported_whole_is_as_it_was_reported_last() -> None:
     pins = (scenes.pin("p", 0, "used", 1.0, ""),)
     raised, resolved = (
         msgspec.structs.replace(scenes.alarm(0, "mayday", 1, "", 0), state=state)

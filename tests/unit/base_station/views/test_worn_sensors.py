@@ -52,8 +52,10 @@ def test_each_sensor_is_shown_where_it_is_worn(
     assert (silent.tracker, silent.sensors) == ("", ())
     with Store(tmp_path / "station.sqlite") as store:
         with store.write() as session:
-            heard = ((U, 1), ("FF-02", 1))
-            project_into(session, [Projection(1, last_messages=heard, descriptions=(description,))])
+            received = ((U, 1), ("FF-02", 1))
+            project_into(
+                session, [Projection(1, last_messages=received, descriptions=(description,))]
+            )
         units = Roster(store, SystemClock()).units()
         stored = {unit.unit_id: stored_sensors(unit) for unit, _ in units}
     assert stored == {U: shown, "FF-02": ()}

@@ -85,13 +85,13 @@ def test_what_is_reported_with_confidence_is_right(bodies: Sequence[PosedBody]) 
         assert np.mean(sure) > 0.9
 
 
-def test_nothing_is_said_before_anybody_has_walked() -> None:
+def test_nothing_is_stated_before_anyone_has_walked() -> None:
     body = posed_body([Act(BodyPosture.SUPINE, 20.0)], np.random.default_rng(1))
     estimator = pushed(body)
     assert estimator.posture(int(body.t_ns[-1])) == (BodyPosture.UNKNOWN, 0.0)
 
 
-def test_a_given_mounting_tells_before_anybody_has_walked() -> None:
+def test_a_given_mounting_tells_before_anyone_has_walked() -> None:
     rng = np.random.default_rng(2)
     turned = Rotation.random(random_state=rng)
     body = posed_body([Act(BodyPosture.SUPINE, 20.0)], rng, mounts={"chest": turned})

@@ -141,7 +141,7 @@ def test_a_sample_that_was_missed_does_not_make_two_hops_of_a_drop(wearer: Weare
 
 
 @pytest.mark.parametrize("batched", [False, True])
-def test_what_was_not_heard_is_no_drop(wearer: Wearer, batched: bool) -> None:
+def test_what_was_not_received_is_no_drop(wearer: Wearer, batched: bool) -> None:
     """A foot in mid swing weighs nothing for a moment; then the samples stop for a while."""
     wearer.drops(duration_s=0.02)
     if batched:
@@ -164,7 +164,7 @@ def test_a_tenth_of_a_second_at_most_is_missed_of_a_drop(
     assert wearer.falls.falling is falls
 
 
-def test_a_drop_that_was_half_heard_is_one_if_that_half_was_long_enough(wearer: Wearer) -> None:
+def test_a_drop_that_was_half_received_is_one_if_that_half_was_long_enough(wearer: Wearer) -> None:
     wearer.drops(duration_s=0.02)
     wearer.now_s += 0.5
     wearer.drops(duration_s=0.3)

@@ -37,7 +37,7 @@ class Wearer:
         if stands_s:
             self.rests(stands_s)
 
-    def said(self) -> Activity:
+    def output(self) -> Activity:
         return self.monitor.activity(round(self.now_s * NS_PER_S))
 
     def cadence_hz(self) -> float:
@@ -78,7 +78,7 @@ class Wearer:
             self.falls += self.monitor.push(_nothing(), track)
             self._height_m += climbed_m or 0.0
 
-    def is_said_to_step(self, ago_s: float, angle_deg: float = 0.0) -> None:
+    def is_stated_to_step(self, ago_s: float, angle_deg: float = 0.0) -> None:
         """The tracker lost a stance while the foot rested."""
         lifted_s = self.now_s - ago_s
         rows = [(lifted_s, 0.0, True), (lifted_s + 0.1, 0.0, False), (lifted_s + 0.5, 0.0, True)]
@@ -110,13 +110,13 @@ class Wearer:
 
     def _rows(
         self,
-        told: list[tuple[float, float, bool]],
+        reported: list[tuple[float, float, bool]],
         length_m: float,
         rise_m: float,
         angle_deg: float,
     ) -> TrackBatch:
-        count = len(told)
-        t_s, share, standing = (np.array(column) for column in zip(*told, strict=True))
+        count = len(reported)
+        t_s, share, standing = (np.array(column) for column in zip(*reported, strict=True))
         half_rad = math.radians(angle_deg) / 2.0
         return replace(
             empty_rows(),
@@ -151,7 +151,7 @@ def test_running_is_fast_or_quick_with_strides_of_some_length(
     wearer: Wearer, length_m: float, period_s: float, kind: Activity
 ) -> None:
     wearer.strides(4, length_m, period_s=period_s)
-    assert wearer.said() is kind
+    assert wearer.output() is kind
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_stairs_are_steeper_than_ramps_and_higher_than_what_lies_about(
     wearer: Wearer, rise_m: float, length_m: float, kind: Activity
 ) -> None:
     wearer.strides(4, length_m, rise_m=rise_m)
-    assert wearer.said() is kind
+    assert wearer.output() is kind
 
 
 @pytest.mark.parametrize(("climbed_m", "kind"), [(0.14, Activity.STAIRS_UP), (0.06, None)])
@@ -178,28 +178,28 @@ def test_the_air_must_have_risen_by_a_third_of_what_the_strides_did(
     wearer: Wearer, climbed_m: float, kind: Activity | None
 ) -> None:
     wearer.strides(8, 0.6, rise_m=0.34, climbed_m=climbed_m)
-    assert wearer.said() is (kind or Activity.WALKING)
+    assert wearer.output() is (kind or Activity.WALKING)
 
 
 def test_of_less_than_a_metre_the_air_knows_nothing(wearer: Wearer) -> None:
     wearer.strides(3, 0.6, rise_m=0.34, climbed_m=0.0)
-    assert wearer.said() is Activity.STAIRS_UP
+    assert wearer.output() is Activity.STAIRS_UP
     wearer.strides(2, 0.6, rise_m=0.34, climbed_m=0.0)
-    assert wearer.said() is Activity.WALKING
+    assert wearer.output() is Activity.WALKING
 
 
 def test_who_turns_round_on_the_stairs_is_judged_by_what_came_after(wearer: Wearer) -> None:
     wearer.strides(8, 0.6, rise_m=0.34, climbed_m=0.34)
     wearer.strides(4, 0.6, rise_m=-0.34, climbed_m=0.0)
-    assert wearer.said() is Activity.WALKING, "the tracker sinks and the air does not"
+    assert wearer.output() is Activity.WALKING, "the tracker sinks and the air does not"
 
 
 def test_on_a_landing_the_flight_before_is_over(wearer: Wearer) -> None:
     wearer.strides(5, 0.6, rise_m=0.34, climbed_m=0.34)
     wearer.strides(3, 1.2, climbed_m=0.0)
-    assert wearer.said() is Activity.WALKING
+    assert wearer.output() is Activity.WALKING
     wearer.strides(4, 0.6, rise_m=0.34, climbed_m=0.0)
-    assert wearer.said() is Activity.WALKING, "the flight before is no witness for this one"
+    assert wearer.output() is Activity.WALKING, "the flight before is no witness for this one"
 
 
 @pytest.mark.parametrize(("length_m", "kind"), [(11.0, Activity.RUNNING), (13.0, None)])
@@ -208,79 +208,79 @@ def test_a_tracker_that_is_lost_makes_no_runner(
 ) -> None:
     wearer.strides(3, 1.3)
     wearer.strides(1, length_m)
-    assert wearer.said() is (kind or Activity.WALKING)
+    assert wearer.output() is (kind or Activity.WALKING)
 
 
 def test_one_tipped_step_is_a_stumble_and_two_are_crawling(wearer: Wearer) -> None:
     wearer.strides(3, 2.1)
     wearer.strides(1, 0.4, angle_deg=TIPPED_DEG)
-    said = [wearer.said()]
+    stated = [wearer.output()]
     wearer.strides(2, 0.4, angle_deg=TIPPED_DEG)
-    said.append(wearer.said())
-    assert said == [Activity.RUNNING, Activity.CRAWLING]
+    stated.append(wearer.output())
+    assert stated == [Activity.RUNNING, Activity.CRAWLING]
 
 
 def test_who_crawls_on_the_balls_of_the_feet_crawls(wearer: Wearer) -> None:
     """Fifty degrees are more than a shoe rolls in a stride and less than a foot that lies."""
     wearer.strides(4, 0.4, angle_deg=50.0)
-    assert wearer.said() is Activity.CRAWLING
+    assert wearer.output() is Activity.CRAWLING
 
 
 def test_who_crawls_goes_on_crawling_after_a_rest_and_lies_after_a_long_one(
     wearer: Wearer,
 ) -> None:
     wearer.strides(5, 0.4, angle_deg=TIPPED_DEG)
-    said = []
+    stated = []
     for rest_s in (3.5, 1.0, 3.0):
         wearer.rests(rest_s, TIPPED_DEG)
-        said.append(wearer.said())
-    assert said == [Activity.CRAWLING, Activity.CRAWLING, Activity.LYING]
+        stated.append(wearer.output())
+    assert stated == [Activity.CRAWLING, Activity.CRAWLING, Activity.LYING]
 
 
 def test_a_foot_that_is_put_up_and_rests_is_neither_crawling_nor_lying_at_once(
     wearer: Wearer,
 ) -> None:
     wearer.stirs(3.0, TIPPED_DEG)
-    said = [wearer.said()]
+    stated = [wearer.output()]
     wearer.rests(1.5, TIPPED_DEG)
-    said.append(wearer.said())
+    stated.append(wearer.output())
     wearer.rests(1.5, TIPPED_DEG)
-    said.append(wearer.said())
-    assert said == [Activity.CRAWLING, Activity.STILL, Activity.LYING]
+    stated.append(wearer.output())
+    assert stated == [Activity.CRAWLING, Activity.STILL, Activity.LYING]
 
 
 def test_a_foot_that_rests_for_a_second_has_stopped(wearer: Wearer) -> None:
     wearer.strides(5, 1.3)
     wearer.rests(0.8)
-    assert wearer.said() is Activity.WALKING
+    assert wearer.output() is Activity.WALKING
     assert wearer.cadence_hz() > 0.0
     wearer.rests(0.8)
-    assert wearer.said() is Activity.STILL
+    assert wearer.output() is Activity.STILL
     assert wearer.cadence_hz() == 0.0
 
 
 def test_who_stirs_for_a_second_walks_before_the_first_stride_is_known(wearer: Wearer) -> None:
     wearer.stirs(0.8)
-    assert wearer.said() is Activity.STILL
+    assert wearer.output() is Activity.STILL
     wearer.stirs(0.8)
-    assert wearer.said() is Activity.WALKING
+    assert wearer.output() is Activity.WALKING
     wearer.rests(1.1)
-    assert wearer.said() is Activity.STILL
+    assert wearer.output() is Activity.STILL
 
 
-def test_who_is_heard_in_mid_walk_walks_and_before_that_nobody_knows() -> None:
+def test_who_is_received_in_mid_walk_walks_and_before_that_nobody_knows() -> None:
     wearer = Wearer(stands_s=0.0)
-    assert wearer.said() is Activity.UNKNOWN
+    assert wearer.output() is Activity.UNKNOWN
     wearer.stirs(1.6)
-    assert wearer.said() is Activity.WALKING
+    assert wearer.output() is Activity.WALKING
 
 
 def test_two_seconds_without_samples_and_nobody_knows(wearer: Wearer) -> None:
     """Of the last half second nothing is known before it is over."""
     wearer.now_s += 1.4
-    assert wearer.said() is Activity.STILL
+    assert wearer.output() is Activity.STILL
     wearer.now_s += 0.2
-    assert wearer.said() is Activity.UNKNOWN
+    assert wearer.output() is Activity.UNKNOWN
 
 
 def test_the_cadence_is_that_of_the_last_four_seconds(wearer: Wearer) -> None:
@@ -294,10 +294,10 @@ def test_the_cadence_is_that_of_the_last_four_seconds(wearer: Wearer) -> None:
 def test_a_blow_after_a_drop_is_one_fall_however_the_foot_comes_to_lie(wearer: Wearer) -> None:
     wearer.falls_down()
     wearer.stirs(0.5, 70.0, 3.0)
-    assert wearer.said() is Activity.FALLING
+    assert wearer.output() is Activity.FALLING
     wearer.rests(20.0, 90.0)
     assert wearer.falls == 1
-    assert wearer.said() is Activity.LYING
+    assert wearer.output() is Activity.LYING
 
 
 def test_who_gets_up_and_falls_again_has_fallen_twice(wearer: Wearer) -> None:
@@ -322,27 +322,27 @@ def test_who_stands_for_long_or_lies_down_has_not_fallen(wearer: Wearer) -> None
     wearer.rests(30.0)
     wearer.stirs(2.0, 70.0, 1.0)
     wearer.rests(30.0, 90.0)
-    assert wearer.said() is Activity.LYING
+    assert wearer.output() is Activity.LYING
     assert wearer.falls == 0
 
 
 def test_who_has_collapsed_is_falling_until_it_is_lying(wearer: Wearer) -> None:
     wearer.stirs(1.0, 85.0, 3.0)
-    said = []
+    stated = []
     for _ in range(3):
         wearer.rests(0.8, 90.0)
-        said.append(wearer.said())
-    assert said == [Activity.STILL, Activity.FALLING, Activity.LYING]
+        stated.append(wearer.output())
+    assert stated == [Activity.STILL, Activity.FALLING, Activity.LYING]
 
 
 def test_who_jumps_from_the_engine_walks_on_and_stands_has_not_fallen(wearer: Wearer) -> None:
     wearer.falls_down()
-    said = [wearer.said()]
+    stated = [wearer.output()]
     wearer.strides(3, 1.3)
-    said.append(wearer.said())
+    stated.append(wearer.output())
     wearer.rests(4.0)
-    said.append(wearer.said())
-    assert said == [Activity.FALLING, Activity.WALKING, Activity.STILL]
+    stated.append(wearer.output())
+    assert stated == [Activity.FALLING, Activity.WALKING, Activity.STILL]
     assert wearer.falls == 0
 
 
@@ -372,29 +372,29 @@ def test_a_stride_in_which_nothing_moved_is_none(wearer: Wearer) -> None:
     wearer.strides(2, 1.3)
     for _ in range(3):
         wearer.rests(2.5)
-        wearer.is_said_to_step(ago_s=1.5)
+        wearer.is_stated_to_step(ago_s=1.5)
     assert wearer.monitor.steps == 4
     wearer.stirs(2.5)
-    wearer.is_said_to_step(ago_s=1.5)
+    wearer.is_stated_to_step(ago_s=1.5)
     assert wearer.monitor.steps == 6
 
 
-def test_a_stride_that_is_told_before_any_motion_could_be_seen_is_one() -> None:
+def test_a_stride_that_is_reported_before_any_motion_could_be_seen_is_one() -> None:
     wearer = Wearer(stands_s=0.0)
-    wearer.is_said_to_step(ago_s=1.0)
+    wearer.is_stated_to_step(ago_s=1.0)
     assert wearer.monitor.steps == 2
 
 
 def test_who_has_stood_since_the_start_has_made_no_stride() -> None:
     wearer = Wearer(stands_s=4.0)
-    wearer.is_said_to_step(ago_s=2.0)
+    wearer.is_stated_to_step(ago_s=2.0)
     assert wearer.monitor.steps == 0
 
 
-def test_who_kneels_for_a_while_and_then_crawls_is_told_to_crawl(wearer: Wearer) -> None:
+def test_who_kneels_for_a_while_and_then_crawls_is_ordered_to_crawl(wearer: Wearer) -> None:
     wearer.stirs(1.0, TIPPED_DEG)
     wearer.rests(3.0, TIPPED_DEG)
-    said = [wearer.said()]
+    stated = [wearer.output()]
     wearer.strides(4, 0.4, angle_deg=TIPPED_DEG)
-    said.append(wearer.said())
-    assert said == [Activity.LYING, Activity.CRAWLING]
+    stated.append(wearer.output())
+    assert stated == [Activity.LYING, Activity.CRAWLING]

@@ -116,7 +116,7 @@ def test_who_collapses_in_mid_walk_was_upright_at_the_last_step(foot: Foot) -> N
     assert foot.posture.collapsed
 
 
-def test_what_was_not_heard_of_the_rest_undoes_no_collapse(foot: Foot) -> None:
+def test_what_was_not_received_of_the_rest_undoes_no_collapse(foot: Foot) -> None:
     """A blow may cost some seconds of samples."""
     foot.held(70.0, 1.0, 3.0)
     foot.held(90.0, 0.5)
@@ -143,7 +143,7 @@ def test_a_clock_that_was_set_back_hides_no_collapse(by_step: bool) -> None:
     assert foot.posture.collapsed
 
 
-def test_a_step_that_is_told_late_takes_nothing_from_what_is_known(foot: Foot) -> None:
+def test_a_step_that_is_reported_late_takes_nothing_from_what_is_known(foot: Foot) -> None:
     """Of rows that the tracker held back for a second."""
     late = Stride(foot.now_ns, 1.0, 1.3, 0.0, up(10.0))
     foot.held(0.0, 1.0)
@@ -179,15 +179,15 @@ def test_a_unit_that_was_never_seen_standing_says_nothing() -> None:
 
 
 def test_one_tipped_step_is_a_stumble_and_two_alike_are_crawling(foot: Foot) -> None:
-    said = [(foot.posture.tipped_step, foot.posture.crawling)]
+    reported = [(foot.posture.tipped_step, foot.posture.crawling)]
     for angle_deg in (KNEELING_DEG, KNEELING_DEG, -KNEELING_DEG, -KNEELING_DEG, 10.0):
         foot.steps(angle_deg)
-        said.append((foot.posture.tipped_step, foot.posture.crawling))
+        reported.append((foot.posture.tipped_step, foot.posture.crawling))
     crawling = [(True, False), (True, True)]
-    assert said == [(False, False), *crawling, *crawling, (False, False)]
+    assert reported == [(False, False), *crawling, *crawling, (False, False)]
 
 
-def test_two_tipped_steps_fifty_degrees_apart_are_of_somebody_who_lies_down(foot: Foot) -> None:
+def test_two_tipped_steps_fifty_degrees_apart_are_of_person_who_lies_down(foot: Foot) -> None:
     foot.steps(50.0)
     foot.steps(100.0)
     assert not foot.posture.crawling
@@ -258,11 +258,11 @@ def test_who_crawls_on_after_a_long_rest_does_not_lie(
 
 def test_steps_that_get_nowhere_neither_make_a_crawl_nor_end_one(foot: Foot) -> None:
     """Who has gone down may stir, and a tracker may say that a foot did."""
-    said = []
+    reported = []
     for length_m in (0.05, 0.05, 0.4, 0.05, 0.4, 0.05):
         foot.steps(KNEELING_DEG, length_m)
-        said.append((foot.posture.tipped_step, foot.posture.crawling))
-    assert said == [(True, False)] * 4 + [(True, True)] * 2
+        reported.append((foot.posture.tipped_step, foot.posture.crawling))
+    assert reported == [(True, False)] * 4 + [(True, True)] * 2
 
 
 def test_who_goes_down_suddenly_and_stirs_there_has_collapsed(foot: Foot) -> None:
@@ -329,7 +329,7 @@ def test_who_walks_before_ever_resting_is_known_by_the_strides() -> None:
     assert foot.posture.lying
 
 
-def test_however_long_somebody_crawls_it_does_not_become_standing(foot: Foot) -> None:
+def test_however_long_person_crawls_it_does_not_become_standing(foot: Foot) -> None:
     for _ in range(50):
         foot.steps(KNEELING_DEG)
     assert foot.posture.crawling

@@ -63,7 +63,7 @@ def test_a_door_that_slams_is_worth_nothing() -> None:
     assert climbed_m(air, 2.0, 5.25) == pytest.approx(0.0, abs=0.01)
 
 
-def test_without_readings_around_a_time_nothing_is_said_of_it() -> None:
+def test_without_readings_around_a_time_nothing_is_stated_of_it() -> None:
     air = PressureHeight()
     assert climbed_m(air, 0.0, 0.0) is None
     air.push(samples(4.0, level))

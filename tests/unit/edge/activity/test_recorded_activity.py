@@ -57,7 +57,7 @@ def test_each_axis_alone_tells_motion_from_noise(column, times):
 
 
 @pytest.mark.parametrize("axis", range(3))
-def test_the_quickest_instant_of_half_a_second_is_told_about_any_axis(axis):
+def test_the_quickest_instant_of_half_a_second_is_reported_about_any_axis(axis):
     imu = samples(0.6)
     imu.gyro_radps[20, axis] = -3.0
     (window,) = BodyMotion().push(imu)
@@ -120,11 +120,11 @@ def test_a_fall_is_a_drop_a_blow_and_nobody_who_walks_on(
         samples(weightless_s, 2.0, (0.0, 0.0, 0.5)),
         samples(0.05, 2.0 + weightless_s, (0.0, 0.0, 60.0)),
     )
-    told = sum(monitor.push(piece, empty_rows()) for piece in pieces)
+    reported = sum(monitor.push(piece, empty_rows()) for piece in pieces)
     end_s = 2.05 + weightless_s
     assert (monitor.activity(0) is Activity.FALLING) == (weightless_s > 0.25)
-    told += monitor.push(samples(12.0, end_s, after_force, after_shake), empty_rows())
-    assert told == falls
+    reported += monitor.push(samples(12.0, end_s, after_force, after_shake), empty_rows())
+    assert reported == falls
     assert monitor.activity(0) is not Activity.FALLING
 
 
@@ -137,7 +137,7 @@ def test_a_fall_is_a_drop_a_blow_and_nobody_who_walks_on(
         (0.0, 3.0, 0),  # stands, jumps down, and walks on
     ],
 )
-def test_a_fall_is_told_at_any_instant_and_however_samples_come(
+def test_a_fall_is_reported_at_any_instant_and_however_samples_come(
     batch_rows, before_shake, after_shake, falls
 ):
     for after_rows in range(0, 50, 3):
@@ -205,7 +205,7 @@ def test_who_stirs_for_a_moment_after_a_hole_does_not_walk():
     assert pushed(monitor, *pieces) is Activity.STILL
 
 
-def test_a_collapse_is_told_though_samples_were_lost_behind_it():
+def test_a_collapse_is_reported_though_samples_were_lost_behind_it():
     monitor = ActivityMonitor()
     going_down = replace(samples(1.0, 3.0, (9.0, 0.0, 4.0), shake=1.0))
     going_down.gyro_radps[:, 1] += 3.0
@@ -248,10 +248,10 @@ def during(simulation, kind: Activity, after_s: float = 2.5) -> Counter[Activity
         return kind if done is kind and same else None
 
     score_activity(simulation.batches(), simulation.description, label, 600.0, score)
-    said = Counter[Activity]()
+    stated = Counter[Activity]()
     for (_, answer), count in score.every.counts.items():
-        said[answer] += count
-    return said
+        stated[answer] += count
+    return stated
 
 
 @pytest.mark.slow
@@ -267,8 +267,8 @@ def during(simulation, kind: Activity, after_s: float = 2.5) -> Counter[Activity
     ],
 )
 def test_a_simulated_wearer_is_seen_at_what_he_does(scenario, kind, share):
-    said = during(open_simulation(scenario), kind)
-    assert said[kind] > share * said.total() > 0
+    stated = during(open_simulation(scenario), kind)
+    assert stated[kind] > share * stated.total() > 0
 
 
 @pytest.mark.slow
@@ -327,7 +327,7 @@ def climbing(rise_m: float, n: int = 12):
 
 
 @pytest.mark.parametrize(
-    ("rise_m", "pa_per_s", "told"),
+    ("rise_m", "pa_per_s", "reported"),
     [
         (0.34, None, Activity.STAIRS_UP),
         (0.34, -4.0, Activity.STAIRS_UP),
@@ -337,14 +337,14 @@ def climbing(rise_m: float, n: int = 12):
         (-0.34, 0.0, Activity.WALKING),
     ],
 )
-def test_the_barometer_has_a_say_on_stairs(rise_m, pa_per_s, told):
+def test_the_barometer_has_a_say_on_stairs(rise_m, pa_per_s, reported):
     monitor = ActivityMonitor()
     imu = samples(12.5, shake=1.0)
     if pa_per_s is not None:
         imu = replace(imu, pressure_pa=101_000.0 + pa_per_s * imu.t_ns / NS_PER_S)
     monitor.push(imu, empty_rows())
     monitor.push(imu.part(slice(0, 0)), climbing(rise_m))
-    assert monitor.activity(int(imu.t_ns[-1])) is told
+    assert monitor.activity(int(imu.t_ns[-1])) is reported
 
 
 def as_it_is(imu: ImuBatch) -> ImuBatch:

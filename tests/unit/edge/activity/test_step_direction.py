@@ -40,21 +40,21 @@ def ways(*legs: Leg, seed: int = 1) -> Counter[Mobility]:
 
 def most(found: Counter[Mobility]) -> Mobility:
     """Of those that say which way."""
-    told = {way: n for way, n in found.items() if way not in (Mobility.STILL, Mobility.MOVING)}
-    return max(told, key=told.__getitem__)
+    reported = {way: n for way, n in found.items() if way not in (Mobility.STILL, Mobility.MOVING)}
+    return max(reported, key=reported.__getitem__)
 
 
-def test_steps_backward_are_told_from_steps_forward() -> None:
+def test_steps_backward_are_distinguished_from_steps_forward() -> None:
     assert most(ways(Walk(((0.0, 25.0),), pace="backwards"), Stand(2.0))) is Mobility.BACKWARD
     assert most(ways(Walk(((0.0, 25.0),)), Stand(2.0))) is Mobility.FORWARD
 
 
-def test_side_steps_are_told() -> None:
+def test_side_steps_are_reported() -> None:
     found = ways(Walk(((0.0, 25.0),), pace="sideways"), Stand(2.0))
     assert most(found) in SIDES
 
 
-def test_a_turn_on_the_spot_is_told() -> None:
+def test_a_turn_on_the_spot_is_reported() -> None:
     found = ways(Turn(270.0), Stand(3.0), Turn(90.0), Stand(3.0))
     assert most(found) is Mobility.TURNING
 
@@ -85,7 +85,7 @@ def test_a_step_is_seen_against_the_long_strides_of_before(
     assert direction.mobility(9 * NS_PER_S) is None
 
 
-def test_before_anybody_has_gone_forward_the_way_is_not_known() -> None:
+def test_before_anyone_has_gone_forward_the_way_is_not_known() -> None:
     direction = StepDirection()
     direction.push(stride(1, (1.0, 0.0), 0.6))
     assert direction.mobility(NS_PER_S) is Mobility.MOVING

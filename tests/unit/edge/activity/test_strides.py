@@ -16,17 +16,17 @@ from shared.clock import NS_PER_S
 Row = tuple[float, float, float, float, bool]  # time, north, east, down, standing
 
 
-def rows(told: list[Row]) -> TrackBatch:
+def rows(reported: list[Row]) -> TrackBatch:
     t_s, north_m, east_m, down_m, standing = (
-        np.array(column) for column in zip(*told, strict=True)
+        np.array(column) for column in zip(*reported, strict=True)
     )
     return replace(
         empty_rows(),
         t_ns=np.rint(t_s * NS_PER_S).astype(np.int64),
         position_n_m=np.column_stack((north_m, east_m, down_m)),
-        quaternion_nb=np.tile([1.0, 0.0, 0.0, 0.0], (len(told), 1)),
+        quaternion_nb=np.tile([1.0, 0.0, 0.0, 0.0], (len(reported), 1)),
         stationary=standing.astype(bool),
-        steps=np.zeros(len(told), np.int64),
+        steps=np.zeros(len(reported), np.int64),
     )
 
 
@@ -44,14 +44,14 @@ def part(track: TrackBatch, first: int, stop: int) -> TrackBatch:
 
 def walk(strides: int = 5, swing_s: float = 0.6, stance_s: float = 0.4) -> TrackBatch:
     """Each stride 0.9 m north and 1.2 m east, and 0.2 m down; fifty rows a second."""
-    told: list[Row] = []
+    reported: list[Row] = []
     period_s = swing_s + stance_s
     for k in range(round(50 * strides * period_s) + 1):
         t_s = k / 50.0
         done, into_s = divmod(t_s + 1e-9, period_s)
         share = done + max(0.0, into_s - stance_s) / swing_s
-        told.append((t_s, 0.9 * share, 1.2 * share, 0.2 * share, into_s < stance_s))
-    return rows(told)
+        reported.append((t_s, 0.9 * share, 1.2 * share, 0.2 * share, into_s < stance_s))
+    return rows(reported)
 
 
 def figures(strides: list[Stride]) -> list[tuple[int, float, float, float]]:
@@ -213,8 +213,8 @@ def attitude(roll_rad: float, pitch_rad: float, heading_rad: float) -> np.ndarra
 def test_up_is_where_the_foot_has_it_whatever_way_it_points(
     roll_rad: float, pitch_rad: float, up_b: tuple[float, float, float], heading_rad: float
 ) -> None:
-    said = up_in_body(attitude(roll_rad, pitch_rad, heading_rad))
-    assert said == pytest.approx(up_b, abs=1e-12)
+    stated = up_in_body(attitude(roll_rad, pitch_rad, heading_rad))
+    assert stated == pytest.approx(up_b, abs=1e-12)
 
 
 def test_a_stride_says_how_the_foot_was_held_as_it_came_down() -> None:

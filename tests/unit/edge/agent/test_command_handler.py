@@ -94,7 +94,7 @@ def test_the_wearer_acknowledges_what_asks_for_it_and_once(command_handler, kind
     assert not command_handler.acknowledge()
 
 
-def test_a_repeat_after_the_acknowledgement_is_told_of_it(command_handler):
+def test_a_repeat_after_the_acknowledgement_is_reported_of_it(command_handler):
     asked = command(CommandKind.PAR_REQUEST)
     command_handler.take(asked)
     (acknowledged,) = command_handler.acknowledge()

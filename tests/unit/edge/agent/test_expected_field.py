@@ -74,7 +74,7 @@ def test_a_useless_fix_says_nothing(useless: GpsSample):
     assert ExpectedField(None).take(samples(0.0, (useless,)), utc_ns_of) is None
 
 
-def test_without_settings_and_fixes_nothing_is_said():
+def test_without_settings_and_fixes_nothing_is_stated():
     assert ExpectedField(None).take(samples(), utc_ns_of) is None
 
 
@@ -93,15 +93,15 @@ def test_a_replay_seconds_later_finds_the_very_same():
 
 
 def test_the_pipeline_tells_the_tracker_before_it_gives_it_the_samples():
-    told: list[str] = []
+    reported: list[str] = []
 
     class Listening(NoTracker):
         def push(self, batch: ImuBatch):
-            told.append("samples")
+            reported.append("samples")
             return super().push(batch)
 
         def set_earth_field(self, field: EarthField, t_ns: int) -> None:
-            told.append(f"{degrees(field.declination_rad):.0f} from {t_ns / NS_PER_S}")
+            reported.append(f"{degrees(field.declination_rad):.0f} from {t_ns / NS_PER_S}")
 
     identity = UnitIdentity(
         "1", "test", "t", (FittedSensor(SensorDescription("s", 100.0)),), place=REYKJAVIK
@@ -110,7 +110,7 @@ def test_the_pipeline_tells_the_tracker_before_it_gives_it_the_samples():
     pipeline = TrackerPipeline(identity, OneSensorTracker(Listening()), stamper, 5.0)
     pipeline.step(samples(3.0))
     pipeline.step(samples(3.1, (fix(SYDNEY, 3.15),)))
-    assert told == ["-11 from 3.0", "samples", "13 from 3.15", "samples"]
+    assert reported == ["-11 from 3.0", "samples", "13 from 3.15", "samples"]
 
 
 def settings(folder: Path, place: str) -> EdgeConfig:

@@ -96,7 +96,7 @@ def test_an_outage_cuts_the_link_and_its_end_restores_it(station):
     link.close()
 
 
-def test_a_bus_that_cannot_be_opened_is_told_once_and_tried_again(station, caplog, monkeypatch):
+def test_a_bus_that_cannot_be_opened_is_reported_once_and_tried_again(station, caplog, monkeypatch):
     monkeypatch.setattr("edge.agent.link._RETRY_S", 0.01)
     tries: list[int] = []
 
@@ -116,7 +116,7 @@ def test_a_bus_that_cannot_be_opened_is_told_once_and_tried_again(station, caplo
     ]
 
 
-def test_why_a_bus_cannot_be_opened_is_told_once(caplog, monkeypatch):
+def test_why_a_bus_cannot_be_opened_is_reported_once(caplog, monkeypatch):
     """A unit of two stations opens none before one of them is there."""
     monkeypatch.setattr("edge.agent.link._RETRY_S", 0.01)
     tries: list[int] = []
@@ -134,7 +134,7 @@ def test_why_a_bus_cannot_be_opened_is_told_once(caplog, monkeypatch):
     assert caplog.text.count("no link") == 1
 
 
-def test_no_link_is_told_once_and_its_coming_too(station, caplog, monkeypatch):
+def test_no_link_is_reported_once_and_its_coming_too(station, caplog, monkeypatch):
     monkeypatch.setattr("edge.agent.link._CHECK_S", 0.01)
     bus = station.router.attach_unit()
     bus.link_down()
@@ -298,8 +298,8 @@ def test_an_agent_that_cannot_be_made_leaves_nothing_running(station, tmp_path, 
     data.close()
 
 
-@pytest.mark.parametrize(("fails", "said"), [(True, FAILED), (False, "the source ended")])
-def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fails, said):
+@pytest.mark.parametrize(("fails", "reported"), [(True, FAILED), (False, "the source ended")])
+def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fails, reported):
     """What it must not forget is known again when it is started again."""
 
     class Broken(TabletopSource):
@@ -314,7 +314,7 @@ def test_an_agent_whose_source_fails_has_not_been_stopped(station, tmp_path, fai
     agent = compose_agent(config, "u1", data, Broken("1"), other_end, speed=1.0)
     with pytest.raises(RecordingError) if fails else nullcontext():
         agent.run(threading.Event(), for_s=60.0)
-    assert how_it_stopped(data) == said
+    assert how_it_stopped(data) == reported
     data.close()
 
 

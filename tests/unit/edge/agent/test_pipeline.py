@@ -116,14 +116,14 @@ def test_walking_shows_steps_and_cadence():
     assert status.cadence_hz == pytest.approx(2.0)
 
 
-def test_a_sensor_that_delivers_nothing_usable_is_a_fault_told_once():
+def test_a_sensor_that_delivers_nothing_usable_is_a_fault_reported_once():
     imu = walk(400)
     spoiled = replace(imu, accel_mps2=np.full((400, 3), np.nan))
     events = of(steps(pipeline(), spoiled, [5] * 79), UnitEvent)
     assert [event.kind for event in events] == [EventKind.SENSOR_FAULT]
 
 
-def test_a_gap_and_a_clock_that_goes_back_are_told():
+def test_a_gap_and_a_clock_that_goes_back_are_reported():
     pipe = pipeline()
     steps(pipe, walk(100), [])
     (gap,) = of(steps(pipe, walk(100, 5.0), []), UnitEvent)
@@ -152,12 +152,12 @@ def test_a_trunk_that_lies_down_is_in_the_status_with_its_confidence():
         5.0,
         worn_on="waist",
     )
-    said = [
+    reported = [
         message
         for first in range(0, len(chest), 10)
         for message in pipe.step(SensorBatch(chest.part(slice(first, first + 10))))
     ]
-    statuses = of(said, Status)
+    statuses = of(reported, Status)
     assert statuses[0].posture is BodyPosture.UNKNOWN
     assert statuses[14].posture is BodyPosture.UPRIGHT
     assert statuses[14].mobility is Mobility.FORWARD

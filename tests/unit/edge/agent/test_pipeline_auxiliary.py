@@ -80,7 +80,7 @@ def test_mayday_latches_until_the_wearer_takes_it_back():
 
 
 @pytest.mark.parametrize(("again_s", "says"), [(0.5, 0), (2.9, 0), (3.1, 1), (600.0, 1), (-5.0, 1)])
-def test_a_mayday_that_is_pressed_again_is_said_again(again_s: float, says: int):
+def test_a_mayday_that_is_pressed_again_is_stated_again(again_s: float, says: int):
     """The first one has been resolved, and now its wearer is in need again."""
     pipe = pipeline()
     pipe.take_presses((ButtonPress(10 * NS_PER_S, "mayday"),))
@@ -89,7 +89,7 @@ def test_a_mayday_that_is_pressed_again_is_said_again(again_s: float, says: int)
     assert [event.kind for event in events] == [EventKind.MAYDAY] * says
 
 
-def test_a_mayday_that_was_taken_back_is_said_anew_at_once():
+def test_a_mayday_that_was_taken_back_is_stated_anew_at_once():
     pipe = pipeline()
     kinds = [
         event.kind
@@ -111,18 +111,18 @@ def test_of_things_that_are_seen_once_and_never_again_no_more_than_a_thousand_ar
     assert len(pipe._sighted_ns) <= 3
 
 
-def test_what_is_near_is_told_though_the_clock_went_back():
+def test_what_is_near_is_reported_though_the_clock_went_back():
     pipe = pipeline()
     for t_s in (7200, 3600, 3601):
         near = SightingSample(t_s * NS_PER_S, "beacon", "door-3", 2.5, math.nan)
         assert len(of(pipe.step(others_only(near)), Sighting)) == 1
 
 
-def test_what_is_near_is_told_once_a_second_and_nothing_costs_no_number():
+def test_what_is_near_is_reported_once_a_second_and_nothing_costs_no_number():
     pipe = pipeline()
     hour_ns = 3600 * NS_PER_S
     near = SightingSample(hour_ns, "beacon", "door-3", 2.5, math.nan)
-    said = [
+    reported = [
         message
         for sample in (
             near,
@@ -135,10 +135,10 @@ def test_what_is_near_is_told_once_a_second_and_nothing_costs_no_number():
         )
         for message in pipe.step(others_only(sample))
     ]
-    seen = of(said, Sighting)
+    seen = of(reported, Sighting)
     assert [one.seen_id for one in seen] == ["door-3", "door-3", "door-4", "FF-02"]
     assert (seen[0].kind, seen[0].range_m, seen[0].range_std_m) == (SightingKind.BEACON, 2.5, None)
-    seqs = [message.header.seq for message in said]
+    seqs = [message.header.seq for message in reported]
     assert seqs == list(range(seqs[0], seqs[0] + len(seqs)))
 
 
@@ -182,7 +182,7 @@ def test_without_a_calibration_the_description_names_none():
     assert (description.calibration, description.calibrated_s) == ("", None)
 
 
-def test_magnetic_north_is_said_where_the_tracker_knows_it():
+def test_magnetic_north_is_stated_where_the_tracker_knows_it():
     def norths(std_rad: float):
         messages = steps(pipeline(StraightAhead(north_std_rad=std_rad)), walk(100), [100])
         return {position.magnetic_north for position in of(messages, Position)}

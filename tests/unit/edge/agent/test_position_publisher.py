@@ -58,16 +58,16 @@ def standing(n: int = 40) -> Floats:
 def test_the_heading_is_that_of_travel_clockwise_from_north(heading_deg: int) -> None:
     angle_rad = math.radians(heading_deg)
     way = line((5.0 * math.cos(angle_rad), 5.0 * math.sin(angle_rad), 0.0))
-    said = stream().push(rows(way), LIVE)[-1].heading_rad
-    assert 0.0 <= said < math.tau
-    assert math.remainder(said - angle_rad, math.tau) == pytest.approx(0.0, abs=1e-9)
+    stated = stream().push(rows(way), LIVE)[-1].heading_rad
+    assert 0.0 <= stated < math.tau
+    assert math.remainder(stated - angle_rad, math.tau) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_who_shifts_about_keeps_the_heading_of_the_last_half_metre() -> None:
     out = stream(rate_hz=RATE_HZ)
     way = np.array([[0.0, 0, 0], [0, 0.55, 0], [0.45, 0.55, 0], [0.3, 0.5, 0], [-0.2, 0.6, 0]])
-    said = [position.heading_rad for position in out.push(rows(way), LIVE)]
-    assert said == [0.0, *[pytest.approx(math.pi / 2)] * 4]
+    stated = [position.heading_rad for position in out.push(rows(way), LIVE)]
+    assert stated == [0.0, *[pytest.approx(math.pi / 2)] * 4]
     (turned,) = out.push(rows(np.array([[0.0, 1.3, 0.0]]), from_s=1.0), LIVE)
     assert turned.heading_rad == pytest.approx(math.pi / 2)
     (turned,) = out.push(rows(np.array([[-0.6, 1.3, 0.0]]), from_s=2.0), LIVE)
@@ -85,14 +85,14 @@ def test_storeys_are_counted_up_and_down_and_a_landing_counts_once() -> None:
     assert counted == [0, 0, 1, 1, 1, 0, 0, -1, -2]
 
 
-def test_what_lasts_for_a_moment_between_two_positions_is_told_once_with_the_next() -> None:
+def test_what_lasts_for_a_moment_between_two_positions_is_reported_once_with_the_next() -> None:
     out = stream()
     track = rows(standing(42))
     track.quality[3:5] = (Quality.LOST, Quality.DEGRADED)
     track.reasons[3:5] = (Reason.SAMPLE_GAP, Reason.NO_STANCE)
-    said = [(one.quality, one.reasons) for one in out.push(track, LIVE)]
+    stated = [(one.quality, one.reasons) for one in out.push(track, LIVE)]
     bad = (Quality.LOST, Reason.SAMPLE_GAP | Reason.NO_STANCE)
-    assert said == [(Quality.GOOD, Reason.NONE), bad, *[(Quality.GOOD, Reason.NONE)] * 3]
+    assert stated == [(Quality.GOOD, Reason.NONE), bad, *[(Quality.GOOD, Reason.NONE)] * 3]
 
 
 @pytest.mark.parametrize("at_once", [1, 3, 10, 100])
@@ -101,16 +101,16 @@ def test_doubts_are_the_same_however_rows_are_batched(at_once: int) -> None:
     whole.quality[[3, 25]] = Quality.DEGRADED
     whole.reasons[[3, 25]] = (Reason.SAMPLE_GAP, Reason.NO_STANCE)
     out = stream()
-    said: list[Position] = []
+    stated: list[Position] = []
     for first in range(0, 42, at_once):
         part = {
             name: getattr(whole, name)[first : first + at_once]
             for name in TrackBatch.__dataclass_fields__
         }
-        said += out.push(replace(whole, **part), LIVE)
+        stated += out.push(replace(whole, **part), LIVE)
     good, degraded = Quality.GOOD, Quality.DEGRADED
-    assert [one.quality for one in said] == [good, degraded, good, degraded, good]
-    assert [one.reasons for one in said] == [
+    assert [one.quality for one in stated] == [good, degraded, good, degraded, good]
+    assert [one.reasons for one in stated] == [
         Reason.NONE,
         Reason.SAMPLE_GAP,
         Reason.NONE,
@@ -177,14 +177,14 @@ def test_no_rows_are_no_positions_and_the_path_goes_on() -> None:
     assert (first.north_m, later.north_m) == (1.0, 2.0)
 
 
-@pytest.mark.parametrize(("std_rad", "is_told"), [(0.79, True), (0.81, False), (np.nan, False)])
+@pytest.mark.parametrize(("std_rad", "is_reported"), [(0.79, True), (0.81, False), (np.nan, False)])
 def test_magnetic_north_is_spoken_of_where_it_tells_something(
-    std_rad: float, is_told: bool
+    std_rad: float, is_reported: bool
 ) -> None:
     track = rows(standing(1))
     track.magnetic_north_rad[0], track.magnetic_north_std_rad[0] = 0.4, std_rad
     (position,) = stream().push(track, LIVE)
-    assert (position.magnetic_north is not None) is is_told
+    assert (position.magnetic_north is not None) is is_reported
     if position.magnetic_north is not None:
         assert position.magnetic_north.heading_rad == 0.4
 
@@ -200,8 +200,8 @@ def test_the_pressure_is_that_of_the_row_and_not_of_what_came_since() -> None:
     out = stream(rate_hz=RATE_HZ)
     out.take_pressure(air(0.0, [1000.0, 1001.0, np.nan, 1003.0]))
     out.take_pressure(air(0.2, []))
-    said = out.push(rows(standing(4)), LIVE)
-    assert [one.pressure_pa for one in said] == [1000.0, 1001.0, 1001.0, 1003.0]
+    stated = out.push(rows(standing(4)), LIVE)
+    assert [one.pressure_pa for one in stated] == [1000.0, 1001.0, 1001.0, 1003.0]
 
 
 def test_pressures_are_kept_for_as_long_as_rows_may_be_held_back() -> None:

@@ -64,12 +64,12 @@ def boot(path: Path, *kinds: EventKind) -> bool:
         ((STARTED, MAYDAY, STOPPED), False),
     ],
 )
-def test_what_the_last_boot_said_last_counts(tmp_path, messages, latched):
+def test_what_the_last_boot_stated_last_counts(tmp_path, messages, latched):
     assert not boot(tmp_path, *messages)
     assert boot(tmp_path, STARTED) is latched
 
 
-def test_a_unit_that_failed_and_said_so_has_not_been_stopped(tmp_path):
+def test_a_unit_that_failed_and_stated_so_has_not_been_stopped(tmp_path):
     """Its service starts it again within a second, and its wearer still waits for help."""
     journal = Journal(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**8)
     stamper = Stamper("u1", journal.boot_id, ManualClock())
@@ -110,7 +110,7 @@ def test_damage_inside_the_journal_keeps_no_unit_from_starting(tmp_path, at_last
     journal.close()
 
 
-def test_a_mayday_from_before_is_said_again_first_thing():
+def test_a_mayday_from_before_is_stated_again_first_thing():
     sensor = SensorDescription("s", 100.0)
     pipeline = TrackerPipeline(
         UnitIdentity("", "", "eskf", (FittedSensor(sensor),)),
@@ -239,7 +239,7 @@ def test_the_newest_answers_are_remembered_across_boots(tmp_path):
     second.journal.close()
 
 
-def said_by_many_boots(path: Path, starts: int, after_s: float) -> ManualClock:
+def stated_by_many_boots(path: Path, starts: int, after_s: float) -> ManualClock:
     """A program that fails within a second and is started again, as it says in its journal."""
     Journal(path / "journal.sqlite", BOOTS.__next__, 0, 10**9).close()
     clock = ManualClock()
@@ -263,7 +263,7 @@ def said_by_many_boots(path: Path, starts: int, after_s: float) -> ManualClock:
 def test_thousands_of_starts_are_not_looked_at_one_by_one(tmp_path, monkeypatch):
     """Whoever wears the unit waits for it meanwhile."""
     RateBoot(tmp_path, 0.0, 2.0)
-    clock = said_by_many_boots(tmp_path, 3000, after_s=0.0)
+    clock = stated_by_many_boots(tmp_path, 3000, after_s=0.0)
     journal = Journal(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**9)
     opened, bounds_read, decoded = [0], [0], [0]
     for module, name, counted in (
@@ -292,7 +292,7 @@ def counting(function: Callable[..., object], counted: list[int]) -> Callable[..
 
 def test_a_rate_from_before_thousands_of_starts_still_holds(tmp_path):
     RateBoot(tmp_path, 30.0, 2.0)
-    clock = said_by_many_boots(tmp_path, 300, after_s=1000.0)
+    clock = stated_by_many_boots(tmp_path, 300, after_s=1000.0)
     journal = Journal(tmp_path / "journal.sqlite", BOOTS.__next__, 0, 10**9)
     assert position_rate_before(journal, clock.monotonic_ns()) == 2.0
     journal.close()

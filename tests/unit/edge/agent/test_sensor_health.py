@@ -23,7 +23,7 @@ def samples(seconds: float, *, spoilt: str = "", from_s: float = 0.0) -> ImuBatc
     return ImuBatch(t_ns, rows[:, :3], rows[:, 3:])
 
 
-def told(health: SensorHealth, imu: ImuBatch, at_once: int = 7) -> list[str]:
+def reported(health: SensorHealth, imu: ImuBatch, at_once: int = 7) -> list[str]:
     parts = [imu.part(slice(row, row + at_once)) for row in range(0, len(imu), at_once)]
     return [fault for part in parts for fault in health.push(part)]
 
@@ -31,22 +31,22 @@ def told(health: SensorHealth, imu: ImuBatch, at_once: int = 7) -> list[str]:
 @pytest.mark.parametrize(
     ("spoilt", "word", "lasts_s"), [("stuck", "repeated", 1.02), ("unusable", "no usable", 1.01)]
 )
-def test_what_lasts_for_a_second_is_told_once_and_again_when_it_comes_again(
+def test_what_lasts_for_a_second_is_reported_once_and_again_when_it_comes_again(
     spoilt: str, word: str, lasts_s: float
 ) -> None:
     health = SensorHealth()
-    assert told(health, samples(2.0)) == []
-    assert told(health, samples(lasts_s - 0.01, spoilt=spoilt, from_s=2.0)) == []
-    assert told(health, samples(1.0, from_s=3.5)) == []
-    (fault,) = told(health, samples(5.0, spoilt=spoilt, from_s=4.5))
+    assert reported(health, samples(2.0)) == []
+    assert reported(health, samples(lasts_s - 0.01, spoilt=spoilt, from_s=2.0)) == []
+    assert reported(health, samples(1.0, from_s=3.5)) == []
+    (fault,) = reported(health, samples(5.0, spoilt=spoilt, from_s=4.5))
     assert word in fault
-    assert told(health, samples(1.0, from_s=9.5)) == []
-    assert len(told(health, samples(lasts_s, spoilt=spoilt, from_s=10.5))) == 1
+    assert reported(health, samples(1.0, from_s=9.5)) == []
+    assert len(reported(health, samples(lasts_s, spoilt=spoilt, from_s=10.5))) == 1
 
 
 @pytest.mark.parametrize(("spoilt", "word"), [("stuck", "repeated"), ("unusable", "no usable")])
-def test_a_sensor_that_never_worked_is_told(spoilt: str, word: str) -> None:
-    (fault,) = told(SensorHealth(), samples(5.0, spoilt=spoilt))
+def test_a_sensor_that_never_worked_is_reported(spoilt: str, word: str) -> None:
+    (fault,) = reported(SensorHealth(), samples(5.0, spoilt=spoilt))
     assert word in fault
 
 
@@ -54,10 +54,10 @@ def test_a_sensor_that_never_worked_is_told(spoilt: str, word: str) -> None:
     ("next_s", "words"),
     [(1.98, []), (2.1, ["no inertial sample for 1.1 s"]), (0.0, []), (-0.1, ["back by 1.1 s"])],
 )
-def test_a_hole_in_time_is_told_and_a_small_one_is_not(next_s: float, words: list[str]) -> None:
+def test_a_hole_in_time_is_reported_and_a_small_one_is_not(next_s: float, words: list[str]) -> None:
     health = SensorHealth()
-    told(health, samples(1.01))
-    found = told(health, samples(0.1, from_s=next_s))
+    reported(health, samples(1.01))
+    found = reported(health, samples(0.1, from_s=next_s))
     assert len(found) == len(words)
     assert all(word in fault for word, fault in zip(words, found, strict=True))
 
@@ -71,24 +71,24 @@ def test_a_hole_in_time_is_told_and_a_small_one_is_not(next_s: float, words: lis
         (slice(5, 6), "gyroscope"),
     ],
 )
-def test_what_hangs_while_the_other_sensor_tells_of_motion_is_told_once(
+def test_what_hangs_while_the_other_sensor_tells_of_motion_is_reported_once(
     hung: slice, sensor: str
 ) -> None:
     rows = moving()
     rows[150:, hung] = 1.0
     rows[200] = np.nan  # one that was lost begins anew
-    (fault,) = told(SensorHealth(), imu_of(rows))
+    (fault,) = reported(SensorHealth(), imu_of(rows))
     assert fault.startswith(f"the {sensor} has repeated")
     rows[320:] = moving()[320:]
     rows[370:, hung] = 0.0
-    assert len(told(SensorHealth(), imu_of(rows))) == 2
+    assert len(reported(SensorHealth(), imu_of(rows))) == 2
 
 
 @pytest.mark.parametrize("hung", [slice(0, 3), slice(3, 6), slice(1, 2), slice(5, 6)])
 def test_a_coarse_sensor_that_lies_still_repeats_itself_and_is_well(hung: slice) -> None:
     rows = 0.1 * np.random.default_rng(3).normal(size=(60 * RATE_HZ, 6))
     rows[:, hung] = 1.0
-    assert told(SensorHealth(), imu_of(rows)) == []
+    assert reported(SensorHealth(), imu_of(rows)) == []
 
 
 @pytest.mark.parametrize("hung", [slice(0, 3), slice(3, 6)])
@@ -100,7 +100,7 @@ def test_what_moved_in_a_hole_is_not_known(hung: slice) -> None:
     rows[turned, slice(3, 6) if hung.start == 0 else slice(0, 3)] += 5.0
     imu = imu_of(rows)
     imu.t_ns[turned.start :] += 3 * NS_PER_S
-    (hole,) = told(SensorHealth(), imu)
+    (hole,) = reported(SensorHealth(), imu)
     assert hole.startswith("no inertial sample for 3.0 s")
 
 
@@ -108,7 +108,7 @@ def test_an_axis_in_which_nothing_was_made_to_move_is_well() -> None:
     rows = moving()
     rows[:, (1, 5)] = 0.0  # a walk in a plane
     rows[100] = np.nan  # a sample that was missed shows nothing either
-    assert told(SensorHealth(), imu_of(rows)) == []
+    assert reported(SensorHealth(), imu_of(rows)) == []
 
 
 def moving() -> np.ndarray:

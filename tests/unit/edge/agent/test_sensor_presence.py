@@ -74,9 +74,9 @@ def test_a_sensor_that_never_came_is_gone() -> None:
 def test_a_clock_apart_is_laid_on_the_others(ahead_s: float) -> None:
     wearing = Wearing()
     wearing.wear(0.0, 5.0, back_ahead_s=ahead_s)
-    (said,) = wearing.news
+    (reported,) = wearing.news
     word = "ahead" if ahead_s > 0.0 else "behind"
-    assert said.startswith(f"the clock of back is {abs(ahead_s):.1f} s {word} of foot")
+    assert reported.startswith(f"the clock of back is {abs(ahead_s):.1f} s {word} of foot")
     first_s, last_s = wearing.times_s["back"][0], wearing.times_s["back"][-1]
     assert (first_s, last_s) == pytest.approx((0.45, 5.0), abs=PERIOD_S + 0.02)
     timeline = wearing.take(batch("back", 5.0 + ahead_s))

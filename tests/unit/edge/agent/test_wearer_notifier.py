@@ -222,7 +222,9 @@ def test_the_end_of_what_the_unit_does_not_know_is_none(rig: Rig) -> None:
     assert rig.signals() == []
 
 
-def test_a_mayday_that_was_acknowledged_at_once_need_not_be_said_to_have_arrived(rig: Rig) -> None:
+def test_a_mayday_that_was_acknowledged_at_once_need_not_be_stated_to_have_arrived(
+    rig: Rig,
+) -> None:
     call(rig, EventKind.MAYDAY, 7)
     rig.journal.acknowledged_seq = 7
     rig.notifier.take_command(acknowledgement(7))

@@ -18,7 +18,7 @@ def authority(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return pki.station_identity().authority
 
 
-def hear(monkeypatch: pytest.MonkeyPatch, announcements: list[Announcement]) -> None:
+def receive(monkeypatch: pytest.MonkeyPatch, announcements: list[Announcement]) -> None:
     monkeypatch.setattr(station_finder, "find_announcements", lambda *_: announcements)
 
 
@@ -28,7 +28,7 @@ def test_only_so_many_places_are_tried(authority: bytes, monkeypatch: pytest.Mon
         Announcement(f"s{number}", "station", own, 7447, (f"192.0.2.{number}", "2001:db8::7"))
         for number in range(50)
     ]
-    hear(monkeypatch, announcements)
+    receive(monkeypatch, announcements)
     found = StationFinder(authority).find()
     assert len(found) == len(set(found)) == 16
     assert found[:2] == ("tls/192.0.2.0:7447", "tls/[2001:db8::7]:7447")
@@ -41,7 +41,7 @@ def test_only_so_many_strangers_are_named(
         Announcement(f"s{number}", "station", f"{number:064x}", 7447, ("192.0.2.1",))
         for number in range(500)
     ]
-    hear(monkeypatch, strangers)
+    receive(monkeypatch, strangers)
     finder = StationFinder(authority)
     assert finder.find() == finder.find() == ()
     assert len(caplog.messages) == 100

@@ -53,7 +53,7 @@ def invoke(command, *arguments):
     return result.output
 
 
-def test_a_box_without_an_inertial_sample_is_said_to_have_none(tmp_path):
+def test_a_box_without_an_inertial_sample_is_stated_to_have_none(tmp_path):
     """The sensor was never there, and the thermometer was."""
     raw = SampleEncoder("u1", 7)
     description = raw.description(
@@ -90,7 +90,7 @@ def test_track_writes_a_line_a_sample(trial, tmp_path):
     assert np.all(np.diff(table[:, 0]) > 0.0)
 
 
-def test_a_place_that_cannot_be_written_is_said(trial, tmp_path):
+def test_a_place_that_cannot_be_written_is_stated(trial, tmp_path):
     app = typer.Typer()
     app.command()(track)
     result = CliRunner().invoke(app, [str(trial), "--out", str(tmp_path / "no" / "where.csv")])

@@ -65,7 +65,7 @@ def test_a_file_gives_back_the_calibration_and_its_identity(calibration, tmp_pat
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "reported"),
     [
         ("unit = 1", "is damaged"),
         ("made = ", "is damaged"),
@@ -73,9 +73,9 @@ def test_a_file_gives_back_the_calibration_and_its_identity(calibration, tmp_pat
         ('unit = "u"\nsensor = "s"\nmade = 2026-01-01T00:00:00Z\nbias = 1', "bias"),
     ],
 )
-def test_a_damaged_file_is_one_sentence(text, said, tmp_path):
+def test_a_damaged_file_is_one_sentence(text, reported, tmp_path):
     (tmp_path / "c.toml").write_text(text)
-    with pytest.raises(ConfigError, match=said):
+    with pytest.raises(ConfigError, match=reported):
         read_calibration(tmp_path / "c.toml")
 
 
@@ -98,7 +98,7 @@ def test_a_file_that_is_not_there_is_one_sentence(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    ("line", "reported"),
     [
         ("bias_radps = [0.01, -0.3, 0.0]", "gyroscope.bias_radps is off by more than 0.2"),
         ("per_force = [[0, 0, 0], [0, 0.03, 0], [0, 0, 0]]", "gyroscope.per_force is off by"),
@@ -111,9 +111,9 @@ def test_a_file_that_is_not_there_is_one_sentence(tmp_path):
         ("gyro_bias_per_degc_radps = [0, -1.5, 0]", "warmth.gyro_bias_per_degc_radps is off by"),
     ],
 )
-def test_numbers_that_no_sensor_is_off_by_are_damage(line, said, tmp_path):
+def test_numbers_that_no_sensor_is_off_by_are_damage(line, reported, tmp_path):
     """A digit that flipped would bend every path of a unit whose sensors are well."""
-    part = said.partition(".")[0]
+    part = reported.partition(".")[0]
     file = tmp_path / "c.toml"
     write_calibration(whole_calibration(), file)
     assert read_calibration(file) == whole_calibration()
@@ -124,12 +124,12 @@ def test_numbers_that_no_sensor_is_off_by_are_damage(line, said, tmp_path):
     first = next(number for number, one in enumerate(lines) if one == line)
     spoilt = [*lines[: first + 1], *rest.split("\n")[first + 1 :]]
     file.write_text(before + head + "\n".join(spoilt))
-    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({said}")):
+    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({reported}")):
         read_calibration(file)
 
 
 @pytest.mark.parametrize(
-    ("part", "line", "said"),
+    ("part", "line", "reported"),
     [
         ("accelerometer", "at_degc = 1e9", "accelerometer.at_degc is not from -60 to 150"),
         ("gyroscope", "at_degc = -240.0", "gyroscope.at_degc is not from -60 to 150"),
@@ -139,7 +139,7 @@ def test_numbers_that_no_sensor_is_off_by_are_damage(line, said, tmp_path):
         ("warmth", "to_degc = 300.0", "warmth.to_degc is not from -60 to 150"),
     ],
 )
-def test_what_no_table_is_like_is_damage(part, line, said, tmp_path):
+def test_what_no_table_is_like_is_damage(part, line, reported, tmp_path):
     """A warmth that never was would be taken out of every sample."""
     file = tmp_path / "c.toml"
     write_calibration(whole_calibration(), file)
@@ -148,12 +148,12 @@ def test_what_no_table_is_like_is_damage(part, line, said, tmp_path):
     kept, *others = rest.partition("\n[")
     lines = [one for one in kept.split("\n") if not one.startswith(f"{name} =")]
     file.write_text(before + head + "\n".join([line, *lines]) + "".join(others))
-    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({said}")):
+    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({reported}")):
         read_calibration(file)
 
 
 @pytest.mark.parametrize(
-    ("made", "said"),
+    ("made", "reported"),
     [
         ("1026-05-01T12:00:00Z", "made in 1026"),
         ("0001-01-01T00:00:00+14:00", "made in 1"),
@@ -161,25 +161,25 @@ def test_what_no_table_is_like_is_damage(part, line, said, tmp_path):
         ("1970-01-01T00:00:00Z", None),
     ],
 )
-def test_a_time_that_no_description_can_say_is_damage(made, said, tmp_path):
+def test_a_time_that_no_description_can_say_is_damage(made, reported, tmp_path):
     file = tmp_path / "c.toml"
     write_calibration(whole_calibration(), file)
     text = file.read_text()
     first = text.index("made = ")
     file.write_text(text[:first] + f"made = {made}\n" + text[text.index("\n", first) :])
-    if said is None:
+    if reported is None:
         assert identity(read_calibration(file)).startswith("19700101T000000Z-")
         return
-    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({said})")):
+    with pytest.raises(ConfigError, match=re.escape(f"is damaged ({reported})")):
         read_calibration(file)
 
 
 def test_six_poses_fit_whatever_they_show():
     """As many equations as unknowns: a pose on a table that was pushed would not be noticed."""
     accelerometer = known(whole_calibration().accelerometer)
-    for poses, said in ((7, ()), (6, ("accelerometer of 6 poses only: nothing checks it",))):
+    for poses, reported in ((7, ()), (6, ("accelerometer of 6 poses only: nothing checks it",))):
         few = msgspec.structs.replace(accelerometer, poses=poses)
-        assert msgspec.structs.replace(whole_calibration(), accelerometer=few).faults() == said
+        assert msgspec.structs.replace(whole_calibration(), accelerometer=few).faults() == reported
 
 
 def test_half_a_year_makes_it_old_and_residuals_make_it_poor(calibration):
@@ -191,7 +191,7 @@ def test_half_a_year_makes_it_old_and_residuals_make_it_poor(calibration):
 
 
 @pytest.mark.parametrize(
-    ("residuals", "said"),
+    ("residuals", "reported"),
     [
         ((0.04, 4e-4, 1.4), ()),
         ((0.06, 4e-4, 1.4), ("accelerometer off by 0.060 m/s2",)),
@@ -199,10 +199,10 @@ def test_half_a_year_makes_it_old_and_residuals_make_it_poor(calibration):
         ((0.04, 4e-4, 1.6), ("magnetometer off by 1.6 uT",)),
     ],
 )
-def test_each_sensor_alone_makes_it_poor(residuals, said):
+def test_each_sensor_alone_makes_it_poor(residuals, reported):
     of_force, of_rate, of_field = residuals
     calibration = whole_calibration(of_force, of_rate, of_field)
-    assert calibration.faults() == said
+    assert calibration.faults() == reported
 
 
 @pytest.mark.slow
@@ -214,8 +214,8 @@ def test_a_whole_calibration_from_a_source_and_from_recordings(tmp_path, capsys)
     assert None not in (guided.accelerometer, guided.gyroscope, guided.magnetometer, guided.warmth)
     calibrate_recorded({"still": "bench:7"}, tmp_path / "recorded.toml", "u1", None)
     assert read_calibration(tmp_path / "recorded.toml").accelerometer is None
-    said = capsys.readouterr().err
-    assert "gyroscope bias" in said
+    reported = capsys.readouterr().err
+    assert "gyroscope bias" in reported
     with pytest.raises(UserError, match="simulated:straight: the poses step cannot be used"):
         calibrate_recorded({"poses": "simulated:straight"}, tmp_path / "x.toml", "u1", None)
     assert not (tmp_path / "x.toml").exists()

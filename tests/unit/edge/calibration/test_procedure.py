@@ -26,22 +26,22 @@ def refusal(step, batches) -> str:
 
 def test_a_unit_that_moved_is_refused_for_the_still_step():
     unit = HandledUnit(0)
-    said = refusal(StillStep(), [unit.rest(6.0), unit.turn(X, 1.0), unit.rest(6.0)])
-    assert "moved during the still step (last at 7.0 s)" in said
-    assert "10 s are needed" in said
+    stated = refusal(StillStep(), [unit.rest(6.0), unit.turn(X, 1.0), unit.rest(6.0)])
+    assert "moved during the still step (last at 7.0 s)" in stated
+    assert "10 s are needed" in stated
 
 
-def test_a_unit_that_has_only_not_lain_long_enough_is_not_said_to_have_moved():
-    said = refusal(StillStep(), [HandledUnit(0).rest(6.0)])
-    assert "lay still for only 5.0 s" in said
-    assert "10 s are needed" in said
-    assert "moved" not in said
+def test_a_unit_that_has_only_not_lain_long_enough_is_not_stated_to_have_moved():
+    stated = refusal(StillStep(), [HandledUnit(0).rest(6.0)])
+    assert "lay still for only 5.0 s" in stated
+    assert "10 s are needed" in stated
+    assert "moved" not in stated
 
 
 def test_a_unit_that_was_in_the_hand_to_begin_with_has_moved():
     unit = HandledUnit(0)
-    said = refusal(StillStep(), [unit.turn(X, 0.5), unit.rest(6.0)])
-    assert "moved during the still step (last at 0.5 s)" in said
+    stated = refusal(StillStep(), [unit.turn(X, 0.5), unit.rest(6.0)])
+    assert "moved during the still step (last at 0.5 s)" in stated
 
 
 def test_a_unit_on_a_turntable_is_refused_for_the_still_step():
@@ -52,22 +52,22 @@ def test_a_unit_on_a_turntable_is_refused_for_the_still_step():
 
 def test_missing_poses_are_named():
     unit = HandledUnit(0)
-    said = refusal(PosesStep(), [*unit.poses(SIDES[[0, 2, 4]]), unit.turn(X, 1.0)])
-    assert "only 3 of 6 poses: turn it until -x, -y and -z of the sensor points up" in said
+    stated = refusal(PosesStep(), [*unit.poses(SIDES[[0, 2, 4]]), unit.turn(X, 1.0)])
+    assert "only 3 of 6 poses: turn it until -x, -y and -z of the sensor points up" in stated
 
 
 @pytest.mark.parametrize(
-    ("turns", "said"),
+    ("turns", "stated"),
     [
         ([], "hardly turned"),
         ([6.0 * X], "about one axis only"),
         ([3.0 * X, 0.4 * X[[1, 0, 2]]], "about one axis only"),
     ],
 )
-def test_turning_that_does_not_determine_the_iron_is_refused(turns, said):
+def test_turning_that_does_not_determine_the_iron_is_refused(turns, stated):
     unit = HandledUnit(0)
     batches = [unit.rest(3.0), *(unit.turn(turn, 6.0) for turn in turns)]
-    assert said in refusal(TurningStep(), batches)
+    assert stated in refusal(TurningStep(), batches)
 
 
 def test_half_a_sphere_is_refused():
@@ -88,7 +88,7 @@ def test_a_magnet_is_not_taken_for_the_earth():
     assert "not the earth's" in refusal(TurningStep(), batches)
 
 
-def test_a_unit_without_the_sensor_is_told_to_leave_the_step_out():
+def test_a_unit_without_the_sensor_is_ordered_to_leave_the_step_out():
     batch = replace(HandledUnit(0).rest(30.0), mag_ut=None, imu_temperature_degc=None)
     assert "no magnetometer" in refusal(TurningStep(), [batch])
     assert "leave the warm-up out" in refusal(WarmUpStep(), [batch])
@@ -127,8 +127,8 @@ def test_a_warm_up_by_itself_says_nothing_that_could_be_used():
 
 
 def test_too_little_warmth_is_refused_with_the_figure():
-    said = refusal(WarmUpStep(), HandledUnit(0).warm_up(100.0, from_degc=21.5))
-    assert "changed by only 1.2 degC; 10 are needed" in said
+    stated = refusal(WarmUpStep(), HandledUnit(0).warm_up(100.0, from_degc=21.5))
+    assert "changed by only 1.2 degC; 10 are needed" in stated
 
 
 def test_a_guided_step_ends_when_it_has_enough():
@@ -136,11 +136,11 @@ def test_a_guided_step_ends_when_it_has_enough():
     since_ns = 10**13  # its clock has run for hours
     rests = (unit.rest(1.0) for _ in range(60))
     batches = iter([SensorBatch(replace(one, t_ns=one.t_ns + since_ns)) for one in rests])
-    told: list[str] = []
-    run_step(StillStep(), batches, 600.0, told.append)
+    reported: list[str] = []
+    run_step(StillStep(), batches, 600.0, reported.append)
     assert 40 < len(list(batches)) < 50
-    assert told[-1] == "10 of 10 s"
-    assert not any("moved" in line for line in told), "nobody has touched it"
+    assert reported[-1] == "10 of 10 s"
+    assert not any("moved" in line for line in reported), "nobody has touched it"
 
 
 def test_a_guided_step_gives_up_after_its_time():
@@ -199,7 +199,7 @@ def test_two_short_rests_with_a_hole_between_them_are_not_a_long_one():
     assert "lay still for only 5.5 s" in refusal(StillStep(), [before, after])
 
 
-def test_a_temperature_that_is_told_now_and_then_is_that_of_the_window():
+def test_a_temperature_that_is_reported_now_and_then_is_that_of_the_window():
     """Most sensors measure it more seldom than they measure motion."""
     finder = RestDetector()
     rest = felt(3.0, 0.0, 0.0, 0.0)
@@ -210,7 +210,7 @@ def test_a_temperature_that_is_told_now_and_then_is_that_of_the_window():
     assert [window.temperature_degc for window in windows] == [21.5] * 4
 
 
-def test_a_temperature_that_is_told_more_seldom_than_that_holds():
+def test_a_temperature_that_is_reported_more_seldom_than_that_holds():
     finder = RestDetector()
     rest = felt(4.0, 0.0, 0.0, 0.0)
     degc = np.full(len(rest), np.nan)

@@ -56,9 +56,9 @@ class Found:
 
 
 def printed(found: Found, out: str = "u1.toml") -> str:
-    said = StringIO()
-    print_report(found.calibration(), Path(out), Console(file=said, width=110))
-    return said.getvalue()
+    reported = StringIO()
+    print_report(found.calibration(), Path(out), Console(file=reported, width=110))
+    return reported.getvalue()
 
 
 def row(text: str, name: str) -> list[str]:
@@ -66,10 +66,10 @@ def row(text: str, name: str) -> list[str]:
     return [cell.strip() for cell in line.strip("│┃ ").split("│")]
 
 
-def test_each_sensor_is_told_in_the_units_of_a_person() -> None:
-    said = printed(Found())
-    assert identity(Found().calibration()) in said
-    scale = row(said, "accelerometer scale")
+def test_each_sensor_is_reported_in_the_units_of_a_person() -> None:
+    reported = printed(Found())
+    assert identity(Found().calibration()) in reported
+    scale = row(reported, "accelerometer scale")
     assert scale == [
         "accelerometer scale",
         "+12.00 ± 0.30",
@@ -77,27 +77,30 @@ def test_each_sensor_is_told_in_the_units_of_a_person() -> None:
         "+0.00 ± 0.30",
         "1/1000",
     ]
-    assert row(said, "gyroscope bias")[1:] == [
+    assert row(reported, "gyroscope bias")[1:] == [
         "+0.5730 ± 0.0057",
         "+0.0000 ± 0.0057",
         "-1.1459 ± 0.0057",
         "deg/s",
     ]
-    assert row(said, "hard iron")[1:4] == ["+12.00 ± 0.10", "-7.00 ± 0.10", "+20.00 ± 0.10"]
+    assert row(reported, "hard iron")[1:4] == ["+12.00 ± 0.10", "-7.00 ± 0.10", "+20.00 ± 0.10"]
     assert (
         "Residuals: accelerometer 0.0020 m/s2 over 12 poses; gyroscope 0.0057 deg/s; "
-        "magnetometer 0.30 of 48.0 uT." in said
+        "magnetometer 0.30 of 48.0 uT." in reported
     )
-    assert "Poor" not in said
+    assert "Poor" not in reported
 
 
 @pytest.mark.parametrize("std", [0.0, 1e-4])
-def test_misalignment_is_told_or_asked_for(std: float) -> None:
-    said = printed(Found(misaligned=0.01, misaligned_std=std))
-    assert ("lean the unit on its edges" in said) is (std == 0.0)
-    assert ("misaligned xy, xz, yz" in said) is (std > 0.0)
+def test_misalignment_is_reported_or_asked_for(std: float) -> None:
+    reported = printed(Found(misaligned=0.01, misaligned_std=std))
+    assert ("lean the unit on its edges" in reported) is (std == 0.0)
+    assert ("misaligned xy, xz, yz" in reported) is (std > 0.0)
     if std:
-        assert row(said, "... misaligned xy, xz, yz")[1:3] == ["+0.573 ± 0.006", "+0.000 ± 0.000"]
+        assert row(reported, "... misaligned xy, xz, yz")[1:3] == [
+            "+0.573 ± 0.006",
+            "+0.000 ± 0.000",
+        ]
 
 
 def test_what_is_poor_is_to_be_done_again() -> None:
@@ -106,16 +109,16 @@ def test_what_is_poor_is_to_be_done_again() -> None:
     )
 
 
-def test_six_poses_without_a_residual_are_said_to_have_none() -> None:
-    said = printed(Found(residual_mps2=0.0, poses=6))
-    assert "Residuals: accelerometer unknown over 6 poses; " in said
-    assert "Poor: accelerometer of 6 poses only: nothing checks it; do it again." in said
-    assert "lean the unit on its edges" in said
+def test_six_poses_without_a_residual_are_stated_to_have_none() -> None:
+    reported = printed(Found(residual_mps2=0.0, poses=6))
+    assert "Residuals: accelerometer unknown over 6 poses; " in reported
+    assert "Poor: accelerometer of 6 poses only: nothing checks it; do it again." in reported
+    assert "lean the unit on its edges" in reported
 
 
 @pytest.mark.parametrize(
     "out", ["boxes [new]/[red]FF-01.toml", f"{'deep/' * 30}FF-01.toml"], ids=["brackets", "long"]
 )
-def test_where_it_was_written_is_told_whole(out: str) -> None:
-    said = printed(Found(), out)
-    assert f"Written to {out}; use it with `muster edge run --calibration {out}`." in said
+def test_where_it_was_written_is_reported_whole(out: str) -> None:
+    reported = printed(Found(), out)
+    assert f"Written to {out}; use it with `muster edge run --calibration {out}`." in reported

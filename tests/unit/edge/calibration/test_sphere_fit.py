@@ -65,7 +65,7 @@ def test_a_start_that_is_far_off_comes_to_the_same(start: float, aside: float) -
 
 
 @pytest.mark.parametrize("name", GAINS)
-def test_noisy_readings_are_as_far_off_as_is_said(name: str) -> None:
+def test_noisy_readings_are_as_far_off_as_is_stated(name: str) -> None:
     """Over many fits the errors, in standard deviations, are of the size of one."""
     shape, gain = GAINS[name]
     free = np.array(shape.entries).T
@@ -102,7 +102,7 @@ def test_few_readings_that_fit_well_are_not_believed_to_be_better_than_the_noise
 
 
 @pytest.mark.parametrize("name", GAINS)
-def test_nothing_is_said_to_be_known_of_what_was_not_looked_for(name: str) -> None:
+def test_nothing_is_stated_to_be_known_of_what_was_not_looked_for(name: str) -> None:
     shape, gain = GAINS[name]
     fit = fitted(shape, readings(gain, 1.0, directions(30)))
     looked_for = np.zeros((3, 3), bool)

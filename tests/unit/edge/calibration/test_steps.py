@@ -66,7 +66,7 @@ def test_ten_seconds_of_rest_are_needed(lay_s: float, lacks: bool) -> None:
     assert bench.step.wanted() == bench.step.missing()
 
 
-def test_when_it_moved_is_said_from_where_the_step_began_not_from_when_the_machine_did() -> None:
+def test_when_it_moved_is_stated_from_where_the_step_began_not_from_when_the_machine_did() -> None:
     step = StillStep()
     bench = Bench(step)
     bench.now_s = 86_400.2
@@ -91,7 +91,7 @@ def test_the_longest_rest_is_taken_whichever_it_is() -> None:
 
 
 @pytest.mark.parametrize(("rate_radps", "turns"), [(0.09, False), (-0.11, True)])
-def test_who_lies_on_something_that_turns_is_told(rate_radps: float, turns: bool) -> None:
+def test_who_lies_on_something_that_turns_is_reported(rate_radps: float, turns: bool) -> None:
     bench = Bench(StillStep())
     bench.lies(Z, 20.0, rate_radps)
     assert ("turned evenly" in (bench.step.missing() or "")) is turns
@@ -336,7 +336,7 @@ def test_eighty_seconds_are_needed(lay_s: float, lacks: bool) -> None:
     assert ("80 s are needed" in (bench.step.missing() or "")) is lacks
 
 
-def test_a_unit_that_was_moved_while_it_warmed_is_told_so() -> None:
+def test_a_unit_that_was_moved_while_it_warmed_is_reported_so() -> None:
     bench = Bench(WarmUpStep())
     bench.lies(Z, 60.0, degc=(8.0, 15.0))
     bench.lies(X, 50.0, degc=(15.0, 20.0))
@@ -345,7 +345,7 @@ def test_a_unit_that_was_moved_while_it_warmed_is_told_so() -> None:
     )
 
 
-def test_what_was_heard_without_a_temperature_does_not_count() -> None:
+def test_what_was_received_without_a_temperature_does_not_count() -> None:
     step = WarmUpStep()
     bench = Bench(step)
     bench.lies(Z, 30.0)

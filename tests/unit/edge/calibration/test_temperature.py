@@ -124,8 +124,8 @@ def test_between_two_readings_of_the_temperature_the_last_one_holds(at_once: int
     assert accel_mps2 == pytest.approx(-ACCEL_BIAS - counted * ACCEL_SLOPE)
     gyro_radps = np.vstack([part.gyro_radps for part in parts])
     assert gyro_radps == pytest.approx(-GYRO_BIAS - counted * GYRO_SLOPE)
-    told = np.concatenate([known(part.imu_temperature_degc) for part in parts])
-    assert told.tolist() == pytest.approx(degc.tolist(), nan_ok=True), "as the sensor told it"
+    reported = np.concatenate([known(part.imu_temperature_degc) for part in parts])
+    assert reported.tolist() == pytest.approx(degc.tolist(), nan_ok=True), "as the sensor told it"
 
 
 def test_batches_of_other_sensors_alone_and_without_a_temperature_are_corrected_too() -> None:

@@ -49,7 +49,7 @@ def test_what_is_no_answer_is_no_time_and_it_asks_on() -> None:
     assert clock.machine_ahead_s() == 0.0
 
 
-def test_once_it_has_been_told_it_goes_by_the_station() -> None:
+def test_once_it_has_been_reported_it_goes_by_the_station() -> None:
     machine = ManualClock()
     station, clock = Station(machine), StationClock(machine)
     watched(clock, station, 20)

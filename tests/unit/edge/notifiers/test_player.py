@@ -69,7 +69,7 @@ def test_what_is_shown_is_played_again_and_again_and_reported_once(player, outpu
     assert player._next() is None
 
 
-def test_a_notice_that_is_said_once_is_played_once_as_long_as_it_is_shown(player, output) -> None:
+def test_a_notice_that_is_stated_once_is_played_once_as_long_as_it_is_shown(player, output) -> None:
     player.show((BATTERY,))
     until(lambda: player.take_played() == (BATTERY,))
     player.show((BATTERY, EVACUATE))

@@ -62,12 +62,12 @@ def test_a_long_sound_is_interrupted_before_the_card_has_taken_it(
 def test_it_plays_on_the_device_that_is_set(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    said = tmp_path / "said"
-    monkeypatch.setenv("PATH", programs_at(tmp_path, f'echo "$@" > {said}; cat > /dev/null'))
+    reported = tmp_path / "said"
+    monkeypatch.setenv("PATH", programs_at(tmp_path, f'echo "$@" > {reported}; cat > /dev/null'))
     begun_s = time.monotonic()
     play_wave(pattern_wave(Signal.TEXT), threading.Event(), "plughw:1")
     assert time.monotonic() - begun_s < PATIENCE_S
-    assert said.read_text() == "-q -D plughw:1 -\n"
+    assert reported.read_text() == "-q -D plughw:1 -\n"
 
 
 def test_a_card_that_refuses_is_an_error_with_the_device_and_the_reason(

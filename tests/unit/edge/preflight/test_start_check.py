@@ -76,7 +76,7 @@ def test_a_unit_that_has_everything_is_ready_though_its_wearer_walks() -> None:
     assert check.step(2 * END_NS) is None, "said once"
 
 
-def test_what_is_missing_is_said_the_gravest_first() -> None:
+def test_what_is_missing_is_stated_the_gravest_first() -> None:
     def full_disk() -> Iterator[CheckFinding]:
         yield CheckFinding("disk", Severity.WARNING, "1 GB free", "make room")
 
@@ -93,7 +93,7 @@ def test_what_is_missing_is_said_the_gravest_first() -> None:
     assert found[2] == PreflightFinding(PreflightLevel.WARNING, "disk", "1 GB free", "make room")
 
 
-def test_a_source_that_gives_nothing_is_said() -> None:
+def test_a_source_that_gives_nothing_is_stated() -> None:
     check = started()
     found = at_end(check)
     assert found is not None
@@ -111,7 +111,7 @@ def test_what_comes_right_later_is_struck_off_and_nothing_is_added() -> None:
     assert check.step(3 * END_NS) is None
 
 
-def test_a_disk_that_hangs_holds_up_nothing_and_is_said() -> None:
+def test_a_disk_that_hangs_holds_up_nothing_and_is_stated() -> None:
     answers = threading.Event()
 
     def hanging() -> Iterator[CheckFinding]:
@@ -137,7 +137,7 @@ def test_a_disk_that_cannot_be_looked_at_is_a_failure() -> None:
     assert (found[0].subject, found[0].level) == ("disk", PreflightLevel.FAILED)
 
 
-def test_a_check_that_fails_is_said_and_stops_no_unit(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_check_that_fails_is_stated_and_stops_no_unit(monkeypatch: pytest.MonkeyPatch) -> None:
     check = started()
     monkeypatch.setattr(check._auxiliary, "push", lambda _: 1 / 0)
     check.push(samples(SURVEY_S, *OTHERS))

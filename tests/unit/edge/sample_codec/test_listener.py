@@ -62,8 +62,8 @@ class Unit:
 
     def describes(self, boot_id: int = 7, tracker: str = NO_TRACKER) -> None:
         sent = (unit_sensor("", SENSOR),)
-        said = SampleEncoder(U, boot_id).description(0, sent, source="", tracker=tracker)
-        self._bus.publish(DESCRIPTION.key(U), encode(said), Qos.LIVE)
+        reported = SampleEncoder(U, boot_id).description(0, sent, source="", tracker=tracker)
+        self._bus.publish(DESCRIPTION.key(U), encode(reported), Qos.LIVE)
 
     def publishes_description(self, payload: bytes) -> None:
         self._bus.publish(DESCRIPTION.key(U), payload, Qos.LIVE)
@@ -117,7 +117,7 @@ def test_messages_are_taken_in_the_order_in_which_they_came(unit: Unit) -> None:
     assert not unit.listener.has_restarted(7), "of nothing nobody knows"
 
 
-def test_nothing_is_heard_of_others(unit: Unit) -> None:
+def test_nothing_is_received_of_others(unit: Unit) -> None:
     other = unit.router.attach_unit()
     other.publish(IMU.key("FF-02"), encode(raw(1)), Qos.LIVE)
     assert unit.taken() == []
@@ -173,7 +173,7 @@ def test_a_run_that_is_over_is_forgotten_where_it_was_not_described(unit: Unit) 
     assert unit.taken() == [1]
 
 
-def test_a_run_that_another_has_followed_is_heard_when_that_one_has_been_silent(
+def test_a_run_that_another_has_followed_is_received_when_that_one_has_been_silent(
     unit: Unit,
 ) -> None:
     for boot_id in (7, 8):
@@ -208,7 +208,7 @@ def test_a_bus_that_cannot_be_opened_is_tried_again(unit: Unit) -> None:
     listener.close()
 
 
-def test_who_has_closed_hears_nothing_more(unit: Unit) -> None:
+def test_who_has_closed_receives_nothing_more(unit: Unit) -> None:
     unit.listener.close()
     unit.says(raw(1))
     assert unit.taken() == []
@@ -318,7 +318,7 @@ def test_a_source_that_is_closed_gives_nothing_more(unit: Unit) -> None:
     assert list(batches) == []
 
 
-def test_before_the_unit_is_heard_there_is_no_sensor() -> None:
+def test_before_the_unit_is_received_there_is_no_sensor() -> None:
     with pytest.raises(RecordingError, match="`muster edge run` only"):
         _ = BusSource(U).description
 

@@ -46,9 +46,9 @@ def test_an_ideal_magnetometer_sees_the_field_in_its_own_axes() -> None:
     field = MagneticField(None, rng())
     quarter_turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     mag = SimulatedMagnetometer(IDEAL_MAG, field, rng())
-    said = mag.measure(0, at(OUTSIDE, 1), quarter_turn[None])[0]
+    reported = mag.measure(0, at(OUTSIDE, 1), quarter_turn[None])[0]
     north, east, down = field.at(at(OUTSIDE, 1))[0]
-    assert said == pytest.approx([east, -north, down])
+    assert reported == pytest.approx([east, -north, down])
 
 
 def test_missed_magnetometer_samples_are_nan_across_calls() -> None:
@@ -63,16 +63,18 @@ def test_missed_magnetometer_samples_are_nan_across_calls() -> None:
 def test_hard_iron_moves_the_centre() -> None:
     mag = SimulatedMagnetometer(CONSUMER_MAG, MagneticField(None, rng()), rng())
     turns = np.array([np.diag(signs) for signs in ([1, 1, 1], [1, -1, -1], [-1, 1, -1])])
-    said = np.array([mag.measure(0, at(OUTSIDE, 1), turn[None].astype(float))[0] for turn in turns])
-    norms_ut = np.linalg.norm(said, axis=1)
+    reported = np.array(
+        [mag.measure(0, at(OUTSIDE, 1), turn[None].astype(float))[0] for turn in turns]
+    )
+    norms_ut = np.linalg.norm(reported, axis=1)
     assert np.ptp(norms_ut) > 1.0
 
 
 @pytest.mark.parametrize("height_m", [0.0, 3.2, 20.0])
 def test_pressure_stands_for_height(height_m: float) -> None:
     baro = Barometer(IDEAL_BARO, None, 400.0, 200.0, rng())
-    said_pa = baro.measure(0, np.zeros(1), at((0.0, 0.0, -height_m), 1))[0]
-    assert pressure_altitude_m(said_pa) == pytest.approx(
+    stated_pa = baro.measure(0, np.zeros(1), at((0.0, 0.0, -height_m), 1))[0]
+    assert pressure_altitude_m(stated_pa) == pytest.approx(
         400.0 + height_m, abs=1e-6 + 0.01 * height_m
     )
 

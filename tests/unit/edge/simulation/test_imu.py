@@ -49,9 +49,9 @@ def test_noise_density_gives_the_noise_of_the_rate() -> None:
 
 def test_turn_on_bias_is_constant_and_differs_between_units() -> None:
     errors = TriadErrors(bias_std=0.1)
-    said = np.array([measure(errors, np.zeros((5, 3)), seed=seed) for seed in range(300)])
-    assert np.ptp(said, axis=1).max() == 0.0
-    assert said[:, 0].std() == pytest.approx(0.1, rel=0.1)
+    reported = np.array([measure(errors, np.zeros((5, 3)), seed=seed) for seed in range(300)])
+    assert np.ptp(reported, axis=1).max() == 0.0
+    assert reported[:, 0].std() == pytest.approx(0.1, rel=0.1)
 
 
 def test_bias_walk_grows_with_the_square_root_of_time_across_calls() -> None:

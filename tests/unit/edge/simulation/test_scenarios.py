@@ -290,7 +290,7 @@ def test_no_gait_goes_through_the_floor(pace: Pace) -> None:
 
 
 @pytest.mark.parametrize("leg", [Wait(60.0), Kneel(30.0), Sit(90.0)], ids=["wait", "kneel", "sit"])
-def test_whoever_lingers_moves_his_foot_and_gets_up_where_he_was(leg: Wait | Kneel | Sit) -> None:
+def test_anyone_lingers_moves_his_foot_and_gets_up_where_he_was(leg: Wait | Kneel | Sit) -> None:
     simulation, ends = ends_of(Stand(1.0), leg, Stand(2.0))
     t_s = np.arange(0.0, simulation.duration_s, 0.01)
     motion = simulation.truth(t_s)
@@ -344,7 +344,7 @@ def test_a_scenario_file_is_played(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "reported"),
     [
         (("summary", "sumary"), "did you mean summary?"),
         (("duration_s = 2.0", "seconds = 2.0"), "legs[0] (stand)"),
@@ -368,13 +368,13 @@ def test_a_scenario_file_is_played(tmp_path: Path) -> None:
     ],
 )
 def test_a_bad_scenario_file_is_explained(
-    tmp_path: Path, change: tuple[str, str], said: str
+    tmp_path: Path, change: tuple[str, str], reported: str
 ) -> None:
     path = tmp_path / "round.toml"
     path.write_text(TOML.replace(*change), encoding="utf-8")
     with pytest.raises(ConfigError) as caught:
         open_simulation(str(path))
-    assert said in str(caught.value)
+    assert reported in str(caught.value)
     assert "round.toml" in str(caught.value)
 
 

@@ -37,7 +37,7 @@ def test_it_follows_drift_through_delays(drift: float) -> None:
     assert not clock.take_events()
 
 
-def test_a_restart_is_told_and_time_goes_on() -> None:
+def test_a_restart_is_reported_and_time_goes_on() -> None:
     clock = DeviceClock()
     first = [clock.place(t, 50 * S + t) for t in range(0, 4 * S, STEP)]
     again = [clock.place(t, 60 * S + t) for t in range(0, 4 * S, STEP)]
@@ -45,12 +45,12 @@ def test_a_restart_is_told_and_time_goes_on() -> None:
     assert clock.implausible == 1
     assert again[1] == 60 * S + STEP
     assert first[-1] is not None
-    (told,) = clock.take_events()
-    assert "went back by 4.0 s" in told
+    (reported,) = clock.take_events()
+    assert "went back by 4.0 s" in reported
     assert not clock.take_events(), "it is told once"
 
 
-def test_a_32_bit_clock_that_wraps_is_told_and_leaves_no_gap() -> None:
+def test_a_32_bit_clock_that_wraps_is_reported_and_leaves_no_gap() -> None:
     clock = DeviceClock()
     wrap_ns = 2**32 * 1000
     device_ns = [(t % wrap_ns) for t in range(wrap_ns - S, wrap_ns + S, STEP)]
@@ -61,7 +61,7 @@ def test_a_32_bit_clock_that_wraps_is_told_and_leaves_no_gap() -> None:
     assert len(clock.take_events()) == 1
 
 
-def test_a_clock_set_ahead_is_told() -> None:
+def test_a_clock_set_ahead_is_reported() -> None:
     clock = DeviceClock()
     for t in range(0, S, STEP):
         clock.place(t, t)
@@ -69,8 +69,8 @@ def test_a_clock_set_ahead_is_told() -> None:
     got = [clock.place(t + ahead, t) for t in range(S, 2 * S, STEP)]
     assert got[0] is None
     assert got[1:] == list(range(S + STEP, 2 * S, STEP))
-    (told,) = clock.take_events()
-    assert "went ahead by 3600.0 s" in told
+    (reported,) = clock.take_events()
+    assert "went ahead by 3600.0 s" in reported
 
 
 def test_one_impossible_time_costs_one_sample() -> None:
@@ -100,13 +100,13 @@ def test_lost_samples_leave_a_gap_as_long_as_they_were() -> None:
     assert not clock.take_events()
 
 
-def test_samples_that_stay_late_are_told() -> None:
+def test_samples_that_stay_late_are_reported() -> None:
     clock = DeviceClock()
     for t in range(0, 60 * S, STEP):
         clock.place(t, t if t < 20 * S else t + 5 * S)
-    told = clock.take_events()
-    assert len(told) == 1
-    assert "5.0 s late" in told[0]
+    reported = clock.take_events()
+    assert len(reported) == 1
+    assert "5.0 s late" in reported[0]
 
 
 def test_after_a_cut_time_goes_on_where_it_is_now() -> None:

@@ -109,14 +109,14 @@ def test_the_one_battery_of_the_machine_is_found(tree, opened) -> None:
     assert taken(opened("auto")).level == pytest.approx(0.77)
 
 
-def test_two_batteries_have_to_be_told_apart(tree, opened) -> None:
+def test_two_batteries_have_to_be_distinguished(tree, opened) -> None:
     for name in ("BAT0", "BAT1"):
         tree.power_supply(name, type="Battery", capacity="50")
     assert "there are 2 batteries; name one of BAT0, BAT1" in fault(opened("auto"))
 
 
 @pytest.mark.parametrize(
-    ("name", "attributes", "said"),
+    ("name", "attributes", "reported"),
     [
         ("BAT1", {"type": "Battery", "capacity": "50"}, "batteries are BAT0"),
         ("BAT0", {"type": "Mains"}, "there is none at all"),
@@ -127,9 +127,9 @@ def test_two_batteries_have_to_be_told_apart(tree, opened) -> None:
         ("BAT0", {"type": "Battery"}, "no charge between 0 and 100 %"),
     ],
 )
-def test_a_battery_that_cannot_be_read_is_a_fault(tree, opened, name, attributes, said) -> None:
+def test_a_battery_that_cannot_be_read_is_a_fault(tree, opened, name, attributes, reported) -> None:
     tree.power_supply("BAT0", **attributes)
-    assert said in fault(opened(name))
+    assert reported in fault(opened(name))
 
 
 def test_a_fuel_gauge_that_does_not_answer(tree, opened) -> None:

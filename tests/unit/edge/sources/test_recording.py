@@ -121,13 +121,13 @@ def test_saturated_samples_are_counted_where_full_scale_is_known(tmp_path: Path)
     assert RecordingSource(tmp_path).report.saturated_samples == 1
 
 
-def test_nothing_unusual_is_said_so(tmp_path: Path) -> None:
+def test_nothing_unusual_is_stated_so(tmp_path: Path) -> None:
     source = RecordingSource(recording(tmp_path, at_times(0.0, 0.1, 0.2)))
     assert str(source.report) == "3 samples: nothing unusual"
 
 
 @pytest.mark.parametrize(
-    ("header", "rows", "said"),
+    ("header", "rows", "reported"),
     [
         ("", [], "is empty"),
         ("", [HEADER, *at_times(0, 1)], "starts with an empty line"),
@@ -149,12 +149,12 @@ def test_nothing_unusual_is_said_so(tmp_path: Path) -> None:
     ],
 )
 def test_a_bad_file_is_named_with_what_to_do(
-    tmp_path: Path, header: str, rows: list[str], said: str
+    tmp_path: Path, header: str, rows: list[str], reported: str
 ) -> None:
     path = recording(tmp_path, rows, header)
     with pytest.raises(RecordingError) as caught:
         RecordingSource(path)
-    assert said in str(caught.value)
+    assert reported in str(caught.value)
     assert "imu.csv" in str(caught.value)
 
 

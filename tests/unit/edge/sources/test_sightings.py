@@ -105,8 +105,8 @@ def test_a_range_is_as_unsure_as_a_body_in_the_way_makes_it(
 ) -> None:
     range_m, std_m = range_of(POWER_DBM - quieter_db)
     assert range_m == pytest.approx(wanted_m, rel=1e-3)
-    behind_somebody_m, _ = range_of(POWER_DBM - quieter_db - SHADOWING_DB)
-    assert math.log(behind_somebody_m / range_m) == pytest.approx(std_m / range_m)
+    behind_person_m, _ = range_of(POWER_DBM - quieter_db - SHADOWING_DB)
+    assert math.log(behind_person_m / range_m) == pytest.approx(std_m / range_m)
 
 
 @pytest.mark.parametrize(
@@ -200,7 +200,7 @@ def test_a_reader_that_is_gone_is_opened_again(slashes: str) -> None:
     assert 0 < found[0][1].t_ns <= time.monotonic_ns()
 
 
-def test_that_a_reader_is_gone_is_told_once_until_it_is_back(caplog) -> None:
+def test_that_a_reader_is_gone_is_reported_once_until_it_is_back(caplog) -> None:
     reader = SightingReader("/dev/nowhere", SystemClock())
     cable_is_out = FileNotFoundError(2, "No such file or directory")
     reader.on_close(cable_is_out)

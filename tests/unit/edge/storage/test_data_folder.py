@@ -66,7 +66,7 @@ def test_what_a_power_cut_leaves_of_its_name_is_no_other_unit(tmp_path: Path, le
     assert (tmp_path / "anna" / "unit").read_text() == "anna\n"
 
 
-def test_what_another_unit_kept_is_set_aside_and_nothing_of_it_is_said(tmp_path: Path) -> None:
+def test_what_another_unit_kept_is_set_aside_and_nothing_of_it_is_stated(tmp_path: Path) -> None:
     keep_something(tmp_path / "anna")
     for number in (1, 2):  # copied twice
         shutil.copytree(tmp_path / "anna", tmp_path / "bert", dirs_exist_ok=True)
@@ -82,7 +82,7 @@ def test_what_another_unit_kept_is_set_aside_and_nothing_of_it_is_said(tmp_path:
     own.close()
 
 
-def test_a_person_is_told_of_it(tmp_path: Path) -> None:
+def test_a_person_is_reported_of_it(tmp_path: Path) -> None:
     compile_trackers()
     keep_something(tmp_path / "anna")
     shutil.copytree(tmp_path / "anna", tmp_path / "bert")
@@ -93,9 +93,9 @@ def test_a_person_is_told_of_it(tmp_path: Path) -> None:
     parts.outbox.close()
     parts.journal_writer.close()
     parts.black_box.close()
-    (said,) = parts.journal.read(parts.journal.boot_id, 1, 10)
+    (reported,) = parts.journal.read(parts.journal.boot_id, 1, 10)
     parts.journal.close()
-    event = decode(EVENT, said.payload)
+    event = decode(EVENT, reported.payload)
     assert isinstance(event, UnitEvent)
     assert event.kind is EventKind.STORAGE_FAULT
     assert "of another unit" in event.detail

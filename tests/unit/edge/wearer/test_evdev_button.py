@@ -68,9 +68,9 @@ def test_of_devices_of_one_name_that_with_the_key_is_taken(devices, opened) -> N
 
 def test_of_two_that_may_be_meant_none_is_taken(devices, opened) -> None:
     one, other = devices.plug_in(1), devices.plug_in(2)
-    said = refusal(opened, "AB Button", key="KEY_POWER")
-    assert "there are 2 input devices named AB Button" in said
-    assert "/dev/input/by-id" in said
+    reported = refusal(opened, "AB Button", key="KEY_POWER")
+    assert "there are 2 input devices named AB Button" in reported
+    assert "/dev/input/by-id" in reported
     assert not one.opened
     assert not other.opened
 
@@ -83,21 +83,21 @@ def test_the_one_key_that_there_is_need_not_be_named(devices, opened) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "reported"),
     [
         ({}, "has 2 keys; name one by ?key=; there are KEY_A, BTN_0"),
         ({"key": "KEY_POWER"}, "has no key KEY_POWER; there are KEY_A, BTN_0"),
         ({"key": "KEY_NONSENSE"}, "there is no key KEY_NONSENSE"),
     ],
 )
-def test_a_key_that_is_not_there_is_named_with_those_that_are(devices, opened, options, said):
+def test_a_key_that_is_not_there_is_named_with_those_that_are(devices, opened, options, reported):
     device = devices.plug_in(1, keys=("KEY_A", "BTN_0"))
-    assert said in refusal(opened, "AB Button", **options)
-    assert said in refusal(opened, str(device.path), **options)
+    assert reported in refusal(opened, "AB Button", **options)
+    assert reported in refusal(opened, str(device.path), **options)
     assert not device.opened
 
 
-def test_a_name_that_is_missing_is_told_with_those_that_are_there(devices, opened) -> None:
+def test_a_name_that_is_missing_is_reported_with_those_that_are_there(devices, opened) -> None:
     assert "there is none at all" in refusal(opened, "AB Button")
     devices.plug_in(1, "Lid Switch", ("KEY_A",))
     assert "there are Lid Switch" in refusal(opened, "AB Button")
@@ -110,7 +110,7 @@ def test_a_file_that_is_no_input_device_is_called_that(tmp_path: Path, opened) -
     assert "there is no" in refusal(opened, str(tmp_path / "event9"))
 
 
-def test_permission_that_is_missing_is_said_with_the_rule(devices, opened, monkeypatch) -> None:
+def test_permission_that_is_missing_is_stated_with_the_rule(devices, opened, monkeypatch) -> None:
     """The tests may run as root, who may read everything."""
     device = devices.plug_in(1)
 
@@ -119,17 +119,17 @@ def test_permission_that_is_missing_is_said_with_the_rule(devices, opened, monke
 
     monkeypatch.setattr(evdev_button._library(), "InputDevice", refused)
     for place in (str(device.path), "AB Button"):
-        said = refusal(opened, place)
-        assert "60-muster.rules" in said
-        assert "the group input" in said
+        reported = refusal(opened, place)
+        assert "60-muster.rules" in reported
+        assert "the group input" in reported
 
 
-def test_a_button_that_another_program_has_is_said(devices, opened) -> None:
+def test_a_button_that_another_program_has_is_stated(devices, opened) -> None:
     devices.plug_in(1).grabbed_by_another = True
     assert "another program has it for itself" in refusal(opened, "AB Button")
 
 
-def test_without_the_library_it_is_said_how_to_install_it(monkeypatch) -> None:
+def test_without_the_library_it_is_stated_how_to_install_it(monkeypatch) -> None:
     def missing(name: str) -> object:
         raise ImportError(f"No module named {name!r}")
 

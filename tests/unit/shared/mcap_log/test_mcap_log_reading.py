@@ -80,8 +80,8 @@ def test_what_the_disk_does_not_open_keeps_nobody_from_the_rest(tmp_path: Path) 
     damage: list[str] = []
     found = [payload for _, _, payload in read_log(tmp_path, on_damage=damage.append)]
     assert found == [b"\0", b"\2"]
-    (said,) = damage
-    assert said.startswith(f"{path.name}: the disk does not give it (")
+    (reported,) = damage
+    assert reported.startswith(f"{path.name}: the disk does not give it (")
     assert recover_log(tmp_path) == [], "it may be there again tomorrow"
     with SegmentReader(path) as reader:
         assert reader.info().state is SegmentState.UNREADABLE

@@ -96,15 +96,17 @@ def test_a_segment_that_was_moved_away_does_not_come_back(tmp_path: Path) -> Non
     assert [one.name for one in tmp_path.iterdir()] == [path.name + ".torn"]
 
 
-@pytest.mark.parametrize(("torn_off", "said"), [(b"", "kept, whole"), (b"torn", "kept, 4 bytes")])
-def test_what_a_tear_cost_is_said(tmp_path: Path, torn_off: bytes, said: str) -> None:
+@pytest.mark.parametrize(
+    ("torn_off", "reported"), [(b"", "kept, whole"), (b"torn", "kept, 4 bytes")]
+)
+def test_what_a_tear_cost_is_stated(tmp_path: Path, torn_off: bytes, reported: str) -> None:
     writer = SegmentWriter(tmp_path)
     writer.write(T0_NS, KEY, b"1", urgent=True)
     [path] = segment_paths(tmp_path)
     with path.open("ab") as file:
         file.write(torn_off)
     [recovery] = recover_log(tmp_path)
-    assert said in str(recovery)
+    assert reported in str(recovery)
     assert recover_log(tmp_path) == []
 
 
@@ -144,7 +146,7 @@ def test_what_was_damaged_before_the_tear_is_not_called_whole(tmp_path: Path) ->
     assert "whole" not in str(recovery)
 
 
-def test_a_log_that_is_somebody_elses_is_not_called_torn(
+def test_a_log_that_is_person_elses_is_not_called_torn(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refused(_: Path) -> NoReturn:

@@ -59,7 +59,7 @@ def test_records_with_equal_times_keep_their_order(tmp_path: Path) -> None:
     assert on_disk(tmp_path) == payloads
 
 
-def test_segments_end_by_time_and_are_told_of(tmp_path: Path) -> None:
+def test_segments_end_by_time_and_are_reported_of(tmp_path: Path) -> None:
     closed: list[SegmentInfo] = []
     writer = SegmentWriter(tmp_path, SegmentPolicy(segment_s=10.0), closed.append)
     for second in range(25):
@@ -116,7 +116,7 @@ def test_a_writer_without_records_leaves_no_file(tmp_path: Path) -> None:
     assert list((tmp_path / "log").iterdir()) == []
 
 
-def test_a_folder_that_cannot_be_made_is_said_in_words(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_is_stated_in_words(tmp_path: Path) -> None:
     (tmp_path / "log").write_text("a file")
     with pytest.raises(LogError, match="cannot be used"):
         SegmentWriter(tmp_path / "log")

@@ -38,8 +38,8 @@ def test_an_alarm_raised_anew_by_another_wearer_keeps_nothing_of_the_one_between
         with store.write() as session:
             forget_in(session, bo)
         with store.read() as session:
-            told = {one.t_ns: one.text for one in session.query(AlarmTransition)}
-    assert told == texts | {20: "(forgotten) may have fallen"}
+            reported = {one.t_ns: one.text for one in session.query(AlarmTransition)}
+    assert reported == texts | {20: "(forgotten) may have fallen"}
 
 
 def test_what_was_raised_and_noted_after_an_incident_about_it_names_nobody(
@@ -72,11 +72,11 @@ def test_what_was_raised_and_noted_after_an_incident_about_it_names_nobody(
             with store.write() as session:
                 forget_in(session, ana)
         with store.read() as session:
-            told = {one.alarm_id: (one.text, one.by) for one in session.query(AlarmRow)}
+            reported = {one.alarm_id: (one.text, one.by) for one in session.query(AlarmRow)}
             noted_of = {one.entry_id: "Ana" in one.detail for one in session.query(AuditEntry)}
     kept = "Mayday from Ana", "eve: spoke to Ana"
     gone = f"Mayday from {ERASED_TEXT}", f"eve: spoke to {ERASED_TEXT}"
-    assert told == dict(zip(ids, (gone, kept, kept), strict=True))
+    assert reported == dict(zip(ids, (gone, kept, kept), strict=True))
     assert noted_of == dict(zip(ids, (False, True, True), strict=True))
 
 
@@ -88,8 +88,8 @@ def test_audit_has_no_places_of_separate_actions(tmp_path: Path, of_incident: bo
         "pin of bo": DoneApart("b", 20, "eve", "SetPin p, FF-02, 3.0, 4.0"),
         "evacuation": DoneApart("b", 20, "eve", "SendCommand c1, evacuate, Ana"),
     }
-    said = {name: msgspec.json.encode(one).decode() for name, one in details.items()}
-    said["broken"] = said["pin of ana"].replace("station", ERASED_TEXT)
+    stated = {name: msgspec.json.encode(one).decode() for name, one in details.items()}
+    stated["broken"] = stated["pin of ana"].replace("station", ERASED_TEXT)
     wearing = (Wearing("FF-01", 15, 25),)
     if of_incident:  # that was over before the stations were together again
         ana = Erasure(wearing, ("Ana",), incident_id="i1", from_ns=15, until_ns=25)
@@ -99,7 +99,7 @@ def test_audit_has_no_places_of_separate_actions(tmp_path: Path, of_incident: bo
         with store.write() as session:
             session.add_all(
                 AuditEntry(entry_id=name, t_ns=30, by="station", action="DoneApart", detail=detail)
-                for name, detail in said.items()
+                for name, detail in stated.items()
             )
         for _ in range(2):
             with store.write() as session:
@@ -109,8 +109,8 @@ def test_audit_has_no_places_of_separate_actions(tmp_path: Path, of_incident: bo
     nothing = DoneApart("b", 20, "eve", ERASED_TEXT)
     assert left == {
         "pin of ana": msgspec.json.encode(nothing).decode(),
-        "pin of bo": said["pin of bo"],
-        "evacuation": said["evacuation"].replace("Ana", ERASED_TEXT),
+        "pin of bo": stated["pin of bo"],
+        "evacuation": stated["evacuation"].replace("Ana", ERASED_TEXT),
         "broken": ERASED_TEXT,
     }
 
@@ -144,8 +144,8 @@ def test_a_name_goes_out_of_the_audit_however_it_is_written_there_and_nothing_el
             with store.write() as session:
                 forget_in(session, Erasure((), (name,), person_id="p"))
         with store.read() as session:
-            said = session.query(AuditEntry).one().detail
-    assert msgspec.json.decode(said, type=type(left)) == left
+            stated = session.query(AuditEntry).one().detail
+    assert msgspec.json.decode(stated, type=type(left)) == left
 
 
 def test_of_an_incident_the_audit_keeps_no_crew_and_role_of_who_was_given_a_unit(
@@ -163,7 +163,7 @@ def test_of_an_incident_the_audit_keeps_no_crew_and_role_of_who_was_given_a_unit
         with store.write() as session:
             forget_in(session, ana)
         with store.read() as session:
-            said = {one.t_ns: one.detail for one in session.query(AuditEntry)}
+            stated = {one.t_ns: one.detail for one in session.query(AuditEntry)}
     nobody = replace(worn, person_id=ERASED_TEXT, **NOBODY)
     gone = msgspec.json.encode(nobody).decode()
-    assert said == {10: detail, 20: gone, 30: detail}
+    assert stated == {10: detail, 20: gone, 30: detail}

@@ -127,11 +127,11 @@ def test_a_silent_unit_and_a_silent_agent(silent_s: float, found: str | None) ->
     tracked = UnitState("FF-01", last_message_ns=NOW_NS, tracker=agent)
     tracked.boots = [BootState(1, first_live_ns=NOW_NS - ns(900), last_live_ns=NOW_NS)]
     tracked.description = message_factory.description(HEADER, tracker=NO_TRACKER)
-    told = "gone" if found == "lost" else found
-    assert judged(TrackerGone(), tracked) == told
+    reported = "gone" if found == "lost" else found
+    assert judged(TrackerGone(), tracked) == reported
     tracked.tracker = UnitState("FF-01@tracker")  # what it said came out of its journal
     tracked.boots = [BootState(1, first_live_ns=NOW_NS - ns(silent_s), last_live_ns=NOW_NS)]
-    assert judged(TrackerGone(), tracked) == (told if told == "gone" else None)
+    assert judged(TrackerGone(), tracked) == (reported if reported == "gone" else None)
 
 
 @pytest.mark.parametrize(("silent_s", "found"), [(29.9, "cloned"), (30.0, "over")])

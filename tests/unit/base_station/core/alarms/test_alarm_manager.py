@@ -112,11 +112,11 @@ def test_alarm_keeps_the_time_of_its_last_raising(
     script.act(AcknowledgeAlarm(raised.alarm_id))
     script.wait(1, lambda: script.temperature(U, 270.0))
     taken, again = script.alarms[3:]
-    told_s = [
+    reported_s = [
         (one.last_raised_ns - raised.header.t_utc_ns) // 10**9
         for one in (raised, worse, eased, taken, again)
     ]
-    assert told_s == [0, 5, 5, 5, 30]
+    assert reported_s == [0, 5, 5, 5, 30]
     assert {one.raised_ns for one in script.alarms} == {raised.header.t_utc_ns}
 
 

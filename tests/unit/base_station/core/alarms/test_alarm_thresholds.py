@@ -50,7 +50,7 @@ def script() -> Script:
 
 
 @pytest.mark.parametrize(
-    ("toml", "said"),
+    ("toml", "reported"),
     [
         ("[alarms.no_motion]\nalarm_s = 25\n", "did you mean no-motion?"),
         ("[alarms.no-motion]\nalarm = 25\n", "did you mean alarm_s?"),
@@ -68,10 +68,12 @@ def script() -> Script:
         ("[alarms]\nbattery = 0.2\n", "Expected `object`"),
     ],
 )
-def test_a_setting_that_no_rule_can_have_is_refused(tmp_path: Path, toml: str, said: str) -> None:
+def test_a_setting_that_no_rule_can_have_is_refused(
+    tmp_path: Path, toml: str, reported: str
+) -> None:
     with pytest.raises(ConfigError) as error:
         set_by(tmp_path, toml)
-    assert said in str(error.value)
+    assert reported in str(error.value)
 
 
 def test_only_changed_thresholds_are_listed(tmp_path: Path) -> None:
@@ -80,8 +82,8 @@ def test_only_changed_thresholds_are_listed(tmp_path: Path) -> None:
 
 
 def test_the_message_is_the_same_behind_the_wire() -> None:
-    said = OperatorAction(Header(STATION_ID, 1, 1, 0), "a", STATION_ID, SetThresholds(LATER))
-    assert decode(OPERATOR, encode(said)) == said
+    reported = OperatorAction(Header(STATION_ID, 1, 1, 0), "a", STATION_ID, SetThresholds(LATER))
+    assert decode(OPERATOR, encode(reported)) == reported
 
 
 def test_they_hold_from_then_on(script: Script) -> None:

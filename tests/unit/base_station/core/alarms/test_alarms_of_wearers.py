@@ -44,16 +44,16 @@ def test_late_alert_is_of_the_wearer_at_its_time(script: Script, kind: EventKind
     script.act(Assign(U, "cem", "Cem", "", ""))
     script.wait(3)
     key = EVENT.key(U) if way == "live" else backfilled_key(U, EVENT.suffix)
-    told = {}
+    reported = {}
     for name, event in events.items():
         script.record(key, encode(event))
-        told[name] = script.alarms[-1].text
+        reported[name] = script.alarms[-1].text
         script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
         script.wait(1)
     script.event(U, kind)
-    told["Cem"] = script.alarms[-1].text
+    reported["Cem"] = script.alarms[-1].text
     text = "Mayday from {}" if kind is EventKind.MAYDAY else "{}: possible fall"
-    assert told == {name: text.format(name or f"unit {U}") for name in told}
+    assert reported == {name: text.format(name or f"unit {U}") for name in reported}
 
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
@@ -181,7 +181,7 @@ def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_com
 
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
-def test_alert_of_an_unworn_unit_is_raised_once_whoever_wears_it_next(
+def test_alert_of_an_unworn_unit_is_raised_once_anyone_wears_it_next(
     script: Script, kind: EventKind
 ) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))

@@ -56,8 +56,8 @@ def test_faults_of_one_unit_are_separate_alarms_each_raised_once(script: Script)
         script.event(U, EventKind.SENSOR_FAULT, detail)
         script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
         script.wait(1)
-    told = [one.text for one in script.alarms if one.state is AlarmState.RAISED]
-    assert [text.partition(": ")[2] for text in told] == list(details)
+    reported = [one.text for one in script.alarms if one.state is AlarmState.RAISED]
+    assert [text.partition(": ")[2] for text in reported] == list(details)
     assert fault_texts(script) == set(details)
 
 
@@ -102,11 +102,11 @@ def test_endless_faults_raise_the_last_and_few_are_kept(script: Script) -> None:
     script.wait(1)
     assert len(script.alarms) == before, "of those that are kept each stands by itself"
     script.event(U, EventKind.SENSOR_FAULT, "and yet another")
-    told = script.alarms[-1].text
+    reported = script.alarms[-1].text
     script.act(ResolveAlarm(script.alarms[0].alarm_id, ""))
     script.wait(3)
     assert script.alarms[-1].state is AlarmState.RESOLVED, "nothing is told anew for the room"
-    assert told.partition(": ")[2] in fault_texts(script)
+    assert reported.partition(": ")[2] in fault_texts(script)
 
 
 def test_faults_that_stand_do_so_after_a_restart(script: Script) -> None:

@@ -63,7 +63,7 @@ def refusal(script: Script, action: SendCommand) -> str:
     return refused.reason
 
 
-def test_all_are_told_and_nobody_gets_the_evacuation_any_more() -> None:
+def test_all_are_reported_and_nobody_gets_the_evacuation_any_more() -> None:
     script = evacuated()
     script.now_s += 5.0
     script.act(all_clear(), by="ada")
@@ -93,7 +93,7 @@ def test_a_unit_of_an_earlier_version_refuses_it_and_is_silenced_all_the_same() 
     assert states(script, "ac")[1] == "acknowledged", "told by radio"
 
 
-def test_who_was_ordered_out_again_is_not_told_until_that_evacuation_ends() -> None:
+def test_who_was_ordered_out_again_is_not_reported_until_that_evacuation_ends() -> None:
     script = evacuated()
     script.act(evacuation("c2", "FF-02"))
     script.act(all_clear())

@@ -64,21 +64,21 @@ def to_one(kind: CommandKind = CommandKind.PAR_REQUEST) -> Script:
 
 
 @pytest.mark.parametrize(
-    ("target", "told"),
+    ("target", "reported"),
     [
         ({"unit_id": "FF-04"}, ["FF-04"]),
         ({"crew": "red"}, ["FF-01", "FF-02"]),
         ({"everyone": True}, ["FF-01", "FF-02", "FF-03", "stranded"]),
     ],
 )
-def test_a_command_goes_to_a_unit_a_crew_or_everyone(target, told):
+def test_a_command_goes_to_a_unit_a_crew_or_everyone(target, reported):
     script = crewed()
     script.register("stranded")
     script.status("stranded")  # nobody wears it, but it is out there
     script.status("stranger")
     assert script.act(order(**target)) == [CommandChanged("c1")]
-    assert list(states(script)) == told
-    assert [one.unit_id for one in open_orders(script.pipeline.state)] == told
+    assert list(states(script)) == reported
+    assert [one.unit_id for one in open_orders(script.pipeline.state)] == reported
 
 
 def test_a_unit_in_its_drawer_is_not_waited_for():
@@ -265,8 +265,8 @@ def test_replaced_rate_is_not_sent_any_more():
     script.act(order("look", CommandKind.LOCATE, unit_id="FF-01"))
     outputs = script.act(order("fast", rate, unit_id="FF-01", rate_hz=5.0))
     assert {CommandChanged("slow"), CommandChanged("fast")} == set(outputs)
-    said = [(one.command_id, one.unit_id) for one in open_orders(script.pipeline.state)]
-    assert said == [("slow", "FF-02"), ("look", "FF-01"), ("fast", "FF-01")]
+    stated = [(one.command_id, one.unit_id) for one in open_orders(script.pipeline.state)]
+    assert stated == [("slow", "FF-02"), ("look", "FF-01"), ("fast", "FF-01")]
     replaced = script.pipeline.state.commands["slow"].deliveries["FF-01"]
     assert (states(script, "slow"), replaced.reason) == (
         {"FF-01": "refused", "FF-02": "queued"},
@@ -318,8 +318,8 @@ def test_a_reply_out_of_the_journal_counts():
     assert delivery.received_ns == script.t_ns, "who answers has it"
 
 
-@pytest.mark.parametrize(("said", "by"), [("before", "Person 1"), ("after", "Person 4")])
-def test_late_acknowledgement_is_of_the_wearer_at_its_time(said, by):
+@pytest.mark.parametrize(("stated", "by"), [("before", "Person 1"), ("after", "Person 4")])
+def test_late_acknowledgement_is_of_the_wearer_at_its_time(stated, by):
     script = to_one()
     script.status("FF-01")
     replies = {}
@@ -331,7 +331,7 @@ def test_late_acknowledgement_is_of_the_wearer_at_its_time(said, by):
         if when == "before":
             script.act(Unassign("FF-01"))
             script.act(Assign("FF-01", "p4", "Person 4", "", ""))
-    script.record(backfilled_key("FF-01", REPLY.suffix), encode(replies[said]))
+    script.record(backfilled_key("FF-01", REPLY.suffix), encode(replies[stated]))
     assert script.pipeline.state.commands["c1"].deliveries["FF-01"].acknowledged_by == by
 
 

@@ -161,7 +161,7 @@ def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
 
 
 @pytest.mark.parametrize(
-    ("actions", "said"),
+    ("actions", "reported"),
     [
         ([(20, OPEN)], "open"),
         ([], "knows no incident"),
@@ -169,9 +169,9 @@ def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
     ],
 )
 def test_what_is_open_or_unknown_is_not_forgotten(
-    actions: list[tuple[int, Action]], said: str
+    actions: list[tuple[int, Action]], reported: str
 ) -> None:
-    with pytest.raises(UserError, match=said):
+    with pytest.raises(UserError, match=reported):
         erasure_of_incident(done(*actions), "i1")
 
 

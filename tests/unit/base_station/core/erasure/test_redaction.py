@@ -99,18 +99,18 @@ def test_who_is_called_like_an_alarm_leaves_the_alarms_as_they_are() -> None:
 def test_a_name_is_found_whatever_byte_stands_before_it(length: int) -> None:
     """On the wire a text's length stands right before it, and may look like a letter."""
     text = "Bo".ljust(length + 2, ".")
-    said = OperatorAction(
+    stated = OperatorAction(
         HEADER, "a1", "eve", SendCommand("c1", CommandKind.TEXT, "FF-01", "", False, text, 0.0, 9.0)
     )
-    found = redacted("Bo", OPERATOR, said)
+    found = redacted("Bo", OPERATOR, stated)
     assert isinstance(found, OperatorAction)
     assert isinstance(found.action, SendCommand)
     assert found.action.text == text.replace("Bo", ERASED_TEXT)
 
 
 def test_ids_stay_so_that_what_belongs_together_does() -> None:
-    said = OperatorAction(HEADER, "a1", "eve", Assign("Max", "p2", "Max", "Max crew", ""))
-    found = redacted("Max", OPERATOR, said)
+    stated = OperatorAction(HEADER, "a1", "eve", Assign("Max", "p2", "Max", "Max crew", ""))
+    found = redacted("Max", OPERATOR, stated)
     assert isinstance(found, OperatorAction)
     assert found.action == Assign("Max", "p2", ERASED_TEXT, f"{ERASED_TEXT} crew", "")
 
@@ -259,13 +259,13 @@ def test_an_alarm_about_an_incident_and_what_is_noted_of_it_name_nobody_after_it
         "Ada may have fallen", "eve: spoke to Ada", raised_ns, raised_ns,
     )  # fmt: skip
     ((_, _, payload),) = redact((t_ns, ALARM.key(STATION_ID), encode(alarm)))
-    said = f"{left} may have fallen", f"eve: spoke to {left}"
-    assert encode(msgspec.structs.replace(alarm, text=said[0], by=said[1])) == payload
+    stated = f"{left} may have fallen", f"eve: spoke to {left}"
+    assert encode(msgspec.structs.replace(alarm, text=stated[0], by=stated[1])) == payload
     noted = ResolveAlarm(alarm.alarm_id, "spoke to Ada")
     done = OperatorAction(HEADER, "a-1", "Ada", noted)
     ((_, _, payload),) = redact((t_ns, OPERATOR.key(STATION_ID), encode(done)))
-    told = msgspec.structs.replace(noted, note=f"spoke to {left}")
-    assert encode(msgspec.structs.replace(done, action=told)) == payload
+    reported = msgspec.structs.replace(noted, note=f"spoke to {left}")
+    assert encode(msgspec.structs.replace(done, action=reported)) == payload
 
 
 @pytest.mark.parametrize(

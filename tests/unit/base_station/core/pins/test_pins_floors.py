@@ -101,7 +101,7 @@ def test_a_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "words"),
+    ("stated", "words"),
     [
         (lambda wearer: wearer.pin("p", 0, "lift"), "the pin 'lift'"),
         (lambda wearer: wearer.pin("p", 0), "the pin of 2 minutes before"),
@@ -114,12 +114,12 @@ def test_a_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
     ],
 )
 def test_two_floors_without_a_climb_are_not_averaged(
-    said: Callable[[Wearer], object], words: str
+    stated: Callable[[Wearer], object], words: str
 ) -> None:
     """Nothing but these two tells how high the unit began."""
     wearer = Wearer()
     wearer.go(10)
-    said(wearer)
+    stated(wearer)
     wearer.go(120)
     verdict = wearer.pin("q", 1)
     assert verdict.state == "conflict"

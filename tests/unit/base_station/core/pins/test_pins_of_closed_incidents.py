@@ -390,8 +390,8 @@ def test_floor_of_one_unit_renumbers_the_trail_of_another() -> None:
     script = both_gone_upstairs()
     upstairs_ns = script.t_ns - 15 * 10**9
     state = script.pipeline.state
-    said = {step.floor for step in state.units[B].trails.shown if step.t_ns > upstairs_ns}
-    assert said == {3}
+    reported = {step.floor for step in state.units[B].trails.shown if step.t_ns > upstairs_ns}
+    assert reported == {3}
     script.act(SetPin("p", A, script.t_ns, 59.0, 0.0, 0.5, 4, None, 0.0, ""))
     script.wait(5)
     assert {step.floor for step in state.units[B].trails.shown if step.t_ns > upstairs_ns} == {4}

@@ -118,16 +118,16 @@ def test_a_journal_of_sightings_is_solved_now_and_then(walk: Walk) -> None:
         sighting = Sighting(header, SightingKind.BEACON, "door", 2.0)
         script.now_s += 0.01
         script.record(backfilled_key("FF-01", SIGHTING.suffix), encode(sighting))
-    told = script.outputs[begun:]
-    assert sum(isinstance(one, TrailBackfilled) for one in told) <= 1
+    reported = script.outputs[begun:]
+    assert sum(isinstance(one, TrailBackfilled) for one in reported) <= 1
     assert (
-        sum(isinstance(one, PinsChanged) for one in told)
+        sum(isinstance(one, PinsChanged) for one in reported)
         == len(script.pipeline.state.site.pins)
         > 9
     )
     script.wait(4)
-    told = script.outputs[begun:]
-    assert sum(isinstance(one, TrailBackfilled) for one in told) <= 2
+    reported = script.outputs[begun:]
+    assert sum(isinstance(one, TrailBackfilled) for one in reported) <= 2
     assert "waiting" not in {walk.state(one) for one in script.pipeline.state.site.pins}
 
 
@@ -184,7 +184,7 @@ def test_a_unit_that_is_met_is_no_beacon_of_the_same_name() -> None:
     (met,) = pin_views(state, person_lookup({}))
     assert (met.kind, met.north_m, met.floor) == ("meeting", None, None)
     sighting(walk, SightingKind.BEACON, "FF-02")
-    assert [said.floor for said in reported_floors(state, state.site)] == [3]
+    assert [stated.floor for stated in reported_floors(state, state.site)] == [3]
 
 
 def test_path_is_unpacked_once_for_all_reported_floors(

@@ -70,14 +70,14 @@ def test_the_gap_in_the_trail_is_filled_at_its_own_time(walked):
 
 def test_late_position_is_shown_once_for_each_second(walked):
     """Of five positions a second, as trail and store keep it; a late fix finds all of them."""
-    said = [
+    reported = [
         output.north_m
         for second in (11, 12)
         for part in (0.1, 0.3, 0.5, 0.7, 0.9)
         for output in walked.late(second, at_second=31, part=part)
         if isinstance(output, FusedPosition)
     ]
-    assert said == pytest.approx([11.1, 12.1])
+    assert reported == pytest.approx([11.1, 12.1])
     saved = read_checkpoint(walked.pipeline.checkpoint())
     assert saved is not None
     path = msgspec.msgpack.decode(saved.fusers["FF-01"], type=FuserMemory).path
@@ -144,9 +144,9 @@ def test_unknown_run_is_not_taken_for_the_present_one(walked):
 def test_what_a_stranger_brings_out_of_its_journal_is_not_believed(walked):
     """As what it says now is not: it is seen that it speaks, and nobody is shown by it."""
     for second, backfilled in ((5, False), (3, True)):
-        said = walked.position(second)
-        header = msgspec.structs.replace(said.header, unit_id="FF-66")
-        payload = encode(msgspec.structs.replace(said, header=header))
+        reported = walked.position(second)
+        header = msgspec.structs.replace(reported.header, unit_id="FF-66")
+        payload = encode(msgspec.structs.replace(reported, header=header))
         key = backfilled_key("FF-66", POSITION.suffix) if backfilled else POSITION.key("FF-66")
         outputs = walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, payload))
         assert not any(isinstance(one, FusedPosition | TrailBackfilled) for one in outputs)

@@ -119,21 +119,21 @@ def test_its_walls_hold_nobody(script: Outside) -> None:
 
 
 @pytest.mark.parametrize(
-    "said",
+    "stated",
     [
         START,
         SetPin("p", A, 0, *ENGINE_M, 0.5, 0, None, 0.0, ""),
         SetStart(A, *ENGINE_M, 0.0, 0.0, 0.5, math.pi),
         PlaceBeacon("door", "", 0.0, 0.0, 0, 0.3, 3.0),
     ],
-    ids=lambda said: type(said).__name__,
+    ids=lambda stated: type(stated).__name__,
 )
-def test_first_place_on_a_plan_counts_from_the_beginning(said: Action, script: Outside) -> None:
+def test_first_place_on_a_plan_counts_from_the_beginning(stated: Action, script: Outside) -> None:
     earlier = Outside()
     earlier.act(SetPlan(PLAN))
     earlier.walk(30)
     for one in (script, earlier):
-        assert not any(isinstance(output, Refused) for output in one.act(said))
+        assert not any(isinstance(output, Refused) for output in one.act(stated))
     for number in range(2):
         for unit_id in (A, B):
             mine, theirs = script.unit(unit_id).place.fused, earlier.unit(unit_id).place.fused

@@ -64,14 +64,14 @@ def far_m(one: FusedPosition, place_m: tuple[float, float]) -> float:
 
 def test_they_are_shown_where_they_say_and_on_that_floor(script: Script) -> None:
     pin(script)
-    said = shown(script)
-    assert script.fused[-1] == said, "it is in the log"
-    assert (said.north_m, said.east_m, said.floor) == (*STAIRS_M, 1)
-    assert said.std_north_m == said.std_east_m == 1.0
-    assert said.down_m == pytest.approx(-3.2)
-    assert said.floor_probability is not None
-    assert said.floor_probability > 0.9
-    assert said.t_meas_ns == script.t_ns
+    reported = shown(script)
+    assert script.fused[-1] == reported, "it is in the log"
+    assert (reported.north_m, reported.east_m, reported.floor) == (*STAIRS_M, 1)
+    assert reported.std_north_m == reported.std_east_m == 1.0
+    assert reported.down_m == pytest.approx(-3.2)
+    assert reported.floor_probability is not None
+    assert reported.floor_probability > 0.9
+    assert reported.t_meas_ns == script.t_ns
 
 
 def test_the_region_grows_from_there(script: Script) -> None:

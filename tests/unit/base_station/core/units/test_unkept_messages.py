@@ -28,6 +28,6 @@ def test_what_a_unit_could_not_keep_is_among_the_problems() -> None:
 def test_the_heartbeat_carries_what_was_not_kept() -> None:
     script = Script()
     beat = Heartbeat(script.header(U), 5, 9, never_saved=2**40, given_up=7)
-    heard = decode(HEARTBEAT, encode(beat))
-    assert isinstance(heard, Heartbeat)
-    assert (heard.never_saved, heard.given_up) == (2**40, 7)
+    received = decode(HEARTBEAT, encode(beat))
+    assert isinstance(received, Heartbeat)
+    assert (received.never_saved, received.given_up) == (2**40, 7)

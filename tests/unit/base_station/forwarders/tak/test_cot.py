@@ -78,7 +78,7 @@ def test_what_is_no_number_is_no_place(name: str) -> None:
     assert place_of(position(**{name: math.nan}), ANCHOR) is None
 
 
-def test_an_unknown_height_error_is_said_in_the_word_for_it() -> None:
+def test_an_unknown_height_error_is_stated_in_the_word_for_it() -> None:
     unit = Scene().unit(position=position(std_down_m=math.inf))
     assert person_event(unit)[0].get("le") == "9999999.0"
 

@@ -57,7 +57,7 @@ def test_a_person_of_another_team_is_read() -> None:
         ("a-h-G", ExternalKind.PERSON),
     ],
 )
-def test_kinds_are_told_by_their_type(kind: str, shown: ExternalKind) -> None:
+def test_kinds_are_reported_by_their_type(kind: str, shown: ExternalKind) -> None:
     marker = read_event("county", cot_event("u", kind=kind))
     assert isinstance(marker, ExternalMarker)
     assert marker.kind is shown

@@ -94,7 +94,7 @@ def test_units_of_others_and_switched_off_ones_do_not_go_out() -> None:
     assert desk.kinds() == [PERSON]
 
 
-def test_who_is_not_heard_is_told_at_once_and_then_seldom_and_never_as_fresh() -> None:
+def test_who_is_not_received_is_reported_at_once_and_then_seldom_and_never_as_fresh() -> None:
     scene = Scene()
     desk = Desk(scene.picture())
     (first,) = desk.sent()
@@ -182,7 +182,7 @@ def test_only_emergencies_of_units_are_emergencies_there() -> None:
     assert desk.kinds() == []
 
 
-def test_an_emergency_without_a_position_is_told_of() -> None:
+def test_an_emergency_without_a_position_is_reported_of() -> None:
     scene = Scene()
     picture = scene.picture(units=(scene.unit(position=None),), alarms=(alarm(),))
     desk = Desk(picture)

@@ -161,12 +161,12 @@ def test_a_server_that_takes_nothing_costs_no_memory_and_is_left(
     forwarder.reset(scene.picture())
     forwarder.start()
     assert stalled.wait(60.0)
-    said = 0
+    reported = 0
 
     def is_left() -> bool:
-        nonlocal said
-        said += 1
-        forwarder.delta(delta(*(scene.moved(1.0, 10.0 + said, one) for one in names)))
+        nonlocal reported
+        reported += 1
+        forwarder.delta(delta(*(scene.moved(1.0, 10.0 + reported, one) for one in names)))
         return "takes nothing" in forwarder.view().text or len(server.received) > 1
 
     until(is_left, "it is left")

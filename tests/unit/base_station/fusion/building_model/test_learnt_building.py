@@ -258,9 +258,9 @@ def test_an_axis_is_as_good_as_the_heading_was_at_its_first_leg() -> None:
 
 def test_an_axis_that_others_know_shows_earlier_and_another_does_not() -> None:
     by_itself, _, _ = legs_until_an_axis(None)
-    told, _, _ = legs_until_an_axis(Axis(0.2, 0.03**2))
+    reported, _, _ = legs_until_an_axis(Axis(0.2, 0.03**2))
     other, _, _ = legs_until_an_axis(Axis(0.2 + math.pi / 4.0, 0.03**2))
-    assert told < by_itself == other
+    assert reported < by_itself == other
 
 
 def test_forgotten_unit_leaves_nothing_in_the_building_model() -> None:

@@ -184,10 +184,10 @@ def test_wrong_receiver_is_reported_until_it_is_right(
     assert gps_alarms() == []
     script.wait(31, lambda: send_fix(wrong))
     script.wait(60, lambda: script.position(U, 0.0, 0.0))
-    said = f"unit {U}: GPS is not used ({reason})"
-    assert gps_alarms() == [("RAISED", said)]
+    reported = f"unit {U}: GPS is not used ({reason})"
+    assert gps_alarms() == [("RAISED", reported)]
     script.wait(5, lambda: send_fix({}))
-    assert gps_alarms()[1:] == [("RESOLVED", said)]
+    assert gps_alarms()[1:] == [("RESOLVED", reported)]
 
 
 def test_what_was_not_used_is_counted_anew_in_another_incident(script: Script) -> None:
@@ -252,11 +252,13 @@ def test_a_fix_of_an_earlier_run_is_of_no_path(script: Script) -> None:
     assert script.fused[-1].since_gps_s is None
 
 
-@pytest.mark.parametrize("said_by_hand", [SetPlan(PLAN), SetStart(U, 5.0, 7.0, 0.0, 0.0, 0.1, 0.0)])
+@pytest.mark.parametrize(
+    "stated_by_hand", [SetPlan(PLAN), SetStart(U, 5.0, 7.0, 0.0, 0.0, 0.1, 0.0)]
+)
 def test_fix_places_no_frame_that_a_person_has_placed(
-    script: Script, said_by_hand: SetPlan | SetStart
+    script: Script, stated_by_hand: SetPlan | SetStart
 ) -> None:
-    script.act(said_by_hand)
+    script.act(stated_by_hand)
     script.position(U, 0.0, 0.0)
     script.gps(U, 52.0, 4.0)
     assert script.pipeline.state.site.anchor is None

@@ -65,19 +65,19 @@ def test_without_a_receiver_it_turns_the_path_to_the_plan() -> None:
     inside = []
     for seed in SEEDS:
         walk = wandered(seed)
-        heard, deaf = started(walk), started(walk)
+        received, deaf = started(walk), started(walk)
         for index in range(len(walk)):
-            for fuser in (heard, deaf):
+            for fuser in (received, deaf):
                 fuser.predict(walk.position(index))
-            heard.update_heading(compass_of(walk, seed))
+            received.update_heading(compass_of(walk, seed))
             if index % 50 == 49:
-                inside.append(normalised2(heard, walk, index) < 5.991)
-        estimate = heard.estimate()
+                inside.append(normalised2(received, walk, index) < 5.991)
+        estimate = received.estimate()
         assert estimate is not None
         assert estimate.heading_std_rad < 1.5 * STD_RAD
         assert estimate.quality_reason != "heading not known yet"
         away_m = float(np.linalg.norm(walk.truth_m[-1] - walk.truth_m[0]))
-        assert off_m(heard, walk, -1) < 3.0 + 0.4 * away_m
+        assert off_m(received, walk, -1) < 3.0 + 0.4 * away_m
     assert np.mean(inside) > 0.85
 
 
@@ -127,11 +127,11 @@ def test_beside_fixes_it_does_no_harm() -> None:
     deaf_m: list[float] = []
     for seed in SEEDS:
         walk = wandered(seed)
-        for errors_m, hears in ((with_compass_m, True), (deaf_m, False)):
+        for errors_m, receives in ((with_compass_m, True), (deaf_m, False)):
             fuser, receiver = started(walk), Receiver(np.random.default_rng(seed))
             for index in range(len(walk)):
                 fuser.predict(walk.position(index))
-                if hears:
+                if receives:
                     fuser.update_heading(compass_of(walk, seed))
                 if index % 5 == 0:
                     fuser.update_gnss(receiver.fix(float(walk.t_s[index]), walk.truth_m[index]))

@@ -95,10 +95,12 @@ def test_run_whose_end_came_first_begins_at_its_begin() -> None:
     """An hour of the journal, the newest first, while the wearer walks on."""
     history = PathHistory()
     history.set_start(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.2))
-    heard_s = 3600
+    received_s = 3600
     for second in range(240):
-        history.append(at(heard_s + second, heard_s + second), (heard_s + second) * NS_PER_S, False)
-        for late_s in range(heard_s - 15 * second, heard_s - 15 * (second + 1), -1):
+        history.append(
+            at(received_s + second, received_s + second), (received_s + second) * NS_PER_S, False
+        )
+        for late_s in range(received_s - 15 * second, received_s - 15 * (second + 1), -1):
             insert_late(history, at(late_s, late_s))
     arrays = history.arrays()
     assert history.begin_ns == history.runs.begin_ns == 2 * NS_PER_S

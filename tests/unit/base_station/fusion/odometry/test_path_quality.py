@@ -71,8 +71,8 @@ def test_nobody_is_alarmed_by_a_long_walk():
 
     def walk(reasons):
         north_m = abs(script.now_s % 40.0 - 20.0)
-        told = {"quality": quality, "reasons": reasons, "distance_m": script.now_s}
-        script.position(U, north_m, 0.0, **told)
+        reported = {"quality": quality, "reasons": reasons, "distance_m": script.now_s}
+        script.position(U, north_m, 0.0, **reported)
 
     script.wait(60, lambda: walk(far))
     assert script.alarms == []

@@ -62,11 +62,11 @@ def test_a_building_makes_fixes_worse_beside_it_and_most_in_it(
 
 
 @pytest.mark.parametrize(
-    ("heard_s", "unguided_m"), [(None, 0.0), (99.5, 0.0), (90.0, 15.0), (120.0, 0.0)]
+    ("received_s", "unguided_m"), [(None, 0.0), (99.5, 0.0), (90.0, 15.0), (120.0, 0.0)]
 )
 def test_variance_without_positions_grows_at_walking_speed(
-    heard_s: float | None, unguided_m: float
+    received_s: float | None, unguided_m: float
 ) -> None:
-    last_ns = None if heard_s is None else round(heard_s * NS_PER_S)
+    last_ns = None if received_s is None else round(received_s * NS_PER_S)
     assert KIND.unguided_mps == 1.5
     assert unguided_m2(KIND, 100 * NS_PER_S, last_ns) == pytest.approx(unguided_m**2)

@@ -34,8 +34,8 @@ def a_climber(unit_id: str, east_of_start_m: float, start_off_m: float) -> UnitE
     for row, (north_m, east_m, falls_m) in enumerate([*ahead, *east, *up, *around, *down, *around]):
         own_m, down_m = own_m + np.array([north_m, east_m]), down_m + falls_m
         header = Header(unit_id, 1, row + 1, row * NS_PER_S)
-        said = position(header, north_m=float(own_m[0]), east_m=float(own_m[1]))
-        history.append(said, row * NS_PER_S, jumped=False)
+        stated = position(header, north_m=float(own_m[0]), east_m=float(own_m[1]))
+        history.append(stated, row * NS_PER_S, jumped=False)
         history.own.points[-1].shown_down_m = down_m
     return UnitEvidence(history.arrays(), history.start.position, history.start.begin_ns)
 
@@ -64,8 +64,8 @@ def standing(fixes: int, wild: bool = False) -> SmoothedPath:
     history = PathHistory()
     for row in range(120):
         t_ns = row * NS_PER_S
-        said = position(Header("a", 1, row + 1, t_ns), north_m=0.1 * row if row < 80 else 8.0)
-        history.append(said, t_ns, jumped=False)
+        stated = position(Header("a", 1, row + 1, t_ns), north_m=0.1 * row if row < 80 else 8.0)
+        history.append(stated, t_ns, jumped=False)
     for row in range(0, 2 * fixes, 2):
         north_m = 0.1 * row + (60.0 if wild and row == 10 else 1.0)
         history.fix(PlaceFix(row * NS_PER_S, north_m, 0.0, 0.0, 1.3, None), row * NS_PER_S)
@@ -104,8 +104,8 @@ def test_the_arrow_is_solved_as_any_other_problem_is() -> None:
     right = np.concatenate([one.right for one in every])
     covariance = np.linalg.inv(matrix.T @ matrix)
     wanted = covariance @ matrix.T @ right
-    chains, told = normal.solve()
-    assert np.concatenate([*chains.values(), told]) == pytest.approx(wanted)
+    chains, reported = normal.solve()
+    assert np.concatenate([*chains.values(), reported]) == pytest.approx(wanted)
     assert normal.shared_covariance == pytest.approx(covariance[12:, 12:])
     for name, equations in of_chains.items():
         rows = equations.matrix()

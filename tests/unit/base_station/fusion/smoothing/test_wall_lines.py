@@ -64,8 +64,10 @@ def searched(start_m: tuple[float, float], std_m: float, seed: int, down_m: floa
         for part in np.linspace(0.0, 1.0, max(2, round(way_m)))[1:]:
             t_s += 1
             north_m, east_m = (place + part * (corner - place)).tolist()
-            said = position(Header("FF-01", 1, t_s, t_s * NS_PER_S), north_m=north_m, east_m=east_m)
-            history.append(said, t_s * NS_PER_S, jumped=False)
+            reported = position(
+                Header("FF-01", 1, t_s, t_s * NS_PER_S), north_m=north_m, east_m=east_m
+            )
+            history.append(reported, t_s * NS_PER_S, jumped=False)
         place = corner
     path = history.arrays()
     lies = replace(path, down_m=np.full(len(path), down_m))

@@ -15,15 +15,15 @@ def update_barometer(
     lift_detector: LiftDetector, downs_m: list[float], begin_s: float = 0.0, climbed_m: float = 0.0
 ) -> list[float]:
     """Rides as they are told, by a look every fifth of a second."""
-    told = []
+    reported = []
     for tick, down_m in enumerate(downs_m):
         t_ns = round((begin_s + tick / RATE_HZ) * NS_PER_S)
-        told.append(
+        reported.append(
             lift_detector.update_barometer(
                 BarometricHeight(t_ns, down_m, referenced=True), climbed_m
             )
         )
-    return [one for one in told if one]
+    return [one for one in reported if one]
 
 
 def ramp(lifted_m: float, lasts_s: float, rest_s: float = 4.0) -> list[float]:

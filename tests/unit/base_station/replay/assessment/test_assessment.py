@@ -134,7 +134,7 @@ def test_reasons_that_differ_by_a_figure_alone_are_one_cause() -> None:
     assert (trust.reason, trust.cause) == (f"{unsure}: samples missing", unsure)
 
 
-def test_nobody_heard_nobody_known_and_nobody_registered_are_red() -> None:
+def test_nobody_received_nobody_known_and_nobody_registered_are_red() -> None:
     lost = known()
     lost.link = "lost"
     stranger = known()

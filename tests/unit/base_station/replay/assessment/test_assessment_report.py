@@ -110,7 +110,7 @@ def test_a_jump_counts_as_fixes_come_back_after_a_minute(
     assert unit.reentry_jumps_m == found
 
 
-def test_the_floor_of_somebody_at_rest_is_held_against_what_is_known_of_that_time() -> None:
+def test_the_floor_of_person_at_rest_is_held_against_what_is_known_of_that_time() -> None:
     """A trail has a point in ten seconds there."""
     smoothed = [shown(float(second), floor=0) for second in range(0, 101, 10)]
     live = [shown(float(second), floor=1 if second % 10 < 5 else 0) for second in range(100)]
@@ -130,7 +130,7 @@ def test_what_was_not_used_is_in_it_with_the_reason_that_there_was_most_first() 
     assert report.not_used == (("too far from the site", 30), ("from the future", 2))
 
 
-def test_a_loop_closes_where_somebody_came_back_last() -> None:
+def test_a_loop_closes_where_person_came_back_last() -> None:
     way_m = [*range(21), *range(20, -1, -1)]
     smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
     state = StationState()

@@ -30,18 +30,18 @@ def test_names_stand_there_as_they_are(
     )
     report = IncidentReport("i1", "path-graph", 0, (unit,), None, None)
     print_report(with_people(report, {unit.unit_id: [name]}))
-    said = capsys.readouterr().out
-    assert f"{name} ({unit.unit_id})" in said
-    assert f"{name}: 1.0 m, pin: 2.0 m" in said, "an id tells nobody anything"
+    reported = capsys.readouterr().out
+    assert f"{name} ({unit.unit_id})" in reported
+    assert f"{name}: 1.0 m, pin: 2.0 m" in reported, "an id tells nobody anything"
 
 
-def test_how_long_the_light_was_which_is_said_in_minutes(
+def test_how_long_the_light_was_which_is_stated_in_minutes(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "300")
     trust = TrustReport(3000.0, 700.0, 20.0, (("not heard", 700.0),))
     unit = msgspec.structs.replace(assessed([shown(0.0), shown(1.0)]), trust=trust)
     print_report(IncidentReport("i1", "path-graph", 0, (unit,), None, None))
-    said = capsys.readouterr().out
+    reported = capsys.readouterr().out
     for words in ("50 minutes", "20 seconds", "not heard 12 minutes"):
-        assert words in said
+        assert words in reported

@@ -108,7 +108,7 @@ def has_begun_again(screen: EncodedScreen, count: int) -> bool:
     return len(screen.resets) > count
 
 
-def rules_told(screen: EncodedScreen) -> set[str]:
+def rules_reported(screen: EncodedScreen) -> set[str]:
     deltas = [msgspec.json.decode(one, type=Delta) for one in tuple(screen.messages)]
     return {alarm.rule for delta in deltas for alarm in delta.alarms}
 
@@ -142,7 +142,7 @@ def test_consoles_see_of_it_what_they_would_of_one_in_this_process(
     replay.play()
     until(lambda: not replay.view().playing, "it has come to its end", WAIT_S)
     assert replay.view().at_ms == WINDOW.end_ns // NS_PER_MS
-    until(lambda: "mayday" in rules_told(screen), "its alarm is told", WAIT_S)
+    until(lambda: "mayday" in rules_reported(screen), "its alarm is told", WAIT_S)
 
 
 def test_an_impossible_speed_is_refused(replay: ReplayProcess, place: ReplayContext) -> None:
@@ -234,7 +234,7 @@ def _goes_on(process: psutil.Process) -> bool:
         return False
 
 
-def test_what_the_log_lacks_is_told_in_a_replay_at_a_running_station(
+def test_what_the_log_lacks_is_reported_in_a_replay_at_a_running_station(
     place: ReplayContext, tmp_path: Path
 ) -> None:
     """A segment that is gone and was known, and flipped bits that nobody has to read."""
@@ -263,7 +263,7 @@ def test_what_the_log_lacks_is_told_in_a_replay_at_a_running_station(
 
 
 @pytest.mark.parametrize("is_other", [True, False])
-def test_what_another_version_recorded_is_told_at_a_running_station(
+def test_what_another_version_recorded_is_reported_at_a_running_station(
     is_other: bool, place: ReplayContext, tmp_path: Path
 ) -> None:
     """Once its first picture is shown; a log of the same version is looked through meanwhile."""

@@ -88,7 +88,7 @@ def test_a_unit_may_this_and_nothing_else(rules: dict[str, Any]) -> None:
     assert rights(rules, "bert") == rights_of_sender("bert")
 
 
-def test_a_tracking_agent_is_a_unit_of_its_own_that_hears_the_raw_stream_of_another(
+def test_a_tracking_agent_is_a_unit_of_its_own_that_receives_the_raw_stream_of_another(
     rules: dict[str, Any],
 ) -> None:
     name = tracker_id("bert")
@@ -104,8 +104,8 @@ def test_a_tracking_agent_is_a_unit_of_its_own_that_hears_the_raw_stream_of_anot
 
 def rights(rules: dict[str, Any], common_name: str) -> dict[tuple[str, str], set[str]]:
     """All that the holder of this common name may do: where it may do what."""
-    said = {message for rule in rules["rules"] for message in rule["messages"]}
-    every = ((flow, message) for flow in ("ingress", "egress") for message in said)
+    reported = {message for rule in rules["rules"] for message in rule["messages"]}
+    every = ((flow, message) for flow in ("ingress", "egress") for message in reported)
     found = {one: allowed(rules, common_name, *one) for one in every}
     return {one: keys for one, keys in found.items() if keys}
 
@@ -134,8 +134,8 @@ def test_the_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[s
 
 def test_an_operator_only_listens(rules: dict[str, Any]) -> None:
     asks = {("ingress", interest): {"muster/v1/**"} for interest in INTERESTS}
-    hears = {("egress", message): {"muster/v1/**"} for message in ("put", "liveliness_token")}
-    assert rights(rules, "operator:chief") == asks | hears
+    receives = {("egress", message): {"muster/v1/**"} for message in ("put", "liveliness_token")}
+    assert rights(rules, "operator:chief") == asks | receives
 
 
 def test_the_station_may_do_everything_below_the_roots_and_nobody_else(

@@ -90,23 +90,23 @@ def test_the_private_key_is_not_shown(enrolment: Enrolment) -> None:
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.99])
-def test_a_file_cut_short_is_said(enrolment: Enrolment, tmp_path: Path, share: float) -> None:
+def test_a_file_cut_short_is_stated(enrolment: Enrolment, tmp_path: Path, share: float) -> None:
     path = tmp_path / "FF-01.toml"
     text = enrolment.to_toml()
     path.write_text(text[: int(len(text) * share)])
-    said = refusal(path)
-    assert said.startswith(f"{path}: ")
-    assert "copy the whole file again" in said
+    reported = refusal(path)
+    assert reported.startswith(f"{path}: ")
+    assert "copy the whole file again" in reported
 
 
 @pytest.mark.parametrize("length", [0, 1, 40, 600, 1000])
-def test_a_code_cut_short_is_said(enrolment: Enrolment, length: int) -> None:
+def test_a_code_cut_short_is_stated(enrolment: Enrolment, length: int) -> None:
     text = enrolment.to_compact()
     with pytest.raises(ConfigError, match="scan the code again"):
         parse_enrolment(text[: len("MUSTER1:") + length])
 
 
-def test_a_code_misread_anywhere_is_said(enrolment: Enrolment) -> None:
+def test_a_code_misread_anywhere_is_stated(enrolment: Enrolment) -> None:
     text = enrolment.to_compact()
     for at in range(len("MUSTER1:"), len(text), 37):
         wrong = "A" if text[at] != "A" else "B"
@@ -146,24 +146,24 @@ def test_a_file_that_passed_through_another_system_comes_back(
         (b"MUSTER1:0189", "scan the code again"),
     ],
 )
-def test_garbage_is_said(tmp_path: Path, content: bytes, expected: str) -> None:
+def test_garbage_is_stated(tmp_path: Path, content: bytes, expected: str) -> None:
     path = tmp_path / "garbage"
     path.write_bytes(content)
     assert expected in refusal(path)
 
 
-def test_a_missing_file_and_a_folder_are_said(tmp_path: Path) -> None:
+def test_a_missing_file_and_a_folder_are_stated(tmp_path: Path) -> None:
     assert "no such enrolment file" in refusal(tmp_path / "none")
     assert "cannot be read" in refusal(tmp_path)
 
 
-def test_parts_of_two_enrolments_are_said(pki: PkiFolder, enrolment: Enrolment) -> None:
+def test_parts_of_two_enrolments_are_stated(pki: PkiFolder, enrolment: Enrolment) -> None:
     other = pki.enroll("FF-02").identity
     mixed = dataclasses.replace(enrolment.identity, private_key=other.private_key)
     assert "key belongs to another certificate" in refused(enrolment, mixed)
 
 
-def test_an_authority_that_did_not_issue_it_is_said(enrolment: Enrolment, tmp_path: Path) -> None:
+def test_an_authority_that_did_not_issue_it_is_stated(enrolment: Enrolment, tmp_path: Path) -> None:
     elsewhere = PkiFolder(tmp_path / "elsewhere")
     elsewhere.create("Other", [], ["tls/127.0.0.1:7447"])
     foreign = elsewhere.enroll("FF-01").identity
@@ -175,12 +175,12 @@ def test_an_authority_that_did_not_issue_it_is_said(enrolment: Enrolment, tmp_pa
 def test_a_damaged_part_is_named(enrolment: Enrolment, part: str) -> None:
     lines = getattr(enrolment.identity, part).splitlines(keepends=True)
     damaged = b"".join([lines[0], b"AAAA" + lines[1][4:], *lines[2:]])
-    said = refused(enrolment, dataclasses.replace(enrolment.identity, **{part: damaged}))
-    assert part.replace("_", " ").split()[0] in said
-    assert "enrol again" in said
+    reported = refused(enrolment, dataclasses.replace(enrolment.identity, **{part: damaged}))
+    assert part.replace("_", " ").split()[0] in reported
+    assert "enrol again" in reported
 
 
-def test_no_station_to_connect_to_is_said(enrolment: Enrolment) -> None:
+def test_no_station_to_connect_to_is_stated(enrolment: Enrolment) -> None:
     nowhere = dataclasses.replace(enrolment, connect=())
     for text in (nowhere.to_toml(), nowhere.to_compact()):
         with pytest.raises(ConfigError, match="names no station"):

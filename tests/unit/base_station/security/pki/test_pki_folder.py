@@ -117,13 +117,13 @@ def test_one_command_at_a_time_changes_the_folder(pki: PkiFolder) -> None:
     assert pki.registry().current(Holder.UNIT, "bert") is not None
 
 
-def test_a_folder_that_cannot_be_written_is_said(pki: PkiFolder) -> None:
+def test_a_folder_that_cannot_be_written_is_stated(pki: PkiFolder) -> None:
     (pki.path / "registry.json.partial").mkdir()
     with pytest.raises(StoreError, match=r"registry\.json cannot be written"):
         pki.enroll("anna")
 
 
-def test_a_folder_that_cannot_be_read_is_said(pki: PkiFolder, tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_read_is_stated(pki: PkiFolder, tmp_path: Path) -> None:
     pki.registry_path.unlink()
     pki.registry_path.mkdir()
     with pytest.raises(ConfigError, match=r"registry\.json cannot be read: .*directory"):
@@ -198,7 +198,7 @@ def test_a_station_folder_that_is_made_with_it_is_its_owners_alone(tmp_path: Pat
     assert stat.S_IMODE((tmp_path / "station").stat().st_mode) == 0o700
 
 
-def test_whoever_ends_it_in_the_middle_begins_anew(
+def test_anyone_ends_it_in_the_middle_begins_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def ended(*_: object) -> None:
@@ -359,7 +359,7 @@ def test_station_files_that_do_not_belong_together_say_the_way_out(pki: PkiFolde
     pki.station_identity()
 
 
-def test_what_is_about_to_expire_is_said_first_to_end_first(pki: PkiFolder, clock: Clock) -> None:
+def test_what_is_about_to_expire_is_stated_first_to_end_first(pki: PkiFolder, clock: Clock) -> None:
     pki.enroll("anna", valid=20 * DAY)
     pki.enroll("bert", valid=5 * DAY)
     pki.enroll("chief", Holder.OPERATOR, valid=12 * DAY)
@@ -367,16 +367,16 @@ def test_what_is_about_to_expire_is_said_first_to_end_first(pki: PkiFolder, cloc
     pki.revoke("lost")
     clock.now += 11.5 * DAY
 
-    def said(within: timedelta) -> tuple[str, ...]:
+    def reported(within: timedelta) -> tuple[str, ...]:
         return about_to_expire(pki.registry(), clock.now, within, pki.own_common_name())
 
-    assert said(5 * DAY) == (
+    assert reported(5 * DAY) == (
         "The certificate of unit bert expired on 2026-03-06: muster pki renew bert",
         "The certificate of operator chief expires in less than a day: "
         "muster pki renew --operator chief",
     )
-    assert len(said(10 * DAY)) == 3
-    assert said(400 * DAY)[-1].startswith("The certificate of this station expires in 353 days")
+    assert len(reported(10 * DAY)) == 3
+    assert reported(400 * DAY)[-1].startswith("The certificate of this station expires in 353 days")
 
 
 def test_nothing_is_issued_by_a_clock_that_is_not_set(
@@ -402,13 +402,13 @@ def test_a_station_says_that_its_certificate_is_not_valid_by_its_clock(
 
 
 @pytest.mark.parametrize("behind", [timedelta(days=2), timedelta(days=365 * 50)])
-def test_a_clock_behind_the_certificates_is_said(
+def test_a_clock_behind_the_certificates_is_stated(
     pki: PkiFolder, clock: Clock, behind: timedelta
 ) -> None:
     assert not_yet_valid(pki.registry(), clock.now) == ()
-    (said,) = not_yet_valid(pki.registry(), clock.now - behind)
-    assert said.startswith(f"This machine's clock is at {clock.now - behind:%Y-%m-%d}")
-    assert "set it" in said
+    (reported,) = not_yet_valid(pki.registry(), clock.now - behind)
+    assert reported.startswith(f"This machine's clock is at {clock.now - behind:%Y-%m-%d}")
+    assert "set it" in reported
 
 
 def test_the_station_reads_what_expires_now_and_then(pki: PkiFolder, tmp_path: Path) -> None:
@@ -423,7 +423,7 @@ def test_the_station_reads_what_expires_now_and_then(pki: PkiFolder, tmp_path: P
     assert ExpiryWatch(PkiFolder(tmp_path / "plain"), clock).problems() == ()
 
 
-def test_the_end_of_another_authority_s_certificate_for_the_console_is_said(
+def test_the_end_of_another_authority_s_certificate_for_the_console_is_stated(
     pki: PkiFolder, tmp_path: Path
 ) -> None:
     clock = ManualClock(utc_ns=int(datetime(2027, 2, 20, tzinfo=UTC).timestamp()) * NS_PER_S)
@@ -431,9 +431,11 @@ def test_the_end_of_another_authority_s_certificate_for_the_console_is_said(
     served.write_bytes((pki.path / "station.pem").read_bytes())
     assert ConsoleExpiry(served, pki, clock).problems() == ()  # the registry tells of this one
     elsewhere = PkiFolder(tmp_path / "plain")
-    (said,) = ConsoleExpiry(served, elsewhere, clock).problems()
-    assert said.startswith("The certificate of the console expires in 9 days: put another one into")
-    assert str(served) in said
+    (reported,) = ConsoleExpiry(served, elsewhere, clock).problems()
+    assert reported.startswith(
+        "The certificate of the console expires in 9 days: put another one into"
+    )
+    assert str(served) in reported
     clock.advance(-30 * 86_400.0)
     assert ConsoleExpiry(served, elsewhere, clock).problems() == ()
     clock.advance(60 * 86_400.0)
@@ -456,8 +458,8 @@ def test_a_renewed_certificate_is_taken_up_when_nobody_is_in_action_or_the_old_o
     machine.advance(DAY.total_seconds())
     pki.renew_station()
     assert not renewal.is_due(in_incident=True)
-    (said,) = renewal.problems()
-    assert "2027-03-01" in said
+    (reported,) = renewal.problems()
+    assert "2027-03-01" in reported
     assert renewal.is_due(in_incident=False)
     assert renewal.problems() == ()
     machine.advance((CERTIFICATE_VALID - DAY - timedelta(minutes=30)).total_seconds())

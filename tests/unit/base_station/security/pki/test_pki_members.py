@@ -132,6 +132,6 @@ def test_what_was_renewed_before_the_station_saw_it_is_in_the_audit_too(pki, rec
     EnrolledUnits(pki, Gate(), list, records).update()
     pki.renew("FF-01")
     EnrolledUnits(pki, Gate(), list, records).update()
-    said = [e.detail for e in records.audit_entries(EVER) if "FF-01" in e.detail]
-    assert len(said) == 4
-    assert sum("renewed since" in detail for detail in said) == 2
+    reported = [e.detail for e in records.audit_entries(EVER) if "FF-01" in e.detail]
+    assert len(reported) == 4
+    assert sum("renewed since" in detail for detail in reported) == 2

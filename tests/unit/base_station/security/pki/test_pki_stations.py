@@ -48,7 +48,7 @@ def test_it_has_a_certificate_of_its_own_for_its_own_address(
     assert not (second.path / "authority.key").exists()
 
 
-def test_half_a_folder_is_not_joined_and_the_way_out_is_said(
+def test_half_a_folder_is_not_joined_and_the_way_out_is_stated(
     first: PkiFolder, tmp_path: Path
 ) -> None:
     file = tmp_path / "second.station.toml"
@@ -97,7 +97,7 @@ def test_an_address_that_the_first_has_left_does_not_come_back_from_the_second(
     assert first.registry().connect == second.registry().connect == (moved, SECOND)
 
 
-def test_addresses_that_are_said_by_a_clock_that_was_set_back_are_the_later_ones(
+def test_addresses_that_are_stated_by_a_clock_that_was_set_back_are_the_later_ones(
     first: PkiFolder, second: PkiFolder, tmp_path: Path
 ) -> None:
     earlier = PkiFolder(tmp_path / "first", lambda: datetime.now(UTC) - timedelta(hours=12))
@@ -131,7 +131,7 @@ def test_what_one_has_revoked_stays_so_though_the_other_renewed_it_meanwhile(
         assert "FF-01" not in {one["id"] for one in access_control(merged)["subjects"]}
 
 
-def test_the_newer_certificate_stands_whoever_heard_of_it_first(
+def test_the_newer_certificate_stands_anyone_received_of_it_first(
     first: PkiFolder, second: PkiFolder, tmp_path: Path
 ) -> None:
     first.enroll("FF-01")
@@ -157,18 +157,18 @@ def test_each_station_says_whose_certificate_ends_and_where_it_is_renewed(
 ) -> None:
     end = datetime.now(UTC) + timedelta(days=400)
 
-    def said(folder: PkiFolder) -> list[str]:
+    def reported(folder: PkiFolder) -> list[str]:
         here = folder.own_common_name()
         ending = about_to_expire(folder.registry(), end, timedelta(), here)
         return [re.sub(r"expired on [\d-]+", "expired", one) for one in ending]
 
     anew = "muster pki enroll-station second --host ADDRESS at the first station, and "
     joined = f"{anew}muster pki join at second"
-    assert said(first) == [
+    assert reported(first) == [
         "The certificate of this station expired: muster pki renew-station",
         f"The certificate of station second expired: {joined}",
     ]
-    assert said(second) == [
+    assert reported(second) == [
         "The certificate of the first station expired: muster pki renew-station there",
         f"The certificate of this station expired: {joined}",
     ]

@@ -84,7 +84,7 @@ def test_who_is_shut_out_may_come_back() -> None:
     assert not rates.is_banned("anna", 60.0)
 
 
-def test_a_minute_of_refusals_is_told_and_then_over() -> None:
+def test_a_minute_of_refusals_is_reported_and_then_over() -> None:
     refusals = Refusals()
     assert refusal_problem(refusals.summary(0.0)) == ""
     for number in range(200):

@@ -44,26 +44,26 @@ def test_nothing_is_asked_of_a_disk_that_hangs(store: Store, hangs: Event) -> No
         pass
 
 
-def test_who_waits_for_one_whom_the_disk_holds_up_is_told(store: Store, hangs: Event) -> None:
-    told: list[str] = []
+def test_who_waits_for_one_whom_the_disk_holds_up_is_reported(store: Store, hangs: Event) -> None:
+    reported: list[str] = []
 
     def change() -> None:
         try:
             with store.write():
-                told.append("done")
+                reported.append("done")
         except StoreError as error:
-            told.append(str(error))
+            reported.append(str(error))
 
     with store.write():
         waiting = Thread(target=change, daemon=True)
         waiting.start()
         hangs.set()
         waiting.join(PATIENCE_S)
-        assert len(told) == 1
-        assert "does not answer" in told[0]
+        assert len(reported) == 1
+        assert "does not answer" in reported[0]
     hangs.clear()
     change()
-    assert told[1:] == ["done"]
+    assert reported[1:] == ["done"]
 
 
 def test_nobody_waits_for_what_a_disk_that_hangs_does_not_take(store: Store, hangs: Event) -> None:

@@ -15,18 +15,18 @@ LATENCY_S = 0.1
 
 
 def errors_s(
-    utc_s: np.ndarray, late_s: np.ndarray, said_s: np.ndarray | None = None, drift: float = 0.0
+    utc_s: np.ndarray, late_s: np.ndarray, stated_s: np.ndarray | None = None, drift: float = 0.0
 ) -> np.ndarray:
     """By how much fixes are placed too late; NaN of those that are not placed.
 
     ``utc_s``: the instants since midnight; ``said_s``: what the receiver calls them.
     """
-    said_s = utc_s if said_s is None else said_s
+    stated_s = utc_s if stated_s is None else stated_s
     clock = FixClock(LATENCY_S)
     found = []
-    for utc, said, late in zip(utc_s.tolist(), said_s.tolist(), late_s.tolist(), strict=True):
+    for utc, reported, late in zip(utc_s.tolist(), stated_s.tolist(), late_s.tolist(), strict=True):
         meant_ns = BEGAN + round((utc - utc_s[0]) * (1.0 + drift) * NS_PER_S)
-        t_ns = clock.place(round(said * NS_PER_S) % DAY, meant_ns + round(late * NS_PER_S))
+        t_ns = clock.place(round(reported * NS_PER_S) % DAY, meant_ns + round(late * NS_PER_S))
         found.append(np.nan if t_ns is None else (t_ns - meant_ns) / NS_PER_S)
     return np.array(found)
 
@@ -93,8 +93,8 @@ def test_it_does_not_matter_how_far_the_two_clocks_are_apart(apart_h: int) -> No
 def test_utc_that_jumps_is_believed_after_three_seconds(jump_s: float) -> None:
     """Leap seconds that were learnt late, or a receiver started anew."""
     utc_s = np.arange(1000.0, 1060.0)
-    said_s = utc_s + np.where(utc_s >= 1030.0, jump_s, 0.0)
-    errors = errors_s(utc_s, late_by(60, jitter_s=0.02), said_s)
+    stated_s = utc_s + np.where(utc_s >= 1030.0, jump_s, 0.0)
+    errors = errors_s(utc_s, late_by(60, jitter_s=0.02), stated_s)
     assert np.nanmax(errors) < 0.1, "never in the future"
     assert errors[35:] == pytest.approx(np.zeros(25), abs=0.1)
     if jump_s > 0.0:
@@ -105,9 +105,9 @@ def test_utc_that_jumps_is_believed_after_three_seconds(jump_s: float) -> None:
 
 def test_one_time_that_is_wrong_moves_nothing() -> None:
     utc_s = np.arange(1000.0, 1060.0)
-    said_s = utc_s.copy()
-    said_s[[20, 40]] += [7000.0, -7000.0]
-    errors = errors_s(utc_s, np.full(60, LATENCY_S), said_s)
+    stated_s = utc_s.copy()
+    stated_s[[20, 40]] += [7000.0, -7000.0]
+    errors = errors_s(utc_s, np.full(60, LATENCY_S), stated_s)
     assert np.isnan(errors[40])
     assert np.delete(errors, 40) == pytest.approx(np.zeros(59), abs=1e-6)
 

@@ -13,9 +13,9 @@ from edge.sources.gnss.gpsd_reports import report_of
 from edge.sources.gnss.interface import Report
 from shared.clock import NS_PER_S
 from shared.errors import WireError
-from tests.rig.gps_receiver import DEVICE, NAN, Told, gpsd_devices, gpsd_report, iso, json_line
+from tests.rig.gps_receiver import DEVICE, NAN, Reported, gpsd_devices, gpsd_report, iso, json_line
 
-HERE = Told()
+HERE = Reported()
 S = NS_PER_S
 OTHER = "/dev/ttyUSB7"
 
@@ -25,12 +25,12 @@ def tpv(**members: object) -> bytes:
     return json_line("TPV", **{**known, **members})
 
 
-def heard(receiver: Gpsd, said: bytes, at_ns: int = 100 * S) -> list[Report]:
-    return [report for line in said.split(b"\n") for report in receiver.parse_line(line, at_ns)]
+def received(receiver: Gpsd, stated: bytes, at_ns: int = 100 * S) -> list[Report]:
+    return [report for line in stated.split(b"\n") for report in receiver.parse_line(line, at_ns)]
 
 
-def fix(said: bytes) -> GpsSample:
-    (report,) = heard(Gpsd("//h"), said)
+def fix(stated: bytes) -> GpsSample:
+    (report,) = received(Gpsd("//h"), stated)
     return report.fix
 
 
@@ -81,10 +81,12 @@ def test_accuracy_is_the_receivers_own_where_there_is_one(
 
 
 @pytest.mark.parametrize(("after_s", "std_m"), [(2.9, math.sqrt(5.0)), (3.1, NAN)])
-def test_what_was_said_of_the_sky_long_ago_is_not_of_this_fix(after_s: float, std_m: float) -> None:
+def test_what_was_stated_of_the_sky_long_ago_is_not_of_this_fix(
+    after_s: float, std_m: float
+) -> None:
     receiver = Gpsd("//h")
-    heard(receiver, SKY + GST, 100 * S)
-    (report,) = heard(receiver, tpv(), round((100 + after_s) * S))
+    received(receiver, SKY + GST, 100 * S)
+    (report,) = received(receiver, tpv(), round((100 + after_s) * S))
     assert report.fix.horizontal_std_m == pytest.approx(std_m, nan_ok=True)
 
 
@@ -94,7 +96,7 @@ def test_the_sky_comes_in_parts_of_which_none_undoes_another() -> None:
     assert found.horizontal_std_m == pytest.approx(4.0 / math.sqrt(2.0))
 
 
-def test_what_is_said_of_one_receiver_stays_beside_what_is_said_of_another() -> None:
+def test_what_is_stated_of_one_receiver_stays_beside_what_is_stated_of_another() -> None:
     elsewhere = json_line("SKY", device=OTHER, hdop=9.0, vdop=9.0, uSat=4)
     found = fix(SKY + GST + elsewhere + tpv())
     assert found.satellites == 11
@@ -112,38 +114,38 @@ def test_satellites_are_those_in_use() -> None:
 
 
 @pytest.mark.parametrize(
-    "said",
+    "stated",
     [
         *({"mode": 0}, {"mode": 1}),  # not seen yet, none
         *({"status": 5}, {"status": 6}, {"status": 8}),  # reckoned, in part, simulated
         *({"lat": 91.0}, {"lon": -181.0}, {"lat": NAN}, {"lon": NAN}),
     ],
 )
-def test_what_is_no_fix_of_satellites_is_none(said: dict[str, float]) -> None:
-    found = fix(tpv(**said))
+def test_what_is_no_fix_of_satellites_is_none(stated: dict[str, float]) -> None:
+    found = fix(tpv(**stated))
     assert found.fix_type == 0
     assert math.isnan(found.lat_deg)
     assert math.isnan(found.lon_deg)
 
 
-def test_an_instant_is_known_to_the_part_of_a_second_that_is_said() -> None:
-    (report,) = heard(Gpsd("//h"), tpv(time="2026-11-21T23:59:59.750Z"))
+def test_an_instant_is_known_to_the_part_of_a_second_that_is_stated() -> None:
+    (report,) = received(Gpsd("//h"), tpv(time="2026-11-21T23:59:59.750Z"))
     assert report.of_day_ns == 86_399_750_000_000
 
 
 @pytest.mark.parametrize("time", ["2026-12-31T23:59:60.000Z", "yesterday", 1.5e9, None])
 def test_a_time_that_cannot_be_read_is_none(time) -> None:
-    (report,) = heard(Gpsd("//h"), tpv(time=time))
+    (report,) = received(Gpsd("//h"), tpv(time=time))
     assert report.of_day_ns is None
     assert report.fix.fix_type == 2
 
 
-def lats(receiver: Gpsd, *said: tuple[float, str, float, int]) -> list[float]:
+def lats(receiver: Gpsd, *stated: tuple[float, str, float, int]) -> list[float]:
     """At some second a device's latitude, in so many dimensions; which were taken."""
     reports = []
-    for second, device, lat_deg, mode in said:
-        told = replace(HERE, lat_deg=lat_deg, mode=mode, of_day_s=second)
-        reports += heard(receiver, gpsd_report(told, device), round((100 + second) * S))
+    for second, device, lat_deg, mode in stated:
+        reported = replace(HERE, lat_deg=lat_deg, mode=mode, of_day_s=second)
+        reports += received(receiver, gpsd_report(reported, device), round((100 + second) * S))
     return [report.fix.lat_deg for report in reports]
 
 
@@ -152,7 +154,7 @@ def test_of_two_receivers_the_one_with_fixes_is_taken_and_stayed_with() -> None:
         [(float(k), DEVICE, 50.0, 3) for k in range(5)],
         [(k, OTHER, 60.0, 3) for k in range(5)],
     )
-    both = [said for pair in zip(one, two, strict=True) for said in pair]
+    both = [stated for pair in zip(one, two, strict=True) for stated in pair]
     assert lats(Gpsd("//h"), *both) == [50.0] * 5
     blind = [(0.0, DEVICE, 50.0, 1), (0.1, OTHER, 60.0, 3), (1.0, DEVICE, 50.0, 3)]
     assert lats(Gpsd("//h"), *blind) == pytest.approx([NAN, 60.0], nan_ok=True)
@@ -166,35 +168,35 @@ def test_where_one_receiver_has_no_fixes_for_long_the_other_is_taken() -> None:
 
 def test_a_receiver_that_says_for_long_that_it_has_no_fix_is_left_for_one_that_has() -> None:
     indoors = [(1.0 + k, DEVICE, 50.0, 1) for k in range(11)]
-    said = [(0.0, DEVICE, 50.0, 3), *indoors, (12.0, OTHER, 60.0, 1), (12.1, OTHER, 60.0, 3)]
-    found = lats(Gpsd("//h"), *said)
+    stated = [(0.0, DEVICE, 50.0, 3), *indoors, (12.0, OTHER, 60.0, 1), (12.1, OTHER, 60.0, 3)]
+    found = lats(Gpsd("//h"), *stated)
     assert found == pytest.approx([50.0, *[NAN] * 11, 60.0], nan_ok=True)
 
 
 def test_a_receiver_that_is_named_is_the_only_one() -> None:
-    said = [(0.0, DEVICE, 50.0, 3), (0.1, OTHER, 60.0, 3), (20.0, DEVICE, 50.0, 3)]
+    stated = [(0.0, DEVICE, 50.0, 3), (0.1, OTHER, 60.0, 3), (20.0, DEVICE, 50.0, 3)]
     receiver = Gpsd(f"//h:2947{OTHER}")
-    assert lats(receiver, *said) == [60.0]
+    assert lats(receiver, *stated) == [60.0]
     assert str(receiver) == f"GPS receiver {OTHER} of gpsd at h:2947"
 
 
-def test_a_receiver_that_says_nothing_to_gpsd_is_told() -> None:
+def test_a_receiver_that_says_nothing_to_gpsd_is_reported() -> None:
     receiver = Gpsd("//h")
-    heard(receiver, gpsd_devices(DEVICE))
+    received(receiver, gpsd_devices(DEVICE))
     assert "receives nothing from its receiver" in receiver.silence_reason()
 
 
 def test_why_there_is_nothing() -> None:
     receiver = Gpsd(f"//h{OTHER}")
     assert receiver.silence_reason() == "", "gpsd has not said anything yet"
-    heard(receiver, gpsd_devices())
+    received(receiver, gpsd_devices())
     assert "gpsd has no receiver; is it plugged in" in receiver.silence_reason()
-    heard(receiver, gpsd_devices(DEVICE))
+    received(receiver, gpsd_devices(DEVICE))
     assert f"gpsd has no receiver {OTHER}, it has {DEVICE}" in receiver.silence_reason()
-    heard(receiver, json_line("DEVICE", path=OTHER, activated=iso(0.0)))
+    received(receiver, json_line("DEVICE", path=OTHER, activated=iso(0.0)))
     assert "receives nothing from its receiver" in receiver.silence_reason()
     for path in (DEVICE, OTHER):
-        heard(receiver, json_line("DEVICE", path=path, activated=0))
+        received(receiver, json_line("DEVICE", path=path, activated=0))
     assert "gpsd has no receiver; is it plugged in" in receiver.silence_reason()
 
 

@@ -14,14 +14,14 @@ from edge.sources.gnss.nmea import Nmea
 from edge.sources.gnss.nmea_sentences import sentence_of
 from shared.clock import NS_PER_S
 from shared.errors import WireError
-from tests.rig.gps_receiver import NAN, Told, burst, gga, gsa, gst, rmc, sentence
+from tests.rig.gps_receiver import NAN, Reported, burst, gga, gsa, gst, rmc, sentence
 
-HERE = Told()
+HERE = Reported()
 WITH_GST = replace(HERE, std_m=1.3, vertical_std_m=2.2)
 S = NS_PER_S
 
 
-def heard(values: Iterable[bytes], step_ns: int = S) -> list[Report]:
+def received(values: Iterable[bytes], step_ns: int = S) -> list[Report]:
     """Of a receiver that says each part ``step_ns`` after the one before."""
     receiver = Nmea("/dev/ttyUSB0")
     reports: list[Report] = []
@@ -32,16 +32,16 @@ def heard(values: Iterable[bytes], step_ns: int = S) -> list[Report]:
 
 
 def fix(*values: bytes) -> GpsSample:
-    (report,) = heard([b"".join(values)])
+    (report,) = received([b"".join(values)])
     return report.fix
 
 
-def seconds(count: int, told: Told = HERE, step_s: float = 1.0) -> list[Told]:
-    return [replace(told, of_day_s=told.of_day_s + k * step_s) for k in range(count)]
+def seconds(count: int, reported: Reported = HERE, step_s: float = 1.0) -> list[Reported]:
+    return [replace(reported, of_day_s=reported.of_day_s + k * step_s) for k in range(count)]
 
 
 def test_every_instant_is_one_fix_that_begins_with_its_first_sentence() -> None:
-    reports = heard(map(burst, seconds(5)))
+    reports = received(map(burst, seconds(5)))
     assert [report.fix.t_ns for report in reports] == [k * S for k in range(5)]
     assert [report.of_day_ns for report in reports] == [(34_045 + k) * S for k in range(5)]
 
@@ -60,8 +60,8 @@ def test_the_order_of_sentences_is_learnt(order) -> None:
     """From the second one on a fix is whole with its last sentence and waits for nothing."""
     receiver = Nmea("/dev/ttyUSB0")
     whole_at: list[int] = []
-    for told in seconds(6, WITH_GST):
-        whole = [len(receiver.parse_line(say(told).rstrip(b"\n"), 0)) for say in order]
+    for reported in seconds(6, WITH_GST):
+        whole = [len(receiver.parse_line(say(reported).rstrip(b"\n"), 0)) for say in order]
         whole_at.append(whole.index(1) if 1 in whole else -1)
         assert len(receiver.end_of_burst()) + sum(whole) == 1, "once each"
     assert whole_at == [-1, *[len(order) - 1] * 5]
@@ -69,13 +69,15 @@ def test_the_order_of_sentences_is_learnt(order) -> None:
 
 def test_what_says_no_place_is_no_report_of_its_own() -> None:
     """Such as what is left of a burst whose other sentences were lost."""
-    assert heard([gst(WITH_GST)]) == []
-    assert heard([gsa(WITH_GST), gst(WITH_GST)]) == []
+    assert received([gst(WITH_GST)]) == []
+    assert received([gsa(WITH_GST), gst(WITH_GST)]) == []
 
 
 def test_ten_a_second_need_no_pause() -> None:
     receiver = Nmea("/dev/ttyUSB0")
-    values = [line for told in seconds(50, WITH_GST, 0.1) for line in burst(told).split(b"\n")]
+    values = [
+        line for reported in seconds(50, WITH_GST, 0.1) for line in burst(reported).split(b"\n")
+    ]
     reports = [report for line in values for report in receiver.parse_line(line, 0)]
     assert len(reports) == 50
     assert {report.fix.horizontal_std_m for report in reports} == {1.3}, "all with their GST"
@@ -106,7 +108,7 @@ def test_the_receivers_own_accuracy_goes_before_the_dilutions() -> None:
     assert fix(burst(WITH_GST)).horizontal_std_m == pytest.approx(1.3)
     assert fix(burst(WITH_GST)).vertical_std_m == pytest.approx(2.2)
     other = replace(WITH_GST, of_day_s=WITH_GST.of_day_s + 1)
-    two = heard([gga(HERE) + gst(other)])
+    two = received([gga(HERE) + gst(other)])
     assert two[0].fix.horizontal_std_m == pytest.approx(0.8 * 5.0 / math.sqrt(2.0)), "another's"
 
 
@@ -124,8 +126,8 @@ def test_an_ellipse_is_as_wide_as_its_axes_together() -> None:
 
 @pytest.mark.parametrize(("quality", "uere_m"), [(1, 5.0), (2, 2.5), (4, 1.0), (5, 1.0), (3, 5.0)])
 def test_corrections_make_the_dilution_worth_more(quality: int, uere_m: float) -> None:
-    told = replace(HERE, quality=quality, hdop=1.0)
-    assert fix(gga(told)).horizontal_std_m == pytest.approx(uere_m / math.sqrt(2.0))
+    reported = replace(HERE, quality=quality, hdop=1.0)
+    assert fix(gga(reported)).horizontal_std_m == pytest.approx(uere_m / math.sqrt(2.0))
 
 
 @pytest.mark.parametrize(
@@ -134,19 +136,19 @@ def test_corrections_make_the_dilution_worth_more(quality: int, uere_m: float) -
 )
 def test_without_gga_each_constellation_says_its_corrections(modes: str, uere_m: float) -> None:
     """The least corrected of those in use counts."""
-    told = sentence(f"GNGNS,092725.00,5742.0,N,01158.2,E,{modes},17,1.0,7.3,35.2,,,V")
-    assert fix(told).horizontal_std_m == pytest.approx(uere_m / math.sqrt(2.0))
+    reported = sentence(f"GNGNS,092725.00,5742.0,N,01158.2,E,{modes},17,1.0,7.3,35.2,,,V")
+    assert fix(reported).horizontal_std_m == pytest.approx(uere_m / math.sqrt(2.0))
 
 
-def test_nothing_said_of_accuracy_is_nothing_known() -> None:
+def test_nothing_stated_of_accuracy_is_nothing_known() -> None:
     assert math.isnan(fix(rmc(HERE)).horizontal_std_m)
     assert math.isnan(fix(gga(replace(HERE, hdop=99.99))).horizontal_std_m)
     assert math.isnan(fix(gga(replace(HERE, hdop=0.0))).horizontal_std_m)
 
 
 def test_height_is_above_the_ellipsoid_or_none() -> None:
-    told = gga(HERE)
-    assert fix(told).height_m == pytest.approx(42.5)
+    reported = gga(HERE)
+    assert fix(reported).height_m == pytest.approx(42.5)
     south = fix(gga(replace(HERE, height_m=-20.0, sep_m=-30.0)))
     assert south.height_m == pytest.approx(-20.0)
     blank = sentence("GNGGA,092725.00,5742.0,N,01158.2,E,1,08,0.9,7.3,M,,M,,")
@@ -182,19 +184,19 @@ def test_who_says_that_there_is_no_fix_is_believed(values: bytes) -> None:
 
 
 def test_without_gga_there_is_gns() -> None:
-    told = sentence("GNGNS,092725.00,5742.0,N,01158.2,W,AANN,17,1.0,7.3,35.2,,,V")
-    assert fix(told, rmc(HERE)).satellites == 17
-    assert fix(told).lon_deg == pytest.approx(-11.97)
-    assert fix(told).height_m == pytest.approx(42.5)
-    assert fix(told).horizontal_std_m == pytest.approx(5.0 / math.sqrt(2.0))
+    reported = sentence("GNGNS,092725.00,5742.0,N,01158.2,W,AANN,17,1.0,7.3,35.2,,,V")
+    assert fix(reported, rmc(HERE)).satellites == 17
+    assert fix(reported).lon_deg == pytest.approx(-11.97)
+    assert fix(reported).height_m == pytest.approx(42.5)
+    assert fix(reported).horizontal_std_m == pytest.approx(5.0 / math.sqrt(2.0))
 
 
 @pytest.mark.parametrize(
     ("values", "satellites"), [("", 0), ("00", 0), ("31", 31), ("9" * 20, 255)]
 )
 def test_satellites_are_as_many_as_there_can_be(values: str, satellites: int) -> None:
-    told = sentence(f"GNGGA,092725.00,5742.0,N,01158.2,E,1,{values},0.9,7.3,M,35.2,M,,")
-    assert fix(told).satellites == satellites
+    reported = sentence(f"GNGGA,092725.00,5742.0,N,01158.2,E,1,{values},0.9,7.3,M,35.2,M,,")
+    assert fix(reported).satellites == satellites
 
 
 def test_a_fix_of_an_old_receiver_has_neither_gsa_nor_modes() -> None:
@@ -212,25 +214,25 @@ def test_every_constellation_may_speak(talker: str) -> None:
 
 
 def test_what_has_no_time_is_by_its_arrival() -> None:
-    (report,) = heard([sentence("GNGGA,,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
+    (report,) = received([sentence("GNGGA,,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
     assert report.of_day_ns is None
     assert report.fix.fix_type == 3
 
 
-def test_an_instant_is_known_to_the_part_of_a_second_that_is_said() -> None:
-    (report,) = heard([sentence("GNGGA,235959.75,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
+def test_an_instant_is_known_to_the_part_of_a_second_that_is_stated() -> None:
+    (report,) = received([sentence("GNGGA,235959.75,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
     assert report.of_day_ns == 86_399_750_000_000
 
 
 def test_a_leap_second_is_no_time_and_no_error() -> None:
-    (report,) = heard([sentence("GNGGA,235960.00,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
+    (report,) = received([sentence("GNGGA,235960.00,5742.0,N,01158.2,E,1,08,0.9,7.3,M,35.2,M,,")])
     assert report.of_day_ns is None
 
 
 def test_a_date_that_is_off_is_not_looked_at() -> None:
     """A receiver whose week counter has wrapped says 2007."""
     values = sentence("GNRMC,092725.00,A,5742.0,N,01158.2,E,0.0,,070407,,,A,V")
-    assert heard([values])[0].of_day_ns == 34_045 * S
+    assert received([values])[0].of_day_ns == 34_045 * S
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,10 @@ import pytest
 from edge.sources.gnss.nmea import Nmea
 from edge.sources.gnss.reader import GnssReader
 from shared.clock import NS_PER_S, ManualClock
-from tests.rig.gps_receiver import Told, gga, rmc, sentence
+from tests.rig.gps_receiver import Reported, gga, rmc, sentence
 
 BAD = b"$GNRMC,0927"
-SAID = Told()
+STATED = Reported()
 OF_NO_USE = sentence("GNVTG,,T,,M,0.02,N,0.04,K,A")
 
 
@@ -35,11 +35,15 @@ class Receiver:
         """
         faults: list[str] = []
         for _ in range(seconds):
-            told = replace(SAID, of_day_s=SAID.of_day_s + self.clock.monotonic_ns() / NS_PER_S)
-            faults += self.hears(gga(told), rmc(told), *[OF_NO_USE] * others, *[BAD] * bad)
+            reported = replace(
+                STATED, of_day_s=STATED.of_day_s + self.clock.monotonic_ns() / NS_PER_S
+            )
+            faults += self.receives(
+                gga(reported), rmc(reported), *[OF_NO_USE] * others, *[BAD] * bad
+            )
         return tuple(faults)
 
-    def hears(self, *lines: bytes) -> tuple[str, ...]:
+    def receives(self, *lines: bytes) -> tuple[str, ...]:
         """In one second."""
         self.clock.advance(1.0)
         for line in lines:
@@ -51,7 +55,7 @@ class Receiver:
         return self._is_of_use
 
     def is_silent(self, seconds: int) -> tuple[str, ...]:
-        return tuple(fault for _ in range(seconds) for fault in self.hears())
+        return tuple(fault for _ in range(seconds) for fault in self.receives())
 
 
 @pytest.fixture
@@ -59,7 +63,7 @@ def receiver() -> Receiver:
     return Receiver()
 
 
-def test_a_line_that_goes_on_losing_what_is_said_is_told_once(receiver: Receiver) -> None:
+def test_a_line_that_goes_on_losing_what_is_stated_is_reported_once(receiver: Receiver) -> None:
     (fault,) = receiver.says(60, bad=1)
     assert "lines in 10 s could not be read" in fault
     assert str(BAD) in fault
@@ -67,7 +71,7 @@ def test_a_line_that_goes_on_losing_what_is_said_is_told_once(receiver: Receiver
     assert receiver.says(60, bad=1) == (), "a cable that is put in again and is no better"
 
 
-def test_a_line_that_was_well_and_loses_again_is_told_again(receiver: Receiver) -> None:
+def test_a_line_that_was_well_and_loses_again_is_reported_again(receiver: Receiver) -> None:
     receiver.says(30, bad=1)
     assert receiver.says(30) == ()
     assert len(receiver.says(30, bad=1)) == 1
@@ -77,13 +81,15 @@ def test_a_line_that_was_well_and_loses_again_is_told_again(receiver: Receiver) 
 def test_half_a_line_after_opening_is_no_bad_line(
     receiver: Receiver, bad: int, faults: int
 ) -> None:
-    said = receiver.says(1, bad=bad) + receiver.says(11)
-    assert len(said) == faults
+    stated = receiver.says(1, bad=bad) + receiver.says(11)
+    assert len(stated) == faults
     assert receiver.reader.garbled == bad
 
 
 @pytest.mark.parametrize(("bad", "faults"), [(2, 0), (3, 1)])
-def test_more_than_one_bad_line_in_ten_is_told(receiver: Receiver, bad: int, faults: int) -> None:
+def test_more_than_one_bad_line_in_ten_is_reported(
+    receiver: Receiver, bad: int, faults: int
+) -> None:
     assert len(receiver.says(30, bad=bad, others=18)) == faults
 
 
@@ -101,7 +107,7 @@ def test_of_fixes_that_nobody_takes_the_newest_six_hundred_are_kept(receiver: Re
     assert kept[-1].t_ns > receiver.clock.monotonic_ns() - NS_PER_S
 
 
-def test_a_line_on_which_nothing_comes_is_told_and_opened_again(receiver: Receiver) -> None:
+def test_a_line_on_which_nothing_comes_is_reported_and_opened_again(receiver: Receiver) -> None:
     assert receiver.is_silent(10) == ()
     assert receiver.keeps_the_line()
     (fault,) = receiver.is_silent(1)
@@ -113,7 +119,7 @@ def test_a_line_on_which_nothing_comes_is_told_and_opened_again(receiver: Receiv
     assert receiver.is_silent(1) == (), "which has been told"
 
 
-def test_a_receiver_that_falls_silent_again_is_told_again(receiver: Receiver) -> None:
+def test_a_receiver_that_falls_silent_again_is_reported_again(receiver: Receiver) -> None:
     for _ in range(2):
         receiver.says(1)
         (fault,) = receiver.is_silent(11)
@@ -123,15 +129,15 @@ def test_a_receiver_that_falls_silent_again_is_told_again(receiver: Receiver) ->
     assert "nothing comes" in fault, "since the line is open"
 
 
-def test_a_receiver_that_hangs_is_told(receiver: Receiver) -> None:
-    faults = [fault for _ in range(13) for fault in receiver.hears(gga(SAID))]
+def test_a_receiver_that_hangs_is_reported(receiver: Receiver) -> None:
+    faults = [fault for _ in range(13) for fault in receiver.receives(gga(STATED))]
     assert ["the same instant again and again" in fault for fault in faults] == [True]
     assert len(receiver.reader.take()) == 1
 
 
 def test_a_receiver_that_hung_and_then_falls_silent_has_fallen_silent(receiver: Receiver) -> None:
-    receiver.hears(gga(SAID))
-    receiver.hears(gga(SAID))
+    receiver.receives(gga(STATED))
+    receiver.receives(gga(STATED))
     receiver.says(1)
     (fault,) = receiver.is_silent(11)
     assert "it has fallen silent" in fault
@@ -139,33 +145,33 @@ def test_a_receiver_that_hung_and_then_falls_silent_has_fallen_silent(receiver: 
 
 def test_what_is_no_receivers_is_shown(receiver: Receiver) -> None:
     noise = b"\x81" * 60
-    (fault,) = [fault for _ in range(11) for fault in receiver.hears(noise, b"x")]
+    (fault,) = [fault for _ in range(11) for fault in receiver.receives(noise, b"x")]
     assert f"what comes is no receiver's: {noise[:40]!r} (no whole sentence)" in fault
 
 
 @pytest.mark.parametrize(
-    ("text", "error", "told"),
+    ("text", "error", "reported"),
     [
         ("/dev/ttyUSB0", OSError(errno.ENOENT, "x"), "there is no such device"),
         ("/dev/ttyUSB0", None, "it went away"),
         ("tcp://10.0.0.1:5000", None, "it has ended the connection"),
     ],
 )
-def test_why_a_line_is_gone_is_told_once_until_it_is_back(
-    text: str, error: OSError | None, told: str
+def test_why_a_line_is_gone_is_reported_once_until_it_is_back(
+    text: str, error: OSError | None, reported: str
 ) -> None:
     receiver = Receiver(text)
     for _ in range(3):
         receiver.reader.on_close(error)
     (fault,) = receiver.reader.take_faults()
-    assert f"no fixes: {told}" in fault
+    assert f"no fixes: {reported}" in fault
     receiver.says(1)
     receiver.reader.on_close(error)
     assert len(receiver.reader.take_faults()) == 1
 
 
 def test_a_line_that_ends_after_nothing_but_noise_was_no_receivers(receiver: Receiver) -> None:
-    receiver.hears(b"\x81")
+    receiver.receives(b"\x81")
     receiver.reader.on_close(None)
     receiver.reader.on_close(OSError(errno.ENOENT, "x"))
     faults = receiver.reader.take_faults()
@@ -173,7 +179,7 @@ def test_a_line_that_ends_after_nothing_but_noise_was_no_receivers(receiver: Rec
 
 
 def test_an_instant_is_not_over_before_the_line_pauses(receiver: Receiver) -> None:
-    receiver.reader.on_line(gga(SAID).strip(), 0)
+    receiver.reader.on_line(gga(STATED).strip(), 0)
     assert receiver.reader.keeps_open(0, paused=False)
     assert receiver.reader.take() == ()
     receiver.reader.keeps_open(0, paused=True)

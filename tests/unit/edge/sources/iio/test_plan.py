@@ -57,7 +57,7 @@ def test_an_offer_that_cannot_be_read_is_refused(offered: str) -> None:
         nearest(offered, 400.0)
 
 
-def test_a_rate_that_is_not_offered_is_said_with_those_that_are(tree: SysfsTree) -> None:
+def test_a_rate_that_is_not_offered_is_stated_with_those_that_are(tree: SysfsTree) -> None:
     device = accelerometer(tree, sampling_frequency="26.000", sampling_frequency_available=LSM6DSO)
     plan = plan_capture(device, (ACCEL,), 300.0)
     assert plan.rate_hz == 416.0

@@ -71,14 +71,14 @@ def test_a_device_that_does_as_it_was_set_is_not_spoken_of() -> None:
     assert fed(StreamMonitor(400.0), 380.0) == []
 
 
-def test_another_rate_is_said_once() -> None:
+def test_another_rate_is_stated_once() -> None:
     monitor = StreamMonitor(400.0)
-    (said,) = fed(monitor, 200.0)
-    assert "it gives 200 samples a second and is set to 400" in said
+    (reported,) = fed(monitor, 200.0)
+    assert "it gives 200 samples a second and is set to 400" in reported
     assert fed(monitor, 200.0) == []
 
 
-def test_lost_samples_are_said_once_until_none_are_lost() -> None:
+def test_lost_samples_are_stated_once_until_none_are_lost() -> None:
     monitor = StreamMonitor(400.0)
     t_ns = NOW_NS + np.arange(11 * 400, dtype=np.int64) * 2_500_000
     for begun in range(3):
@@ -90,7 +90,7 @@ def test_lost_samples_are_said_once_until_none_are_lost() -> None:
         assert [("were lost" in one) for one in events] == ([True] if begun != 1 else [])
 
 
-def test_samples_without_a_place_are_said() -> None:
-    (said,) = fed(StreamMonitor(400.0), 400.0, unplaced=100)
-    assert "100 of" in said
-    assert "were left out" in said
+def test_samples_without_a_place_are_stated() -> None:
+    (reported,) = fed(StreamMonitor(400.0), 400.0, unplaced=100)
+    assert "100 of" in reported
+    assert "were left out" in reported

@@ -172,7 +172,7 @@ def test_a_magnetometer_in_a_device_that_is_polled(tree, start) -> None:
     assert not taken.faults()
 
 
-def test_a_magnetometer_that_is_not_captured_is_said(plug, start) -> None:
+def test_a_magnetometer_that_is_not_captured_is_stated(plug, start) -> None:
     device = plug(MPU9250)
     for axis in "xyz":
         (device.path / "scan_elements" / f"in_magn_{axis}_en").unlink()
@@ -180,14 +180,14 @@ def test_a_magnetometer_that_is_not_captured_is_said(plug, start) -> None:
         until(lambda: "does not capture its magnetometer" in taken.faults(), "the remark")
 
 
-def test_a_magnetometer_that_was_asked_of_a_device_without_one_is_said(plug, start) -> None:
+def test_a_magnetometer_that_was_asked_of_a_device_without_one_is_stated(plug, start) -> None:
     plug()
     with start("bmi160?mag=bmi160") as taken:
         until(lambda: len(taken) > ENOUGH, "samples")
         until(lambda: "it has no magnetometer" in taken.faults(), "the remark")
 
 
-def test_a_magnetometer_that_was_not_known_at_the_start_is_said(plug, start) -> None:
+def test_a_magnetometer_that_was_not_known_at_the_start_is_stated(plug, start) -> None:
     with start("mpu9250?rate=200") as taken:
         until(lambda: "there is no IIO device" in taken.faults(), "that it is missing")
         plug(MPU9250, values=turning_field)
@@ -220,7 +220,7 @@ def test_a_device_that_is_removed_and_comes_back(plug, start) -> None:
     assert np.isfinite(taken.column("accel_mps2")).all()
 
 
-def test_a_bus_that_fails_is_told_apart(plug, start) -> None:
+def test_a_bus_that_fails_is_distinguished(plug, start) -> None:
     device = plug()
     with start("bmi160") as taken:
         until(lambda: len(taken) > ENOUGH, "samples")
@@ -232,10 +232,10 @@ def test_a_bus_that_fails_is_told_apart(plug, start) -> None:
 
 
 @pytest.mark.parametrize(
-    ("number", "said"), [(errno.EACCES, "60-muster.rules"), (errno.EROFS, "ReadWritePaths")]
+    ("number", "reported"), [(errno.EACCES, "60-muster.rules"), (errno.EROFS, "ReadWritePaths")]
 )
 def test_a_device_that_may_not_be_set_says_what_to_install(
-    plug, start, monkeypatch, number, said
+    plug, start, monkeypatch, number, reported
 ) -> None:
     plug()
 
@@ -244,10 +244,10 @@ def test_a_device_that_may_not_be_set_says_what_to_install(
 
     monkeypatch.setattr(buffer, "write_text", refused)
     with start("bmi160") as taken:
-        until(lambda: said in taken.faults(), said)
+        until(lambda: reported in taken.faults(), reported)
 
 
-def test_a_rate_that_is_not_offered_is_said_and_the_nearest_taken(plug, start) -> None:
+def test_a_rate_that_is_not_offered_is_stated_and_the_nearest_taken(plug, start) -> None:
     plug()
     with start("bmi160?rate=300") as taken:
         until(lambda: len(taken) > ENOUGH, "samples")
@@ -255,7 +255,7 @@ def test_a_rate_that_is_not_offered_is_said_and_the_nearest_taken(plug, start) -
         assert "it gives 400" in taken.faults()
 
 
-def test_a_rate_that_was_not_known_in_time_is_said(plug, start) -> None:
+def test_a_rate_that_was_not_known_in_time_is_stated(plug, start) -> None:
     with start("icm42688-accel+icm42688-gyro") as taken:
         until(lambda: "there is no IIO device" in taken.faults(), "that it is missing")
         plug(ICM_ACCEL, number=0)
@@ -333,7 +333,7 @@ def test_a_buffer_from_which_nothing_comes(plug, start) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "reported"),
     [
         (
             "icm42688-accel",
@@ -346,14 +346,14 @@ def test_a_buffer_from_which_nothing_comes(plug, start) -> None:
         ("icm42688", "there is no IIO device named icm42688; there are icm42688-accel@"),
     ],
 )
-def test_devices_that_are_named_wrongly(plug, start, text, said) -> None:
+def test_devices_that_are_named_wrongly(plug, start, text, reported) -> None:
     plug(ICM_ACCEL)
     plug(ICM_GYRO, number=1)
     with start(text) as taken:
-        until(lambda: said in taken.faults(), said)
+        until(lambda: reported in taken.faults(), reported)
 
 
-def test_a_mount_matrix_that_cannot_be_is_said(plug, start) -> None:
+def test_a_mount_matrix_that_cannot_be_is_stated(plug, start) -> None:
     plug(in_mount_matrix="0, 0, 0; 0, 0, 0; 0, 0, 0")
     with start("bmi160") as taken:
         until(lambda: "which is no rotation" in taken.faults(), "the matrix")

@@ -46,7 +46,7 @@ def test_an_input_is_chosen_by_its_label_or_its_number(tree: SysfsTree) -> None:
     assert "has no input chest" in reason(read(tree, "ltc2983/chest"))
 
 
-def test_chips_of_one_name_are_told_apart_by_their_address(tree: SysfsTree) -> None:
+def test_chips_of_one_name_are_distinguished_by_their_address(tree: SysfsTree) -> None:
     tree.hwmon(0, "1-0048", name="tmp102", temp1_input="1000")
     tree.hwmon(1, "1-0049", name="tmp102", temp1_input="2000")
     assert "tmp102@1-0048, tmp102@1-0049" in reason(read(tree, "tmp102"))

@@ -52,11 +52,11 @@ def test_the_hottest_that_it_measures(tree: SysfsTree) -> None:
 
 
 @pytest.mark.parametrize(
-    ("attribute", "said"), [("fault_oc", "open circuit"), ("fault_ovuv", "short circuit")]
+    ("attribute", "reported"), [("fault_oc", "open circuit"), ("fault_ovuv", "short circuit")]
 )
-def test_an_open_circuit_and_a_short_are_told_apart_from_heat(tree, attribute, said) -> None:
+def test_an_open_circuit_and_a_short_are_distinguished_from_heat(tree, attribute, reported) -> None:
     tree.iio(0, **MAX31856 | {attribute: "1", "in_temp_raw": "200000"})
-    assert reason(read(tree, "max31856")).startswith(said)
+    assert reason(read(tree, "max31856")).startswith(reported)
 
 
 def test_a_max31855_that_refuses_its_reading_is_open_or_shorted(tree, monkeypatch) -> None:
@@ -93,7 +93,7 @@ def test_one_of_several_channels_is_chosen_by_its_name(tree: SysfsTree) -> None:
     assert "has no temperature 2" in reason(read(tree, "ltc2983/2"))
 
 
-def test_converters_of_one_name_are_told_apart_by_their_address(tree: SysfsTree) -> None:
+def test_converters_of_one_name_are_distinguished_by_their_address(tree: SysfsTree) -> None:
     tree.iio(0, "spi0.0", **MAX31856)
     tree.iio(1, "spi0.1", **MAX31856 | {"in_temp_raw": "6400"})
     assert "max31856@spi0.0, max31856@spi0.1" in reason(read(tree, "max31856"))

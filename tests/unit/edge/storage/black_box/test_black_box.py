@@ -97,14 +97,14 @@ def record(folder: Path, clock: ManualClock | None = None) -> tuple[list[Message
 
 @pytest.mark.slow
 def test_a_replay_says_the_same_to_the_last_bit(tmp_path):
-    said, boot = record(tmp_path)
+    reported, boot = record(tmp_path)
     source = BlackBoxSource(boot)
     replayed = messages_of(source, SampleEncoder("u1", 7), list(source.batches()))
-    assert replayed == said
+    assert replayed == reported
     assert source.description.gain_std == open_source(SCENARIO).description.gain_std == 0.002
-    kinds = {type(message) for message in said}
+    kinds = {type(message) for message in reported}
     assert {Position, Status, UnitEvent} <= kinds
-    positions = [message for message in said if isinstance(message, Position)]
+    positions = [message for message in reported if isinstance(message, Position)]
     assert positions[-1].distance_m > 3.0
 
 

@@ -212,7 +212,7 @@ def steps(monkeypatch):
     return counted
 
 
-def test_what_there_is_of_a_boot_is_said_without_reading_it(tmp_path, steps):
+def test_what_there_is_of_a_boot_is_stated_without_reading_it(tmp_path, steps):
     """The station asks every half minute, and a journal may have half a gigabyte."""
     journal = spool_at(tmp_path)
     journal.append([entry(1, channel) for channel in (IMU, POSITION)])
@@ -270,8 +270,8 @@ def test_what_could_not_be_given_up_after_all_is_not_counted(tmp_path, monkeypat
 def test_what_is_safe_outlives_a_power_cut(tmp_path):
     """No test can cut the power; this is what SQLite asks for to promise it."""
     journal = spool_at(tmp_path)
-    said = [journal._writer.execute(f"PRAGMA {name}").fetchone()[0] for name in PROMISING]
-    assert said == ["wal", 2]
+    reported = [journal._writer.execute(f"PRAGMA {name}").fetchone()[0] for name in PROMISING]
+    assert reported == ["wal", 2]
     journal.close()
 
 
@@ -379,7 +379,7 @@ def test_a_power_cut_while_the_new_journal_takes_its_place_costs_nothing(tmp_pat
     journal.close()
 
 
-def test_a_journal_of_which_nobody_can_be_told_what_is_in_it_is_begun_anew(tmp_path):
+def test_a_journal_of_which_nobody_can_be_reported_what_is_in_it_is_begun_anew(tmp_path):
     spoil(tmp_path, OLDEST)
     path = tmp_path / "journal.sqlite"
     journal, _ = open_journal(path, itertools.count(2).__next__, 77, MB)

@@ -70,7 +70,7 @@ def test_no_reply_is_larger_than_a_megabyte_whatever_is_asked_for(journal):
     assert [len(chunk.entries) for chunk in answers] == [11, 11, 8]
 
 
-def test_a_single_number_that_is_not_kept_is_said_to_be_gone(journal):
+def test_a_single_number_that_is_not_kept_is_stated_to_be_gone(journal):
     (chunk,) = chunks(journal, "epoch=9;from=50;to=50")
     assert (chunk.from_seq, chunk.to_seq, chunk.entries) == (50, 50, ())
 
@@ -97,7 +97,7 @@ def test_what_is_not_written_yet_is_not_called_lost(journal):
     assert not chunks(journal, "epoch=9;from=101;to=200")
 
 
-def test_of_a_boot_of_another_machine_nothing_is_said(journal):
+def test_of_a_boot_of_another_machine_nothing_is_stated(journal):
     assert not chunks(journal, "epoch=1234;from=1;to=5")
 
 
@@ -183,7 +183,7 @@ def test_questions_without_sense_get_nothing_and_break_nothing(journal, what, pa
     assert len(chunks(journal, "epoch=9;from=1;to=100")) == 1
 
 
-def test_what_lasts_is_told_once_and_again_when_it_comes_back(journal, caplog, monkeypatch):
+def test_what_lasts_is_reported_once_and_again_when_it_comes_back(journal, caplog, monkeypatch):
     full = StoreError("database or disk is full")
 
     def refuse(*_: object) -> None:
@@ -195,5 +195,5 @@ def test_what_lasts_is_told_once_and_again_when_it_comes_back(journal, caplog, m
             if not works:
                 patch.setattr(journal, "acknowledge", refuse)
             list(server.replies("muster/v1/u1/journal/acknowledge", "epoch=9;to=5", b""))
-    told = [one for one in caplog.records if one.levelno == logging.ERROR]
-    assert len(told) == 2
+    reported = [one for one in caplog.records if one.levelno == logging.ERROR]
+    assert len(reported) == 2

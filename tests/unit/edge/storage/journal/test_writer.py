@@ -54,7 +54,7 @@ def hanging_disk(journal, monkeypatch):
     return hanging
 
 
-def said(seq: int) -> JournalRow:
+def stated(seq: int) -> JournalRow:
     return JournalRow(seq, TEMPERATURE, 0, b"20 degC")
 
 
@@ -85,10 +85,10 @@ def test_what_is_on_disk_is_not_written_again(journal, journal_writer, monkeypat
 
 def test_what_a_disk_refuses_is_written_when_it_has_room(journal, journal_writer, full_disk):
     with full_disk():
-        journal_writer.write([said(1), said(2)])
+        journal_writer.write([stated(1), stated(2)])
         assert "the disk is full" in str(journal_writer.fault)
         assert journal_writer.is_working
-    journal_writer.write([said(3)])
+    journal_writer.write([stated(3)])
     journal_writer.close()
     assert kept(journal) == [1, 2, 3]
     assert journal_writer.never_saved == 0
@@ -130,12 +130,12 @@ def test_a_disk_that_has_just_refused_is_not_asked_at_every_message(
     assert kept(journal) == [1, 2, 3, 4, 5]
 
 
-def test_a_disk_that_has_refused_is_asked_again_though_nothing_more_is_said(
+def test_a_disk_that_has_refused_is_asked_again_though_nothing_more_is_stated(
     journal, journal_writer, monkeypatch, full_disk
 ):
     monkeypatch.setattr("edge.storage.journal.writer._RETRY_S", 0.01)
     with full_disk():
-        journal_writer.write([said(1)])
+        journal_writer.write([stated(1)])
     until(lambda: kept(journal) == [1])
     until(lambda: journal_writer.fault is None)
 
@@ -147,14 +147,14 @@ def test_an_alert_is_not_ousted_by_what_came_after_it(
     monkeypatch.setattr("edge.storage.journal.writer._UNSAVED_MAX", 3)
     with full_disk():
         journal_writer.write([mayday(1)])
-        journal_writer.write(map(said, range(2, 7)))
-    journal_writer.write([said(7)])
+        journal_writer.write(map(stated, range(2, 7)))
+    journal_writer.write([stated(7)])
     journal_writer.close()
     assert kept(journal) == [1, 5, 6, 7]
     assert journal_writer.never_saved == 3
 
 
-def test_what_a_full_disk_cost_is_counted_and_said(
+def test_what_a_full_disk_cost_is_counted_and_stated(
     journal, journal_writer, monkeypatch, caplog, full_disk
 ):
     monkeypatch.setattr("edge.storage.journal.writer._UNSAVED_MAX", 3)
@@ -165,8 +165,8 @@ def test_what_a_full_disk_cost_is_counted_and_said(
     journal_writer.close()
     assert kept(journal) == [4, 5, 6]
     assert journal_writer.never_saved == 3
-    told = [record.getMessage() for record in caplog.records]
-    assert told[1:] == [
+    reported = [record.getMessage() for record in caplog.records]
+    assert reported[1:] == [
         "the journal can be written again; 3 messages were sent and not kept since the start"
     ]
 
@@ -175,12 +175,12 @@ def test_a_disk_that_hangs_is_not_waited_for(journal, journal_writer, monkeypatc
     monkeypatch.setattr("edge.storage.disk_watchdog.HANGS_S", 0.0)
     with hanging_disk() as is_asked:
         monkeypatch.setattr("edge.storage.journal.writer._WRITE_TIMEOUT_S", 0.05)
-        journal_writer.write([said(1)])
+        journal_writer.write([stated(1)])
         monkeypatch.setattr("edge.storage.journal.writer._WRITE_TIMEOUT_S", 0.0)
         is_asked.wait(PATIENCE_S)
         monkeypatch.setattr(journal_writer._changed, "wait_for", lambda *_: pytest.fail("it waits"))
         for seq in (2, 3, 4):
-            journal_writer.write([said(seq)])
+            journal_writer.write([stated(seq)])
         assert "has not answered" in str(journal_writer.fault)
         monkeypatch.undo()
     until(lambda: kept(journal) == [1, 2, 3, 4])
@@ -194,9 +194,9 @@ def test_what_a_disk_has_in_hand_while_it_hangs_is_kept_once_and_not_ousted(
     monkeypatch.setattr("edge.storage.journal.writer._UNSAVED_MAX", 2)
     monkeypatch.setattr("edge.storage.journal.writer._WRITE_TIMEOUT_S", 0.01)
     with hanging_disk() as is_asked:
-        journal_writer.write([said(1), said(2)])
+        journal_writer.write([stated(1), stated(2)])
         is_asked.wait(PATIENCE_S)
-        journal_writer.write(map(said, range(3, 8)))
+        journal_writer.write(map(stated, range(3, 8)))
     until(lambda: kept(journal) == [1, 2, 6, 7])
     assert journal_writer.never_saved == 3
 
@@ -206,8 +206,8 @@ def test_a_disk_that_is_slow_now_and_then_is_no_fault(
 ):
     monkeypatch.setattr("edge.storage.journal.writer._WRITE_TIMEOUT_S", 0.01)
     with hanging_disk():
-        journal_writer.write([said(1)])
-        journal_writer.write([said(2)])
+        journal_writer.write([stated(1)])
+        journal_writer.write([stated(2)])
         assert journal_writer.fault is None
 
 
@@ -217,7 +217,7 @@ def test_the_end_does_not_wait_for_a_disk_that_hangs(
     monkeypatch.setattr("edge.storage.disk_watchdog.HANGS_S", 0.3)
     monkeypatch.setattr("edge.storage.journal.writer._WRITE_TIMEOUT_S", 0.01)
     with hanging_disk() as is_asked:
-        journal_writer.write([said(1)])
+        journal_writer.write([stated(1)])
         is_asked.wait(PATIENCE_S)
         closing = Thread(target=journal_writer.close)
         closing.start()

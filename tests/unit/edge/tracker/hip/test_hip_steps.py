@@ -49,7 +49,7 @@ def drifting(turn_radps):
     return bobbing(38, 1.9, turn_radps=turn_radps)
 
 
-def test_constraints_are_off_unless_somebody_sets_them():
+def test_constraints_are_off_unless_person_sets_them():
     assert not HipConfig().straight_walks
     assert not HipConfig().right_angles
     turned_rad = heading_rad(tracked(drifting(0.02)), 20.0, 22.0)

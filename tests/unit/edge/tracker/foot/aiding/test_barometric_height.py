@@ -95,8 +95,8 @@ def walk_in_air(down_m=0.0, *, rise_m=0.0, strides=60, seed=0):
     made = walk(strides=strides, rise_m=rise_m, seed=seed + 1)
     noise = np.random.default_rng(seed)
     drift_m = np.cumsum(noise.standard_normal(len(made.imu))) * 0.0125 / np.sqrt(200.0)
-    said_m = made.position_n_m[:, 2] + drift_m + down_m
-    pressure_pa = 101_325.0 * np.exp(said_m / SCALE_HEIGHT_M)
+    stated_m = made.position_n_m[:, 2] + drift_m + down_m
+    pressure_pa = 101_325.0 * np.exp(stated_m / SCALE_HEIGHT_M)
     pressure_pa += 1.5 * noise.standard_normal(len(made.imu))
     pressure_pa[np.arange(len(made.imu)) % 8 != 0] = np.nan
     return made, replace(made.imu, pressure_pa=pressure_pa)
@@ -127,7 +127,7 @@ def test_the_air_alone_lifts_nobody_off_a_flat_floor(what):
     assert np.abs(rows.position_n_m[rows.stationary, 2]).max() < 0.1
 
 
-def test_a_pressure_sensor_that_always_hung_is_not_heard():
+def test_a_pressure_sensor_that_always_hung_is_not_received():
     made, imu = walk_in_air(rise_m=0.17, strides=20)
     hanging_pa = np.where(np.isnan(imu.pressure_pa), np.nan, 101_325.0)
     hung, deaf = run(made.description, replace(imu, pressure_pa=hanging_pa)), made.imu

@@ -74,12 +74,12 @@ def test_a_field_that_is_bent_all_over_shows_by_strength_and_dip():
         assert np.median(stds_rad) > 1.5 * np.median(clean_rad)
 
 
-def test_where_the_earths_field_is_not_known_north_is_said_with_more_doubt():
+def test_where_the_earths_field_is_not_known_north_is_stated_with_more_doubt():
     known, unknown = (np.median(north_errors_rad(0, earth=earth)[1]) for earth in (EARTH, None))
     assert unknown > 2.0 * known
 
 
-def test_among_heavy_steel_north_is_not_said():
+def test_among_heavy_steel_north_is_not_stated():
     def bend(imu, truth):
         return bent(imu, truth, 0, wave_m=(1.0, 3.0), bend_ut=25.0)
 
@@ -87,7 +87,7 @@ def test_among_heavy_steel_north_is_not_said():
     assert len(errors_rad) < 0.1 * DURATION_S
 
 
-def test_without_a_calibration_north_is_never_said():
+def test_without_a_calibration_north_is_never_stated():
     assert len(north_errors_rad(0, left_ut=None)[0]) == 0
 
 

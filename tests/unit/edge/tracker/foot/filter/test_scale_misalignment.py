@@ -53,7 +53,7 @@ def ramble(seconds=8.0, gain=None, per_force=None):
 
 
 @pytest.mark.slow
-def test_each_error_turns_the_walk_by_what_is_said_of_it():
+def test_each_error_turns_the_walk_by_what_is_stated_of_it():
     _, straight_m, state = ramble()
     noise = np.random.default_rng(4)
     gain, per_force = noise.normal(0.0, 1e-3, (2, 3, 3))
@@ -76,7 +76,7 @@ def test_each_error_turns_the_walk_by_what_is_said_of_it():
     assert heading_variance(state["covariance"]) == pytest.approx(variance)
 
 
-def heard(residual_rad, variance):
+def received(residual_rad, variance):
     """The state after a compass told of the heading, and as it was before."""
     _, _, state = ramble()
     before = state.copy()
@@ -89,7 +89,7 @@ def heard(residual_rad, variance):
 
 @pytest.mark.slow
 def test_a_compass_tells_of_the_gains_as_a_kalman_filter_would():
-    before, after = heard(0.02, 1e-4)
+    before, after = received(0.02, 1e-4)
     turned = before["scale_errors"]["heading_sensitivity"]
     total = turned @ turned + 1e-4
     gain = turned / total
@@ -107,8 +107,8 @@ def test_a_compass_tells_of_the_gains_as_a_kalman_filter_would():
     assert not off_diagonal.any()
 
 
-def test_what_a_compass_told_goes_on_turning_the_walk():
-    _, state = heard(0.02, 1e-6)
+def test_what_a_compass_reported_goes_on_turning_the_walk():
+    _, state = received(0.02, 1e-6)
     state["gyro_radps"], state["accel_mps2"] = [0.0, 0.0, 1.0], FORCE_MPS2
     before = state["scale_errors"]["heading_sensitivity"].copy()
     known_rad = propagate_scale_errors(state, DT_S, CONFIG)
