@@ -184,8 +184,8 @@ def find_node() -> Node:
 
 def new_enough(node: str) -> bool:
     """True if Vite runs on it: 20.19 and later in 20, or 22.12 and later."""
-    said = subprocess.run([node, "--version"], capture_output=True, text=True, check=False)
-    match = re.fullmatch(r"v(\d+)\.(\d+)\..*", said.stdout.strip())
+    result = subprocess.run([node, "--version"], capture_output=True, text=True, check=False)
+    match = re.fullmatch(r"v(\d+)\.(\d+)\..*", result.stdout.strip())
     if match is None:
         return False
     version = (int(match[1]), int(match[2]))

@@ -358,4 +358,4 @@ class _Station:
     def _erase_for_peer(self, what: str) -> None:
         """Forget a person or incident that the other station has forgotten: this log has it too."""
         kind, _, one = what.partition(" ")
-        self._erasures.add(BY_OTHER_STATION, kind, one, told=True)
+        self._erasures.add(BY_OTHER_STATION, kind, one, from_peer=True)

@@ -133,7 +133,7 @@ class StationStorage:
             save_soon()
 
         def obstacle(job: ErasureJob) -> str:
-            if not job.told and not leads():
+            if not job.from_peer and not leads():
                 return "this station is the standby; ask the one that leads"
             if self.projection.is_behind:  # what is read of the log may be of the person
                 return "the database is brought up to date from the log; it is done after that"

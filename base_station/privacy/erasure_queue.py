@@ -42,7 +42,7 @@ class ErasureState(StrEnum):
 
 
 class ErasureJob(msgspec.Struct):
-    """What is to be forgotten, at whose job, and how far it is.  It has no name in it."""
+    """One erasure: its subject, who ordered it, and its progress.  It has no name of a person."""
 
     forgetting_id: str
     by: str
@@ -56,7 +56,7 @@ class ErasureJob(msgspec.Struct):
     damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
     kept: tuple[str, ...] = ()  # what stays, as sentences
     began: bool = False  # once before, perhaps by an earlier run of the program
-    told: bool = False  # the other station has done it: this one does, too
+    from_peer: bool = msgspec.field(default=False, name="told")  # the other station has erased it
 
 
 Obstacle = Callable[[ErasureJob], str]  # why it has to wait, as a sentence; empty: it need not
@@ -85,7 +85,7 @@ class ErasureQueue:
         )
         self._obstacle = obstacle
         self._on_done = on_done
-        self._told = ""  # why it waits, as last logged
+        self._last_obstacle = ""  # as in the log
 
     def __enter__(self) -> ErasureQueue:
         self._jobs.start()
@@ -94,12 +94,12 @@ class ErasureQueue:
     def __exit__(self, *_: object) -> None:
         self._jobs.close()
 
-    def add(self, by: str, kind: str, subject_id: str, *, told: bool = False) -> ErasureJob:
+    def add(self, by: str, kind: str, subject_id: str, *, from_peer: bool = False) -> ErasureJob:
         """It is on the disk when this returns, and will be done.  The same twice is once.
 
         Raises StoreError where the disk does not take it.
         """
-        return self._jobs.add(_wish(by, kind, subject_id, told=told))
+        return self._jobs.add(_wish(by, kind, subject_id, from_peer=from_peer))
 
     def all(self) -> tuple[ErasureJob, ...]:
         """The last that are over, and those under way."""
@@ -134,23 +134,23 @@ class ErasureQueue:
             return False
         except UserError as error:
             problem = str(error)
-            if not job.told:  # else nothing was left to be done
+            if not job.from_peer:  # else nothing was left to be done
                 self._note(job, state=ErasureState.FAILED, problem=problem)
                 return True
         except (MusterError, OSError) as error:
-            if str(error) != self._told:
+            if str(error) != self._last_obstacle:
                 _log.warning("forgetting waits, and is tried again: %s", error)
-                self._told = str(error)
+                self._last_obstacle = str(error)
             self._note(job, problem=f"it is tried again: {error}", **_so_far(tally))
             return False
-        self._told = ""
+        self._last_obstacle = ""
         self._on_done(msgspec.structs.replace(job))
         problem = problem or ". ".join((*tally.damaged, *tally.kept))
         self._note(job, state=ErasureState.DONE, share=1.0, problem=problem, **_so_far(tally))
         return True
 
     def _go_on(self, job: ErasureJob, share: float, tally: ErasureProgress) -> None:
-        """What was taken out is on the disk before more is: the audit is to say it in the end."""
+        """Save the progress before more is erased, so that the audit counts all of it."""
         more = (tally.files, tally.damaged) != (job.files, job.damaged)
         self._jobs.note(job, save=more, share=share, **_so_far(tally))
         if self._jobs.is_closing:
@@ -176,7 +176,7 @@ def erase_now(
     began = any((one.kind, one.subject_id) == (kind, subject_id) for one in jobs.under_way())
     if kind == "person" and not began:  # what is no id may be a name, and there are none in it
         forgetter.require_person(subject_id)
-    added = jobs.add(_wish(by, kind, subject_id, told=False))
+    added = jobs.add(_wish(by, kind, subject_id, from_peer=False))
     (job,) = (one for one in jobs.under_way() if one.forgetting_id == added.forgetting_id)
     tally = _tally_of(job)
     jobs.note(job, save=True, state=ErasureState.WORKING, began=True)
@@ -197,11 +197,13 @@ def erase_now(
 
 
 def _wish(
-    by: str, kind: str, subject_id: str, *, told: bool
+    by: str, kind: str, subject_id: str, *, from_peer: bool
 ) -> Callable[[list[ErasureJob]], ErasureJob]:
     def among(under_way: list[ErasureJob]) -> ErasureJob:
         same = (one for one in under_way if (one.kind, one.subject_id) == (kind, subject_id))
-        return next(same, ErasureJob(secrets.token_hex(4), by, kind, subject_id, told=told))
+        return next(
+            same, ErasureJob(secrets.token_hex(4), by, kind, subject_id, from_peer=from_peer)
+        )
 
     return among
 

@@ -80,7 +80,7 @@ class LogFiles(Protocol):
 
     @property
     def folder(self) -> Path:
-        """Where the segments are."""
+        """Folder of the segments."""
         ...
 
     @property
@@ -107,25 +107,25 @@ class RecordingTransfers(Protocol):
 
 @dataclass(slots=True)
 class ErasureProgress:
-    """What was taken out so far, by the tries that were cut short, too."""
+    """Counts of what was erased so far, with those of attempts that were cut short."""
 
     records: int = 0  # of the log that changed or went
     files: int = 0  # that were written anew or removed
-    again: bool = False  # it was tried before
+    again: bool = False  # an attempt was made before
     damaged: tuple[str, ...] = ()  # parts of the log, and what became of them
     kept: tuple[str, ...] = ()  # what stays, as sentences
 
     def note_damage(self, part: str, written_anew: bool) -> None:
-        gone, stays = "what could not be read of it is gone", "it stays, whoever it tells of"
-        said = f"Damaged: {part}; {gone if written_anew else stays}"
-        if said not in self.damaged:
-            _log.warning("%s", said)
-            self.damaged = (*self.damaged, said)
+        gone, stays = "its unreadable part is gone", "it stays, with all people in it"
+        damage = f"Damaged: {part}; {gone if written_anew else stays}"
+        if damage not in self.damaged:
+            _log.warning("%s", damage)
+            self.damaged = (*self.damaged, damage)
 
 
 @dataclass(frozen=True, slots=True)
 class ErasureResult:
-    """What became of it, over all tries."""
+    """Result of an erasure over all attempts."""
 
     what: str  # "person 1f.." or "incident 20..", for the audit
     records: int
@@ -222,7 +222,7 @@ class ErasureService:
             erasure = erasure_of_incident(
                 actions,
                 incident_id,
-                self._first_heard_ns(actions),
+                self._first_message_ns(actions),
                 is_whole=self._is_whole(),
             )
             self._begun.keep(erasure)
@@ -263,8 +263,8 @@ class ErasureService:
         return done
 
     def _erase_radio(self, erasure: Erasure, tally: ErasureProgress) -> None:
-        """What was spoken while another incident was open is of that, too: it goes with the last
-        of them.
+        """Erase the audio of the incident's time.  Audio of a time at which another incident was
+        open belongs to both: it is erased with the last of them.
         """
         with self._store.read() as session:
             erased = erased_incidents(session)
@@ -306,7 +306,7 @@ class ErasureService:
         on_progress(1.0)
 
     def _note_in_table(self, path: Path) -> None:
-        """What was taken out is not missing."""
+        """Note the new counts of a segment, so that erased records do not count as missing."""
         if path.parent == self._log.folder:
             with SegmentReader(path) as segment:
                 self._records.put_segments([segment_row(segment.info())])
@@ -356,7 +356,7 @@ class ErasureService:
         first = min(map(segment_number, segments), default=1)
         return first <= 1 and not missing_segments(segments)
 
-    def _first_heard_ns(self, actions: Iterable[Record]) -> dict[str, int]:
+    def _first_message_ns(self, actions: Iterable[Record]) -> dict[str, int]:
         """By unit, of those that were heard before they were registered: of several incidents such
         a unit is in the one that was open alone then.
         """
@@ -371,13 +371,13 @@ class ErasureService:
         if not (several and registered_ns):
             return {}
         units = {key: one for one in registered_ns for key in _keys_of(one)}
-        heard_ns: dict[str, int] = {}
+        received_ns: dict[str, int] = {}
         for t_ns, key, _ in read_log(
             self._log.folder, end_ns=max(registered_ns.values()), keys=units
         ):
             if t_ns < registered_ns[units[key]]:
-                heard_ns.setdefault(units[key], t_ns)
-        return heard_ns
+                received_ns.setdefault(units[key], t_ns)
+        return received_ns
 
     def _clocks(self, erasure: Erasure) -> CaptureClocks:
         """From all that came live.  What was erased has left a heartbeat with the same header, so a

@@ -20,7 +20,7 @@ from shared.messages.station import Assign
 
 
 class _OlderErasure(msgspec.Struct, frozen=True):
-    """What an earlier version kept of the actions that it puts into the log."""
+    """Record that an earlier version kept of the actions that it puts into the log."""
 
     returned_units: tuple[str, ...] = ()  # before the opening
     assigned_after: tuple[Assign, ...] = ()  # behind the closing

@@ -37,7 +37,7 @@ SAVED_APART = 100_000  # events: some seconds of stepping, which is what going b
 
 @dataclass(frozen=True)
 class Archive:
-    """Where a playback finds what happened."""
+    """Sources of a playback: log, checkpoints, and the pipeline's factory."""
 
     open_log: OpenLog
     checkpoints: Checkpoints
@@ -111,7 +111,7 @@ class Playback:
             yield
 
     def advance(self, t_ns: int) -> list[Output] | None:
-        """What comes of the next events until ``t_ns``, a burst at most; None: all is done."""
+        """Outputs of the next events until ``t_ns``, a burst at most; None: all is done."""
         if self._next is None or self._next.t_ns > t_ns:
             self._at_ns = max(self._at_ns, t_ns)
             return None
@@ -134,7 +134,7 @@ class Playback:
 
     @property
     def gap(self) -> RecordGap | None:
-        """Where it stands in one."""
+        """Gap of the record in which the playback stands, or None."""
         from_ns, until_ns = self._place[0], None if self._next is None else self._next.t_ns
         is_one = (self._at_ns if until_ns is None else until_ns) - from_ns > LONGEST_NS
         return RecordGap(from_ns, until_ns) if is_one and self._at_ns > from_ns else None
@@ -174,7 +174,7 @@ class Playback:
         self._next = next(self._events, None)
 
     def _save(self) -> None:
-        """Where nothing is saved of the stretch that was just gone."""
+        """Save a checkpoint where there is none of the time since the last one."""
         own, since_ns = self._archive.own, self._saved_ns
         self._saved_ns, self._unsaved = self._at_ns, 0
         if own is None or own.is_refused or own.has_any(since_ns, self._at_ns):
@@ -184,7 +184,7 @@ class Playback:
 
 @dataclass(frozen=True)
 class Difference:
-    """Where a replay decides otherwise than the live station did."""
+    """Difference between a decision of the replay and that of the live station."""
 
     logged: Decision | None
     replayed: Decision | None

@@ -12,7 +12,7 @@ SILENT_S = 15.0  # a station and a unit notify once a second, a department every
 
 
 def fault(folder: Path) -> str:
-    """Why the program of this container is not healthy; empty: it is."""
+    """Reason that the program of this container is not healthy; empty: it is."""
     try:
         last_s = float((folder / "working").read_text(encoding="ascii"))
     except FileNotFoundError:

@@ -26,7 +26,7 @@ from shared.options import finite
 
 _WATCH_EVERY_S = 0.5
 _ROLL_CALL_AT_S = 55.0  # the commander asks once, when somebody is down already
-_ARRIVAL_S = 120.0  # who was not heard by then will not be
+_ARRIVAL_S = 120.0  # for the first message of every unit
 _ENGINE = -29.4, -9.6  # north and east of the plan's origin: where crew.toml has them begin
 _USUAL_HTTP_PORT = 8080
 _USUAL_BUS_PORT = 7447
@@ -37,7 +37,7 @@ def demo(
         float | None,
         typer.Option(
             "--for",
-            help="End so many seconds after all units were heard.",
+            help="End so many seconds after the first message of every unit.",
             min=1.0,
             callback=finite,
         ),
@@ -84,7 +84,7 @@ def demo(
 
 
 class Show(Enum):
-    """What the terminal shows while the demo runs."""
+    """Content of the terminal while the demo runs."""
 
     NOTHING = "nothing"
     STATUS = "a line that is written over"
@@ -136,13 +136,13 @@ class _Demo:
                 self._wearers.listen(self._screen.print)
             self._screen.print("Ctrl-C ends everything." if for_s is None else "")
             self._watch(console, stop, for_s)
-            heard = self._summarise(console)
+            received = self._summarise(console)
             console.close_incident(incident)
             log = self._stations.leading().data
         self._screen.print(f"To replay it: ./muster base replay {incident} --data {log}")
-        missing = self._missing(heard)
+        missing = self._missing(received)
         if missing and not stop.is_set():
-            raise UserError(f"never heard: {', '.join(missing)}; see {self._folder / 'output'}")
+            raise UserError(f"no message from: {', '.join(missing)}; see {self._folder / 'output'}")
 
     def _enrol_units(self) -> list[Path]:
         """Make the station's authority and, for each unit, the file that is carried to it."""
@@ -230,8 +230,8 @@ class _Demo:
         else:
             self._screen.print(f"{child.name} has ended unasked:\n{child.last_words()}")
 
-    def _missing(self, heard: Sequence[str]) -> list[str]:
-        return sorted({one.unit for one in self._crew.responder}.difference(heard))
+    def _missing(self, received: Sequence[str]) -> list[str]:
+        return sorted({one.unit for one in self._crew.responder}.difference(received))
 
     def _status_line(self, console: ConsoleClient, elapsed_s: float) -> str:
         health, alarms = console.health(), console.open_alarms()
@@ -242,17 +242,17 @@ class _Demo:
         )
 
     def _summarise(self, console: ConsoleClient) -> tuple[str, ...]:
-        """Say how it went; the units that were heard."""
-        health, heard = console.health(), console.units_received()
+        """Print a summary; return the units that were received."""
+        health, received = console.health(), console.units_received()
         self._screen.print(
-            f"{health['messages']} messages of {len(heard)} units, "
+            f"{health['messages']} messages of {len(received)} units, "
             f"{health['undecodable']} of them not understood"
         )
         for alarm in console.open_alarms():
             self._screen.print(f"  {alarm['unit_id'] or 'station'}: {alarm['text']}")
         for problem in health["problems"]:
             self._screen.print(f"  station: {problem}")
-        return heard
+        return received
 
 
 def _free_port(usual: int) -> int:

@@ -38,7 +38,7 @@ class Stations:
 
     @property
     def data(self) -> Path:
-        """Where the authority is."""
+        """Folder of the authority."""
         return self.sites[0].data
 
     def enrol(self) -> None:

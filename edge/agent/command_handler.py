@@ -170,7 +170,7 @@ class CommandHandler:
         return CommandState.RECEIVED, ""
 
     def _refusal(self, command: Command) -> str:
-        """Why the unit does not carry the command out; empty: it does."""
+        """Reason that the unit does not execute the command; empty: it does."""
         # By the station's own clock alone: a unit whose clock is wrong obeys all the same.
         if 0 < command.expires_utc_ns <= command.header.t_utc_ns:
             return "it had expired when it was sent"

@@ -132,7 +132,7 @@ class WearerNotifier:
 
 
 def _signal_of(played: PlayedNotice) -> str:
-    """How others perceive it, where it is to be perceived by them."""
+    """Signal that rescuers can perceive: sound or light; empty for any other notice."""
     if played.notice.signal is not Signal.LOCATE:
         return ""
     return SOUND if played.is_audible else LIGHT

@@ -58,11 +58,11 @@ def write_retracked(
     making = out.with_name(f".part-{out.name}")
     shutil.rmtree(making, ignore_errors=True)
     with closing(SegmentWriter(making, SegmentPolicy(segment_s=1e9, flush_every_s=600.0))) as log:
-        told_ns = 0
+        reported_ns = 0
         for log_ns, message in retracked(source, config, sensors, rate_hz):
             log.write(log_ns, channel_of(message).key(source.unit_id), encode(message))
-            if log_ns - told_ns >= _PROGRESS_NS:
-                told_ns = log_ns
+            if log_ns - reported_ns >= _PROGRESS_NS:
+                reported_ns = log_ns
                 on_progress(log_ns)
     making.replace(out)
 

@@ -97,7 +97,7 @@ class ChunkMaker:
         self.size += len(record)
 
     def add_message(
-        self, topic: int, t_ns: int, payload: bytes, said_ns: int, sequence: int
+        self, topic: int, t_ns: int, payload: bytes, publish_ns: int, sequence: int
     ) -> None:
         entries = self._entries.get(topic)
         if entries is None:
@@ -111,7 +111,7 @@ class ChunkMaker:
         elif t_ns < self._start_ns:
             self._start_ns = t_ns
         length = MESSAGE_BYTES - 9 + len(payload)
-        self._parts.append(_MESSAGE.pack(Opcode.MESSAGE, length, topic, sequence, t_ns, said_ns))
+        self._parts.append(_MESSAGE.pack(Opcode.MESSAGE, length, topic, sequence, t_ns, publish_ns))
         self._parts.append(payload)
         self.size += 9 + length
 

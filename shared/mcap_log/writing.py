@@ -88,8 +88,8 @@ class Segment:
 
     def add(self, t_ns: int, key: str, payload: bytes) -> None:
         topic, counts = self._topics.get(key) or self._register(key)
-        said_ns, sequence = sender_time_and_sequence(payload)
-        self._chunk.add_message(topic, t_ns, payload, said_ns or t_ns, sequence)
+        publish_ns, sequence = sender_time_and_sequence(payload)
+        self._chunk.add_message(topic, t_ns, payload, publish_ns or t_ns, sequence)
         if self._chunk.size > self._chunk_bytes:
             self.end_chunk()
         self.start_ns = self.start_ns or t_ns

@@ -71,7 +71,7 @@ class JournalBoot(msgspec.Struct, frozen=True):
 
 
 class JournalIndex(msgspec.Struct, frozen=True):
-    """What a unit can still serve, oldest boot first."""
+    """Boots that a unit can still serve, oldest first."""
 
     boots: tuple[JournalBoot, ...]
 

@@ -22,7 +22,7 @@ from shared.quality import DEGRADED, GOOD, NOT_OF_STEPS, Quality, Reason
 
 
 class MagneticNorth(msgspec.Struct, frozen=True, gc=False):
-    """Where a unit that has a calibrated compass believes magnetic north to be in its frame.
+    """Magnetic north in a unit's frame, as estimated by its calibrated compass.
 
     What bends the field lasts, so many of these tell hardly more than one: not to be averaged.
     """
@@ -56,11 +56,10 @@ class Position(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def path_quality(self) -> Quality:
-        """How far its last steps can be trusted.
+        """Quality of the last steps alone.
 
-        That a long way has added up to much is nothing against them; whoever ties the way to
-        places knows how sure these are.  Nor is a heading that drifts, of which the unit says how
-        much it may.
+        The error that a long way has accumulated does not lower it: what ties the path to places
+        has an error of its own.  Nor does a drift of the heading, as its deviation is stated.
         """
         if self.quality is GOOD or not self.reasons & NOT_OF_STEPS:
             return self.quality

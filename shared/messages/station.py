@@ -73,7 +73,7 @@ class AssignIncident(msgspec.Struct, frozen=True):
 
 
 class Assign(msgspec.Struct, frozen=True):
-    """Who wears which unit from now on; name, crew and role only in logs of earlier versions."""
+    """Assignment of a unit to a person; name, crew and role only in logs of earlier versions."""
 
     unit_id: str
     person_id: str
@@ -95,7 +95,7 @@ class RegisterUnit(msgspec.Struct, frozen=True):
 
 
 class SetAnchor(msgspec.Struct, frozen=True):
-    """Where the incident frame's origin lies on the Earth, and how the plan is turned."""
+    """Position of the incident frame's origin on the Earth, and the direction of the plan."""
 
     lat_deg: float
     lon_deg: float
@@ -186,7 +186,7 @@ class UndoConfirmation(msgspec.Struct, frozen=True):
 
 
 class SetAccountability(msgspec.Struct, frozen=True):
-    """How often everybody is to be heard from in this incident, and when to send them to rest."""
+    """Intervals of an incident: between two PARs of a member, and until rehab."""
 
     par_interval_s: float
     work_limit_s: float
@@ -226,7 +226,7 @@ class TakeOver(msgspec.Struct, frozen=True):
 
 
 class DoneApart(msgspec.Struct, frozen=True):
-    """What a person did at another station while the two were apart: kept, not applied."""
+    """Operator's action at another station while the two were apart: kept, not applied."""
 
     station: str
     t_ns: int  # that station's time
@@ -358,7 +358,7 @@ _ACTION_OF_FIELD = {field: action for action, field in _FIELD_OF_ACTION.items()}
 
 
 class OperatorAction(msgspec.Struct, frozen=True):
-    """What a person did at the console, or the station for itself."""
+    """Action of an operator at the console, or of the station itself."""
 
     header: Header
     action_id: str

@@ -19,7 +19,7 @@ class PreflightLevel(IntEnum):
 
 
 class PreflightFinding(msgspec.Struct, frozen=True):
-    """What a unit has found wrong or missing when it checked itself at its start."""
+    """Finding of a unit's check at its start: something defective or missing."""
 
     level: PreflightLevel
     subject: str  # a word or two

@@ -157,8 +157,8 @@ def test_what_cannot_be_read_of_the_log_is_reported(
     detail = forgotten_in_tries(folder, "person", "p-77", cut_at)
     assert detail.count("Damaged") == 2, "each is told once"
     first, last = (detail.partition(path.name)[2].split(". ")[0] for path in (paths[1], paths[-1]))
-    assert first.endswith("what could not be read of it is gone")
-    assert last.endswith("it stays, whoever it tells of")
+    assert first.endswith("its unreadable part is gone")
+    assert last.endswith("it stays, with all people in it")
     wishes = msgspec.json.decode(DataFolder(folder).forgettings.read_bytes())
     assert paths[1].name in wishes[-1]["problem"]
     damage: list[str] = []

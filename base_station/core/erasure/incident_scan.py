@@ -40,11 +40,11 @@ from shared.messages.station import Assign, AssignIncident, RegisterUnit, Unassi
 def erasure_of_incident(
     records: Iterable[Record],
     incident_id: str,
-    first_heard_ns: Mapping[str, int] = MappingProxyType({}),
+    first_message_ns: Mapping[str, int] = MappingProxyType({}),
     *,
     is_whole: bool = True,
 ) -> Erasure:
-    """``records``: the operators' actions of the whole log; ``first_heard_ns``: by unit, of those
+    """``records``: the operators' actions of the whole log; ``first_message_ns``: by unit, of those
     that were heard before they were registered.  Where the log is not whole, a unit that it does
     not register may have been registered in what is lost.  UserError where the incident is not
     there or still open.
@@ -53,7 +53,7 @@ def erasure_of_incident(
     registered = {one.action.unit_id for _, one in actions if isinstance(one.action, RegisterUnit)}
     named = {unit_id for _, one in actions for unit_id in _units_of(one)}
     lost = frozenset[str]() if is_whole else named - registered
-    scan = _IncidentScan(incident_id, lost, first_heard_ns)
+    scan = _IncidentScan(incident_id, lost, first_message_ns)
     for t_ns, action in actions:
         scan.take(t_ns, action)
         if scan.is_over:
@@ -63,12 +63,12 @@ def erasure_of_incident(
 
 class _IncidentScan:
     def __init__(
-        self, incident_id: str, lost: Collection[str], first_heard_ns: Mapping[str, int]
+        self, incident_id: str, lost: Collection[str], first_message_ns: Mapping[str, int]
     ) -> None:
         """``lost``: units whose registration is lost: they are registered as they are named."""
         self._incident_id = incident_id
         self._lost = lost
-        self._first_heard = sorted((t_ns, unit_id) for unit_id, t_ns in first_heard_ns.items())
+        self._first_message = sorted((t_ns, unit_id) for unit_id, t_ns in first_message_ns.items())
         self._state = StationState()
         self._opened_ns = self._closed_ns = self._gone_ns = FOREVER_NS
         self._opening_id = ""
@@ -124,7 +124,7 @@ class _IncidentScan:
         """Step one action of the log."""
         if isinstance(done.action, Unassign):
             self._unassigned_ids.add(done.action_id)
-        self._note_first_heard(t_ns)
+        self._note_first_message(t_ns)
         members, worn, known = self._members(), self._worn(), set(self._state.units)
         self._apply(t_ns, done)
         is_opening = self._note_open(t_ns, done)
@@ -144,15 +144,15 @@ class _IncidentScan:
         self._note_elsewhere(self._away(now), t_ns)
         self._note_others(t_ns)
 
-    def _note_first_heard(self, t_ns: int) -> None:
+    def _note_first_message(self, t_ns: int) -> None:
         """A unit that is heard while one incident is open is in that, registered or not."""
-        while self._first_heard and self._first_heard[0][0] <= t_ns:
-            heard_ns, unit_id = self._first_heard.pop(0)
+        while self._first_message and self._first_message[0][0] <= t_ns:
+            received_ns, unit_id = self._first_message.pop(0)
             if unit_id in self._state.units:
                 continue
             self._state.add_unit(unit_id)
             if unit_id in self._members():
-                self._members_since[unit_id] = heard_ns
+                self._members_since[unit_id] = received_ns
                 self._hand_backs.append(HandBack(self._opening_id, unit_id))
 
     def _apply(self, t_ns: int, done: OperatorAction) -> None:
@@ -216,7 +216,7 @@ class _IncidentScan:
         )
 
     def _assigned(self, action_id: str, assign: Assign, worn: Mapping[str, Person]) -> None:
-        """Who is assigned within the incident gives back a unit that is outside of it."""
+        """Note the unit outside of the incident that a member gives back by a new assignment."""
         if assign.unit_id not in self._members_since:
             return
         for unit_id, person in worn.items():

@@ -100,7 +100,9 @@ def _imports(session: Session, erasure: Erasure) -> None:
 
 
 def _looked_back(session: Session, erasure: Erasure) -> None:
-    """What was worked out of incidents in which anybody is forgotten; it can be again."""
+    """Delete results that were computed from incidents of an erased person; they can be computed
+    again.
+    """
     spans = [(one.from_ns, one.until_ns) for one in erasure.wearings]
     for incident in session.scalars(select(IncidentRow)).all():
         until_ns = incident.closed_ns or FOREVER_NS
@@ -118,7 +120,7 @@ def _looked_back(session: Session, erasure: Erasure) -> None:
 
 
 def known_names(session: Session, person_id: str) -> set[str]:
-    """How the tables call a person, now and before."""
+    """Names of a person in the tables, present and former."""
     names = set(session.scalars(select(PersonRow.name).where(PersonRow.person_id == person_id)))
     names |= set(
         session.scalars(select(Assignment.person_name).where(Assignment.person_id == person_id))
@@ -263,7 +265,7 @@ def _alarm_raised(entry: AuditEntry) -> tuple[str, int] | None:
 
 
 def _apart(entry: AuditEntry, erasure: Erasure) -> str:
-    """What was done at the other station may have been written down long after it was done."""
+    """Detail of an action at the other station, which may be recorded long after its time."""
     try:
         done = msgspec.json.decode(entry.detail, type=DoneApart)
     except msgspec.DecodeError:  # nothing is left of it, or nobody knows what it says

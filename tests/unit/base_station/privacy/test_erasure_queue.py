@@ -149,14 +149,14 @@ def test_a_standby_leaves_it_and_says_so(tmp_path: Path) -> None:
     worker.go.set()
 
     def obstacle(job: ErasureJob) -> str:
-        return "" if job.told else "this is the standby"
+        return "" if job.from_peer else "this is the standby"
 
     with desk(worker, tmp_path, obstacle) as one:
         one.add("ada", "person", "p-1")
         until(lambda: "standby" in one.all()[0].problem)
         assert worker.began == []
     with desk(worker, tmp_path, obstacle) as one:  # what the other one has done is done here too
-        one.add("the other station", "person", "p-2", told=True)
+        one.add("the other station", "person", "p-2", from_peer=True)
         until(lambda: worker.done == ["p-2"])
 
 
@@ -164,7 +164,7 @@ def test_what_the_other_station_has_forgotten_may_be_unknown_here(tmp_path: Path
     worker = StubEraser()
     worker.fails = [UserError("nobody knows that person")]
     with desk(worker, tmp_path) as one:
-        one.add("the other station", "person", "p-1", told=True)
+        one.add("the other station", "person", "p-1", from_peer=True)
         until(lambda: one.all()[0].state is ErasureState.DONE)
 
 
