@@ -77,7 +77,7 @@ def _position(units: Mapping[str, UnitView], unit_id: str) -> PositionView:
         raise Problem(404, "There is no such unit.")
     position = units[unit_id].position
     if position is None:
-        raise Problem(409, f"The position of {unit_id} is unknown: none has come.")
+        raise Problem(409, f"{unit_id} has no position: none was received.")
     return position
 
 

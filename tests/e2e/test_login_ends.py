@@ -51,7 +51,7 @@ def test_a_message_that_was_being_written_is_there_after_the_login(stage: Stage)
     expect(text).to_have_value("Leave by the north stairs")
     expect(text).to_be_focused()
     page.keyboard.type(" now")
-    page.get_by_role("dialog").get_by_role("button", name="Send").click()
+    page.get_by_role("dialog").get_by_role("button", name="Send", exact=True).click()
     station.expect_changes("/login", "/commands")
 
 
@@ -74,7 +74,7 @@ def test_a_press_that_meets_an_ended_login_loses_nothing(stage: Stage) -> None:
         "**/api/v1/commands",
         lambda route: route.fulfill(status=401, json={"detail": "log in first"}),
     )
-    page.get_by_role("dialog").get_by_role("button", name="Send").click()
+    page.get_by_role("dialog").get_by_role("button", name="Send", exact=True).click()
     expect(page.get_by_role("status").filter(has_text="log in first")).to_be_visible()
     log_in(page)
     expect(text).to_have_value("Leave by the north stairs")

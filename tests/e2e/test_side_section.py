@@ -97,7 +97,7 @@ def test_a_press_or_the_keyboard_chooses_as_on_the_plan(stage: Stage) -> None:
     expect(page.locator(".map")).to_be_visible()  # a place is wanted
     page.keyboard.press("Escape")
     expect(section(page)).to_be_visible()
-    page.get_by_role("button", name="Side section").click()
+    page.get_by_role("button", name="Section", exact=True).click()
     expect(page.locator(".map")).to_be_visible()
     expect(menu(page, "Display")).to_contain_text("Side section of the building")
 

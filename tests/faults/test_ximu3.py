@@ -154,7 +154,7 @@ def test_samples_at_another_rate_than_stated_are_reported_once(listen) -> None:
         listener = listen(device.source, hasty=True)
         listener.receives("it sends 50 samples a second, configured are 400")
         listener.close()
-    assert len([fault for fault in listener.faults if "a second and" in fault]) == 1
+    assert len([fault for fault in listener.faults if "a second, configured" in fault]) == 1
 
 
 def test_what_the_device_reports_is_passed_on(listen) -> None:

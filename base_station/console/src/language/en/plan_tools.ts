@@ -4,7 +4,7 @@ export const plan_tools = {
   start: "Set common start",
   beacon: "Beacon",
   trails: "Trails",
-  section: "Side section",
+  section: "Section",
   pins: "Pins {count, number}",
   conflicts: "{count, number} in conflict",
   beacons: "beacons {count, number}",
