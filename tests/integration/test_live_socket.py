@@ -250,7 +250,7 @@ async def test_a_disk_that_fails_blinds_nobody_who_was_let_in_and_lets_nobody_in
         (token,) = station.services.accounts.tokens("viewer")
         station.services.accounts.remove_token("viewer", token.token_id)
         assert await close_code(console) == live.NOT_LOGGED_IN
-    assert caplog.text.count("cannot be seen: the database") == 1
+    assert caplog.text.count("cannot be checked: the database") == 1
 
 
 async def test_a_console_that_stops_reading_is_cut_off_and_costs_nothing(

@@ -55,6 +55,7 @@ def settings_of(service: str) -> ServerConfig:
     return load_config(file, StationConfig)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not COMPOSE.is_file(), reason="this machine has no Docker Compose")
 @pytest.mark.parametrize("file", [MAIN_FILE, UNIT_FILE])
 def test_docker_compose_takes_the_file(file: str) -> None:
