@@ -157,12 +157,12 @@ def table_of(reports: Sequence[FaultReport]) -> Table:
         title="Faults",
         box=SIMPLE,
         padding=0,
-        caption="In seconds: heard, from the fault's end to the first live message, to reach "
-        f"{_RECONNECT_S:.0f}; whole, until all said before is in the log; alert, the worst from "
-        "being said, or from the fault's end, to being in the log. MB: the station's memory. "
+        caption="In seconds: received, from the fault's end to the first live message, to reach "
+        f"{_RECONNECT_S:.0f}; whole, until all sent before is in the log; alert, the worst from "
+        "being sent, or from the fault's end, to being in the log. MB: the station's memory. "
         "Lost, twice and forged: to reach 0.",
     )
-    titles = ("sent", "arrived", "lost", "twice", "forged", "fetched", "heard", "whole", "alert")
+    titles = ("sent", "arrived", "lost", "twice", "forged", "fetched", "received", "whole", "alert")
     table.add_column("fault", min_width=16)
     for title in (*titles, "MB"):
         table.add_column(title, justify="right", no_wrap=True)

@@ -1,4 +1,4 @@
-"""Fusers with, beside each, what a station would keep of the path that it was told."""
+"""Fusers with, beside each, what a station would keep of the path that it received."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def bench_activity(
         console.print(_table(f"{title}, settled", score.settled))
         console.print(_table(f"{title}, every instant", score.every))
         console.print(
-            f"{score.falls_reported} falls told, {score.falls_done} labelled, in "
+            f"{score.falls_reported} falls reported, {score.falls_done} labelled, in "
             f"{score.duration_s / 60.0:.1f} minutes\n"
         )
     write_figures(json_file, {title: _as_json(score) for title, score in report.items()})
@@ -101,7 +101,7 @@ def _progress(items: Sequence[T], description: str) -> Iterable[T]:
 def _table(title: str, confusion: Confusion) -> Table:
     kinds = kinds_in([confusion])
     table = Table(title=f"{title}: {100.0 * confusion.accuracy:.1f} % right")
-    table.add_column("done \\ said")
+    table.add_column("done \\ reported")
     for kind in kinds:
         table.add_column(_name(kind), justify="right")
     table.add_column("% right", justify="right")

@@ -25,7 +25,7 @@ _NEW_YEAR_NS = round(datetime(2026, 1, 1, tzinfo=UTC).timestamp() * 1e9)
 
 @dataclass(frozen=True, slots=True)
 class NorthFound:
-    """Over walks of one kind, root mean squares where it was said at all."""
+    """Over walks of one kind, root mean squares where it was reported."""
 
     walks: str
     reported: float  # share of the time
@@ -72,7 +72,7 @@ def find_north(
 
 
 def _north_of(rows: TrackBatch, simulation: Simulation) -> tuple[Floats, Floats, float]:
-    """Error of magnetic north and its stated deviation where it is said, and how often it is."""
+    """Error of magnetic north and its stated deviation where it is reported, and its share."""
     every = np.arange(0, len(rows), _EVERY)
     known = every[np.isfinite(rows.magnetic_north_std_rad[every])]
     truth = simulation.truth(np.asarray(rows.t_ns[known] * 1e-9, dtype=np.float64))
@@ -85,7 +85,7 @@ def _north_of(rows: TrackBatch, simulation: Simulation) -> tuple[Floats, Floats,
 
 def north_table(found: Sequence[NorthFound]) -> Table:
     table = Table(title="Magnetic north of a calibrated unit (over stated deviation; 1 is honest)")
-    for title in ("walks", "said", "off, deg", "stated, deg"):
+    for title in ("walks", "reported", "off, deg", "stated, deg"):
         table.add_column(title)
     for one in found:
         if one.reported == 0.0:

@@ -85,9 +85,9 @@ def test_every_aid_has_its_walks(monkeypatch, capsys, tmp_path, walks):
         "magnetometer": 4, "barometer": 3, "calibration": 3,
     }  # fmt: skip
     open_ground, *_, steel = report["norths"]
-    assert open_ground["said"] > 0.3
+    assert open_ground["reported"] > 0.3
     assert open_ground["off_deg"] < 5.0
-    assert steel["said"] < open_ground["said"]
+    assert steel["reported"] < open_ground["reported"]
     (closure,) = report["closures"]
     assert closure["with_m"] == pytest.approx(closure["without_m"], abs=0.05)
     lift = next(e for e in report["comparisons"] if e["walks"].startswith("lift"))

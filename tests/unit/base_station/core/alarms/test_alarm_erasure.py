@@ -151,7 +151,8 @@ def test_a_name_goes_out_of_the_audit_however_it_is_written_there_and_nothing_el
 def test_of_an_incident_the_audit_keeps_no_crew_and_role_of_who_was_given_a_unit(
     tmp_path: Path,
 ) -> None:
-    ana = Erasure((), ("Ana",), incident_id="i1", from_ns=15, until_ns=25)
+    wearing = (Wearing("FF-01", 15, 25),)
+    ana = Erasure(wearing, ("Ana",), incident_id="i1", from_ns=15, until_ns=25)
     worn = Assign("FF-01", "p-ana", "Ana", "E 1", "Nozzle")
     detail = msgspec.json.encode(worn).decode()
     with Store(tmp_path / "station.sqlite") as store:
