@@ -73,7 +73,7 @@ def test_an_agent_of_another_authority_is_not_received_and_says_why(site, start,
 
 
 @pytest.mark.parametrize(
-    ("flags", "output"),
+    ("flags", "reported"),
     [
         (("--unit", "u2"), "enrols unit u1, not u2"),
         (("--connect", "tcp/127.0.0.1:1"), "tls/ only"),
@@ -108,7 +108,7 @@ def test_an_enrolled_agent_tracks_for_a_weak_unit_and_begins_anew_with_it(site, 
 
 
 @pytest.mark.parametrize(
-    ("holder", "source", "output"),
+    ("holder", "source", "reported"),
     [
         (Holder.UNIT, "bus:u2", "not a tracking agent, which --source bus:u2 needs"),
         (Holder.TRACKER, "bus:u3", "is for tracking u2, not u3"),
