@@ -139,6 +139,6 @@ def _as_json(score: ActivityScore) -> dict[str, Any]:
         "settled": matrix(score.settled),
         "every_instant": matrix(score.every),
         "falls_labelled": score.falls_done,
-        "falls_told": score.falls_reported,
+        "falls_reported": score.falls_reported,
         "duration_s": score.duration_s,
     }

@@ -29,7 +29,7 @@ def test_one_wearer_is_enough_for_all_activities(tmp_path, capsys):
     kinds = {"still", "walking", "running", "stairs up", "stairs down", "crawling", "lying"}
     assert kinds <= set(figures["settled"]["recall"])
     assert min(figures["settled"]["recall"][kind] for kind in kinds) > 0.85
-    assert figures["falls_told"] == figures["falls_labelled"] == 1
+    assert figures["falls_reported"] == figures["falls_labelled"] == 1
     reported = capsys.readouterr().out
     assert "stairs down" in reported
-    assert "1 falls told, 1 labelled" in reported
+    assert "1 falls reported, 1 labelled" in reported
