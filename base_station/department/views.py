@@ -182,7 +182,7 @@ class DepartmentViews:
     # ---- people and alarms
 
     def _found(self, picture: StationPicture, wanted: PeopleQuery) -> Sequence[PersonSummary]:
-        """Of one station, who need help first."""
+        """People of one station by need."""
         people, search = picture.people, wanted.search.casefold()
         if wanted.incident_id:
             people = [one for one in people if one.incident_id == wanted.incident_id]

@@ -42,7 +42,7 @@ _SETTLE_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class FaultRow:
-    """What was decided by all stations from the fault's beginning until all of it had arrived."""
+    """Decisions of all stations from the fault's beginning until all of it had arrived."""
 
     fault: str
     seconds: float
@@ -199,7 +199,7 @@ def bench_department_faults(
     cut_s: Annotated[float, typer.Option(min=1.0, help="How long one is cut off.")] = 600.0,
     json_file: FiguresFile = None,
 ) -> None:
-    """What faults between three stations and their department lose, repeat and delay.
+    """Measure the loss, repeats and delay of faults between three stations and their department.
 
     Needs to be root, on Linux, and a PostgreSQL server that is installed.
     """

@@ -1,4 +1,4 @@
-"""What stands in a dialog of a phone stays where it is while the rest of it comes in."""
+"""Elements of a phone's dialog stay in place while the rest of it comes in."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ def _from_the_future(unit: UnitView) -> UnitView:
 
 
 def changes_while(page: Page, station: PlayedStation) -> int:
-    """How much of the section changes while messages come that change nothing of it."""
+    """Count of changed elements of the section under messages that do not concern it."""
     page.evaluate("window.changesOfSection = 0")
     for _ in range(3):
         station.change()

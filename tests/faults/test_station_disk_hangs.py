@@ -91,7 +91,7 @@ def test_a_station_whose_disk_hangs_goes_on_and_has_everything_afterwards(
     assert walk.stated <= set(there)
 
 
-def test_a_station_whose_disk_hangs_ends_when_it_is_ordered_to_and_says_what_is_not_kept(
+def test_a_station_whose_disk_hangs_ends_when_it_is_ordered_to_and_reports_the_loss(
     disk: Path, served: Served, tmp_path: Path
 ) -> None:
     """Its service would kill it in the end, and nobody would hear what the log lacks."""

@@ -30,7 +30,7 @@ def test_a_clipped_accelerometer_is_flagged():
 
 
 @pytest.mark.parametrize("rate_hz", [67.0, 100.0, 200.0])
-def test_clipping_that_nobody_reported_shows_by_its_plateaus(rate_hz):
+def test_undeclared_clipping_shows_by_its_plateaus(rate_hz):
     t_ns, accel, gyro = copy()
     every = round(200.0 / rate_hz)
     t_ns, accel, gyro = t_ns[::every], accel[::every], gyro[::every]
@@ -99,7 +99,7 @@ def in_counts(readings, full_scale):
 
 @pytest.mark.parametrize("rate_hz", [67.0, 100.0, 200.0])
 @pytest.mark.parametrize("sensor", ["clips", "filters", "counts"])
-def test_a_full_scale_of_forces_that_nobody_reported_shows_by_its_plateaus(rate_hz, sensor):
+def test_an_undeclared_full_scale_of_forces_shows_by_its_plateaus(rate_hz, sensor):
     t_ns, accel, gyro = copy()
     every = round(200.0 / rate_hz)
     t_ns, accel, gyro = t_ns[::every], accel[::every], gyro[::every]

@@ -173,7 +173,7 @@ def apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TwoStation
         yield two, link
 
 
-def test_a_standby_that_receives_nobody_waits_for_a_person(
+def test_a_standby_that_receives_no_unit_waits_for_a_person(
     apart: tuple[TwoStations, LossyLink],
 ) -> None:
     two, link = apart

@@ -58,7 +58,7 @@ async def test_a_wrong_name_and_a_wrong_password_look_the_same(station: DeskStat
     assert (one.status_code, one.json()) == (other.status_code, other.json())
 
 
-async def test_a_name_that_nobody_has_costs_as_much_as_one_that_person_has(
+async def test_an_unknown_name_costs_as_much_as_one_of_an_account(
     station: DeskStation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One verification of a hash that was made with the same parameters."""

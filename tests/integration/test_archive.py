@@ -298,7 +298,7 @@ def shown_in_replay(browser: Browser, part: float) -> dict[str, Any]:
 
 
 def moved_to(browser: Browser, path: str, at_ms: int) -> dict[str, Any]:
-    """How the replay stands, when it was told to be there."""
+    """State of the replay once it is at the time that was ordered."""
     browser.call("POST", path, json={"at_ms": at_ms, "playing": False})
     view: dict[str, Any] = browser.call("GET", path)
     return view

@@ -209,7 +209,7 @@ def test_no_word_of_its_people_is_left_and_every_word_of_the_others(erased: _Era
 
 
 def decisions(records: Iterable[Record], wanted: Callable[[Decision], bool]) -> list[bytes]:
-    """What is decided of these records now; decisions are numbered, and there are fewer of them."""
+    """Decisions of these records, without their numbers: there are fewer of them now."""
     pipeline = new_pipeline()
     outputs = [output for one in records for output in pipeline.step(event_of(*one))]
     found = [one for one in outputs if isinstance(one, Decision) and wanted(one)]

@@ -54,7 +54,7 @@ def test_batching_does_not_change_a_bit(cuts):
 
 @settings(max_examples=5)
 @given(cuts=st.lists(st.integers(0, len(WALK.imu)), max_size=40), share=st.floats(0.78, 0.85))
-def test_nor_where_sensors_clip_that_nobody_reported(cuts, share):
+def test_nor_where_sensors_clip_undeclared(cuts, share):
     """What a plateau shows is marked afterwards, and bridged by what follows it."""
     accel_mps2, gyro_radps = (
         np.clip(readings, -share * np.abs(readings).max(), share * np.abs(readings).max())

@@ -309,7 +309,7 @@ def without_texts(t_ns: int, action: Action, erasure: Erasure) -> Action:
 
 
 def _order_without(order: SendCommand, t_ns: int, erasure: Erasure) -> SendCommand:
-    """Of an order to others, too, the text stays."""
+    """Erase texts of orders, except of one to others, too."""
     text = ERASED_TEXT if order.text else ""
     if not erasure.incident_id:
         return msgspec.structs.replace(order, text=text)

@@ -187,7 +187,7 @@ def _audit(session: Session, erasure: Erasure) -> None:
         names = _Names(erasure, erasure.people_at(entry.t_ns))
         entry.detail = names.erased(_without_texts(entry, erasure))
         if entry.action == _ASSIGNED:
-            entry.detail = _nobodys(entry, erasure)
+            entry.detail = _without_wearer(entry, erasure)
     places = AuditEntry.action.in_(PLACE_ACTIONS), AuditEntry.t_ns >= erasure.from_ns
     for entry in session.scalars(select(AuditEntry).where(*places)):
         if _is_place_of(entry, erasure):
@@ -240,7 +240,7 @@ def _without_texts(entry: AuditEntry, erasure: Erasure) -> str:
     return entry.detail if left is done else msgspec.json.encode(left).decode()
 
 
-def _nobodys(entry: AuditEntry, erasure: Erasure) -> str:
+def _without_wearer(entry: AuditEntry, erasure: Erasure) -> str:
     """Assignment without its wearer: in a small station crew and role are as good as a name."""
     try:
         worn = msgspec.json.decode(entry.detail, type=Assign)

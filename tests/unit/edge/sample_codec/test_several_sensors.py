@@ -82,7 +82,7 @@ def test_the_uplink_mixes_no_sensors_in_a_message() -> None:
     assert len(sent) < 60, "samples are sent together"
 
 
-def test_a_description_says_first_what_earlier_versions_stated() -> None:
+def test_a_description_begins_with_the_fields_of_earlier_versions() -> None:
     sent = [unit_sensor(name, sensor) for name, sensor in SENSORS.items()]
     described = described_unit(HEADER, sent, software_version="1", source="s", tracker="eskf")
     assert (described.sensor_name, described.has_magnetometer) == ("IMU 1", True)

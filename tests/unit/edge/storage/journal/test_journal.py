@@ -379,7 +379,7 @@ def test_a_power_cut_while_the_new_journal_takes_its_place_costs_nothing(tmp_pat
     journal.close()
 
 
-def test_a_journal_of_which_nobody_can_be_reported_what_is_in_it_is_begun_anew(tmp_path):
+def test_a_journal_whose_boots_cannot_be_read_is_begun_anew(tmp_path):
     spoil(tmp_path, OLDEST)
     path = tmp_path / "journal.sqlite"
     journal, _ = open_journal(path, itertools.count(2).__next__, 77, MB)
