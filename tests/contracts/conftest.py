@@ -1,4 +1,4 @@
-"""The buses and the databases that keep one contract."""
+"""Fixtures of the contracts: each kind of bus and of database."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def server() -> Iterator[DatabaseServer]:
 
 @pytest.fixture(params=DATABASE_KINDS)
 def new(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[NewDatabase]:
-    """Opens another empty database of one kind each time."""
+    """A factory of empty databases of one kind."""
     with ExitStack() as closing:
 
         def made() -> Database:

@@ -1,5 +1,5 @@
-"""The console's catalogue has a text for every code that an alarm may have; that all languages have
-the keys of the English one, the compiler sees to.
+"""The console's catalogue has a text for every code of an alarm; the compiler checks that all
+languages have the keys of the English one.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ def keys_of(part: str) -> set[str]:
     return {quoted or plain for quoted, plain in _KEY.findall(body)}
 
 
-def test_every_sentence_of_the_station_has_its_text() -> None:
+def test_every_sentence_of_the_station_has_a_text() -> None:
     assert keys_of("alarm_text") == set(SENTENCES)
 
 
-def test_every_reason_in_a_sentence_has_its_text() -> None:
+def test_every_reason_in_a_sentence_has_a_text() -> None:
     assert keys_of("tracker_reason") == {*map(code_of, Reason), "none"}
     assert keys_of("fix_fault") == set(FIX_FAULTS)
 
 
-def test_every_rule_has_a_short_name_on_each_of_its_levels() -> None:
+def test_every_rule_has_a_short_name_at_each_level() -> None:
     labels = keys_of("alarm_label")
     named = {f"{rule.name}/{level}" for rule in ALARMS for level in rule.levels}
     assert {one for one in named if not {one, one.partition("/")[0]} & labels} == set()

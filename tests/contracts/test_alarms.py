@@ -1,4 +1,4 @@
-"""What every alarm rule keeps to, whatever it looks for."""
+"""Contract of every alarm rule."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ T_NS = 1_700_000_000 * NS_PER_S
 
 
 def calm(seen_ns: int = T_NS) -> UnitState:
-    """A registered unit of which everything is known and nothing is the matter."""
+    """A registered unit with all values known and none abnormal."""
     return UnitState(
         "FF-01",
         registered=True,
@@ -64,8 +64,8 @@ def lost_place(seen_ns: int) -> FusedPosition:
 
 
 def in_trouble(seen_ns: int = T_NS, rule: AlarmRule | None = None) -> UnitState:
-    """A unit of which everything is the matter at once; of one that is worn wrong nothing else is
-    the matter with its tracker.
+    """A unit with every abnormal value at once; a unit that is worn wrong has no other tracker
+    fault.
     """
     unit = calm(seen_ns)
     reasons = Reason.NOT_ON_FOOT if isinstance(rule, WornWrong) else Reason.NONE
@@ -110,24 +110,24 @@ def rule(request: pytest.FixtureRequest) -> AlarmRule:
     return found
 
 
-def test_names_are_the_log_s_and_differ() -> None:
+def test_rule_names_are_those_of_the_log_and_unique() -> None:
     names = [rule.name for rule in ALARMS]
     assert len(set(names)) == len(names)
     assert all(re.fullmatch(r"[a-z]+(-[a-z]+)*", name) for name in names)
 
 
-def test_what_may_be_set_has_its_default_within_its_limits(rule: AlarmRule) -> None:
+def test_default_of_each_threshold_lies_within_its_limits(rule: AlarmRule) -> None:
     for name, limits in limits_of(rule).items():
         assert msgspec.convert(getattr(rule, name), limits) == getattr(rule, name)
 
 
-def test_it_finds_what_it_looks_for(rule: AlarmRule) -> None:
+def test_rule_finds_its_condition(rule: AlarmRule) -> None:
     verdict = rule.judge(in_trouble(rule=rule), T_NS, "")
     assert isinstance(verdict, Finding)
     assert verdict.level in rule.levels
     assert verdict.priority in {1, 2, 3}
     assert verdict.code in SENTENCES
-    assert "None" not in verdict.text  # each parameter of the sentence is there
+    assert "None" not in verdict.text  # each parameter of the sentence is present
     assert verdict.seen_ns <= T_NS
 
 
@@ -146,21 +146,23 @@ def test_sentences_are_made_of_their_parameters() -> None:
     assert "1 January 1970" in texts["calibration-old"]
 
 
-def test_it_is_silent_about_a_calm_unit(rule: AlarmRule) -> None:
+def test_rule_is_silent_for_a_calm_unit(rule: AlarmRule) -> None:
     assert not isinstance(rule.judge(calm(), T_NS, ""), Finding)
 
 
-def test_a_unit_that_nobody_registered_is_not_believed() -> None:
+def test_unregistered_unit_raises_no_alarm() -> None:
     raised = AlarmManager(ALARMS).review(StationState(t_ns=T_NS), in_trouble())
     assert {alarm.rule for alarm in raised} == {"unknown-unit", "cloned-unit"}
 
 
-def test_it_knows_nothing_of_a_unit_never_received(rule: AlarmRule) -> None:
+def test_rule_returns_nothing_for_a_unit_never_received(rule: AlarmRule) -> None:
     assert not isinstance(rule.judge(UnitState("FF-01", registered=True), T_NS, ""), Finding)
 
 
-def test_evidence_does_not_get_newer_by_waiting(rule: AlarmRule) -> None:
-    """What nobody reports on cannot be over: the evidence stays as old as the last message."""
+def test_evidence_time_does_not_advance_without_messages(rule: AlarmRule) -> None:
+    """A condition without newer reports cannot end: the evidence stays as old as the last
+    message.
+    """
     unit = calm()
     later_ns = T_NS + 5 * NS_PER_S
     for level in ("", *rule.levels):
@@ -169,7 +171,7 @@ def test_evidence_does_not_get_newer_by_waiting(rule: AlarmRule) -> None:
             assert before.seen_ns == after.seen_ns
 
 
-def test_it_changes_nothing_and_repeats_itself(rule: AlarmRule) -> None:
+def test_rule_changes_no_state_and_repeats_its_result(rule: AlarmRule) -> None:
     for unit in (calm(), in_trouble(rule=rule)):
         before = msgspec.msgpack.encode(unit)
         first = rule.judge(unit, T_NS, "")
@@ -177,8 +179,8 @@ def test_it_changes_nothing_and_repeats_itself(rule: AlarmRule) -> None:
         assert msgspec.msgpack.encode(unit) == before
 
 
-def test_a_standing_level_is_no_easier_to_leave_than_to_reach(rule: AlarmRule) -> None:
-    """Hysteresis: whatever raises an alarm also keeps it."""
+def test_level_is_no_easier_to_leave_than_to_reach(rule: AlarmRule) -> None:
+    """Hysteresis: the value that raises an alarm also keeps it."""
     unit = in_trouble(rule=rule)
     found = rule.judge(unit, T_NS, "")
     assert isinstance(found, Finding)

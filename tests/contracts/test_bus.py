@@ -1,4 +1,4 @@
-"""What every bus promises of messages: over the in-memory bus and over Zenoh on the loopback."""
+"""Contract of messages of every bus: over the in-memory bus and over Zenoh on the loopback."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ KEY = POSITION.key("anna")
 
 
 @pytest.mark.parametrize("qos", [Qos.LIVE, Qos.ALERT])
-def test_messages_arrive_once_whole_and_in_order(ends: Ends, qos: Qos) -> None:
+def test_messages_arrive_once_complete_and_in_order(ends: Ends, qos: Qos) -> None:
     received = Heard()
     ends.station.subscribe("muster/v1/*/up/**", received)
     publish_until_received(ends.unit, KEY, received)
     sent = [(KEY, number.to_bytes(2, "big") * number) for number in range(300)]
     for begin in range(0, len(sent), 2):
-        # Faster than the link takes them, messages are dropped: the journal brings those.
+        # Faster than the link, messages are dropped: the journal brings those.
         for key, payload in sent[begin : begin + 2]:
             ends.unit.publish(key, payload, qos)
         until(partial(received.has, begin + 2), "the messages so far")
@@ -40,7 +40,7 @@ def test_the_station_reaches_a_unit(ends: Ends) -> None:
     assert received.samples == [("muster/v1/anna/command/send", b"evacuate")]
 
 
-def test_an_end_is_not_given_what_it_publishes_for_others_alone(ends: Ends) -> None:
+def test_local_key_is_not_delivered_to_its_publisher(ends: Ends) -> None:
     own, at_station = Heard(), Heard()
     ends.unit.subscribe(KEY, own)
     ends.station.subscribe(KEY, at_station)
@@ -143,23 +143,23 @@ def test_a_failing_handler_is_logged_once_and_stops_nothing(
 
 
 @pytest.mark.parametrize("key", ["a//b", "/a", "a/", "a/*", "a/**", "a?b", "a#b", ""])
-def test_a_key_that_cannot_be_published_under_is_refused(ends: Ends, key: str) -> None:
+def test_key_that_cannot_be_published_under_is_refused(ends: Ends, key: str) -> None:
     with pytest.raises(BusError, match="not a key"):
         ends.unit.publish(key, b"", Qos.LIVE)
 
 
 @pytest.mark.parametrize("expression", ["a//b", "", "a/b*", "a?b"])
-def test_a_key_expression_that_selects_nothing_is_refused(ends: Ends, expression: str) -> None:
+def test_key_expression_that_selects_nothing_is_refused(ends: Ends, expression: str) -> None:
     with pytest.raises(BusError, match="not a key expression"):
         ends.unit.subscribe(expression, Heard())
 
 
-def test_what_is_the_stations_own_never_travels(ends: Ends) -> None:
+def test_local_messages_of_the_station_never_travel(ends: Ends) -> None:
     with pytest.raises(BusError, match="never travels"):
         ends.unit.publish("muster/v1/station/tick", b"", Qos.LOCAL)
 
 
-def test_a_closed_bus_says_so(ends: Ends) -> None:
+def test_closed_bus_raises(ends: Ends) -> None:
     ends.unit.close()
     with pytest.raises(BusError, match="closed"):
         ends.unit.publish(KEY, b"", Qos.LIVE)

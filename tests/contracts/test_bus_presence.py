@@ -1,4 +1,4 @@
-"""What every bus promises of tokens, questions and who is there."""
+"""Contract of liveliness tokens and queries of every bus."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_tokens_appear_and_vanish(ends: Ends) -> None:
     until(lambda: reported == [(ALIVE, True), (ALIVE, False)], "the end of the token")
 
 
-def test_a_late_watcher_receives_of_tokens_that_are_there(ends: Ends) -> None:
+def test_late_watcher_receives_existing_tokens(ends: Ends) -> None:
     early: list[str] = []
     late: list[tuple[str, bool]] = []
     ends.station.watch_alive("muster/v1/*/alive", lambda key, _: early.append(key))
@@ -34,7 +34,7 @@ def test_a_late_watcher_receives_of_tokens_that_are_there(ends: Ends) -> None:
     until(lambda: late == [(ALIVE, True)], "the token that was there")
 
 
-def test_a_unit_that_closes_takes_its_token_along(ends: Ends) -> None:
+def test_token_ends_when_its_unit_closes(ends: Ends) -> None:
     reported: list[tuple[str, bool]] = []
     ends.station.watch_alive("muster/v1/*/alive", lambda key, alive: reported.append((key, alive)))
     _token = ends.unit.declare_alive(ALIVE)
@@ -62,14 +62,12 @@ def test_queries_are_answered_in_order(ends: Ends) -> None:
     assert asked[-1] == ("muster/v1/anna/journal", "from=1;to=9", b"why")
 
 
-def test_a_query_without_anyone_to_answer_yields_nothing(ends: Ends) -> None:
+def test_query_without_answerer_yields_nothing(ends: Ends) -> None:
     assert list(ends.station.query("muster/v1/nobody/journal", b"", 0.5)) == []
 
 
 @pytest.mark.parametrize("urgent", [False, True])
-def test_what_is_asked_without_waiting_is_answered_in_order_and_ended_once(
-    ends: Ends, urgent: bool
-) -> None:
+def test_asynchronous_query_is_answered_in_order_and_ended_once(ends: Ends, urgent: bool) -> None:
     ends.unit.serve("muster/v1/anna/journal", lambda *_: (b"%d" % n for n in range(100)))
     received: list[bytes | None] = []
 
@@ -83,14 +81,14 @@ def test_what_is_asked_without_waiting_is_answered_in_order_and_ended_once(
     assert received == [*(b"%d" % n for n in range(100)), None]
 
 
-def test_what_nobody_answers_ends_all_the_same(ends: Ends) -> None:
+def test_unanswered_asynchronous_query_ends(ends: Ends) -> None:
     received: list[bytes | None] = []
     ends.station.ask("muster/v1/nobody/journal", b"", 0.5, received.append)
     until(lambda: bool(received), "the end of the replies")
     assert received == [None]
 
 
-def test_a_query_handler_that_fails_answers_nothing(
+def test_failing_query_handler_answers_nothing(
     ends: Ends, caplog: pytest.LogCaptureFixture
 ) -> None:
     def failing(key: str, parameters: str, payload: bytes) -> Iterable[bytes]:
@@ -110,7 +108,7 @@ def test_a_query_handler_that_fails_answers_nothing(
     assert len(caplog.records) == 1
 
 
-def test_one_knows_whether_anyone_else_listens(ends: Ends) -> None:
+def test_publisher_detects_other_subscribers(ends: Ends) -> None:
     ends.unit.subscribe("muster/v1/anna/command/**", Heard())
     assert not ends.unit.has_subscriber(KEY)
     listening = ends.station.subscribe("muster/v1/*/up/**", Heard())
@@ -122,7 +120,7 @@ def test_one_knows_whether_anyone_else_listens(ends: Ends) -> None:
     assert not ends.unit.has_subscriber(KEY)
 
 
-def test_a_linked_end_knows_it_until_it_closes(ends: Ends) -> None:
+def test_linked_end_reports_its_link_until_it_closes(ends: Ends) -> None:
     assert ends.unit.is_linked()
     assert ends.station.is_linked()
     ends.unit.close()

@@ -1,4 +1,4 @@
-"""What every kind of button promises, whatever its driver."""
+"""Contract of every kind of button, whatever its driver."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class EmulatedEvdev:
         return self._devices.plug_in(3)
 
     def unplug_all(self) -> None:
-        """Nothing is held open for it."""
+        """Remove the button; its device file is closed."""
 
 
 class EmulatedPanel:
@@ -75,7 +75,7 @@ def test_every_kind_is_emulated() -> None:
 
 
 @pytest.mark.parametrize("is_pressed", [False, True])
-def test_the_first_that_is_read_is_the_state(emulated, driver, is_pressed: bool) -> None:
+def test_first_reading_is_the_state(emulated, driver, is_pressed: bool) -> None:
     button = emulated.plug_in()
     if is_pressed:
         button.press()
@@ -98,7 +98,7 @@ def test_press_and_release_come_in_order_with_the_time_of_this_machine(emulated,
         before_ns = change.t_ns
 
 
-def test_changes_that_wait_together_are_read_together(emulated, driver) -> None:
+def test_waiting_changes_are_read_together(emulated, driver) -> None:
     button = emulated.plug_in()
     driver.open()
     driver.read()
@@ -107,7 +107,7 @@ def test_changes_that_wait_together_are_read_together(emulated, driver) -> None:
     assert [one.is_pressed for one in next_changes(driver)] == [True, False, True]
 
 
-def test_where_nothing_comes_the_wait_is_over_and_nothing_is_read(emulated, driver) -> None:
+def test_wait_without_change_ends_and_reads_nothing(emulated, driver) -> None:
     emulated.plug_in()
     driver.open()
     driver.read()
@@ -115,7 +115,7 @@ def test_where_nothing_comes_the_wait_is_over_and_nothing_is_read(emulated, driv
     assert driver.read() == ()
 
 
-def test_one_that_is_missing_is_reported_and_opened_when_it_is_there(emulated, driver) -> None:
+def test_missing_button_is_reported_and_opened_once_it_is_there(emulated, driver) -> None:
     with pytest.raises(ButtonError, match="there is no"):
         driver.open()
     driver.close()
@@ -124,7 +124,7 @@ def test_one_that_is_missing_is_reported_and_opened_when_it_is_there(emulated, d
     assert not driver.read()[0].is_pressed
 
 
-def test_one_that_is_removed_is_noticed_and_opened_when_it_is_back(emulated, driver) -> None:
+def test_removed_button_is_noticed_and_opened_once_it_is_back(emulated, driver) -> None:
     button = emulated.plug_in()
     driver.open()
     driver.read()
@@ -142,7 +142,7 @@ def test_one_that_is_removed_is_noticed_and_opened_when_it_is_back(emulated, dri
 
 
 @pytest.mark.slow
-def test_the_reader_hands_over_what_the_wearer_means(emulated, request) -> None:
+def test_reader_delivers_the_gesture_of_the_wearer(emulated, request) -> None:
     scheme = request.node.callspec.params["emulated"]
     button = emulated.plug_in()
     option = "&" if "?" in emulated.argument else "?"
@@ -177,7 +177,7 @@ def test_the_reader_hands_over_what_the_wearer_means(emulated, request) -> None:
         ("socket:/run/button?hold=nan", "1.5 to 5"),
     ],
 )
-def test_settings_that_cannot_work_are_explained(text: str, reported: str) -> None:
+def test_impossible_settings_are_explained(text: str, reported: str) -> None:
     with pytest.raises(ConfigError) as caught:
         open_button(text, SystemClock())
     assert reported in str(caught.value)

@@ -1,4 +1,4 @@
-"""A file and a server keep one contract: what is written, refused, and may be written again."""
+"""Contract of a database file and a database server: writes, refusals and repeated writes."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def store(new: NewDatabase) -> Database:
     return new()
 
 
-def test_the_tables_are_what_the_models_say(store: Database) -> None:
+def test_tables_are_those_of_the_models(store: Database) -> None:
     with store.write() as session:
         project_into(session, STORY)
     assert isinstance(store, Store | ServerStore)
@@ -62,7 +62,7 @@ def contents(store: Database) -> dict[str, list[Any]]:
         }
 
 
-def test_a_story_is_reported_by_the_tables(store: Database, clock: ManualClock) -> None:
+def test_story_is_projected_into_the_tables(store: Database, clock: ManualClock) -> None:
     projection = SqlProjection(store)
     for part in STORY:
         projection.project(part)
@@ -82,7 +82,9 @@ def test_a_story_is_reported_by_the_tables(store: Database, clock: ManualClock) 
     projection.close()
 
 
-def test_projecting_the_log_again_changes_nothing(store: Database, clock: ManualClock) -> None:
+def test_repeated_projection_of_the_log_changes_nothing(
+    store: Database, clock: ManualClock
+) -> None:
     projection = SqlProjection(store)
     for part in STORY:
         projection.project(part)
@@ -100,7 +102,7 @@ def test_projecting_the_log_again_changes_nothing(store: Database, clock: Manual
     assert contents(store) == before
 
 
-def test_who_asks_for_what_was_decided_waits_for_no_position(store: Database) -> None:
+def test_wait_for_decisions_does_not_wait_for_positions(store: Database) -> None:
     projection = SqlProjection(store)
     with store.write():  # nothing else is written
         projection.project(
@@ -115,7 +117,7 @@ def test_who_asks_for_what_was_decided_waits_for_no_position(store: Database) ->
     projection.close()
 
 
-def test_a_projection_that_cannot_be_written_is_stated_and_holds_up_no_other(
+def test_failing_projection_is_reported_and_delays_no_other(
     store: Database, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     projection = SqlProjection(store)
@@ -130,9 +132,7 @@ def test_a_projection_that_cannot_be_written_is_stated_and_holds_up_no_other(
     projection.close()
 
 
-def test_a_change_that_no_table_can_hold_costs_itself_and_nothing_that_waits_beside_it(
-    store: Database, clock: ManualClock
-) -> None:
+def test_change_that_no_table_can_hold_is_lost_alone(store: Database, clock: ManualClock) -> None:
     impossible = Projection(6 * NS_PER_S, tracks=(fused(5.2, math.nan),))
     projection = SqlProjection(store)
     with store.write():  # until all of it waits
@@ -146,10 +146,10 @@ def test_a_change_that_no_table_can_hold_costs_itself_and_nothing_that_waits_bes
     projection.close()
 
 
-def test_a_place_that_is_no_number_costs_nothing_else_of_its_projection(
+def test_place_that_is_no_number_costs_only_its_own_row(
     store: Database, clock: ManualClock
 ) -> None:
-    """The tables made again from the log have ten seconds in one."""
+    """Tables that are rebuilt from the log take ten seconds in one transaction."""
     tracks = (fused(5.2, math.nan), fused(6.2, 1.0), fused(7.2, math.nan))
     story = msgspec.structs.replace(acted(5.0, OpenIncident("i-9", "Mill Lane")), tracks=tracks)
     with store.write() as session:
@@ -171,9 +171,7 @@ def test_text_that_a_database_cannot_hold_costs_no_row(store: Database, clock: M
     assert Records(store, clock).incidents()
 
 
-def test_a_long_track_is_thinned_and_found_in_its_window(
-    store: Database, clock: ManualClock
-) -> None:
+def test_long_track_is_thinned_and_found_in_its_window(store: Database, clock: ManualClock) -> None:
     month_s = 30 * 86_400
     times_s = (*range(100, 110), *range(month_s, month_s + 10), 20 * month_s)
     tracks = tuple(fused(t_s + 0.5, float(t_s)) for t_s in times_s)
@@ -190,14 +188,14 @@ def test_a_long_track_is_thinned_and_found_in_its_window(
     assert unit.last_heard_ns == 7
 
 
-def test_a_transaction_that_fails_leaves_nothing(store: Database, clock: ManualClock) -> None:
+def test_failed_transaction_leaves_nothing(store: Database, clock: ManualClock) -> None:
     with suppress(ZeroDivisionError), store.write() as session:
         project_into(session, STORY)
         _break()
     assert Roster(store, clock).units() == []
 
 
-def test_users_log_in_and_are_shut_out(store: Database, clock: ManualClock) -> None:
+def test_users_log_in_and_are_locked_out(store: Database, clock: ManualClock) -> None:
     accounts = Accounts(store, clock, QUICK_HASH)
     accounts.add_user("ada", "a long password", Role.ADMINISTRATOR)
     session = accounts.log_in("ada", "a long password")
@@ -218,7 +216,7 @@ def test_users_log_in_and_are_shut_out(store: Database, clock: ManualClock) -> N
     assert [one.username for one in accounts.users()] == ["bo"]
 
 
-def test_what_is_worked_out_of_an_incident_is_kept_and_replaced(store: Database) -> None:
+def test_post_processing_result_of_an_incident_is_kept_and_replaced(store: Database) -> None:
     kept = SmoothedTracks(store)
     point = TrackSample(1, 2.0, 3.0, 4.0, 0.1, 0.1, 0.1, 0.5, None, "good")
     for made_ns in (1, 2):
@@ -230,9 +228,7 @@ def test_what_is_worked_out_of_an_incident_is_kept_and_replaced(store: Database)
     assert kept.report("i-1") == b"r"
 
 
-def test_a_person_is_forgotten_and_the_database_made_compact(
-    store: Database, clock: ManualClock
-) -> None:
+def test_person_is_erased_and_the_database_compacted(store: Database, clock: ManualClock) -> None:
     roster, records = Roster(store, clock), Records(store, clock)
     person = roster.add_person("Ada", "A", "", "")
     records.audit("chief", "AddedPerson", f"{person.person_id} Ada")
@@ -247,7 +243,7 @@ def test_a_person_is_forgotten_and_the_database_made_compact(
     assert records.audited([""]) is not None
 
 
-def test_one_station_copies_the_other_s_users_people_and_audit(
+def test_station_copies_users_people_and_audit_of_the_other(
     new: NewDatabase, clock: ManualClock
 ) -> None:
     active, standby = new(), new()
@@ -265,7 +261,7 @@ def test_one_station_copies_the_other_s_users_people_and_audit(
 
 
 @pytest.mark.parametrize("to", DATABASE_KINDS)
-def test_a_copy_of_all_tables_has_all_of_them_and_goes_on(
+def test_copy_of_all_tables_is_complete_and_usable(
     store: Database,
     to: str,
     tmp_path: Path,

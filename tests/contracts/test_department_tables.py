@@ -1,5 +1,5 @@
-"""Events of stations are stored once, in whichever order and however often they come, in a file
-and on a server.
+"""Events of stations are stored once, in any order and number of deliveries, in a file and on a
+server.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def take(
     return tables.take("engine-7", EventBatch(epoch, 0, after_seq, events, dropped_seq), 5, 9)
 
 
-def test_a_batch_that_comes_again_changes_nothing(tables: DepartmentTables) -> None:
+def test_repeated_batch_changes_nothing(tables: DepartmentTables) -> None:
     first = event(1, "a", alarm("raised", 10)), event(2, "b", alarm("resolved", 20))
     assert take(tables, *first) == Reported(2, 2, ())
     assert take(tables, *first) == Reported(2, 0, ())
@@ -67,7 +67,7 @@ def test_a_batch_that_comes_again_changes_nothing(tables: DepartmentTables) -> N
     assert person.body == b""  # a name stands in its own table alone
 
 
-def test_the_other_machine_of_a_station_reports_the_same_events_under_other_numbers(
+def test_same_events_of_the_other_machine_of_a_pair_are_stored_once(
     tables: DepartmentTables,
 ) -> None:
     take(tables, event(1, "a", alarm("raised", 10)), event(2, "b", alarm("acknowledged", 20)))
@@ -75,10 +75,10 @@ def test_the_other_machine_of_a_station_reports_the_same_events_under_other_numb
     assert take(tables, *again, epoch=8, dropped_seq=40).new == 1
     ((shown,), count) = tables.open_alarms(10)
     assert (shown.state, count) == ("acknowledged", 1)  # an older transition that came later
-    assert tables.missing() == {}  # what it has dropped as a standby had come from the other one
+    assert tables.missing() == {}  # events that it dropped as a standby came from the other
 
 
-def test_numbers_that_are_left_out_are_counted(tables: DepartmentTables) -> None:
+def test_missing_numbers_are_counted(tables: DepartmentTables) -> None:
     take(tables, event(1, "a", alarm("raised", 10)))
     take(tables, event(4, "d", alarm("raised", 40)), after_seq=1)
     assert tables.missing() == {"engine-7": 2}
@@ -86,7 +86,7 @@ def test_numbers_that_are_left_out_are_counted(tables: DepartmentTables) -> None
     assert tables.missing() == {"engine-7": 32}  # this database is older than its receipts
 
 
-def test_a_closed_incident_stays_closed_and_open_ones_come_first(tables: DepartmentTables) -> None:
+def test_closed_incident_stays_closed_and_open_ones_come_first(tables: DepartmentTables) -> None:
     take(
         tables,
         event(1, "a", IncidentEvent("i1", "Mill street", 10, 20)),
@@ -97,7 +97,7 @@ def test_a_closed_incident_stays_closed_and_open_ones_come_first(tables: Departm
     assert shown == [("i2", "Harbour", None), ("i1", "Mill street 4", 20)]
 
 
-def test_an_event_of_a_newer_station_is_kept_and_a_damaged_one_stores_nothing(
+def test_event_of_a_newer_station_is_kept_and_a_damaged_one_stores_nothing(
     tables: DepartmentTables,
 ) -> None:
     newer = Event(1, "a", 1, msgspec.Raw(msgspec.msgpack.encode({"type": "drone", "x": 1})))

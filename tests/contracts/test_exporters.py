@@ -1,4 +1,4 @@
-"""What every exporter keeps."""
+"""Contract of every exporter."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ from shared.geo import Anchor
 GX_NAMESPACE = "http://www.google.com/kml/ext/2.2"
 GPX_NAMESPACE = "http://www.topografix.com/GPX/1/1"
 T0_NS = 1_700_000_000 * NS_PER_S
-HOSTILE = 'Ada "<&>" ;,\n=1+1 \u00e4\U0001f692 \x0b\x00\ufffe]]>'  # the last of old logs
+HOSTILE = 'Ada "<&>" ;,\n=1+1 \u00e4\U0001f692 \x0b\x00\ufffe]]>'  # the last record of old logs
 
 NO_ROSTER = person_lookup({})
 anyone = pytest.mark.parametrize("exporter", EXPORTERS, ids=lambda exporter: exporter.name)
 
 
 def worn_tracks(points: int = 3) -> tuple[WornTrack, ...]:
-    """Of two wearers, of whom one went north."""
+    """Tracks of two wearers, of whom one went north."""
     walked = tuple(
         TrackSample(T0_NS + n * NS_PER_S, float(n), 0.5, -1.5, 0.1, 0.1, 0.2, 0.0, None, "good")
         for n in range(points)
@@ -58,7 +58,7 @@ def incident(anchor: Anchor | None = None, points: int = 3) -> IncidentTracks:
 
 
 class Held(WornTrack, frozen=True, weakref=True):
-    """A track that one can see to be gone."""
+    """A track whose end of life can be observed."""
 
 
 def written(exporter: Exporter, of: IncidentTracks) -> bytes:
@@ -66,12 +66,12 @@ def written(exporter: Exporter, of: IncidentTracks) -> bytes:
 
 
 ANCHOR = Anchor(52.0, 13.0, 40.0)
-MOST_TRACKS = {"parquet": 140}  # of the row group that is made, and the next one
+MOST_TRACKS = {"parquet": 140}  # of the current row group and the next one
 BYTES_A_POINT = {"parquet": 2}  # compressed; of the others 10 at least
 
 
 @anyone
-def test_names_can_stand_in_an_address_and_are_taken_once(exporter: Exporter) -> None:
+def test_names_fit_an_address_and_are_unique(exporter: Exporter) -> None:
     assert re.fullmatch(r"[a-z0-9_-]+", exporter.name)
     assert re.fullmatch(r"[a-z0-9.]+", exporter.suffix)
     assert "/" in exporter.media_type
@@ -79,12 +79,12 @@ def test_names_can_stand_in_an_address_and_are_taken_once(exporter: Exporter) ->
 
 
 @anyone
-def test_the_same_incident_gives_the_same_bytes(exporter: Exporter) -> None:
+def test_same_incident_gives_the_same_bytes(exporter: Exporter) -> None:
     assert written(exporter, incident(ANCHOR)) == written(exporter, incident(ANCHOR)) != b""
 
 
 @anyone
-def test_nothing_is_written_at_zero_zero_for_want_of_an_anchor(exporter: Exporter) -> None:
+def test_no_point_lies_at_zero_zero_without_an_anchor(exporter: Exporter) -> None:
     if exporter.needs_anchor:
         with pytest.raises(UserError, match="anchor"):
             written(exporter, incident())
@@ -93,7 +93,7 @@ def test_nothing_is_written_at_zero_zero_for_want_of_an_anchor(exporter: Exporte
 
 
 @anyone
-def test_every_unit_is_in_it_and_every_point_counts(exporter: Exporter) -> None:
+def test_every_unit_and_every_point_is_exported(exporter: Exporter) -> None:
     short = written(exporter, incident(ANCHOR))
     assert b"FF-01" in short
     assert b"FF-02" in short
@@ -102,13 +102,15 @@ def test_every_unit_is_in_it_and_every_point_counts(exporter: Exporter) -> None:
 
 
 @anyone
-def test_an_incident_without_tracks_can_be_written(exporter: Exporter) -> None:
+def test_incident_without_tracks_can_be_written(exporter: Exporter) -> None:
     empty = replace(incident(ANCHOR), tracks=())
     assert written(exporter, empty)
 
 
 def valid_kml(content: bytes) -> object:
-    """Against the schemas of the OGC and of Google's extensions, which the library brings."""
+    """Validate against the schemas of the OGC and of Google's extensions, which the library
+    brings.
+    """
     kml = etree.fromstring(content)
     schemas = Path(fastkml.__file__).parent / "schema"
     etree.XMLSchema(etree.parse(schemas / "kml22gx.xsd")).assertValid(kml)
@@ -121,7 +123,7 @@ def valid_geojson(content: bytes) -> object:
     return collection
 
 
-# By the file's suffix, a reader of others that tells whether it is as its standard says.
+# By the file's suffix, an independent reader that checks the file against its standard.
 READERS: dict[str, Callable[[bytes], object]] = {
     "gpx": lambda content: gpxpy.parse(content.decode()),
     "kml": valid_kml,
@@ -132,7 +134,7 @@ READERS: dict[str, Callable[[bytes], object]] = {
 
 
 @anyone
-def test_it_can_be_read_whatever_people_are_called(exporter: Exporter) -> None:
+def test_export_can_be_read_with_any_names_of_people(exporter: Exporter) -> None:
     content = written(exporter, incident(ANCHOR))
     read = READERS.get(exporter.suffix)
     if read is None:
@@ -142,7 +144,9 @@ def test_it_can_be_read_whatever_people_are_called(exporter: Exporter) -> None:
 
 
 @anyone
-def test_it_holds_one_track_at_a_time_and_refuses_before_the_first(exporter: Exporter) -> None:
+def test_exporter_holds_one_track_at_a_time_and_refuses_before_the_first(
+    exporter: Exporter,
+) -> None:
     alive: weakref.WeakSet[Held] = weakref.WeakSet()
     most = 0
 
@@ -162,8 +166,8 @@ def test_it_holds_one_track_at_a_time_and_refuses_before_the_first(exporter: Exp
             exporter.begun(incident())
 
 
-def test_every_format_says_the_same_millisecond() -> None:
-    """That of the API and the console: the one that had begun."""
+def test_every_format_has_the_same_millisecond() -> None:
+    """That of the API and the console: rounded down."""
     late_ns = 455_999_600
     sample = msgspec.structs.replace(worn_tracks()[0].points[0], t_ns=T0_NS + late_ns)
     track = msgspec.structs.replace(worn_tracks()[0], points=(sample,))
@@ -177,14 +181,14 @@ def test_every_format_says_the_same_millisecond() -> None:
 
 
 @pytest.mark.parametrize("name", ["=1+1", "+1", "-1+1", "@SUM(1)", "\t=1+1", "\r=1+1"])
-def test_a_name_does_not_become_a_formula(name: str) -> None:
+def test_name_does_not_become_a_formula(name: str) -> None:
     track = msgspec.structs.replace(worn_tracks()[0], person_name=name, crew=name)
     table = written(CSV, replace(incident(), tracks=(track,))).decode()
     rows = list(csv.reader(io.StringIO(table, newline="")))
     assert rows[1][1:3] == [f"'{name}"] * 2
 
 
-def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
+def test_track_is_split_where_its_unit_changes_hands() -> None:
     def worn(name: str, from_s: int, until_s: int | None) -> Assignment:
         until_ns = None if until_s is None else T0_NS + until_s * NS_PER_S
         return Assignment(
@@ -198,15 +202,15 @@ def test_a_track_is_parted_where_its_unit_changes_hands() -> None:
         (one.person_name, len(one.points)) for one in _split(NO_ROSTER, "FF-01", points, hands)
     ]
     assert tracks == [("", 1), ("Ada", 2), ("Bea", 2), ("", 1), ("Ada", 2)]
-    # Assigned anew, as with another name: from the same instant on the later one counts.
+    # Assigned again with another name: from the same instant on the later assignment counts.
     again = [worn("Ada", 0, None), worn("Ada B.", 0, None)]
     assert [one.person_name for one in _split(NO_ROSTER, "FF-01", points, again)] == ["Ada B."]
-    # With a new photo it is the same person who goes on.
+    # With a new photo the person stays the same.
     photo = [worn("Ada", 0, 3), worn("Ada", 3, None)]
     assert [len(one.points) for one in _split(NO_ROSTER, "FF-01", points, photo)] == [8]
 
 
-def test_tracks_have_the_names_that_the_roster_has_for_ids() -> None:
+def test_tracks_have_the_names_of_the_roster() -> None:
     def worn(person_id: str, from_s: int, until_s: int) -> Assignment:
         return Assignment(
             unit_id="FF-01", person_id=person_id, person_name="", crew="", role="",
@@ -222,9 +226,7 @@ def test_tracks_have_the_names_that_the_roster_has_for_ids() -> None:
 
 
 @pytest.mark.parametrize(("gap_s", "north_m", "pieces"), [(60, 30, 2), (19, 30, 1), (60, 0.5, 1)])
-def test_no_line_is_drawn_over_a_way_that_nobody_knows(
-    gap_s: int, north_m: float, pieces: int
-) -> None:
+def test_no_line_is_drawn_over_an_unknown_way(gap_s: int, north_m: float, pieces: int) -> None:
     track = worn_tracks(6)[0]
     moved = tuple(
         msgspec.structs.replace(one, t_ns=one.t_ns + gap_s * NS_PER_S, north_m=2.0 + north_m)
@@ -247,7 +249,7 @@ def test_no_line_is_drawn_over_a_way_that_nobody_knows(
     assert of["csv"].count(b"\r\n") == 1 + 6
 
 
-def test_gpx_goes_north_with_the_wearer() -> None:
+def test_gpx_leads_north_with_the_wearer() -> None:
     points = list(ET.fromstring(written(GPX, incident(ANCHOR))).iter(f"{{{GPX_NAMESPACE}}}trkpt"))
     assert len(points) == 4
     assert float(points[2].get("lat", "")) > float(points[0].get("lat", ""))
@@ -267,7 +269,7 @@ def test_kml_has_a_time_for_every_place() -> None:
     )
 
 
-def test_kml_has_heights_above_the_ground_where_the_plan_lists_it() -> None:
+def test_kml_has_heights_above_ground_where_the_plan_lists_the_floor() -> None:
     placed = replace(incident(ANCHOR), ground_down_m=0.5)
     content = written(KML, placed)
     valid_kml(content)

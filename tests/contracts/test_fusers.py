@@ -1,4 +1,4 @@
-"""What every fuser keeps to."""
+"""Contract of every fuser."""
 
 from __future__ import annotations
 
@@ -49,23 +49,23 @@ def receiver() -> Receiver:
     return Receiver(np.random.default_rng(2))
 
 
-def test_names_are_the_log_s_and_differ() -> None:
+def test_fuser_names_are_those_of_the_log_and_unique() -> None:
     names = [kind.name for kind in FUSERS]
     assert len(set(names)) == len(names)
     assert all(re.fullmatch(r"[a-z]+(-[a-z]+)*", name) for name in names)
 
 
-def test_it_knows_nothing_before_anything_came(kind: FuserKind) -> None:
+def test_fuser_has_no_estimate_before_the_first_input(kind: FuserKind) -> None:
     assert kind.new().estimate() is None
 
 
-def test_the_same_calls_give_the_same_answers(kind: FuserKind, walk: Walk) -> None:
+def test_same_calls_give_the_same_estimates(kind: FuserKind, walk: Walk) -> None:
     one = go(kind.new(), walk, receiver(), 0, len(walk))
     assert go(kind.new(), walk, receiver(), 0, len(walk)) == one
 
 
-def test_a_building_that_nobody_knows_moves_nobody(kind: FuserKind, walk: Walk) -> None:
-    """Outside, with fixes, nothing is learnt of one either."""
+def test_unknown_building_moves_no_estimate(kind: FuserKind, walk: Walk) -> None:
+    """Outside, with fixes, no building is learnt either."""
     listening, source, plain = kind.new(), receiver(), go(kind.new(), walk, receiver(), 0, 300)
     assert listening.match_building(LearntBuilding()) == LearntBuilding()
     for index in range(300):
@@ -74,9 +74,7 @@ def test_a_building_that_nobody_knows_moves_nobody(kind: FuserKind, walk: Walk) 
         assert estimates == [plain[index]]
 
 
-def test_saved_and_restored_it_goes_on_with_the_very_same_numbers(
-    kind: FuserKind, walk: Walk
-) -> None:
+def test_restored_fuser_continues_with_identical_numbers(kind: FuserKind, walk: Walk) -> None:
     straight, source = kind.new(), receiver()
     first = kind.new()
     go(first, walk, receiver(), 0, 150)
@@ -99,9 +97,7 @@ def test_numbers_are_finite_and_uncertainties_possible(kind: FuserKind, walk: Wa
         assert (estimate.quality is Quality.GOOD) == (estimate.quality_reason == "")
 
 
-def test_a_moved_frame_moves_everything_and_changes_nothing_else(
-    kind: FuserKind, walk: Walk
-) -> None:
+def test_moved_frame_moves_everything_and_changes_nothing_else(kind: FuserKind, walk: Walk) -> None:
     plain, moved = kind.new(), kind.new()
     go(plain, walk, receiver(), 0, 200)
     go(moved, walk, receiver(), 0, 200)
@@ -117,7 +113,7 @@ def test_a_moved_frame_moves_everything_and_changes_nothing_else(
     assert after.std_north_m**2 + after.std_east_m**2 == pytest.approx(spread)
 
 
-def test_a_start_places_the_way_walked_so_far(kind: FuserKind, walk: Walk) -> None:
+def test_start_places_the_way_walked_so_far(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     for index in range(50):
         fuser.predict(walk.position(index))
@@ -130,7 +126,7 @@ def test_a_start_places_the_way_walked_so_far(kind: FuserKind, walk: Walk) -> No
     assert estimate.down_m == pytest.approx(-3.0)
 
 
-def test_a_path_that_jumps_is_not_followed(kind: FuserKind, walk: Walk) -> None:
+def test_path_that_jumps_is_not_followed(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     go(fuser, walk, receiver(), 0, 200)
     before = fuser.estimate()
@@ -143,7 +139,7 @@ def test_a_path_that_jumps_is_not_followed(kind: FuserKind, walk: Walk) -> None:
     assert math.dist((before.north_m, before.east_m), (after.north_m, after.east_m)) < 1.0
 
 
-def test_what_is_stated_last_is_followed_though_the_clock_was_ahead_before(
+def test_latest_input_is_used_though_the_clock_was_ahead_before(
     kind: FuserKind, walk: Walk
 ) -> None:
     fuser = kind.new()
@@ -161,8 +157,8 @@ def test_what_is_stated_last_is_followed_though_the_clock_was_ahead_before(
 
 
 def begun_anew(kind: FuserKind, behind_s: float) -> list[Estimate]:
-    """A minute in, a unit's program begins anew, with a clock that is so far behind; no fixes for
-    ten seconds about it, and after the second minute.
+    """Inputs of a unit whose program restarts after a minute with a clock that is far behind; no
+    fixes for ten seconds around that and after the second minute.
     """
     fuser, source, restart = kind.new(), receiver(), 300
     walk = Walk.wander(np.random.default_rng(1), 180.0)
@@ -184,10 +180,10 @@ def begun_anew(kind: FuserKind, behind_s: float) -> list[Estimate]:
     return estimates
 
 
-def test_a_unit_s_fixes_are_as_old_and_as_good_though_its_clock_began_anew(
+def test_ages_and_errors_of_fixes_are_right_though_the_units_clock_restarted(
     kind: FuserKind,
 ) -> None:
-    """With another battery the clock of its machine begins at nought."""
+    """With another battery the clock of its machine begins at zero."""
     usual, anew = begun_anew(kind, 0.0), begun_anew(kind, 900.0)
     for one, other in zip(usual, anew, strict=True):
         assert other.since_gps_s == pytest.approx(one.since_gps_s, abs=0.3)
@@ -197,7 +193,7 @@ def test_a_unit_s_fixes_are_as_old_and_as_good_though_its_clock_began_anew(
     assert anew[-1].since_gps_s > 60.0
 
 
-def test_an_older_position_is_refused(kind: FuserKind, walk: Walk) -> None:
+def test_older_position_is_refused(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     go(fuser, walk, receiver(), 0, 100)
     before = fuser.save()
@@ -205,7 +201,7 @@ def test_an_older_position_is_refused(kind: FuserKind, walk: Walk) -> None:
     assert fuser.save() == before
 
 
-def test_a_receiver_without_a_tracker_is_followed_too(kind: FuserKind, walk: Walk) -> None:
+def test_receiver_without_tracker_is_followed(kind: FuserKind, walk: Walk) -> None:
     fuser, source = kind.new(), receiver()
     for index in range(0, len(walk), 5):
         fuser.update_gnss(source.fix(float(walk.t_s[index]), walk.truth_m[index]))
@@ -214,7 +210,7 @@ def test_a_receiver_without_a_tracker_is_followed_too(kind: FuserKind, walk: Wal
     assert math.dist((estimate.north_m, estimate.east_m), walk.truth_m[-1]) < 15.0
 
 
-def test_the_present_recalled_is_the_present(kind: FuserKind, walk: Walk) -> None:
+def test_estimate_at_the_present_time_is_the_present_estimate(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     present = go(fuser, walk, receiver(), 0, len(walk))[-1]
     recalled = fuser.estimate_at(walk.position(len(walk) - 1))
@@ -225,7 +221,7 @@ def test_the_present_recalled_is_the_present(kind: FuserKind, walk: Walk) -> Non
 
 
 @pytest.mark.slow
-def test_what_is_recalled_lies_about_where_the_wearer_was(kind: FuserKind) -> None:
+def test_estimates_of_the_past_lie_near_the_true_path(kind: FuserKind) -> None:
     inside = total = 0
     for seed in range(20):
         rng = np.random.default_rng(seed)
@@ -249,14 +245,12 @@ def test_what_is_recalled_lies_about_where_the_wearer_was(kind: FuserKind) -> No
 
 
 def restarted(position: Position) -> Position:
-    """Of the next run of the unit's program."""
+    """Inputs of the next run of the unit's program."""
     header = msgspec.structs.replace(position.header, boot_id=position.header.boot_id + 1)
     return msgspec.structs.replace(position, header=header)
 
 
-def test_what_is_recalled_of_the_run_before_is_as_it_was_when_that_was_over(
-    kind: FuserKind, walk: Walk
-) -> None:
+def test_estimate_of_the_run_before_is_unchanged_after_its_end(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     go(fuser, walk, receiver(), 0, 100)
     earlier, later = walk.position(90), walk.position(110)
@@ -281,7 +275,7 @@ def test_what_is_recalled_of_the_run_before_is_as_it_was_when_that_was_over(
     assert fuser.estimate_at(restarted(walk.position(1))) is not None
 
 
-def test_another_run_of_the_unit_cannot_be_recalled(kind: FuserKind, walk: Walk) -> None:
+def test_other_run_of_the_unit_has_no_estimate(kind: FuserKind, walk: Walk) -> None:
     fuser = kind.new()
     go(fuser, walk, receiver(), 0, 50)
     earlier = walk.position(10)

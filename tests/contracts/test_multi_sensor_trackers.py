@@ -1,4 +1,4 @@
-"""What every tracker in ``MULTI_SENSOR_TRACKERS`` owes its callers."""
+"""Contract of every tracker in ``MULTI_SENSOR_TRACKERS``."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def assert_same(rows, others):
         assert np.array_equal(getattr(rows, field.name), getattr(others, field.name)), field.name
 
 
-def test_each_sample_of_the_leading_sensor_gets_its_row_once_and_in_order(name):
+def test_each_sample_of_the_leading_sensor_gets_one_row_in_order(name):
     tracker, samples = made(name)
     rows = track_person(tracker, samples)
     assert np.array_equal(rows.t_ns, samples[places_of(name)[0]].t_ns)
@@ -113,7 +113,7 @@ def test_fifty_metres_are_fifty_metres_at_any_rate(name, rate_hz):
     assert away_m == pytest.approx(50.0, rel=0.05)
 
 
-def test_the_wearer_is_found_to_step_as_often_as_the_tracker_counts(name):
+def test_cadence_of_the_tracker_is_that_of_the_wearer(name):
     tracker, samples = made(name)
     monitor, strides, leading = ActivityMonitor(), 0, places_of(name)[0]
     for sensor, batch in in_turn(samples):
@@ -125,7 +125,7 @@ def test_the_wearer_is_found_to_step_as_often_as_the_tracker_counts(name):
 
 
 @pytest.mark.parametrize("gone", [0, 1])
-def test_a_sensor_that_goes_is_stated_and_the_walk_goes_on_where_it_can(name, gone):
+def test_sensor_failure_is_reported_and_tracking_continues_where_possible(name, gone):
     tracker, samples = made(name, FIFTY)
     place = places_of(name)[gone]
     imu = samples[place]
@@ -141,25 +141,25 @@ def test_a_sensor_that_goes_is_stated_and_the_walk_goes_on_where_it_can(name, go
 
 
 def goes_on(name, gone):
-    """A shank alone knows no heading of the body."""
+    """Tracker continues without the other sensor; a shank alone has no heading of the body."""
     return not (name == "torso_shank" and gone == 0)
 
 
-def test_the_earths_field_may_be_learned_and_each_row_still_comes(name):
+def test_rows_continue_while_the_earths_field_is_learned(name):
     tracker, samples = made(name)
     tracker.set_earth_field(EarthField(0.3, 0.01, 18.0, 45.0, 0.1, 0.1), 3_000_000_000)
     rows = track_person(tracker, samples)
     assert np.array_equal(rows.t_ns, samples[places_of(name)[0]].t_ns)
 
 
-def test_nothing_in_nothing_out(name):
+def test_no_samples_give_no_rows(name):
     tracker, samples = made(name)
     empty = ImuBatch(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)))
     assert all(len(tracker.push(sensor, empty)) == 0 for sensor in samples)
     assert len(tracker.finish()) == 0
 
 
-def test_samples_that_are_all_missing_still_get_rows(name):
+def test_samples_with_all_values_missing_get_rows(name):
     tracker, samples = made(name)
     missing = np.full((300, 3), np.nan)
     rows = track_person(

@@ -1,4 +1,4 @@
-"""What every kind of output to the wearer promises."""
+"""Contract of every kind of output to the wearer."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PROGRAMS = {"sound": ("aplay",), "speech": ("espeak-ng", "aplay")}
 
 @dataclass
 class Emulated:
-    """Machine with one output; ``played`` shows what has come out of it."""
+    """Machine with one output; ``played`` returns the notices that it has emitted."""
 
     text: str
     sysfs: Path
@@ -142,7 +142,7 @@ def _is_installed(program: str) -> bool:
     return any((folder / program).exists() for folder in (Path("/usr/bin"), Path("/bin")))
 
 
-def test_a_notice_comes_out_of_it_and_it_is_silent_afterwards(emulated: Emulated) -> None:
+def test_notice_is_played_and_the_output_is_silent_afterwards(emulated: Emulated) -> None:
     notifier = open_notifier(emulated.text, emulated.sysfs)
     notifier.play(EVACUATE, threading.Event())
     assert emulated.played()
@@ -150,7 +150,7 @@ def test_a_notice_comes_out_of_it_and_it_is_silent_afterwards(emulated: Emulated
     notifier.close()
 
 
-def test_an_interrupt_ends_it_at_once_and_leaves_it_silent(emulated: Emulated) -> None:
+def test_interrupt_ends_a_notice_at_once_and_silently(emulated: Emulated) -> None:
     notifier = open_notifier(emulated.text, emulated.sysfs)
     interrupt = threading.Event()
     playing = threading.Thread(target=notifier.play, args=(EVACUATE, interrupt))
@@ -163,7 +163,7 @@ def test_an_interrupt_ends_it_at_once_and_leaves_it_silent(emulated: Emulated) -
     assert emulated.is_silent()
 
 
-def test_one_that_is_gone_raises(emulated: Emulated) -> None:
+def test_removed_output_raises(emulated: Emulated) -> None:
     notifier = open_notifier(emulated.text, emulated.sysfs)
     emulated.remove()
     with pytest.raises(OSError, match=r"."):
@@ -181,14 +181,14 @@ def test_one_that_is_gone_raises(emulated: Emulated) -> None:
         ("beeper:event3", "is no path"),
     ],
 )
-def test_an_output_that_cannot_be_is_refused_with_what_to_write(
+def test_impossible_output_is_refused_with_the_right_text(
     text: str, reason: str, tmp_path: Path
 ) -> None:
     with pytest.raises(ConfigError, match=reason):
         open_notifier(text, tmp_path)
 
 
-def test_a_description_names_the_kind() -> None:
+def test_description_names_the_kind() -> None:
     assert output_kind("led:helmet:red") == "led"
 
 

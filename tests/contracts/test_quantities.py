@@ -1,4 +1,4 @@
-"""What each kind of source gives is declared, given, and told in docs/concepts.md."""
+"""Quantities of each kind of source: declared, delivered, and listed in docs/concepts.md."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from tests.rig.ximu3_device import TcpDevice, at_rest, text_message
 
 CONCEPTS = PROJECT_ROOT / "docs" / "concepts.md"
 DECLARED = {kind.scheme: kind.gives for kind in SOURCES}
-PASSES_ON = {"mcap", "bus"}  # what another unit gave
+PASSES_ON = {"mcap", "bus"}  # quantities of another unit
 COLUMNS = (
     *("t_s", "accel_x_mps2", "accel_y_mps2", "accel_z_mps2"),
     *("gyro_x_radps", "gyro_y_radps", "gyro_z_radps"),
@@ -62,7 +62,7 @@ def given(batches: Iterable[SensorBatch]) -> set[Quantity]:
 
 
 def of_a_file(folder: Path) -> set[Quantity]:
-    """With every column that a recording may have."""
+    """Quantities of a file with every column that a recording may have."""
     path = folder / "imu.csv"
     rows = (f"{k * 0.005:.3f},0,0,-9.8,0,0,0,20,0,40,101325,25" for k in range(500))
     path.write_text("\n".join((",".join(COLUMNS), *rows)), encoding="utf-8")
@@ -70,7 +70,9 @@ def of_a_file(folder: Path) -> set[Quantity]:
 
 
 def of_simulations(_: Path) -> set[Quantity]:
-    """One scenario has beacons, another one a wearer who acknowledges."""
+    """Quantities of simulations: one scenario has beacons, another one a wearer who
+    acknowledges.
+    """
     return {
         one
         for scenario in ("passes-beacons", "search-ground-floor")
@@ -91,7 +93,7 @@ def of_an_ximu3(_: Path) -> set[Quantity]:
 
 
 def of_iio_devices(folder: Path) -> set[Quantity]:
-    """With every device that it may have."""
+    """Quantities of IIO devices with every channel that they may have."""
     tree, devices = SysfsTree(folder / "sys"), folder / "dev"
     field = {f"in_magn_{axis}_raw": "100" for axis in "xyz"}
     tree.iio(7, "1-001e", name="lis3mdl", in_magn_scale="0.001", **field)
@@ -117,17 +119,17 @@ def of_iio_devices(folder: Path) -> set[Quantity]:
         ("iio", of_iio_devices),
     ],
 )
-def test_a_source_gives_what_it_declares_and_no_more(scheme, take, tmp_path: Path) -> None:
+def test_source_delivers_exactly_its_declared_quantities(scheme, take, tmp_path: Path) -> None:
     assert take(tmp_path) == DECLARED[scheme]
 
 
-def test_every_kind_that_passes_nothing_on_is_looked_at() -> None:
+def test_every_kind_with_own_quantities_is_checked() -> None:
     assert {"recording", "simulated", "bench", "ximu3", "iio"} | PASSES_ON == set(DECLARED)
     assert all(DECLARED[scheme] == frozenset(Quantity) for scheme in PASSES_ON)
 
 
-def test_the_concepts_say_which_source_gives_what() -> None:
-    """A row for each quantity, a column for each kind that passes nothing on."""
+def test_concepts_list_the_quantities_of_each_source() -> None:
+    """A row for each quantity, a column for each kind with own quantities."""
     lines = CONCEPTS.read_text(encoding="utf-8").splitlines()
     (head,) = (one for one in lines if one.startswith("| beside acceleration and rotation |"))
     schemes = re.findall(r"`(\w+):`", head)

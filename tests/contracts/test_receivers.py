@@ -1,4 +1,4 @@
-"""What every kind of satellite receiver promises, whatever its language."""
+"""Contract of every kind of satellite receiver, whatever its protocol."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tests.rig.ximu3_device import PtyDevice, TcpDevice
 
 Device = GpsdServer | TcpDevice | PtyDevice
 Saying = Callable[[Reported], bytes]
-# How each is pretended, what it says of a fix, and how it is named.
+# For each kind: its emulation, a fix in its protocol, and its name.
 PRETENDED: dict[str, tuple[Callable[[Iterable[bytes]], Device], Saying]] = {
     "gpsd": (lambda stated: GpsdServer(stated, hangs=True), gpsd_report),
     "nmea on TCP": (lambda stated: TcpDevice(stated, hangs=True), burst),
@@ -35,9 +35,9 @@ NO_FIX = replace(HERE, mode=1, quality=0, lat_deg=NAN, lon_deg=NAN, height_m=NAN
 
 @pytest.fixture(params=PRETENDED)
 def fixes(request: pytest.FixtureRequest) -> Iterator[Callable[..., list[GpsSample]]]:
-    """What a unit makes of a receiver that says these fixes, all but the first ``held_s`` late.
+    """Fixes that a unit makes of a receiver's fixes, all but the first ``held_s`` late.
 
-    The reader's clock stands but for that, so that nothing hangs on how busy this machine is.
+    The reader's clock stands otherwise, so that the result does not depend on the machine's load.
     """
     make, saying = PRETENDED[request.param]
     opened: list[tuple[Device, GnssReader]] = []
@@ -76,11 +76,11 @@ def fixes(request: pytest.FixtureRequest) -> Iterator[Callable[..., list[GpsSamp
         assert not reader.is_alive
 
 
-def test_every_kind_is_pretended() -> None:
+def test_every_kind_is_emulated() -> None:
     assert {name.split()[0] for name in PRETENDED} == {kind.scheme for kind in RECEIVERS}
 
 
-def test_a_fix_is_what_the_receiver_stated(fixes) -> None:
+def test_fix_equals_that_of_the_receiver(fixes) -> None:
     (fix,) = fixes(replace(HERE, std_m=1.3, vertical_std_m=2.2))
     assert (fix.lat_deg, fix.lon_deg) == pytest.approx((57.7, 11.97), abs=1e-8)
     assert fix.height_m == pytest.approx(42.5)
@@ -90,7 +90,7 @@ def test_a_fix_is_what_the_receiver_stated(fixes) -> None:
     assert math.degrees(fix.course_rad) == pytest.approx(77.5)
 
 
-def test_all_sides_of_the_earth_are_distinguished(fixes) -> None:
+def test_all_hemispheres_are_distinguished(fixes) -> None:
     places = [(57.7, 11.97), (-33.9, 151.2), (-22.9, -43.2), (40.7, -74.0)]
     found = fixes(
         *(
@@ -104,7 +104,7 @@ def test_all_sides_of_the_earth_are_distinguished(fixes) -> None:
     )
 
 
-def test_without_its_own_estimate_the_dilution_makes_the_accuracy(fixes) -> None:
+def test_accuracy_comes_from_dilution_without_an_own_estimate(fixes) -> None:
     """Five metres for one satellite: each axis, and up and down."""
     good, bad = fixes(replace(HERE, hdop=1.0, vdop=1.5), replace(LATER, hdop=6.0, vdop=99.99))
     assert good.horizontal_std_m == pytest.approx(5.0 / math.sqrt(2.0))
@@ -113,28 +113,28 @@ def test_without_its_own_estimate_the_dilution_makes_the_accuracy(fixes) -> None
     assert math.isnan(bad.vertical_std_m), "99.99 is how receivers say that they do not know"
 
 
-def test_a_height_of_unknown_kind_is_none(fixes) -> None:
-    """Only above the sea, and how high that is nobody says: two dimensions are sure."""
+def test_height_of_unknown_reference_is_left_out(fixes) -> None:
+    """A height above the sea alone, without the geoid: two dimensions are sure."""
     (fix,) = fixes(replace(HERE, sep_m=NAN, height_m=NAN))
     assert fix.fix_type == 2
     assert math.isnan(fix.height_m)
     assert math.isfinite(fix.lat_deg)
 
 
-def test_two_dimensions_have_no_height(fixes) -> None:
+def test_two_dimensional_fix_has_no_height(fixes) -> None:
     (fix,) = fixes(replace(HERE, mode=2))
     assert fix.fix_type == 2
     assert math.isnan(fix.height_m)
 
 
-def test_no_fix_is_stated_as_such(fixes) -> None:
+def test_missing_fix_is_reported_as_such(fixes) -> None:
     (fix,) = fixes(NO_FIX)
     assert (fix.fix_type, fix.satellites) == (0, 0)
     assert math.isnan(fix.lat_deg)
 
 
-def test_fixes_that_the_line_held_up_are_of_their_own_instants(fixes) -> None:
-    """Ten a second, over midnight; as they came they would be no time apart."""
+def test_delayed_fixes_have_their_own_times(fixes) -> None:
+    """Ten a second, over midnight; by their reception they would have one time."""
     reported = [replace(HERE, of_day_s=86_399.5 + 0.1 * k) for k in range(10)]
     found = fixes(*reported, held_s=0.9)
     steps_ns = [after.t_ns - before.t_ns for before, after in pairwise(found)]
@@ -159,7 +159,7 @@ def test_fixes_that_the_line_held_up_are_of_their_own_instants(fixes) -> None:
         ("nmea:/dev/ttyUSB0?speed=2", "unknown option 'speed'"),
     ],
 )
-def test_a_text_that_names_no_receiver_is_explained(text: str, stated: str) -> None:
+def test_text_that_names_no_receiver_is_explained(text: str, stated: str) -> None:
     with pytest.raises(ConfigError) as caught:
         open_receiver(text, SystemClock())
     assert stated in str(caught.value)

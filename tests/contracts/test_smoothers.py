@@ -1,4 +1,4 @@
-"""What every smoother does, over every entry of ``SMOOTHERS``."""
+"""Contract of every smoother in ``SMOOTHERS``."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def evidence_of(
     restart_s: float = math.inf,
     **more: object,
 ) -> UnitEvidence:
-    """What a station keeps of a walk; its program starts anew at ``restart_s``."""
+    """Evidence that a station keeps of a walk; the unit's program restarts at ``restart_s``."""
     history, receiver = PathHistory(), Receiver(np.random.default_rng(seed))
     for row in range(len(walk)):
         t_s = float(walk.t_s[row])
@@ -74,13 +74,13 @@ def a_walk(seed: int, lasts_s: float = 300.0) -> Walk:
     return Walk.wander(np.random.default_rng(seed), lasts_s)
 
 
-def test_names_are_the_log_s_and_differ() -> None:
+def test_smoother_names_are_those_of_the_log_and_unique() -> None:
     names = [smoother.name for smoother in SMOOTHERS]
     assert len(set(names)) == len(names)
     assert all(re.fullmatch(r"[a-z]+(-[a-z]+)*", name) for name in names)
 
 
-def test_the_same_evidence_gives_the_same_trails(smoother: Smoother) -> None:
+def test_same_evidence_gives_the_same_trails(smoother: Smoother) -> None:
     evidence = {"a": evidence_of(a_walk(1), 1, [(0.0, 60.0)])}
     one, two = smoother.smooth(evidence), smoother.smooth(evidence)
     assert np.array_equal(one.paths["a"].north_m, two.paths["a"].north_m)
@@ -112,7 +112,7 @@ def test_every_point_has_a_place_and_an_honest_uncertainty(smoother: Smoother) -
 
 
 @pytest.mark.slow
-def test_fixes_at_both_ends_hold_the_middle(smoother: Smoother) -> None:
+def test_fixes_at_both_ends_correct_the_middle(smoother: Smoother) -> None:
     one_end: list[float] = []
     both_ends: list[float] = []
     for seed in range(5):
@@ -127,7 +127,7 @@ def test_fixes_at_both_ends_hold_the_middle(smoother: Smoother) -> None:
 
 
 @pytest.mark.parametrize("heading_std_rad", [0.05, math.pi])
-def test_a_start_and_pins_are_enough(smoother: Smoother, heading_std_rad: float) -> None:
+def test_start_and_pins_suffice(smoother: Smoother, heading_std_rad: float) -> None:
     walk = a_walk(3)
     north_m, east_m = (walk.truth_m[0] - _turned(walk.own_m[0], walk.turn_rad)).tolist()
     start = Start(north_m, east_m, 0.0, walk.turn_rad, 0.5, heading_std_rad)
@@ -141,7 +141,7 @@ def test_a_start_and_pins_are_enough(smoother: Smoother, heading_std_rad: float)
     }
 
 
-def test_a_pin_that_contradicts_is_stated_and_changes_nothing(smoother: Smoother) -> None:
+def test_contradicting_pin_is_reported_and_changes_nothing(smoother: Smoother) -> None:
     walk = a_walk(4)
     good = evidence_of(walk, 4, [(0.0, 60.0)], places=(pin_at(walk, 200.0),))
     bad = replace(good, places=(*good.places, pin_at(walk, 250.0, off_m=150.0, name="bad")))
@@ -153,7 +153,7 @@ def test_a_pin_that_contradicts_is_stated_and_changes_nothing(smoother: Smoother
     assert verdict.sigmas > 4.0
 
 
-def test_walls_that_held_person_are_heeded_and_a_pin_overrules_them(smoother: Smoother) -> None:
+def test_walls_of_the_live_estimate_are_used_and_a_pin_overrules_them(smoother: Smoother) -> None:
     """The live estimate was surer than the path alone can be; the second time, wrongly so."""
     walk = a_walk(10)
     plain = evidence_of(walk, 10, [(0.0, 40.0)])
@@ -190,8 +190,8 @@ def test_encounter_with_a_well_known_place_improves_the_other(smoother: Smoother
     assert together.verdicts["met"].used
 
 
-def test_a_unit_that_starts_again_goes_on(smoother: Smoother) -> None:
-    """Its path begins anew; fixes behind that place it."""
+def test_path_continues_over_a_restart_of_the_unit(smoother: Smoother) -> None:
+    """The odometry begins anew; fixes behind the restart place it."""
     walk = a_walk(7)
     half = len(walk) // 2
     walk.own_m[half:] -= walk.own_m[half]
@@ -202,14 +202,14 @@ def test_a_unit_that_starts_again_goes_on(smoother: Smoother) -> None:
 
 
 @pytest.mark.parametrize("points", [1, 2, 3])
-def test_a_path_that_hardly_began_is_placed(smoother: Smoother, points: int) -> None:
+def test_path_of_few_points_is_placed(smoother: Smoother, points: int) -> None:
     walk = a_walk(8, points / RATE_HZ)
     pin = pin_at(walk, float(walk.t_s[0]))
     solution = smoother.solve({"a": evidence_of(walk, 8, places=(pin,))})
     assert errors_of(walk, solution.paths["a"]).max() < 3.0
 
 
-def test_the_present_is_the_last_point(smoother: Smoother) -> None:
+def test_last_point_is_the_present(smoother: Smoother) -> None:
     walk = a_walk(9)
     path = smoother.solve({"a": evidence_of(walk, 9, [(0.0, 100.0)])}).paths["a"]
     present = path.posterior

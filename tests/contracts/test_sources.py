@@ -1,4 +1,4 @@
-"""What every kind of source promises, and how a source is opened by its text."""
+"""Contract of every kind of source, and opening of a source by its text."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ EXAMPLES: dict[str, Example] = {
 
 
 Device = Callable[[list[bytes]], TcpDevice | PtyDevice]
-# Hardware, pretended: it is closed when everything that it said has been taken.
+# Emulated hardware: it is closed when all of its data has been read.
 DEVICES: dict[str, Device] = {"ximu3 on TCP": TcpDevice, "ximu3 on a serial port": PtyDevice}
 LIVE_SAMPLES = 360  # less than a second of them, which come at once
 # Devices of the kernel, emulated: one with both sensors, and one of each.
@@ -126,7 +126,7 @@ def _listening(text: str) -> Iterator[Source]:
 
 @contextmanager
 def _ending(source: Ximu3Source | IioSource) -> Iterator[None]:
-    """It is closed when enough has been taken."""
+    """Batches of a source that is closed after enough of them."""
     is_tested = Event()
 
     def end() -> None:
@@ -141,7 +141,7 @@ def _ending(source: Ximu3Source | IioSource) -> Iterator[None]:
 
 
 def _say_everything(source: BusSource) -> None:
-    """A unit walks, then starts again, which ends what the source gives."""
+    """Emit all data of a unit that walks, then restarts, which ends the source."""
     router = MemoryRouter()
     listener = RawStreamListener(source.unit_id, router.attach_station)
     assert listener.open(Event())
@@ -193,7 +193,7 @@ def test_other_samples_come_with_the_batch_of_their_time(source: Source) -> None
 
 
 @pytest.mark.slow
-def test_a_second_reading_is_the_same_to_the_last_bit(source: Source) -> None:
+def test_second_reading_is_identical_to_the_last_bit(source: Source) -> None:
     if isinstance(source, BusSource) or source.is_live:
         pytest.skip("what was said once on the bus, or by hardware, is not said again")
     for first, second in zip(source.batches(), source.batches(), strict=True):
@@ -240,14 +240,14 @@ def test_radio_outages_are_in_order(source: Source) -> None:
         ("iio:bmi160/accel", "write the device alone"),
     ],
 )
-def test_a_text_that_names_no_source_is_explained(text: str, reported: str) -> None:
+def test_text_that_names_no_source_is_explained(text: str, reported: str) -> None:
     with pytest.raises(ConfigError) as caught:
         open_source(text)
     assert reported in str(caught.value)
 
 
 @pytest.mark.parametrize("scheme", [kind.scheme for kind in SOURCES])
-def test_an_argument_that_does_not_exist_is_an_error_for_a_person(scheme: str) -> None:
+def test_missing_file_is_an_error_for_a_person(scheme: str) -> None:
     with pytest.raises(MusterError) as caught:
         list(open_source(f"{scheme}:does/not/exist").batches())
     assert "does/not/exist" in str(caught.value)

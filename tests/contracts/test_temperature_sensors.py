@@ -1,4 +1,4 @@
-"""What every kind of temperature sensor promises, whatever its driver."""
+"""Contract of every kind of temperature sensor, whatever its driver."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Emulated:
         self.text = text
         self.make = make
         self.attribute = attribute
-        self.scale = scale  # thousandths of a degree in one of its units
+        self.scale = scale  # thousandths of a degree in one unit of the driver
 
     def set(self, device: Path, degc: float) -> None:
         write_attributes(device, {self.attribute: f"{degc * 1e3 / self.scale:.0f}"})
@@ -111,7 +111,7 @@ def test_every_kind_is_emulated() -> None:
     assert set(EMULATED) == {kind.scheme for kind in TEMPERATURE_SENSORS}
 
 
-def test_a_reading_has_its_name_and_the_time_of_this_machine(sensor, tree, opened) -> None:
+def test_reading_has_its_name_and_the_time_of_this_machine(sensor, tree, opened) -> None:
     sensor.make(tree)
     clock = SystemClock()
     before_ns = clock.monotonic_ns()
@@ -124,7 +124,7 @@ def test_a_reading_has_its_name_and_the_time_of_this_machine(sensor, tree, opene
     assert reader.take_faults() == ()
 
 
-def test_one_inside_the_unit_is_not_the_air(sensor, tree, opened) -> None:
+def test_sensor_inside_the_unit_does_not_measure_the_air(sensor, tree, opened) -> None:
     sensor.make(tree)
     found = taken(opened(f"{sensor.text}?role=electronics"))
     assert isinstance(found, ElectronicsSample)
@@ -132,27 +132,27 @@ def test_one_inside_the_unit_is_not_the_air(sensor, tree, opened) -> None:
 
 
 @pytest.mark.parametrize("degc", [-40.0, 0.0, 84.5])
-def test_cold_and_warm_are_read_as_they_are(sensor, tree, opened, degc: float) -> None:
+def test_cold_and_warm_are_read(sensor, tree, opened, degc: float) -> None:
     sensor.set(sensor.make(tree), degc)
     assert taken(opened(sensor.text)).temperature_degc == pytest.approx(degc)
 
 
 @pytest.mark.parametrize("degc", [-200.0, 1300.0, 1e6])
-def test_what_no_sensor_can_measure_is_a_fault_and_no_heat(sensor, tree, opened, degc) -> None:
+def test_implausible_value_is_a_fault_and_no_heat(sensor, tree, opened, degc) -> None:
     sensor.set(sensor.make(tree), degc)
     reader = opened(sensor.text)
     assert "no reading" in fault(reader)
     assert reader.take() == ()
 
 
-def test_what_is_no_number_is_a_fault(sensor, tree, opened) -> None:
+def test_text_that_is_no_number_is_a_fault(sensor, tree, opened) -> None:
     write_attributes(sensor.make(tree), {sensor.attribute: "nonsense"})
     reader = opened(sensor.text)
     assert "no reading" in fault(reader)
     assert reader.take() == ()
 
 
-def test_a_sensor_that_does_not_answer_is_a_fault_stated_once(sensor, tree, opened) -> None:
+def test_sensor_without_answer_is_a_fault_reported_once(sensor, tree, opened) -> None:
     break_attribute(sensor.make(tree), sensor.attribute)
     reader = opened(sensor.text)
     assert "not answer" in fault(reader)
@@ -160,7 +160,7 @@ def test_a_sensor_that_does_not_answer_is_a_fault_stated_once(sensor, tree, open
     assert reader.take_faults() == ()
 
 
-def test_one_that_is_missing_is_named_with_those_that_are_there(sensor, tree, opened) -> None:
+def test_missing_sensor_is_reported_with_the_present_ones(sensor, tree, opened) -> None:
     tree.hwmon(3, "1-0050", name="sht3x", temp1_input="20000")
     tree.iio(3, "spi0.3", name="max31856", in_temp_raw="1", in_temp_scale="7.8125")
     tree.w1("28-00000000cafe", temperature="20000")
@@ -169,12 +169,12 @@ def test_one_that_is_missing_is_named_with_those_that_are_there(sensor, tree, op
     assert any(there in reported for there in ("sht3x", "max31856", "28-00000000cafe")), reported
 
 
-def test_one_that_is_missing_where_there_is_nothing_at_all(sensor, opened) -> None:
+def test_missing_sensor_is_reported_where_there_is_none_at_all(sensor, opened) -> None:
     assert "there is none at all" in fault(opened(sensor.text))
 
 
 @pytest.mark.slow
-def test_one_that_appears_later_is_read(sensor, tree, opened) -> None:
+def test_sensor_that_appears_later_is_read(sensor, tree, opened) -> None:
     reader = opened(sensor.text)
     assert "there is no" in fault(reader)
     sensor.make(tree)
@@ -182,7 +182,7 @@ def test_one_that_appears_later_is_read(sensor, tree, opened) -> None:
 
 
 @pytest.mark.slow
-def test_one_that_is_removed_has_no_reading_until_it_is_back(sensor, tree, opened) -> None:
+def test_removed_sensor_has_no_reading_until_it_is_back(sensor, tree, opened) -> None:
     device = sensor.make(tree)
     reader = opened(sensor.text)
     taken(reader)
@@ -194,7 +194,7 @@ def test_one_that_is_removed_has_no_reading_until_it_is_back(sensor, tree, opene
     taken(reader)
 
 
-def test_permission_that_is_missing_is_stated_with_the_rule(sensor, tree, opened, monkeypatch):
+def test_missing_permission_is_reported_with_the_udev_rule(sensor, tree, opened, monkeypatch):
     """The tests may run as root, who may read everything."""
     device = sensor.make(tree)
     allowed = Path.read_text
@@ -228,14 +228,14 @@ def test_permission_that_is_missing_is_stated_with_the_rule(sensor, tree, opened
         (["iio:max31856/ambient"], "cold junction"),
     ],
 )
-def test_settings_that_cannot_work_are_explained(texts, reported, tree) -> None:
+def test_impossible_settings_are_explained(texts, reported, tree) -> None:
     with pytest.raises(ConfigError) as caught:
         open_temperature_reader(texts, SystemClock(), tree.root)
     assert reported in str(caught.value)
 
 
-def test_one_that_hangs_is_stated_while_the_others_are_read(tree) -> None:
-    """A named pipe that nobody writes to stands for a driver that never returns."""
+def test_hanging_sensor_is_reported_while_the_others_are_read(tree) -> None:
+    """A named pipe without a writer stands for a driver that never returns."""
     clock = ManualClock()
     device = tree.hwmon(0, name="tmp102")
     os.mkfifo(device / "temp1_input")

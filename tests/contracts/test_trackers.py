@@ -1,4 +1,4 @@
-"""What every tracker in ``TRACKERS`` owes its callers."""
+"""Contract of every tracker in ``TRACKERS``."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from tests.rig.exact_strides import part, walk
 
 STRAIGHT = next(scenario for scenario in SCENARIOS if scenario.name == "straight")  # 50 m
 SHORT = Scenario("short", "7 m", (Stand(2.0), Walk(((6.8, 0.0),)), Stand(1.5)))
-# Share of a length that a tracker may be off by: the steps of a simulated person are not anyone's.
+# Error of a length that a tracker may have, as a share: a simulated person steps unlike a real one.
 LENGTH_TOLERANCE = {"body": 0.13}
 
 
 @dataclass(frozen=True)
 class Worn:
-    """Samples of five strides straight on where a tracker is worn."""
+    """Samples of five strides straight on at a tracker's place on the body."""
 
     description: SensorDescription
     imu: ImuBatch
@@ -45,7 +45,7 @@ def worn(part):
     simulation = Simulation(msgspec.structs.replace(SHORT, worn_on=part), seed=0)
     (batch,) = simulation.batches(simulation.duration_s)
     imu = ImuBatch(batch.imu.t_ns, batch.imu.accel_mps2, batch.imu.gyro_radps)
-    return Worn(simulation.description, imu, 6.8, 0.15)  # a step more or less
+    return Worn(simulation.description, imu, 6.8, 0.15)  # one step more or less
 
 
 @pytest.fixture(params=[entry.name for entry in TRACKERS])
@@ -67,7 +67,7 @@ def run(name, five_strides, rows=50, imu=None):
     return join_rows([*batches, tracker.finish()])
 
 
-def test_each_sample_gets_its_row_once_and_in_order(name, five_strides):
+def test_each_sample_gets_one_row_in_order(name, five_strides):
     rows = run(name, five_strides)
     assert np.array_equal(rows.t_ns, five_strides.imu.t_ns)
 
@@ -80,9 +80,7 @@ def test_batching_does_not_change_a_bit(name, five_strides):
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5])
-def test_the_earths_field_may_be_learned_at_any_time_and_changes_nothing_before(
-    name, five_strides, share
-):
+def test_learned_earth_field_changes_no_earlier_row(name, five_strides, share):
     tracker, without = make_tracker(name, five_strides.description), run(name, five_strides)
     at = round(share * len(five_strides.imu))
     field = EarthField(0.3, 0.01, 18.0, 45.0, 0.1, 0.1)
@@ -120,7 +118,7 @@ def test_shapes_and_units_are_plausible(name, five_strides):
     assert np.all(np.diff(rows.steps) >= 0)
 
 
-def test_a_straight_walk_comes_out_straight_and_as_long(name, five_strides):
+def test_straight_walk_is_straight_and_of_its_length(name, five_strides):
     rows = run(name, five_strides)
     reached_m = np.linalg.norm(rows.position_n_m[-1, :2])
     assert reached_m == pytest.approx(five_strides.length_m, rel=five_strides.tolerance)
@@ -151,20 +149,20 @@ def test_fifty_metres_are_fifty_metres_at_any_rate(name, rate_hz, described):
     assert away_m == pytest.approx(50.0, rel=tolerance)
 
 
-def test_nothing_in_nothing_out(name, five_strides):
+def test_no_samples_give_no_rows(name, five_strides):
     tracker = make_tracker(name, five_strides.description)
     empty = ImuBatch(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)))
     assert len(tracker.push(empty)) == 0
     assert len(tracker.finish()) == 0
 
 
-def test_a_single_sample_is_enough_to_finish(name, five_strides):
+def test_single_sample_suffices_to_finish(name, five_strides):
     tracker = make_tracker(name, five_strides.description)
     tracker.push(part(five_strides.imu, slice(0, 1)))
     assert len(tracker.finish()) == 1
 
 
-def test_samples_that_are_all_missing_still_get_rows(name, five_strides):
+def test_samples_with_all_values_missing_get_rows(name, five_strides):
     imu = ImuBatch(
         five_strides.imu.t_ns[:300], np.full((300, 3), np.nan), np.full((300, 3), np.nan)
     )
@@ -174,7 +172,7 @@ def test_samples_that_are_all_missing_still_get_rows(name, five_strides):
     assert not np.any(rows.quality == Quality.GOOD)
 
 
-def test_any_array_layout_will_do(name, five_strides):
+def test_any_array_layout_is_accepted(name, five_strides):
     whole = run(name, five_strides)
     views = np.zeros((len(five_strides.imu), 7))
     views[:, 1:4], views[:, 4:7] = five_strides.imu.accel_mps2, five_strides.imu.gyro_radps
@@ -186,11 +184,11 @@ def test_any_array_layout_will_do(name, five_strides):
 
 
 @pytest.mark.parametrize("rate_hz", [0.0, -1.0, np.nan, np.inf])
-def test_a_description_without_a_rate_is_refused(name, rate_hz):
+def test_description_without_rate_is_refused(name, rate_hz):
     with pytest.raises(ConfigError, match="rate"):
         make_tracker(name, SensorDescription("odd", rate_hz))
 
 
-def test_an_unknown_name_is_refused_with_the_known_ones(five_strides):
+def test_unknown_name_is_refused_with_the_known_ones(five_strides):
     with pytest.raises(ConfigError, match="eskf"):
         make_tracker("no-such-tracker", five_strides.description)

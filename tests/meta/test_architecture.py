@@ -1,4 +1,4 @@
-"""docs/architecture.md is the house as it is: its layers, and each file and name of its walks."""
+"""Layers, files and names of docs/architecture.md are those of the source."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CONTRACTS = tomllib.loads((PROJECT_ROOT / "pyproject.toml").read_text())["tool"]
 
 
 def named(walk: str) -> list[tuple[str, str]]:
-    """The functions and classes that a walk gives behind a file, each with that file."""
+    """Functions and classes that a walk names behind a file, each with that file."""
     found, file = [], ""
     for code in CODE.findall(walk):
         if "/" in code:
@@ -74,5 +74,5 @@ def test_the_layers_are_those_that_import_linter_holds(container: str, drawn: st
     assert pictured == held
 
 
-def test_both_sides_are_drawn() -> None:
+def test_diagrams_of_unit_and_station_exist() -> None:
     assert [name for name, _ in LAYERS] == ["base_station", "edge"]

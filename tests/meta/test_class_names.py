@@ -21,7 +21,7 @@ PUBLISHED_NAMES = {
 
 @cache
 def modules() -> dict[str, ast.Module]:
-    """Those that people wrote; a migration stays as it was released."""
+    """Modules that people wrote; a migration stays as it was released."""
     return {
         str(path.relative_to(PROJECT_ROOT)): ast.parse(path.read_text(encoding="utf-8"))
         for package in SHIPPED
@@ -31,7 +31,7 @@ def modules() -> dict[str, ast.Module]:
     }
 
 
-def test_a_class_name_stands_for_one_thing() -> None:
+def test_class_name_is_defined_once() -> None:
     places = defaultdict(list)
     for path, module in modules().items():
         for node in module.body:
@@ -41,7 +41,7 @@ def test_a_class_name_stands_for_one_thing() -> None:
     assert {name: paths for name, paths in places.items() if len(paths) > 1} == {}
 
 
-def test_a_module_says_first_what_it_is() -> None:
+def test_module_docstring_begins_with_a_noun_or_a_verb() -> None:
     asking = {
         path: text.splitlines()[0]
         for path, module in modules().items()
@@ -57,7 +57,7 @@ def nodes() -> Iterator[tuple[str, ast.AST]]:
             yield f"{path}:{getattr(node, 'lineno', 1)}", node
 
 
-def test_a_docstring_begins_with_a_noun_or_a_verb() -> None:
+def test_docstring_begins_with_a_noun_or_a_verb() -> None:
     asking = {
         place: text.splitlines()[0]
         for place, node in nodes()
@@ -68,7 +68,7 @@ def test_a_docstring_begins_with_a_noun_or_a_verb() -> None:
     assert asking == {}
 
 
-def test_an_identifier_has_no_everyday_speech() -> None:
+def test_identifier_has_no_everyday_speech() -> None:
     """A message is received or reported, a person is a user, a member or a wearer."""
     found = {
         f"{place} {name}"

@@ -1,4 +1,4 @@
-"""No file of the console needs itself by way of others."""
+"""The console's modules have no import cycle."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ IMPORT = re.compile(r'(?:from|import)\s+"(\.[^"]+)"')
 
 
 def imported(file: Path) -> set[Path]:
-    """The files of the console that this one imports, types too."""
+    """Files of the console that a file imports, with imports of types."""
     places = [
         file.parent / reported for reported in IMPORT.findall(file.read_text(encoding="utf-8"))
     ]
@@ -20,8 +20,8 @@ def imported(file: Path) -> set[Path]:
     return {candidate for candidate in candidates if candidate.is_file()}
 
 
-def test_imports_go_one_way() -> None:
+def test_console_has_no_import_cycle() -> None:
     files = [file for end in ENDS for file in SOURCE.rglob(f"*{end}")]
     graph = {file: imported(file) for file in files}
     assert sum(map(len, graph.values())) > len(files), "the imports are read"
-    TopologicalSorter(graph).prepare()  # CycleError names the circle
+    TopologicalSorter(graph).prepare()  # CycleError names the cycle

@@ -1,4 +1,4 @@
-"""The console names every tracker in words."""
+"""The console has a name for every tracker."""
 
 from __future__ import annotations
 

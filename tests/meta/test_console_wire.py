@@ -27,8 +27,8 @@ def test_types_of_requests_and_answers_are_those_of_the_api() -> None:
     assert written == department_types(), "run: python -m tests.rig.console_types"
 
 
-def test_the_page_about_the_websocket_is_that_of_the_messages() -> None:
-    """It describes every member, or cannot be made."""
+def test_page_about_the_websocket_is_generated_from_the_messages() -> None:
+    """The page describes every member; otherwise its generation fails."""
     assert LIVE_MD.read_text(encoding="utf-8") == page(), "run: python -m tests.rig.console_types"
     assert LIVE_SCHEMA.read_text(encoding="utf-8") == schema_file(), "the same command"
 

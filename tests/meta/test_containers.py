@@ -1,4 +1,6 @@
-"""The compose files and the images: every service is hardened, and all that they name is there."""
+"""Compose files and images: every service is hardened, and every file and command that they name
+exists.
+"""
 
 from __future__ import annotations
 
@@ -81,14 +83,14 @@ def test_every_service_is_hardened(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SERVICES)
-def test_every_service_says_whether_it_is_healthy(name: str) -> None:
+def test_every_service_has_a_health_check(name: str) -> None:
     service = SERVICES[name]
     ends = service["restart"] == "no"
     assert service["healthcheck"].get("disable", False) is ends
     assert ends or service["healthcheck"]["test"][0] in {"CMD", "CMD-SHELL"}
 
 
-def test_what_a_service_waits_for_can_become_healthy() -> None:
+def test_dependency_of_a_service_has_a_health_check() -> None:
     for service in SERVICES.values():
         for other, wanted in service.get("depends_on", {}).items():
             assert wanted == {"condition": "service_healthy"}
@@ -106,7 +108,7 @@ def test_an_image_and_its_service_have_the_same_user_and_health_check(name: str)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_an_image_starts_a_command_that_understands_it(name: str) -> None:
+def test_image_starts_a_command_that_accepts_its_options(name: str) -> None:
     service = SERVICES[name]
     stage = STAGES[service["build"]["target"]]
     (default,) = re.findall(r"^CMD (\[.*\])$", stage, re.MULTILINE)
@@ -120,7 +122,7 @@ def test_an_image_starts_a_command_that_understands_it(name: str) -> None:
 
 
 @pytest.mark.parametrize(("target", "unit"), [("station", "station"), ("unit", "unit")])
-def test_a_container_has_the_patience_of_the_systemd_service(target: str, unit: str) -> None:
+def test_container_stops_within_the_timeout_of_the_systemd_service(target: str, unit: str) -> None:
     service = (PROJECT_ROOT / "deploy" / "systemd" / f"muster-{unit}.service").read_text()
     (watchdog_s,) = re.findall(r"^WatchdogSec=(\d+)$", service, re.MULTILINE)
     assert f'"--watchdog-s", "{watchdog_s}"' in STAGES[target]
@@ -142,7 +144,7 @@ def test_the_published_ports_are_those_of_the_settings(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["station", "department"])
-def test_the_settings_name_what_is_mounted(name: str) -> None:
+def test_settings_name_the_mounted_paths(name: str) -> None:
     settings, service = settings_of(name), SERVICES[name]
     mounted = {volume.split(":")[1] for volume in service["volumes"]}
     assert {str(settings.data), f"/etc/muster/{name}.toml"} <= mounted
@@ -159,7 +161,7 @@ def test_the_settings_name_what_is_mounted(name: str) -> None:
         assert secret.name in service["secrets"]
 
 
-def test_the_archive_in_the_settings_is_that_of_the_command(tmp_path: Path) -> None:
+def test_archive_of_the_settings_is_that_of_the_command(tmp_path: Path) -> None:
     text = (FOLDER / "station.toml").read_text()
     file = tmp_path / "station.toml"
     file.write_text(re.sub(r"^# (?=\[archive\]|location = )", "", text, flags=re.MULTILINE))
@@ -178,13 +180,13 @@ def test_a_unit_finds_its_settings_enrolment_and_data() -> None:
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_compiled_code_is_kept_where_a_container_may_write(name: str) -> None:
+def test_compiled_code_is_cached_where_a_container_may_write(name: str) -> None:
     (folder,) = re.findall(r"NUMBA_CACHE_DIR=(\S+)", STAGES["runtime"])
     mounted = {volume.split(":")[1] for volume in SERVICES[name]["volumes"]}
     assert folder in mounted
 
 
-def test_every_file_that_is_mounted_is_there_or_made_by_the_script(tmp_path: Path) -> None:
+def test_every_mounted_file_exists_or_is_made_by_the_script(tmp_path: Path) -> None:
     script = tmp_path / "prepare"
     shutil.copy(FOLDER / "prepare", script)
     subprocess.run([script], check=True, capture_output=True)
@@ -193,7 +195,7 @@ def test_every_file_that_is_mounted_is_there_or_made_by_the_script(tmp_path: Pat
         "metrics_token",
         "authority.pem",
         "enrolment.toml",
-    }  # of a running station: the how-to
+    }  # of a running station: see the how-to
     page = (PROJECT_ROOT / "docs" / "howto" / "run-in-containers.md").read_text()
     assert all(f"secrets/{name}" in page for name in by_hand)
     named = {secret["file"] for secret in MAIN["secrets"].values()}
@@ -205,7 +207,7 @@ def test_every_file_that_is_mounted_is_there_or_made_by_the_script(tmp_path: Pat
     assert all(
         secret in MAIN["secrets"] for one in SERVICES.values() for secret in one.get("secrets", ())
     )
-    # They are generated, and a second run leaves them alone.
+    # They are generated, and a second run does not change them.
     assert len({made["database_password"], made["archive_key_id"], made["archive_key"]}) == 3
     assert all(len(made[name]) >= 32 for name in ("database_password", "archive_key"))
     subprocess.run([script], check=True, capture_output=True)
@@ -226,7 +228,7 @@ def test_images_are_installed_from_locks_by_their_hashes() -> None:
     installs = re.findall(r"\bpip (?:--python \S+ )?install (.*)", CONTAINERFILE)
     assert len(installs) >= 7
     for options in installs:
-        if "/wheels/*.whl" in options:  # our own, which was built beside it
+        if "/wheels/*.whl" in options:  # own image, which was built beside it
             assert "--no-index --no-deps" in options
         else:
             assert "--require-hashes -r" in options
@@ -236,7 +238,7 @@ def test_images_are_installed_from_locks_by_their_hashes() -> None:
     assert all((PROJECT_ROOT / lock).is_file() for lock in locks)
 
 
-def test_images_are_of_the_python_that_is_tested_and_of_this_version() -> None:
+def test_images_have_the_tested_python_and_this_version() -> None:
     tested = f"python:{sys.version_info.major}.{sys.version_info.minor}-slim"
     assert f"ARG PYTHON_IMAGE={tested}\n" in CONTAINERFILE
     version = PROJECT["project"]["version"]
@@ -247,13 +249,13 @@ def test_images_are_of_the_python_that_is_tested_and_of_this_version() -> None:
         assert service["image"].endswith(f":${{MUSTER_VERSION:-{version}}}")
 
 
-def test_what_runs_has_no_builder_in_it() -> None:
+def test_runtime_image_contains_no_build_tools() -> None:
     for target in ("station", "unit", "bucket"):
         assert not re.search(r"^RUN ", STAGES[target], re.MULTILINE)
     assert not re.search(r"\b(pip|apt-get|gcc|npm)\b", STAGES["runtime"])
 
 
-def test_prometheus_asks_as_without_containers() -> None:
+def test_prometheus_scrapes_as_without_containers() -> None:
     shipped = yaml.safe_load((PROJECT_ROOT / "deploy/prometheus/prometheus.yml").read_text())
     here = yaml.safe_load((FOLDER / "prometheus.yml").read_text())
     (job,) = shipped["scrape_configs"]

@@ -1,4 +1,4 @@
-"""Decision records have the form that their index promises."""
+"""Decision records have the form that their index states."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def test_the_index_lists_every_record_with_its_title_and_status():
 
 
 @pytest.mark.parametrize("record", RECORDS, ids=lambda record: record.stem[:3])
-def test_a_superseded_record_says_by_which(record):
+def test_superseded_record_names_its_successor(record):
     _, _, status, *_ = record.read_text().splitlines()
     if status.startswith("Status: Superseded"):
         assert re.match(r"Status: Superseded by \[\d+\]\(\d{3}-[a-z0-9-]+\.md\)", status)
 
 
-def test_no_number_stands_for_two_records():
+def test_numbers_of_records_are_unique():
     numbers = [record.stem[:3] for record in RECORDS]
     assert len(set(numbers)) == len(numbers)

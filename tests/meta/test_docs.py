@@ -1,4 +1,4 @@
-"""The pages say what is there: links lead somewhere, commands exist."""
+"""Pages of the documentation: links, anchors, files and commands exist."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ COMMANDS = [
 ]
 OF_THE_BOOTSTRAP = {"test"}
 FOLDERS = ("base_station", "deploy", "edge", "shared", "tests")
-# A page that shows how to add a file names it before it is there.
+# A page that shows how to add a file names it before it exists.
 OF_TODAY = [page for page in PAGES if not page.stem.startswith("add-")]
 
 
 def source_files() -> frozenset[str]:
-    """The files of all folders, as paths below the project."""
+    """Files of all folders, as paths below the project."""
     found: set[str] = set()
     for folder in FOLDERS:
         for root, folders, names in os.walk(PROJECT_ROOT / folder):
@@ -52,7 +52,7 @@ def test_every_anchor_is_a_heading(page):
 
 
 def anchors_of(text: str) -> set[str]:
-    """The anchors that GitHub gives the headings of a page."""
+    """Anchors that GitHub gives the headings of a page."""
     without_code = re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
     found: set[str] = set()
     for title in re.findall(r"^#+ (.+)$", without_code, flags=re.MULTILINE):

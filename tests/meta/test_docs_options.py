@@ -1,4 +1,4 @@
-"""What the pages tell people to type: every subcommand and every option of it is there."""
+"""Commands of the pages: every subcommand and every option exists."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_every_option_exists(page: Path, program: TyperGroup) -> None:
 
 
 def commands_of(text: str) -> list[list[str]]:
-    """As words, of those commands that this program's name stands before."""
+    """Words of the commands that begin with the name of the program."""
     names = {point.name.partition(".")[0] for point in POINTS}
     typed = [match["words"].split() for match in TYPED.finditer(text.replace("\\\n", " "))]
     return [words for words in typed if words[0] in names]
@@ -56,7 +56,7 @@ def found(program: TyperGroup, words: list[str]) -> tuple[TyperGroup | TyperComm
     return command, []
 
 
-def test_pages_are_read_as_people_read_them() -> None:
+def test_commands_of_a_page_are_found() -> None:
     text = (
         "`muster base serve --data DIR`.\n./muster pki enroll \\\n  FF-01 --qr\nthe muster of all"
     )

@@ -1,4 +1,4 @@
-"""The example settings load, and name every setting there is."""
+"""The example settings load, and name every setting."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from shared.config import load_config
 from tests.conftest import PROJECT_ROOT
 
 EXAMPLES = PROJECT_ROOT / "deploy" / "examples"
-# Explained in a comment rather than set, or only meant for the command line.
+# Explained in a comment rather than set, or for the command line alone.
 LEFT_OUT = {
     "archive",  # the last test
     "calibration",
@@ -92,7 +92,7 @@ def test_the_example_names_every_threshold_with_its_default():
 
 
 def test_examples_of_connections_name_every_setting_with_its_default(tmp_path: Path):
-    """They are comments: what they connect to is elsewhere."""
+    """They are comments: the other end of a connection is on another machine."""
     text = (EXAMPLES / "station.toml").read_text()
     file = tmp_path / "connections.toml"
     file.write_text("\n".join(_COMMENTED.findall(text[text.index("# [tak.") :])))

@@ -1,4 +1,4 @@
-"""Handlers of every exception, the end of the program too, in the three packages."""
+"""No handler catches every exception, except the listed ones."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("base_station", "edge", "shared")
-# It rolls a transaction back, and the failure of that must not hide the first one.
+# It rolls a transaction back, and a failure of that must not hide the first one.
 WITH_REASON = {"base_station/forwarders/department/outbox.py"}
 
 
@@ -22,8 +22,10 @@ def handlers() -> Iterator[tuple[str, ast.ExceptHandler]]:
                     yield path.relative_to(ROOT).as_posix(), node
 
 
-def test_what_is_begun_is_undone_by_a_context_manager_and_not_by_catching_everything() -> None:
-    """``finally``, or an ``ExitStack`` whose callbacks are taken off when all went well."""
+def test_no_handler_catches_every_exception() -> None:
+    """Undo steps stand in ``finally``, or in an ``ExitStack`` whose callbacks are removed on
+    success.
+    """
     found = list(handlers())
     assert len(found) > 500
     catching_all = {

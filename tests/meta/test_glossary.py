@@ -1,4 +1,4 @@
-"""The glossary has one line for each term, in the order of the alphabet below each subject."""
+"""The glossary has one line for each term, sorted below each subject."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ GLOSSARY = PROJECT_ROOT / "docs" / "glossary.md"
 
 
 def terms() -> list[list[str]]:
-    """The terms of each subject, as they stand."""
+    """Terms of each subject, in the order of the page."""
     subjects = re.split(r"^## .+$", GLOSSARY.read_text(), flags=re.MULTILINE)[1:]
     return [re.findall(r"^\| (?!term )([^|]+?) \|", text, flags=re.MULTILINE) for text in subjects]
 
@@ -21,11 +21,11 @@ def test_each_subject_is_sorted() -> None:
         assert names == sorted(names, key=sorting)
 
 
-def test_no_term_stands_twice() -> None:
+def test_terms_are_unique() -> None:
     names = [name for subject in terms() for name in subject]
     assert len(names) == len(set(names))
 
 
 def sorting(name: str) -> str:
-    """The letters of a term: *95 % region* stands with r."""
+    """Sorting key of a term: *95 % region* is sorted under r."""
     return name.lower().lstrip("0123456789 %")

@@ -1,4 +1,4 @@
-"""Every Python example of the how-to pages is what it says: an entry that keeps its contract."""
+"""Every Python example of the how-to pages works: its entry keeps the contract of its kind."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from shared.messages import STATION_ID, Header
 from tests.conftest import PROJECT_ROOT
 from tests.rig import message_factory
 
-# By page: the tuple that the entry is named in, and the suite that runs over it.
+# By page: the tuple that the entry belongs to, and the suite that runs over it.
 PLACES = {
     "add-a-fuser": ("base_station.fusion", "FUSERS", "test_fusers.py"),
     "add-a-source": ("edge.sources.registry", "SOURCES", "test_sources.py"),
@@ -26,7 +26,7 @@ PLACES = {
     "add-an-exporter": ("base_station.exporters", "EXPORTERS", "test_exporters.py"),
 }
 PAGES = sorted((PROJECT_ROOT / "docs" / "howto").glob("*.md"))
-# Puts the entry where a person would write it, and runs the tests that are of it.
+# Adds the entry to its tuple, and runs the tests of the entry.
 RUN = """
 import importlib, sys
 import pytest
@@ -78,7 +78,7 @@ def test_the_example_keeps_the_contract_of_its_kind(page: str) -> None:
 
 
 @pytest.mark.slow
-def test_the_example_that_reads_a_log_says_where_people_were(tmp_path: Path) -> None:
+def test_example_that_reads_a_log_prints_the_places_of_people(tmp_path: Path) -> None:
     log = SegmentWriter(tmp_path)
     for second in range(3):
         t_ns = (1_800_000_000 + second) * NS_PER_S

@@ -1,4 +1,4 @@
-"""The quick tests (``./muster test --quick``) start no process: tests that do are marked slow."""
+"""Quick tests (``./muster test --quick``) start no process: tests that do are marked slow."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STARTS = {"subprocess", "ReplayProcesses", "tests.rig.station_command"}
 
 
 def imported(tree: ast.Module) -> set[str]:
-    """Modules and names."""
+    """Imported modules and names."""
     found: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import | ast.ImportFrom):
@@ -26,7 +26,7 @@ def imported(tree: ast.Module) -> set[str]:
 def modules_that_start_processes() -> Iterator[Path]:
     for folder in QUICK:
         for path in sorted((TESTS / folder).rglob("test_*.py")):
-            text = path.read_text(encoding="utf-8")  # few name one, and to parse all takes a second
+            text = path.read_text(encoding="utf-8")  # parsing all files takes a second
             if any(name in text for name in STARTS) and imported(ast.parse(text)) & STARTS:
                 yield path
 

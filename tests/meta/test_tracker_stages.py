@@ -1,4 +1,6 @@
-"""The table of the tracker's stages names what each reads and writes, as the sources have it."""
+"""The table of the tracker's stages names the reads and writes of each, as the sources have
+them.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ LOOP, STAGES = (
     Kernel(f"{PACKAGE}.foot.eskf", "work"),
     Kernel(f"{PACKAGE}.foot.stages", "filter_sample"),
 )
-# A record has one name in the table; helpers that only look at sample numbers are no stages.
+# A record has one name in the table; helpers that read sample numbers only are no stages.
 RECORDS = {
     "ring": "ring",
     "trail": "trail",
@@ -31,7 +33,7 @@ def fields(places: frozenset[tuple[str, str]]) -> str:
 
 
 def rows(kernel: Kernel) -> list[str]:
-    """One row a stage; a stage that is called in several places has one row."""
+    """Rows of the table, one a stage; a stage that is called in several places has one row."""
     conditions: dict[Kernel, list[str]] = {}
     for called, condition in EFFECTS.calls(kernel):
         text = f"`{condition}`" if condition else "always"
@@ -58,7 +60,7 @@ def test_table_of_stages_names_all_reads_and_writes(kernel: Kernel) -> None:
 
 
 def test_effects_follow_views_and_calls() -> None:
-    """What the table rests on: one stage, by hand."""
+    """Basis of the table, checked for one stage by hand."""
     effects = EFFECTS.of(
         Kernel(f"{PACKAGE}.foot.filter.temperature_bias", "update_temperature_bias")
     )

@@ -1,4 +1,4 @@
-"""Whatever a sensor's errors are, turning it tells them; whatever the batching, it is undone."""
+"""Calibration: a sensor's errors are found by turning it, and undone in any batching."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def directions(count: int, seed: int):
 
 @given(distortion=matrix, bias=vector, seed=st.integers(0, 999))
 @settings(max_examples=60)
-def test_an_ellipsoid_becomes_the_sphere_it_was(distortion, bias, seed):
+def test_ellipsoid_is_calibrated_to_its_sphere(distortion, bias, seed):
     gain = np.eye(3) + np.array(distortion)
     readings = directions(40, seed) @ gain.T + np.array(bias)
     for shape in (TRIANGULAR, SYMMETRIC):
@@ -40,7 +40,7 @@ def test_an_ellipsoid_becomes_the_sphere_it_was(distortion, bias, seed):
 
 @given(distortion=matrix, bias=vector, cuts=st.lists(st.integers(0, 60), max_size=4))
 @settings(max_examples=40)
-def test_samples_are_calibrated_each_by_itself(distortion, bias, cuts):
+def test_each_sample_is_calibrated_alone(distortion, bias, cuts):
     rng = np.random.default_rng(1)
     gain = to_matrix(np.eye(3) + np.array(distortion))
     zero = (0.0, 0.0, 0.0)

@@ -1,4 +1,6 @@
-"""Whatever the radio loses or repeats and however often the unit starts again: done once."""
+"""Commands are done once, whatever the radio loses or repeats and however often the unit
+restarts.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,7 @@ KINDS = [CommandKind.SET_POSITION_RATE, CommandKind.PAR_REQUEST, CommandKind.LOC
 
 
 class Radio:
-    """A station and a unit; each exchange says how often what is said arrives (0: lost)."""
+    """A station and a unit; each exchange states how often its message arrives (0: lost)."""
 
     def __init__(self) -> None:
         self.station = Script()
@@ -47,7 +49,7 @@ class Radio:
         self.station.act(SendCommand(f"c{number}", kind, U, "", False, "", rate_hz, FOREVER_S))
 
     def exchange(self, down: int, up: int) -> None:
-        """The station says what is unanswered; the unit replies."""
+        """The station sends its unanswered commands; the unit replies."""
         for order in open_orders(self.station.pipeline.state):
             header = self.station.header(STATION_ID)
             command = Command(
@@ -70,7 +72,7 @@ class Radio:
                 self.station.say(reply)
 
     def backfill(self) -> None:
-        """The station fetches what it missed."""
+        """The station fetches the messages that it missed."""
         for reply in self.journal:
             self.station.say(reply)
 
@@ -86,13 +88,13 @@ STEPS = st.one_of(
 
 @settings(max_examples=150)
 @given(st.lists(STEPS, max_size=30))
-def test_every_command_is_done_once_and_known_to_be(steps: list[tuple[object, ...]]) -> None:
+def test_every_command_is_done_once_and_reported_as_done(steps: list[tuple[object, ...]]) -> None:
     radio = Radio()
     for kind in KINDS:
         radio.send(kind)
     for name, *arguments in steps:
         if name == "send" and len(radio.station.pipeline.state.commands) >= 8:
-            continue  # more than these are not kept at hand
+            continue  # the unit keeps no more than these
         getattr(radio, str(name))(*arguments)
     assert all(count == 1 for count in radio.rates.values())
     radio.exchange(1, 1)
@@ -105,7 +107,7 @@ def test_every_command_is_done_once_and_known_to_be(steps: list[tuple[object, ..
     for command in commands:
         expected = "acknowledged" if command.command_id in pressed else "received"
         if command.position_rate_hz in set(rates) - set(radio.rates):
-            expected = "refused"  # a later one replaced it
+            expected = "refused"  # replaced by a later command
         assert command.state_of(command.deliveries[U]) == expected
     radio.press(1)
     assert not any(command.is_open for command in commands)
@@ -113,6 +115,6 @@ def test_every_command_is_done_once_and_known_to_be(steps: list[tuple[object, ..
 
 
 def commands_end_ns(radio: Radio) -> int:
-    """Nothing expired meanwhile, or the test says nothing."""
+    """Ends of the commands; no command expires during a test."""
     ends = [command.expires_ns for command in radio.station.pipeline.state.commands.values()]
     return min(ends, default=radio.station.t_ns + NS_PER_S)

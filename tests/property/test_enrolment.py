@@ -1,4 +1,4 @@
-"""Whatever is handed to a unit as its enrolment: it is one, or one sentence says what is wrong."""
+"""Enrolments: any input is either an enrolment or refused with one sentence."""
 
 from __future__ import annotations
 
@@ -33,13 +33,15 @@ def assert_itself_or_a_sentence(text: str, original: Enrolment) -> None:
 
 
 @given(text=st.text())
-def test_any_text(enrolment: Enrolment, text: str) -> None:
+def test_any_text_is_enrolment_or_refused(enrolment: Enrolment, text: str) -> None:
     assert_itself_or_a_sentence(text, enrolment)
     assert_itself_or_a_sentence("MUSTER1:" + text, enrolment)
 
 
 @given(data=st.data())
-def test_a_file_or_code_with_one_place_changed(enrolment: Enrolment, data: st.DataObject) -> None:
+def test_enrolment_with_one_changed_place_is_read_or_refused(
+    enrolment: Enrolment, data: st.DataObject
+) -> None:
     text = data.draw(st.sampled_from([enrolment.to_toml(), enrolment.to_compact()]))
     at = data.draw(st.integers(0, len(text) - 1))
     cut = data.draw(st.integers(0, 5))

@@ -1,4 +1,4 @@
-"""Frames of an IIO buffer: whatever their elements, they are read back as they were laid out."""
+"""Frames of an IIO buffer: elements of any layout are read back."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Element:
     storage: int
     shift: int
     values: tuple[int, int]  # of two frames
-    noise: int  # in the bits that are not the value
+    noise: int  # in the bits outside the value
 
     @property
     def type(self) -> str:
@@ -44,7 +44,7 @@ def elements(draw: st.DrawFn) -> Element:
     bits = draw(st.integers(1, storage))
     signed = draw(st.booleans())
     if not signed:
-        bits = min(bits, 63)  # greater ones have no place in a signed number
+        bits = min(bits, 63)  # greater values have no place in a signed number
     least, most = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
     return Element(
         big=draw(st.booleans()),
@@ -58,13 +58,13 @@ def elements(draw: st.DrawFn) -> Element:
 
 
 @given(st.lists(elements(), min_size=1, max_size=9), st.randoms(use_true_random=False))
-def test_elements_are_read_back_from_where_a_compiler_puts_them(frame, random) -> None:
+def test_elements_are_read_from_compiler_alignment(frame, random) -> None:
     """The kernel aligns elements as a compiler aligns the fields of a structure."""
     names = [f"e{number}" for number in range(len(frame))]
     fields = [(name, _C_TYPES[one.storage]) for name, one in zip(names, frame, strict=True)]
     structure = type("Frame", (ctypes.Structure,), {"_fields_": fields})
     size = ctypes.sizeof(structure)
-    data = bytearray(random.randbytes(2 * size))  # padding holds anything
+    data = bytearray(random.randbytes(2 * size))  # padding holds any bytes
     for number in range(2):
         for name, one in zip(names, frame, strict=True):
             begin = number * size + getattr(structure, name).offset
@@ -84,7 +84,7 @@ def test_elements_are_read_back_from_where_a_compiler_puts_them(frame, random) -
 
 
 @given(st.text(max_size=12))
-def test_what_is_no_type_is_refused(text: str) -> None:
+def test_text_without_type_is_refused(text: str) -> None:
     with pytest.raises(UnusableDeviceError):
         parse_type(text)
 
@@ -92,7 +92,7 @@ def test_what_is_no_type_is_refused(text: str) -> None:
 @pytest.mark.parametrize(
     "text", ["le:s16/24>>0", "le:s17/16>>0", "le:s12/16>>5", "le:u0/16>>0", "s16/16>>0"]
 )
-def test_types_that_cannot_be_are_refused(text: str) -> None:
+def test_impossible_types_are_refused(text: str) -> None:
     with pytest.raises(UnusableDeviceError, match="type of a scan element"):
         parse_type(text)
 
@@ -102,7 +102,7 @@ def test_shift_and_repeat_may_be_left_out(text: str) -> None:
     assert parse_type(text) == parse_type("le:s16/16>>0")
 
 
-def test_elements_that_are_repeated_take_their_place() -> None:
+def test_repeated_elements_take_their_place() -> None:
     quaternion = ScanElement("in_rot_quaternion", 0, parse_type("le:s16/16X4>>0"))
     after = ScanElement("in_accel_x", 1, parse_type("le:s16/16>>0"))
     layout = FrameLayout((quaternion, after))

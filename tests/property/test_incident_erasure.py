@@ -1,5 +1,5 @@
-"""Whatever incidents were open together, and whoever was moved between them: of one that is erased
-nobody is left, and of the others everything is as it was.
+"""Erasure of one incident removes its people and leaves every other incident unchanged, whichever
+incidents were open together and whoever was moved between them.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ DEEDS: st.SearchStrategy[Action | str] = st.one_of(
     st.builds(Assign, UNIT, PERSON),
     st.builds(Unassign, UNIT),
     st.builds(RegisterUnit, UNIT, UNIT),
-    UNIT,  # that says where it is
+    UNIT,  # the part that states its location
 )
 
 # By time: the incident, the wearer and the site of each unit, and when its duty began.
@@ -72,7 +72,7 @@ def picture_of(state: StationState) -> Picture:
 
 
 def pictures(records: Iterable[Record]) -> dict[int, Picture]:
-    """What is so behind the last record of each time."""
+    """State behind the last record of each time."""
     pipeline = new_pipeline()
     found = {}
     for record in records:
@@ -82,13 +82,13 @@ def pictures(records: Iterable[Record]) -> dict[int, Picture]:
 
 
 def filled(found: dict[int, Picture], times_ns: Iterable[int]) -> dict[int, Picture]:
-    """With the picture of before at times of which no record is left."""
+    """Pictures, with the earlier one at times of which no record is left."""
     shown: Picture = {}
     return {t_ns: (shown := found.get(t_ns, shown)) for t_ns in times_ns}
 
 
 def first_received(records: list[Record]) -> dict[str, int]:
-    """As the service reads it from the log."""
+    """First reception of each unit, as the service reads it from the log."""
     received: dict[str, int] = {}
     for t_ns, key, _ in records:
         for unit_id in UNITS:
@@ -108,7 +108,7 @@ def erased(records: list[Record], erasure: Erasure) -> list[Record]:
 
 
 def without(incident_id: str, before: Picture) -> Picture:
-    """Nobody wears a unit in the incident, and nobody is on duty."""
+    """The picture without wearers and members of the incident."""
     return {
         unit_id: (at, None, site_id, None) if at == incident_id else (at, person, site_id, since_ns)
         for unit_id, (at, person, site_id, since_ns) in before.items()
@@ -117,7 +117,7 @@ def without(incident_id: str, before: Picture) -> Picture:
 
 @settings(max_examples=150, deadline=None)
 @given(deeds=st.lists(DEEDS, max_size=30), order=st.permutations(INCIDENTS))
-def test_of_an_erased_incident_nobody_is_left_and_others_stay(
+def test_erased_incident_leaves_no_person_and_other_incidents_stay(
     deeds: list[Action | str], order: list[str]
 ) -> None:
     script = Script()

@@ -1,4 +1,4 @@
-"""Our key expressions mean what Zenoh's mean."""
+"""Key expressions of the project mean the same as Zenoh's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A log that is torn or damaged anywhere gives back everything else, and says what is missing."""
+"""A log that is torn or damaged at any place yields all other records and states what is
+missing.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,7 @@ POLICY = SegmentPolicy(chunk_bytes=2048)
 
 
 def records() -> list[LogRecord]:
-    """Payloads as random as bytes can be, over known and unknown keys."""
+    """Payloads of random bytes, over known and unknown keys."""
     chance = random.Random(7)
     keys = [channel.key(unit) for channel in CHANNELS for unit in ("anna", "ben")]
     keys += ["muster/v1/anna/up/unheard_of", "elsewhere"]
@@ -87,14 +89,14 @@ def as_others_read(path: Path) -> list[LogRecord]:
 
 
 def assert_in_order_of(found: list[LogRecord], written: list[LogRecord]) -> None:
-    """Every record found was written, in that order, none twice."""
+    """Assert that every record found was written, in that order, none twice."""
     rest = iter(written)
     assert all(record in rest for record in found)
 
 
 @settings(MANY, suppress_health_check=FIXTURES)
 @given(cut=st.floats(0.0, 1.0))
-def test_a_log_torn_anywhere_is_read_and_mended_up_to_the_tear(
+def test_log_torn_anywhere_is_read_and_repaired_up_to_the_tear(
     tmp_path: Path, whole: Path, cut: float
 ) -> None:
     content = whole.read_bytes()
@@ -122,7 +124,7 @@ def test_a_log_torn_anywhere_is_read_and_mended_up_to_the_tear(
 
 @settings(MANY, suppress_health_check=FIXTURES)
 @given(cut=st.floats(0.0, 1.0))
-def test_what_was_flushed_before_a_tear_is_there(
+def test_records_flushed_before_a_tear_are_read(
     tmp_path: Path, unfinished: Path, cut: float
 ) -> None:
     folder = log_of(tmp_path, unfinished.read_bytes() + b"\0" * round(cut * 5000))
@@ -152,8 +154,8 @@ def test_a_flipped_bit_costs_one_chunk_at_most_and_is_reported(
         assert list(read_log(folder, keys={key})) == [r for r in found if r[1] == key]
 
 
-def test_no_flipped_bit_of_an_index_hides_a_record(tmp_path: Path, whole: Path) -> None:
-    """It has no checksum, and says twice how long it is."""
+def test_flipped_bit_of_an_index_hides_no_record(tmp_path: Path, whole: Path) -> None:
+    """An index has no checksum, and states its length twice."""
     content = whole.read_bytes()
     at = min(
         content.index(bytes([Opcode.MESSAGE_INDEX]) + struct.pack("<Q", 6 + 16 * entries))
@@ -171,7 +173,7 @@ def test_no_flipped_bit_of_an_index_hides_a_record(tmp_path: Path, whole: Path) 
 
 @settings(MANY, suppress_health_check=FIXTURES)
 @given(content=st.binary(max_size=300), magic=st.booleans())
-def test_bytes_that_are_no_log_yield_nothing(tmp_path: Path, content: bytes, magic: bool) -> None:
+def test_bytes_of_no_log_yield_nothing(tmp_path: Path, content: bytes, magic: bool) -> None:
     folder = log_of(tmp_path, (b"\x89MCAP0\r\n" if magic else b"") + content)
     assert list(read_log(folder)) == []
     recover_log(folder)
@@ -200,14 +202,14 @@ def test_a_window_and_keys_select_what_a_filter_selects(
     ]
     damage: list[str] = []
     assert list(read_log(folder, start_ns, end_ns, keys, damage.append)) == expected
-    assert damage == []  # its indexes are taken for what they are
+    assert damage == []  # its indexes are read as they stand
 
 
-PAGE = 4096  # a disk gives so much or none of it
+PAGE = 4096  # a disk reads so many bytes or none
 
 
 @pytest.mark.parametrize("end", [False, True])
-def test_what_a_disk_does_not_give_costs_what_stands_there_and_is_reported(
+def test_unreadable_part_of_a_disk_costs_its_records_and_is_reported(
     tmp_path: Path, whole: Path, unfinished: Path, monkeypatch: pytest.MonkeyPatch, end: bool
 ) -> None:
     content = (whole if end else unfinished).read_bytes()

@@ -1,4 +1,4 @@
-"""Every message survives the wire, and no bytes whatever break the decoder."""
+"""Every message survives encoding and decoding, and no bytes break the decoder."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def strategy_of(annotation: object) -> st.SearchStrategy[object]:
         return st.dictionaries(keys, values, max_size=4)
     if isinstance(annotation, types.UnionType):
         return st.one_of(*(strategy_of(part) for part in typing.get_args(annotation)))
-    return st.from_type(annotation)  # type: ignore[arg-type]  # whatever else a field may be
+    return st.from_type(annotation)  # type: ignore[arg-type]  # any other type of field
 
 
 def struct_strategy(struct: type[msgspec.Struct]) -> st.SearchStrategy[typing.Any]:
@@ -63,7 +63,7 @@ PLAIN_CHANNELS = [channel for channel in CHANNELS if channel is not IMU]
 
 @pytest.mark.parametrize("channel", PLAIN_CHANNELS, ids=lambda channel: channel.name)
 @given(data=st.data())
-def test_the_wire_quantises_once_and_then_changes_nothing(channel, data):
+def test_wire_quantises_once_and_changes_nothing_afterwards(channel, data):
     message = data.draw(struct_strategy(channel.message))
     once = decode(channel, encode(message))
     twice = decode(channel, encode(once))
@@ -81,7 +81,7 @@ def test_the_wire_quantises_once_and_then_changes_nothing(channel, data):
         )
     )
 )
-def test_raw_samples_survive_with_their_missed_values(columns):
+def test_raw_samples_survive_with_their_missing_values(columns):
     accel, gyro, pressure = (np.array(column) for column in columns)
     batch = RawImu(
         header=Header("FF-01", 1, 1, 0),
@@ -110,14 +110,14 @@ def raw_imu(samples: int) -> RawImu:
     "column",
     ["accel_e5_mps2", "gyro_e6_radps", "mag_nt", "pressure_cpa", "imu_temperature_cdegc"],
 )
-def test_raw_samples_of_columns_that_differ_in_length_are_none(column):
+def test_raw_samples_of_columns_of_different_length_are_refused(column):
     wire = raw_imu(samples=4).to_wire()
     getattr(wire, column).extend([1, 1, 1])
     with pytest.raises(WireError, match="different lengths"):
         decode(IMU, wire.SerializeToString())
 
 
-def test_a_message_without_a_sample_is_none():
+def test_message_without_sample_is_refused():
     wire = raw_imu(samples=1).to_wire()
     for column in ("dt_ns", "accel_e5_mps2", "gyro_e6_radps", "mag_nt", "pressure_cpa"):
         wire.ClearField(column)
@@ -137,14 +137,14 @@ def test_any_bytes_are_a_message_or_a_wire_error(channel, payload):
 
 
 @given(FLOATS)
-def test_a_value_past_the_wire_saturates(value):
+def test_value_beyond_wire_range_saturates(value):
     hot = Temperature(Header("FF-01", 1, 1, 0), ambient_degc=math.copysign(1e12, value))
     back = decode(TEMPERATURE, encode(hot))
     assert isinstance(back, Temperature)
     assert back.ambient_degc == pytest.approx(math.copysign(21_474_836.47, value))
 
 
-def test_a_newer_schema_is_named(make_position):
+def test_newer_schema_is_named_in_the_error(make_position):
     position = make_position()
     newer = msgspec.structs.replace(
         position, header=msgspec.structs.replace(position.header, schema=SCHEMA_REVISION + 1)

@@ -1,4 +1,6 @@
-"""Whatever is pinned, moved and removed: nobody ends up nowhere, and what is undone is undone."""
+"""Pins: after any set, move and removal every unit has a place, and removal restores the state
+before.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,7 @@ PINS = st.lists(
         st.sampled_from(["p1", "p2", "p3"]),
         st.floats(0.0, float(SECONDS)),
         st.one_of(st.floats(-3.0, 3.0), st.floats(-1e4, 1e4)),
-        st.booleans(),  # taken back at once
+        st.booleans(),  # removed at once
     ),
     min_size=1,
     max_size=6,
@@ -41,7 +43,7 @@ def plain() -> Walk:
 @pytest.mark.slow
 @given(pins=PINS)
 @settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_with_all_pins_taken_back_everything_is_as_it_was(
+def test_removal_of_all_pins_restores_the_state_before(
     plain: Walk, pins: list[tuple[str, float, float, bool]]
 ) -> None:
     walk = walked()

@@ -1,4 +1,4 @@
-"""Samples pass through messages once with rounding, and then never change again."""
+"""Samples are rounded once in a message, and unchanged in every later one."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ BATCHES = st.builds(SensorBatch, imu_batches(), st.lists(OTHERS, max_size=4).map
 
 
 def through(batch: SensorBatch) -> SensorBatch:
-    """As a black box gives it back: by way of bytes."""
+    """The samples as a black box returns them: encoded to bytes and decoded."""
     raw = SampleEncoder("u1", 1).messages(batch)
     return batch_of(tuple(decode(channel_of(message), encode(message)) for message in raw))
 
@@ -77,19 +77,19 @@ def text_of(batch: SensorBatch) -> str:
 
 
 @given(BATCHES)
-def test_what_has_passed_once_passes_unchanged(batch):
+def test_encoded_samples_are_unchanged_when_encoded_again(batch):
     once = through(batch)
     assert text_of(through(once)) == text_of(once)
 
 
 @given(BATCHES)
-def test_the_agents_own_batch_is_the_one_in_the_black_box(batch):
+def test_batch_of_the_agent_equals_that_of_the_black_box(batch):
     own = batch_of(SampleEncoder("u1", 1).messages(batch))
     assert text_of(own) == text_of(through(batch))
 
 
 @given(BATCHES)
-def test_inertial_samples_keep_their_times_and_nearly_their_values(batch):
+def test_inertial_samples_keep_times_and_values_within_rounding(batch):
     imu, kept = batch.imu, through(batch).imu
     assert kept.t_ns.tolist() == imu.t_ns.tolist()
     np.testing.assert_allclose(kept.accel_mps2, imu.accel_mps2, atol=0.51e-5)
@@ -102,7 +102,7 @@ def test_inertial_samples_keep_their_times_and_nearly_their_values(batch):
     st.booleans(),
     st.one_of(st.none(), st.floats(0.0, 0.2)),
 )
-def test_a_description_that_has_passed_once_passes_unchanged(rate_hz, full_scale, mag, gain_std):
+def test_encoded_description_is_unchanged_when_encoded_again(rate_hz, full_scale, mag, gain_std):
     def passed(sensor: SensorDescription) -> SensorDescription:
         sent = (unit_sensor("left", sensor),)
         description = SampleEncoder("u1", 1).description(0, sent, source="", tracker="")
@@ -111,5 +111,5 @@ def test_a_description_that_has_passed_once_passes_unchanged(rate_hz, full_scale
     sensor = SensorDescription("s", rate_hz, full_scale, full_scale, mag, gain_std=gain_std)
     once = passed(sensor)
     assert passed(once) == once
-    assert (once.gain_std is None) == (gain_std is None)  # perfect is not unknown
+    assert (once.gain_std is None) == (gain_std is None)  # a perfect quality is not an unknown one
     assert gain_std is None or abs((once.gain_std or 0.0) - gain_std) <= 1e-6

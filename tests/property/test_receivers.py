@@ -1,4 +1,4 @@
-"""Whatever comes on a receiver's line, it is a fix that can be, or it is left out."""
+"""Any bytes on a receiver's line yield a plausible fix or none."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ SENTENCES = st.builds(lambda kind, fields: sentence(f"{kind},{fields}").strip(),
 
 @st.composite
 def damaged(draw: st.DrawFn) -> bytes:
-    """A whole line with some of its bytes replaced, lost or doubled."""
+    """Line with some of its bytes replaced, lost or doubled."""
     line = bytearray(draw(st.sampled_from(WHOLE)))
     for _ in range(draw(st.integers(0, 4))):
         at = draw(st.integers(0, len(line)))
@@ -69,7 +69,7 @@ def can_be(fix: GpsSample) -> bool:
 
 
 @given(LINES, st.booleans(), st.booleans())
-def test_any_line_is_a_fix_that_can_be_or_a_reason(
+def test_any_line_is_a_plausible_fix_or_a_reason(
     lines: list[bytes], by_gpsd: bool, pauses: bool
 ) -> None:
     receiver: Dialect = Gpsd("//h") if by_gpsd else Nmea("/dev/ttyUSB0")

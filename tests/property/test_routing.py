@@ -19,7 +19,7 @@ PLACES = st.tuples(st.floats(-40.0, 40.0), st.floats(-40.0, 40.0), st.integers(-
 
 @st.composite
 def trails(draw: st.DrawFn) -> list[WalkedTrail]:
-    """Of three people who came in at one place."""
+    """Trails of three people who entered at one place."""
     entrance = (0.0, 0.0, 0)
     walks = [[entrance, *draw(st.lists(PLACES, max_size=6))] for _ in range(3)]
     return [
@@ -35,9 +35,9 @@ def trails(draw: st.DrawFn) -> list[WalkedTrail]:
 
 
 @given(trails())
-def test_a_way_is_known_between_all_who_came_in_at_one_place(walked: list[WalkedTrail]) -> None:
-    """It is no shorter than the line, no longer than back to the entrance and on, and the same in
-    both directions.
+def test_route_exists_between_all_who_entered_at_one_place(walked: list[WalkedTrail]) -> None:
+    """It is no shorter than the straight line, no longer than the way by the entrance, and the same
+    in both directions.
     """
     graph = WayGraph(walked, NO_LATTICE)
     routes = routes_to(graph, "U0", ["U1", "U2"])

@@ -1,4 +1,4 @@
-"""A set kept as runs is a set."""
+"""A set of sequence numbers kept as runs behaves as a set."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def filled(numbers: list[int]) -> SequenceSet:
 
 
 @given(NUMBERS)
-def test_it_holds_what_was_added_and_says_what_was_new(numbers):
+def test_set_holds_added_numbers_and_returns_new_ones(numbers):
     held, plain = SequenceSet(), set()
     for number in numbers:
         assert held.add(number) == (number not in plain)
@@ -30,7 +30,7 @@ def test_it_holds_what_was_added_and_says_what_was_new(numbers):
 
 
 @given(NUMBERS, NUMBERS)
-def test_what_is_discarded_is_not_there(numbers, gone):
+def test_discarded_number_is_not_in_the_set(numbers, gone):
     held = filled(numbers)
     for number in gone:
         held.discard(number)
@@ -47,7 +47,7 @@ def test_runs_are_sorted_and_apart(numbers):
 
 
 @given(NUMBERS, st.integers(0, 60), st.integers(0, 60))
-def test_what_is_missing_is_the_rest(numbers, first, last):
+def test_missing_numbers_are_the_complement(numbers, first, last):
     missing = [
         number
         for run in filled(numbers).missing(first, last)
@@ -57,13 +57,13 @@ def test_what_is_missing_is_the_rest(numbers, first, last):
 
 
 @given(NUMBERS, st.integers(0, 60), st.integers(0, 60))
-def test_the_newest_that_is_missing_is_the_last_of_all(numbers, first, last):
+def test_newest_missing_number_is_the_last(numbers, first, last):
     held = filled(numbers)
     assert held.newest_missing(first, last) == ([None, *held.missing(first, last)][-1])
 
 
 @given(NUMBERS, st.integers(0, 60))
-def test_complete_to_is_where_the_first_gap_begins(numbers, first):
+def test_complete_to_is_the_begin_of_the_first_gap(numbers, first):
     expected = first - 1
     while expected + 1 in set(numbers):
         expected += 1
@@ -71,7 +71,7 @@ def test_complete_to_is_where_the_first_gap_begins(numbers, first):
 
 
 @given(NUMBERS, st.integers(0, 60), st.integers(0, 60))
-def test_a_run_is_all_its_numbers(numbers, one, other):
+def test_run_equals_its_numbers(numbers, one, other):
     first, last = sorted((one, other))
     at_once = filled(numbers)
     at_once.add_run(Run(first, last))
@@ -79,6 +79,6 @@ def test_a_run_is_all_its_numbers(numbers, one, other):
 
 
 @given(NUMBERS)
-def test_it_survives_being_written_down(numbers):
+def test_set_survives_serialisation(numbers):
     held = filled(numbers)
     assert msgspec.msgpack.decode(msgspec.msgpack.encode(held), type=SequenceSet) == held

@@ -1,4 +1,4 @@
-"""The simulated motion is consistent with itself: rates and accelerations are the derivatives."""
+"""The simulated motion is consistent: rates and accelerations are derivatives."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_attitude_is_a_rotation(simulation: Simulation, t_s: float) -> None:
     ),
     st.floats(0.0, 20.0),
 )
-def test_a_curve_is_smooth_and_reaches_its_values(
+def test_curve_is_smooth_and_reaches_its_values(
     moves: list[tuple[float, float, float]], t_s: float
 ) -> None:
     curve = Curve(1.0)
@@ -90,12 +90,12 @@ def test_a_curve_is_smooth_and_reaches_its_values(
         assert curve.jet(np.array([curve.end_s])).value[0] == pytest.approx(value)
     jet = curve.jet(t_s + 2 * STEP_S + around(0.0))
     assert central(jet.value) == pytest.approx(jet.rate[2], abs=1e-4)
-    # The jerk of a move of 10 in 0.05 s passes 10^6; what matters is that nothing jumps.
+    # The jerk of a move of 10 in 0.05 s exceeds 10^6; the test is that nothing jumps.
     assert central(jet.rate) == pytest.approx(jet.accel[2], abs=1.0, rel=1e-4)
 
 
 @given(st.floats(0.0, 1.9), st.floats(0.1, 2.0))
-def test_moves_that_overlap_are_refused(start_s: float, duration_s: float) -> None:
+def test_overlapping_moves_are_refused(start_s: float, duration_s: float) -> None:
     curve = Curve(0.0)
     curve.move(1.0, 2.0, 5.0)
     with pytest.raises(ValueError, match="no move from"):
@@ -115,7 +115,7 @@ def test_jets_follow_product_and_chain_rules(value: float, rate: float, accel: f
 
 @pytest.mark.slow
 @given(SEEDS)
-def test_equal_seeds_give_equal_samples_however_they_are_cut(seed: int) -> None:
+def test_equal_seeds_give_equal_samples_in_any_batching(seed: int) -> None:
     scenario = scenario_named("climbs-stairs")
     whole = next(iter(Simulation(scenario, seed).batches(batch_s=2.0)))
     parts = Simulation(scenario, seed).batches(batch_s=0.05)
@@ -130,7 +130,7 @@ def test_equal_seeds_give_equal_samples_however_they_are_cut(seed: int) -> None:
 
 @pytest.mark.slow
 @given(SEEDS)
-def test_other_seeds_give_other_samples(seed: int) -> None:
+def test_different_seeds_give_different_samples(seed: int) -> None:
     scenario = scenario_named("straight")
     one = next(iter(Simulation(scenario, seed).batches()))
     other = next(iter(Simulation(scenario, seed + 1).batches()))

@@ -1,4 +1,4 @@
-"""Whatever paths, fixes and pins come together: every place and every uncertainty is a number."""
+"""Smoothers: any paths, fixes and pins yield finite places and uncertainties."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def any_evidence(rng: np.random.Generator, unit_id: str) -> UnitEvidence:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("smoother", SMOOTHERS, ids=lambda smoother: smoother.name)
-def test_every_place_and_every_uncertainty_is_a_number(smoother: Smoother) -> None:
+def test_every_place_and_uncertainty_is_finite(smoother: Smoother) -> None:
     for seed in range(CASES):
         rng = np.random.default_rng(seed)
         units = {name: any_evidence(rng, name) for name in "abc"[: int(rng.integers(1, 4))]}

@@ -1,4 +1,4 @@
-"""Two logs that went apart are cut where they parted, whatever happened before."""
+"""Two logs that diverged are cut at their divergence, whatever their history."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from base_station.standby.protocol import LogAncestry
 from shared.errors import ConfigError
 from shared.messages.station import TakeOver
 
-Event = tuple[int, str]  # time, what
+Event = tuple[int, str]  # time, event
 
 
 class Log:
@@ -55,10 +55,10 @@ STEPS = st.lists(
 
 
 @given(STEPS)
-def test_after_any_history_a_cut_makes_one_log_the_beginning_of_the_other(
+def test_cut_after_any_history_makes_one_log_a_prefix_of_the_other(
     steps: list[tuple[str, int]],
 ) -> None:
-    """``a`` and ``b`` take turns at leading; who follows may have fetched less than all."""
+    """``a`` and ``b`` lead in turn; the follower may have fetched less than all."""
     logs = {"a": Log(), "b": Log()}
     leads, term, time = "a", 1, 10
     logs["a"].take_over(1, "a")
@@ -70,7 +70,7 @@ def test_after_any_history_a_cut_makes_one_log_the_beginning_of_the_other(
                 logs[leads].events.append((max(time, _time(logs[leads].events[-1])), f"{time}"))
         elif step == "fetch":
             _follow(logs[follows], logs[leads], most=amount)
-        else:  # the other takes over; the one that led may go on for a while, not knowing
+        else:  # the other takes over; the former leader may write on until it learns of that
             term += 1
             logs[follows].take_over(term, follows)
             if step == "part":
@@ -95,11 +95,11 @@ def _follow(mine: Log, leader: Log, most: int) -> None:
     mine.events += leader.events[len(mine.events) : len(mine.events) + most]
 
 
-def test_an_empty_log_follows_any() -> None:
+def test_empty_log_follows_any_log() -> None:
     assert find_divergence(LogAncestry(0, (), START), LogAncestry(5, (), LogPosition(9, 1))) is None
 
 
-def test_a_log_of_another_station_is_refused() -> None:
+def test_log_of_another_station_is_refused() -> None:
     with pytest.raises(ConfigError, match="holds the log of another station"):
         find_divergence(
             LogAncestry(4, (), LogPosition(9, 1)), LogAncestry(5, (), LogPosition(9, 1))

@@ -1,4 +1,6 @@
-"""Whatever is said to a station, in whatever order, it goes on, and goes on the same."""
+"""The station's pipeline: any messages in any order raise no error, and a checkpoint changes no
+result.
+"""
 
 from __future__ import annotations
 
@@ -190,7 +192,7 @@ def _restart(script: Script, unit_id: str) -> None:
 
 @settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=40), st.integers(0, 40))
-def test_it_never_fails_and_a_checkpoint_changes_nothing(deeds: list[Deed], cut: int) -> None:
+def test_pipeline_never_fails_and_checkpoint_changes_nothing(deeds: list[Deed], cut: int) -> None:
     script = Script()
     script.register("FF-01", "FF-02")
     resumed: Script | None = None
@@ -217,9 +219,9 @@ def test_it_never_fails_and_a_checkpoint_changes_nothing(deeds: list[Deed], cut:
 
 @settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=60))
-def test_an_alarm_s_life_only_goes_forward(deeds: list[Deed]) -> None:
-    """Raised first, resolved last and for good; acknowledged and worse in between; of one matter
-    one is open.
+def test_alarm_states_only_advance(deeds: list[Deed]) -> None:
+    """Raised first, resolved last and finally; acknowledged and worse in between; of one subject
+    one alarm is open.
     """
     script = Script()
     script.register("FF-01", "FF-02")
@@ -245,7 +247,7 @@ def test_an_alarm_s_life_only_goes_forward(deeds: list[Deed]) -> None:
 
 @settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=60))
-def test_only_the_wearer_or_the_chief_acknowledges_a_command(deeds: list[Deed]) -> None:
+def test_only_wearer_or_commander_acknowledges_a_command(deeds: list[Deed]) -> None:
     script = Script()
     script.register("FF-01", "FF-02")
     for deed in deeds:
@@ -266,7 +268,7 @@ def test_only_the_wearer_or_the_chief_acknowledges_a_command(deeds: list[Deed]) 
 @settings(max_examples=60)
 @given(st.lists(DEEDS, max_size=60))
 def test_only_a_person_completes_a_roll_call(deeds: list[Deed]) -> None:
-    """Each deed that is no person's leaves everybody's check-in as it was."""
+    """Each action of no person leaves the check-in of all units unchanged."""
     script = Script()
     script.register("FF-01", "FF-02")
     script.act(Assign("FF-01", "p1", "Ana", "red", ""))
@@ -286,7 +288,7 @@ def test_only_a_person_completes_a_roll_call(deeds: list[Deed]) -> None:
 
 
 def vouched(script: Script) -> dict[str, list[ParConfirmation]]:
-    """Of each unit on duty."""
+    """Check-ins of each unit on duty."""
     return {
         unit.unit_id: list(unit.duty.confirmations)
         for unit in script.pipeline.state.units.values()

@@ -1,4 +1,4 @@
-"""What holds for the default tracker whatever the walk."""
+"""Properties of the default tracker for every walk."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ def test_batching_does_not_change_a_bit(cuts):
 
 @settings(max_examples=5)
 @given(cuts=st.lists(st.integers(0, len(WALK.imu)), max_size=40), share=st.floats(0.78, 0.85))
-def test_nor_where_sensors_clip_undeclared(cuts, share):
-    """What a plateau shows is marked afterwards, and bridged by what follows it."""
+def test_batching_changes_nothing_where_sensors_clip_undeclared(cuts, share):
+    """A plateau is marked after its end, and bridged by the samples behind it."""
     accel_mps2, gyro_radps = (
         np.clip(readings, -share * np.abs(readings).max(), share * np.abs(readings).max())
         for readings in (WALK.imu.accel_mps2, WALK.imu.gyro_radps)
@@ -73,8 +73,8 @@ def test_nor_where_sensors_clip_undeclared(cuts, share):
     begin=st.integers(600, len(WALK.imu) - 200),
     lost=st.integers(3, 70),
 )
-def test_nor_where_samples_were_lost(cuts, begin, lost):
-    """What goes on in the hole is found in what is remembered, however that came."""
+def test_batching_changes_nothing_where_samples_are_lost(cuts, begin, lost):
+    """The samples of a hole are found in the kept samples, in any batching."""
     kept = np.r_[0:begin, begin + lost : len(WALK.imu)]
     imu = ImuBatch(WALK.imu.t_ns[kept], WALK.imu.accel_mps2[kept], WALK.imu.gyro_radps[kept])
     rows, whole = run(imu, cuts=[min(cut, len(imu)) for cut in cuts]), run(imu)
@@ -82,7 +82,7 @@ def test_nor_where_samples_were_lost(cuts, begin, lost):
         assert np.array_equal(getattr(rows, field.name), getattr(whole, field.name)), field.name
 
 
-def test_one_sample_at_a_time_is_the_batch_and_never_more_than_a_second_late():
+def test_single_samples_equal_the_batch_and_are_never_more_than_a_second_late():
     tracker = EskfTracker(WALK.description)
     released = []
     for k in range(len(WALK.imu)):
@@ -98,7 +98,7 @@ def test_one_sample_at_a_time_is_the_batch_and_never_more_than_a_second_late():
 
 @settings(max_examples=10)
 @given(seed=st.integers(0, 10_000))
-def test_the_mount_turns_the_track_at_most_about_the_vertical(seed):
+def test_mount_turns_the_track_at_most_about_the_vertical(seed):
     rows = run(turned(WALK.imu, random_rotation(seed)))
     reach_m = np.linalg.norm(rows.position_n_m[:, :2], axis=1)
     expected_m = np.linalg.norm(whole().position_n_m[:, :2], axis=1)
@@ -107,8 +107,10 @@ def test_the_mount_turns_the_track_at_most_about_the_vertical(seed):
     assert np.array_equal(rows.stationary, whole().stationary)
 
 
-def test_the_other_foot_is_tracked_as_the_mirror_image():
-    """Nothing prefers a side: reflected samples give the reflected way, as sure of it."""
+def test_other_foot_is_tracked_as_the_mirror_image():
+    """The tracker prefers no side: reflected samples give the reflected way with the same
+    uncertainty.
+    """
     legs = (Stand(2.0), Walk(((6.0, 0.0), (6.0, 5.0))), Stand(1.0))
     simulation = Simulation(Scenario("turn", "turns right", legs), 3)
     imu = inertial_samples(simulation)
@@ -117,7 +119,7 @@ def test_the_other_foot_is_tracked_as_the_mirror_image():
     right, left = run(imu, simulation.description), run(other, simulation.description)
 
     def seen_from_start(rows):
-        """Along the way there, and to its right."""
+        """Displacement along the way from its start, and to its right."""
         north_m, east_m, down_m = rows.position_n_m.T
         there = rows.position_n_m[-1, :2] / np.linalg.norm(rows.position_n_m[-1, :2])
         along_m = there[0] * north_m + there[1] * east_m
@@ -169,7 +171,7 @@ def test_the_filter_covariance_stays_symmetric_positive():
     ),
     scale=st.sampled_from([0.0, 1.0, 50.0, 3000.0]),
 )
-def test_whatever_comes_every_sample_has_a_finite_row(seed, steps_ns, scale):
+def test_every_sample_has_a_finite_row_for_any_input(seed, steps_ns, scale):
     noise = np.random.default_rng(seed)
     n = 600
     regular = np.full(n, 5_000_000)

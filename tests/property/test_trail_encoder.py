@@ -1,4 +1,4 @@
-"""Trails that are kept encoded say what the steps say, whatever happens to them."""
+"""Encoded trails hold the same points as the trails, after any changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from base_station.engine.trail_encoder import BEHIND_NS, TrailEncoder
 from shared.clock import NS_PER_S
 
 Change = tuple[str, int]
-AT_ONCE = BEHIND_NS // (2 * NS_PER_S)  # points of a trail that goes on every two seconds
+AT_ONCE = BEHIND_NS // (2 * NS_PER_S)  # points of a trail with one every two seconds
 CHANGES = st.lists(
     st.tuples(st.sampled_from(["walk", "leave", "fill", "solve", "clear"]), st.integers(0, 40)),
     max_size=25,
@@ -46,7 +46,7 @@ def change(unit: UnitState, what: str, much: int) -> None:
 
 
 @given(CHANGES)
-def test_what_is_kept_is_what_the_trail_is(changes: list[Change]) -> None:
+def test_encoded_trail_equals_the_trail(changes: list[Change]) -> None:
     unit, trails = UnitState("FF-01"), TrailEncoder()
     for what, much in changes:
         change(unit, what, much)
@@ -60,8 +60,8 @@ def test_what_is_kept_is_what_the_trail_is(changes: list[Change]) -> None:
             ]
 
 
-def test_a_point_is_encoded_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Else every console that joins holds up everybody's positions."""
+def test_point_is_encoded_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Otherwise every console that joins delays all positions."""
     encoded: list[int] = []
     encode = trail_encoder._encoded
 
@@ -82,5 +82,5 @@ def test_a_point_is_encoded_once(monkeypatch: pytest.MonkeyPatch) -> None:
     assert sum(encoded) == TRAIL_POINTS + 5 * AT_ONCE
 
 
-def test_who_left_no_trail_has_none() -> None:
+def test_unit_without_trail_has_no_encoded_trail() -> None:
     assert TrailEncoder().all([UnitState("FF-01")]) == {}

@@ -1,4 +1,4 @@
-"""What an x-IMU3 says: read back as it was meant, and noise never more than noise."""
+"""Messages of an x-IMU3: read back as encoded; noise is never read as a message."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def only(reported: bytes) -> bytes:
         (b'{"ping":null}\r\n', OtherMessage()),
     ],
 )
-def test_the_manuals_examples(reported: bytes, meant: object) -> None:
+def test_examples_of_the_manual_are_read(reported: bytes, meant: object) -> None:
     assert message_of(only(reported)) == meant
 
 
@@ -84,7 +84,7 @@ def test_binary_is_read_back_to_the_last_bit(meant: Inertial) -> None:
 
 
 @given(INERTIAL)
-def test_text_is_read_back_to_its_four_places(meant: Inertial) -> None:
+def test_text_is_read_back_to_four_decimals(meant: Inertial) -> None:
     values = (*meant.gyro_dps, *meant.accel_g)
     message = message_of(only(text_message("I", meant.t_us, *values)))
     assert isinstance(message, Inertial)
@@ -117,7 +117,7 @@ def test_text_is_read_back_to_its_four_places(meant: Inertial) -> None:
         (b"\xc9\x01\n", "begin otherwise"),
     ],
 )
-def test_what_is_no_message_is_refused_with_a_reason(reported: bytes, why: str) -> None:
+def test_bytes_of_no_message_are_refused_with_a_reason(reported: bytes, why: str) -> None:
     with pytest.raises(WireError, match=why):
         message_of(only(reported))
 
@@ -126,7 +126,7 @@ SOME = b"".join(at_rest(20)) + binary_message("I", 60_000, 1, 2, 3, 0.1, 0.2, 0.
 
 
 @given(st.lists(st.integers(1, len(SOME) - 1), max_size=8))
-def test_where_it_is_cut_in_transit_changes_nothing(cuts: list[int]) -> None:
+def test_any_fragmentation_in_transit_changes_nothing(cuts: list[int]) -> None:
     frames, found, start = Frames(), [], 0
     for end in (*sorted(cuts), len(SOME)):
         found += frames.push(SOME[start:end])
@@ -135,8 +135,8 @@ def test_where_it_is_cut_in_transit_changes_nothing(cuts: list[int]) -> None:
 
 
 @given(st.data())
-def test_mutated_bytes_cost_what_they_hit_and_no_more(data: st.DataObject) -> None:
-    """Bytes changed, lost or added in one place: every message that is not hit is still read."""
+def test_mutated_bytes_cost_only_the_messages_that_they_hit(data: st.DataObject) -> None:
+    """Bytes changed, lost or added in one place: every other message is still read."""
     at = data.draw(st.integers(0, len(SOME)))
     lost = data.draw(st.integers(0, 30))
     noise = data.draw(st.binary(max_size=30))
@@ -159,7 +159,7 @@ def test_mutated_bytes_cost_what_they_hit_and_no_more(data: st.DataObject) -> No
 
 
 @given(st.binary(max_size=4000), st.integers(1, 700))
-def test_noise_is_cut_to_pieces_and_never_kept(noise: bytes, piece: int) -> None:
+def test_noise_is_split_and_never_kept(noise: bytes, piece: int) -> None:
     frames = Frames()
     for start in range(0, len(noise), piece):
         for frame in frames.push(noise[start : start + piece]):
