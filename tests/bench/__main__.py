@@ -23,6 +23,7 @@ BENCHES = {
     "instructions": "tests.bench.tracker.instructions:bench_instructions",
     "motions": "tests.bench.tracker.motions:bench_motions",
     "past": "tests.bench.past.command:bench_past",
+    "phones": "tests.bench.phones.command:bench_phones",
     "published": "tests.bench.tracker.published:bench_published",
     "replay": "tests.bench.past.replay:bench_replay",
     "restart": "tests.bench.restart:bench_restart",
