@@ -1,4 +1,4 @@
-"""Checking a password takes 64 MB: only so many are checked at once."""
+"""Password checks: each takes 64 MB, so their number at once is limited."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from base_station.accounts.passwords import Passwords
 SECRET = "long enough"
 
 
-def test_only_two_passwords_are_worked_on_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_at_most_two_password_checks_run_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     inside: list[int] = []
     most = 0
 

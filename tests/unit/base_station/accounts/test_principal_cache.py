@@ -1,4 +1,6 @@
-"""Who was let in stays in while the disk hangs, and nobody else comes in."""
+"""Cache of authenticated users: they stay logged in while the disk hangs, and nobody else
+logs in.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,7 @@ def ada_in(accounts: Accounts) -> str:
 
 
 @pytest.mark.slow
-def test_who_was_let_in_stays_in_while_the_disk_hangs(accounts: Accounts, hangs: Event) -> None:
+def test_authenticated_user_stays_in_while_the_disk_hangs(accounts: Accounts, hangs: Event) -> None:
     session, (_, token) = ada_in(accounts), accounts.add_token("ada", "board", Role.VIEWER, None)
     before = accounts.of_session(session), accounts.of_token(token)
     assert [one and one.role for one in before] == [Role.COMMANDER, Role.VIEWER]
@@ -44,7 +46,9 @@ def test_who_was_let_in_stays_in_while_the_disk_hangs(accounts: Accounts, hangs:
     assert (accounts.of_session(session), accounts.of_token(token)) == before
 
 
-def test_nobody_comes_in_who_was_not_seen_in_before(accounts: Accounts, hangs: Event) -> None:
+def test_user_not_authenticated_before_is_refused_while_the_disk_hangs(
+    accounts: Accounts, hangs: Event
+) -> None:
     session = ada_in(accounts)
     assert accounts.of_session("guessed") is None
     hangs.set()
@@ -55,7 +59,7 @@ def test_nobody_comes_in_who_was_not_seen_in_before(accounts: Accounts, hangs: E
 
 @pytest.mark.slow
 @pytest.mark.parametrize("how", ["logs out", "is ended", "another password", "is removed"])
-def test_who_is_out_stays_out_though_the_disk_hangs(
+def test_disabled_user_stays_out_while_the_disk_hangs(
     accounts: Accounts, hangs: Event, how: str
 ) -> None:
     session = ada_in(accounts)
@@ -74,7 +78,7 @@ def test_who_is_out_stays_out_though_the_disk_hangs(
         accounts.of_session(session)
 
 
-def test_who_was_put_out_from_elsewhere_is_out_once_that_was_seen(
+def test_user_disabled_elsewhere_is_out_once_that_was_read(
     accounts: Accounts, hangs: Event
 ) -> None:
     """By another program, or at the other station."""
@@ -88,7 +92,7 @@ def test_who_was_put_out_from_elsewhere_is_out_once_that_was_seen(
 
 
 @pytest.mark.slow
-def test_a_token_that_was_taken_back_is_of_no_use(accounts: Accounts, hangs: Event) -> None:
+def test_revoked_token_is_refused(accounts: Accounts, hangs: Event) -> None:
     token_id, token = accounts.add_token("ada", "board", Role.VIEWER, None)
     assert accounts.of_token(token) is not None
     assert accounts.remove_token("ada", token_id)
@@ -98,7 +102,7 @@ def test_a_token_that_was_taken_back_is_of_no_use(accounts: Accounts, hangs: Eve
 
 
 @pytest.mark.slow
-def test_of_any_number_the_last_are_known(accounts: Accounts, hangs: Event) -> None:
+def test_cache_keeps_the_latest_of_any_number(accounts: Accounts, hangs: Event) -> None:
     first, last = ada_in(accounts), ada_in(accounts)
     for secret in (first, *map(str, range(1000)), last):
         known = accounts._let_in.resolve(secret, lambda _: accounts.of_session(last))

@@ -1,4 +1,4 @@
-"""How the built console is served: small on the way, and kept by browsers as long as it is good."""
+"""The built console is served compressed, and cached by browsers as long as it is valid."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def client(app: FastAPI) -> httpx.AsyncClient:
     return httpx.AsyncClient(transport=httpx.ASGITransport(app), base_url="http://station.test")
 
 
-async def test_the_program_is_packed_for_the_way(built: FastAPI) -> None:
-    """Over a link of 64 kbit/s the console came after a minute."""
+async def test_program_is_compressed(built: FastAPI) -> None:
+    """Over a link of 64 kbit/s the uncompressed console took a minute."""
     async with client(built) as browser:
         answer = await browser.get("/assets/index-a1b2.js", headers={"Accept-Encoding": "gzip"})
     assert answer.headers["content-encoding"] == "gzip"
@@ -37,7 +37,7 @@ async def test_the_program_is_packed_for_the_way(built: FastAPI) -> None:
     assert answer.num_bytes_downloaded < len(SCRIPT) / 10
 
 
-async def test_who_cannot_unpack_it_gets_it_as_it_is(built: FastAPI) -> None:
+async def test_client_without_decompression_gets_plain_files(built: FastAPI) -> None:
     async with client(built) as browser:
         answer = await browser.get("/assets/index-a1b2.js", headers={"Accept-Encoding": "identity"})
     assert "content-encoding" not in answer.headers
@@ -45,7 +45,7 @@ async def test_who_cannot_unpack_it_gets_it_as_it_is(built: FastAPI) -> None:
     assert answer.num_bytes_downloaded == len(SCRIPT)
 
 
-async def test_the_page_itself_is_asked_for_each_time(built: FastAPI) -> None:
+async def test_page_itself_is_revalidated_each_time(built: FastAPI) -> None:
     async with client(built) as browser:
         answer = await browser.get("/")
     assert answer.headers["cache-control"] == "no-cache"

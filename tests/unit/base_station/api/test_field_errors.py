@@ -1,4 +1,4 @@
-"""Whoever fills in a form wrongly is told what to do, and not what the framework thinks of it."""
+"""Errors of form fields tell what to do, in other words than the framework's."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ COMMAND = {"kind": "text", "target": {"everyone": True}}
         (NewCommand, COMMAND | {"target": {"everyone": False}}, "target.everyone must be True"),
     ],
 )
-def test_a_wrong_field_is_named_with_what_to_do(
+def test_wrong_field_is_named_with_its_correction(
     form: type[forms.Form], sent: dict[str, Any], reported: str
 ) -> None:
     with pytest.raises(ValidationError) as refused:
@@ -70,14 +70,14 @@ def test_a_wrong_field_is_named_with_what_to_do(
     assert any(sentence.startswith(reported) for sentence in sentences), sentences
 
 
-def test_every_pattern_of_a_form_is_stated_in_words() -> None:
+def test_every_pattern_of_a_form_has_a_text() -> None:
     ids = (forms.UnitIdText, forms.UnitIdOrNone, forms.Id, forms.AlarmId)
     kinds = (forms.Name, forms.ShortText, forms.Note, forms.IdempotencyKeyText, *ids)
     patterns = {TypeAdapter(kind).json_schema()["pattern"] for kind in kinds}
     assert patterns == set(forms.PATTERN_DESCRIPTIONS)
 
 
-def test_what_has_no_words_yet_is_stated_as_it_came() -> None:
+def test_error_without_own_text_is_passed_on() -> None:
     error = {"loc": ("query", "x"), "type": "odd", "msg": "is {odd}", "ctx": {"odd": 1}}
     assert error_sentence(error) == "x is {odd}"
     assert not re.search("[{}]", error_sentence(error | {"type": "missing"}))
@@ -85,7 +85,7 @@ def test_what_has_no_words_yet_is_stated_as_it_came() -> None:
 
 @pytest.mark.parametrize("barred", "\x00\x1b\x7f\x85\x9b\u2028\u2029\u202e\u2066\ufffe\uffff")
 @pytest.mark.parametrize("kind", [forms.Name, forms.ShortText, forms.Note])
-def test_no_character_that_forges_a_line_or_breaks_an_export_gets_into_a_name(
+def test_name_with_a_character_that_forges_lines_or_exports_is_refused(
     kind: Any, barred: str
 ) -> None:
     for text in (f"Ada{barred}", f"A{barred}da", barred):

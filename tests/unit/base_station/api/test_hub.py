@@ -1,4 +1,4 @@
-"""The console hub: one encoding for all, bounded queues, a snapshot after a gap."""
+"""The console hub: one encoding for all clients, bounded queues, a snapshot after a gap."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ HEALTH = HealthView((), 0, 0, 0, 0, 0, 0.0, insecure=False)
 
 
 class Source:
-    """A live source whose thread is whoever calls it; it answers snapshots when told to."""
+    """A live source that runs on the caller's thread; it answers snapshots when the test asks it
+    to.
+    """
 
     def __init__(self, hub: Hub) -> None:
         self._hub = hub
@@ -39,7 +41,7 @@ class Source:
             self._hub.delta(Delta(self.seq, self.seq))
 
     def show(self, *units: UnitView) -> None:
-        """They are as this from now on."""
+        """Set the units that the source has from now on."""
         shown = {unit.unit_id: unit for unit in (*self.units, *units)}
         self.units = tuple(shown.values())
         self.seq += 1
@@ -124,7 +126,7 @@ async def source(hub: Hub) -> Source:
     return source
 
 
-async def test_a_client_gets_a_snapshot_and_then_every_delta(hub: Hub, source: Source) -> None:
+async def test_client_gets_a_snapshot_and_then_every_delta(hub: Hub, source: Source) -> None:
     source.say(3)
     client = hub.join()
     source.answer()
@@ -135,7 +137,7 @@ async def test_a_client_gets_a_snapshot_and_then_every_delta(hub: Hub, source: S
     assert [(await next_one(client))["seq"] for _ in range(5)] == [4, 5, 6, 7, 8]
 
 
-async def test_a_source_that_cannot_be_asked_now_is_asked_by_the_next_console(
+async def test_source_that_is_busy_is_asked_by_the_next_console(
     hub: Hub, source: Source, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(_: object) -> None:
@@ -152,7 +154,7 @@ async def test_a_source_that_cannot_be_asked_now_is_asked_by_the_next_console(
     assert (await next_one(client))["type"] == "snapshot"
 
 
-async def test_a_console_that_came_before_the_source_is_shown_it(hub: Hub) -> None:
+async def test_console_that_joined_before_the_source_gets_its_snapshot(hub: Hub) -> None:
     client = hub.join()
     source = Source(hub)
     hub.connect(asyncio.get_running_loop(), source)
@@ -161,7 +163,7 @@ async def test_a_console_that_came_before_the_source_is_shown_it(hub: Hub) -> No
     assert (await next_one(client))["type"] == "snapshot"
 
 
-async def test_how_the_station_is_is_known_where_nobody_looks(hub: Hub, source: Source) -> None:
+async def test_health_is_known_without_consoles(hub: Hub, source: Source) -> None:
     assert hub.health is None
     hub.delta(Delta(1, 1, health=HEALTH))
     source.say()
@@ -170,14 +172,14 @@ async def test_how_the_station_is_is_known_where_nobody_looks(hub: Hub, source: 
 
 async def test_deltas_before_the_snapshot_are_left_out(hub: Hub, source: Source) -> None:
     client = hub.join()
-    source.say(4)  # before the source has looked at its requests
+    source.say(4)  # before the source has handled its requests
     source.answer()
     source.say()
     await settle()
     assert [(await next_one(client))["seq"] for _ in range(2)] == [4, 5]
 
 
-async def test_everyone_gets_the_same_bytes_encoded_once(hub: Hub, source: Source) -> None:
+async def test_all_clients_get_the_same_bytes_encoded_once(hub: Hub, source: Source) -> None:
     clients = [hub.join() for _ in range(3)]
     assert len(source.asked) == 1  # they share one snapshot
     source.answer()
@@ -188,7 +190,7 @@ async def test_everyone_gets_the_same_bytes_encoded_once(hub: Hub, source: Sourc
     assert received[0][1] is received[1][1] is received[2][1]
 
 
-async def test_a_slow_client_gets_a_new_snapshot_and_the_others_nothing_of_it(
+async def test_slow_client_gets_a_new_snapshot_and_the_others_are_unaffected(
     hub: Hub, source: Source
 ) -> None:
     slow, quick = hub.join(), hub.join()
@@ -201,7 +203,7 @@ async def test_a_slow_client_gets_a_new_snapshot_and_the_others_nothing_of_it(
         await settle()
         seen.append(await next_one(quick))
     assert [one["seq"] for one in seen[1:]] == list(range(1, 3 * MAX_QUEUED + 1))
-    assert not source.asked  # nothing is made for a client that takes nothing
+    assert not source.asked  # nothing is encoded for a client that reads nothing
 
     waiting = asyncio.create_task(next_one(slow))
     await settle()
@@ -214,7 +216,7 @@ async def test_a_slow_client_gets_a_new_snapshot_and_the_others_nothing_of_it(
     assert (slow.lapses, quick.lapses) == (1, 0)
 
 
-async def test_a_client_may_ask_again_and_asks_once(hub: Hub, source: Source) -> None:
+async def test_repeated_request_of_a_client_is_answered_once(hub: Hub, source: Source) -> None:
     client = hub.join()
     source.answer()
     await settle()
@@ -239,7 +241,7 @@ async def test_a_reset_reaches_all(hub: Hub, source: Source) -> None:
     assert [(await next_one(client))["type"] for _ in range(2)] == ["snapshot", "delta"]
 
 
-async def test_the_source_may_speak_from_its_own_thread(hub: Hub, source: Source) -> None:
+async def test_source_may_publish_from_its_own_thread(hub: Hub, source: Source) -> None:
     client = hub.join()
     source.answer()
     thread = threading.Thread(target=source.say, args=(50,))
@@ -260,7 +262,7 @@ async def test_without_clients_nothing_is_encoded(hub: Hub, source: Source) -> N
         await asyncio.wait_for(client.next_message(), 0.01)
 
 
-async def test_a_program_may_ask_for_the_picture(hub: Hub, source: Source) -> None:
+async def test_program_may_request_the_snapshot(hub: Hub, source: Source) -> None:
     asked = hub.snapshot()
     assert not asked.done()
     source.say(4)
@@ -270,7 +272,7 @@ async def test_a_program_may_ask_for_the_picture(hub: Hub, source: Source) -> No
 
 @pytest.fixture
 async def walked(hub: Hub, source: Source) -> Client:
-    """Has asked for a picture with three trails, and has it in part."""
+    """A client that requested a snapshot with three trails, and has received part of it."""
     source.trails = {f"FF-{i}": msgspec.Raw(b"[[%d,1.0,2.0,null]]" % i) for i in range(3)}
     client = hub.join()
     source.answer()
@@ -281,14 +283,14 @@ async def walked(hub: Hub, source: Source) -> Client:
     return client
 
 
-async def test_trails_wait_for_whatever_is_new(source: Source, walked: Client) -> None:
+async def test_trails_wait_for_new_deltas(source: Source, walked: Client) -> None:
     source.say(2)
     await settle()
     assert [(await next_one(walked)).get("seq") for _ in range(2)] == [1, 2]
     assert [(await next_one(walked))["unit_id"] for _ in range(2)] == ["FF-1", "FF-2"]
 
 
-async def test_a_trail_that_was_reported_anew_does_not_come_again(
+async def test_trail_published_again_is_not_sent_twice(
     hub: Hub, source: Source, walked: Client
 ) -> None:
     source.seq += 1
@@ -298,9 +300,7 @@ async def test_a_trail_that_was_reported_anew_does_not_come_again(
     assert (await next_one(walked))["unit_id"] == "FF-2"
 
 
-async def test_trails_of_a_picture_are_gone_with_it(
-    hub: Hub, source: Source, walked: Client
-) -> None:
+async def test_trails_of_a_snapshot_end_with_it(hub: Hub, source: Source, walked: Client) -> None:
     hub.reset(source.snapshot(), {})
     source.say()
     await settle()
@@ -309,7 +309,7 @@ async def test_trails_of_a_picture_are_gone_with_it(
         await asyncio.wait_for(walked.next_message(), 0.01)
 
 
-async def test_many_trails_push_nobody_out(hub: Hub, source: Source) -> None:
+async def test_many_trails_displace_nothing(hub: Hub, source: Source) -> None:
     source.trails = {f"FF-{i}": msgspec.Raw(b"[]") for i in range(3 * MAX_QUEUED)}
     client = hub.join()
     source.answer()
@@ -324,7 +324,7 @@ async def test_many_trails_push_nobody_out(hub: Hub, source: Source) -> None:
 
 
 async def join_paced(hub: Hub, source: Source) -> tuple[PacedClient, ShownPage]:
-    """One that has shown its first picture."""
+    """A client that has shown its first snapshot."""
     client, page = hub.join_paced(), ShownPage()
     source.answer()
     await settle()
@@ -332,13 +332,13 @@ async def join_paced(hub: Hub, source: Source) -> tuple[PacedClient, ShownPage]:
     return client, page
 
 
-async def test_changed_fields_alone_go_to_who_asks_for_them(hub: Hub, source: Source) -> None:
+async def test_paced_client_gets_changed_fields_only(hub: Hub, source: Source) -> None:
     source.show(*UNITS)
     plain = hub.join()
     client, page = await join_paced(hub, source)
     assert page.units == shown(source)
     walked = at(UNITS[0], north_m=4.5)
-    source.show(walked)  # all of it: nobody knows what the console was told before
+    source.show(walked)  # all fields: the console's state before is unknown
     await settle()
     await page.follow(client)
     source.show(at(walked, east_m=9.0))
@@ -351,7 +351,9 @@ async def test_changed_fields_alone_go_to_who_asks_for_them(hub: Hub, source: So
     assert [(await next_one(plain))["type"] for _ in range(3)] == ["snapshot", "delta", "delta"]
 
 
-async def test_who_has_not_shown_the_last_gets_the_newest_as_one(hub: Hub, source: Source) -> None:
+async def test_client_that_has_not_shown_the_last_delta_gets_the_newest_state_as_one(
+    hub: Hub, source: Source
+) -> None:
     source.show(*UNITS)
     client, page = await join_paced(hub, source)
     source.show(UNITS[0])
@@ -372,8 +374,10 @@ async def test_who_has_not_shown_the_last_gets_the_newest_as_one(hub: Hub, sourc
     assert client.lapses == 0
 
 
-async def test_a_picture_for_one_does_not_mislead_the_others(hub: Hub, source: Source) -> None:
-    """What a picture shows that no delta has told yet, goes to all with the next one."""
+async def test_snapshot_for_one_client_does_not_mislead_the_others(
+    hub: Hub, source: Source
+) -> None:
+    """Changes of a snapshot that no delta has had yet go to all with the next delta."""
     source.show(*UNITS)
     one, page = await join_paced(hub, source)
     source.show(*UNITS)
@@ -389,7 +393,7 @@ async def test_a_picture_for_one_does_not_mislead_the_others(hub: Hub, source: S
     assert page.units == other_page.units == shown(source)
 
 
-async def test_a_paced_console_gets_its_trails_though_it_is_always_behind(
+async def test_paced_client_gets_its_trails_though_it_is_always_behind(
     hub: Hub, source: Source
 ) -> None:
     source.trails = {f"FF-{i}": msgspec.Raw(b"[[%d,1.0,2.0,null]]" % i) for i in range(3)}
@@ -413,7 +417,7 @@ async def test_a_paced_console_gets_its_trails_though_it_is_always_behind(
     ]
 
 
-async def test_a_paced_console_that_hangs_is_given_a_picture_once_it_is_back(
+async def test_paced_client_that_hangs_gets_a_snapshot_once_it_is_back(
     hub: Hub, source: Source
 ) -> None:
     client, page = await join_paced(hub, source)
@@ -424,7 +428,7 @@ async def test_a_paced_console_that_hangs_is_given_a_picture_once_it_is_back(
     await settle()
     waiting = asyncio.create_task(page.follow(client))
     await settle()
-    assert not source.asked  # nothing is made for a client that takes nothing
+    assert not source.asked  # nothing is encoded for a client that reads nothing
     page.confirm(client)
     await settle()
     source.answer()
@@ -432,7 +436,7 @@ async def test_a_paced_console_that_hangs_is_given_a_picture_once_it_is_back(
     assert client.lapses == 1
 
 
-async def test_who_asks_for_a_picture_gets_it_whatever_it_has_shown(
+async def test_requested_snapshot_is_sent_whatever_the_client_has_shown(
     hub: Hub, source: Source
 ) -> None:
     client, page = await join_paced(hub, source)

@@ -1,4 +1,4 @@
-"""What becomes of a photo: upright, whatever else its metadata say."""
+"""Photos are turned upright, whatever else their metadata state."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ORIENTATION, _MAKER, _WIDTH = 0x0112, 0x010F, 0x0100
 
 
 def exif(*entries: tuple[int, int]) -> bytes:
-    """Tags of one value each, with their type, right or wrong; the orientation is 6."""
+    """Tags of one value each, with their type, valid or not; the orientation is 6."""
     table = b"".join(struct.pack("<HHII", tag, kind, 1, 6) for tag, kind in entries)
     return b"Exif\0\0II*\0" + struct.pack("<IH", 8, len(entries)) + table + bytes(4)
 
@@ -31,7 +31,7 @@ def photo(metadata: bytes) -> bytes:
 
 
 def corners(picture: Image.Image) -> list[str]:
-    """From above and left, clockwise: the colour that is strongest."""
+    """Strongest colour of each corner, clockwise from the upper left."""
     near, far = 20, SIDE_PX - 20
     found = []
     for place in ((near, near), (far, near), (far, far), (near, far)):
@@ -41,7 +41,7 @@ def corners(picture: Image.Image) -> list[str]:
 
 
 @pytest.mark.parametrize("orientation", range(10))
-def test_a_photo_stands_upright(orientation: int) -> None:
+def test_photo_is_turned_upright(orientation: int) -> None:
     metadata = Image.Exif()
     metadata[_ORIENTATION] = orientation
     upload = photo(metadata.tobytes())
@@ -52,6 +52,6 @@ def test_a_photo_stands_upright(orientation: int) -> None:
 
 
 @pytest.mark.parametrize("odd", [(_MAKER, _RATIONAL), (_WIDTH, _RATIONAL), (_WIDTH, _DOUBLE)])
-def test_odd_metadata_are_no_reason_to_refuse_a_photo(odd: tuple[int, int]) -> None:
+def test_photo_with_odd_metadata_is_accepted(odd: tuple[int, int]) -> None:
     jpeg, _ = normalize_photo(photo(exif((_ORIENTATION, _SHORT), odd)))
     assert corners(Image.open(io.BytesIO(jpeg))) == ["black", "red", "blue", "black"]

@@ -43,7 +43,7 @@ def test_units_and_alarms_are_counted_by_their_labels() -> None:
     assert value(found, "muster_consoles") == 3
 
 
-def test_messages_and_storage_are_those_of_the_health_page() -> None:
+def test_messages_and_storage_equal_the_health_page() -> None:
     picture = scenes.quiet()
     health = msgspec.structs.replace(
         picture.health, messages=70, left_out=7, missing=2, disk_free_bytes=5_000, reading=0.25
@@ -57,7 +57,7 @@ def test_messages_and_storage_are_those_of_the_health_page() -> None:
     assert value(found, "process_resident_memory_bytes") > 0
 
 
-def test_ages_are_a_histogram_whose_last_bucket_has_them_all() -> None:
+def test_ages_are_a_histogram_whose_last_bucket_counts_all() -> None:
     picture, ages = scenes.quiet(), PositionAges()
     ages.observe(Delta(1, scenes.NOW_MS, units=picture.units))
     found = samples(picture, ages)
@@ -65,7 +65,7 @@ def test_ages_are_a_histogram_whose_last_bucket_has_them_all() -> None:
     assert value(found, "muster_position_age_seconds_bucket", le="+Inf") == len(picture.units)
 
 
-def test_one_of_two_stations_says_which_it_is() -> None:
+def test_station_of_a_pair_states_its_role() -> None:
     picture = scenes.quiet()
     standby = StandbyView("b", "standby", "", "a", "active", "", in_step=False)
     health = msgspec.structs.replace(picture.health, standby=standby)
@@ -85,7 +85,7 @@ def test_no_person_is_named() -> None:
 
 @pytest.mark.slow  # another program
 @pytest.mark.skipif(shutil.which("promtool") is None, reason="promtool is not installed")
-def test_prometheus_own_check_finds_nothing_to_say() -> None:
+def test_checker_of_prometheus_reports_nothing() -> None:
     text = exposition(scenes.bad_minute(), PositionAges(), consoles=3)
     checked = subprocess.run(
         ["promtool", "check", "metrics"], input=text, capture_output=True, check=False

@@ -1,4 +1,4 @@
-"""People of CSV files as spreadsheets write them, and what is wrong in them, by line."""
+"""CSV files of people as spreadsheets write them, and their faults by line."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_first_and_last_name_quotation_marks_and_a_line_that_names_the_separator
     assert read_people(content).people == [CsvPerson(3, "Bo Li; jr", "Engine\xa02", None)]
 
 
-def test_faults_are_named_by_line_and_the_others_are_there() -> None:
+def test_faults_are_named_by_line_and_the_other_people_are_read() -> None:
     content = f'Name,Crew\nAda,E 1\n,E 1\n"Bo\nLi",E 1\n{"x" * 81},E 1\nADA ,E 2\nBea,E\x07\nCy,\n'
     found = read_people(content.encode())
     assert found.people == [CsvPerson(2, "Ada", "E 1", None), CsvPerson(4, "Bo Li", "E 1", None),
@@ -64,11 +64,11 @@ def test_faults_are_named_by_line_and_the_others_are_there() -> None:
         (b"Name\n" + b"".join(b"Person %d\n" % number for number in range(10_000)), "more than"),
     ],
 )
-def test_no_list_of_people(content: bytes, reason: str) -> None:
+def test_file_without_people_is_refused(content: bytes, reason: str) -> None:
     with pytest.raises(UserError, match=reason):
         read_people(content)
 
 
-def test_as_many_as_a_file_may_have() -> None:
+def test_largest_file_is_accepted() -> None:
     content = b"Name\n" + b"".join(b"Person %d\n" % number for number in range(MOST_PEOPLE))
     assert len(read_people(content).people) == MOST_PEOPLE

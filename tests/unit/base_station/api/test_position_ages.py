@@ -1,4 +1,4 @@
-"""The ages of positions, as they are counted on their way to consoles."""
+"""Ages of positions, counted on their way to consoles."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def test_each_position_is_counted_once_by_its_age() -> None:
     assert ages.sum_s == 4.25
 
 
-def test_what_is_no_live_position_is_not_counted() -> None:
+def test_position_that_is_not_live_is_not_counted() -> None:
     ages = PositionAges()
     nowhere = msgspec.structs.replace(unit(2), position=None)
     ages.observe(delta(at(NOW_MS - 60_000, link="lost"), nowhere))
     assert ages.cumulative()[-1] == 0
 
 
-def test_a_position_ahead_of_the_stations_clock_is_of_no_age() -> None:
+def test_position_ahead_of_the_station_clock_has_no_age() -> None:
     ages = PositionAges()
     ages.observe(delta(at(NOW_MS + 40)))
     assert ages.cumulative()[0] == 1

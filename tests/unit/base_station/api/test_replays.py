@@ -1,4 +1,4 @@
-"""The replays that consoles have open: bounded, and ended when nobody looks."""
+"""Replays of consoles: bounded in number, and ended when no console reads them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.rig.recording_replay import NotedReplay
 INCIDENT = IncidentRow(incident_id="i-1", name="Kitchen", opened_ns=0)
 
 
-async def test_a_replay_that_nobody_looks_at_ends() -> None:
+async def test_replay_without_viewer_ends() -> None:
     clock = [0.0]
     replays = Replays(lambda *_: NotedReplay(), monotonic_s=lambda: clock[0])
     loop = asyncio.get_running_loop()
@@ -38,7 +38,7 @@ async def test_a_replay_that_nobody_looks_at_ends() -> None:
     assert replays.all() == ()
 
 
-async def test_there_are_only_so_many() -> None:
+async def test_number_of_replays_is_bounded() -> None:
     replays = Replays(lambda *_: NotedReplay())
     loop = asyncio.get_running_loop()
     for _ in range(MAX_REPLAYS):

@@ -1,4 +1,4 @@
-"""Compression of what consoles get: once for all, within what each console allows."""
+"""Compression of messages to consoles: once for all, within the window of each console."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MESSAGE = b'{"north_m": 12.345, "east_m": -3.21}' * 200
 def ends(client: ClientPerMessageDeflateFactory) -> tuple[PerMessageDeflate, PerMessageDeflate]:
     """The extension at the station and at a console, after their handshake."""
     offered = client.get_request_params()
-    # As the header carries it: everything is text, and what is only named has no value.
+    # As in the header: every value is text, and a flag has none.
     asked = [(name, None if value is None else str(value)) for name, value in offered]
     server = SharedDeflateFactory(server_no_context_takeover=True, client_no_context_takeover=True)
     answer, station = server.process_request_params(asked, [])
@@ -26,7 +26,7 @@ def ends(client: ClientPerMessageDeflateFactory) -> tuple[PerMessageDeflate, Per
 
 
 @pytest.mark.parametrize("bits", [None, 9, 12, 15])
-def test_a_console_reads_what_was_compressed_in_the_window_that_it_allows(
+def test_console_decompresses_within_its_window(
     bits: int | None,
 ) -> None:
     station, console = ends(ClientPerMessageDeflateFactory(server_max_window_bits=bits))
@@ -44,7 +44,7 @@ def test_many_consoles_cost_one_compression() -> None:
     assert shared_deflate.deflated.cache_info().misses == 1
 
 
-def test_what_is_small_goes_as_it_is() -> None:
+def test_small_message_is_not_compressed() -> None:
     station, console = ends(ClientPerMessageDeflateFactory())
     sent = station.encode(Frame(Opcode.TEXT, b"{}"))
     assert (sent.rsv1, sent.data) == (False, b"{}")

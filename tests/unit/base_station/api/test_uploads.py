@@ -1,4 +1,4 @@
-"""Whose upload is read, and for how long while others wait."""
+"""Turns of uploads: which account's upload is read, and for how long while others wait."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ async def last_piece() -> Message:
 
 
 class Upload:
-    """One upload, with a body that comes when the test lets it."""
+    """One upload; its body arrives when the test lets it."""
 
     def __init__(self, turns: UploadTurns, account: str) -> None:
         self._turns = turns
@@ -71,7 +71,7 @@ async def cleanup() -> AsyncIterator[AsyncExitStack]:
 
 
 def uploads(cleanup: AsyncExitStack, turns: UploadTurns, accounts: str) -> list[Upload]:
-    """One for each letter, which is the account's name."""
+    """One upload for each letter, which is the account's name."""
     made = [Upload(turns, account) for account in accounts]
     for one in made:
         cleanup.push_async_callback(one.cancel)
@@ -84,7 +84,7 @@ async def test_one_account_has_two_turns_and_all_have_four(cleanup: AsyncExitSta
     assert [one.has_turn for one in made] == [True, True, False, True, True, False, False]
 
 
-async def test_a_turn_goes_to_the_account_that_waits_longest(cleanup: AsyncExitStack) -> None:
+async def test_turn_goes_to_the_account_that_waits_longest(cleanup: AsyncExitStack) -> None:
     a, *rest = uploads(cleanup, UploadTurns(NEVER_S), "aabbaaaac")
     await settle()
     await a.finish()
@@ -95,7 +95,7 @@ async def test_a_turn_goes_to_the_account_that_waits_longest(cleanup: AsyncExitS
     assert rest[-1].has_turn  # of another account, though it came last
 
 
-async def test_a_slow_body_loses_its_turn_to_who_waits(cleanup: AsyncExitStack) -> None:
+async def test_slow_body_loses_its_turn_to_a_waiting_upload(cleanup: AsyncExitStack) -> None:
     turns = UploadTurns(0.0)
     slow = uploads(cleanup, turns, "aabb")
     first, second = await slow[0].turn(), await slow[1].turn()
@@ -104,25 +104,25 @@ async def test_a_slow_body_loses_its_turn_to_who_waits(cleanup: AsyncExitStack) 
         await first.receive(no_piece)
     assert refused.value.status_code == 408
     assert "smaller" in refused.value.detail
-    assert not second.has_ended  # one goes for one who waits
+    assert not second.has_ended  # one slow upload ends for one that waits
     await slow[0].finish()
     await waiting.turn()
 
 
-async def test_a_slow_body_keeps_its_turn_where_nobody_waits(cleanup: AsyncExitStack) -> None:
+async def test_slow_body_keeps_its_turn_without_waiting_uploads(cleanup: AsyncExitStack) -> None:
     slow = uploads(cleanup, UploadTurns(0.0), "aabb")
     await settle()
     assert not any([(await one.turn()).has_ended for one in slow])
 
 
-async def test_one_account_ends_no_turn_of_its_own(cleanup: AsyncExitStack) -> None:
+async def test_upload_ends_no_turn_of_its_own_account(cleanup: AsyncExitStack) -> None:
     slow = uploads(cleanup, UploadTurns(0.0), "aaa")
     await settle()
     assert not any([(await one.turn()).has_ended for one in slow[:2]])
     assert not slow[2].has_turn
 
 
-async def test_a_body_that_has_come_is_worked_on_however_long(cleanup: AsyncExitStack) -> None:
+async def test_received_body_is_processed_without_time_limit(cleanup: AsyncExitStack) -> None:
     turns = UploadTurns(0.0)
     come, *_ = made = uploads(cleanup, turns, "aabb")
     first, second = await come.turn(), await made[1].turn()
@@ -133,7 +133,7 @@ async def test_a_body_that_has_come_is_worked_on_however_long(cleanup: AsyncExit
     assert not first.has_ended
 
 
-async def test_who_waits_and_goes_takes_no_turn(cleanup: AsyncExitStack) -> None:
+async def test_waiting_upload_that_ends_takes_no_turn(cleanup: AsyncExitStack) -> None:
     turns = UploadTurns(NEVER_S)
     first, *_, gone, last = uploads(cleanup, turns, "aabbcd")
     await settle()

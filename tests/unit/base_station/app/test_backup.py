@@ -1,4 +1,4 @@
-"""A backup holds what a station needs, and takes nothing for its own that is not."""
+"""Backups hold the data that a station needs, and leave foreign folders alone."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LONG_AGO_S = 1_700_000_000
 
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
-    """A station's folder; what a backup copies is not looked into."""
+    """A station's folder; a backup copies its files without reading them."""
     data = tmp_path / "station"
     for name, text in {
         f"log/{FIRST}": "closed",
@@ -54,7 +54,7 @@ def files(folder: Path) -> set[str]:
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
 
 
-def test_it_holds_what_cannot_be_made_again(data: Path, tmp_path: Path) -> None:
+def test_backup_holds_all_irreplaceable_files(data: Path, tmp_path: Path) -> None:
     target = tmp_path / "backup"
     done = run(data, target)
     assert files(target) == {
@@ -71,10 +71,10 @@ def test_it_holds_what_cannot_be_made_again(data: Path, tmp_path: Path) -> None:
     assert (done.copied, done.unchanged, done.removed) == (6, 0, 0)
 
 
-def test_what_is_forgotten_while_it_is_made_is_forgotten_in_it_too(
+def test_data_erased_during_the_backup_is_erased_in_it(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A station that is started on it does what the copied log may still have to lose."""
+    """A station that starts on the backup completes the erasures of the copied log."""
     copy, target = backup._copy_file, tmp_path / "backup"
 
     def forget_meanwhile(source: Path, part: Path) -> bool:
@@ -91,7 +91,7 @@ def test_what_is_forgotten_while_it_is_made_is_forgotten_in_it_too(
     assert not (target / "forgetting-begun.json").exists(), "it has names in it"
 
 
-def test_a_second_run_copies_what_is_new(data: Path, tmp_path: Path) -> None:
+def test_second_run_copies_new_files_only(data: Path, tmp_path: Path) -> None:
     target = tmp_path / "backup"
     run(data, target)
     (data / "log" / SECOND).write_text("grown")
@@ -100,9 +100,7 @@ def test_a_second_run_copies_what_is_new(data: Path, tmp_path: Path) -> None:
     assert (target / "log" / SECOND).read_text() == "grown"
 
 
-def test_a_segment_that_was_written_anew_in_the_same_length_is_copied(
-    data: Path, tmp_path: Path
-) -> None:
+def test_segment_rewritten_at_the_same_length_is_copied(data: Path, tmp_path: Path) -> None:
     target = tmp_path / "backup"
     run(data, target)
     first = data / "log" / FIRST
@@ -113,7 +111,7 @@ def test_a_segment_that_was_written_anew_in_the_same_length_is_copied(
     assert (target / "log" / FIRST).read_text() == "forgot"
 
 
-def test_what_the_station_lost_stays_in_the_backup(data: Path, tmp_path: Path) -> None:
+def test_files_lost_at_the_station_stay_in_the_backup(data: Path, tmp_path: Path) -> None:
     target = tmp_path / "backup"
     run(data, target)
     (data / "log" / FIRST).unlink()
@@ -121,9 +119,7 @@ def test_what_the_station_lost_stays_in_the_backup(data: Path, tmp_path: Path) -
     assert (target / "log" / FIRST).read_text() == "closed"
 
 
-def test_the_database_is_copied_with_what_is_only_in_its_journal(
-    data: Path, tmp_path: Path
-) -> None:
+def test_database_is_copied_with_its_journal(data: Path, tmp_path: Path) -> None:
     with Store(data / "station.sqlite") as store, store.write() as session:
         session.connection().exec_driver_sql("CREATE TABLE noted (what TEXT)")
         session.connection().exec_driver_sql("INSERT INTO noted VALUES ('a word')")
@@ -134,7 +130,7 @@ def test_the_database_is_copied_with_what_is_only_in_its_journal(
     copied.close()
 
 
-def test_another_stations_backup_is_left_alone(data: Path, tmp_path: Path) -> None:
+def test_backup_of_another_station_is_left_alone(data: Path, tmp_path: Path) -> None:
     target = tmp_path / "backup"
     (target / "log").mkdir(parents=True)
     (target / "log" / "000001-20250101T000000Z.mcap").write_text("another's")
@@ -145,25 +141,25 @@ def test_another_stations_backup_is_left_alone(data: Path, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("where", [".", "log", ".."])
-def test_it_is_apart_from_the_stations_folder(data: Path, where: str) -> None:
+def test_backup_inside_the_station_folder_is_refused(data: Path, where: str) -> None:
     with pytest.raises(UserError, match="not apart"):
         run(data, data / where)
 
 
-def test_where_it_cannot_be_written_it_says_so(data: Path, tmp_path: Path) -> None:
+def test_unwritable_target_is_reported(data: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(LogError, match="not complete"):
         run(data, tmp_path / "file" / "backup")
 
 
-def test_of_a_failing_disk_all_is_copied_that_it_gives(
+def test_failing_disk_is_copied_as_far_as_it_reads(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """And it is told what that is not, by every run until it can be read."""
+    """Every run reports what is missing until it can be read."""
     target, pread = tmp_path / "backup", os.pread
     (data / "log" / FIRST).write_bytes(b"a" * 4096 + b"b" * 4096 + b"c" * 10)
     (data / "log" / SECOND).unlink()
-    (data / "log" / SECOND).symlink_to(SECOND)  # nobody can open it
+    (data / "log" / SECOND).symlink_to(SECOND)  # no process can open it
 
     def failing(file: int, count: int, offset: int) -> bytes:
         if offset == 4096:
@@ -191,7 +187,7 @@ def full(*_: object) -> None:
 
 
 @pytest.mark.parametrize("copied", [0, 1, 3])
-def test_on_a_full_disk_no_half_is_left_and_the_next_run_goes_on(
+def test_full_disk_leaves_no_partial_copy_and_the_next_run_continues(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, copied: int
 ) -> None:
     target, copy, left = tmp_path / "backup", backup._copy_file, copied
@@ -217,9 +213,7 @@ def test_on_a_full_disk_no_half_is_left_and_the_next_run_goes_on(
     assert run(data, target).copied == 6 - copied
 
 
-def test_a_database_for_which_there_is_no_room_keeps_nothing_else_out(
-    data: Path, tmp_path: Path
-) -> None:
+def test_database_without_room_prevents_no_other_copy(data: Path, tmp_path: Path) -> None:
     target = tmp_path / "backup"
     with files_of_at_most(8000), pytest.raises(StoreError, match="see that there is room beside"):
         run(data, target)
@@ -228,7 +222,7 @@ def test_a_database_for_which_there_is_no_room_keeps_nothing_else_out(
     assert "station.sqlite" in files(target)
 
 
-def test_what_a_kill_left_of_a_first_run_is_gone_on_with(data: Path, tmp_path: Path) -> None:
+def test_first_run_that_was_killed_is_continued(data: Path, tmp_path: Path) -> None:
     target = tmp_path / "backup"
     (target / "log").mkdir(parents=True)
     for name in ("station.sqlite.part", f"log/{FIRST}.part"):
@@ -237,15 +231,13 @@ def test_what_a_kill_left_of_a_first_run_is_gone_on_with(data: Path, tmp_path: P
     assert not [name for name in files(target) if name.endswith(".part")]
 
 
-def test_a_folder_without_a_station_has_nothing_to_copy(tmp_path: Path) -> None:
+def test_folder_without_a_station_is_refused(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="no station's log"):
         run(tmp_path / "nothing", tmp_path / "backup")
 
 
-def test_what_was_set_aside_and_is_reported_since_is_not_kept_twice(
-    data: Path, tmp_path: Path
-) -> None:
-    """Put back, it would be told once more; and what is forgotten in it would stay."""
+def test_set_aside_messages_reported_since_are_not_kept_twice(data: Path, tmp_path: Path) -> None:
+    """Put back, they would be reported twice; and erased data would stay in them."""
     target = tmp_path / "backup"
     part, reported = data / "apart" / "1-1-1", data / "apart" / "1-1-1.told"
     part.mkdir()
@@ -253,7 +245,7 @@ def test_what_was_set_aside_and_is_reported_since_is_not_kept_twice(
     run(data, target)
     part.rename(reported)
     run(data, target)
-    (target / "apart" / part.name).mkdir()  # as it once was kept
+    (target / "apart" / part.name).mkdir()  # as an earlier run kept it
     (target / "apart" / part.name / SECOND).write_text("of Ada")
     (reported / SECOND).write_text("(forgotten)")
     run(data, target)

@@ -1,4 +1,4 @@
-"""The console's name on its network: announced where others reach it, and what prevents that."""
+"""The console's name on its network: announced where others reach it, and obstacles reported."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Presence = Callable[..., ConsolePresence]
 
 
 class Announced:
-    """Announcers in the place of those that send."""
+    """Announcers in place of those that send."""
 
     def __init__(self) -> None:
         self.now: list[tuple[ConsoleAnnouncement, tuple[str, ...]]] = []
@@ -58,16 +58,14 @@ def presence(own: list[str], announced: Announced) -> Iterator[Presence]:
         yield begin
 
 
-def test_nothing_is_announced_unless_it_is_asked_for(
-    presence: Presence, announced: Announced
-) -> None:
+def test_console_is_not_announced_by_default(presence: Presence, announced: Announced) -> None:
     console = presence(HttpConfig("0.0.0.0:8443"))
     console.update()
     assert announced.now == []
     assert console.problems() == ()
 
 
-def test_the_addresses_of_the_machine_are_announced_as_they_change(
+def test_addresses_of_the_machine_are_announced_as_they_change(
     presence: Presence, announced: Announced, own: list[str]
 ) -> None:
     console = presence(HttpConfig("0.0.0.0:8443", local_name="muster"))
@@ -82,7 +80,7 @@ def test_the_addresses_of_the_machine_are_announced_as_they_change(
     assert announcement.addresses == ("198.51.100.1",)
 
 
-def test_a_name_that_another_machine_has_is_a_problem_until_it_is_free(
+def test_name_of_another_machine_is_a_problem_until_it_is_free(
     presence: Presence, announced: Announced
 ) -> None:
     console = presence(HttpConfig("192.0.2.7:8443", local_name="muster"))
@@ -97,7 +95,7 @@ def test_a_name_that_another_machine_has_is_a_problem_until_it_is_free(
 
 
 @pytest.mark.parametrize("hosts", [["192.0.2.7"], ["192.0.2.7", "muster.local"]])
-def test_a_certificate_that_does_not_stand_for_the_name_is_a_problem(
+def test_certificate_without_the_name_is_a_problem(
     presence: Presence, tmp_path: Path, hosts: list[str]
 ) -> None:
     PkiFolder(tmp_path).create("Test", hosts, ["tls/192.0.2.7:7447"])
@@ -109,11 +107,11 @@ def test_a_certificate_that_does_not_stand_for_the_name_is_a_problem(
 
 
 @pytest.mark.parametrize("name", ["muster.local", "-a", "a b", "a" * 64, "ä"])
-def test_what_is_no_name_of_a_host_is_refused(name: str) -> None:
+def test_text_that_is_no_host_name_is_refused(name: str) -> None:
     with pytest.raises(ConfigError, match="cannot be used"):
         HttpConfig("0.0.0.0:8443", local_name=name)
 
 
-def test_a_console_of_this_machine_alone_has_no_name_on_the_network() -> None:
+def test_console_on_the_loopback_has_no_name_on_the_network() -> None:
     with pytest.raises(ConfigError, match="no other machine reaches"):
         HttpConfig("127.0.0.1:8080", local_name="muster")

@@ -1,4 +1,4 @@
-"""Secrets that others can read are closed to them, and named."""
+"""Secrets that others can read are closed to them, and reported."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> DataFolder:
         ("station.sqlite", "every user another password"),
     ],
 )
-def test_what_others_could_read_of_a_station_is_closed_and_named(
+def test_secrets_of_a_station_that_others_could_read_are_closed_and_named(
     made: DataFolder, name: str, remedy: str
 ) -> None:
     path = made.path / name
@@ -53,7 +53,7 @@ def test_what_others_could_read_of_a_station_is_closed_and_named(
     assert not ExposedSecrets(made, None).problems(), "a station that starts again finds nothing"
 
 
-def test_a_key_of_the_console_stays_readable_by_its_group(made: DataFolder, tmp_path: Path) -> None:
+def test_console_key_stays_readable_by_its_group(made: DataFolder, tmp_path: Path) -> None:
     key = tmp_path / "console.key"
     key.write_text("secret")
     key.chmod(0o644)
@@ -65,11 +65,11 @@ def test_a_key_of_the_console_stays_readable_by_its_group(made: DataFolder, tmp_
     assert not ExposedSecrets(made, own).problems()
 
 
-def test_what_cannot_be_closed_is_named_and_stops_nothing(
+def test_secret_that_cannot_be_closed_is_named_and_stops_nothing(
     made: DataFolder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def keeps_no_modes(_descriptor: int, _mode: int) -> None:
-        """As a file system of a memory card."""
+        """Change no mode, as the file system of a memory card."""
 
     key = made.path / "pki" / "station.key"
     key.chmod(0o604)
@@ -81,7 +81,7 @@ def test_what_cannot_be_closed_is_named_and_stops_nothing(
     assert close_to_others(key) == 0o604
 
 
-def test_a_unit_closes_its_enrolment_and_says_so(
+def test_unit_closes_its_enrolment_and_reports_it(
     made: DataFolder, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     file = tmp_path / "FF-01.enrolment.toml"

@@ -1,4 +1,4 @@
-"""The first administrator: whoever switches the station off at its first start can still log in."""
+"""The first administrator: a station switched off at its first start can still be logged in to."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def accounts(tmp_path: Path) -> Iterator[Accounts]:
         yield Accounts(store, SystemClock(), QUICK_HASH)
 
 
-def test_the_note_is_on_the_disk_before_there_is_such_a_user(
+def test_note_is_on_the_disk_before_the_user_exists(
     accounts: Accounts, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     on_disk = []
@@ -38,7 +38,7 @@ def test_the_note_is_on_the_disk_before_there_is_such_a_user(
     def after_both(
         self: Accounts, username: str, password: str, role: Role, *, generated: bool
     ) -> None:
-        assert on_disk == [False, True]  # what it says, and that it is there
+        assert on_disk == [False, True]  # its text, and that it is on the disk
         assert password in (tmp_path / "note").read_text()
         add_user(self, username, password, role, generated=generated)
 
@@ -50,7 +50,7 @@ def test_the_note_is_on_the_disk_before_there_is_such_a_user(
     assert stat.S_IMODE((tmp_path / "note").stat().st_mode) == 0o600
 
 
-def test_a_disk_that_does_not_take_the_note_makes_no_user_of_whom_nobody_knows(
+def test_disk_that_refuses_the_note_creates_no_user(
     accounts: Accounts, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "note").write_text("of a start that was cut short")
@@ -68,13 +68,13 @@ def test_a_disk_that_does_not_take_the_note_makes_no_user_of_whom_nobody_knows(
     assert (tmp_path / "note").read_text() == f"username: admin\npassword: {password}\n"
 
 
-def test_where_there_are_users_nothing_is_made(accounts: Accounts, tmp_path: Path) -> None:
+def test_station_with_users_creates_none(accounts: Accounts, tmp_path: Path) -> None:
     accounts.add_user("mia", "something long enough", Role.ADMINISTRATOR)
     assert ensure_administrator(accounts, tmp_path / "note") is None
     assert not (tmp_path / "note").exists()
 
 
-def test_the_generated_password_must_be_changed_and_no_other(tmp_path: Path) -> None:
+def test_generated_password_must_be_changed_and_no_other(tmp_path: Path) -> None:
     with Store(tmp_path / "station.sqlite") as store:
         accounts = Accounts(store, SystemClock(), QUICK_HASH)
         password = ensure_administrator(accounts, tmp_path / "note") or ""
@@ -83,7 +83,7 @@ def test_the_generated_password_must_be_changed_and_no_other(tmp_path: Path) -> 
         assert not must_change(accounts, "mia", "a long password")
         accounts.change_user("admin", "another battery", None)
         assert not must_change(accounts, "admin", "another battery")
-    with Store(tmp_path / "memory.sqlite") as store:  # of a station whose disk takes nothing
+    with Store(tmp_path / "memory.sqlite") as store:  # of a station whose disk refuses writes
         accounts = Accounts(store, SystemClock(), QUICK_HASH)
         password = ensure_administrator(accounts, None) or ""
         assert not must_change(accounts, "admin", password)

@@ -1,5 +1,5 @@
-"""No link leads out of a station's or unit's folder: root would write to, empty or give away what
-whoever may write to the folder has chosen.
+"""No link leads out of a station's or unit's folder: otherwise root would write to, empty or give
+away a file that somebody with access to the folder has chosen.
 """
 
 from __future__ import annotations
@@ -65,12 +65,12 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "fetch-recording": ("FF-01", "--from", "2026-03-01T10:00"),
 }
 WITHOUT_FOLDER = {
-    # They look at what somebody gave, and write none of it.
+    # They read a given folder or file, and write nothing of it.
     *("replay", "assess", "smooth", "report", "export", "rehearse", "rerun", "foxglove replay"),
-    *("archive list", "archive verify", "archive fetch"),  # they look at the archive alone
-    "foxglove layout",  # it reads the log alone, and writes where it is told to
-    "dispatch",  # it hands it to a running station
-    "compile",  # into the program's own
+    *("archive list", "archive verify", "archive fetch"),  # they read the archive alone
+    "foxglove layout",  # it reads the log alone, and writes to the given path
+    "dispatch",  # it passes it to a running station
+    "compile",  # into the program's own folder
 }
 PKI_COMMANDS: dict[str, tuple[str, ...]] = {
     "init": ("--host", "10.0.0.1"),
@@ -91,14 +91,14 @@ FILES = (
 )
 
 
-def test_no_command_is_forgotten_here() -> None:
+def test_every_command_is_checked_here() -> None:
     assert {*names_of(get_command(base_cli.app))} == {*COMMANDS, *WITHOUT_FOLDER}
     assert {*names_of(get_command(pki_cli))} == {*PKI_COMMANDS}
 
 
 @pytest.fixture(scope="module")
 def station(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with all that a station has."""
+    """A folder with all files of a station."""
     data = tmp_path_factory.mktemp("served") / "station"
     writes.write_log(data)
     PkiFolder(data).create("Fire", ["10.0.0.1"], ["tls/10.0.0.1:7447"])
@@ -111,7 +111,7 @@ def station(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class Outside:
-    """A file and a folder of somebody else, as they were."""
+    """A file and a folder outside, and their state before."""
 
     def __init__(self, folder: Path) -> None:
         self.file, self.folder = folder / "victim", folder / "victims"
@@ -139,7 +139,7 @@ def outside(tmp_path: Path) -> Outside:
 
 
 def planted(station: Path, outside: Outside, among: set[str]) -> Iterator[str]:
-    """A link in each place in turn; what is there is put back."""
+    """Plant a link at each place in turn, and restore the file afterwards."""
     for place in sorted(among):
         path = station / place
         hidden = path.with_name(f"hidden-{path.name}")
@@ -164,7 +164,7 @@ def planted(station: Path, outside: Outside, among: set[str]) -> Iterator[str]:
         *((f"pki {name}", arguments) for name, arguments in PKI_COMMANDS.items()),
     ],
 )
-def test_a_command_says_so_and_stops(
+def test_command_reports_the_link_and_stops(
     station: Path,
     outside: Outside,
     tmp_path: Path,
@@ -195,7 +195,7 @@ def test_a_command_says_so_and_stops(
     assert refused == among
 
 
-# ---- every write, though links are planted after the command has looked
+# ---- every write, with links planted after the command's check
 
 
 def save_unit(data: Path) -> None:
@@ -240,7 +240,7 @@ ACTS: tuple[Callable[[Path], None], ...] = (
     writes.make_backup,
     *(save_unit, note_time, write_out, make_login, make_pki),
 )
-_opened: list[Path] | None = None  # for writing, while an act is watched
+_opened: list[Path] | None = None  # opened for writing, while a command is watched
 
 
 def _watch(event: str, args: tuple[Any, ...]) -> None:
@@ -257,7 +257,7 @@ sys.addaudithook(_watch)
 
 
 def written_by(act: Callable[[Path], None], data: Path) -> set[Path]:
-    """What it opens for writing in a folder of its own, by name in that."""
+    """Names of the files of its folder that a command opens for writing."""
     global _opened  # noqa: PLW0603  # an audit hook cannot be taken away
     _opened = []
     try:
@@ -296,8 +296,6 @@ def test_no_write_follows_a_link(
                 for one in (here / "station", *path.relative_to(here / "station").parents):
                     os.chown(here / "station" / one, writes.STATION, writes.STATION)
             outside.note()
-            with suppress(
-                MusterError, OSError, AssertionError, ValueError
-            ):  # it found what it should not
+            with suppress(MusterError, OSError, AssertionError, ValueError):  # it found a link
                 act(here / "station")
             outside.require_untouched(f"{act.__name__} at {place}")

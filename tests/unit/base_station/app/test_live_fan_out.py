@@ -1,4 +1,4 @@
-"""Consoles and forwarders get the same."""
+"""Fan-out of live messages: consoles and forwarders get the same."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.rig.tak_scene import Scene, delta
 
 
 class Heard:
-    """A forwarder that remembers what it was given."""
+    """A forwarder that records its input."""
 
     def __init__(self) -> None:
         self.given: list[object] = []
@@ -41,7 +41,7 @@ class Source:
         deliver(self._picture, {})
 
 
-def test_a_forwarder_begins_with_the_picture_and_gets_what_consoles_get() -> None:
+def test_forwarder_begins_with_the_snapshot_and_gets_the_messages_of_consoles() -> None:
     screen, received, picture = Screen(), Heard(), Scene().picture()
     shown = LiveFanOut(screen, Forwarders([cast("Forwarder", received)]))
     source = Source(picture)
@@ -53,7 +53,7 @@ def test_a_forwarder_begins_with_the_picture_and_gets_what_consoles_get() -> Non
     assert (screen.deltas, screen.resets) == ([change], [picture])
 
 
-def test_without_forwarders_nobody_asks_the_engine_for_a_picture() -> None:
+def test_engine_makes_no_snapshot_without_forwarders() -> None:
     source = Source(Scene().picture())
     LiveFanOut(Screen(), Forwarders([])).start(cast("LiveSource", source))
     assert source.asked == 0

@@ -1,4 +1,4 @@
-"""Live state as parts ask for it, before and after the log has been read."""
+"""Live state of other parts, before and after the log has been read."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from base_station.core.state import Incident, StationState
 CONFIGURED = {"heat.caution_degc": 90.0}
 
 
-def test_live_state_before_the_log_is_read_is_of_the_settings() -> None:
+def test_live_state_before_the_log_is_read_comes_from_the_settings() -> None:
     live = LiveState(CONFIGURED, "gps-switching")
     assert live.fuser == "gps-switching"
     assert not live.is_in_incident()

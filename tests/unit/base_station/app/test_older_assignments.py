@@ -1,4 +1,4 @@
-"""Who is worn by a record with a name is assigned anew, without it; once, and nobody else is."""
+"""Assignments of earlier versions with a name: made again without the name, once, and no others."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Gate:
         return Future()
 
 
-def test_a_name_of_an_earlier_version_does_not_stay_in_force(tmp_path: Path) -> None:
+def test_name_of_an_earlier_version_does_not_stay_in_force(tmp_path: Path) -> None:
     gate = Gate()
     with Store(tmp_path / "station.sqlite") as store:
         roster = Roster(store, SystemClock())

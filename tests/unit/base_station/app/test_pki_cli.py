@@ -32,20 +32,20 @@ def data(tmp_path: Path) -> Path:
     return folder
 
 
-def test_init_tells_where_units_will_connect(tmp_path: Path) -> None:
+def test_init_prints_the_address_for_units(tmp_path: Path) -> None:
     reported = run("init", "--data", tmp_path, "--host", "fd00::7", "--port", "7000")
     assert "tls/[fd00::7]:7000" in reported
     assert PkiFolder(tmp_path).registry().connect == ("tls/[fd00::7]:7000",)
 
 
-def test_init_without_a_host_takes_what_the_machine_has(tmp_path: Path) -> None:
+def test_init_without_a_host_takes_the_addresses_of_the_machine(tmp_path: Path) -> None:
     run("init", "--data", tmp_path)
     registry = PkiFolder(tmp_path).registry()
     assert {"localhost", "127.0.0.1", "::1"} <= set(registry.hosts)
     assert len(registry.connect) == 1
 
 
-def test_units_are_given_an_address_of_the_network_and_ipv4_where_there_is_one(
+def test_units_get_an_address_of_the_network_and_ipv4_where_possible(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     addresses = ["fd00::7", "127.0.0.1", "fe80::1%eth0", "169.254.1.1", "192.0.2.7", "10.0.0.1"]
@@ -65,7 +65,7 @@ def test_units_are_given_an_address_of_the_network_and_ipv4_where_there_is_one(
     "host",
     ["192.0.2.7:7447", "tls/station", "a b", "", "192.0.2.256", "192.0.2", "0.0.0.0", "::"],
 )
-def test_init_refuses_what_is_no_host(tmp_path: Path, host: str) -> None:
+def test_init_refuses_text_that_is_no_host(tmp_path: Path, host: str) -> None:
     with pytest.raises(ConfigError, match="is no host"):
         run("init", "--data", tmp_path, "--host", host)
     assert not (tmp_path / "pki").exists()
@@ -80,9 +80,7 @@ def test_enroll_writes_one_file(data: Path, tmp_path: Path) -> None:
     assert enrolment.connect == ("tls/station.local:7447",)
 
 
-def test_enroll_names_other_ends_of_the_bus_where_it_is_reported(
-    data: Path, tmp_path: Path
-) -> None:
+def test_enroll_names_other_ends_of_the_bus_if_given(data: Path, tmp_path: Path) -> None:
     ends = ("tls/192.0.2.9:7447", "tls/[fd00::7]:7000", "tls/station.local:1")
     flags = [flag for end in ends for flag in ("--connect", end)]
     run("enroll", "FF-01", "--data", data, "--out", tmp_path / "1", *flags)
@@ -94,7 +92,7 @@ def test_enroll_names_other_ends_of_the_bus_where_it_is_reported(
     "end", ["192.0.2.9:7447", "tls/192.0.2.9", "tls/192.0.2.9:0", "tls/192.0.2.9:65536", "tls/:1",
             "tcp/192.0.2.9:7447", 'tls/a"b:7447', "tls/192.0.2.900:7447"],
 )  # fmt: skip
-def test_an_end_that_no_unit_could_find_is_seen_before_anyone_is_enrolled(
+def test_unreachable_end_is_reported_before_the_enrolment(
     data: Path, tmp_path: Path, end: str
 ) -> None:
     with pytest.raises(ConfigError, match=r"is no (end of a bus|host)"):
@@ -110,7 +108,7 @@ def test_enroll_names_the_file_after_the_unit(
     assert read_enrolment(tmp_path / "FF-01.enrolment.toml").name == "FF-01"
 
 
-def test_a_tracking_agent_is_enrolled_beside_its_unit_and_ended_without_it(
+def test_tracking_agent_is_enrolled_beside_its_unit_and_revoked_with_it(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -127,7 +125,7 @@ def test_a_tracking_agent_is_enrolled_beside_its_unit_and_ended_without_it(
     assert registry.current(Holder.UNIT, "FF-01") is not None
 
 
-def test_nobody_is_enrolled_under_a_name_like_a_tracking_agents(data: Path) -> None:
+def test_name_like_that_of_a_tracking_agent_is_refused(data: Path) -> None:
     with pytest.raises(ConfigError, match="cannot be used"):
         run("enroll", "FF-01@tracker", "--data", data)
 
@@ -142,11 +140,11 @@ def test_enroll_shows_a_code_and_writes_no_file(
     assert stat.S_IMODE((tmp_path / "code.png").stat().st_mode) == 0o600  # it holds the key
 
 
-def test_of_a_code_for_which_there_is_no_room_nothing_is_left(data: Path, tmp_path: Path) -> None:
-    """It holds a private key, and half of it lets nobody in."""
+def test_code_without_room_leaves_nothing(data: Path, tmp_path: Path) -> None:
+    """It holds a private key, and half of it is no enrolment."""
     code = tmp_path / "code.png"
     with (
-        files_of_at_most(2000),  # so much room there is for who is enrolled
+        files_of_at_most(2000),  # room for the enrolled names
         pytest.raises(ConfigError, match=r"cannot be written .*`muster pki renew FF-01`"),
     ):
         run("enroll", "FF-01", "--data", data, "--png", code)
@@ -155,7 +153,7 @@ def test_of_a_code_for_which_there_is_no_room_nothing_is_left(data: Path, tmp_pa
     assert code.stat().st_size > 2000
 
 
-def test_a_file_in_the_way_is_seen_before_anyone_is_enrolled(data: Path, tmp_path: Path) -> None:
+def test_existing_file_is_reported_before_the_enrolment(data: Path, tmp_path: Path) -> None:
     out = tmp_path / "carried"
     out.write_text("precious")
     for place, problem in ((out, "is there already"), (tmp_path / "no" / "x", "cannot write")):
@@ -175,10 +173,10 @@ def test_renew_and_revoke(data: Path, tmp_path: Path) -> None:
     assert "revoked" in run("show", "--data", data)
 
 
-def test_who_is_enrolled_is_shown_whole_however_narrow_the_window(
+def test_list_shows_enrolled_names_complete_in_a_narrow_window(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A name or a date that is cut is none: a revoked unit's row is the longest."""
+    """A truncated name or date is useless: a revoked unit's row is the longest."""
     monkeypatch.setenv("COLUMNS", "60")
     name = "engine-12-spare-unit"
     for number in ("1", "2"):
@@ -198,7 +196,7 @@ def test_who_is_enrolled_is_shown_whole_however_narrow_the_window(
     assert f"{valid.valid_to:%Y-%m-%d}" in row
 
 
-def test_an_operator_is_distinguished(data: Path, tmp_path: Path) -> None:
+def test_operator_is_distinguished(data: Path, tmp_path: Path) -> None:
     reported = run("enroll", "chief", "--operator", "--data", data, "--out", tmp_path / "1")
     assert "operator chief" in reported
     assert "muster edge" not in reported
@@ -207,7 +205,7 @@ def test_an_operator_is_distinguished(data: Path, tmp_path: Path) -> None:
     run("revoke", "chief", "--operator", "--data", data)
 
 
-def test_the_station_is_renewed_for_the_hosts_it_had_or_for_others(data: Path) -> None:
+def test_station_is_renewed_for_its_hosts_or_for_others(data: Path) -> None:
     assert "station.local" in run("renew-station", "--data", data)
     reported = run("renew-station", "--data", data, "--host", "192.0.2.9", "--port", "7000")
     assert "station.local" not in reported

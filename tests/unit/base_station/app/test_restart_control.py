@@ -9,7 +9,7 @@ from base_station.core.log_position import LogPosition
 
 
 class Station:
-    """What the decision depends on."""
+    """Inputs of the decision."""
 
     def __init__(self) -> None:
         self.leads, self.has_standby, self.in_incident, self.stops = True, False, False, 0
@@ -41,7 +41,7 @@ def test_first_request_is_kept() -> None:
         (True, False, False, False),
     ],
 )
-def test_stale_state_restarts_where_nobody_is_left_alone(
+def test_stale_state_restarts_where_no_station_stays_alone(
     leads: bool, has_standby: bool, in_incident: bool, restarts: bool
 ) -> None:
     station = Station()

@@ -1,4 +1,4 @@
-"""What a station announces of itself: addresses that its certificate stands for, and no others."""
+"""Announcement of a station: addresses of its certificate, and no others."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Presence = Callable[..., StationPresence]
 
 
 class Announced:
-    """Announcers in the place of those that send."""
+    """Announcers in place of those that send."""
 
     def __init__(self) -> None:
         self.now: list[tuple[Announcement, tuple[str, ...]]] = []
@@ -69,9 +69,7 @@ def presence(pki: PkiFolder, own: list[str], announced: Announced) -> Iterator[P
         yield begin
 
 
-def test_nothing_is_announced_unless_it_is_asked_for(
-    presence: Presence, announced: Announced
-) -> None:
+def test_station_is_not_announced_by_default(presence: Presence, announced: Announced) -> None:
     assert not BusConfig().announce
     station = presence(announce=False)
     station.update()
@@ -79,7 +77,7 @@ def test_nothing_is_announced_unless_it_is_asked_for(
     assert station.problems() == ()
 
 
-def test_addresses_that_the_certificate_stands_for_are_announced(
+def test_addresses_of_the_certificate_are_announced(
     presence: Presence, announced: Announced, pki: PkiFolder
 ) -> None:
     station = presence(name="first")
@@ -95,7 +93,7 @@ def test_addresses_that_the_certificate_stands_for_are_announced(
     assert station.problems() == ()
 
 
-def test_a_station_of_one_interface_is_announced_on_that_alone(
+def test_station_of_one_interface_is_announced_on_that_alone(
     presence: Presence, announced: Announced
 ) -> None:
     presence("tls/192.0.2.7:7447").update()
@@ -103,7 +101,7 @@ def test_a_station_of_one_interface_is_announced_on_that_alone(
     assert announcement.addresses == interfaces == ("192.0.2.7",)
 
 
-def test_another_address_and_another_certificate_are_taken_up(
+def test_changed_address_and_certificate_are_announced(
     presence: Presence, announced: Announced, pki: PkiFolder, own: list[str]
 ) -> None:
     station = presence()
@@ -121,14 +119,14 @@ def test_another_address_and_another_certificate_are_taken_up(
     assert station.problems() == ()
 
 
-def test_it_is_taken_back_at_the_end(presence: Presence, announced: Announced) -> None:
+def test_announcement_is_withdrawn_at_the_end(presence: Presence, announced: Announced) -> None:
     with presence() as station:
         station.update()
         assert len(announced.now) == 1
     assert announced.now == []
 
 
-def test_a_machine_without_a_network_is_announced_later(
+def test_machine_without_a_network_is_announced_later(
     presence: Presence, announced: Announced
 ) -> None:
     station = presence()
@@ -141,6 +139,6 @@ def test_a_machine_without_a_network_is_announced_later(
     assert station.problems() == ()
 
 
-def test_a_bus_without_certificates_is_not_announced() -> None:
+def test_bus_without_certificates_is_not_announced() -> None:
     with pytest.raises(ConfigError, match="without certificates is not announced"):
         BusConfig(("tcp/0.0.0.0:7447",), announce=True)

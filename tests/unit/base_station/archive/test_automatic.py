@@ -1,4 +1,4 @@
-"""The station's own copies: an archive that fails for long is a problem; it is tried again."""
+"""Automatic archiving: a lasting failure is a problem, and is retried."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def archive_in(
     return AutomaticArchive(config, place, copies, clock, look_every_s=0.01)
 
 
-def test_a_failure_that_lasts_is_a_problem_and_is_tried_again(
+def test_lasting_failure_is_a_problem_and_is_retried(
     copies: ArchivedCopies, tmp_path: Path
 ) -> None:
     clock, tries = ManualClock(utc_ns=_LATER_NS), Semaphore(0)
@@ -69,7 +69,7 @@ def test_a_failure_that_lasts_is_a_problem_and_is_tried_again(
         assert "17 min, 1 wait: no process for ArchiveJob" in problem
 
 
-def test_audio_is_kept_until_the_archive_has_it(copies: ArchivedCopies, tmp_path: Path) -> None:
+def test_audio_is_kept_until_it_is_archived(copies: ArchivedCopies, tmp_path: Path) -> None:
     clock = ManualClock(utc_ns=_LATER_NS)
     without, archive = (archive_in(tmp_path, copies, clock, radio=one) for one in (False, True))
     assert without.keeps_audio_since_ns() is None
@@ -79,6 +79,6 @@ def test_audio_is_kept_until_the_archive_has_it(copies: ArchivedCopies, tmp_path
 
 
 @pytest.mark.parametrize("location", ["", "ftp://x/y"])
-def test_a_place_that_is_no_archive_is_refused(location: str) -> None:
+def test_folder_that_is_no_archive_is_refused(location: str) -> None:
     with pytest.raises(ConfigError, match="give a folder, or s3://"):
         ArchiveConfig(location)

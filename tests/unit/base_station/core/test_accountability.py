@@ -1,4 +1,4 @@
-"""Who is to be heard from and when: check-ins, handing over, and what is no check-in."""
+"""Check-ins: who is due when, hand-overs, and events that are no check-in."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ def script() -> Script:
     return at_work()
 
 
-def test_a_check_in_of_one_is_nobody_else_s(script: Script) -> None:
-    """Nobody of these has a crew: that does not make them one."""
+def test_check_in_of_one_member_counts_for_no_other(script: Script) -> None:
+    """Members without a crew are not a crew."""
     for number in (1, 2, 3):
         script.act(Assign(f"FF-0{number}", f"p{number}", f"Person {number}", "", ""))
     script.wait(20)
@@ -51,7 +51,7 @@ def test_a_check_in_of_one_is_nobody_else_s(script: Script) -> None:
     assert left_s(script, "FF-03") == pytest.approx(40.0)
 
 
-def test_it_runs_only_while_an_incident_is_open() -> None:
+def test_check_ins_are_due_only_while_an_incident_is_open() -> None:
     script = Script()
     script.register("FF-01")
     script.act(Assign("FF-01", "p1", "Person 1", "red", ""))
@@ -70,7 +70,7 @@ def test_member_who_comes_later_is_due_later(script: Script) -> None:
     assert left_s(script, "FF-01") == INTERVAL_S - 30.0
 
 
-def test_nothing_that_a_unit_measures_answers_it(script: Script) -> None:
+def test_measurements_of_a_unit_are_no_check_in(script: Script) -> None:
     def everything() -> None:
         script.status("FF-01", motionless_s=0.0)
         script.position("FF-01", 1.0, 1.0)
@@ -84,7 +84,7 @@ def test_nothing_that_a_unit_measures_answers_it(script: Script) -> None:
     assert raised[0].text == "Person 1: PAR overdue, not yet confirmed, on duty for 1 min"
 
 
-def test_it_fires_once_and_is_armed_again_by_the_check_in(script: Script) -> None:
+def test_alarm_fires_once_and_is_rearmed_by_the_check_in(script: Script) -> None:
     script.wait(200)
     assert len([one for one in overdue(script) if one.unit_id == "FF-01"]) == 1
     script.act(CheckIn("FF-01", "", False))
@@ -99,7 +99,7 @@ def test_it_fires_once_and_is_armed_again_by_the_check_in(script: Script) -> Non
     assert len({one.alarm_id for one in mine}) == 2
 
 
-def test_one_that_a_person_resolved_is_not_raised_again_before_a_check_in(script: Script) -> None:
+def test_alarm_resolved_by_a_person_is_not_raised_again_before_a_check_in(script: Script) -> None:
     script.wait(61)
     alarm = next(one for one in overdue(script) if one.unit_id == "FF-01")
     script.act(ResolveAlarm(alarm.alarm_id, "seen at the engine"))
@@ -108,7 +108,7 @@ def test_one_that_a_person_resolved_is_not_raised_again_before_a_check_in(script
     assert [one.state for one in mine] == [AlarmState.RAISED, AlarmState.RESOLVED]
 
 
-def test_a_crew_and_everyone_are_ticked_off_at_once(script: Script) -> None:
+def test_crew_and_everyone_are_checked_in_at_once(script: Script) -> None:
     script.wait(30)
     script.act(CheckIn("", "red", False), by="Ana")
     assert [left_s(script, f"FF-0{number}") for number in (1, 2, 3)] == [60.0, 60.0, 30.0]
@@ -117,7 +117,7 @@ def test_a_crew_and_everyone_are_ticked_off_at_once(script: Script) -> None:
     assert left_s(script, "FF-03") == 60.0
 
 
-def test_other_times_hold_at_once_and_for_everybody(script: Script) -> None:
+def test_other_intervals_apply_at_once_and_to_everybody(script: Script) -> None:
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(1)
     script.act(SetAccountability(600.0, 900.0))
@@ -125,7 +125,7 @@ def test_other_times_hold_at_once_and_for_everybody(script: Script) -> None:
     assert rest_left_s(script) == 899.0
 
 
-def test_other_times_are_not_taken_for_a_word_of_the_wearer(script: Script) -> None:
+def test_other_intervals_are_no_check_in(script: Script) -> None:
     script.wait(1)
     script.act(CheckIn("FF-01", "", False), by="Ana")
     script.wait(61)
@@ -138,20 +138,20 @@ def test_other_times_are_not_taken_for_a_word_of_the_wearer(script: Script) -> N
     assert ended.by == "not overdue; PAR confirmed by radio, entered by Ana"
 
 
-def test_other_times_are_nothing_to_a_unit_that_nobody_wears(script: Script) -> None:
+def test_other_intervals_do_not_affect_an_unworn_unit(script: Script) -> None:
     script.register("FF-09")
     script.act(SetAccountability(300.0, 2400.0))
     assert (unit(script, "FF-09").duty, left_s(script)) == (None, 300.0)
 
 
-def test_who_takes_a_unit_after_the_incident_is_on_no_duty(script: Script) -> None:
+def test_assignment_after_the_incident_is_not_on_duty(script: Script) -> None:
     script.act(CloseIncident("i1"))
     script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
     assert refusals(script) == []
     assert (unit(script).wearer.person is not None, unit(script).duty) == (True, None)
 
 
-def test_there_are_no_times_to_change_where_no_incident_is_open() -> None:
+def test_intervals_cannot_be_changed_without_an_open_incident() -> None:
     script = Script()
     script.act(SetAccountability(300.0, 2400.0))
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -160,8 +160,8 @@ def test_there_are_no_times_to_change_where_no_incident_is_open() -> None:
     assert refusals(script) == ["no incident is open"] * 2
 
 
-def test_nobody_is_ticked_off_where_no_incident_is_open(script: Script) -> None:
-    """They wear their units still, and whoever presses is told that it counts for nothing."""
+def test_check_in_without_an_open_incident_is_refused(script: Script) -> None:
+    """They wear their units still, and the operator learns that the entry counts for nothing."""
     script.act(CloseIncident("i1"))
     for meant in (CheckIn("FF-01", "", False), CheckIn("", "red", False), CheckIn("", "", True)):
         script.act(meant)
@@ -171,7 +171,7 @@ def test_nobody_is_ticked_off_where_no_incident_is_open(script: Script) -> None:
     ]
 
 
-def test_who_hands_the_unit_back_is_not_waited_for(script: Script) -> None:
+def test_member_who_returns_the_unit_is_not_due(script: Script) -> None:
     script.wait(61)
     script.act(Unassign("FF-01"))
     mine = [one for one in overdue(script) if one.unit_id == "FF-01"]
@@ -179,7 +179,7 @@ def test_who_hands_the_unit_back_is_not_waited_for(script: Script) -> None:
     assert mine[-1].by == "off duty"
 
 
-def test_who_takes_over_a_unit_has_not_been_inside_since_the_other_went_in(
+def test_next_wearer_of_a_unit_has_not_been_inside_since_the_hand_over(
     script: Script,
 ) -> None:
     def walk() -> None:
@@ -203,14 +203,14 @@ def test_who_takes_over_a_unit_has_not_been_inside_since_the_other_went_in(
     )
 
 
-def test_a_new_name_for_the_same_person_is_no_check_in(script: Script) -> None:
+def test_new_name_of_the_same_person_is_no_check_in(script: Script) -> None:
     script.wait(30)
     script.act(Assign("FF-01", "p1", "Person One", "red", "officer"))
     assert left_s(script) == 30.0
 
 
 def test_missed_member_stays_missed_with_another_unit(script: Script) -> None:
-    """Somebody at the console puts right who wears what: that is no word of the wearer."""
+    """A corrected assignment at the console is no contact with the wearer."""
     script.wait(61)
     script.register("FF-04")
     script.act(Assign("FF-04", "p1", "Person 1", "red", ""))
@@ -220,7 +220,7 @@ def test_missed_member_stays_missed_with_another_unit(script: Script) -> None:
     assert overdue(script)[-1].state is AlarmState.RESOLVED
 
 
-def test_a_unit_that_nobody_wears_is_waited_for_by_nobody() -> None:
+def test_unworn_unit_is_not_due() -> None:
     script = Script()
     script.register("FF-01")
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -231,7 +231,7 @@ def test_a_unit_that_nobody_wears_is_waited_for_by_nobody() -> None:
     assert refusals(script) == ["nobody of FF-01 is on duty in an open incident"]
 
 
-def test_of_two_incidents_the_first_is_closed_before_the_second_opens(script: Script) -> None:
+def test_first_incident_is_closed_before_the_second_opens(script: Script) -> None:
     script.act(OpenIncident("i2", "Dock"))
     script.act(CloseIncident("i2"))
     assert refusals(script) == [
@@ -245,7 +245,7 @@ def test_of_two_incidents_the_first_is_closed_before_the_second_opens(script: Sc
 
 
 @pytest.mark.parametrize(("interval_s", "before_s"), [(600.0, 150.0), (2400.0, 300.0)])
-def test_a_check_in_is_announced_in_the_last_quarter_and_five_minutes_at_most(
+def test_check_in_is_announced_in_the_last_quarter_and_five_minutes_at_most(
     interval_s: float, before_s: float
 ) -> None:
     assert warning_s(Incident("i1", "Mill Lane", 0, None, interval_s)) == before_s
@@ -263,7 +263,7 @@ def test_a_check_in_is_announced_in_the_last_quarter_and_five_minutes_at_most(
         SetRest("FF-09", True),
     ],
 )
-def test_what_makes_no_sense_is_refused_with_a_sentence(
+def test_impossible_check_in_is_refused_with_a_sentence(
     script: Script, action: CheckIn | SetAccountability | SetRest
 ) -> None:
     before = script.pipeline.checkpoint()
@@ -279,14 +279,14 @@ def test_what_makes_no_sense_is_refused_with_a_sentence(
 @pytest.mark.parametrize(
     ("par_s", "work_s", "opens"), [(30.0, 43_200.0, True), (29.9, 60.0, False)]
 )
-def test_an_incident_has_times_that_can_be_kept(par_s: float, work_s: float, opens: bool) -> None:
+def test_intervals_of_an_incident_are_feasible(par_s: float, work_s: float, opens: bool) -> None:
     script = Script()
     script.act(OpenIncident("i1", "Mill Lane", par_s, work_s))
     assert (script.pipeline.state.shown_incident is not None) is opens
     assert len(refusals(script)) == (not opens)
 
 
-def test_an_old_log_has_the_usual_times() -> None:
+def test_old_log_has_the_default_intervals() -> None:
     script = Script()
     script.act(OpenIncident("i1", "Mill Lane"))
     incident = script.pipeline.state.shown_incident

@@ -1,4 +1,4 @@
-"""Reports of the dispatch centre: offered, updated, dismissed, and of the incident they opened."""
+"""Reports of the dispatch centre: offered, updated, dismissed, and those of their incident."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def offered(script: Script) -> list[str]:
     return [one.report.number for one in state(script).dispatches]
 
 
-def test_a_report_is_offered_and_opens_nothing_by_itself(script: Script) -> None:
+def test_report_is_offered_and_opens_nothing_by_itself(script: Script) -> None:
     script.act(FIRE)
     assert state(script).shown_incident is None
     (view,) = snapshot(state(script), 1, StationFacts(), person_lookup({})).dispatches
@@ -38,7 +38,7 @@ def test_a_report_is_offered_and_opens_nothing_by_itself(script: Script) -> None
     assert view.received_ms is not None
 
 
-def test_a_later_report_replaces_the_earlier_one_and_an_older_one_changes_nothing(
+def test_later_report_replaces_the_earlier_one_and_an_older_one_changes_nothing(
     script: Script,
 ) -> None:
     script.act(FIRE)
@@ -52,7 +52,7 @@ def test_a_later_report_replaces_the_earlier_one_and_an_older_one_changes_nothin
     assert known.received_ns == received_ns
 
 
-def test_an_incident_is_opened_from_a_dispatch_and_takes_its_later_reports(script: Script) -> None:
+def test_incident_is_opened_from_a_dispatch_and_takes_its_later_reports(script: Script) -> None:
     script.act(FIRE)
     script.act(OpenIncident("i1", "Mill Lane", dispatch_number="2024-7"))
     incident = state(script).shown_incident
@@ -62,7 +62,7 @@ def test_an_incident_is_opened_from_a_dispatch_and_takes_its_later_reports(scrip
     script.act(msgspec.structs.replace(FIRE, address="Mill Lane 4", updated_ns=9, has_ended=True))
     incident = state(script).shown_incident
     assert incident is not None
-    assert (incident.name, incident.closed_ns) == ("Mill Lane", None)  # it is the officer's
+    assert (incident.name, incident.closed_ns) == ("Mill Lane", None)  # entered by the officer
     assert incident.dispatch is not None
     assert incident.dispatch.address == "Mill Lane 4"
     assert offered(script) == []
@@ -74,7 +74,7 @@ def test_an_incident_is_opened_from_a_dispatch_and_takes_its_later_reports(scrip
     assert last.remarks == "out"
 
 
-def test_a_dispatch_meanwhile_is_only_offered(script: Script) -> None:
+def test_dispatch_during_an_incident_is_only_offered(script: Script) -> None:
     script.act(OpenIncident("i1", "Mill Lane"))
     script.act(FIRE)
     assert offered(script) == ["2024-7"]
@@ -86,7 +86,7 @@ def test_a_dispatch_meanwhile_is_only_offered(script: Script) -> None:
     assert offered(script) == ["2024-7"]  # nothing is lost by it
 
 
-def test_a_dismissed_dispatch_stays_dismissed_and_can_still_be_opened(script: Script) -> None:
+def test_dismissed_dispatch_stays_dismissed_and_can_still_be_opened(script: Script) -> None:
     script.act(FIRE)
     script.act(DismissDispatch("2024-7"))
     script.act(msgspec.structs.replace(FIRE, updated_ns=6))
@@ -95,7 +95,7 @@ def test_a_dismissed_dispatch_stays_dismissed_and_can_still_be_opened(script: Sc
     assert offered(script) == []
 
 
-def test_what_is_not_there_or_has_opened_one_already_is_refused(script: Script) -> None:
+def test_missing_or_opened_dispatch_is_refused(script: Script) -> None:
     for action in (
         DismissDispatch("2024-7"),
         OpenIncident("i1", "Mill Lane", dispatch_number="2024-7"),
@@ -111,13 +111,13 @@ def test_what_is_not_there_or_has_opened_one_already_is_refused(script: Script) 
     assert "Mill Lane" in refused.reason
 
 
-def test_a_flood_keeps_the_newest(script: Script) -> None:
+def test_flood_keeps_the_newest_dispatches(script: Script) -> None:
     for number in range(KEPT + 5):
         script.act(NoteDispatch(str(number), "json"))
     assert offered(script) == [str(number) for number in range(5, KEPT + 5)]
 
 
-def test_they_survive_a_checkpoint(script: Script) -> None:
+def test_dispatches_survive_a_checkpoint(script: Script) -> None:
     script.act(msgspec.structs.replace(FIRE, lat_deg=52.0, lon_deg=4.0, warnings=("late",)))
     script.act(NoteDispatch("2024-8", "eido"))
     script.act(OpenIncident("i1", "Mill Lane", dispatch_number="2024-8"))
@@ -128,7 +128,7 @@ def test_they_survive_a_checkpoint(script: Script) -> None:
     assert again.shown_incident == state(script).shown_incident
 
 
-def test_remarks_show_names_in_the_place_of_references(script: Script) -> None:
+def test_remarks_show_names_in_place_of_references(script: Script) -> None:
     script.act(msgspec.structs.replace(FIRE, remarks="call {person p1}"))
     script.act(OpenIncident("i1", "Mill Lane", dispatch_number="2024-7"))
     incident = state(script).shown_incident

@@ -1,4 +1,4 @@
-"""How long something lasted, in words."""
+"""Durations in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""People and markers of other teams: shown, bounded, gone when they are old, and replayed."""
+"""People and markers of other teams: shown, bounded, dropped when old, and replayed."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def anchored() -> Script:
     return script
 
 
-def test_a_marker_is_shown_where_it_is_on_the_plan() -> None:
+def test_marker_is_shown_at_its_place_on_the_plan() -> None:
     script = anchored()
     assert take(script, marker(script, "p", 52.501)) == [ExternalMarkersChanged()]
     (view,) = external_views(script.pipeline.state)
@@ -60,7 +60,7 @@ def test_a_marker_is_shown_where_it_is_on_the_plan() -> None:
     assert shown.external == (view,)
 
 
-def test_the_same_again_changes_nothing() -> None:
+def test_repeated_marker_changes_nothing() -> None:
     script = anchored()
     one = marker(script, "p")
     take(script, one)
@@ -70,7 +70,7 @@ def test_the_same_again_changes_nothing() -> None:
     assert external_views(script.pipeline.state) == ()
 
 
-def test_without_an_anchor_nobody_knows_where_on_the_plan_it_is() -> None:
+def test_marker_has_no_place_on_the_plan_without_an_anchor() -> None:
     script = Script()
     take(script, marker(script, "p"))
     assert external_views(script.pipeline.state) == ()
@@ -78,7 +78,7 @@ def test_without_an_anchor_nobody_knows_where_on_the_plan_it_is() -> None:
     assert len(external_views(script.pipeline.state)) == 1
 
 
-def test_of_too_many_the_oldest_go() -> None:
+def test_oldest_markers_are_dropped_beyond_the_limit() -> None:
     script = anchored()
     take(script, *(marker(script, f"m{one}", stale_s=float(one)) for one in range(400)))
     kept = script.pipeline.state.external
@@ -87,7 +87,7 @@ def test_of_too_many_the_oldest_go() -> None:
     assert "county/m99" not in kept
 
 
-def test_an_old_one_stays_as_old_and_then_is_not_shown_any_more() -> None:
+def test_old_marker_keeps_its_age_and_expires() -> None:
     script = anchored()
     take(script, marker(script, "p", stale_s=10.0))
     script.wait(external_markers.OLD_FOR_NS / NS_PER_S)
@@ -97,7 +97,7 @@ def test_an_old_one_stays_as_old_and_then_is_not_shown_any_more() -> None:
     assert ExternalMarkersChanged() in script.outputs[-20:]
 
 
-def test_a_flood_of_one_source_leaves_those_of_the_others() -> None:
+def test_flood_of_one_source_leaves_markers_of_the_others() -> None:
     script = anchored()
     take(script, marker(script, "p", stale_s=1.0))
     alerts = [
@@ -110,7 +110,7 @@ def test_a_flood_of_one_source_leaves_those_of_the_others() -> None:
     assert "county/p" in kept
 
 
-def test_a_replay_and_a_checkpoint_have_them_too() -> None:
+def test_replay_and_checkpoint_have_the_markers() -> None:
     script = anchored()
     take(script, marker(script, "p"), marker(script, "q"))
     again = Script(new_pipeline())

@@ -1,4 +1,4 @@
-"""What a client asks for again is known to have been done: in memory, and from the log."""
+"""Repeated requests of a client are recognised as done: in memory, and from the log."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def done(action_id: str, action: Action = CALL) -> OperatorAction:
     return OperatorAction(Header(STATION_ID, 1, 1, 0), action_id, "ada", action)
 
 
-def test_the_last_keys_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_last_keys_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(idempotency, "KEPT", 3)
     state = StationState()
     ids = [idempotent_action_id("ada", f"k{number}", b"x") for number in range(4)]
@@ -61,18 +61,18 @@ def test_the_last_keys_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     assert known == [False, True, True, True]
 
 
-def test_an_action_without_a_key_is_nothing_that_was_asked_before() -> None:
+def test_action_without_a_key_is_no_repeat() -> None:
     state = StationState()
     record_result(state, done("0000000000000001-7"), "")
     key_and_more = inserted_action_id(
         idempotent_action_id("ada", "k", b"x"), "FF-01"
-    )  # by a forgetting
+    )  # by an erasure
     record_result(state, done(key_and_more), "")
     assert state.idempotency_records == {}
     assert earlier_result(state, "0000000000000001-7") is None
 
 
-def test_one_key_with_another_wish_or_of_another_person_is_another_request() -> None:
+def test_key_with_another_action_or_person_is_another_request() -> None:
     state = StationState()
     first = idempotent_action_id("ada", "k", b"x")
     record_result(state, done(first), "")
@@ -86,7 +86,7 @@ def test_one_key_with_another_wish_or_of_another_person_is_another_request() -> 
     assert earlier_result(state, idempotent_action_id("mia", "k", b"x")) is None
 
 
-def test_why_something_was_refused_is_forgotten_with_whom_it_names() -> None:
+def test_reasons_of_refusals_are_erased_with_the_person_they_name() -> None:
     state = StationState()
     refused, well = idempotent_action_id("ada", "a", b""), idempotent_action_id("ada", "b", b"")
     record_result(state, done(refused), "Ada is resting already")
@@ -105,7 +105,7 @@ def test_restarted_station_answers_repeated_requests(tmp_path: Path) -> None:
         why = station.act(OpenIncident("i2", "Cellar"), action_id=refused).refused
         assert why is not None
     for path in tmp_path.joinpath("checkpoints").iterdir():
-        path.unlink()  # the log alone tells
+        path.unlink()  # from the log alone
     with LiveStation(tmp_path) as station:
         anew = msgspec.structs.replace(EVACUATE, command_id="c2")
         again = station.act(anew, action_id=idempotent_action_id("ada", "c", b"x"))
@@ -119,7 +119,7 @@ def test_restarted_station_answers_repeated_requests(tmp_path: Path) -> None:
 
 @pytest.fixture
 def standby(tmp_path: Path) -> Iterator[tuple[StationEngine, StandbyFeed]]:
-    """It follows, whatever is delivered."""
+    """A standby that follows, whatever is delivered."""
     clock = SteadyClock(SystemClock())
     recorder = Recorder(tmp_path / "standby", clock)
     feed = StandbyFeed(LiveFeed(clock), clock)
@@ -161,7 +161,7 @@ def test_standby_answers_requests_repeated_from_the_other_station(
     assert other.created_id == "c2", "a key counts for who sent it"
 
 
-def test_what_is_asked_while_the_other_station_s_log_is_followed_waits_for_its_end(
+def test_request_during_replication_waits_for_the_end_of_the_other_stations_log(
     tmp_path: Path, standby: tuple[StationEngine, StandbyFeed]
 ) -> None:
     with LiveStation(tmp_path / "leader") as leader:
@@ -180,7 +180,7 @@ def test_what_is_asked_while_the_other_station_s_log_is_followed_waits_for_its_e
     assert done.refused is None, "half of the log does not know the unit"
 
 
-def test_the_drive_forgets_the_words_of_refusals(tmp_path: Path) -> None:
+def test_engine_erases_the_texts_of_refusals(tmp_path: Path) -> None:
     key = idempotent_action_id("ada", "k", b"x")
     with LiveStation(tmp_path) as station:
         station.act(RegisterUnit("FF-01", "one"))

@@ -1,4 +1,4 @@
-"""Several incidents at once: who is in which, and what of one is no matter of the other."""
+"""Several incidents at once: membership, and separation of their state."""
 
 from __future__ import annotations
 
@@ -80,14 +80,14 @@ def test_all_units_are_in_the_first_incident_and_none_in_the_second() -> None:
     assert "of its own" in refusal(script, OpenIncident("b", "Again", beside_others=True))
 
 
-def test_a_unit_that_comes_while_one_is_open_is_in_it() -> None:
+def test_unit_that_appears_while_one_is_open_is_in_it() -> None:
     script = Script()
     script.act(OpenIncident("a", "Mill Lane"))
     script.register("FF-01")
     assert incidents(script) == {"FF-01": "a"}
 
 
-def test_par_and_orders_of_one_are_no_matter_of_the_other(script: Script) -> None:
+def test_par_and_orders_of_one_incident_do_not_affect_the_other(script: Script) -> None:
     script.wait(30)
     assert "name one of them" in refusal(script, CheckIn("", "", True))
     script.act(CheckIn("", "", True, "k1", (), "a"))
@@ -109,7 +109,7 @@ def test_par_and_orders_of_one_are_no_matter_of_the_other(script: Script) -> Non
     assert (everyone.incident_id, set(everyone.deliveries)) == ("", set(UNITS))
 
 
-def test_a_person_is_in_one_and_moves_with_the_own_work_and_no_confirmation(
+def test_person_is_in_one_incident_and_moves_with_their_work_and_no_confirmation(
     script: Script,
 ) -> None:
     script.act(CheckIn("FF-01", "", False))
@@ -127,7 +127,7 @@ def test_a_person_is_in_one_and_moves_with_the_own_work_and_no_confirmation(
     assert (incidents(script)["FF-01"], unit(script, "FF-01").duty) == ("", None)
 
 
-def test_with_another_unit_a_person_stays_in_the_incident(script: Script) -> None:
+def test_person_with_another_unit_stays_in_the_incident(script: Script) -> None:
     script.register("FF-04")
     script.act(Assign("FF-04", "p3"))
     assert incidents(script)["FF-04"] == "b"
@@ -147,14 +147,14 @@ def test_with_another_unit_a_person_stays_in_the_incident(script: Script) -> Non
         (CloseIncident("c"), "no open incident c"),
     ],
 )
-def test_what_makes_no_sense_changes_nothing(script: Script, action: object, reason: str) -> None:
+def test_impossible_membership_changes_nothing(script: Script, action: object, reason: str) -> None:
     before = incidents(script)
     assert reason in refusal(script, action)
     assert incidents(script) == before
     assert not any(site.pins for site in state_of(script).sites.values())
 
 
-def test_each_has_a_ground_of_its_own(script: Script) -> None:
+def test_each_incident_has_its_own_site(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
     script.act(SetAnchor(53.0, 5.0, 0.0, 0.0, "b"))
     script.act(SetPlan(plan(), "b"))
@@ -176,7 +176,7 @@ def test_each_has_a_ground_of_its_own(script: Script) -> None:
     assert len(sites["b"].pins) < MAX_PINS
 
 
-def test_a_path_begins_anew_on_the_other_ground(script: Script) -> None:
+def test_path_begins_anew_on_the_other_site(script: Script) -> None:
     walk(script, "FF-01", 20)
     script.act(SetPin("p", "FF-01", script.t_ns, 5.0, 5.0, 0.5, None, None, 0.0, ""))
     assert unit(script, "FF-01").trails.shown
@@ -213,7 +213,7 @@ def test_closing_one_leaves_the_other(script: Script) -> None:
     assert state_of(script).sites.keys() == {OWN_SITE_ID}
 
 
-def test_all_of_it_goes_on_from_a_checkpoint(script: Script) -> None:
+def test_checkpoint_restores_all_of_it(script: Script) -> None:
     script.act(SetPlan(plan(), "b"))
     walk(script, "FF-03", 5)
     saved = read_checkpoint(script.pipeline.checkpoint())

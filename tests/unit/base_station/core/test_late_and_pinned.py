@@ -1,4 +1,4 @@
-"""What comes late out of a journal solves a pinned trail again, and not for each message."""
+"""Backfilled messages solve a pinned trail again, and not for each message."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ PLAN = b"""{"type":"FeatureCollection",
 "coordinates":[[[-9,10],[9,10],[9,150],[-9,150],[-9,10]]]}},
 {"type":"Feature","properties":{"kind":"wall","floor":0},"geometry":{"type":"LineString",
 "coordinates":[[0.5,20],[0.5,150]]}}]}"""
-TURN_RAD_PER_M = 0.004  # by which the unit's own path turns away while nobody hears it
+TURN_RAD_PER_M = 0.004  # the unit's own path turns by it while there is no contact
 
 
 class Walker:
-    """Walks 60 m north with a link, 60 m without, and 20 m with one; the radio brings what it
-    missed a minute later.
+    """A wearer who walks 60 m north with a link, 60 m without, and 20 m with one; missed messages
+    are backfilled a minute later.
     """
 
     def __init__(self) -> None:
@@ -67,7 +67,7 @@ class Walker:
         return message_factory.gps_fix(header, lat_deg, lon_deg, horizontal_std_m=1.0)
 
     def backfill(self) -> Iterator[list[object]]:
-        """One at a time, ten in a second."""
+        """One message at a time, ten a second."""
         for number, message in enumerate(self.missed):
             self.script.now_s += 0.1
             channel = POSITION if isinstance(message, Position) else GPS
@@ -80,7 +80,7 @@ class Walker:
         return sum(isinstance(one, TrailBackfilled) for one in self.script.tick())
 
     def worst_off_m(self) -> float:
-        """Of the part that was missed."""
+        """Largest error of the missed part."""
         begin_ns = self.script.records[0][0]
         trail = self.script.pipeline.state.units["FF-01"].trails.shown
         return max(abs(one.east_m) for one in trail if 60 < (one.t_ns - begin_ns) / NS_PER_S <= 120)
@@ -91,7 +91,7 @@ def walker() -> Walker:
     return Walker()
 
 
-def test_late_fixes_correct_the_pinned_trail_once_they_are_all_there(walker: Walker) -> None:
+def test_late_fixes_correct_the_pinned_trail_once_all_are_there(walker: Walker) -> None:
     for _ in walker.backfill():
         pass
     walker.script.now_s += 3.0
@@ -100,7 +100,7 @@ def test_late_fixes_correct_the_pinned_trail_once_they_are_all_there(walker: Wal
     assert walker.solved() == 0
 
 
-def test_without_the_pin_what_came_late_is_there_all_the_same(walker: Walker) -> None:
+def test_late_messages_count_without_the_pin(walker: Walker) -> None:
     plain = Walker()
     plain.script.act(RemovePin("p1"))
     for one in (walker, plain):
@@ -111,7 +111,7 @@ def test_without_the_pin_what_came_late_is_there_all_the_same(walker: Walker) ->
     assert trails[0] == trails[1]
 
 
-def test_a_journal_of_hundreds_is_solved_now_and_then(walker: Walker) -> None:
+def test_journal_of_hundreds_is_solved_now_and_then(walker: Walker) -> None:
     """A hundred and twenty messages in twelve seconds."""
     ticks = len(walker.script.outputs)
     for _ in walker.backfill():
@@ -122,7 +122,7 @@ def test_a_journal_of_hundreds_is_solved_now_and_then(walker: Walker) -> None:
     assert len(walker.missed) == 120
 
 
-def test_a_unit_without_pins_waits_for_nothing() -> None:
+def test_unit_without_pins_does_not_wait() -> None:
     script = Script()
     script.register("FF-01")
     for second in range(10):
@@ -133,7 +133,7 @@ def test_a_unit_without_pins_waits_for_nothing() -> None:
     assert script.pipeline.state.late == {}
 
 
-def test_a_plan_that_comes_after_pins_is_heeded_in_seconds(walker: Walker) -> None:
+def test_plan_loaded_after_pins_is_used_within_seconds(walker: Walker) -> None:
     """As it is at the next change of a pin."""
 
     def trail() -> list[tuple[float, float]]:
@@ -162,7 +162,7 @@ def test_longest_waiting_unit_is_solved_first_and_one_at_a_time() -> None:
     assert pop_due(late, 20 * NS_PER_S) is None
 
 
-def test_what_goes_on_coming_is_solved_all_the_same() -> None:
+def test_endless_backfill_is_solved_meanwhile() -> None:
     late: dict[str, PendingResolve] = {}
     for second in range(10):
         request_resolve(late, "FF-01", second * NS_PER_S)
@@ -171,7 +171,7 @@ def test_what_goes_on_coming_is_solved_all_the_same() -> None:
 
 
 @pytest.mark.slow
-def test_a_replay_solves_it_at_the_same_time(walker: Walker) -> None:
+def test_replay_solves_it_at_the_same_time(walker: Walker) -> None:
     for _ in walker.backfill():
         pass
     walker.script.wait(5.0)

@@ -1,4 +1,4 @@
-"""A mayday is told once for each press, whatever of it is lost, late or overtaken."""
+"""Maydays: one alarm for each press, whatever messages of it are lost, late or overtaken."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_mayday_is_immediate_and_the_wearer_cannot_resolve_it(script: Script) ->
     assert changes(script, "mayday")[-1] == ("RESOLVED", "mayday")
 
 
-def test_a_mayday_whose_event_was_lost_is_seen_in_the_status(script: Script) -> None:
+def test_mayday_whose_event_was_lost_is_read_from_the_status(script: Script) -> None:
     script.wait(3, lambda: script.status(U, mayday=True))
     assert changes(script, "mayday") == [("RAISED", "mayday")]
 
@@ -58,8 +58,8 @@ def test_press_known_by_a_status_is_not_raised_again_by_backfill(
     assert changes(script, "mayday")[2:] == [("RAISED", "mayday")]
 
 
-def test_a_mayday_taken_back_before_it_was_pressed_again_stands(script: Script) -> None:
-    """The radio lost the first press and that it was taken back."""
+def test_second_press_after_a_lost_cancellation_stands(script: Script) -> None:
+    """The radio lost the first press and its cancellation."""
     script.wait(1, lambda: script.status(U))
     cancelled = UnitEvent(script.header(U), EventKind.MAYDAY_CANCELLED)
     script.wait(3)
@@ -73,7 +73,7 @@ def test_a_mayday_taken_back_before_it_was_pressed_again_stands(script: Script) 
 
 @pytest.mark.parametrize("is_pressed", [True, False])
 @pytest.mark.parametrize("before_s", [0.0, 0.1])
-def test_a_status_that_an_alert_overtook_presses_nothing_and_takes_nothing_back(
+def test_status_overtaken_by_an_alert_raises_and_cancels_nothing(
     script: Script, is_pressed: bool, before_s: float
 ) -> None:
     words = [EventKind.MAYDAY, EventKind.MAYDAY_CANCELLED, EventKind.MAYDAY]
@@ -90,16 +90,16 @@ def test_a_status_that_an_alert_overtook_presses_nothing_and_takes_nothing_back(
     assert len(changes(script, "mayday")) == count
 
 
-def test_a_press_that_comes_at_once_with_an_earlier_cancellation_is_a_mayday(
+def test_press_received_with_an_earlier_cancellation_is_a_mayday(
     script: Script,
 ) -> None:
-    """What comes out of a journal in one go may have one time."""
+    """Backfilled messages of one batch may have one time."""
     script.event(U, EventKind.MAYDAY_CANCELLED)
     script.event(U, EventKind.MAYDAY)
     assert changes(script, "mayday") == [("RAISED", "mayday")]
 
 
-def test_pressing_again_is_another_mayday(script: Script) -> None:
+def test_second_press_is_another_mayday(script: Script) -> None:
     script.event(U, EventKind.MAYDAY)
     script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
     script.wait(5, lambda: script.status(U, mayday=True))
@@ -120,7 +120,7 @@ def test_press_after_a_cancellation_raises_again(script: Script) -> None:
     assert changes(script, "mayday")[-1] == ("RAISED", "mayday")
 
 
-def test_a_late_mayday_of_an_earlier_run_still_counts(script: Script) -> None:
+def test_late_mayday_of_an_earlier_run_counts(script: Script) -> None:
     script.event(U, EventKind.STARTED)
     late = script.header(U, captured_s=-5.0)
     script.event(U, EventKind.STOPPED)
@@ -128,7 +128,7 @@ def test_a_late_mayday_of_an_earlier_run_still_counts(script: Script) -> None:
     assert changes(script, "mayday") == [("RAISED", "mayday")]
 
 
-def test_a_press_that_was_taken_back_before_the_unit_was_ours_is_no_mayday() -> None:
+def test_press_cancelled_before_the_registration_is_no_mayday() -> None:
     script = Script()
     script.event(U, EventKind.MAYDAY)
     script.event(U, EventKind.MAYDAY_CANCELLED)

@@ -1,5 +1,5 @@
-"""A past that is solved without any word of a heading: each heading leads somewhere else, and fixes
-that come then tell which one it is.
+"""A path that was solved without a heading: each heading leads to another place, and later fixes
+tell which one is right.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ GROUND_RANGE_M, OWN_M = np.array([5.0, -3.0]), np.array([40.0, 0.0])
 
 
 class Walk:
-    """Twenty metres north from where the anchor is, and east from there, a metre a second."""
+    """Twenty metres north from the anchor, and east from there, a metre a second."""
 
     def __init__(self, turned_rad: float) -> None:
         self.script, self._turned_rad, self._walked_m = Script(), turned_rad, 0
@@ -59,14 +59,14 @@ class Walk:
 
 
 def solved(turn_rad: float | None, turn_std_rad: float) -> HeadingHypotheses:
-    """Of a path of 40 m from a place that is known, as the smoother solves it."""
-    if turn_rad is None:  # a plane: neither turn nor scale is known
+    """A path of 40 m from a known place, as the smoother solves it."""
+    if turn_rad is None:  # a plane: neither rotation nor scale is known
         turn, spread = np.zeros(2), 0.5 * np.eye(2)
     else:
         turn = np.array([math.cos(turn_rad), math.sin(turn_rad)])
         across = np.array([-turn[1], turn[0]])
         spread = turn_std_rad**2 * np.outer(across, across) + 1e-4 * np.outer(turn, turn)
-    walked = np.zeros((8, 4))  # of where it began, and how it is turned
+    walked = np.zeros((8, 4))  # begin and rotation of the path
     walked[:4, :4] = np.eye(4)
     walked[:2, 2:] = [[OWN_M[0], -OWN_M[1]], [OWN_M[1], OWN_M[0]]]
     known = np.zeros((4, 4))
@@ -112,7 +112,7 @@ def test_start_set_on_the_way_leaves_the_heading_to_the_fixes(turned_rad: float)
 
 
 def test_fixes_that_refute_a_pin_count_within_ten_seconds() -> None:
-    """Beforehand it could be true: nothing told in which direction the path led."""
+    """It was possible before: the direction of the path was unknown."""
     walk = Walk(1.0)
     walk.set_start()
     walk.go(40)

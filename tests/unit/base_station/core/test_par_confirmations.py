@@ -1,4 +1,6 @@
-"""PAR confirmations: by own unit, by radio, not yet; undoing one; what none of them touches."""
+"""PAR confirmations: by own unit, by radio, not yet; their undoing; and the state that none of them
+changes.
+"""
 
 from __future__ import annotations
 
@@ -141,7 +143,7 @@ def test_undone_it_stands_as_if_it_had_not_been_entered(script: Script) -> None:
     assert confirmed(script) == ("radio", "Ana")
 
 
-def test_undone_too_late_the_alarm_is_raised_at_once(script: Script) -> None:
+def test_confirmation_undone_too_late_raises_the_alarm_at_once(script: Script) -> None:
     script.wait(50)
     script.act(ONE)
     script.wait(20)
@@ -151,7 +153,7 @@ def test_undone_too_late_the_alarm_is_raised_at_once(script: Script) -> None:
     assert duty(script).confirmed == "not_yet"
 
 
-def test_of_a_check_in_of_all_one_is_undone_or_all(script: Script) -> None:
+def test_check_in_of_all_is_undone_for_one_or_for_all(script: Script) -> None:
     script.act(ALL)
     script.act(UndoConfirmation("k1", "FF-02"))
     states = [duty(script, f"FF-0{number}").confirmed for number in (1, 2, 3)]
@@ -162,7 +164,7 @@ def test_of_a_check_in_of_all_one_is_undone_or_all(script: Script) -> None:
     assert refusals(script) == []
 
 
-def test_a_command_that_was_answered_by_radio_waits_again(script: Script) -> None:
+def test_command_answered_by_radio_waits_again_when_undone(script: Script) -> None:
     order(script, CommandKind.EVACUATE)
     script.act(ConfirmCommand("c1", "FF-01"))
     command = script.pipeline.state.commands["c1"]
@@ -172,7 +174,7 @@ def test_a_command_that_was_answered_by_radio_waits_again(script: Script) -> Non
     assert duty(script).open_request_ns is not None
 
 
-def test_the_answer_of_the_own_unit_stands_when_that_by_radio_is_undone(script: Script) -> None:
+def test_answer_of_the_own_unit_stays_when_that_by_radio_is_undone(script: Script) -> None:
     order(script, CommandKind.PAR_REQUEST)
     script.wait(1)
     script.act(ConfirmCommand("c1", "FF-01"))
@@ -196,7 +198,7 @@ def test_the_answer_of_the_own_unit_stands_when_that_by_radio_is_undone(script: 
         CheckIn("FF-02", "", False, "c1"),
     ],
 )
-def test_undo_without_a_clear_confirmation_is_refused(script: Script, action: Action) -> None:
+def test_undo_of_an_ambiguous_confirmation_is_refused(script: Script, action: Action) -> None:
     order(script, CommandKind.PAR_REQUEST)
     script.reply("FF-01", "c1", CommandState.ACKNOWLEDGED)
     script.act(CheckIn("FF-01", "", False))  # of an old log, without an id
@@ -214,7 +216,7 @@ def test_undone_twice_is_refused(script: Script) -> None:
     assert refusals(script) == ["there is no confirmation by radio under this id to undo"]
 
 
-def test_what_was_entered_in_a_closed_incident_stays(script: Script) -> None:
+def test_entry_of_a_closed_incident_stays(script: Script) -> None:
     order(script, CommandKind.EVACUATE)
     script.act(ConfirmCommand("c1", "FF-01"))
     script.act(CloseIncident("i1"))
@@ -222,7 +224,7 @@ def test_what_was_entered_in_a_closed_incident_stays(script: Script) -> None:
     assert refusals(script) == ["its incident is closed: what was entered in it stays as it is"]
 
 
-def test_what_is_kept_to_be_undone_is_bounded(script: Script) -> None:
+def test_number_of_undoable_entries_is_bounded(script: Script) -> None:
     for number in range(2 * CONFIRMATIONS_KEPT):
         script.wait(1)
         order(script, CommandKind.PAR_REQUEST, f"c{number}")

@@ -1,4 +1,4 @@
-"""A mistake of the program costs one event of the past, as it did live."""
+"""Errors of the program cost one event of the past, as they did live."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from tests.rig.station_script import START_NS
 
 @pytest.fixture
 def mistaken(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The program has a mistake in what it does about what units tell of themselves."""
-    walk_with_mayday()  # which the tests replay: made by a program that is right
+    """The program with an error in its handling of units' descriptions."""
+    walk_with_mayday()  # which the tests replay: made by a program without the error
     right = StationPipeline.step
 
     def step(self: StationPipeline, event: StationEvent) -> list[Output]:
@@ -36,7 +36,7 @@ def mistaken(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("mistaken")
-def test_a_mistake_in_the_program_costs_one_event_of_the_past_as_it_did_live(
+def test_program_error_costs_one_event_of_the_past_as_it_did_live(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     source = archive(walk_with_mayday(), tmp_path)
@@ -51,8 +51,8 @@ def test_a_mistake_in_the_program_costs_one_event_of_the_past_as_it_did_live(
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("mistaken")
-def test_a_database_is_made_of_a_log_in_which_the_program_makes_a_mistake(tmp_path: Path) -> None:
-    """A station whose database is lost makes it anew before it starts."""
+def test_database_is_rebuilt_from_a_log_with_a_program_error(tmp_path: Path) -> None:
+    """A station whose database is lost rebuilds it before it starts."""
     with closing(SegmentWriter(tmp_path / "log")) as log:
         for record in walk_with_mayday():
             log.write(*record)

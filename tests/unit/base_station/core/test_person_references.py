@@ -1,4 +1,4 @@
-"""Names are taken out of what operators enter, and put in again where it is shown."""
+"""Names are removed from operators' entries, and inserted again for display."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ NAMES = {person_id: name for name, person_id in ROSTER.items()}
         ("nobody", "nobody"),
     ],
 )
-def test_a_name_that_was_entered_becomes_a_reference_and_is_shown_as_the_name(
+def test_entered_name_becomes_a_reference_and_is_shown_as_the_name(
     text: str, recorded: str
 ) -> None:
     action = with_references(ResolveAlarm("a1", text), ROSTER)
@@ -62,23 +62,23 @@ EVERY_FREE_TEXT: tuple[Action, ...] = (
 
 
 @pytest.mark.parametrize("action", EVERY_FREE_TEXT, ids=lambda one: type(one).__name__)
-def test_every_field_that_an_operator_fills_in_is_recorded_without_names(action: Action) -> None:
+def test_every_free_text_field_is_recorded_without_names(action: Action) -> None:
     recorded = with_references(action, ROSTER)
     assert getattr(recorded, FREE_TEXTS[type(action)]) == "to {person p1}"
 
 
-def test_what_has_no_words_of_an_operator_is_recorded_as_it_is() -> None:
+def test_action_without_free_text_is_recorded_unchanged() -> None:
     assert with_references(Unassign("Ada"), ROSTER) == Unassign("Ada")
     unnamed = ResolveAlarm("a1", "Ada")
     assert with_references(unnamed, {}) is unnamed
     assert {type(one) for one in EVERY_FREE_TEXT} == set(FREE_TEXTS)
 
 
-def test_of_those_who_are_forgotten_no_reference_is_left() -> None:
+def test_erased_people_leave_no_reference() -> None:
     text = f"{reference_to('p1')} met {reference_to('p2')}"
     assert without_people(text, {"p1"}, "#") == "# met {person p2}"
 
 
-def test_two_texts_about_two_people_do_not_differ_in_an_amount_alone() -> None:
+def test_texts_about_two_people_differ_in_more_than_an_amount() -> None:
     assert without_numbers("{person a1} for 5 s") == "{person a1} for  s"
     assert without_numbers("{person a1}") != without_numbers("{person a2}")

@@ -1,4 +1,4 @@
-"""A roll call and an evacuation: who is asked, what answers and what does not."""
+"""Roll calls and evacuations: who is asked, and which events answer."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def script() -> Script:
     return at_work()
 
 
-def test_a_roll_call_on_demand_is_due_in_three_minutes(script: Script) -> None:
+def test_roll_call_on_demand_is_due_in_three_minutes(script: Script) -> None:
     script.act(SetAccountability(1200.0, 2400.0))
     script.wait(10)
     order(script, CommandKind.PAR_REQUEST)
@@ -52,7 +52,7 @@ def test_a_roll_call_on_demand_is_due_in_three_minutes(script: Script) -> None:
     assert "PAR overdue, no answer, on duty for 3 min" in overdue(script)[0].text
 
 
-def test_the_wearers_own_button_answers_a_roll_call_and_having_it_does_not(script: Script) -> None:
+def test_own_button_answers_a_roll_call_and_receipt_does_not(script: Script) -> None:
     script.wait(30)
     order(script, CommandKind.PAR_REQUEST)
     script.reply("FF-01", "c1", CommandState.RECEIVED)
@@ -67,10 +67,10 @@ def test_the_wearers_own_button_answers_a_roll_call_and_having_it_does_not(scrip
 
 
 @pytest.mark.parametrize("dealt_with", [AcknowledgeAlarm, lambda one: ResolveAlarm(one, "seen")])
-def test_who_does_not_answer_the_evacuation_is_overdue_anew(
+def test_member_without_answer_to_the_evacuation_is_overdue_again(
     script: Script, dealt_with: Callable[[str], AcknowledgeAlarm | ResolveAlarm]
 ) -> None:
-    """Somebody had dealt with the alarm of before, and nobody has heard from the wearer since."""
+    """The alarm of before was handled, and there was no contact with the wearer since."""
     script.wait(61)
     before = next(one for one in overdue(script) if one.unit_id == "FF-01")
     script.act(dealt_with(before.alarm_id))
@@ -93,7 +93,7 @@ def test_receipt_of_an_evacuation_confirms_nobody(script: Script) -> None:
 
 
 def test_answer_before_the_evacuation_does_not_confirm_it(script: Script) -> None:
-    """The press was made before the order, and its message came after."""
+    """The press preceded the order, and its message came after."""
     script.status("FF-01")
     order(script, CommandKind.PAR_REQUEST)
     script.wait(5)
@@ -106,7 +106,7 @@ def test_answer_before_the_evacuation_does_not_confirm_it(script: Script) -> Non
     assert duty(script).open_request_ns == ordered_ns
 
 
-def test_to_ask_again_gives_nobody_more_time(script: Script) -> None:
+def test_repeated_request_extends_no_deadline(script: Script) -> None:
     script.act(SetAccountability(1200.0, 2400.0))
     order(script, CommandKind.PAR_REQUEST)
     script.wait(100)
@@ -114,12 +114,12 @@ def test_to_ask_again_gives_nobody_more_time(script: Script) -> None:
     assert left_s(script) == 80.0
 
 
-def test_a_text_asks_nobody_to_be_accounted_for(script: Script) -> None:
+def test_text_requests_no_check_in(script: Script) -> None:
     script.act(SendCommand("c1", CommandKind.TEXT, "", "", True, "hello", 0.0, lasts_s=600.0))
     assert duty(script).open_request_ns is None
 
 
-def test_an_answer_that_waited_for_the_link_counts_from_when_it_was_given(script: Script) -> None:
+def test_answer_delayed_by_the_link_counts_from_its_own_time(script: Script) -> None:
     script.status("FF-01")
     script.wait(10)
     order(script, CommandKind.PAR_REQUEST)
@@ -131,8 +131,8 @@ def test_an_answer_that_waited_for_the_link_counts_from_when_it_was_given(script
     assert left_s(script) == pytest.approx(INTERVAL_S - 30.0, abs=0.1)
 
 
-def test_no_answer_was_given_before_it_was_asked_for(script: Script) -> None:
-    """Whatever a unit believes of the time: who answered is not overdue."""
+def test_answer_is_never_dated_before_its_request(script: Script) -> None:
+    """Whatever the unit's clock: a member who answered is not overdue."""
     script.status("FF-01")
     script.wait(10)
     order(script, CommandKind.PAR_REQUEST)
@@ -144,7 +144,7 @@ def test_no_answer_was_given_before_it_was_asked_for(script: Script) -> None:
 def test_answer_of_a_run_without_known_clock_counts_from_its_request(
     script: Script,
 ) -> None:
-    """The unit started anew before the station heard it; its journal brings the press, which may
+    """The unit restarted before the station received it; its journal brings the press, which may
     have been as long ago as that.
     """
     script.wait(10)
@@ -170,7 +170,7 @@ def test_answer_of_an_unknown_wearer_confirms_no_later_one(
     assert command.deliveries["FF-01"].acknowledged_by == "Bo or, before, Person 1"
 
 
-def test_an_answer_that_comes_after_a_newer_word_changes_nothing(script: Script) -> None:
+def test_answer_behind_a_newer_check_in_changes_nothing(script: Script) -> None:
     script.status("FF-01")
     order(script, CommandKind.PAR_REQUEST)
     script.wait(5)

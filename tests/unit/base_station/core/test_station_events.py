@@ -1,4 +1,4 @@
-"""What a record stands for: only what makes sense steps the pipeline."""
+"""Events of a record: only possible ones step the pipeline."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ def event_at(t_mono_ns: int, t_utc_ns: int) -> Received | Rejected:
     ("t_mono_ns", "t_utc_ns"),
     [(-(2**63), 0), (2**63 - 1, 0), (MONOTONIC_MAX_NS, 0), (0, -1), (0, UTC_MAX_NS)],
 )
-def test_times_that_no_clock_shows_are_kept_and_not_stepped(t_mono_ns: int, t_utc_ns: int) -> None:
-    """Their differences would not fit where live state is saved."""
+def test_impossible_times_are_kept_and_not_stepped(t_mono_ns: int, t_utc_ns: int) -> None:
+    """Their differences would not fit into the saved live state."""
     event = event_at(t_mono_ns, t_utc_ns)
     assert isinstance(event, Rejected)
     assert "make no sense" in event.reason
 
 
-def test_usual_times_are() -> None:
+def test_usual_times_are_stepped() -> None:
     assert isinstance(event_at(10**15, 1_800_000_000 * 10**9), Received)
     assert isinstance(event_at(0, 0), Received)  # 0: the unit does not know UTC

@@ -1,5 +1,5 @@
-"""Beyond what is drawn and what is at hand, a wearer who walks on makes a station grow by a few
-bytes a second, however long; nothing else of it grows.
+"""Memory of a station: beyond what is drawn and kept at hand, a wearer who walks on adds a few
+bytes a second, however long; nothing else grows.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from tests.rig import message_factory
 from tests.rig.live_station import Screen, make_pipeline
 
 UNIT = "FF-01"
-FULL_S, LATE_S = 45 * 60, 81 * 60  # by then trails, and what a late fix is laid on, are full
+FULL_S, LATE_S = 45 * 60, 81 * 60  # by then trails, and points that correct late fixes, are full
 BYTES_A_SECOND = 17.0  # half a megabyte a minute of 500 wearers
 NO_DATA = (type, ModuleType, FunctionType, BuiltinFunctionType)
 
 
 class Room:
-    """A log that takes everything and keeps nothing."""
+    """A log that accepts every record and keeps none."""
 
     problem, little_room, is_behind, refuses = "", "", False, False
 
@@ -49,7 +49,7 @@ class Room:
 
 
 class Station:
-    """What steps events and tells of them, without threads."""
+    """A pipeline and a publisher, without threads."""
 
     def __init__(self) -> None:
         self.pipeline, self.screen, self.projector = make_pipeline(), Screen(), Projector()
@@ -84,9 +84,7 @@ class Station:
 
     @property
     def own_bytes(self) -> int:
-        """Of everything that it holds but the path, and storeys that are learnt: of these there
-        are so many at most.
-        """
+        """Size of everything but the path and learnt storeys; the number of those is bounded."""
         return size_bytes([self.keeping], (self.path, self.pipeline.state.site.learnt_floors))
 
 
@@ -109,7 +107,7 @@ def walk_on(station: Station, walk: Walk, rng: np.random.Generator, until_s: int
 
 
 def size_bytes(of: Iterable[object], but: Iterable[object] = ()) -> int:
-    """Of these and of everything that they refer to."""
+    """Size of these objects and of all objects that they refer to."""
     seen = {*map(id, but)}
     waiting, total = list(of), 0
     while waiting:
@@ -117,7 +115,7 @@ def size_bytes(of: Iterable[object], but: Iterable[object] = ()) -> int:
         if id(one) not in seen and not isinstance(one, NO_DATA):
             seen.add(id(one))
             total += sys.getsizeof(one)
-            # The collector knows nothing of what structs that make no cycles refer to.
+            # The collector does not follow references of structs without cycles.
             inside = msgspec.structs.astuple(one) if isinstance(one, msgspec.Struct) else ()
             waiting += [*inside, *gc.get_referents(one)]
     return total
@@ -125,7 +123,7 @@ def size_bytes(of: Iterable[object], but: Iterable[object] = ()) -> int:
 
 @pytest.fixture(scope="module")
 def grown() -> tuple[int, int]:
-    """Bytes by which the path grew, and everything else."""
+    """Growth of the path, and of everything else, in bytes."""
     rng, station = np.random.default_rng(3), Station()
     walk = Walk.wander(rng, LATE_S + 60.0)
     sizes = []
@@ -137,7 +135,7 @@ def grown() -> tuple[int, int]:
 
 
 @pytest.mark.slow
-def test_a_path_grows_by_a_few_bytes_a_second(grown: tuple[int, int]) -> None:
+def test_path_grows_by_a_few_bytes_a_second(grown: tuple[int, int]) -> None:
     assert 0 < grown[0] < BYTES_A_SECOND * (LATE_S - FULL_S)
 
 
@@ -147,7 +145,7 @@ def test_nothing_else_grows(grown: tuple[int, int]) -> None:
 
 
 @pytest.mark.slow
-def test_so_do_fixes() -> None:
+def test_fixes_grow_by_a_few_bytes_a_second() -> None:
     rng, history = np.random.default_rng(4), PathHistory()
     receiver = Receiver(rng)
     for second in range(LATE_S):

@@ -1,4 +1,4 @@
-"""A unit whose positions an agent elsewhere computes, as the station sees it."""
+"""A unit whose positions a remote agent computes, at the station."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def walk(script: Remote, duration_s: int = 10, tracked_by: str = AGENT) -> None:
     script.wait(duration_s, step)
 
 
-def test_its_positions_and_trail_are_shown_as_if_it_tracked_itself(script: Remote) -> None:
+def test_positions_and_trail_are_shown_as_if_the_unit_tracked_itself(script: Remote) -> None:
     walk(script)
     itself = Remote(tracker="eskf")
     walk(itself, tracked_by=U)
@@ -74,7 +74,7 @@ def test_its_positions_and_trail_are_shown_as_if_it_tracked_itself(script: Remot
     assert set(script.pipeline.state.units) == {U}, "the agent is no unit"
 
 
-def test_the_agent_is_no_sign_of_life_of_the_unit(script: Remote) -> None:
+def test_agent_is_no_sign_of_life_of_the_unit(script: Remote) -> None:
     walk(script)
     last_message_ns = script.unit.last_message_ns
     script.wait(40, lambda: script.position(AGENT, 10.0, 0.0))
@@ -83,7 +83,7 @@ def test_the_agent_is_no_sign_of_life_of_the_unit(script: Remote) -> None:
     assert any(alarm.unit_id == U for alarm in script.alarms)
 
 
-def test_nobody_gives_positions_for_a_unit_that_tracks_itself() -> None:
+def test_agent_gives_no_positions_for_a_unit_that_tracks_itself() -> None:
     script = Remote(tracker="eskf")
     script.position(U, 1.0, 2.0)
     script.position(AGENT, 50.0, 50.0)
@@ -116,7 +116,7 @@ def test_status_takes_strides_from_the_agent_and_the_rest_from_the_unit(script: 
     assert shown.header == script.unit.status.header
 
 
-def test_an_agent_that_is_gone_does_not_keep_its_wearer_walking(script: Remote) -> None:
+def test_lost_agent_does_not_keep_its_wearer_walking(script: Remote) -> None:
     script.status(AGENT, activity=Activity.WALKING, steps=120)
     script.wait(12, lambda: script.status(U, activity=Activity.STILL, steps=0))
     shown = script.unit.shown_status
@@ -135,7 +135,7 @@ def test_stale_strides_of_the_agent_do_not_replace_the_activity(script: Remote) 
     assert (shown.activity, shown.steps) == (Activity.CRAWLING, 120)
 
 
-def test_of_a_unit_that_only_posts_samples_the_agent_tells_the_activity(script: Remote) -> None:
+def test_agent_reports_the_activity_of_a_unit_that_only_posts_samples(script: Remote) -> None:
     assert not script.unit.shown_status
     script.status(AGENT, activity=Activity.WALKING, steps=12, battery=0.1, mayday=True)
     shown = script.unit.shown_status
@@ -151,7 +151,7 @@ def test_unit_that_tracks_itself_shows_its_own_status() -> None:
     assert script.unit.shown_status == script.unit.status
 
 
-def test_a_unit_that_tracks_itself_again_is_not_shown_by_its_agent_s_last_words(
+def test_unit_that_tracks_itself_again_ignores_the_agents_last_messages(
     script: Remote,
 ) -> None:
     script.status(U, steps=10)
@@ -187,14 +187,14 @@ def test_tracking_that_never_began_raises_an_alarm(script: Remote) -> None:
     assert gone(script) == [AlarmState.RAISED]
 
 
-def test_a_unit_that_was_switched_off_needs_no_tracking(script: Remote) -> None:
+def test_switched_off_unit_needs_no_tracking(script: Remote) -> None:
     walk(script)
     script.event(U, EventKind.STOPPED)
     script.wait(60, lambda: None)
     assert gone(script) == []
 
 
-def test_to_switch_the_unit_off_ends_that_nobody_tracks_it(script: Remote) -> None:
+def test_switching_the_unit_off_ends_the_alarm_of_tracking(script: Remote) -> None:
     walk(script)
     script.wait(40, lambda: script.status(U))
     script.event(U, EventKind.STOPPED)
@@ -202,7 +202,7 @@ def test_to_switch_the_unit_off_ends_that_nobody_tracks_it(script: Remote) -> No
     assert script.alarms[-1].by == "the unit was switched off"
 
 
-def test_the_agent_has_its_time_when_the_unit_is_on_again(script: Remote) -> None:
+def test_agent_has_its_grace_time_when_the_unit_is_on_again(script: Remote) -> None:
     walk(script)
     script.event(U, EventKind.STOPPED)
     script.wait(600)
@@ -214,7 +214,7 @@ def test_the_agent_has_its_time_when_the_unit_is_on_again(script: Remote) -> Non
     assert gone(script) == [AlarmState.RAISED]
 
 
-def test_one_word_of_the_agent_and_another_start_of_the_unit_are_no_tracking(
+def test_one_message_of_the_agent_and_a_restart_of_the_unit_are_no_tracking(
     script: Remote,
 ) -> None:
     walk(script)
@@ -227,7 +227,7 @@ def test_one_word_of_the_agent_and_another_start_of_the_unit_are_no_tracking(
     assert gone(script) == [AlarmState.RAISED]
 
 
-def test_a_fall_that_the_agent_has_seen_is_the_units(script: Remote) -> None:
+def test_fall_detected_by_the_agent_is_the_units(script: Remote) -> None:
     outputs = script.event(AGENT, EventKind.FALL)
     assert script.unit.fall.t_ns == script.t_ns
     alarms = [one for one in outputs if isinstance(one, AlarmChange)]
@@ -250,7 +250,7 @@ def test_fixes_of_the_unit_meet_the_path_at_their_time_on_the_agents_clock(
     assert script.fused[-1].north_m == pytest.approx(itself.fused[-1].north_m)
 
 
-def test_positions_that_came_late_fill_the_trail_at_their_time(script: Remote) -> None:
+def test_late_positions_fill_the_trail_at_their_time(script: Remote) -> None:
     walk(script, 5)
     walked = script.header(AGENT)
     script.wait(10, lambda: script.status(U))
@@ -265,7 +265,7 @@ def test_positions_that_came_late_fill_the_trail_at_their_time(script: Remote) -
     )
 
 
-def test_a_second_copy_changes_nothing(script: Remote) -> None:
+def test_second_copy_changes_nothing(script: Remote) -> None:
     walk(script)
     fused = len(script.fused)
     _, key, payload = next(r for r in reversed(script.records) if r[1] == POSITION.key(AGENT))
@@ -273,7 +273,7 @@ def test_a_second_copy_changes_nothing(script: Remote) -> None:
     assert len(script.fused) == fused
 
 
-def test_the_log_replays_the_same_also_from_a_checkpoint(script: Remote) -> None:
+def test_log_replays_the_same_also_from_a_checkpoint(script: Remote) -> None:
     walk(script)
     saved = script.pipeline.checkpoint()
     half = len(script.records)
@@ -321,7 +321,9 @@ def test_fault_of_the_agent_is_reported_as_the_agents(script: Remote, is_late: b
 
 
 def test_agent_before_its_unit_is_shown_once_the_unit_comes() -> None:
-    """An agent that starts says at once what it lacks, and a unit what it is only now and then."""
+    """A starting agent reports its missing inputs at once, and a unit its description only now and
+    then.
+    """
     script = Remote(tracker="eskf")
     script.event(AGENT, EventKind.STORAGE_FAULT, "its disk is full")
     script.wait(2)

@@ -1,4 +1,6 @@
-"""Stages of a unit's message: repeats end, strangers have room, agents speak for units."""
+"""Stages of a unit's message: repeats end, unregistered units are bounded, agents report for
+units.
+"""
 
 from __future__ import annotations
 

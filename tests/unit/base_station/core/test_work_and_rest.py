@@ -1,4 +1,4 @@
-"""How long somebody has worked, and when rest is due."""
+"""Work and rest: how long a wearer has worked, and when rest is due."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_work_begins_inside_and_rest_is_due_after_it(script: Script) -> None:
     assert duty(script).rest_since_ns == script.t_ns
 
 
-def test_who_is_not_sent_to_rest_is_named_again_after_ten_minutes(script: Script) -> None:
+def test_wearer_not_sent_to_rest_is_named_again_after_ten_minutes(script: Script) -> None:
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(121)
     script.act(ResolveAlarm(rest_alarms(script)[-1].alarm_id, "in a moment"))
@@ -58,7 +58,7 @@ def test_who_is_not_sent_to_rest_is_named_again_after_ten_minutes(script: Script
     assert rest_alarms(script)[-1].text == "Person 1: work limit reached (12 min), send to rehab"
 
 
-def test_work_lasts_until_the_rest_wherever_it_goes_on(script: Script) -> None:
+def test_work_lasts_until_the_rest_wherever_it_continues(script: Script) -> None:
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(1)
     assert rest_left_s(script) == 119.0
@@ -72,7 +72,7 @@ def test_work_lasts_until_the_rest_wherever_it_goes_on(script: Script) -> None:
     assert duty(script).work_since_ns is None, "who rests where it is warm does not work"
 
 
-def test_work_after_a_rest_is_counted_from_its_end(script: Script) -> None:
+def test_work_after_a_rest_counts_from_its_end(script: Script) -> None:
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(100)
     script.act(SetRest("FF-01", True))
@@ -84,7 +84,7 @@ def test_work_after_a_rest_is_counted_from_its_end(script: Script) -> None:
     assert rest_alarms(script) == []
 
 
-def test_who_takes_over_a_unit_has_not_worked_yet(script: Script) -> None:
+def test_next_wearer_of_a_unit_has_not_worked_yet(script: Script) -> None:
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(100)
     script.act(Assign("FF-01", "p9", "Person 9", "red", ""))
@@ -95,13 +95,13 @@ def test_who_takes_over_a_unit_has_not_worked_yet(script: Script) -> None:
     assert rest_left_s(script) == 119.0
 
 
-def test_nobody_rests_twice(script: Script) -> None:
+def test_second_rest_is_refused(script: Script) -> None:
     script.act(SetRest("FF-01", True))
     script.act(SetRest("FF-01", True))
     assert refusals(script) == ["Person 1 is resting already"]
 
 
-def test_who_is_given_another_unit_has_worked_before(script: Script) -> None:
+def test_wearer_with_another_unit_keeps_the_work_done(script: Script) -> None:
     """The battery was empty."""
     script.position("FF-01", 9.0, 0.0, distance_m=9.0)  # walked in
     script.wait(100)
@@ -114,7 +114,7 @@ def test_who_is_given_another_unit_has_worked_before(script: Script) -> None:
     assert unit(script).duty is None
 
 
-def test_who_rests_does_so_with_another_unit(script: Script) -> None:
+def test_resting_wearer_rests_with_another_unit(script: Script) -> None:
     script.act(SetRest("FF-01", True))
     script.register("FF-04")
     script.act(Assign("FF-04", "p1", "Person 1", "red", ""))

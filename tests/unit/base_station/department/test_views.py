@@ -1,4 +1,4 @@
-"""A department as an officer sees it."""
+"""Views of a department for an officer."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def department(tmp_path: Path) -> Iterator[Department]:
     one.store.close()
 
 
-def test_a_department_shows_incidents_alarms_and_who_needs_help_first(
+def test_department_shows_incidents_alarms_and_people_in_need_first(
     department: Department,
 ) -> None:
     assert department.views.overview().stations[0].state == "never"
@@ -132,7 +132,7 @@ def test_a_department_shows_incidents_alarms_and_who_needs_help_first(
     assert texts[0] == "FF-02 fall raised: Anna Berg fell"
 
 
-def test_a_silent_station_is_away_and_shown_as_last_reported_also_after_a_restart(
+def test_silent_station_is_away_and_shown_as_last_reported_also_after_a_restart(
     department: Department,
 ) -> None:
     department.show(department.person("FF-01"))
@@ -145,7 +145,7 @@ def test_a_silent_station_is_away_and_shown_as_last_reported_also_after_a_restar
         department.start()
 
 
-def test_a_clock_offset_of_hours_is_reported_and_ages_and_times_are_right(
+def test_clock_offset_of_hours_is_reported_and_ages_and_times_are_right(
     department: Department,
 ) -> None:
     ahead_ms = 3 * HOUR_MS
@@ -175,7 +175,7 @@ def test_two_machines_with_one_name_are_reported_until_one_is_silent(
     assert department.views.overview().problems == ()
 
 
-def test_what_cannot_be_read_or_stored_gets_no_receipt_of_storage(department: Department) -> None:
+def test_unreadable_or_unstored_event_gets_no_receipt_of_storage(department: Department) -> None:
     department.intake.take_summary(department_summary_key("engine-7"), b"rubbish")
     assert list(department.intake.take_events(department_events_key("engine-7"), "", b"no")) == []
     assert "2 reports of stations could not be read" in department.intake.problem
@@ -183,7 +183,7 @@ def test_what_cannot_be_read_or_stored_gets_no_receipt_of_storage(department: De
     refused = department.send(PersonEvent("p1", "Anna", "", ""))
     assert (refused.stored_seq, refused.refusal != "") == (0, True)
     department.show(department.person("FF-01", mayday=True))
-    view = department.views.overview()  # what summaries have is shown all the same
+    view = department.views.overview()  # the content of summaries is shown all the same
     ((name, maydays),) = [(one.name, one.maydays) for one in view.incidents]
     assert (name, maydays, len(view.problems)) == ("Incident i1", 1, 1)
     department.store.hangs = lambda: False

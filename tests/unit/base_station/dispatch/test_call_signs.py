@@ -1,4 +1,4 @@
-"""Call signs in words, and the crews and units that are meant."""
+"""Call signs in words, and the crews and units that they mean."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def test_settings_come_before_the_usual_words() -> None:
     assert signs.in_words("DLK 3") == "Drehleiter 3"
 
 
-def test_what_is_known_is_matched_however_it_is_written() -> None:
+def test_known_call_sign_is_matched_in_any_spelling() -> None:
     units = [KnownUnit("E12-A", "hose"), KnownUnit("FF-07", "ladder 4"), KnownUnit("FF-08", "--")]
     found = CallSigns({}).matched(
         ("E12", "L04", "E12-a", "E1", "HLF 20/1", "--"), ("Engine 12", "hlf 20-1", "--"), units

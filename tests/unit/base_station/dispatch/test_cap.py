@@ -1,4 +1,4 @@
-"""CAP alerts: where they are, how long they hold, what replaces them, and hostile ones."""
+"""CAP alerts: their places, their duration, replacements, and hostile ones."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def read(body: bytes) -> CapAlert:
     return read_alert(body, NOW_NS)
 
 
-def test_a_circle_is_a_marker_until_it_expires() -> None:
+def test_circle_is_a_marker_until_it_expires() -> None:
     shown = read(alert())
     assert (shown.alert_id, shown.outcome) == ("weather@example.org,a1", "shown")
     (marker,) = shown.markers
@@ -56,14 +56,14 @@ def test_a_circle_is_a_marker_until_it_expires() -> None:
     assert read(alert(version="1.1")).markers == shown.markers
 
 
-def test_a_polygon_has_the_circle_that_covers_it() -> None:
+def test_polygon_has_the_circle_that_covers_it() -> None:
     (marker,) = read(alert(POLYGON)).markers
     assert marker.lat_deg == pytest.approx(52.5)
     assert marker.lon_deg == pytest.approx(13.4)
     assert marker.radius_m == pytest.approx(13_020, abs=100)  # half of 22.2 km by 13.6 km
 
 
-def test_an_alert_without_an_end_holds_for_a_day_and_none_longer_than_a_week() -> None:
+def test_alert_without_an_end_holds_for_a_day_and_none_longer_than_a_week() -> None:
     (open_end,) = read(alert(expires="")).markers
     assert open_end.stale_ns == open_end.t_ns + 24 * HOUR_NS
     endless = read(alert(expires="<expires>2099-01-01T00:00:00Z</expires>"))
@@ -95,12 +95,12 @@ def test_an_alert_without_an_end_holds_for_a_day_and_none_longer_than_a_week() -
         (alert("<circle>95,13.4 1</circle>"), "without a place"),
     ],
 )
-def test_what_is_not_shown(body: bytes, outcome: str) -> None:
+def test_irrelevant_alerts_are_not_shown(body: bytes, outcome: str) -> None:
     read_one = read(body)
     assert (read_one.outcome, read_one.markers) == (outcome, ())
 
 
-def test_a_flood_of_areas_is_cut_off_and_named() -> None:
+def test_flood_of_areas_is_cut_off_and_named() -> None:
     shown = read(alert(CIRCLE * 10_000))
     assert [one.marker_id for one in shown.markers] == list(marker_ids(shown.alert_id))
     assert any(str(10_000 - MOST_SHAPES) in one for one in shown.warnings)
@@ -121,13 +121,13 @@ def test_a_flood_of_areas_is_cut_off_and_named() -> None:
         alert(identifier="x" * 200),
     ],
 )
-def test_what_is_no_alert_is_refused(body: bytes) -> None:
+def test_text_that_is_no_alert_is_refused(body: bytes) -> None:
     with pytest.raises(WireError):
         read(body)
 
 
 class Plan:
-    """What consoles show of other systems."""
+    """The markers of other systems that consoles show."""
 
     def __init__(self) -> None:
         self.shown: dict[str, ExternalMarker] = {}
@@ -145,7 +145,7 @@ class Plan:
 REFERENCE = "weather@example.org,a1,2026-03-01T13:00:00-00:00"
 
 
-def test_an_update_replaces_and_a_cancellation_takes_off() -> None:
+def test_update_replaces_and_a_cancellation_removes() -> None:
     plan = Plan()
     plan.take(alert(3 * CIRCLE))
     plan.take(alert(CIRCLE))  # again, with fewer areas
@@ -158,19 +158,19 @@ def test_an_update_replaces_and_a_cancellation_takes_off() -> None:
     assert plan.shown == {}
 
 
-def test_an_alert_that_comes_behind_its_own_cancellation_is_not_shown() -> None:
+def test_alert_behind_its_own_cancellation_is_not_shown() -> None:
     plan = Plan()
     plan.take(alert(identifier="a3", kind="Cancel", references=REFERENCE))
     assert plan.take(alert()).outcome == "replaced"
     assert plan.shown == {}
 
 
-def test_a_cancelled_exercise_takes_nothing_off() -> None:
+def test_cancelled_exercise_removes_nothing() -> None:
     plan = Plan()
     plan.take(alert())
     plan.take(alert(identifier="a3", kind="Cancel", status="Exercise", references=REFERENCE))
     assert len(plan.shown) == 1
 
 
-def test_a_cancellation_of_nothing_is_named() -> None:
+def test_cancellation_without_alert_is_named() -> None:
     assert read(alert(kind="Cancel")).warnings == ("it names no alert that it updates or cancels",)

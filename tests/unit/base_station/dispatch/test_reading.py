@@ -1,4 +1,4 @@
-"""Reports of the dispatch centre: EIDO and plain JSON, and everything that can be wrong in them."""
+"""Reports of the dispatch centre: EIDO and plain JSON, and their faults."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def at(text: str) -> int:
 
 
 def eido(**change: Any) -> dict[str, Any]:
-    """An EIDO of the final version, with what a station uses and what it has no use for."""
+    """An EIDO of the final version, with used and unused parts."""
     body = {
         "$id": "urn:emergency:uid:incidentid:a56:bcf.example.org",
         "lastUpdateTimeStamp": "2026-03-01T13:05:00Z",
@@ -142,7 +142,7 @@ def test_an_eido() -> None:
     assert "Mr Caller" not in str(report)
 
 
-def test_an_eido_of_the_first_version() -> None:
+def test_eido_of_the_first_version() -> None:
     report = read(
         {
             "LastUpdateTimeStamp": "2026-03-01T13:05:00Z",
@@ -187,7 +187,7 @@ def test_codes_are_shown_in_the_words_of_the_settings() -> None:
         *(b'{"eidoVersion": "1.0"}', b'{"incidentComponent": 5}', b'{"incidentComponent": [[]]}'),
     ],
 )
-def test_without_a_number_nothing_is_taken(body: bytes) -> None:
+def test_report_without_a_number_is_refused(body: bytes) -> None:
     with pytest.raises(WireError):
         read_report(body, DispatchConfig(), NOW_NS)
 
@@ -210,18 +210,18 @@ def test_without_a_number_nothing_is_taken(body: bytes) -> None:
         ({"ended": "yes"}, "has_ended", "neither"),
     ],
 )
-def test_a_wrong_part_is_left_out_and_named(change: dict[str, Any], lost: str, word: str) -> None:
+def test_wrong_part_is_left_out_and_named(change: dict[str, Any], lost: str, word: str) -> None:
     report = read(PLAIN | {"type_code": ""} | change)
     assert not getattr(report, lost)
     assert report.address == PLAIN["address"]
     assert any(word in warning for warning in report.warnings)
 
 
-def test_a_time_of_change_in_the_far_future_does_not_keep_later_reports_out() -> None:
+def test_future_time_of_change_does_not_keep_later_reports_out() -> None:
     assert read(PLAIN | {"updated": "2099-01-01T00:00:00Z"}).updated_ns == NOW_NS
 
 
-def test_too_much_is_cut_off() -> None:
+def test_report_beyond_the_limits_is_cut_off() -> None:
     many = [f"E{number}" for number in range(10_000)]
     report = read(PLAIN | {"units": many, "address": "x" * 5000, "what": 1, "else": 2})
     assert report.units == tuple(many[:MOST_UNITS])
@@ -244,13 +244,13 @@ def test_too_much_is_cut_off() -> None:
         POINT.replace("39.74 -75.55", "nan nan"),
     ],
 )
-def test_a_location_that_cannot_be_used_is_left_out(location: str) -> None:
+def test_unusable_location_is_left_out(location: str) -> None:
     report = read(eido(locationComponent=[{"locationByValue": location}]))
     assert (report.address, report.lat_deg) == ("", None)
     assert len(report.warnings) == 1
 
 
-def test_a_location_elsewhere_is_not_fetched() -> None:
+def test_location_by_reference_is_not_fetched() -> None:
     elsewhere = [{"locationByReferenceUrl": "https://lis.example.org/1"}, 5, None]
     report = read(eido(locationComponent=elsewhere))
     assert report.warnings == (

@@ -1,4 +1,4 @@
-"""Which records from the bus the station takes for its log."""
+"""State after the first message of a unit."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def state() -> StationState:
         f"muster/v1/{U}/up/later",  # of a newer program
     ],
 )
-def test_a_message_that_came_before_is_not_logged_again(state: StationState, key: str) -> None:
+def test_repeated_message_is_not_logged_again(state: StationState, key: str) -> None:
     assert classify(key, event_of(T_NS, key, temperature(1)), state) is Admission.DUPLICATE
     new = key.replace("7/1/", "7/2/")
     assert classify(new, event_of(T_NS, new, temperature(2)), state) is Admission.ACCEPT
@@ -59,7 +59,7 @@ def test_unreadable_message_is_kept_and_forged_one_rejected(
     assert classify(key, event_of(T_NS, key, b"rotten"), state) is admission
 
 
-def test_one_more_start_than_there_can_be_is_left_out_and_comes_from_the_journal(
+def test_start_beyond_the_possible_rate_is_left_out_and_comes_from_the_journal(
     state: StationState,
 ) -> None:
     for boot_id in range(8, 7 + STARTS_KEPT):

@@ -1,4 +1,4 @@
-"""The live state is saved beside the drive, and never knows more than the log."""
+"""Checkpoints of the live state are written beside the engine, and never exceed the log."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STATE = make_pipeline().checkpoint()
 
 
 class Log:
-    """Its disk takes what it is told to."""
+    """A log whose disk writes as much as the test allows."""
 
     problem = little_room = ""
     is_behind = refuses = False
@@ -40,7 +40,7 @@ def reported(health: HealthMonitor) -> list[tuple[str, str]]:
     return [(report.part, report.text) for report in health.check({}, {})]
 
 
-def test_what_a_crash_would_take_from_the_log_is_not_saved(tmp_path: Path) -> None:
+def test_record_that_a_crash_would_lose_is_not_saved(tmp_path: Path) -> None:
     log, checkpoints, health = Log(), Checkpoints(tmp_path), HealthMonitor()
     writer = CheckpointWriter(log, checkpoints, health)
     for takes, t_ns in ((True, 100), (False, 200)):
@@ -81,7 +81,7 @@ def test_failed_checkpoint_is_reported_until_one_is_saved(
     assert reported(health) == []
 
 
-def test_one_is_saved_after_the_other(tmp_path: Path) -> None:
+def test_checkpoints_are_saved_one_after_the_other(tmp_path: Path) -> None:
     log, checkpoints = Log(), Checkpoints(tmp_path)
     writer = CheckpointWriter(log, checkpoints, HealthMonitor())
     writer.begin((100, 1), STATE)
@@ -93,10 +93,10 @@ def test_one_is_saved_after_the_other(tmp_path: Path) -> None:
     assert saved.t_ns == 200
 
 
-def test_people_are_not_held_up_by_a_disk_that_does_not_take_what_is_saved(
+def test_operators_do_not_wait_for_a_disk_that_refuses_checkpoints(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """But for who is to be forgotten: what is being saved has them in it."""
+    """Except for an erasure: the checkpoint in progress holds the person."""
     begun, answers = Event(), Event()
 
     def hang(*_: object) -> None:

@@ -1,4 +1,4 @@
-"""What consoles are told of a pipeline, and how much of it at a time."""
+"""Publication of a pipeline's state to consoles: content and portions."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def alarm_of(unit_id: str) -> AlarmChange:
 
 
 def new_deltas(screen: Screen) -> list[Delta]:
-    """What was told since this was asked last."""
+    """Deltas since the last call."""
     deltas = screen.deltas.copy()
     screen.deltas.clear()
     return deltas
@@ -109,7 +109,7 @@ def test_alarms_commands_and_pins_are_urgent_until_they_are_published() -> None:
 
 
 def test_erasure_resets_all_consoles_whatever_was_pending() -> None:
-    """Alarms that a console was told before, or is about to be, may name somebody."""
+    """Alarms that a console has shown, or is about to, may name the person."""
     screen = Screen()
     publisher = walked(screen)
     publisher.mark_changed([alarm_of("FF-03"), NamesErased()])
@@ -136,7 +136,7 @@ def test_another_incident_resets_all_consoles_with_what_was_pending() -> None:
     assert (after.alarms, after.pins, after.seq) == ((), None, whole.seq + 1)
 
 
-def test_another_plan_or_anchor_resets_all_consoles() -> None:
+def test_other_plan_or_anchor_resets_all_consoles() -> None:
     screen, pipeline = Screen(), make_pipeline()
     publisher = walked_in(pipeline, screen)
     geojson = b'{"type":"FeatureCollection","features":[],"muster":{"frame":"site-m"}}'
@@ -164,7 +164,7 @@ def test_console_that_joins_continues_with_the_next_delta() -> None:
     assert after.pins is None
 
 
-def test_who_joins_gets_every_trail_beside_the_snapshot() -> None:
+def test_console_that_joins_gets_every_trail_beside_the_snapshot() -> None:
     shown, trails = walked(Screen()).snapshot()
     assert [unit.unit_id for unit in shown.units] == UNITS
     assert {unit_id: msgspec.json.decode(points) for unit_id, points in trails.items()} == {
@@ -173,7 +173,7 @@ def test_who_joins_gets_every_trail_beside_the_snapshot() -> None:
 
 
 def test_backfilled_trails_are_published_some_at_a_time() -> None:
-    """A radio that is back fills everybody's at once; positions do not wait for all of them."""
+    """A radio that is back fills all trails at once; positions do not wait for all of them."""
     screen = Screen()
     publisher = walked(screen)
     publisher.mark_changed([TrailBackfilled(unit_id) for unit_id in UNITS])
@@ -188,7 +188,7 @@ def test_backfilled_trails_are_published_some_at_a_time() -> None:
     assert sorted(one for trails in filled for one in trails) == UNITS
 
 
-def test_reset_replaces_what_was_not_published_yet() -> None:
+def test_reset_replaces_unpublished_changes() -> None:
     screen = Screen()
     publisher = walked(screen)
     publisher.mark_changed([TrailBackfilled(unit_id) for unit_id in UNITS])

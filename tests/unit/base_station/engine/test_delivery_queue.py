@@ -1,4 +1,6 @@
-"""Messages that wait for an answer: answered once they are on the disk, and not before."""
+"""Messages that wait for an acknowledgement: acknowledged once they are on the disk, and not
+before.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ KEY = POSITION.key("FF-01")
 
 
 class Disk:
-    """A log that keeps everything, until it does not."""
+    """A log that keeps every record until it is set not to."""
 
     problem = ""
     little_room = ""
@@ -42,7 +44,7 @@ class Disk:
 
 
 class Engine:
-    """Admits as the engine does."""
+    """An engine that admits every message."""
 
     def __init__(self, clock: ManualClock) -> None:
         self.disk = Disk()
@@ -65,7 +67,7 @@ def engine(clock: ManualClock) -> Engine:
     return Engine(clock)
 
 
-def test_a_message_is_answered_once_it_is_on_the_disk(
+def test_message_is_acknowledged_once_it_is_on_the_disk(
     engine: Engine, make_position: Callable[..., Position]
 ) -> None:
     message = (KEY, encode(make_position()))
@@ -80,7 +82,7 @@ def test_a_message_is_answered_once_it_is_on_the_disk(
     assert engine.disk.flushed == 1
 
 
-def test_what_a_full_disk_does_not_take_is_refused_and_can_be_sent_again(
+def test_message_refused_by_a_full_disk_can_be_sent_again(
     engine: Engine, make_position: Callable[..., Position]
 ) -> None:
     message = (KEY, encode(make_position()))
@@ -95,7 +97,7 @@ def test_what_a_full_disk_does_not_take_is_refused_and_can_be_sent_again(
     assert taken.result(0.0).count(Admission.ACCEPT) == 1
 
 
-def test_what_is_not_on_the_disk_in_time_is_not_acknowledged(
+def test_message_not_on_the_disk_in_time_is_not_acknowledged(
     engine: Engine, make_position: Callable[..., Position]
 ) -> None:
     engine.disk.flushes_in_time = False
@@ -105,7 +107,7 @@ def test_what_is_not_on_the_disk_in_time_is_not_acknowledged(
         late.result(0.0)
 
 
-def test_an_engine_that_ends_refuses_what_waits(engine: Engine) -> None:
+def test_stopping_engine_refuses_waiting_messages(engine: Engine) -> None:
     waiting = engine.queue.put([(KEY, b"")])
     engine.queue.refuse_waiting()
     with pytest.raises(StoreError, match="stopping"):

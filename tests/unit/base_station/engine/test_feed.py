@@ -55,7 +55,7 @@ def test_wake_ends_the_wait_even_if_it_came_first() -> None:
     assert feed.take(60.0) == []
 
 
-def test_beyond_the_bound_live_data_is_dropped_and_counted_but_alerts_are_not() -> None:
+def test_live_data_beyond_the_bound_is_dropped_and_counted_but_alerts_are_not() -> None:
     feed = LiveFeed(ManualClock(), records_max=3)
     for number in range(5):
         feed.offer(KEY, bytes([number]))
@@ -80,7 +80,7 @@ def test_overflow_is_reported_while_it_lasts_and_for_a_minute() -> None:
     assert feed.overflowed == 3
 
 
-def test_the_bound_holds_for_bytes_too() -> None:
+def test_bound_holds_for_bytes_too() -> None:
     feed = LiveFeed(ManualClock(), bytes_max=100)
     for _ in range(10):
         feed.offer("elsewhere", bytes(60))
@@ -97,7 +97,7 @@ def deliver(feed: LiveFeed, count: int) -> None:
         feed.deliver(KEY, b"late")
 
 
-def test_what_is_live_goes_first_and_what_can_wait_follows_in_portions() -> None:
+def test_live_records_go_first_and_deferred_ones_follow_in_portions() -> None:
     feed = LiveFeed(ManualClock())
     late = [number.to_bytes(2) for number in range(100)]
     for payload in late:
@@ -112,7 +112,7 @@ def test_what_is_live_goes_first_and_what_can_wait_follows_in_portions() -> None
     assert first[1:] + second[1:] == late[: len(first) + len(second) - 2]
 
 
-def test_station_time_never_goes_back_between_what_is_live_and_what_can_wait() -> None:
+def test_station_time_never_goes_back_between_live_and_deferred_records() -> None:
     machine = ManualClock()
     feed = LiveFeed(machine)
     taken: list[tuple[int, str, bytes]] = []
@@ -127,7 +127,7 @@ def test_station_time_never_goes_back_between_what_is_live_and_what_can_wait() -
     assert payloads_of(taken).count(b"late") == payloads_of(taken).count(b"live") == 100
 
 
-def test_who_brings_what_can_wait_waits_and_takes_no_room_from_what_is_live() -> None:
+def test_sender_of_deferred_records_waits_and_takes_no_room_from_live_ones() -> None:
     feed = LiveFeed(ManualClock(), records_max=10)
     count = 5000
     bringing = Thread(target=deliver, args=(feed, count))
@@ -144,8 +144,8 @@ def test_who_brings_what_can_wait_waits_and_takes_no_room_from_what_is_live() ->
 
 
 @pytest.mark.parametrize("key", [KEY, ALERT])
-def test_what_was_delivered_waits_until_who_took_it_comes_again(key: str) -> None:
-    """It is in no log before: nobody may take it for brought."""
+def test_delivered_record_is_pending_until_the_next_take(key: str) -> None:
+    """It is in no log before: it must not count as stored."""
     feed = LiveFeed(ManualClock())
     waited = [feed.late_waits]
     feed.deliver(key, b"fetched")
@@ -157,7 +157,7 @@ def test_what_was_delivered_waits_until_who_took_it_comes_again(key: str) -> Non
     assert waited == [False, True, True, False]
 
 
-def test_what_is_delivered_meanwhile_waits_too() -> None:
+def test_record_delivered_meanwhile_waits_too() -> None:
     feed = LiveFeed(ManualClock())
     feed.deliver(KEY, b"fetched")
     feed.take(60.0)
@@ -168,7 +168,7 @@ def test_what_is_delivered_meanwhile_waits_too() -> None:
     assert not feed.late_waits
 
 
-def test_an_alert_that_was_fetched_waits_behind_nothing_that_can_wait() -> None:
+def test_fetched_alert_waits_behind_no_deferred_record() -> None:
     feed = LiveFeed(ManualClock())
     for _ in range(100):
         feed.deliver(KEY, b"late")
@@ -176,7 +176,7 @@ def test_an_alert_that_was_fetched_waits_behind_nothing_that_can_wait() -> None:
     assert payloads_of(feed.take(60.0))[0] == b"fell"
 
 
-def test_a_closed_feed_lets_go_of_who_waits() -> None:
+def test_closed_feed_releases_waiting_senders() -> None:
     feed = LiveFeed(ManualClock())
     bringing = Thread(target=deliver, args=(feed, 5000))
     bringing.start()
@@ -184,7 +184,7 @@ def test_a_closed_feed_lets_go_of_who_waits() -> None:
     bringing.join()
 
 
-def test_a_log_feeds_its_records_and_asks_for_the_flush_first(tmp_path: Path) -> None:
+def test_log_feeds_its_records_and_requests_the_flush_first(tmp_path: Path) -> None:
     writer = SegmentWriter(tmp_path)
     for second in range(10):
         writer.write(second * NS_PER_S, KEY if second % 2 else ALERT, bytes([second]))
@@ -194,7 +194,7 @@ def test_a_log_feeds_its_records_and_asks_for_the_flush_first(tmp_path: Path) ->
     assert [payload[0] for _, _, payload in window] == [3, 5, 7]
 
 
-def test_log_feed_notices_rewriting_and_not_growth(
+def test_log_feed_detects_rewriting_and_not_growth(
     tmp_path: Path,
 ) -> None:
     first, second = (tmp_path / f"{number:06d}-20261122T070000Z.mcap" for number in (1, 2))

@@ -1,4 +1,4 @@
-"""What other programs are shown of a log: places in WGS-84 and alarms as log lines."""
+"""Topics of a log for other programs: places in WGS-84 and alarms as log lines."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def location_of(fused: FusedPosition) -> LocationFix:
     return LocationFix.FromString(payload)
 
 
-def test_a_place_is_turned_by_the_plans_rotation() -> None:
+def test_place_is_rotated_by_the_plans_rotation() -> None:
     fix = location_of(FUSED)
     assert fix.longitude > 10.0
     assert fix.latitude == pytest.approx(60.0, abs=1e-4)
@@ -66,19 +66,19 @@ def test_a_place_is_turned_by_the_plans_rotation() -> None:
     assert fix.timestamp.ToNanoseconds() == T0_NS
 
 
-def test_the_covariance_is_east_north_up() -> None:
+def test_covariance_is_east_north_up() -> None:
     # The plan's north is east, its east is south: the mixed term changes its sign.
     assert list(location_of(FUSED).position_covariance) == pytest.approx(
         [4.0, -1.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.25]
     )
 
 
-def test_an_unknown_heading_is_left_out() -> None:
+def test_unknown_heading_is_left_out() -> None:
     unknown = msgspec.structs.replace(FUSED, heading_std_rad=math.pi)
     assert not location_of(unknown).HasField("heading")
 
 
-def test_a_unit_is_placed_once_a_second_and_only_with_an_anchor() -> None:
+def test_unit_is_placed_once_a_second_and_only_with_an_anchor() -> None:
     topics = FoxgloveTopics()
     assert topics.of(FUSED, None) is None
     assert topics.of(FUSED, ANCHOR) is not None
@@ -87,7 +87,7 @@ def test_a_unit_is_placed_once_a_second_and_only_with_an_anchor() -> None:
     assert topics.of(msgspec.structs.replace(FUSED, t_meas_ns=T0_NS + NS_PER_S), ANCHOR)
 
 
-def test_an_alarm_is_a_log_line() -> None:
+def test_alarm_is_a_log_line() -> None:
     shown = FoxgloveTopics().of(ALARM, None)
     assert shown is not None
     topic, payload = shown
@@ -118,7 +118,7 @@ def wall(*line: tuple[float, float]) -> bytes:
     return msgspec.json.encode(plan)
 
 
-def test_the_building_lies_on_the_map_below_its_people() -> None:
+def test_building_lies_on_the_map_below_its_people() -> None:
     plan = read_plan(wall((0.0, 0.0), (0.0, 100.0)))
     shown = FoxgloveTopics().plan(plan, ANCHOR, T0_NS)
     assert shown is not None

@@ -1,4 +1,4 @@
-"""The station's own problems are told once, and are over when they stay away."""
+"""Problems of the station itself are reported once, and end when they stay away."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ WELL = {"log": ""}
 
 
 def reports(checks: list[dict[str, str]], known: dict[str, str] | None = None) -> list[str]:
-    """What is reported over the checks, with the state that follows the reports."""
+    """Reports over the checks, with the state that follows the reports."""
     health, known, reported = HealthMonitor(), dict(known or {}), []
     for now in checks:
         for report in health.check(now, known):
@@ -30,34 +30,36 @@ def test_problem_is_reported_once_and_its_end_once() -> None:
     assert reports([FULL] * 3 + [WELL] * 20) == ["the disk is full", ""]
 
 
-def test_a_part_that_stutters_is_one_problem() -> None:
+def test_intermittent_part_is_one_problem() -> None:
     assert reports([FULL, WELL, WELL] * 20) == ["the disk is full"]
 
 
-def test_it_is_well_only_after_a_while() -> None:
+def test_problem_ends_only_after_a_while() -> None:
     assert reports([FULL] + [WELL] * (WELL_AFTER - 1)) == ["the disk is full"]
     assert reports([FULL] + [WELL] * WELL_AFTER) == ["the disk is full", ""]
 
 
-def test_a_part_that_is_only_named_when_it_fails_gets_well_too() -> None:
+def test_part_that_is_only_named_when_it_fails_recovers_too() -> None:
     assert reports([{"pipeline": "a mistake"}] + [{}] * WELL_AFTER) == ["a mistake", ""]
 
 
-def test_a_problem_from_before_a_restart_ends_where_its_part_is_watched() -> None:
+def test_problem_from_before_a_restart_ends_where_its_part_is_watched() -> None:
     assert reports([WELL] * WELL_AFTER, {"log": "the disk is full"}) == [""]
 
 
 @pytest.mark.parametrize("part", ["drive", "pipeline", "bus", "checkpoint"])
-def test_and_where_the_part_is_only_named_when_it_fails(part: str) -> None:
+def test_problem_from_before_a_restart_ends_where_its_part_is_only_named_when_it_fails(
+    part: str,
+) -> None:
     assert reports([WELL] * (WELL_AFTER - 1), {part: "it failed"}) == []
     assert reports([WELL] * WELL_AFTER, {part: "it failed"}) == [""]
 
 
-def test_what_others_reported_is_left_to_them() -> None:
+def test_problems_reported_by_others_are_left_to_them() -> None:
     assert reports([WELL] * 20, {"rule-heat": "the rule failed"}) == []
 
 
-def test_worse_problem_is_reported_and_every_number_is_not() -> None:
+def test_worse_problem_is_reported_and_other_numbers_are_not() -> None:
     waiting = [{"log": f"the log cannot be written, {count} records wait"} for count in range(5)]
     missing = [{"log": f"the disk did not keep up: {count} are missing"} for count in range(5)]
     assert reports(waiting + missing) == [waiting[0]["log"], missing[0]["log"]]
@@ -78,10 +80,10 @@ def test_dismissed_problem_is_reported_again_while_it_lasts() -> None:
     assert [r.text for r in health.check(FULL, {})] == ["the disk is full"]
 
 
-def test_a_mistake_that_comes_again_is_logged_once_and_once_more_when_it_was_over(
+def test_repeated_error_is_logged_once_and_once_more_after_its_end(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Some come with every message: hundreds a second fill a disk."""
+    """Some errors repeat with every message: hundreds a second fill a disk."""
     health, known = HealthMonitor(), {"pipeline": "it failed"}
 
     def logged() -> int:

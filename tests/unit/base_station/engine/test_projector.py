@@ -1,4 +1,4 @@
-"""What of the station's decisions and of people's doing comes into the tables."""
+"""Projection of the station's decisions and people's actions into the tables."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ T_NS = 1_700_000_000 * NS_PER_S
 
 
 @pytest.mark.parametrize("is_refused", [False, True])
-def test_what_was_refused_is_not_in_the_tables(is_refused: bool) -> None:
-    """They would have a second incident open beside the one that is."""
+def test_refused_action_is_not_in_the_tables(is_refused: bool) -> None:
+    """They would have a second incident open beside the real one."""
     projector = Projector()
     action = OperatorAction(Header(STATION_ID, 1, 1, 1), "a1", "ada", OpenIncident("i2", "Mill"))
     outputs: list[Output] = [Refused("a1", "an incident is open already")] if is_refused else []
@@ -43,7 +43,7 @@ def test_time_of_the_last_message_is_projected_in_steps() -> None:
     assert projected_ns == [T_NS, T_NS + LAST_MESSAGE_STEP_NS, T_NS + 2 * LAST_MESSAGE_STEP_NS]
 
 
-def test_the_agent_that_tracks_for_a_unit_is_no_unit() -> None:
+def test_tracking_agent_is_no_unit() -> None:
     projector = Projector()
     agent = tracker_id("FF-01")
     message = Temperature(Header(agent, 7, 1, T_NS), 20.0)

@@ -1,4 +1,4 @@
-"""One sender that runs wild: what is too much of it goes nowhere, and others lose nothing."""
+"""Rate limit of a sender: its excess is dropped, and others lose nothing."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Station:
         self.start()
 
     def start(self) -> None:
-        """Again, with what the log knows."""
+        """Start again, with the state of the log."""
         self.share = SenderRateLimiter(lambda key, _: self.passed.append(key), self.clock)
 
     def offered(self, key: str, times: int, size: int = 100) -> int:
-        """How many of them come through."""
+        """Number of messages that pass."""
         before = self.passed.count(key)
         for _ in range(times):
             self.share.offer(key, bytes(size))
@@ -72,7 +72,7 @@ def test_messages_to_a_unit_do_not_count_as_its_own(station: Station) -> None:
     assert station.offered(COMMAND.key("evil"), 1000) == 1000
 
 
-def test_a_key_that_no_unit_has_is_held_to_a_share(station: Station) -> None:
+def test_key_without_unit_has_a_share(station: Station) -> None:
     assert station.offered("muster/v1", 10_000) == MESSAGES_HZ
 
 

@@ -1,4 +1,4 @@
-"""What a tracking agent can fetch of posted samples."""
+"""Posted samples that a tracking agent can fetch."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ def recent() -> RecentSamples:
     return recent
 
 
-def test_it_gives_what_is_asked_for_and_accounts_for_the_rest(recent: RecentSamples) -> None:
+def test_requested_samples_are_returned_and_missing_ones_accounted_for(
+    recent: RecentSamples,
+) -> None:
     recent.add(7, 14, b"later")
     found = chunk(recent, "epoch=7;from=9;to=13")
     assert found is not None
@@ -34,18 +36,18 @@ def test_it_gives_what_is_asked_for_and_accounts_for_the_rest(recent: RecentSamp
     assert [entry.payload for entry in other.entries] == [b"of another run"]
 
 
-def test_a_long_answer_is_given_in_parts(recent: RecentSamples) -> None:
+def test_long_answer_is_given_in_parts(recent: RecentSamples) -> None:
     found = chunk(recent, "epoch=7;from=1;to=10;total=2500")
     assert found is not None
     assert (found.to_seq, len(found.entries)) == (3, 3)
 
 
 @pytest.mark.parametrize("parameters", ["", "epoch=9;from=1;to=2", "epoch=7;from=x;to=2", "a=b"])
-def test_what_it_cannot_answer_is_not_answered(recent: RecentSamples, parameters: str) -> None:
+def test_invalid_request_is_not_answered(recent: RecentSamples, parameters: str) -> None:
     assert chunk(recent, parameters) is None
 
 
-def test_the_oldest_are_given_up(recent: RecentSamples) -> None:
+def test_oldest_samples_are_dropped(recent: RecentSamples) -> None:
     for seq in range(11, 40):
         recent.add(7, seq, bytes(100_000))
     found = chunk(recent, "epoch=7;from=1;to=39")

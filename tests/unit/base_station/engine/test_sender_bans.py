@@ -1,4 +1,4 @@
-"""A unit whose token comes and goes without end is shut out, each time for longer, and told."""
+"""Bans of units whose token comes and goes without end: each ban is longer, and reported."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ WHY = "does harm"
 
 
 class Watch:
-    """What was ordered, and what a log knows of it."""
+    """Orders of bans, and the state of a log."""
 
     def __init__(self) -> None:
         self.clock = ManualClock()
@@ -21,7 +21,7 @@ class Watch:
         self.start()
 
     def start(self) -> None:
-        """Again, with what the log knows."""
+        """Start again, with the state of the log."""
         self.bans = SenderBans(lambda who, s: self.orders.append((who, s)), self.clock)
 
     def changes(self) -> list[tuple[str, str]]:
@@ -30,7 +30,7 @@ class Watch:
         return reports
 
 
-def test_each_time_it_is_for_longer_and_after_a_quiet_hour_it_begins_anew() -> None:
+def test_each_ban_is_longer_and_a_quiet_hour_resets_it() -> None:
     watch = Watch()
     for _ in range(6):
         watch.bans.ban("evil", WHY)
@@ -42,12 +42,12 @@ def test_each_time_it_is_for_longer_and_after_a_quiet_hour_it_begins_anew() -> N
     assert watch.orders[-1] == ("evil", FIRST_S)
 
 
-def test_what_was_on_its_way_orders_nothing_more() -> None:
+def test_events_in_transit_order_no_further_ban() -> None:
     watch = Watch()
     for _ in range(1000):
         watch.bans.ban("evil", WHY)
     assert watch.orders == [("evil", FIRST_S)]
-    watch.clock.advance(2.0)  # a router that had just ended heard nothing of it
+    watch.clock.advance(2.0)  # a router that had just ended received nothing of it
     watch.bans.ban("evil", WHY)
     assert watch.orders == [("evil", FIRST_S)] * 2
 
@@ -72,7 +72,7 @@ def test_ban_reported_by_an_earlier_run_ends() -> None:
     assert watch.changes() == [(part, "")]
 
 
-def test_only_the_unit_whose_token_comes_and_goes_without_end_is_shut_out() -> None:
+def test_only_a_unit_whose_token_comes_and_goes_without_end_is_banned() -> None:
     router, clock = MemoryRouter(), ManualClock()
     ban: list[str] = []
     links = LivenessMonitor(router.attach_station(), lambda who, _: ban.append(who), clock)

@@ -1,4 +1,4 @@
-"""Station time goes on whatever is done to the machine's clock, and says so."""
+"""Station time advances whatever is done to the machine's clock, and the deviation is reported."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def clock(machine: JumpingClock) -> SteadyClock:
     return SteadyClock(machine)
 
 
-def test_it_goes_on_at_the_same_rate_when_utc_is_set_back(
+def test_station_time_advances_at_the_same_rate_when_utc_is_set_back(
     machine: JumpingClock, clock: SteadyClock
 ) -> None:
     before_ns = clock.utc_ns()
@@ -44,13 +44,13 @@ def test_it_goes_on_at_the_same_rate_when_utc_is_set_back(
     )
 
 
-def test_it_follows_utc_forwards(machine: JumpingClock, clock: SteadyClock) -> None:
+def test_station_time_follows_utc_forwards(machine: JumpingClock, clock: SteadyClock) -> None:
     machine.set_by_ns = DAY_NS
     assert clock.utc_ns() == machine.utc_ns()
     assert clock.problems() == ()
 
 
-def test_it_goes_on_behind_what_an_earlier_run_gave_out(machine: JumpingClock) -> None:
+def test_station_time_continues_behind_that_of_an_earlier_run(machine: JumpingClock) -> None:
     earlier_ns = machine.utc_ns() + DAY_NS
     clock = SteadyClock(machine, not_before_ns=earlier_ns)
     machine.advance(1.0)
@@ -71,13 +71,13 @@ def test_held_clock_does_not_leap_and_reports_it(machine: JumpingClock, clock: S
     assert clock.problems() == ()
 
 
-def test_held_from_its_beginning_it_begins_by_the_machine_s_clock(machine: JumpingClock) -> None:
+def test_clock_held_from_its_beginning_begins_by_the_machines_clock(machine: JumpingClock) -> None:
     clock = SteadyClock(machine, not_before_ns=1)
     clock.hold_while(lambda: True)
     assert clock.utc_ns() == machine.utc_ns()
 
 
-def test_while_it_is_held_it_takes_what_a_time_server_corrects(
+def test_held_clock_takes_corrections_of_a_time_server(
     machine: JumpingClock, clock: SteadyClock
 ) -> None:
     clock.hold_while(lambda: True)
@@ -88,14 +88,14 @@ def test_while_it_is_held_it_takes_what_a_time_server_corrects(
 
 
 @pytest.mark.parametrize("by_ns", [-DAY_NS, DAY_NS])
-def test_a_standby_has_the_time_of_the_station_that_leads(
+def test_standby_has_the_time_of_the_leading_station(
     machine: JumpingClock, clock: SteadyClock, by_ns: int
 ) -> None:
     clock.hold_while(lambda: True)
     theirs_ns = machine.utc_ns() + by_ns
     clock.agree(theirs_ns)
     assert clock.utc_ns() == theirs_ns
-    clock.agree(theirs_ns - NS_PER_S // 100)  # it was on the way for longer
+    clock.agree(theirs_ns - NS_PER_S // 100)  # it was in transit for longer
     assert clock.utc_ns() == theirs_ns
     assert len(clock.problems()) == 1
 

@@ -1,4 +1,4 @@
-"""What the station decides is on the disk before anybody hears of it, where that matters."""
+"""Decisions of the station are on the disk before they are published, where that matters."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ALARM = AlarmChange(
 
 
 class Decides:
-    """A pipeline from which the same follows whatever it is told."""
+    """A pipeline with the same decisions for any input."""
 
     def __init__(self, outputs: list[Output]) -> None:
         self.state = StationState()
@@ -54,7 +54,7 @@ class Publisher:
 
 
 class Disk:
-    """A ``Log`` that counts how often it was waited for."""
+    """A ``Log`` that counts the waits for the disk."""
 
     problem = little_room = ""
     is_behind = refuses = False
@@ -87,11 +87,11 @@ def over(disk: Disk, outputs: list[Output]) -> WriteAhead:
 def test_urgent_records_and_alarms_are_on_disk_before_they_are_published(
     urgent: bool, outputs: list[Output], flushed: int
 ) -> None:
-    """That somebody has been silent for too long follows from a tick, which itself can wait."""
+    """The alarm of a long silence follows from a tick, which itself can wait."""
     disk = Disk()
     ahead = over(disk, outputs)
     ahead.append_and_apply(T_NS, TICK.key(STATION_ID), encode(Tick(HEADER, T_NS)), urgent=urgent)
-    for _ in range(2):  # it is waited for once
+    for _ in range(2):  # one wait for the disk
         ahead.flush_urgent()
         assert disk.flushed == flushed
 
@@ -104,7 +104,7 @@ def test_urgent_records_and_alarms_are_on_disk_before_they_are_published(
         ("event event decision event decision", 0),  # the first was refused: too late for it
     ],
 )
-def test_what_a_crash_kept_from_the_log_is_written_at_the_start(log: str, written: int) -> None:
+def test_records_lost_by_a_crash_are_written_at_the_start(log: str, written: int) -> None:
     disk = Disk()
     records = {
         "event": (TICK.key(STATION_ID), encode(Tick(HEADER, T_NS))),

@@ -1,4 +1,4 @@
-"""GPX as another program's library reads it."""
+"""GPX, read by another program's library."""
 
 from __future__ import annotations
 

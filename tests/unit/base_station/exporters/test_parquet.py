@@ -1,4 +1,4 @@
-"""Parquet as other programs read it: data frames, a database, geographic tools."""
+"""Parquet, read by other programs: data frames, a database, geographic tools."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def written(of: IncidentTracks) -> io.BytesIO:
     return io.BytesIO(b"".join(export_parquet(of)))
 
 
-def test_a_database_answers_questions_about_it(tmp_path: Path) -> None:
+def test_database_answers_queries_about_it(tmp_path: Path) -> None:
     file = tmp_path / "tracks.parquet"
     file.write_bytes(written(incident()).getvalue())
     found = duckdb.execute(
@@ -69,12 +69,12 @@ def test_without_an_anchor_it_has_metres_alone() -> None:
     assert table.schema.metadata[b"muster.incident"] == b"i-1"
 
 
-def test_nobody_walked_is_an_empty_table() -> None:
+def test_incident_without_tracks_is_an_empty_table() -> None:
     empty = replace(incident(), tracks=())
     assert parquet.read_table(written(empty)).num_rows == 0
 
 
-def test_a_missing_library_is_named_with_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_library_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with pytest.raises(UserError, match="requirements-parquet"):
         export_parquet(incident())

@@ -1,4 +1,4 @@
-"""Some people, and a window of time, of an incident's tracks."""
+"""Selections of people and of a window of time from an incident's tracks."""
 
 from __future__ import annotations
 
@@ -52,22 +52,22 @@ def test_units_people_and_crews_are_chosen_by_name(
     assert units(TrackSelection(names)) == chosen
 
 
-def test_points_before_and_from_the_end_on_are_left_out() -> None:
+def test_points_outside_the_window_are_left_out() -> None:
     window = TrackSelection((), T0_NS + NS_PER_S, T0_NS + 3 * NS_PER_S)
     tracks = window.of(INCIDENT).tracks
     assert [[point.north_m for point in track.points] for track in tracks] == [[1, 2], [1], [1, 2]]
 
 
-def test_a_name_that_nobody_has_is_refused_with_those_that_there_are() -> None:
+def test_unknown_name_is_refused_with_the_known_ones() -> None:
     with pytest.raises(UserError, match=r"'Bo' is no unit.*Ada \(FF-02\)"):
         TrackSelection(("Bo",)).of(INCIDENT)
 
 
-def test_a_window_without_a_point_is_refused() -> None:
+def test_window_without_a_point_is_refused() -> None:
     with pytest.raises(UserError, match="has a track in that time"):
         TrackSelection((), 0, T0_NS).of(INCIDENT)
 
 
-def test_an_incident_in_which_nobody_walked_is_empty() -> None:
+def test_incident_without_tracks_is_empty() -> None:
     empty = IncidentTracks("i-1", "Mill", None, ())
     assert list(TrackSelection().of(empty).tracks) == []

@@ -1,4 +1,4 @@
-"""When the console is told of a calibration: old, poor, and never for want of one."""
+"""Alarms of calibrations: old, poor, and never for a missing one."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def unit(calibrated_s: int | None, faults: str = "") -> UnitState:
     ("age_days", "faults", "level"),
     [(179, "", None), (181, "", "old"), (1, "gyroscope off by 1 deg/s", "poor")],
 )
-def test_age_and_residuals_are_judged(age_days, faults, level):
+def test_alarm_follows_age_and_residuals(age_days, faults, level):
     verdict = CalibrationPoor().judge(unit(LAST_S - age_days * DAY_S, faults), 0, "")
     if level is None:
         assert isinstance(verdict, Clear)
@@ -40,5 +40,5 @@ def test_age_and_residuals_are_judged(age_days, faults, level):
     assert faults in verdict.text
 
 
-def test_a_unit_without_a_calibration_is_left_alone():
+def test_unit_without_calibration_raises_no_alarm():
     assert isinstance(CalibrationPoor().judge(unit(None), 0, ""), Clear)

@@ -1,4 +1,4 @@
-"""What the tables said of somebody who is forgotten: alarms, the audit, what was done apart."""
+"""Erasure of a person from tables: alarms, the audit, separate actions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from shared.messages.station import Action, Assign, DoneApart, ResolveAlarm
 FALL = {"alarm_id": "fall:FF-01:1", "state": "raised", "level": "fall", "by": ""}
 
 
-def test_an_alarm_raised_anew_by_another_wearer_keeps_nothing_of_the_one_between(
+def test_alarm_raised_again_by_another_wearer_keeps_nothing_of_the_erased_one(
     tmp_path: Path,
 ) -> None:
     """Three people wore the unit one after the other, and nobody resolved the alarm."""
@@ -42,7 +42,7 @@ def test_an_alarm_raised_anew_by_another_wearer_keeps_nothing_of_the_one_between
     assert reported == texts | {20: "(forgotten) may have fallen"}
 
 
-def test_what_was_raised_and_noted_after_an_incident_about_it_names_nobody(
+def test_alarms_and_notes_about_an_incident_after_its_end_name_nobody(
     tmp_path: Path,
 ) -> None:
     ana = Erasure(
@@ -82,7 +82,7 @@ def test_what_was_raised_and_noted_after_an_incident_about_it_names_nobody(
 
 @pytest.mark.parametrize("of_incident", [False, True])
 def test_audit_has_no_places_of_separate_actions(tmp_path: Path, of_incident: bool) -> None:
-    """Somebody called Station was forgotten before."""
+    """A person called Station was erased before."""
     details = {
         "pin of ana": DoneApart("b", 20, "eve", "SetPin p, FF-01, 3.0, 4.0"),
         "pin of bo": DoneApart("b", 20, "eve", "SetPin p, FF-02, 3.0, 4.0"),
@@ -91,7 +91,7 @@ def test_audit_has_no_places_of_separate_actions(tmp_path: Path, of_incident: bo
     stated = {name: msgspec.json.encode(one).decode() for name, one in details.items()}
     stated["broken"] = stated["pin of ana"].replace("station", ERASED_TEXT)
     wearing = (Wearing("FF-01", 15, 25),)
-    if of_incident:  # that was over before the stations were together again
+    if of_incident:  # over before the stations were together again
         ana = Erasure(wearing, ("Ana",), incident_id="i1", from_ns=15, until_ns=25)
     else:
         ana = Erasure(wearing, ("Ana",), person_id="p-ana")
@@ -131,10 +131,10 @@ NOBODY = {"person_name": ERASED_TEXT, "crew": "", "role": ""}
         ("Max", OF_EVE, OF_EVE),
     ],
 )
-def test_a_name_goes_out_of_the_audit_however_it_is_written_there_and_nothing_else(
+def test_name_is_erased_from_the_audit_in_every_spelling_and_nothing_else(
     tmp_path: Path, name: str, done: Action, left: Action
 ) -> None:
-    """An entry is JSON, which marks quotation marks within a text, and has names of fields."""
+    """An entry is JSON, which escapes quotation marks, and has names of fields."""
     detail = msgspec.json.encode(done).decode()
     with Store(tmp_path / "station.sqlite") as store:
         with store.write() as session:
@@ -148,7 +148,7 @@ def test_a_name_goes_out_of_the_audit_however_it_is_written_there_and_nothing_el
     assert msgspec.json.decode(stated, type=type(left)) == left
 
 
-def test_of_an_incident_the_audit_keeps_no_crew_and_role_of_who_was_given_a_unit(
+def test_audit_of_an_erased_incident_keeps_no_crew_and_role_of_wearers(
     tmp_path: Path,
 ) -> None:
     wearing = (Wearing("FF-01", 15, 25),)

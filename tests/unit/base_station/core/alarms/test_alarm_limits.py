@@ -1,4 +1,4 @@
-"""From which figure on a rule finds something, and when it is over: the figures people are told."""
+"""Thresholds of rules: the value that raises an alarm and the one that ends it, as documented."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def ns(seconds: float) -> int:
 
 
 def judged(rule: AlarmRule, unit: UnitState, level: str = "") -> str | None:
-    """The level that it finds; "over" where it is calm, None where nothing can be said."""
+    """Level of the finding; "over" for a calm unit, None where the rule returns nothing."""
     verdict = rule.judge(unit, NOW_NS, level)
     if verdict is None:
         return None
@@ -129,7 +129,7 @@ def test_a_silent_unit_and_a_silent_agent(silent_s: float, found: str | None) ->
     tracked.description = message_factory.description(HEADER, tracker=NO_TRACKER)
     reported = "gone" if found == "lost" else found
     assert judged(TrackerGone(), tracked) == reported
-    tracked.tracker = UnitState("FF-01@tracker")  # what it said came out of its journal
+    tracked.tracker = UnitState("FF-01@tracker")  # its last message came out of its journal
     tracked.boots = [BootState(1, first_live_ns=NOW_NS - ns(silent_s), last_live_ns=NOW_NS)]
     assert judged(TrackerGone(), tracked) == (reported if reported == "gone" else None)
 
@@ -137,10 +137,10 @@ def test_a_silent_unit_and_a_silent_agent(silent_s: float, found: str | None) ->
 @pytest.mark.parametrize(("silent_s", "found"), [(29.9, "cloned"), (30.0, "over")])
 @pytest.mark.parametrize("silent", [1, 2])
 @pytest.mark.parametrize("who", ["unit", "tracking agent"])
-def test_two_machines_until_one_of_them_is_silent(
+def test_duplicate_devices_alarm_until_one_is_silent(
     silent_s: float, found: str, silent: int, who: str
 ) -> None:
-    """Whichever of the two it is; an older run was there with neither."""
+    """Either of the two; an older run was there with neither."""
     speaker = UnitState("FF-01", last_message_ns=NOW_NS)
     speaker.boots = [
         BootState(3, first_live_ns=NOW_NS - ns(900), last_live_ns=NOW_NS - ns(800))
@@ -162,7 +162,7 @@ def test_two_machines_until_one_of_them_is_silent(
 
 
 @pytest.mark.parametrize(("lasted_s", "found"), [(14.9, None), (15.0, "lost")])
-def test_a_position_that_is_not_known(lasted_s: float, found: str | None) -> None:
+def test_position_lost(lasted_s: float, found: str | None) -> None:
     unit = UnitState(
         "FF-01",
         position=message_factory.position(HEADER, quality=Quality.LOST),
@@ -182,7 +182,7 @@ def test_a_position_that_is_not_known(lasted_s: float, found: str | None) -> Non
 @pytest.mark.parametrize(
     ("reasons", "found"), [(Reason.NOT_ON_FOOT, "not-on-foot"), (Reason.NO_STANCE, None)]
 )
-def test_worn_wrong_is_raised_alone_and_names_the_remedy(
+def test_wrongly_worn_unit_is_the_only_alarm_and_names_the_remedy(
     reasons: Reason, found: str | None
 ) -> None:
     position = message_factory.position(HEADER, quality=Quality.LOST, reasons=reasons)

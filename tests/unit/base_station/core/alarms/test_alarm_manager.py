@@ -1,4 +1,4 @@
-"""Lives of alarms, told in seconds: what happens to a unit and which changes come of it."""
+"""Lives of alarms over seconds: events of a unit and the transitions that follow."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_motion_cancels_the_pre_alert(script: Script) -> None:
     assert script.alarms[-1].by == "motion"
 
 
-def test_no_motion_that_goes_on_after_a_reset_alarms_again(script: Script) -> None:
+def test_no_motion_that_lasts_after_a_reset_alarms_again(script: Script) -> None:
     still(script, 0, 35)
     script.act(ResolveAlarm(script.alarms[-1].alarm_id, ""))
     still(script, 35, 60)
@@ -64,7 +64,7 @@ def test_no_motion_that_goes_on_after_a_reset_alarms_again(script: Script) -> No
 
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
-def test_another_one_is_to_be_acknowledged_again(script: Script, kind: EventKind) -> None:
+def test_second_alarm_must_be_acknowledged_again(script: Script, kind: EventKind) -> None:
     script.event(U, kind)
     script.wait(1)
     script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
@@ -76,7 +76,7 @@ def test_another_one_is_to_be_acknowledged_again(script: Script, kind: EventKind
     assert script.alarms[-1].by == ""
 
 
-def test_who_lies_still_a_second_time_is_to_be_acknowledged_again(script: Script) -> None:
+def test_second_stillness_must_be_acknowledged_again(script: Script) -> None:
     still(script, 0, 35)
     script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
     still(script, 35, 60)
@@ -87,10 +87,10 @@ def test_who_lies_still_a_second_time_is_to_be_acknowledged_again(script: Script
     assert changes(script, "no-motion")[-1] == ("RAISED", "alarm")
 
 
-def test_a_pre_alert_that_was_acknowledged_becomes_the_alarm_of_a_later_stillness(
+def test_acknowledged_pre_alert_becomes_the_alarm_of_a_later_stillness(
     script: Script,
 ) -> None:
-    """Nobody heard of the motion between the two."""
+    """No message reported the motion between the two."""
     still(script, 0, 25)
     script.act(AcknowledgeAlarm(script.alarms[-1].alarm_id))
     script.wait(60)
@@ -104,7 +104,7 @@ def test_a_pre_alert_that_was_acknowledged_becomes_the_alarm_of_a_later_stillnes
 def test_alarm_keeps_the_time_of_its_last_raising(
     script: Script,
 ) -> None:
-    """An alarm that has eased asks for somebody since it was raised."""
+    """An alarm that has eased still asks for an acknowledgement since it was raised."""
     script.wait(5, lambda: script.temperature(U, 120.0))
     script.wait(5, lambda: script.temperature(U, 270.0))
     script.wait(20, lambda: script.temperature(U, 170.0))
@@ -120,7 +120,7 @@ def test_alarm_keeps_the_time_of_its_last_raising(
     assert {one.raised_ns for one in script.alarms} == {raised.header.t_utc_ns}
 
 
-def test_what_gets_worse_after_a_person_resolved_it_is_another_alarm(script: Script) -> None:
+def test_worsening_after_a_person_resolved_it_is_another_alarm(script: Script) -> None:
     script.wait(1, lambda: script.temperature(U, 120.0))
     script.act(ResolveAlarm(script.alarms[0].alarm_id, "is on his way out"))
     script.wait(60, lambda: script.temperature(U, 120.0))
@@ -132,7 +132,7 @@ def test_what_gets_worse_after_a_person_resolved_it_is_another_alarm(script: Scr
     assert len(changes(script, "heat")) == 4, "what is less is no news of what was resolved"
 
 
-def test_the_last_fifty_resolved_alarms_are_at_hand(script: Script) -> None:
+def test_last_fifty_resolved_alarms_are_kept(script: Script) -> None:
     for _ in range(51):
         script.now_s += 1.0
         script.event(U, EventKind.FALL)
@@ -141,7 +141,7 @@ def test_the_last_fifty_resolved_alarms_are_at_hand(script: Script) -> None:
     assert [one.alarm_id for one in script.pipeline.state.history] == resolved[1:]
 
 
-def test_a_resolved_alarm_stays_as_it_ended_from_a_checkpoint_as_in_memory(
+def test_resolved_alarm_is_unchanged_after_a_checkpoint(
     script: Script,
 ) -> None:
     script.wait(1, lambda: script.temperature(U, 120.0))
@@ -153,7 +153,7 @@ def test_a_resolved_alarm_stays_as_it_ended_from_a_checkpoint_as_in_memory(
 
 
 def test_silence_resolves_nothing(script: Script) -> None:
-    """The last word was one cool sample; without another the alarm stays."""
+    """The last message was one cool sample; without another the alarm stays."""
     script.wait(1, lambda: script.temperature(U, 120.0))
     script.wait(1, lambda: script.temperature(U, 20.0))
     script.wait(200)
@@ -175,7 +175,7 @@ def test_link_lost_is_raised_at_30_s_and_ends_when_messages_return(script: Scrip
     assert script.alarms[-1].by == "messages return"
 
 
-def test_a_unit_that_was_switched_off_is_information_only(script: Script) -> None:
+def test_switched_off_unit_is_information_only(script: Script) -> None:
     script.event(U, EventKind.STOPPED)
     script.wait(40)
     (alarm,) = script.alarms
@@ -184,9 +184,7 @@ def test_a_unit_that_was_switched_off_is_information_only(script: Script) -> Non
 
 
 @pytest.mark.parametrize("run", ["earlier", "same"])
-def test_a_goodbye_out_of_the_journal_switches_nobody_off_who_has_spoken_since(
-    script: Script, run: str
-) -> None:
+def test_backfilled_goodbye_switches_off_no_unit_received_since(script: Script, run: str) -> None:
     script.status(U)
     goodbye = UnitEvent(script.header(U), EventKind.STOPPED)
     script.boot_ids[U] = 8 if run == "earlier" else 7
@@ -206,7 +204,7 @@ def test_battery_resolves_only_above_its_hysteresis(script: Script) -> None:
     assert len(changes(script, "battery")) == 2, "what is resolved stands no more"
 
 
-def test_what_was_well_for_two_short_whiles_has_not_been_well_for_a_long_one(
+def test_two_short_calm_periods_are_no_long_one(
     script: Script,
 ) -> None:
     for battery, seconds in ((0.09, 2), (0.9, 20), (0.09, 2), (0.9, 20)):
@@ -214,8 +212,8 @@ def test_what_was_well_for_two_short_whiles_has_not_been_well_for_a_long_one(
     assert changes(script, "battery") == [("RAISED", "low")]
 
 
-def test_what_was_well_for_two_moments_has_not_been_well_in_between(script: Script) -> None:
-    """Nothing can be said yet of the doubt in between, which is not to say that there is none."""
+def test_two_calm_moments_are_no_calm_period(script: Script) -> None:
+    """The doubt in between cannot be judged yet, which does not mean that there is none."""
 
     def walk(seconds: int, quality: Quality) -> None:
         script.wait(seconds, lambda: script.position(U, 0.0, 0.0, quality=quality))
@@ -240,7 +238,7 @@ def test_degradation_for_another_reason_is_raised_once(script: Script) -> None:
     assert changes(script, "tracker-degraded") == [("RAISED", "lost")]
 
 
-def test_what_was_less_bad_for_two_moments_has_not_been_so_in_between(script: Script) -> None:
+def test_two_less_severe_moments_do_not_lower_the_level(script: Script) -> None:
     def walk(seconds: int, quality: Quality) -> None:
         script.wait(seconds, lambda: script.position(U, 0.0, 0.0, quality=quality))
 
@@ -252,7 +250,7 @@ def test_what_was_less_bad_for_two_moments_has_not_been_so_in_between(script: Sc
     assert changes(script, "tracker-degraded") == [("RAISED", "lost")]
 
 
-def test_two_words_far_apart_are_no_link(script: Script) -> None:
+def test_two_messages_far_apart_are_no_link(script: Script) -> None:
     script.wait(5, lambda: script.status(U))
     script.wait(31)
     for _ in range(4):
@@ -261,7 +259,7 @@ def test_two_words_far_apart_are_no_link(script: Script) -> None:
     assert changes(script, "link-lost") == [("RAISED", "lost")]
 
 
-def test_what_is_resolved_is_not_opened_again_by_who_presses_too_late(script: Script) -> None:
+def test_resolved_alarm_is_not_reopened_by_a_late_acknowledgement(script: Script) -> None:
     """At two consoles, one resolves it while the other is about to acknowledge it."""
     script.event(U, EventKind.MAYDAY)
     alarm_id = script.alarms[-1].alarm_id
@@ -288,7 +286,7 @@ def test_lost_position_is_an_alarm_until_it_is_known(script: Script) -> None:
     assert changes(script, "position-lost")[-1] == ("RESOLVED", "lost")
 
 
-def test_an_acknowledged_alarm_that_gets_worse_asks_again(script: Script) -> None:
+def test_acknowledged_alarm_that_worsens_must_be_acknowledged_again(script: Script) -> None:
     script.wait(1, lambda: script.temperature(U, 120.0))
     script.act(AcknowledgeAlarm(script.alarms[0].alarm_id), by="anna")
     assert (script.alarms[-1].state, script.alarms[-1].by) == (AlarmState.ACKNOWLEDGED, "anna")
@@ -300,7 +298,7 @@ def test_an_acknowledged_alarm_that_gets_worse_asks_again(script: Script) -> Non
     assert script.pipeline.state.alarms[f"heat|{U}"].changed_ns == script.t_ns
 
 
-def test_an_unknown_unit_is_reported_once_and_not_believed() -> None:
+def test_unregistered_unit_raises_one_alarm_and_no_other() -> None:
     script = Script()
     script.event("stranger", EventKind.MAYDAY)
     script.wait(50, lambda: script.position("stranger", 1.0, 2.0))
@@ -315,7 +313,7 @@ def test_an_unknown_unit_is_reported_once_and_not_believed() -> None:
 
 @dataclass(frozen=True)
 class Asked:
-    """Keeps nothing of itself: it notes in a list when it was asked."""
+    """A rule without state: it appends the time of each call to a list."""
 
     asked: list[int]
     name: str = "asked"
@@ -331,7 +329,7 @@ class Asked:
 
 
 @pytest.mark.parametrize(("triggered_by", "times"), [((), 0), ((Status,), 1), ((Position,), 0)])
-def test_a_rule_looks_at_what_comes_all_the_time_only_where_it_heeds_it(
+def test_frequent_inputs_call_only_the_rules_triggered_by_them(
     triggered_by: tuple[type[Message], ...], times: int
 ) -> None:
     rule = Asked([], triggered_by=triggered_by)

@@ -1,4 +1,4 @@
-"""Thresholds that a station's settings say: what is refused, and from when on they hold."""
+"""Thresholds of a station's settings: refusals, and the time from which they apply."""
 
 from __future__ import annotations
 
@@ -68,9 +68,7 @@ def script() -> Script:
         ("[alarms]\nbattery = 0.2\n", "Expected `object`"),
     ],
 )
-def test_a_setting_that_no_rule_can_have_is_refused(
-    tmp_path: Path, toml: str, reported: str
-) -> None:
+def test_setting_without_rule_is_refused(tmp_path: Path, toml: str, reported: str) -> None:
     with pytest.raises(ConfigError) as error:
         set_by(tmp_path, toml)
     assert reported in str(error.value)
@@ -81,12 +79,12 @@ def test_only_changed_thresholds_are_listed(tmp_path: Path) -> None:
     assert set_by(tmp_path, toml) == {"no-motion.alarm_s": 25.0, "battery.low": 0.2}
 
 
-def test_the_message_is_the_same_behind_the_wire() -> None:
+def test_message_is_the_same_after_encoding() -> None:
     reported = OperatorAction(Header(STATION_ID, 1, 1, 0), "a", STATION_ID, SetThresholds(LATER))
     assert decode(OPERATOR, encode(reported)) == reported
 
 
-def test_they_hold_from_then_on(script: Script) -> None:
+def test_new_thresholds_apply_from_their_time(script: Script) -> None:
     script.act(SetThresholds(LATER))
     motionless(script, 39.0)
     assert standing(script) == []
@@ -96,7 +94,7 @@ def test_they_hold_from_then_on(script: Script) -> None:
     assert standing(script) == [("no-motion", "alarm")]
 
 
-def test_what_stands_is_judged_anew_at_once(script: Script) -> None:
+def test_open_alarms_are_judged_again_at_once(script: Script) -> None:
     script.act(SetThresholds(LATER))
     motionless(script, 35.0)
     assert standing(script) == []
@@ -104,7 +102,7 @@ def test_what_stands_is_judged_anew_at_once(script: Script) -> None:
     assert standing(script) == [("no-motion", "alarm")]
 
 
-def test_other_rules_and_other_thresholds_stay(script: Script) -> None:
+def test_other_rules_and_thresholds_are_unchanged(script: Script) -> None:
     script.act(SetThresholds({"no-motion.alarm_s": 60.0}))
     motionless(script, 21.0)
     assert standing(script) == [("no-motion", "pre-alert")]
@@ -112,7 +110,7 @@ def test_other_rules_and_other_thresholds_stay(script: Script) -> None:
     assert ("battery", "low") in standing(script)
 
 
-def test_a_station_that_starts_again_goes_by_them(script: Script) -> None:
+def test_restarted_station_applies_them(script: Script) -> None:
     script.act(SetThresholds(LATER))
     saved = read_checkpoint(script.pipeline.checkpoint())
     script.pipeline = StationPipeline(ALARMS, FUSERS[0], saved)
@@ -131,5 +129,5 @@ def test_a_station_that_starts_again_goes_by_them(script: Script) -> None:
         {"no-motion.pre_alert_s": 1.0},
     ],
 )
-def test_the_log_of_another_version_leaves_a_rule_as_it_is(thresholds: dict[str, float]) -> None:
+def test_log_of_another_version_leaves_a_rule_unchanged(thresholds: dict[str, float]) -> None:
     assert with_thresholds((NoMotion(),), thresholds) == (NoMotion(),)

@@ -1,4 +1,4 @@
-"""Whom alarms are about: who wore the unit when it was said, however late it comes."""
+"""Wearers of alarms: the wearer of the unit at the time of the event, however late it arrives."""
 
 from __future__ import annotations
 
@@ -34,7 +34,9 @@ def script() -> Script:
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
 @pytest.mark.parametrize("way", ["journal", "live"])
-def test_late_alert_is_of_the_wearer_at_its_time(script: Script, kind: EventKind, way: str) -> None:
+def test_late_alert_belongs_to_the_wearer_at_its_time(
+    script: Script, kind: EventKind, way: str
+) -> None:
     events = {}
     for name in ("Ana", "Bo", ""):
         script.act(Assign(U, name, name, "", "") if name else Unassign(U))
@@ -61,7 +63,7 @@ def test_late_alert_is_of_the_wearer_at_its_time(script: Script, kind: EventKind
 def test_alert_of_a_run_without_live_messages_names_possible_wearers(
     script: Script, kind: EventKind, has_time: bool
 ) -> None:
-    """Its monotonic clock says nothing; where it knew the station's time, that does."""
+    """Its monotonic clock gives no time; where it knew the station's time, that does."""
     texts = []
     for name in ("Ana", "Bo"):
         script.act(Assign(U, name, name, "", ""))
@@ -85,7 +87,7 @@ def test_alert_of_a_run_without_live_messages_names_possible_wearers(
     assert texts == [text.format(wearer), text.format("Bo")]
 
 
-def test_who_alone_has_worn_a_unit_is_who_pressed_whenever_that_was(script: Script) -> None:
+def test_alert_belongs_to_the_only_wearer_whatever_its_time(script: Script) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
     script.wait(3, lambda: script.status(U))
     script.boot_ids[U] = 6
@@ -101,10 +103,10 @@ def open_texts(script: Script) -> set[str]:
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
 @pytest.mark.parametrize("late", [False, True])
-def test_two_wearers_of_one_unit_are_two_people_in_need(
+def test_two_wearers_of_one_unit_raise_two_alarms(
     script: Script, kind: EventKind, late: bool
 ) -> None:
-    """Whichever of the two is told last."""
+    """In either order of reception."""
     script.act(Assign(U, "ana", "Ana", "", ""))
     script.wait(3, lambda: script.status(U))
     of_ana = UnitEvent(script.header(U), kind)
@@ -136,7 +138,7 @@ def test_two_wearers_of_one_unit_are_two_people_in_need(
     assert len(script.pipeline.state.alarms) == 1, "of each rule and unit the newest is kept"
 
 
-def test_alarms_of_other_kinds_and_units_of_the_same_time_are_others(script: Script) -> None:
+def test_alarms_of_other_kinds_and_units_are_separate(script: Script) -> None:
     units = (U, "FF-02")
     script.register("FF-02")
     events_of: dict[str, list[tuple[str, UnitEvent]]] = {}
@@ -159,7 +161,7 @@ def test_alarms_of_other_kinds_and_units_of_the_same_time_are_others(script: Scr
     assert len(open_texts(script)) == 8
 
 
-def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_comes_again(
+def test_alert_received_again_is_separate_from_an_alarm_of_another_wearer(
     script: Script,
 ) -> None:
     maydays = []
@@ -181,7 +183,7 @@ def test_an_alarm_that_stands_beside_another_wearers_is_raised_anew_where_it_com
 
 
 @pytest.mark.parametrize("kind", [EventKind.MAYDAY, EventKind.FALL])
-def test_alert_of_an_unworn_unit_is_raised_once_anyone_wears_it_next(
+def test_alert_of_an_unworn_unit_is_raised_once_it_is_worn_next(
     script: Script, kind: EventKind
 ) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
@@ -201,7 +203,7 @@ def lie(script: Script, from_s: int, to_s: int) -> None:
         script.status(U, motionless_s=float(motionless_s))
 
 
-def test_two_wearers_of_one_unit_who_lie_still_are_two_people_in_need(script: Script) -> None:
+def test_two_motionless_wearers_of_one_unit_raise_two_alarms(script: Script) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
     lie(script, 0, 40)
     script.act(Assign(U, "bo", "Bo", "", ""))
@@ -225,7 +227,7 @@ def test_wearer_of_a_unit_that_lay_still_can_raise_alarms(script: Script) -> Non
     }
 
 
-def test_a_unit_that_lies_on_while_another_is_given_it_is_one_alarm(script: Script) -> None:
+def test_still_unit_that_is_assigned_again_is_one_alarm(script: Script) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
     lie(script, 0, 40)
     count = len(script.alarms)
@@ -234,8 +236,8 @@ def test_a_unit_that_lies_on_while_another_is_given_it_is_one_alarm(script: Scri
     assert len(script.alarms) == count
 
 
-def test_of_who_lay_still_before_the_unit_was_given_on_both_are_named(script: Script) -> None:
-    """It may have been given on before the station was told."""
+def test_stillness_before_a_hand_over_names_both_wearers(script: Script) -> None:
+    """The unit may have changed hands before the station was told."""
     script.act(Assign(U, "ana", "Ana", "", ""))
     lie(script, 0, 25)
     script.act(Assign(U, "bo", "Bo", "", ""))
@@ -247,7 +249,7 @@ def test_of_who_lay_still_before_the_unit_was_given_on_both_are_named(script: Sc
     assert len({one.alarm_id for one in script.alarms}) == 1
 
 
-def test_who_had_hardly_lain_still_before_is_not_named(script: Script) -> None:
+def test_short_stillness_before_a_hand_over_does_not_name_the_former_wearer(script: Script) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
     lie(script, 0, 10)
     script.act(Assign(U, "bo", "Bo", "", ""))
@@ -257,8 +259,8 @@ def test_who_had_hardly_lain_still_before_is_not_named(script: Script) -> None:
     }
 
 
-def test_a_pre_alert_of_who_wears_the_unit_no_more_is_over(script: Script) -> None:
-    """Nobody heard that they moved."""
+def test_pre_alert_of_a_former_wearer_ends(script: Script) -> None:
+    """No message reported that the wearer moved."""
     script.act(Assign(U, "ana", "Ana", "", ""))
     lie(script, 0, 25)
     script.wait(60)
@@ -273,7 +275,7 @@ def test_a_pre_alert_of_who_wears_the_unit_no_more_is_over(script: Script) -> No
     ]
 
 
-def test_who_is_called_otherwise_has_still_one_mayday(script: Script) -> None:
+def test_renamed_wearer_has_one_mayday(script: Script) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
     script.wait(3, lambda: script.status(U))
     script.event(U, EventKind.MAYDAY)
@@ -282,7 +284,7 @@ def test_who_is_called_otherwise_has_still_one_mayday(script: Script) -> None:
     assert len(script.alarms) == 1
 
 
-def test_who_wore_a_unit_before_is_forgotten_with_it(script: Script) -> None:
+def test_former_wearer_is_erased_from_an_alarm(script: Script) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))
     script.wait(3, lambda: script.status(U))
     fell = UnitEvent(script.header(U), EventKind.FALL)
@@ -294,7 +296,7 @@ def test_who_wore_a_unit_before_is_forgotten_with_it(script: Script) -> None:
     assert script.alarms[-1].text == "(forgotten): possible fall"
 
 
-def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Script) -> None:
+def test_late_fall_of_an_agent_belongs_to_the_wearer_at_its_time(script: Script) -> None:
     agent = tracker_id(U)
     script.boot_ids[agent] = 8
     script.say(message_factory.description(script.header(U), tracker=NO_TRACKER))
@@ -309,7 +311,7 @@ def test_a_fall_that_an_agent_felt_late_is_of_who_wore_the_unit_then(script: Scr
 
 
 def overdue_pair(script: Script) -> None:
-    """Ana wears FF-01 and Bo FF-02, and nobody has heard of either for too long."""
+    """Ana wears FF-01 and Bo FF-02, and both check-ins are overdue."""
     script.register(U, "FF-02")
     script.act(OpenIncident("i1", "Mill Lane", 30.0, 60.0))
     for unit_id, name in ((U, "Ana"), ("FF-02", "Bo")):
@@ -336,7 +338,7 @@ def test_overdue_member_stays_overdue_with_another_units_alarm(
     assert len(set(over)) == len(over) == 2
 
 
-def test_a_unit_that_is_given_on_is_no_word_of_who_was_overdue_with_it(script: Script) -> None:
+def test_hand_over_is_no_check_in_of_an_overdue_member(script: Script) -> None:
     overdue_pair(script)
     script.act(Assign(U, "cem", "Cem", "", ""))
     (over,) = (one for one in script.alarms if one.state is AlarmState.RESOLVED)
@@ -345,7 +347,7 @@ def test_a_unit_that_is_given_on_is_no_word_of_who_was_overdue_with_it(script: S
     assert script.alarms[-1].by == "not overdue; PAR confirmed by radio, entered by chief"
 
 
-def test_who_is_to_rest_is_so_with_another_unit(script: Script) -> None:
+def test_member_due_to_rest_is_due_with_another_unit(script: Script) -> None:
     script.register(U, "FF-02")
     script.act(OpenIncident("i1", "Mill Lane", 3600.0, 30.0))
     for unit_id, name in ((U, "Ana"), ("FF-02", "Bo")):
@@ -369,7 +371,7 @@ STANDING = {
 
 @pytest.mark.parametrize("rule", STANDING)
 @pytest.mark.parametrize("known", [False, True])
-def test_an_alarm_stays_the_same_however_often_the_unit_is_handed_over(
+def test_alarm_stays_the_same_over_any_number_of_hand_overs(
     script: Script, rule: str, known: bool
 ) -> None:
     script.act(Assign(U, "ana", "Ana", "", ""))

@@ -1,4 +1,4 @@
-"""What a unit that was switched off in order makes moot ends by itself, and nothing else does."""
+"""Alarms that end when a unit is switched off in order, and those that stay."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def life(script: Script, rule: str) -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize("rule", MOOT)
-def test_what_nobody_expects_of_it_any_more_ends_with_the_reason(script: Script, rule: str) -> None:
+def test_alarms_of_the_units_function_end_with_the_reason(script: Script, rule: str) -> None:
     script.wait(60, lambda: MOOT[rule](script))
     assert life(script, rule) == [("RAISED", "")]
     script.event(U, EventKind.STOPPED, "stopped by a signal")
@@ -81,8 +81,8 @@ def test_what_nobody_expects_of_it_any_more_ends_with_the_reason(script: Script,
         (EventKind.SENSOR_FAULT, "the sensor is gone"),
     ],
 )
-def test_a_unit_that_has_failed_is_missing(script: Script, kind: EventKind, detail: str) -> None:
-    """It had the time to say so, and that is no order."""
+def test_failed_unit_is_missing(script: Script, kind: EventKind, detail: str) -> None:
+    """A shutdown by failure is reported, and is no order."""
     script.wait(60, lambda: unsure(script))
     script.event(U, kind, detail)
     script.wait(60)
@@ -102,9 +102,7 @@ DANGERS: dict[str, Callable[[Script], object]] = {
 
 
 @pytest.mark.parametrize("rule", DANGERS)
-def test_whatever_may_have_happened_to_the_wearer_or_the_unit_stands(
-    script: Script, rule: str
-) -> None:
+def test_alarms_of_wearer_and_damage_stay(script: Script, rule: str) -> None:
     DANGERS[rule](script)
     script.wait(1)
     assert life(script, rule) == [("RAISED", "")]

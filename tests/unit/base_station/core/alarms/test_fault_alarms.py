@@ -1,4 +1,4 @@
-"""Alarms of what does not work: of a unit, of the station, of a rule itself."""
+"""Alarms of faults: of a unit, of the station, of a rule itself."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def script() -> Script:
     return script
 
 
-def test_sensor_fault_is_an_alarm_in_the_units_words_until_acknowledged(
+def test_sensor_fault_is_an_alarm_with_the_units_text_until_acknowledged(
     script: Script,
 ) -> None:
     script.event(U, EventKind.SENSOR_FAULT, "the accelerometer is stuck")
@@ -45,7 +45,7 @@ def test_sensor_fault_is_an_alarm_in_the_units_words_until_acknowledged(
 
 
 def fault_texts(script: Script) -> set[str]:
-    """Of those that stand."""
+    """Texts of the open fault alarms."""
     alarms = script.pipeline.state.alarms.values()
     return {one.text.partition(": ")[2] for one in alarms if one.is_open}
 
@@ -61,7 +61,7 @@ def test_faults_of_one_unit_are_separate_alarms_each_raised_once(script: Script)
     assert fault_texts(script) == set(details)
 
 
-def test_fault_ends_by_itself_and_is_raised_anew_when_it_returns(script: Script) -> None:
+def test_fault_ends_by_itself_and_is_raised_again_when_it_returns(script: Script) -> None:
     ids = {}
     for detail in ("A", "B", "C"):
         script.event(U, EventKind.SENSOR_FAULT, detail)
@@ -81,8 +81,8 @@ def test_fault_ends_by_itself_and_is_raised_anew_when_it_returns(script: Script)
     assert fault_texts(script) == {"A", "B"}
 
 
-def test_faults_that_come_at_once_have_ids_of_their_own(script: Script) -> None:
-    """What comes out of a journal in one go may have one time."""
+def test_simultaneous_faults_have_own_ids(script: Script) -> None:
+    """Backfilled messages of one batch may have one time."""
     for detail in ("A", "B", "C"):
         script.event(U, EventKind.SENSOR_FAULT, detail)
     assert len({one.alarm_id for one in script.alarms}) == 3
@@ -109,7 +109,7 @@ def test_endless_faults_raise_the_last_and_few_are_kept(script: Script) -> None:
     assert reported.partition(": ")[2] in fault_texts(script)
 
 
-def test_faults_that_stand_do_so_after_a_restart(script: Script) -> None:
+def test_open_faults_survive_a_restart(script: Script) -> None:
     for detail in ("A", "B"):
         script.event(U, EventKind.SENSOR_FAULT, detail)
         script.wait(1)
@@ -123,7 +123,7 @@ def test_faults_that_stand_do_so_after_a_restart(script: Script) -> None:
     assert fault_texts(script) == {"A", "B"}
 
 
-def test_a_problem_of_the_station_is_an_alarm(script: Script) -> None:
+def test_problem_of_the_station_is_an_alarm(script: Script) -> None:
     script.act(ReportProblem("log", "The disk is full"), by="station")
     script.act(ReportProblem("log", "The disk is full"), by="station")
     assert script.pipeline.state.problems == {"log": "The disk is full"}
@@ -135,7 +135,7 @@ def test_a_problem_of_the_station_is_an_alarm(script: Script) -> None:
     assert script.pipeline.state.problems == {}
 
 
-def test_a_problem_that_a_person_resolved_is_none_until_it_is_reported_again(
+def test_problem_resolved_by_a_person_ends_until_it_is_reported_again(
     script: Script,
 ) -> None:
     for _ in range(2):
@@ -145,7 +145,7 @@ def test_a_problem_that_a_person_resolved_is_none_until_it_is_reported_again(
     assert [one.state.name for one in script.alarms] == ["RAISED", "RESOLVED"] * 2
 
 
-def test_second_problem_of_a_part_is_raised_while_the_first_stands(
+def test_second_problem_of_a_part_is_raised_while_the_first_is_open(
     script: Script,
 ) -> None:
     script.act(ReportProblem("log", "The disk is nearly full"), by="station")
@@ -190,7 +190,7 @@ class Broken:
         raise ZeroDivisionError("nothing to divide")
 
 
-def test_a_failing_rule_is_reported_and_the_others_go_on() -> None:
+def test_failing_rule_is_reported_and_the_others_continue() -> None:
     script = Script(StationPipeline((Broken(), *ALARMS), FUSERS[0]))
     script.register(U)
     script.wait(3, lambda: script.event(U, EventKind.MAYDAY))
@@ -199,7 +199,7 @@ def test_a_failing_rule_is_reported_and_the_others_go_on() -> None:
     assert "ZeroDivisionError" in script.alarms[0].text
 
 
-def test_a_rule_that_fails_for_every_unit_is_one_problem() -> None:
+def test_rule_that_fails_for_every_unit_is_one_problem() -> None:
     script = Script(StationPipeline((Broken(),), FUSERS[0]))
     script.register(U, "FF-02")
     script.wait(3)

@@ -1,4 +1,4 @@
-"""Alarms of heat: its levels, how they ease, and the budget of somebody."""
+"""Alarms of heat: their levels, how they ease, and a wearer's budget."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_heat_rises_at_once_and_falls_with_hysteresis(script: Script) -> None:
     assert script.alarms[-1].by == "cooled down"
 
 
-def test_heat_that_eases_is_of_a_lower_level_once_it_stays_so(script: Script) -> None:
+def test_level_of_easing_heat_falls_once_it_stays_lower(script: Script) -> None:
     script.wait(1, lambda: script.temperature(U, 270.0))
     script.wait(8, lambda: script.temperature(U, 170.0))
     script.wait(1, lambda: script.temperature(U, 270.0))
@@ -73,7 +73,7 @@ def test_used_up_heat_budget_is_an_alarm_below_every_limit(script: Script) -> No
     assert shown.heat_used == pytest.approx(1600.0 / 1500.0, abs=0.01), "as it is now"
 
 
-def test_a_used_up_heat_budget_hides_no_heat_and_is_whole_in_another_incident(
+def test_used_up_heat_budget_hides_no_heat_and_is_reset_by_another_incident(
     script: Script,
 ) -> None:
     def hot(degc: float, duration_s: float) -> None:

@@ -1,4 +1,4 @@
-"""The wearer is told that somebody at the station deals with an alarm about them."""
+"""Acknowledgement of an alarm, sent to the wearer."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def commands(script: Script) -> list[SentCommand]:
     return list(script.pipeline.state.commands.values())
 
 
-def test_it_is_sent_until_an_output_has_played_it() -> None:
+def test_acknowledgement_is_sent_until_an_output_has_played_it() -> None:
     script = fallen()
     assert orders(script) == []
     acknowledge(script)
@@ -51,7 +51,7 @@ def test_it_is_sent_until_an_output_has_played_it() -> None:
     assert not commands(script)[0].is_open
 
 
-def test_it_stands_while_the_alarm_is_acknowledged_and_waits_for_the_link() -> None:
+def test_acknowledgement_lasts_with_the_alarm_and_waits_for_the_link() -> None:
     script = fallen()
     acknowledge(script)
     script.wait(600)
@@ -59,7 +59,7 @@ def test_it_stands_while_the_alarm_is_acknowledged_and_waits_for_the_link() -> N
 
 
 @pytest.mark.parametrize("how", ["resolved", "raised anew"])
-def test_it_ends_with_the_alarm(how: str) -> None:
+def test_acknowledgement_ends_with_the_alarm(how: str) -> None:
     script = fallen()
     acknowledge(script)
     script.now_s += 5.0
@@ -73,7 +73,7 @@ def test_it_ends_with_the_alarm(how: str) -> None:
     assert (over.is_open, over.deliveries[U].reason) == (False, ALARM_OVER)
 
 
-def test_an_alarm_of_a_former_wearer_or_about_the_unit_makes_no_command() -> None:
+def test_alarm_of_a_former_wearer_or_about_the_unit_sends_no_command() -> None:
     script = fallen()
     script.now_s += 5.0
     script.act(Unassign(U))

@@ -1,4 +1,4 @@
-"""The all clear ends an evacuation, in the books and in the units."""
+"""The all clear ends an evacuation, at the station and in the units."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def refusal(script: Script, action: SendCommand) -> str:
     return refused.reason
 
 
-def test_all_are_reported_and_nobody_gets_the_evacuation_any_more() -> None:
+def test_all_clear_reaches_all_units_and_no_unit_gets_the_evacuation_afterwards() -> None:
     script = evacuated()
     script.now_s += 5.0
     script.act(all_clear(), by="ada")
@@ -80,7 +80,7 @@ def test_all_are_reported_and_nobody_gets_the_evacuation_any_more() -> None:
     assert states(script, "c1")[1] == "acknowledged", "pressed before, known only now"
 
 
-def test_a_unit_of_an_earlier_version_refuses_it_and_is_silenced_all_the_same() -> None:
+def test_unit_of_an_earlier_version_refuses_it_and_is_silenced() -> None:
     script = evacuated()
     script.act(all_clear())
     script.reply("FF-02", "ac", CommandState.REFUSED, OLD_UNIT)
@@ -93,7 +93,7 @@ def test_a_unit_of_an_earlier_version_refuses_it_and_is_silenced_all_the_same() 
     assert states(script, "ac")[1] == "acknowledged", "told by radio"
 
 
-def test_who_was_ordered_out_again_is_not_reported_until_that_evacuation_ends() -> None:
+def test_member_evacuated_again_is_not_accounted_for_until_that_evacuation_ends() -> None:
     script = evacuated()
     script.act(evacuation("c2", "FF-02"))
     script.act(all_clear())
@@ -105,7 +105,7 @@ def test_who_was_ordered_out_again_is_not_reported_until_that_evacuation_ends() 
     assert ("FF-02", CommandKind.EVACUATE, "") not in orders(script)
 
 
-def test_of_two_evacuations_of_all_the_last_one_ends_both() -> None:
+def test_all_clear_of_the_last_of_two_evacuations_ends_both() -> None:
     script = evacuated()
     script.act(evacuation("c2"))
     assert "ordered out again" in refusal(script, all_clear("c1"))
@@ -124,14 +124,14 @@ def test_of_two_evacuations_of_all_the_last_one_ends_both() -> None:
         (all_clear(""), "name that"),
     ],
 )
-def test_what_makes_no_sense_is_refused(action: SendCommand, word: str) -> None:
+def test_impossible_all_clear_is_refused(action: SendCommand, word: str) -> None:
     script = evacuated()
     script.act(SendCommand("p1", CommandKind.PAR_REQUEST, "", "", True, "", 0.0, LASTS_S))
     assert word in refusal(script, action)
     assert states(script, "c1") == ["acknowledged", "notified", "queued"]
 
 
-def test_an_evacuation_that_is_over_stays_over() -> None:
+def test_ended_evacuation_stays_ended() -> None:
     script = evacuated()
     script.act(ConfirmCommand("c1", "FF-02"))
     script.act(all_clear())
@@ -144,7 +144,7 @@ def test_an_evacuation_that_is_over_stays_over() -> None:
     assert isinstance(refused, Refused), "else it would be sent again"
 
 
-def test_an_incident_that_closes_over_an_all_clear_silences_who_did_not_get_it() -> None:
+def test_incident_closed_during_an_all_clear_silences_units_that_missed_it() -> None:
     script = evacuated()
     script.act(all_clear())
     script.act(CloseIncident("i1"))
@@ -154,7 +154,7 @@ def test_an_incident_that_closes_over_an_all_clear_silences_who_did_not_get_it()
     assert "over already" in refusal(script, all_clear(command_id="ac2"))
 
 
-def test_a_station_that_starts_again_still_gives_it() -> None:
+def test_restarted_station_still_sends_it() -> None:
     script = evacuated()
     script.act(all_clear())
     again = read_checkpoint(script.pipeline.checkpoint())
@@ -167,7 +167,7 @@ def test_a_station_that_starts_again_still_gives_it() -> None:
     assert open_orders(replayed.pipeline.state) == open_orders(script.pipeline.state)
 
 
-def test_an_evacuation_that_all_have_answered_can_be_ended_long_after() -> None:
+def test_evacuation_that_all_have_answered_can_be_ended_long_after() -> None:
     script = evacuated()
     for unit_id in UNITS[1:]:
         script.act(ConfirmCommand("c1", unit_id))

@@ -1,4 +1,4 @@
-"""How far a command has got with each unit, event by event."""
+"""Progress of a command with each unit, event by event."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ REFUSED = CommandState.REFUSED
 
 
 def crewed() -> Script:
-    """FF-01 and FF-02 in the red crew, FF-03 in the blue one, FF-04 in its drawer."""
+    """FF-01 and FF-02 in the red crew, FF-03 in the blue one, FF-04 unused."""
     script = Script()
     script.register("FF-01", "FF-02", "FF-03", "FF-04")
     for number, crew in ((1, "red"), (2, "red"), (3, "blue")):
@@ -71,18 +71,18 @@ def to_one(kind: CommandKind = CommandKind.PAR_REQUEST) -> Script:
         ({"everyone": True}, ["FF-01", "FF-02", "FF-03", "stranded"]),
     ],
 )
-def test_a_command_goes_to_a_unit_a_crew_or_everyone(target, reported):
+def test_command_goes_to_a_unit_a_crew_or_everyone(target, reported):
     script = crewed()
     script.register("stranded")
-    script.status("stranded")  # nobody wears it, but it is out there
+    script.status("stranded")  # unassigned, but in use
     script.status("stranger")
     assert script.act(order(**target)) == [CommandChanged("c1")]
     assert list(states(script)) == reported
     assert [one.unit_id for one in open_orders(script.pipeline.state)] == reported
 
 
-def test_a_unit_in_its_drawer_is_not_waited_for():
-    """Units are tried out in the morning: who has not been reached is to be seen among them."""
+def test_unused_unit_is_not_waited_for():
+    """Units are tested in the morning: the list of the unreached shows only those in use."""
     script = crewed()
     for unit_id in ("FF-03", "FF-04"):
         script.status(unit_id)
@@ -94,7 +94,7 @@ def test_a_unit_in_its_drawer_is_not_waited_for():
     assert list(states(script, "c2")) == ["FF-01", "FF-02", "FF-03", "FF-04"]
 
 
-def test_whom_it_went_to_does_not_change_with_who_wears_what():
+def test_recipients_do_not_change_with_assignments():
     script = crewed()
     script.act(order(crew="red"))
     script.act(Unassign("FF-01"))
@@ -117,7 +117,7 @@ def test_whom_it_went_to_does_not_change_with_who_wears_what():
         (order(command_id="", everyone=True), "id"),
     ],
 )
-def test_what_makes_no_sense_is_refused_with_the_reason(action, reason):
+def test_impossible_command_is_refused_with_the_reason(action, reason):
     script = crewed()
     (output,) = script.act(action)
     assert isinstance(output, Refused)
@@ -125,7 +125,7 @@ def test_what_makes_no_sense_is_refused_with_the_reason(action, reason):
     assert not script.pipeline.state.commands
 
 
-def test_a_command_does_not_take_the_place_of_another_one():
+def test_command_does_not_replace_another_of_the_same_id():
     """A unit does a command of one id once."""
     script = to_one()
     script.reply("FF-01", "c1", RECEIVED)
@@ -135,7 +135,7 @@ def test_a_command_does_not_take_the_place_of_another_one():
     assert states(script) == {"FF-01": "received"}
 
 
-def test_it_is_queued_sent_received_and_acknowledged():
+def test_states_are_queued_sent_received_and_acknowledged():
     script = to_one()
     seen = [states(script)["FF-01"]]
     for happens in (
@@ -188,14 +188,14 @@ def test_command_to_a_unit_is_no_contact_with_it():
     assert script.pipeline.state.units["FF-01"].last_message_ns is None
 
 
-def test_nobody_answers_for_another():
+def test_reply_of_another_unit_changes_nothing():
     script = to_one()
     script.reply("FF-02", "c1", ACKNOWLEDGED)
     script.reply("stranger", "c1", ACKNOWLEDGED)
     assert states(script) == {"FF-01": "queued"}
 
 
-def test_moving_and_talking_completes_no_par():
+def test_motion_and_speech_complete_no_par():
     script = to_one()
     script.command("FF-01", "c1")
     script.wait(30, lambda: (script.status("FF-01"), script.position("FF-01", 1.0, 1.0)))
@@ -212,12 +212,12 @@ def test_operator_completes_a_par():
 
 
 @pytest.mark.parametrize(("command_id", "unit_id"), [("c2", "FF-01"), ("c1", "FF-02")])
-def test_what_was_not_asked_cannot_be_confirmed(command_id, unit_id):
+def test_unaddressed_unit_cannot_be_confirmed(command_id, unit_id):
     (output,) = to_one().act(ConfirmCommand(command_id, unit_id))
     assert isinstance(output, Refused)
 
 
-def test_what_asks_nobody_is_done_when_it_is_received():
+def test_command_without_answer_is_done_when_received():
     script = to_one(CommandKind.LOCATE)
     script.reply("FF-01", "c1", RECEIVED)
     assert not script.pipeline.state.commands["c1"].is_open
@@ -225,7 +225,7 @@ def test_what_asks_nobody_is_done_when_it_is_received():
     assert states(script) == {"FF-01": "received"}
 
 
-def test_what_concerns_the_unit_alone_cannot_be_confirmed_by_radio():
+def test_command_of_the_unit_alone_cannot_be_confirmed_by_radio():
     script = to_one(CommandKind.SET_POSITION_RATE)
     assert isinstance(script.act(ConfirmCommand("c1", "FF-01"))[0], Refused)
 
@@ -242,7 +242,7 @@ def test_a_locate_order_to_a_unit_without_an_output_can_be_confirmed_by_radio():
 
 
 @pytest.mark.parametrize("kind", sorted(OF_STATION))
-def test_nobody_orders_what_the_station_sends_by_itself(kind):
+def test_operator_cannot_send_automatic_commands(kind):
     script = crewed()
     (output,) = script.act(order(kind=kind, everyone=True))
     assert isinstance(output, Refused)
@@ -256,8 +256,8 @@ def test_refusal_gives_its_reason_and_ends_the_delivery():
     assert not open_orders(script.pipeline.state)
 
 
-def test_replaced_rate_is_not_sent_any_more():
-    """Its repeat would be applied last, and the unit would go on at a rate that nobody wants."""
+def test_replaced_rate_is_not_sent_again():
+    """A repeat would be applied last, and leave the unit at the outdated rate."""
     script = crewed()
     rate = CommandKind.SET_POSITION_RATE
     script.act(order("slow", rate, crew="red", rate_hz=1.0))
@@ -274,7 +274,7 @@ def test_replaced_rate_is_not_sent_any_more():
     )
 
 
-def test_a_rate_that_was_received_stays_so_when_a_later_one_comes():
+def test_received_rate_stays_received_when_a_later_one_comes():
     script = crewed()
     script.act(order("slow", CommandKind.SET_POSITION_RATE, unit_id="FF-01", rate_hz=1.0))
     script.reply("FF-01", "slow", RECEIVED)
@@ -283,7 +283,7 @@ def test_a_rate_that_was_received_stays_so_when_a_later_one_comes():
 
 
 @pytest.mark.parametrize("so_far", [[], ["sent"], ["sent", "received"]])
-def test_it_expires_where_nobody_answered_in_time(so_far):
+def test_command_expires_without_an_answer_in_time(so_far):
     script = to_one()
     if "sent" in so_far:
         script.command("FF-01", "c1")
@@ -299,7 +299,7 @@ def test_it_expires_where_nobody_answered_in_time(so_far):
     assert CommandChanged("c1") not in script.tick()
 
 
-def test_a_late_acknowledgement_counts_all_the_same():
+def test_late_acknowledgement_counts():
     script = to_one()
     script.wait(70)
     script.reply("FF-01", "c1", RECEIVED)
@@ -308,7 +308,7 @@ def test_a_late_acknowledgement_counts_all_the_same():
     assert states(script) == {"FF-01": "acknowledged"}
 
 
-def test_a_reply_out_of_the_journal_counts():
+def test_backfilled_reply_counts():
     script = to_one()
     reply = CommandReply(script.header("FF-01"), "c1", ACKNOWLEDGED)
     script.status("FF-01")
@@ -319,7 +319,7 @@ def test_a_reply_out_of_the_journal_counts():
 
 
 @pytest.mark.parametrize(("stated", "by"), [("before", "Person 1"), ("after", "Person 4")])
-def test_late_acknowledgement_is_of_the_wearer_at_its_time(stated, by):
+def test_late_acknowledgement_belongs_to_the_wearer_at_its_time(stated, by):
     script = to_one()
     script.status("FF-01")
     replies = {}
@@ -347,7 +347,7 @@ def test_wearer_of_a_commanded_unit_is_erased_from_the_command():
     assert b"Person 1" not in script.pipeline.checkpoint()
 
 
-def test_reply_under_the_key_of_another_unit_is_not_taken():
+def test_reply_under_the_key_of_another_unit_is_refused():
     script = to_one()
     forged = CommandReply(script.header("FF-02"), "c1", ACKNOWLEDGED)
     script.record("muster/v1/FF-01/alert/reply", encode(forged))
@@ -363,7 +363,7 @@ def test_command_is_open_until_the_last_unit_has_answered():
     assert states(script) == {"FF-01": "acknowledged", "FF-02": "expired"}
 
 
-def test_what_a_unit_did_too_late_is_done_all_the_same():
+def test_command_done_too_late_counts_as_done():
     script = to_one(CommandKind.LOCATE)
     script.wait(70)
     script.reply("FF-01", "c1", RECEIVED)
@@ -383,7 +383,7 @@ def test_texts_to_a_wearer_and_their_answers_are_erased():
 
 @pytest.mark.parametrize("answer", [RECEIVED, ACKNOWLEDGED, REFUSED])
 def test_texts_to_others_that_may_name_the_person_are_erased(answer):
-    """Nothing is lost with the words: they are where they were to go."""
+    """Nothing is lost with the texts: they have been delivered."""
     script = crewed()
     for number, answers in ((1, True), (2, True), (3, False)):
         script.act(order(f"c{number}", CommandKind.TEXT, f"FF-0{number}", text="to Person 1!"))
@@ -406,18 +406,18 @@ def test_erased_text_is_not_sent_any_more():
     assert CommandChanged("c1") in outputs, "whoever looks at it sees it go"
     assert states(script) == {"FF-01": "expired", "FF-02": "received", "FF-03": "expired"}
     assert not open_orders(script.pipeline.state)
-    script.reply("FF-01", "c1", ACKNOWLEDGED)  # it had come all the same
+    script.reply("FF-01", "c1", ACKNOWLEDGED)  # received all the same
     assert states(script)["FF-01"] == "acknowledged"
 
 
-def test_an_evacuation_goes_on_without_the_words_that_were_forgotten():
+def test_evacuation_continues_without_its_erased_text():
     script = to_one(CommandKind.EVACUATE)
     script.act(ForgetWearers("FF-01"))
     (left,) = open_orders(script.pipeline.state)
     assert (left.kind, left.text) == (CommandKind.EVACUATE, "")
 
 
-def test_nobody_is_forgotten_while_an_incident_is_open():
+def test_erasure_is_refused_while_an_incident_is_open():
     script = to_one()
     script.act(OpenIncident("i1", "Mill Lane"))
     (refused,) = script.act(ForgetWearers("FF-01"))
@@ -426,8 +426,8 @@ def test_nobody_is_forgotten_while_an_incident_is_open():
     assert not any(isinstance(one, Refused) for one in script.act(ForgetWearers("FF-01")))
 
 
-def test_the_orders_of_an_incident_end_with_it():
-    """Who comes to the next one is not told to get out of the last one's building."""
+def test_orders_of_an_incident_end_with_it():
+    """A member of the next incident is not ordered out of the last one's building."""
     script = crewed()
     script.act(order("before", CommandKind.TEXT, crew="blue", text="to the engine"))
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -449,7 +449,7 @@ def test_the_orders_of_an_incident_end_with_it():
     assert states(script)["FF-02"] == "acknowledged", "late, and true all the same"
 
 
-def test_what_is_kept_is_bounded():
+def test_number_of_kept_commands_is_bounded():
     script = crewed()
     for number in range(3 * CLOSED_KEPT):
         script.act(order(f"l{number}", CommandKind.LOCATE, unit_id="FF-01"))
@@ -462,7 +462,7 @@ def test_what_is_kept_is_bounded():
     assert isinstance(output, Refused)
 
 
-def test_an_evacuation_does_not_wait_for_what_is_still_open():
+def test_evacuation_does_not_wait_for_open_commands():
     script = crewed()
     for number in range(MAX_OPEN):
         script.act(order(f"t{number}", CommandKind.TEXT, unit_id="FF-01", text="come nearer"))

@@ -1,4 +1,4 @@
-"""Who has called a mayday is told that somebody at the station knows of it."""
+"""Acknowledgement of a mayday, sent to the wearer."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def commands(script: Script) -> list[SentCommand]:
     return list(script.pipeline.state.commands.values())
 
 
-def test_an_acknowledged_mayday_is_sent_to_the_unit_until_an_output_has_played_it() -> None:
+def test_acknowledged_mayday_is_sent_until_an_output_has_played_it() -> None:
     script = called()
     assert orders(script) == []
     outputs = acknowledge(script)
@@ -66,7 +66,7 @@ def test_an_acknowledged_mayday_is_sent_to_the_unit_until_an_output_has_played_i
     assert not commands(script)[0].is_open
 
 
-def test_a_mayday_known_by_the_status_alone_is_acknowledged_by_that() -> None:
+def test_mayday_known_by_the_status_alone_is_acknowledged_by_that() -> None:
     script = Script()
     script.register(U)
     script.status(U, mayday=True)
@@ -75,7 +75,7 @@ def test_a_mayday_known_by_the_status_alone_is_acknowledged_by_that() -> None:
     assert (order.mayday_boot_id, order.mayday_seq) == (7, 1)
 
 
-def test_it_waits_for_the_link() -> None:
+def test_acknowledgement_waits_for_the_link() -> None:
     script = called()
     acknowledge(script)
     script.wait(3600)
@@ -83,7 +83,7 @@ def test_it_waits_for_the_link() -> None:
 
 
 @pytest.mark.parametrize("how", ["event", "status", "called again"])
-def test_one_whose_mayday_is_over_is_not_sent_any_more(how: str) -> None:
+def test_acknowledgement_of_an_ended_mayday_is_not_sent_again(how: str) -> None:
     script = called()
     acknowledge(script)
     script.now_s += 5.0
@@ -100,7 +100,7 @@ def test_one_whose_mayday_is_over_is_not_sent_any_more(how: str) -> None:
     assert over.deliveries[U].reason
 
 
-def test_another_call_is_acknowledged_anew() -> None:
+def test_next_mayday_is_acknowledged_again() -> None:
     script = called()
     acknowledge(script)
     script.now_s += 5.0
@@ -111,14 +111,14 @@ def test_another_call_is_acknowledged_anew() -> None:
     assert order.mayday_seq == 3
 
 
-def test_a_mayday_that_the_wearer_has_cancelled_is_acknowledged_to_nobody() -> None:
+def test_mayday_cancelled_by_the_wearer_is_not_acknowledged() -> None:
     script = called()
     script.event(U, EventKind.MAYDAY_CANCELLED)
     acknowledge(script)
     assert commands(script) == []
 
 
-def test_the_mayday_of_a_former_wearer_is_not_acknowledged_to_another() -> None:
+def test_mayday_of_a_former_wearer_is_not_acknowledged_to_another() -> None:
     script = called()
     script.now_s += 5.0
     script.act(Unassign(U))
@@ -136,7 +136,7 @@ def test_resolution_sends_no_command() -> None:
     assert commands(script) == []
 
 
-def test_it_ends_with_its_incident() -> None:
+def test_acknowledgement_ends_with_its_incident() -> None:
     script = called()
     script.act(OpenIncident("i1", "Mill Lane"))
     acknowledge(script)
@@ -144,7 +144,7 @@ def test_it_ends_with_its_incident() -> None:
     assert orders(script) == []
 
 
-def test_a_station_that_starts_again_still_sends_it() -> None:
+def test_restarted_station_still_sends_it() -> None:
     script = called()
     acknowledge(script)
     checkpoint = read_checkpoint(script.pipeline.checkpoint())

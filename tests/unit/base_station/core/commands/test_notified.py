@@ -1,4 +1,4 @@
-"""Received means in the unit, notified that an output of it has run; and units without any."""
+"""Received means in the unit, notified means that an output has run; and units without outputs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ACKNOWLEDGED = CommandState.ACKNOWLEDGED
 def sent(
     kind: CommandKind = CommandKind.EVACUATE, outputs: tuple[str, ...] | None = None
 ) -> Script:
-    """A command to one unit, which has described itself where ``outputs`` are given."""
+    """A command to one unit, which has described its outputs where ``outputs`` are given."""
     script = Script()
     script.register(U)
     if outputs is not None:
@@ -57,7 +57,7 @@ def is_open(script: Script) -> bool:
     return script.pipeline.state.commands["c1"].is_open
 
 
-def test_it_is_received_notified_and_acknowledged() -> None:
+def test_states_are_received_notified_and_acknowledged() -> None:
     script = sent(outputs=("led",))
     seen = []
     for reply in (RECEIVED, NOTIFIED, ACKNOWLEDGED):
@@ -72,7 +72,7 @@ def test_it_is_received_notified_and_acknowledged() -> None:
 
 
 @pytest.mark.parametrize("replies", list(permutations([RECEIVED, NOTIFIED, ACKNOWLEDGED])))
-def test_in_whatever_order_the_answers_come_the_same_is_known(
+def test_answers_in_any_order_give_the_same_state(
     replies: tuple[CommandState, ...],
 ) -> None:
     script = sent()
@@ -86,7 +86,7 @@ def test_in_whatever_order_the_answers_come_the_same_is_known(
     assert one.acknowledged_ns == START_NS + (1 + replies.index(ACKNOWLEDGED)) * 10**9
 
 
-def test_who_notifies_has_received_it() -> None:
+def test_notified_implies_received() -> None:
     script = sent()
     script.reply(U, "c1", NOTIFIED)
     assert delivery(script).received_ns == script.t_ns
@@ -95,14 +95,14 @@ def test_who_notifies_has_received_it() -> None:
     assert state(script) == "notified"
 
 
-def test_who_acknowledges_was_not_notified_by_that() -> None:
+def test_acknowledged_does_not_imply_notified() -> None:
     script = sent()
     script.reply(U, "c1", ACKNOWLEDGED)
     assert delivery(script).received_ns == script.t_ns
     assert delivery(script).notified_ns is None
 
 
-def test_a_second_output_that_has_run_changes_nothing() -> None:
+def test_second_output_changes_nothing() -> None:
     script = sent()
     script.reply(U, "c1", NOTIFIED)
     before = repr(script.pipeline.state.commands)
@@ -111,7 +111,7 @@ def test_a_second_output_that_has_run_changes_nothing() -> None:
     assert repr(script.pipeline.state.commands) == before
 
 
-def test_out_of_a_journal_it_counts() -> None:
+def test_backfilled_answer_counts() -> None:
     script = sent()
     reply = CommandReply(script.header(U), "c1", NOTIFIED)
     script.status(U)
@@ -119,14 +119,14 @@ def test_out_of_a_journal_it_counts() -> None:
     assert state(script) == "notified"
 
 
-def test_a_wearer_who_was_notified_and_does_not_answer_in_time_has_not_answered() -> None:
+def test_notified_wearer_without_answer_in_time_has_not_answered() -> None:
     script = sent(outputs=("led",))
     script.reply(U, "c1", NOTIFIED)
     script.wait(61)
     assert (state(script), is_open(script)) == ("expired", False)
 
 
-def test_an_answer_by_radio_that_is_taken_back_leaves_what_the_unit_did() -> None:
+def test_undone_answer_by_radio_keeps_the_states_of_the_unit() -> None:
     script = sent(outputs=("led",))
     script.reply(U, "c1", NOTIFIED)
     script.act(ConfirmCommand("c1", U))
@@ -138,7 +138,7 @@ def test_an_answer_by_radio_that_is_taken_back_leaves_what_the_unit_did() -> Non
 @pytest.mark.parametrize(
     ("outputs", "after_received"), [(("led", "beeper"), True), ((), False), (None, False)]
 )
-def test_locate_goes_on_once_it_is_signalled_until_it_is_stopped(
+def test_locate_signal_lasts_until_it_is_stopped(
     outputs: tuple[str, ...] | None, after_received: bool
 ) -> None:
     script = sent(CommandKind.LOCATE, outputs)
@@ -151,7 +151,7 @@ def test_locate_goes_on_once_it_is_signalled_until_it_is_stopped(
     assert (state(script), is_open(script)) == ("acknowledged", False)
 
 
-def test_a_signal_of_its_place_that_nobody_stops_ends_with_its_time() -> None:
+def test_locate_signal_that_is_not_stopped_ends_with_its_time() -> None:
     script = sent(CommandKind.LOCATE, ("led", "beeper"))
     signals = []
     for detail in ("light", "light", "sound", "light"):
@@ -169,13 +169,13 @@ def test_locate_does_not_wait_for_an_output_for_ever() -> None:
     assert (state(script), is_open(script)) == ("received", False)
 
 
-def test_how_often_to_send_a_position_is_done_when_received() -> None:
+def test_position_rate_is_done_when_received() -> None:
     script = sent(CommandKind.SET_POSITION_RATE, ("led",))
     script.reply(U, "c1", RECEIVED)
     assert not is_open(script)
 
 
-def test_an_incident_that_is_closed_ends_the_wait_for_an_output() -> None:
+def test_closed_incident_ends_the_wait_for_an_output() -> None:
     script = sent(outputs=("led",))
     script.act(OpenIncident("i1", "Mill Lane"))
     script.act(SendCommand("c2", CommandKind.LOCATE, U, "", False, "", 0.0, 60.0))
@@ -206,7 +206,7 @@ def test_backfilled_description_changes_nothing() -> None:
     assert script.pipeline.state.units[U].can_be_notified is True
 
 
-def test_a_checkpoint_of_an_earlier_version_opens() -> None:
+def test_checkpoint_of_an_earlier_version_opens() -> None:
     script = sent(outputs=("led",))
     script.reply(U, "c1", RECEIVED)
     saved = msgspec.msgpack.decode(script.pipeline.checkpoint())

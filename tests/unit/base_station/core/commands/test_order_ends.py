@@ -1,4 +1,6 @@
-"""An order whose answer came by radio, or whose incident was closed, ends in the unit too."""
+"""Ends of orders: an order that was answered by radio, or whose incident was closed, ends in the
+unit too.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,7 @@ LASTS_S = 60.0
 
 
 def sent(kind: CommandKind = CommandKind.EVACUATE) -> Script:
-    """An order that went out, in an incident."""
+    """A sent order of an incident."""
     script = Script()
     script.register(U)
     script.say(message_factory.description(script.header(U), outputs=("led",)))
@@ -44,7 +46,7 @@ def delivery(script: Script) -> Delivery:
 
 
 def send_end(script: Script) -> Order:
-    """The station sends what is owed, and hears itself send it."""
+    """The station sends its pending ends, and receives its own messages."""
     (end,) = orders(script)
     assert end.kind is CommandKind.END_ORDER
     command = Command(
@@ -56,7 +58,7 @@ def send_end(script: Script) -> Order:
 
 
 @pytest.mark.parametrize("reply", [CommandState.RECEIVED, CommandState.REFUSED])
-def test_an_answer_by_radio_is_sent_to_the_unit_until_it_answers(reply: CommandState) -> None:
+def test_answer_by_radio_is_sent_to_the_unit_until_it_replies(reply: CommandState) -> None:
     """A unit of an earlier version refuses it."""
     script = sent()
     script.reply(U, "c1", CommandState.NOTIFIED)
@@ -70,23 +72,23 @@ def test_an_answer_by_radio_is_sent_to_the_unit_until_it_answers(reply: CommandS
     assert script.pipeline.state.commands["c1"].state_of(delivery(script)) == "acknowledged"
 
 
-def test_an_order_that_never_went_out_needs_no_end() -> None:
+def test_unsent_order_needs_no_end() -> None:
     script = Script()
     script.register(U)
     script.act(SendCommand("c1", CommandKind.EVACUATE, U, "", False, "", 0.0, LASTS_S))
     script.act(ConfirmCommand("c1", U))
     assert orders(script) == []
-    script.command(U, "c1")  # it was on its way
+    script.command(U, "c1")  # it was in transit
     assert [one.kind for one in orders(script)] == [CommandKind.END_ORDER]
 
 
-def test_what_the_wearer_has_answered_needs_no_end() -> None:
+def test_order_answered_by_the_wearer_needs_no_end() -> None:
     script = sent()
     script.reply(U, "c1", CommandState.ACKNOWLEDGED)
     assert orders(script) == []
 
 
-def test_an_order_that_has_expired_needs_no_end() -> None:
+def test_expired_order_needs_no_end() -> None:
     script = sent()
     script.reply(U, "c1", CommandState.RECEIVED)
     script.act(ConfirmCommand("c1", U))
@@ -95,7 +97,7 @@ def test_an_order_that_has_expired_needs_no_end() -> None:
     assert orders(script) == []
 
 
-def test_the_order_of_an_incident_that_was_closed_ends() -> None:
+def test_order_of_a_closed_incident_ends() -> None:
     script = sent()
     script.reply(U, "c1", CommandState.NOTIFIED)
     script.act(CloseIncident("i1"))
@@ -104,7 +106,7 @@ def test_the_order_of_an_incident_that_was_closed_ends() -> None:
     assert orders(script) == []
 
 
-def test_an_answer_that_is_undone_is_ordered_again_and_can_end_again() -> None:
+def test_undone_answer_is_ordered_again_and_can_end_again() -> None:
     script = sent()
     script.reply(U, "c1", CommandState.NOTIFIED)
     script.act(ConfirmCommand("c1", U))
@@ -120,7 +122,7 @@ def test_an_answer_that_is_undone_is_ordered_again_and_can_end_again() -> None:
     assert send_end(script).command_id != first.command_id
 
 
-def test_an_end_that_goes_out_while_it_is_undone_is_made_good() -> None:
+def test_end_sent_while_its_answer_is_undone_is_corrected() -> None:
     script = sent()
     script.reply(U, "c1", CommandState.NOTIFIED)
     script.act(ConfirmCommand("c1", U))
@@ -135,7 +137,7 @@ def test_an_end_that_goes_out_while_it_is_undone_is_made_good() -> None:
     assert [one.command_id for one in orders(script)] == ["c1"]
 
 
-def test_many_later_orders_do_not_make_an_end_forgotten() -> None:
+def test_many_later_orders_displace_no_pending_end() -> None:
     script = sent()
     script.reply(U, "c1", CommandState.NOTIFIED)
     script.act(ConfirmCommand("c1", U))
@@ -151,7 +153,7 @@ def stop(command_id: str = "c1") -> SendCommand:
     return SendCommand("s1", kind, "", "", True, "", 0.0, LASTS_S, ended_command_id=command_id)
 
 
-def test_a_signal_of_the_place_is_stopped_in_the_unit() -> None:
+def test_locate_signal_is_stopped_in_the_unit() -> None:
     script = sent(CommandKind.LOCATE)
     script.reply(U, "c1", CommandState.NOTIFIED, "sound")
     script.act(stop())
@@ -165,7 +167,7 @@ def test_a_signal_of_the_place_is_stopped_in_the_unit() -> None:
 
 
 @pytest.mark.parametrize("kind", [CommandKind.EVACUATE, CommandKind.LOCATE])
-def test_only_a_signal_that_is_on_is_stopped(kind: CommandKind) -> None:
+def test_only_an_active_signal_is_stopped(kind: CommandKind) -> None:
     script = sent(kind)
     script.reply(U, "c1", CommandState.ACKNOWLEDGED)
     for command_id in ("c1", "none"):

@@ -1,4 +1,4 @@
-"""An order that is sent again goes to who has not answered, and its answers count for the first."""
+"""Repeats of orders go to units that have not answered, and their answers count for the first."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def states(script: Script) -> list[str]:
     return [command.state_of(one) for one in command.deliveries.values()]
 
 
-def test_it_goes_to_who_has_not_answered_and_the_counts_stay_those_of_the_evacuation() -> None:
+def test_repeat_goes_to_the_unanswered_and_counts_stay_those_of_the_evacuation() -> None:
     script = evacuated()
     script.now_s += 5.0
     script.act(repeat())
@@ -65,7 +65,7 @@ def test_it_goes_to_who_has_not_answered_and_the_counts_stay_those_of_the_evacua
     assert not the_order(script).is_open
 
 
-def test_to_one_person_and_it_lasts_from_then_on() -> None:
+def test_repeat_to_one_person_lasts_from_its_time() -> None:
     script = evacuated()
     script.wait(61.0)
     assert states(script)[1:] == ["expired", "expired"]
@@ -86,7 +86,7 @@ def test_to_one_person_and_it_lasts_from_then_on() -> None:
         (repeat(repeat_id="c1"), "id of its own"),
     ],
 )
-def test_what_makes_no_sense_is_refused(action: SendCommand, word: str) -> None:
+def test_impossible_repeat_is_refused(action: SendCommand, word: str) -> None:
     script = evacuated()
     (refused,) = script.act(action)
     assert isinstance(refused, Refused)
@@ -94,7 +94,7 @@ def test_what_makes_no_sense_is_refused(action: SendCommand, word: str) -> None:
     assert states(script) == ["acknowledged", "notified", "queued"]
 
 
-def test_what_nobody_answers_or_everybody_has_answered_is_not_sent_again() -> None:
+def test_order_without_answers_or_with_all_is_not_sent_again() -> None:
     script = evacuated()
     for unit_id in UNITS[1:]:
         script.act(ConfirmCommand("c1", unit_id))
@@ -105,7 +105,7 @@ def test_what_nobody_answers_or_everybody_has_answered_is_not_sent_again() -> No
     assert isinstance(refused, Refused)
 
 
-def test_the_orders_of_a_closed_incident_are_not_sent_again() -> None:
+def test_orders_of_a_closed_incident_are_not_sent_again() -> None:
     script = Script()
     script.register("FF-01")
     script.act(OpenIncident("i1", "Mill Lane"))

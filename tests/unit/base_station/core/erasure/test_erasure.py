@@ -1,4 +1,4 @@
-"""Who wore what when, as the log tells: of one person, and of everybody in one incident."""
+"""Wearers of units over time, from the log: of one person, and of all people of one incident."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ OPEN, CLOSE = OpenIncident("i1", "Mill Lane"), CloseIncident("i1")
 
 
 def done(*actions: tuple[int, Action]) -> list[Record]:
-    """At these times; each has its time as its id."""
+    """The actions at these times; each has its time as its id."""
     return [
         (
             t_ns,
@@ -48,7 +48,7 @@ def done(*actions: tuple[int, Action]) -> list[Record]:
 
 
 def erasure_of(records: list[Record]) -> Erasure:
-    """Of a log whose beginning, with the registrations, is lost."""
+    """Erasure of a log whose beginning, with the registrations, is lost."""
     return erasure_of_incident(records, "i1", is_whole=False)
 
 
@@ -57,7 +57,7 @@ def ana(unit_id: str, name: str = "Ana") -> Assign:
 
 
 def worn(assign: Assign) -> Assign:
-    """The assignment as it stands behind the end of an incident that was erased."""
+    """The assignment as it remains behind the end of an erased incident."""
     return msgspec.structs.replace(assign, keeps_incident=True)
 
 
@@ -79,26 +79,26 @@ def bo(unit_id: str) -> Assign:
         ([(10, bo("A")), (20, Unassign("A"))], []),
     ],
 )  # fmt: skip
-def test_a_person_wears_a_unit_until_it_is_handed_back_or_on(
+def test_person_wears_a_unit_until_its_return_or_hand_over(
     actions: list[tuple[int, Action]], wearings: list[tuple[str, int, int]]
 ) -> None:
     erasure = erasure_of_person(done(*actions), "p1", (), NOW_NS)
     assert erasure.wearings == tuple(Wearing(*one) for one in wearings)
 
 
-def test_every_name_that_a_person_had_is_known_the_longest_first() -> None:
+def test_every_name_of_a_person_is_known_the_longest_first() -> None:
     actions = done((10, ana("A")), (20, ana("A", " ")), (30, ana("A", "Ana Kovač")), (40, bo("A")))
     actions.insert(1, (15, OPERATOR.key(STATION_ID), b"\xffa newer program's"))
     assert erasure_of_person(actions, "p1", ["Anka"], NOW_NS).names == ("Ana Kovač", "Anka", "Ana")
 
 
-def test_the_moment_of_handing_back_is_the_next_ones() -> None:
+def test_moment_of_return_belongs_to_the_next_wearer() -> None:
     erasure = erasure_of_person(done((10, ana("A")), (20, Unassign("A"))), "p1", (), NOW_NS)
     assert [erasure.covers("A", t_ns) for t_ns in (9, 10, 19, 20)] == [False, True, True, False]
     assert not erasure.covers("B", 15)
 
 
-def test_everybody_who_wore_a_unit_in_an_incident_is_of_it() -> None:
+def test_every_wearer_in_an_incident_belongs_to_it() -> None:
     records = done(
         (5, bo("C")), (6, Unassign("C")),  # before
         (10, ana("A")),
@@ -115,8 +115,8 @@ def test_everybody_who_wore_a_unit_in_an_incident_is_of_it() -> None:
     assert not erasure.covers("A", 40)
 
 
-def test_what_is_raised_after_an_incident_of_its_units_is_about_it_until_the_next_one() -> None:
-    """What a unit could not say before, and what somebody notes of it when it is dealt with."""
+def test_alarms_of_its_units_after_an_incident_belong_to_it_until_the_next_one() -> None:
+    """Late messages of a unit, and notes of the people who handle them."""
     records = done(
         (5, OpenIncident("i0", "")), (6, CloseIncident("i0")),
         (10, ana("A")), (20, OPEN), (40, CLOSE), (50, OpenIncident("i2", "")),
@@ -133,7 +133,7 @@ def test_what_is_raised_after_an_incident_of_its_units_is_about_it_until_the_nex
     assert last.is_about("A", 10**18)
 
 
-def test_log_of_a_forgotten_incident_keeps_its_units() -> None:
+def test_log_of_an_erased_incident_keeps_its_units() -> None:
     """Their journals may bring more of it."""
     records = done(
         (5, bo("C")), (6, Unassign("C")),  # before
@@ -151,7 +151,7 @@ def redacted(records: list[Record], erasure: Erasure) -> list[Record]:
     return [one for record in records for one in redactor(record)]
 
 
-def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
+def test_wearer_before_an_incident_belongs_to_another() -> None:
     records = done(
         (1, OpenIncident("i0", "")), (2, bo("B")), (3, CloseIncident("i0")), (4, Unassign("B")),
         (10, ana("A")), (20, OPEN), (40, CLOSE),
@@ -168,14 +168,14 @@ def test_who_wore_a_unit_before_and_not_in_it_is_of_another() -> None:
         ([(10, OpenIncident("i0", "")), (20, CloseIncident("i0"))], "knows no incident"),
     ],
 )
-def test_what_is_open_or_unknown_is_not_forgotten(
+def test_open_or_unknown_incident_is_not_erased(
     actions: list[tuple[int, Action]], reported: str
 ) -> None:
     with pytest.raises(UserError, match=reported):
         erasure_of_incident(done(*actions), "i1")
 
 
-def test_what_was_put_into_a_part_of_the_log_is_not_put_in_again() -> None:
+def test_inserted_part_of_the_log_is_not_inserted_again() -> None:
     records = done((10, ana("A")), (11, bo("B")), (20, OPEN), (40, CLOSE))
     erasure = erasure_of(records)
     assert erasure.inserted_in(records) == set()
@@ -193,7 +193,7 @@ def test_what_was_put_into_a_part_of_the_log_is_not_put_in_again() -> None:
     assert redacted(forgotten, erasure) == forgotten
 
 
-def test_radio_of_a_time_in_which_another_incident_was_open_goes_with_the_last() -> None:
+def test_radio_during_overlapping_incidents_is_erased_with_the_last() -> None:
     records = done(
         (10, OPEN), (20, OpenIncident("i2", "", beside_others=True)),
         (30, OpenIncident("i3", "", beside_others=True)), (40, CloseIncident("i2")),
@@ -208,7 +208,7 @@ def test_radio_of_a_time_in_which_another_incident_was_open_goes_with_the_last()
     assert inside.times_alone({"i1", "i3"}) == [(20, 40)]
 
 
-def test_action_of_a_person_is_no_inserted_one_whatever_its_unit_is_called() -> None:
+def test_action_of_a_person_is_no_inserted_one_whatever_the_units_name() -> None:
     own = f"{1:016x}-7"
     for action_id, action, inserted in (
         (own, Unassign("7"), False),
@@ -222,10 +222,10 @@ def test_action_of_a_person_is_no_inserted_one_whatever_its_unit_is_called() -> 
 
 
 @pytest.mark.parametrize(("sender", "captured_ns"), [("A", 115), ("A@tracker", 115), ("B", 113)])
-def test_of_two_stations_the_one_that_forgets_later_places_every_message_as_the_first(
+def test_later_erasure_of_a_pair_places_every_message_as_the_first(
     sender: str, captured_ns: int
 ) -> None:
-    """Though it has heard words of the unit since that were less delayed."""
+    """Though it has received less delayed messages of the unit since."""
     actions = done((10, ana("A")), (30, ForgetWearers("A")), (200, Unassign("A")),
                    (300, ForgetWearers("A")), (400, ForgetWearers("A")))  # fmt: skip
     erasure = erasure_of_person(actions, "p1", (), NOW_NS)

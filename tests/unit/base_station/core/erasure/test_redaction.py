@@ -1,4 +1,4 @@
-"""Names are taken out of texts; other people's, and the program's own words, stay."""
+"""Names are removed from texts; names of others, and the program's own words, stay."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ HEADER = Header(STATION_ID, 1, 1, 10, t_utc_ns=10)
         ("FF-1", "FF-1, FF-10 and FF-1", "#, FF-10 and #"),
     ],
 )
-def test_a_name_is_a_whole_word(name: str, text: str, left: str) -> None:
+def test_name_is_a_whole_word(name: str, text: str, left: str) -> None:
     assert name_pattern((name,)).sub("#", text) == left
 
 
-def test_of_no_names_nothing_is_found() -> None:
+def test_no_names_match_nothing() -> None:
     assert name_pattern(()).search("anything") is None
 
 
@@ -69,7 +69,7 @@ def redacted(name: str, channel: Channel, message: AlarmChange | OperatorAction)
     return decode(channel, payload)
 
 
-def test_who_is_called_like_an_alarm_leaves_the_alarms_as_they_are() -> None:
+def test_person_named_like_an_alarm_leaves_alarms_unchanged() -> None:
     alarm = AlarmChange(
         HEADER,
         "heat:HEAT:5",
@@ -96,8 +96,8 @@ def test_who_is_called_like_an_alarm_leaves_the_alarms_as_they_are() -> None:
 
 
 @pytest.mark.parametrize("length", range(1, 100))
-def test_a_name_is_found_whatever_byte_stands_before_it(length: int) -> None:
-    """On the wire a text's length stands right before it, and may look like a letter."""
+def test_name_is_found_behind_any_byte(length: int) -> None:
+    """In the encoding a text's length precedes it, and may look like a letter."""
     text = "Bo".ljust(length + 2, ".")
     stated = OperatorAction(
         HEADER, "a1", "eve", SendCommand("c1", CommandKind.TEXT, "FF-01", "", False, text, 0.0, 9.0)
@@ -108,7 +108,7 @@ def test_a_name_is_found_whatever_byte_stands_before_it(length: int) -> None:
     assert found.action.text == text.replace("Bo", ERASED_TEXT)
 
 
-def test_ids_stay_so_that_what_belongs_together_does() -> None:
+def test_ids_stay_so_that_references_match() -> None:
     stated = OperatorAction(HEADER, "a1", "eve", Assign("Max", "p2", "Max", "Max crew", ""))
     found = redacted("Max", OPERATOR, stated)
     assert isinstance(found, OperatorAction)
@@ -116,7 +116,7 @@ def test_ids_stay_so_that_what_belongs_together_does() -> None:
 
 
 def newer(unit_id: str, seq: int) -> bytes:
-    """What a unit says that this program cannot read."""
+    """A message of a newer version that this program cannot read."""
     return encode(Temperature(Header(unit_id, 7, seq, 5, schema=99), 20.0))
 
 
@@ -131,7 +131,7 @@ def newer(unit_id: str, seq: int) -> bytes:
         (backfilled_key("bert", TEMPERATURE.suffix), 150, True),
     ],
 )
-def test_of_what_nobody_can_read_a_sign_of_life_is_left(key: str, t_ns: int, stays: bool) -> None:
+def test_unreadable_message_is_reduced_to_a_sign_of_life(key: str, t_ns: int, stays: bool) -> None:
     redact = Redactor(
         Erasure((Wearing("anna", 110, 200),), ("Ada",), person_id="p1"), CaptureClocks()
     )
@@ -148,14 +148,14 @@ def test_of_what_nobody_can_read_a_sign_of_life_is_left(key: str, t_ns: int, sta
 @pytest.mark.parametrize(
     ("boot_id", "utc_ns", "utc_std_s", "stays"),
     [
-        (7, 0, 0.0, False),  # heard live: captured at 150
-        (8, 0, 0.0, False),  # nobody can tell
+        (7, 0, 0.0, False),  # received live: captured at 150
+        (8, 0, 0.0, False),  # unknown
         (8, 150, 0.1, False),
         (8, 250, 0.1, True),
-        (8, 250, 0.0, False),  # by a clock that nobody has set
+        (8, 250, 0.0, False),  # by a clock that was never set
     ],
 )
-def test_backfilled_messages_of_the_forgotten_wearer_are_erased(
+def test_backfilled_messages_of_the_erased_wearer_are_erased(
     boot_id: int, utc_ns: int, utc_std_s: float, stays: bool
 ) -> None:
     clocks = CaptureClocks()
@@ -200,8 +200,8 @@ def start(unit_id: str) -> SetStart:
         (150, start("bert"), start("bert")),
         (250, start("anna"), start("anna")),
         (150, pin("anna", 0), None),
-        (250, pin("anna", 150), None),  # of when she wore it, said later
-        (150, pin("anna", 50), None),  # of before, said while she wore it
+        (250, pin("anna", 150), None),  # of the time when she wore it, sent later
+        (150, pin("anna", 50), None),  # of before, sent while she wore it
         (250, pin("anna", 0), pin("anna", 0)),
         (250, pin("anna", 220), pin("anna", 220)),
         (150, met("bert", "anna", 0), None),
@@ -215,7 +215,7 @@ def start(unit_id: str) -> SetStart:
         (250, together("anna", "bert", t_ns=220), together("anna", "bert", t_ns=220)),
     ],
 )
-def test_reported_places_of_the_forgotten_person_go_and_of_others_stay(
+def test_reported_places_of_the_erased_person_are_removed_and_others_stay(
     said_ns: int, action: Action, left: Action | None
 ) -> None:
     redact = Redactor(
@@ -230,7 +230,7 @@ def test_reported_places_of_the_forgotten_person_go_and_of_others_stay(
 
 
 def apart(said_ns: int, what: str) -> DoneApart:
-    """By somebody who is called like who is forgotten: who did what stays."""
+    """Separate actions by an operator with the name of the erased person: the operator stays."""
     return DoneApart("ada", said_ns, "Ada", what)
 
 
@@ -243,14 +243,14 @@ INCIDENT = Erasure(
 @pytest.mark.parametrize(
     ("t_ns", "unit_id", "raised_ns", "left"),
     [
-        (250, "anna", 250, ERASED_TEXT),  # said in the incident, perhaps, and told after it
+        (250, "anna", 250, ERASED_TEXT),  # sent in the incident, perhaps, and received after it
         (250, "bert", 250, "Ada"),
         (250, "bert", 150, ERASED_TEXT),
         (350, "anna", 350, "Ada"),  # of the next one
         (350, "anna", 250, ERASED_TEXT),
     ],
 )
-def test_an_alarm_about_an_incident_and_what_is_noted_of_it_name_nobody_after_it_either(
+def test_alarms_and_notes_about_an_incident_name_nobody_after_it(
     t_ns: int, unit_id: str, raised_ns: int, left: str
 ) -> None:
     redact = Redactor(msgspec.structs.replace(INCIDENT, about_until_ns=300), CaptureClocks())

@@ -1,4 +1,4 @@
-"""Pins in the pipeline: what they correct, and what removing them undoes."""
+"""Pins in the pipeline: their corrections, and the effect of their removal."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def walk() -> Walk:
     return walk_from_the_engine()
 
 
-def test_a_pin_corrects_the_whole_past_and_the_present(walk: Walk) -> None:
+def test_pin_corrects_the_whole_past_and_the_present(walk: Walk) -> None:
     before_m, now_m = walk.worst_m("FF-01"), walk.now_off_m("FF-01")
     outputs = walk.pin("p1", "FF-01", 300.0)
     assert walk.state("p1") == "used"
@@ -50,7 +50,7 @@ def test_start_set_before_the_first_position_holds_from_then() -> None:
     assert (fused.north_m, fused.east_m) == pytest.approx((-30.0, 9.0), abs=0.1)
 
 
-def test_a_pin_with_a_floor_holds_a_path_of_a_single_point() -> None:
+def test_pin_with_a_floor_holds_a_path_of_a_single_point() -> None:
     script = Script()
     script.register("FF-01")
     script.act(SetPlan(PLAN))
@@ -62,7 +62,7 @@ def test_a_pin_with_a_floor_holds_a_path_of_a_single_point() -> None:
     assert fused.floor == 1
 
 
-def test_what_comes_after_a_pin_goes_on_from_it(walk: Walk) -> None:
+def test_path_continues_from_a_pin(walk: Walk) -> None:
     plain = Walk("FF-01")
     plain.start("FF-01")
     plain.go(400)
@@ -72,7 +72,7 @@ def test_what_comes_after_a_pin_goes_on_from_it(walk: Walk) -> None:
     assert walk.now_off_m("FF-01") < 0.5 * plain.now_off_m("FF-01")
 
 
-def test_removing_a_pin_leaves_exactly_what_would_be_without_it() -> None:
+def test_removal_of_a_pin_restores_the_state_without_it() -> None:
     plain, pinned = Walk("FF-01"), Walk("FF-01")
     for walk in (plain, pinned):
         walk.start("FF-01")
@@ -94,9 +94,7 @@ def test_removing_a_pin_leaves_exactly_what_would_be_without_it() -> None:
 
 
 def test_removed_pin_leaves_no_unit_on_its_floor() -> None:
-    """Half way up the stairs somebody stays on the floor where they were, and not where a pin
-    that was wrong had them.
-    """
+    """Half way up the stairs a unit stays on its floor, and not on that of a wrong pin."""
     floors = {}
     for is_pinned in (False, True):
         script = Script()
@@ -117,8 +115,8 @@ def test_removed_pin_leaves_no_unit_on_its_floor() -> None:
     assert floors == {False: 0, True: 0}
 
 
-def test_an_incident_that_is_opened_shows_nobody_where_they_were_before_it() -> None:
-    """Of somebody who is silent, and was pinned, the place is shown again as pins go."""
+def test_opened_incident_shows_no_earlier_place() -> None:
+    """The place of a silent, pinned unit is published again as pins are removed."""
     walk = Walk("FF-01")
     walk.start("FF-01")
     walk.go(60)
@@ -131,7 +129,7 @@ def test_an_incident_that_is_opened_shows_nobody_where_they_were_before_it() -> 
 
 
 @pytest.mark.slow
-def test_removing_one_of_two_leaves_the_trail_of_the_other() -> None:
+def test_removal_of_one_of_two_pins_leaves_the_trail_of_the_other() -> None:
     one, both = Walk("FF-01"), Walk("FF-01")
     for walk in (one, both):
         walk.start("FF-01")
@@ -148,7 +146,7 @@ def test_removing_one_of_two_leaves_the_trail_of_the_other() -> None:
 
 
 @pytest.mark.slow
-def test_a_pin_that_is_moved_is_the_same_as_one_set_there(walk: Walk) -> None:
+def test_moved_pin_equals_one_set_there(walk: Walk) -> None:
     other = Walk("FF-01")
     other.start("FF-01")
     other.go(300)
@@ -169,14 +167,14 @@ def test_pin_moved_to_another_unit_leaves_the_first_as_before() -> None:
     assert walk.now_off_m("FF-01") == before_m
 
 
-def test_of_pins_whose_names_begin_alike_only_the_one_that_is_named_is_removed(walk: Walk) -> None:
+def test_removal_of_a_pin_keeps_pins_with_the_same_prefix(walk: Walk) -> None:
     walk.pin("p1", "FF-01", 100.0)
     walk.pin("p10", "FF-01", 200.0)
     walk.script.act(RemovePin("p1"))
     assert list(walk.script.pipeline.state.site.pins) == ["p10"]
 
 
-def test_a_pin_that_contradicts_everything_is_kept_and_nobody_moves(walk: Walk) -> None:
+def test_contradicting_pin_is_kept_and_moves_nobody(walk: Walk) -> None:
     walk.pin("p1", "FF-01", 100.0)
     before = walk.now_off_m("FF-01")
     trail = walk.trail("FF-01")
@@ -198,8 +196,8 @@ def test_most_pins_outvote_the_first(walk: Walk) -> None:
     assert [walk.state(f"p{number}") for number in range(3)] == ["used"] * 3
 
 
-def test_pins_alone_show_the_heading() -> None:
-    """Nobody said where the unit began or which way it looked."""
+def test_pins_alone_give_the_heading() -> None:
+    """Start and heading of the unit are unknown."""
     walk = Walk("FF-01", turn_rad=2.0)
     walk.go(120)
     for number, second in enumerate((5.0, 60.0, 115.0)):
@@ -209,10 +207,10 @@ def test_pins_alone_show_the_heading() -> None:
     assert walk.now_off_m("FF-01") < 3.0
 
 
-def test_all_start_at_the_engine_looking_the_same_way() -> None:
+def test_all_start_at_the_engine_with_the_same_heading() -> None:
     walk = Walk("FF-01", "FF-02", turn_rad=1.0)
     walk.go(100)
-    # What their own frames call heading 0 is the way they looked.
+    # Heading 0 of their own frames is the direction that they faced.
     start = StartTogether("s", ("FF-01", "FF-02"), 0, 0.0, 0.0, 0.5, None, -1.0, 0.05, "engine 1")
     walk.script.act(start)
     assert set(walk.script.pipeline.state.site.pins) == {"s:FF-01", "s:FF-02"}
@@ -222,8 +220,8 @@ def test_all_start_at_the_engine_looking_the_same_way() -> None:
     assert walk.script.pipeline.state.site.pins == {}
 
 
-def test_all_are_at_the_engine_now_though_they_were_switched_on_long_before() -> None:
-    """The ride there is in their paths: where those begin is nobody's business."""
+def test_all_are_at_the_engine_now_though_switched_on_long_before() -> None:
+    """The ride there is in their paths: the begin of those does not matter."""
     walk = Walk("FF-01", "FF-02", turn_rad=1.0)
     walk.go(100)
     here, t_ns = truth(walk.walked_s), walk.script.t_ns
@@ -234,7 +232,7 @@ def test_all_are_at_the_engine_now_though_they_were_switched_on_long_before() ->
         assert walk.now_off_m(unit_id) < 4.0
 
 
-def test_who_was_switched_on_after_all_were_at_the_engine_begins_there() -> None:
+def test_unit_switched_on_after_a_common_start_begins_there() -> None:
     walk = Walk("FF-01", "FF-02")
     walk.go(60, silent=("FF-02",))
     then_ns = walk.script.t_ns - 30 * 10**9
@@ -261,7 +259,7 @@ def test_encounter_with_a_well_known_place_improves_the_other() -> None:
 
 
 def test_later_pin_of_one_unit_counts_for_the_one_it_met() -> None:
-    """Nobody has said where they began: whole paths go where the pins lie."""
+    """The starts are unknown: whole paths move to their pins."""
     walk = Walk("FF-01", "FF-02")
     walk.go(100)
     walk.script.act(SetMeeting("m", "FF-01", "FF-02", walk.script.t_ns, 1.0, ""))
@@ -271,7 +269,7 @@ def test_later_pin_of_one_unit_counts_for_the_one_it_met() -> None:
     assert walk.now_off_m("FF-01") == pytest.approx(30.0, abs=5.0)
 
 
-def test_a_pin_waits_for_a_path_that_comes_late(walk: Walk) -> None:
+def test_pin_waits_for_a_path_that_comes_late(walk: Walk) -> None:
     walk.go(60, silent=("FF-01",))
     walk.pin("p1", "FF-01", float(walk.walked_s))
     assert walk.state("p1") == "waiting"
@@ -279,7 +277,7 @@ def test_a_pin_waits_for_a_path_that_comes_late(walk: Walk) -> None:
     assert walk.state("p1") == "used"
 
 
-def test_a_pin_of_now_counts_though_the_unit_s_last_word_is_some_seconds_old(walk: Walk) -> None:
+def test_pin_of_now_counts_though_the_last_message_is_seconds_old(walk: Walk) -> None:
     walk.go(4, silent=("FF-01",))
     walk.pin("p1", "FF-01", 304.0)
     assert walk.state("p1") == "used"
@@ -302,7 +300,7 @@ def test_floor_of_a_future_time_numbers_no_storeys_yet(walk: Walk) -> None:
     ] == [2]
 
 
-def test_a_meeting_ties_two_whose_paths_have_both_come_to_it() -> None:
+def test_encounter_ties_two_paths_once_both_have_reached_it() -> None:
     walk = Walk("FF-01", "FF-02", "FF-03")
     state = walk.script.pipeline.state
     walk.go(60, silent=("FF-03",))
@@ -318,7 +316,7 @@ def test_a_meeting_ties_two_whose_paths_have_both_come_to_it() -> None:
     assert [encounter.name for encounter in encounters_of(state, state.site)] == ["m1", "m2", "m3"]
 
 
-def test_a_trail_of_more_points_than_are_drawn_begins_and_ends_where_it_did() -> None:
+def test_trail_of_more_points_than_are_drawn_keeps_its_ends() -> None:
     count = TRAIL_POINTS + 300
     rows = rows_of([Point((1 + second) * NS_PER_S) for second in range(count)])
     places_m = np.zeros((count, 3))
@@ -329,7 +327,7 @@ def test_a_trail_of_more_points_than_are_drawn_begins_and_ends_where_it_did() ->
     assert np.diff([step.north_m for step in trail]).max() == 2.0
 
 
-def test_of_pins_that_wait_the_first_is_used_once_the_path_has_come_to_it(walk: Walk) -> None:
+def test_first_waiting_pin_is_used_once_the_path_has_reached_it(walk: Walk) -> None:
     walk.go(20, silent=("FF-01",))
     north_m, east_m = walk.own["FF-01"].place_m
     walk.go(40, silent=("FF-01",))
@@ -344,7 +342,7 @@ def test_of_pins_that_wait_the_first_is_used_once_the_path_has_come_to_it(walk: 
 
 
 def test_encounter_with_an_uncertain_place_changes_little() -> None:
-    """FF-02 went 200 m along a line; how far north is known, and not how far east."""
+    """FF-02 went 200 m along a line; its north is known, and its east is not."""
     script = Script()
     script.register("FF-01", "FF-02")
     script.act(SetStart("FF-01", 200.0, 0.0, 0.0, 0.0, 0.5, 0.05))
@@ -368,8 +366,8 @@ def test_encounter_with_an_uncertain_place_changes_little() -> None:
 
 
 @pytest.mark.slow
-def test_conflict_of_an_encounter_stays_whichever_unit_is_solved_later() -> None:
-    """FF-02 was with FF-01 all the time, so not with FF-03; FF-03 has nothing against it."""
+def test_conflict_of_an_encounter_stays_in_any_order_of_solving() -> None:
+    """FF-02 was with FF-01 all the time, so not with FF-03; no evidence of FF-03 contradicts."""
     walk = Walk("FF-01", "FF-02", "FF-03", "FF-04")
     for unit_id in ("FF-01", "FF-04"):
         walk.start(unit_id)
@@ -396,7 +394,7 @@ def test_conflict_of_an_encounter_stays_whichever_unit_is_solved_later() -> None
     assert walk.state("contradicted") == "used"
 
 
-def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
+def test_erased_person_leaves_the_pins_of_the_others() -> None:
     both = Walk("FF-01", "FF-02", "FF-03")
     both.go(20)
     for unit_id in both.units:
@@ -413,8 +411,8 @@ def test_who_is_forgotten_leaves_the_pins_of_the_others() -> None:
     assert "FF-01" not in state.paths
 
 
-def test_a_pin_on_a_floor_brings_the_height() -> None:
-    """Of somebody of whom it was only said roughly how high they began."""
+def test_pin_on_a_floor_gives_the_height() -> None:
+    """The height of the start was known roughly only."""
     walk = Walk("FF-01")
     walk.script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 3.0, 0.05))
     walk.go(300)
@@ -442,10 +440,10 @@ def test_checkpoint_with_pins_continues_the_same(walk: Walk) -> None:
     assert again.checkpoint() == straight.checkpoint()
 
 
-def test_a_pin_ahead_of_a_slow_link_counts_for_where_the_path_is_when_it_gets_there(
+def test_pin_ahead_of_a_slow_link_counts_for_the_path_at_its_time(
     walk: Walk,
 ) -> None:
-    """Positions come four seconds late: the pin is of now, the last position that is there not."""
+    """Positions come four seconds late: the pin is of now, the last position is older."""
     ahead_ns = walk.script.t_ns + 4 * NS_PER_S
     walk.script.now_s += 4.0
     north_m, east_m = truth(304.0)
@@ -460,8 +458,8 @@ def test_a_pin_ahead_of_a_slow_link_counts_for_where_the_path_is_when_it_gets_th
     assert not again, "once"
 
 
-def test_who_is_between_two_floors_stays_on_the_one_he_was_on(walk: Walk) -> None:
-    """As it is shown live; a trail that is drawn again shows no floor that nobody was on."""
+def test_wearer_between_two_floors_stays_on_the_last_one(walk: Walk) -> None:
+    """As it is shown live; a redrawn trail shows no floor that was not visited."""
     walk.script.act(SetPlan(PLAN))
     state = walk.script.pipeline.state
     points = state.paths["FF-01"].arrays()

@@ -1,4 +1,4 @@
-"""What pins say of floors: how high somebody was, and what is not believed."""
+"""Floors of pins: heights that follow from them, and floors that are rejected."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def tower(storeys: int, storey_m: float = STOREY_M) -> bytes:
 
 
 class Wearer:
-    """One who walks on the level at 1 m/s, and climbs when told to."""
+    """A wearer who walks on the level at 1 m/s, and climbs on request."""
 
     def __init__(
         self, storeys: int = 2, unit_id: str = "FF-01", script: Script | None = None
@@ -72,7 +72,7 @@ class Wearer:
         return self.script.pipeline.state.site.pin_verdicts[pin_id]
 
     def smoothed(self) -> Solution:
-        """As it is known afterwards."""
+        """The path after smoothing."""
         state = self.script.pipeline.state
         return SMOOTHERS[0].smooth(
             evidence_of_site(state, OWN_SITE_ID, None), encounters_of(state, state.site)
@@ -85,8 +85,8 @@ class Wearer:
         return fused
 
 
-def test_a_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
-    """Somebody clicked while another floor was shown: nobody hangs between two floors for that."""
+def test_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
+    """A click while another floor was shown puts nobody between two floors."""
     wearer = Wearer()
     wearer.start()
     wearer.go(60)
@@ -116,7 +116,7 @@ def test_a_floor_that_the_path_contradicts_is_kept_and_moves_nobody() -> None:
 def test_two_floors_without_a_climb_are_not_averaged(
     stated: Callable[[Wearer], object], words: str
 ) -> None:
-    """Nothing but these two tells how high the unit began."""
+    """Only these two pins give the height of the start."""
     wearer = Wearer()
     wearer.go(10)
     stated(wearer)
@@ -129,7 +129,7 @@ def test_two_floors_without_a_climb_are_not_averaged(
 
 
 @pytest.mark.parametrize("storey_m", [2.4, 3.2])
-def test_two_floors_at_the_same_time_are_not_averaged_however_low_they_are(storey_m: float) -> None:
+def test_two_floors_at_the_same_time_are_not_averaged_however_low(storey_m: float) -> None:
     wearer = Wearer()
     wearer.script.act(SetPlan(tower(2, storey_m)))
     wearer.go(10)
@@ -140,8 +140,8 @@ def test_two_floors_at_the_same_time_are_not_averaged_however_low_they_are(store
     assert wearer.fused.down_m == pytest.approx(-storey_m, abs=0.2)
 
 
-def test_two_floors_are_not_averaged_where_each_by_itself_might_be_true() -> None:
-    """It was only said roughly how high the path begins."""
+def test_two_floors_that_are_each_possible_are_not_averaged() -> None:
+    """The height of the start is known roughly only."""
     wearer = Wearer()
     wearer.start(std_m=1.0)
     wearer.go(4)
@@ -152,7 +152,7 @@ def test_two_floors_are_not_averaged_where_each_by_itself_might_be_true() -> Non
     assert wearer.fused.down_m == pytest.approx(0.0, abs=0.2)
 
 
-def test_of_two_floors_the_other_holds_once_one_is_removed() -> None:
+def test_other_of_two_floors_holds_once_one_is_removed() -> None:
     wearer = Wearer()
     wearer.go(10)
     wearer.pin("wrong", 0)
@@ -166,7 +166,7 @@ def test_of_two_floors_the_other_holds_once_one_is_removed() -> None:
 
 @pytest.mark.parametrize("floor", [1, 3, 9])
 def test_unit_switched_on_upstairs_is_on_its_reported_floor(floor: int) -> None:
-    """As far up as it may be: that nobody had said a floor is no evidence of the ground floor."""
+    """At any height: no reported floor is no evidence of the ground floor."""
     wearer = Wearer(storeys=10)
     wearer.go(60)
     assert wearer.pin("p", floor).state == "used"
@@ -174,7 +174,7 @@ def test_unit_switched_on_upstairs_is_on_its_reported_floor(floor: int) -> None:
     assert wearer.fused.down_m == pytest.approx(-STOREY_M * floor, abs=0.2)
 
 
-def test_who_has_climbed_may_be_pinned_on_either_floor() -> None:
+def test_wearer_who_climbed_may_be_pinned_on_either_floor() -> None:
     wearer = Wearer()
     wearer.start()
     wearer.go(30)
@@ -200,8 +200,8 @@ def test_floor_reported_twice_is_accepted() -> None:
     assert wearer.fused.down_m == pytest.approx(-STOREY_M, abs=0.5)
 
 
-def test_one_wrong_floor_is_not_believed_after_a_long_time_either() -> None:
-    """The station is as sure of the floor as it says, however long ago anybody said one."""
+def test_one_wrong_floor_is_rejected_also_after_a_long_time() -> None:
+    """The certainty of the floor does not fall with the age of the last pin."""
     wearer = Wearer()
     wearer.start()
     wearer.go(1200)
@@ -213,7 +213,7 @@ def test_one_wrong_floor_is_not_believed_after_a_long_time_either() -> None:
 
 
 def two(seconds: int) -> tuple[Wearer, Wearer]:
-    """They walk together, up a tower."""
+    """Two wearers who walk together up a tower."""
     one = Wearer(storeys=10)
     other = Wearer(storeys=10, unit_id="FF-02", script=one.script)
     go_together(one, other, seconds)
@@ -233,7 +233,7 @@ def meet(one: Wearer, other: Wearer) -> None:
 
 
 def test_encounter_puts_both_units_on_one_floor() -> None:
-    """Nothing else tells how high he was switched on: no satellites, and no start."""
+    """Nothing else gives the height of its start: no satellites, and no start position."""
     one, other = two(30)
     one.pin("p", 7)
     meet(one, other)
@@ -257,8 +257,8 @@ def test_encounter_across_floors_is_rejected() -> None:
     assert smoothed["FF-02"].down_m[-1] == pytest.approx(0.0, abs=0.5)
 
 
-def test_a_meeting_on_two_floors_draws_nobody_aside_afterwards_either() -> None:
-    """What is not used for its floor tells no place on the plan."""
+def test_rejected_encounter_across_floors_moves_no_smoothed_trail() -> None:
+    """An encounter rejected for its floor gives no place on the plan."""
     one, other = two(30)
     other.script.act(SetStart("FF-02", 3.0, 0.0, 0.0, 0.0, 0.3, 0.05))
     one.pin("p", 7)
@@ -274,8 +274,8 @@ def test_a_meeting_on_two_floors_draws_nobody_aside_afterwards_either() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("off_m", [8.0, 20.0])
-def test_a_meeting_of_two_who_were_not_together_draws_nobody_aside_afterwards(off_m: float) -> None:
-    """As far apart as both are known to have been."""
+def test_rejected_encounter_of_distant_units_moves_no_smoothed_trail(off_m: float) -> None:
+    """They are as far apart as both are known to have been."""
     one, other = two(60)
     one.start()
     other.script.act(SetStart("FF-02", off_m, 0.0, 0.0, 0.0, 0.3, 0.05))
@@ -306,7 +306,7 @@ def test_waiting_encounter_names_the_path_it_waits_for() -> None:
 
 
 def test_encounter_with_an_unknown_floor_gives_no_floor() -> None:
-    """Both were switched on somewhere; that one of them was on the ground would be a guess."""
+    """The floors of both starts are unknown; the ground floor for one would be a guess."""
     one, other = two(30)
     meet(one, other)
     go_together(one, other, 10)
@@ -335,7 +335,7 @@ def test_beacon_on_a_wrong_floor_is_one_source_however_often_passed(
 
 @pytest.mark.parametrize("away_s", [60.0, 600.0])
 def test_unit_without_contact_may_have_climbed_before_its_next_run(away_s: float) -> None:
-    """Nothing tells of the time between: the floor is in doubt, and what a person says holds."""
+    """No message covers the time between: the floor is in doubt, and a person's pin counts."""
     wearer = Wearer()
     wearer.start()
     wearer.go(60)

@@ -31,7 +31,7 @@ def fused_of(script: Script) -> FusedPosition:
     return fused
 
 
-def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
+def test_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
     walk.pin("p1", "FF-01", 200.0)
     walk.script.act(CloseIncident("i1"))
     walk.go(5)
@@ -46,10 +46,8 @@ def test_a_new_incident_begins_without_the_pins_of_the_last(walk: Walk) -> None:
 
 @pytest.mark.parametrize("is_on", [False, True], ids=["switched on later", "switched on before"])
 @pytest.mark.parametrize("earlier", ["a morning's check", "an incident"])
-def test_who_all_start_here_begin_there_whatever_their_units_ran_before(
-    earlier: str, is_on: bool
-) -> None:
-    """The run of before tells nothing of where the one in this incident began."""
+def test_common_start_is_independent_of_earlier_runs(earlier: str, is_on: bool) -> None:
+    """The run before does not tell where the one in this incident began."""
     script = Script()
     script.register("FF-01")
     if earlier == "an incident":
@@ -73,10 +71,12 @@ def test_who_all_start_here_begin_there_whatever_their_units_ran_before(
 
 
 @pytest.mark.parametrize("is_on", [False, True], ids=["switched on later", "out of reach"])
-def test_start_set_before_contact_in_the_incident_is_of_the_next_run(
+def test_start_set_before_contact_in_the_incident_belongs_to_the_next_run(
     is_on: bool,
 ) -> None:
-    """It was checked in the morning, and left 60 m off; or its radio did not reach the station."""
+    """The unit was tested in the morning, and left 60 m off; or its radio did not reach the
+    station.
+    """
     script = Script()
     script.register("FF-01")
     go_north(script, 60)
@@ -95,8 +95,8 @@ def test_start_set_before_contact_in_the_incident_is_of_the_next_run(
     assert fused.quality is Quality.GOOD
 
 
-def test_start_set_after_contact_in_the_incident_is_of_that_run() -> None:
-    """Though it is silent now: its trail is put right."""
+def test_start_set_after_contact_in_the_incident_belongs_to_that_run() -> None:
+    """Though the unit is silent now: its trail is corrected."""
     script = Script()
     script.register("FF-01")
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -107,8 +107,8 @@ def test_start_set_after_contact_in_the_incident_is_of_that_run() -> None:
     assert fused_of(script).north_m == pytest.approx(159.0, abs=0.5)
 
 
-def test_start_together_may_be_set_before_its_run() -> None:
-    """The commander is quicker than those who switch on their units."""
+def test_common_start_may_be_set_before_the_run() -> None:
+    """The commander is quicker than the members who switch on their units."""
     script = Script()
     script.register("FF-01")
     go_north(script, 60)
@@ -122,7 +122,7 @@ def test_start_together_may_be_set_before_its_run() -> None:
     assert (fused.north_m, fused.east_m) == pytest.approx((129.0, 200.0), abs=1.0)
 
 
-def test_a_pin_that_was_set_before_the_incident_was_opened_is_solved_in_its_path() -> None:
+def test_pin_set_before_the_incident_was_opened_is_solved_in_its_path() -> None:
     script = Script()
     script.register("FF-01")
     go_north(script, 60)
@@ -135,7 +135,7 @@ def test_a_pin_that_was_set_before_the_incident_was_opened_is_solved_in_its_path
     assert (fused.north_m, fused.east_m) == pytest.approx((129.0, 200.0), abs=1.0)
 
 
-def test_a_start_of_a_run_that_is_over_contradicts_nothing_in_the_next_incident() -> None:
+def test_start_of_an_ended_run_contradicts_nothing_in_the_next_incident() -> None:
     script = Script()
     script.register("FF-01")
     script.act(OpenIncident("i0", "Before"))
@@ -150,7 +150,7 @@ def test_a_start_of_a_run_that_is_over_contradicts_nothing_in_the_next_incident(
     assert script.pipeline.state.site.pin_verdicts["p"].state == "used"
 
 
-def test_a_start_of_the_run_that_goes_on_holds_in_the_next_incident() -> None:
+def test_start_of_a_continuing_run_holds_in_the_next_incident() -> None:
     script = Script()
     script.register("FF-01")
     script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))

@@ -1,5 +1,5 @@
-"""Whatever changes the past: markers, trails and every console follow, whether the unit speaks, is
-silent or its journal is being read; and a replay and a restart end up the same.
+"""Corrections of the past: markers, trails and every console follow, while the unit is received,
+silent or backfilled; a replay and a restart give the same.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def is_silent(story: Story) -> None:
 
 
 def is_backfilled(story: Story) -> None:
-    """Half of what it missed has come."""
+    """Half of the missed messages have come."""
     story.script.away.add(A)
     story.go(30)
     story.script.away.clear()
@@ -169,8 +169,8 @@ def markers(script: Script) -> dict[str, tuple[object, ...]]:
 
 
 def looked_at_again(script: Watched) -> Script:
-    """By a station that starts from what this one has saved: the same anchor tells nothing new,
-    but where everybody is.
+    """State of a station that starts from the checkpoint of this one: the same anchor changes only
+    the places.
     """
     again = script.restarted()
     anchor = again.pipeline.state.site.anchor
@@ -180,7 +180,7 @@ def looked_at_again(script: Watched) -> Script:
 
 
 def off_m(trail: list[TrailPoint], other: list[TrailPoint]) -> float:
-    """How far a trail leads from another, at the same times."""
+    """Distance of a trail from another, at the same times."""
     worst_m = 0.0
     for point in trail:
         at = bisect_left(other, point.t_ms, key=lambda one: one.t_ms)
@@ -190,7 +190,7 @@ def off_m(trail: list[TrailPoint], other: list[TrailPoint]) -> float:
 
 
 def both_gone_upstairs() -> Watched:
-    """Three floors up, one beside the other, in a minute."""
+    """Both climb three floors side by side, in a minute."""
     script = Watched()
     script.register(A, B)
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -219,7 +219,7 @@ def shown_floor(script: Watched, unit_id: str) -> int | None:
 
 
 def test_waiting_pin_is_published_as_the_path_comes() -> None:
-    """Used, contradicted, or of a time at which the path had not begun."""
+    """Used, contradicted, or of a time before the path."""
     script = Watched()
     walk = Walk(A, B, script=script)
     walk.start(A)
@@ -239,7 +239,7 @@ def test_waiting_pin_is_published_as_the_path_comes() -> None:
 
 @pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
 def test_start_set_late_corrects_the_whole_trail(unit_id: str) -> None:
-    """Nobody knew which way the unit looked, nor that it began on the first floor."""
+    """The heading of the unit was unknown, and its start on the first floor."""
     script = Watched()
     walk = Walk(unit_id, turn_rad=0.7, script=script)
     for _ in range(300):
@@ -258,7 +258,7 @@ def test_start_set_late_corrects_the_whole_trail(unit_id: str) -> None:
     assert walk.trail(unit_id)[: len(before)] == before
 
 
-def test_of_who_is_forgotten_no_place_is_left() -> None:
+def test_erased_person_leaves_no_place() -> None:
     script = Watched()
     walk = Walk(A, script=script)
     walk.start(A)
@@ -282,8 +282,8 @@ def test_of_who_is_forgotten_no_place_is_left() -> None:
 
 
 @pytest.mark.parametrize("unit_id", [A, B], ids=["with pins", "without"])
-def test_a_start_may_be_anywhere_and_be_taken_back(unit_id: str) -> None:
-    """What is left of it without the pins is the same trail."""
+def test_start_may_be_anywhere_and_be_removed(unit_id: str) -> None:
+    """The path without the pins has the same trail."""
     script = Watched()
     walk = Walk(unit_id, turn_rad=0.7, script=script)
     walk.go(100)
@@ -301,8 +301,8 @@ def test_a_start_may_be_anywhere_and_be_taken_back(unit_id: str) -> None:
         assert math.dist(place_m, walked_m) < 5.0, "what its heading drifted"
 
 
-def test_what_the_journal_brings_of_before_can_be_pinned() -> None:
-    """The unit set out where no radio reaches; the commander had said where it was then."""
+def test_backfilled_path_of_before_can_be_pinned() -> None:
+    """The unit set out beyond the radio's range; the commander had reported its place."""
     script = Watched()
     walk = Walk(A, script=script)
     script.away.add(A)
@@ -331,8 +331,10 @@ def test_what_the_journal_brings_of_before_can_be_pinned() -> None:
 
 
 @pytest.mark.slow
-def test_an_anchor_that_is_put_right_moves_whom_satellites_had_placed() -> None:
-    """Who has gone inside and is silent since, too; whom a person placed on the plan stays."""
+def test_corrected_anchor_moves_units_placed_by_satellites() -> None:
+    """A unit that went inside and is silent since, too; one that a person placed on the plan
+    stays.
+    """
     true, wrong = Anchor(52.0, 4.0, 0.0, 0.0), Anchor(52.001, 4.0005, 0.0, 0.3)
     script = Watched()
     script.register(A, B)
@@ -366,8 +368,8 @@ def distance_m(script: Watched, unit_id: str, place_m: tuple[float, float]) -> f
 
 
 @pytest.mark.slow
-def test_a_plan_that_numbers_storeys_otherwise_numbers_trails_again() -> None:
-    """Of who has no pins too, whether heard or silent; pinned trails as they would be without."""
+def test_plan_with_other_storeys_renumbers_trails() -> None:
+    """Of units without pins too, received or silent; pinned trails as without pins."""
     story = Story()
     story.script.act(RemovePin("met"))
     story.script.act(RemovePin("of B"))

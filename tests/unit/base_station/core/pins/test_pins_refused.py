@@ -1,4 +1,4 @@
-"""Pins, meetings, starts and beacons that are refused, each with a sentence."""
+"""Pins, encounters, starts and beacons that are refused, each with a sentence."""
 
 from __future__ import annotations
 
@@ -105,13 +105,13 @@ def test_bad_starts_and_beacons_are_refused_with_a_sentence(
     assert (state.site.pins, state.site.beacons) == ({}, {})
 
 
-def test_what_is_not_there_cannot_be_removed() -> None:
+def test_missing_pin_cannot_be_removed() -> None:
     for action in (RemovePin("p"), RemoveBeacon("b")):
         (refused,) = Script().act(action)
         assert isinstance(refused, Refused)
 
 
-def test_there_are_not_more_pins_than_can_be_solved(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_number_of_pins_is_bounded_by_what_can_be_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("base_station.core.pins.pin_registry.MAX_PINS", 2)
     walk = Walk("FF-01")
     walk.go(20)
@@ -121,7 +121,7 @@ def test_there_are_not_more_pins_than_can_be_solved(monkeypatch: pytest.MonkeyPa
     assert [type(one) for one in walk.script.outputs].count(Refused) == 1
 
 
-def test_of_those_who_start_together_none_is_placed_where_there_is_no_room_for_all(
+def test_common_start_without_room_for_all_places_nobody(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("base_station.core.pins.pin_registry.MAX_PINS", 2)

@@ -1,4 +1,4 @@
-"""What a unit says it has seen: beacons, tags and other units, as pins."""
+"""Sightings by a unit as pins: beacons, tags and other units."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def sighting(
     walk.script.say(Sighting(header, kind, seen_id, range_m))
 
 
-def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None:
+def test_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None:
     sighting(walk, SightingKind.TAG, "door-3")
     (pin,) = walk.script.pipeline.state.site.pins.values()
     assert walk.state(pin.pin_id) == "waiting"
@@ -54,7 +54,7 @@ def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None
     assert walk.state(pin.pin_id) == "used"
     assert walk.now_off_m("FF-01") < 1.0 < before_m
     sighting(walk, SightingKind.TAG, "door-3")
-    sighting(walk, SightingKind.TAG, "door-3", captured_s=walk.script.now_s - 60.0)  # heard of late
+    sighting(walk, SightingKind.TAG, "door-3", captured_s=walk.script.now_s - 60.0)  # received late
     walk.script.act(PlaceBeacon("door-3", "front door", north_m, east_m, None, 0.2, 0.5))
     assert walk.script.pipeline.state.site.beacons["door-3"].seen_ns == walk.script.t_ns
     walk.script.act(RemoveBeacon("door-3"))
@@ -62,7 +62,7 @@ def test_a_beacon_counts_once_it_is_placed_and_moves_with_it(walk: Walk) -> None
     assert walk.now_off_m("FF-01") == before_m
 
 
-def test_a_radio_beacon_that_is_placed_later_counts_for_who_passed_it(walk: Walk) -> None:
+def test_radio_beacon_placed_later_counts_for_units_that_passed_it(walk: Walk) -> None:
     sighting(walk, SightingKind.BEACON, "b1", 0.5)
     (pin,) = walk.script.pipeline.state.site.pins
     assert walk.state(pin) == "waiting"
@@ -97,7 +97,7 @@ def test_beacon_passed_without_contact_counts_once_backfilled(
     assert walk.worst_m("FF-01") < 0.7 * before_m
 
 
-def test_who_stays_near_a_beacon_passes_it_once(walk: Walk) -> None:
+def test_stay_near_a_beacon_is_one_pass(walk: Walk) -> None:
     for range_m in (8.0, 3.0, 1.0, 5.0):
         sighting(walk, SightingKind.BEACON, "b1", range_m)
         walk.go(2)
@@ -108,8 +108,8 @@ def test_who_stays_near_a_beacon_passes_it_once(walk: Walk) -> None:
     assert len(walk.script.pipeline.state.site.pins) == 2
 
 
-def test_a_journal_of_sightings_is_solved_now_and_then(walk: Walk) -> None:
-    """Each costs a whole past, and what is said live waits for it."""
+def test_backfilled_sightings_are_solved_now_and_then(walk: Walk) -> None:
+    """Each solves a whole past, and live messages wait for it."""
     script, begin_s = walk.script, walk.script.now_s - walk.walked_s
     script.act(PlaceBeacon("door", "", *truth(10.0), None, 0.3, 3.0))
     begun = len(script.outputs)
@@ -131,7 +131,7 @@ def test_a_journal_of_sightings_is_solved_now_and_then(walk: Walk) -> None:
     assert "waiting" not in {walk.state(one) for one in script.pipeline.state.site.pins}
 
 
-def test_a_sighting_of_nobody_is_counted_and_changes_nothing(walk: Walk) -> None:
+def test_sighting_of_an_unknown_tag_is_counted_and_changes_nothing(walk: Walk) -> None:
     sighting(walk, SightingKind.UNIT, "stranger")
     sighting(walk, SightingKind.UNIT, "FF-01")
     sighting(walk, SightingKind.UNKNOWN, "x")
@@ -148,7 +148,7 @@ def test_sighting_of_an_unregistered_unit_is_not_used(walk: Walk) -> None:
     assert script.pipeline.state.site.pins == {}
 
 
-def test_two_who_see_each_other_have_met_once() -> None:
+def test_mutual_sightings_are_one_encounter() -> None:
     both = Walk("FF-01", "FF-02")
     both.go(10)
     sighting(both, SightingKind.UNIT, "FF-02", 2.0)
@@ -162,7 +162,7 @@ def test_two_who_see_each_other_have_met_once() -> None:
 
 @pytest.mark.parametrize("range_m", [1.0, 30.0], ids=["surer", "vaguer"])
 def test_encounter_set_by_a_person_is_not_replaced_by_sightings(range_m: float) -> None:
-    """Nor is what they see lost with it, when it is taken back."""
+    """Nor are the sightings lost when it is removed."""
     both = Walk("FF-01", "FF-02")
     both.go(10)
     both.script.act(SetMeeting("m", "FF-01", "FF-02", both.script.t_ns, 5.0, "at the stairs"))
@@ -173,7 +173,7 @@ def test_encounter_set_by_a_person_is_not_replaced_by_sightings(range_m: float) 
     assert [pin.by for pin in pins.values()] == ["FF-01"]
 
 
-def test_a_unit_that_is_met_is_no_beacon_of_the_same_name() -> None:
+def test_sighted_unit_is_no_beacon_of_the_same_name() -> None:
     walk = Walk("FF-01", "FF-02")
     walk.script.act(PlaceBeacon("FF-02", "door", 0.0, 0.0, 3, 0.2, 8.0))
     walk.go(20)
@@ -190,7 +190,7 @@ def test_a_unit_that_is_met_is_no_beacon_of_the_same_name() -> None:
 def test_path_is_unpacked_once_for_all_reported_floors(
     walk: Walk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With hundreds of sightings everybody would wait for each."""
+    """With hundreds of sightings all units would wait for each."""
     walk.script.act(PlaceBeacon("b1", "door", 0.0, 0.0, 0, 0.2, 3.0))
     for ago_s in (200.0, 150.0, 100.0, 50.0):
         sighting(walk, SightingKind.BEACON, "b1", captured_s=walk.script.now_s - ago_s)
@@ -232,7 +232,7 @@ def test_sighting_without_a_range_lies_within_the_reach(
 
 
 def test_encounter_before_the_path_of_one_changes_nothing() -> None:
-    """His first position comes a minute later, from somewhere else."""
+    """Its first position comes a minute later, from another place."""
     met, alone = Walk("FF-01", "FF-02"), Walk("FF-01", "FF-02")
     for walk in (met, alone):
         walk.start("FF-01")
@@ -247,7 +247,7 @@ def test_encounter_before_the_path_of_one_changes_nothing() -> None:
     assert met.trail("FF-02") == alone.trail("FF-02")
 
 
-def test_what_was_seen_before_the_incident_is_not_where_the_path_begins(walk: Walk) -> None:
+def test_sighting_before_the_incident_is_not_the_begin_of_the_path(walk: Walk) -> None:
     north_m, east_m = truth(0.0)
     walk.script.act(PlaceBeacon("door-3", "door", north_m, east_m + 50.0, None, 0.2, 0.5))
     before = walk.trail("FF-01")
@@ -257,7 +257,7 @@ def test_what_was_seen_before_the_incident_is_not_where_the_path_begins(walk: Wa
     assert walk.trail("FF-01") == before
 
 
-def test_what_units_see_leaves_room_for_what_people_say(
+def test_sightings_leave_room_for_pins_of_people(
     walk: Walk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.core.pins.sightings.MAX_SIGHTINGS", 3)
@@ -269,7 +269,7 @@ def test_what_units_see_leaves_room_for_what_people_say(
     assert seen_ids(walk) == ["door-2", "door-3", "door-4"]
 
 
-def test_people_s_pins_are_not_given_up_for_what_units_see(
+def test_pins_of_people_are_not_displaced_by_sightings(
     walk: Walk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.core.pins.sightings.MAX_SIGHTINGS", 2)
@@ -281,10 +281,10 @@ def test_people_s_pins_are_not_given_up_for_what_units_see(
     assert counts == {"no room for sightings beside what people pinned": 1}
 
 
-def test_a_long_stay_gives_up_its_beginning_and_a_passing_stays(
+def test_long_stay_gives_up_its_beginning_and_a_pass_stays(
     walk: Walk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Somebody who works beside a beacon for hours crowds nobody out, nor what is seen later."""
+    """A wearer who works beside a beacon for hours displaces neither others nor later sightings."""
     monkeypatch.setattr("base_station.core.pins.sightings.MAX_SIGHTINGS", 4)
     state = walk.script.pipeline.state
     sighting(walk, SightingKind.TAG, "door-1", captured_s=walk.script.now_s - 250.0)
@@ -297,7 +297,7 @@ def test_a_long_stay_gives_up_its_beginning_and_a_passing_stays(
 
 
 def seen_ids(walk: Walk) -> list[str]:
-    """In the order in which they came, without what people pinned."""
+    """Ids of sightings in the order of reception, without pins of people."""
     return [pin.other_id for pin in walk.script.pipeline.state.site.pins.values() if pin.other_id]
 
 

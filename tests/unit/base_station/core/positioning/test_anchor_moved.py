@@ -1,4 +1,4 @@
-"""An anchor that a person or a receiver set wrong, and that is put right: as if never wrong."""
+"""Corrected anchors: a wrong anchor of a person or a receiver leaves no effect once corrected."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def set_anchor(script: Script, anchor: Anchor) -> None:
     ],
     ids=["south", "west", "exchanged", "another town", "near, turned and high"],
 )
-def test_a_person_s_anchor_that_is_put_right_leaves_nothing_of_the_wrong_one(wrong: Anchor) -> None:
+def test_corrected_anchor_of_a_person_leaves_nothing_of_the_wrong_one(wrong: Anchor) -> None:
     script, right = anchored(), anchored()
     for one in (script, right):
         set_anchor(one, SITE)
@@ -76,8 +76,10 @@ def test_a_person_s_anchor_that_is_put_right_leaves_nothing_of_the_wrong_one(wro
 
 @pytest.mark.slow
 @pytest.mark.parametrize("inside_s", [0, 10])
-def test_several_wrong_anchors_one_after_the_other_leave_nothing_either(inside_s: int) -> None:
-    """Round a triangle on the Earth north comes back turned: that turns nobody on the plan."""
+def test_several_wrong_anchors_in_turn_leave_nothing(inside_s: int) -> None:
+    """Around a triangle on the Earth north comes back rotated: nobody on the plan is rotated
+    by it.
+    """
     script, right = anchored(), anchored()
     for one in (script, right):
         set_anchor(one, SITE)
@@ -94,10 +96,8 @@ def test_several_wrong_anchors_one_after_the_other_leave_nothing_either(inside_s
     assert math.dist(shown_m(script), shown_m(right)) < 0.5
 
 
-def test_who_was_anchored_by_a_receiver_on_the_other_hemisphere_is_placed_by_the_next_fixes() -> (
-    None
-):
-    """The frame of before is of nowhere near: nobody is shown where it would lie in this one."""
+def test_units_anchored_on_the_other_hemisphere_are_placed_by_the_next_fixes() -> None:
+    """The former frame is far away: no unit is shown at its place of that frame."""
     south = Anchor(-52.0, 4.0, 10.0, 0.0)
     script = anchored()
     walk(script, range(60), by=south)
@@ -111,14 +111,14 @@ def test_who_was_anchored_by_a_receiver_on_the_other_hemisphere_is_placed_by_the
 
 
 @pytest.mark.parametrize("other", [Anchor(52.002, 4.003, 30.0, 1.0), Anchor(-40.0, 170.0, 0.0)])
-def test_a_frame_that_moves_there_and_back_is_where_it_was(other: Anchor) -> None:
+def test_frame_moved_there_and_back_is_where_it_was(other: Anchor) -> None:
     there, back = moved_to(SITE, other), moved_to(other, SITE)
     north_m, east_m = there.apply(30.0, -70.0)
     assert back.apply(north_m, east_m) == pytest.approx((30.0, -70.0), abs=1e-3)
     assert there.down_m + back.down_m == pytest.approx(0.0, abs=1e-6)
 
 
-def test_what_stands_in_the_frame_stays_where_it_is_on_the_earth() -> None:
+def test_places_of_the_frame_stay_on_the_earth() -> None:
     other = Anchor(52.003, 3.998, 30.0, 1.0)
     move = moved_to(other, SITE)
     for north_m, east_m in ((0.0, 0.0), (80.0, -50.0)):
@@ -127,7 +127,7 @@ def test_what_stands_in_the_frame_stays_where_it_is_on_the_earth() -> None:
         assert (*move.apply(north_m, east_m), move.down_m) == pytest.approx(expected, abs=0.03)
 
 
-def test_nobody_jumps_by_an_anchor_on_the_other_hemisphere() -> None:
+def test_anchor_on_the_other_hemisphere_moves_nobody() -> None:
     script = anchored()
     set_anchor(script, SITE)
     walk(script, range(100))

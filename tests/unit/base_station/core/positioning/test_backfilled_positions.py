@@ -1,4 +1,4 @@
-"""What comes late goes where it belongs in time, and never sets the present back."""
+"""Backfilled positions go to their own time, and never set the present back."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def walked(make_position):
     return walked
 
 
-def test_the_gap_in_the_trail_is_filled_at_its_own_time(walked):
+def test_gap_in_the_trail_is_filled_at_its_own_time(walked):
     for second in range(11, 20):
         outputs = walked.late(second, at_second=31)
         fused = next(output for output in outputs if isinstance(output, FusedPosition))
@@ -85,7 +85,7 @@ def test_late_position_is_shown_once_for_each_second(walked):
     assert known_s >= {11.1, 11.3, 11.5, 11.7, 11.9, 12.1, 12.3, 12.5, 12.7, 12.9}
 
 
-def test_the_present_stays(walked):
+def test_present_position_is_unchanged(walked):
     before = msgspec.msgpack.encode(
         (walked.unit.place.fused, walked.unit.position, walked.unit.last_message_ns)
     )
@@ -96,21 +96,21 @@ def test_the_present_stays(walked):
     assert after == before
 
 
-def test_a_second_copy_changes_nothing(walked):
+def test_second_copy_changes_nothing(walked):
     walked.late(15, at_second=31)
     assert walked.late(15, at_second=32) == []
     assert walked.unit.duplicates == 1
 
 
-def test_a_mayday_that_the_radio_lost_is_raised_when_it_comes(walked):
+def test_mayday_lost_by_the_radio_is_raised_when_backfilled(walked):
     mayday = UnitEvent(Header("FF-01", 7, 500, 15 * NS_PER_S), EventKind.MAYDAY)
     key = backfilled_key("FF-01", EVENT.suffix)
     walked.pipeline.step(event_of(START_NS + 31 * NS_PER_S, key, encode(mayday)))
     assert any(alarm.rule == "mayday" for alarm in walked.pipeline.state.alarms.values())
 
 
-def test_where_the_run_before_led_is_filled_in(walked):
-    """The unit's program was started again where the radio did not reach."""
+def test_path_of_the_run_before_is_filled_in(walked):
+    """The unit's program was restarted beyond the radio's range."""
     for second in range(50, 56):
         walked.live(second, boot_id=8)
     before = msgspec.msgpack.encode((walked.unit.place.fused, walked.unit.position))
@@ -124,7 +124,7 @@ def test_where_the_run_before_led_is_filled_in(walked):
     assert trail == [*range(45), 50], "which way the new run walks nobody knows"
 
 
-def test_another_machine_under_the_same_name_is_not_drawn(walked):
+def test_duplicate_device_under_the_same_name_is_not_drawn(walked):
     for second in range(50, 56):
         walked.live(second, boot_id=8)
     for second in (52, 54):
@@ -132,7 +132,7 @@ def test_another_machine_under_the_same_name_is_not_drawn(walked):
         assert not any(isinstance(output, FusedPosition) for output in outputs)
 
 
-def test_unknown_run_is_not_taken_for_the_present_one(walked):
+def test_unknown_run_is_not_the_present_one(walked):
     earlier = walked.position(3)
     header = msgspec.structs.replace(earlier.header, boot_id=6)
     payload = encode(msgspec.structs.replace(earlier, header=header))
@@ -141,8 +141,8 @@ def test_unknown_run_is_not_taken_for_the_present_one(walked):
     assert [boot.boot_id for boot in walked.unit.boots] == [6, 7]
 
 
-def test_what_a_stranger_brings_out_of_its_journal_is_not_believed(walked):
-    """As what it says now is not: it is seen that it speaks, and nobody is shown by it."""
+def test_journal_of_an_unregistered_unit_is_not_used(walked):
+    """Like its live messages: its contact is shown, and nobody is placed by it."""
     for second, backfilled in ((5, False), (3, True)):
         reported = walked.position(second)
         header = msgspec.structs.replace(reported.header, unit_id="FF-66")
@@ -154,7 +154,7 @@ def test_what_a_stranger_brings_out_of_its_journal_is_not_believed(walked):
     assert (stranger.place.fused, stranger.trails.shown) == (None, [])
 
 
-def test_what_cannot_be_read_has_come_all_the_same(walked):
+def test_unreadable_backfilled_message_counts_as_received(walked):
     """Of a newer program, or damaged: it is not fetched from the journal again and again."""
     payload = encode(walked.position(15))
     key = POSITION.key("FF-01")

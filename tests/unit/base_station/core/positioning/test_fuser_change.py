@@ -1,4 +1,4 @@
-"""Another fuser from a message in the log on: people stay where they are, and a replay agrees."""
+"""Change of the fuser by a message of the log: people stay at their places, and a replay agrees."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def script() -> Script:
     return script
 
 
-def test_a_change_of_fuser_keeps_positions_and_is_logged(script: Script) -> None:
+def test_change_of_fuser_keeps_positions_and_is_logged(script: Script) -> None:
     walk(script, 1)
     script.act(SetStart(UNIT, 30.0, -10.0, -3.0, 1.0, 0.5, 0.05))
     walk(script, 60)
@@ -60,7 +60,7 @@ def test_a_change_of_fuser_keeps_positions_and_is_logged(script: Script) -> None
     assert again.outputs == script.outputs
 
 
-def test_a_checkpoint_goes_on_with_the_fuser_of_the_log(script: Script) -> None:
+def test_checkpoint_continues_with_the_fuser_of_the_log(script: Script) -> None:
     walk(script, 1)
     script.act(SetStart(UNIT, 0.0, 0.0, 0.0, 1.0, 0.5, 0.05))
     script.act(SetFuser("gps-switching"))
@@ -76,7 +76,7 @@ def test_a_checkpoint_goes_on_with_the_fuser_of_the_log(script: Script) -> None:
     assert again.fused[-1].fuser == "gps-switching"
 
 
-def test_a_unit_of_which_nothing_is_known_and_one_with_a_pin_go_on(script: Script) -> None:
+def test_unit_without_positions_and_one_with_a_pin_continue(script: Script) -> None:
     script.register("FF-02")
     walk(script, 1)
     assumed = script.fused[-1]
@@ -91,7 +91,7 @@ def test_a_unit_of_which_nothing_is_known_and_one_with_a_pin_go_on(script: Scrip
     assert (again.north_m, again.east_m) == pytest.approx((50.0, 60.0), abs=1.0)
 
 
-def test_a_fuser_that_this_version_does_not_have_changes_nothing(script: Script) -> None:
+def test_unknown_fuser_changes_nothing(script: Script) -> None:
     walk(script, 3)
     script.act(SetFuser("of-a-later-version"))
     assert script.pipeline.state.fuser == ""

@@ -1,6 +1,4 @@
-"""A plan that is loaded when satellites have placed people already: nobody knows yet where on it
-they are.
-"""
+"""A plan loaded after satellites have placed people: their places on it are unknown yet."""
 
 from __future__ import annotations
 
@@ -20,13 +18,13 @@ from tests.rig.round_walk import PLAN
 from tests.rig.station_script import Script
 
 A, B = "FF-01", "FF-02"
-LIES = Anchor(52.0, 4.0, 20.0, math.radians(60.0))  # the plan, as nobody has said yet
+LIES = Anchor(52.0, 4.0, 20.0, math.radians(60.0))  # the plan, in no known place yet
 ENGINE_M = -25.0, 15.0  # on the plan
 TURNED_RAD = {A: 1.0, B: -2.0}  # of each own frame
 
 
 class Outside(Script):
-    """Two walk about outside with a receiver each."""
+    """Two wearers walk outside with a receiver each."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -62,7 +60,7 @@ class Outside(Script):
 
 
 def _walked(way_m: float) -> tuple[float, float]:
-    """North and east of the engine."""
+    """Steps north and east of the engine."""
     return (way_m, 0.0) if way_m < 20.0 else (20.0, way_m - 20.0)
 
 
@@ -94,7 +92,7 @@ def test_plan_without_a_known_place_is_not_used(script: Outside) -> None:
         assert script.off_m(one) < 3.0
 
 
-def test_who_is_inside_is_not_asked_of_a_plan_that_lies_nowhere(script: Outside) -> None:
+def test_plan_without_a_place_does_not_tell_who_is_inside(script: Outside) -> None:
     elsewhere = b"[900,0],[940,0],[940,30],[900,30],[900,0]"
     script.act(SetPlan(PLAN.replace(b"[0,0],[40,0],[40,30],[0,30],[0,0]", elsewhere)))
     script.walk(1)
@@ -104,7 +102,7 @@ def test_who_is_inside_is_not_asked_of_a_plan_that_lies_nowhere(script: Outside)
     assert script.unit(A).place.inside_since_ns is None
 
 
-def test_its_walls_hold_nobody(script: Outside) -> None:
+def test_walls_of_a_plan_without_a_place_hold_nobody(script: Outside) -> None:
     script.act(SetPlan(plan_path().read_bytes()))
     begun = Outside()
     begun.act(SetPlan(plan_path().read_bytes()))
@@ -194,7 +192,7 @@ def test_place_set_before_the_plan_stays_on_the_earth() -> None:
     assert script.why(A) == ADRIFT
 
 
-def test_who_has_satellites_only_is_nowhere_on_it(script: Outside) -> None:
+def test_unit_with_satellites_only_has_no_place_on_it(script: Outside) -> None:
     script.register("FF-03")
     script.now_s += 1.0
     script.status("FF-03")

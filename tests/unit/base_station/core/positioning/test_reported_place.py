@@ -1,4 +1,4 @@
-"""Who is not heard, and says by voice where they are, is shown there."""
+"""Wearers without contact who report their place by voice are shown there."""
 
 from __future__ import annotations
 
@@ -24,7 +24,9 @@ STAIRS_M = (28.0, 35.0)
 
 @pytest.fixture
 def script() -> Script:
-    """Who walked east along a corridor on the ground floor, and has not been heard for long."""
+    """A wearer who walked east along a corridor on the ground floor, and has no contact for
+    long.
+    """
     script = Script()
     script.register(U, OTHER)
     script.act(SetPlan(PLAN))
@@ -62,7 +64,7 @@ def far_m(one: FusedPosition, place_m: tuple[float, float]) -> float:
     return math.dist((one.north_m, one.east_m), place_m)
 
 
-def test_they_are_shown_where_they_say_and_on_that_floor(script: Script) -> None:
+def test_wearer_is_shown_at_the_reported_place_and_floor(script: Script) -> None:
     pin(script)
     reported = shown(script)
     assert script.fused[-1] == reported, "it is in the log"
@@ -74,7 +76,7 @@ def test_they_are_shown_where_they_say_and_on_that_floor(script: Script) -> None
     assert reported.t_meas_ns == script.t_ns
 
 
-def test_the_region_grows_from_there(script: Script) -> None:
+def test_region_grows_from_there(script: Script) -> None:
     grown = region_m(script)
     pin(script)
     assert region_m(script) < 3.0 < 20.0 < grown
@@ -90,14 +92,14 @@ def region_m(script: Script) -> float:
     return view.position.ellipse_major_m
 
 
-def test_without_a_floor_they_are_on_the_one_that_is_known(script: Script) -> None:
+def test_place_without_a_floor_is_on_the_known_one(script: Script) -> None:
     before = shown(script)
     pin(script, floor=None)
     assert far_m(shown(script), STAIRS_M) == 0.0
     assert (shown(script).floor, shown(script).down_m) == (before.floor, before.down_m)
 
 
-def test_the_newest_word_counts_and_one_taken_back_does_not(script: Script) -> None:
+def test_newest_report_counts_and_a_removed_one_does_not(script: Script) -> None:
     before = shown(script)
     pin(script, ago_s=5.0)
     pin(script, (20.0, 20.0), ago_s=40.0, pin_id="earlier")
@@ -114,7 +116,7 @@ def test_the_newest_word_counts_and_one_taken_back_does_not(script: Script) -> N
     )
 
 
-def test_what_the_unit_brings_of_before_moves_nobody_back(script: Script) -> None:
+def test_backfilled_positions_of_before_move_nobody_back(script: Script) -> None:
     pin(script)
     walked = script.now_s
     script.now_s = walked - SILENT_S / 2
@@ -123,7 +125,7 @@ def test_what_the_unit_brings_of_before_moves_nobody_back(script: Script) -> Non
     assert far_m(shown(script), STAIRS_M) == 0.0
 
 
-def test_contact_regained_continues_from_there(script: Script) -> None:
+def test_regained_contact_continues_from_there(script: Script) -> None:
     pin(script, (10.0, 30.0), floor=0)
     walk(script, WALKED_S, WALKED_S + 5)
     assert script.pipeline.state.site.pin_verdicts["p"].state == "used"
@@ -131,19 +133,19 @@ def test_contact_regained_continues_from_there(script: Script) -> None:
     assert shown(script).t_meas_ns == script.t_ns
 
 
-def test_the_trail_is_of_what_was_walked(script: Script) -> None:
+def test_trail_holds_walked_places_only(script: Script) -> None:
     pin(script)
     trail = script.pipeline.state.units[U].trails.shown
     assert all(math.dist((step.north_m, step.east_m), STAIRS_M) > 5.0 for step in trail)
 
 
-def test_a_meeting_does_not_place_them(script: Script) -> None:
+def test_encounter_does_not_place_them(script: Script) -> None:
     before = shown(script)
     script.act(SetMeeting("m", U, OTHER, script.t_ns, 1.0, ""))
     assert far_m(shown(script), (before.north_m, before.east_m)) < 0.1
 
 
-def test_a_station_that_starts_again_shows_the_same(script: Script) -> None:
+def test_restarted_station_shows_the_same(script: Script) -> None:
     pin(script)
     again = make_pipeline(read_checkpoint(script.pipeline.checkpoint()))
     assert again.state.units[U].place.fused == shown(script)

@@ -30,7 +30,7 @@ def test_saved_fuser_is_restored_with_its_estimate() -> None:
     assert restored.plain(UNIT).estimate() == fusers.plain(UNIT).estimate() is not None
 
 
-def test_forgotten_unit_begins_anew() -> None:
+def test_erased_unit_begins_anew() -> None:
     fusers = new_fusers()
     before = fusers.plain(UNIT)
     assert fusers.forget(UNIT) is before

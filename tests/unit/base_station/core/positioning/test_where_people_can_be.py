@@ -1,5 +1,5 @@
-"""The station's pipeline with a plan: floors, the weather's reference, who is not heard, and
-fixes out of a journal.
+"""The station's pipeline with a plan: floors, the pressure reference, units without contact, and
+backfilled fixes.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def reference(script: Script) -> str | None:
     return script.pipeline.state.site.barometers.reference_id
 
 
-def test_a_floor_comes_with_its_probability(script: Script) -> None:
+def test_floor_has_a_probability(script: Script) -> None:
     script.position(U, 0.0, 0.0)
     on_floor = script.fused[-1]
     assert on_floor.floor == 0
@@ -66,7 +66,7 @@ def test_only_a_registered_unit_can_be_the_reference(script: Script) -> None:
     assert reference(script) is None
 
 
-def test_weather_moves_nobody_who_stands_still(script: Script) -> None:
+def test_weather_moves_no_wearer_at_rest(script: Script) -> None:
     """350 Pa in an hour, here in ten minutes of it; the reference stands at the station."""
     script.register("REF")
     script.act(SetReference("REF", 0.0))
@@ -87,10 +87,10 @@ def test_weather_moves_nobody_who_stands_still(script: Script) -> None:
     [(-20.0, 12.0, True), (-2.0, 12.0, False), (7.0, 20.0, False)],
     ids=["outside", "at the wall", "inside"],
 )
-def test_weather_is_of_units_outside_and_not_of_doors_and_fans(
+def test_weather_is_measured_by_units_outside_and_not_by_doors_and_fans(
     script: Script, north_m: float, east_m: float, feels_it: bool
 ) -> None:
-    """Whoever is inside keeps the height that the air outside agrees with."""
+    """Units inside keep the height that agrees with the air outside."""
     script.register("FF-02")
     script.act(SetStart("FF-02", north_m, east_m, 0.0, 0.0, 0.2, 0.05))
 
@@ -107,7 +107,7 @@ def test_weather_is_of_units_outside_and_not_of_doors_and_fans(
 @pytest.mark.parametrize(
     ("since_gps_s", "outside"), [(None, False), (0.5, True), (4.5, True), (5.5, False)]
 )
-def test_without_a_plan_who_had_a_fix_just_now_is_outside(
+def test_unit_with_a_recent_fix_is_outside_without_a_plan(
     script: Script, since_gps_s: float | None, outside: bool
 ) -> None:
     script.position(U, 0.0, 0.0)
@@ -116,7 +116,7 @@ def test_without_a_plan_who_had_a_fix_just_now_is_outside(
     assert is_outside(None, history) is outside
 
 
-def test_a_pin_that_turns_fixes_away_changes_nothing_of_the_weather() -> None:
+def test_pin_that_rejects_fixes_changes_no_weather() -> None:
     """Of two with the same walk and the same air, one is pinned to where no fix leads."""
     anchor, rises_m = Anchor(52.0, 4.0, 0.0, 0.0), {}
     for is_pinned in (False, True):
@@ -156,7 +156,7 @@ def test_unit_without_contact_stays_within_walls(script: Script) -> None:
 def test_restarted_unit_is_known_no_better_than_without_contact(
     script: Script, away_s: int, most_m: float
 ) -> None:
-    """A battery is changed: whoever goes on walking meanwhile is not where he was."""
+    """A battery is changed: the wearer may walk meanwhile."""
     script.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
     script.position("FF-01", 0.0, 0.0)
     script.boot_ids["FF-01"] = 8
@@ -166,8 +166,8 @@ def test_restarted_unit_is_known_no_better_than_without_contact(
     assert max(5.0, 0.4 * min(away_s, 250)) < std_m < most_m
 
 
-def test_fixes_out_of_a_journal_correct_where_the_unit_is_now(script: Script) -> None:
-    """The unit begins 6 m from where people think; its fixes of the silent minute come late."""
+def test_backfilled_fixes_correct_the_present_place(script: Script) -> None:
+    """The unit begins 6 m from its assumed start; its fixes of the silent minute come late."""
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     script.act(SetStart(U, -60.0, 0.0, 0.0, 0.0, 10.0, 0.05))
     anchor = script.pipeline.state.site.anchor
@@ -189,8 +189,8 @@ def test_fixes_out_of_a_journal_correct_where_the_unit_is_now(script: Script) ->
     assert script.record(backfilled_key(U, GPS.suffix), encode(late[0])) == [], "a second copy"
 
 
-def test_a_station_that_starts_shows_the_same_as_one_that_walked_on(script: Script) -> None:
-    """What was walked a second before is in no checkpoint."""
+def test_restarted_station_shows_the_same_as_a_running_one(script: Script) -> None:
+    """The steps of the last second are in no checkpoint."""
     script.wait(3, lambda: script.position(U, 0.0, 0.0))
     script.wait(40)
     anew = Script(make_pipeline(read_checkpoint(script.pipeline.checkpoint())))

@@ -1,4 +1,4 @@
-"""A position whose time or place cannot be moves nobody, and the unit is followed on."""
+"""Positions with an impossible time or place move nobody, and the unit is followed on."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Wrong = Callable[[Script, float], None]
 
 
 def walk(script: Script, wrong: Wrong) -> Iterator[tuple[float, FusedPosition]]:
-    """Straight north with a fix a second; at a minute something ``wrong`` is said."""
+    """Straight north with a fix a second; at a minute something ``wrong`` is sent."""
     script.register(U)
     script.act(SetAnchor(LAT_DEG, LON_DEG, 0.0, 0.0))
     for step in range(WALKS_S * 5):
@@ -72,7 +72,7 @@ def test_one_wrong_position_moves_nobody_and_stops_nothing(wrong: Wrong) -> None
 
 
 def test_uncertainty_grows_no_faster_than_people_run() -> None:
-    """A unit in trouble says now that it knows all of its place, and now nothing."""
+    """A faulty unit claims a perfect place in one message, and none in the next."""
     kind = Parameters()
     own = OdometryIncrements(kind)
     sure = message_factory.position(Header(U, 1, 1, 0), quality=Quality.DEGRADED)
@@ -84,7 +84,7 @@ def test_uncertainty_grows_no_faster_than_people_run() -> None:
     assert 1.0 < math.sqrt(increment.place_var_m2) <= kind.fastest_mps * 0.2
 
 
-def test_fixes_draw_the_shape_of_a_slow_walk_too() -> None:
+def test_fixes_show_the_shape_of_a_slow_walk_too() -> None:
     outliers, shape = Outliers(), None
     for second in range(60):
         north_m = 0.6 * second

@@ -1,4 +1,4 @@
-"""How a unit's clock stands to the station's, and which of its messages are of now."""
+"""Clock of a unit relative to the station's, and which of its messages are live."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def ns(seconds: float) -> int:
 
 
 class Unit:
-    """What a unit's boot is heard to say, in seconds since its first message."""
+    """Messages of a unit's boot, in seconds since its first message."""
 
     def __init__(self) -> None:
         self.boot = BootState(7)
@@ -26,19 +26,19 @@ class Unit:
     def note_message(
         self, at_s: float, slower_s: float = 0.0, utc_error_s: float | None = None, std_s: float = 0
     ) -> bool:
-        """A message that took so much longer than the quickest; utc_error_s: the unit's."""
+        """A message that took so much longer than the quickest; utc_error_s: that of the unit."""
         captured_s = at_s - slower_s
         utc_ns = 0 if utc_error_s is None else STATION_NS + ns(captured_s + utc_error_s)
         header = Header("FF-01", 7, 1, UPTIME_NS + ns(captured_s), utc_ns, std_s)
         return self.boot.note(STATION_NS + ns(at_s), header)
 
     def placed_s(self, captured_s: float) -> float:
-        """Where the station puts what was captured then."""
+        """Station time of a capture."""
         return (self.boot.station_ns(UPTIME_NS + ns(captured_s)) - STATION_NS) / NS_PER_S
 
 
 @pytest.mark.parametrize(("slower_s", "now"), [(0.0, True), (4.9, True), (5.1, False)])
-def test_a_message_is_of_now_when_it_was_hardly_held_up(slower_s: float, now: bool) -> None:
+def test_message_is_live_when_it_was_hardly_delayed(slower_s: float, now: bool) -> None:
     unit = Unit()
     assert unit.note_message(0.0)
     assert unit.note_message(10.0, slower_s) is now
@@ -47,7 +47,7 @@ def test_a_message_is_of_now_when_it_was_hardly_held_up(slower_s: float, now: bo
     assert unit.boot.last_live_ns == pytest.approx(STATION_NS + ns(newest_s), abs=ns(0.01))
 
 
-def test_what_comes_sooner_than_any_before_was_captured_when_it_came_at_the_latest() -> None:
+def test_message_quicker_than_any_before_bounds_its_capture_by_its_reception() -> None:
     unit = Unit()
     unit.note_message(0.0)
     assert unit.note_message(10.0, slower_s=-2.0)
@@ -61,7 +61,7 @@ def test_what_comes_sooner_than_any_before_was_captured_when_it_came_at_the_late
         (-59.0, 0.1, True),
         (-61.0, 0.1, False),
         (61.0, 0.1, False),
-        (-3600.0, 0.0, True),  # it does not know the time, and says so
+        (-3600.0, 0.0, True),  # it does not know the time, and states so
     ],
 )
 def test_message_with_another_known_time_is_not_live(
@@ -77,13 +77,13 @@ def test_message_with_another_known_time_is_not_live(
         (-29.0, 0.01, -29.0),
         (-31.0, 0.01, 0.0),  # no link is so slow
         (0.04, 0.001, 0.04),
-        (0.2, 0.001, 0.0),  # it would have come before it was sent
+        (0.2, 0.001, 0.0),  # received before it was sent
         (0.2, 0.1, 0.2),
         (0.4, 0.1, 0.0),
         (-1.0, 0.0, 0.0),  # it has no estimate
     ],
 )
-def test_the_unit_s_own_estimate_is_taken_where_it_can_be(
+def test_estimate_of_the_unit_is_used_where_possible(
     utc_error_s: float, std_s: float, placed_s: float
 ) -> None:
     unit = Unit()
@@ -91,20 +91,20 @@ def test_the_unit_s_own_estimate_is_taken_where_it_can_be(
     assert unit.placed_s(0.0) == pytest.approx(placed_s, abs=1e-6)
 
 
-def test_an_estimate_that_is_lost_again_is_not_kept() -> None:
+def test_lost_estimate_is_not_kept() -> None:
     unit = Unit()
     unit.note_message(0.0, utc_error_s=-1.0, std_s=0.01)
     unit.note_message(1.0)
     assert unit.placed_s(1.0) == pytest.approx(1.0, abs=1e-3)
 
 
-def test_a_clock_that_was_set_is_believed_after_twenty_messages_in_a_row() -> None:
+def test_clock_that_was_set_is_used_after_twenty_messages_in_a_row() -> None:
     unit = Unit()
     unit.note_message(0.0)
     for second in range(1, 20):
         unit.note_message(100.0 + second, slower_s=90.0)
     assert unit.placed_s(30.0) == pytest.approx(30.0, abs=0.1)
-    unit.note_message(120.0)  # one that is not late: the link it was, and no clock
+    unit.note_message(120.0)  # one that is not late: a delayed link, and no set clock
     for second in range(1, 20):
         unit.note_message(220.0 + second, slower_s=90.0)
     assert unit.placed_s(150.0) == pytest.approx(150.0, abs=0.1)
@@ -113,9 +113,7 @@ def test_a_clock_that_was_set_is_believed_after_twenty_messages_in_a_row() -> No
 
 
 @pytest.mark.parametrize(("slower_s", "is_taken"), [(59.9, False), (60.1, True)])
-def test_a_link_that_is_slow_for_long_is_no_clock_that_was_set(
-    slower_s: float, is_taken: bool
-) -> None:
+def test_link_that_is_slow_for_long_is_no_set_clock(slower_s: float, is_taken: bool) -> None:
     unit = Unit()
     unit.note_message(0.0)
     for second in range(25):
@@ -133,7 +131,7 @@ def test_a_link_that_is_slow_for_long_is_no_clock_that_was_set(
 def test_run_without_live_messages_is_dated_by_the_unit(
     boots: tuple[BootState, ...], utc_error_s: float, std_s: float, stated_s: float | None
 ) -> None:
-    """Thirty seconds ago by the station's clock; nothing is said later than it comes."""
+    """Thirty seconds ago by the station's clock; nothing is dated later than its reception."""
     header = Header("FF-01", 7, 1, UPTIME_NS, STATION_NS + ns(utc_error_s - 30.0), std_s)
     event_time_ns = None if stated_s is None else STATION_NS + ns(stated_s)
     assert expected_event_time_ns(boots, header, STATION_NS) == event_time_ns

@@ -1,4 +1,4 @@
-"""Which messages of one sender are there, and which of them say how it is now."""
+"""Order of one sender's messages: which are received, and which are of the present."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def header_of(seq: int, mono_s: float = 100.0, boot_id: int = 7) -> Header:
 
 @pytest.fixture
 def sender() -> MessageStream:
-    """The fifth message of its run came, of its hundredth second."""
+    """The sender after the fifth message of its run, of its hundredth second."""
     sender = MessageStream("FF-01")
     assert sender.accept(STATUS, header_of(5), NOW_NS) == "new"
     return sender
@@ -39,7 +39,7 @@ def sender() -> MessageStream:
         (STATUS, 6, 99.0, "new"),  # its clock was wrong before
     ],
 )
-def test_message_before_one_that_came_is_old(
+def test_message_before_a_received_one_is_old(
     sender: MessageStream, channel: Channel, seq: int, mono_s: float, worth: str
 ) -> None:
     assert sender.accept(channel, header_of(seq, mono_s), NOW_NS) == worth
@@ -57,24 +57,24 @@ def test_clock_of_an_earlier_run_does_not_date_a_new_one(
 def test_time_of_a_fix_does_not_change_the_units_clock(
     sender: MessageStream, channel: Channel
 ) -> None:
-    """A receiver may be wrong about that, and would move everything that the unit says."""
+    """A receiver with a wrong time would move all messages of its unit."""
     [boot] = sender.boots
     before_ns = boot.offset_ns
     sender.accept(channel, header_of(6, 107.0), NOW_NS)
     assert boot.offset_ns - before_ns == (0 if channel is GPS else -7 * NS_PER_S)
 
 
-def test_what_the_log_did_not_take_is_missing_like_what_never_came(sender: MessageStream) -> None:
+def test_message_that_the_log_refused_is_missing(sender: MessageStream) -> None:
     assert [sender.has(7, seq) for seq in (4, 5)] == [False, True]
     sender.mark_missing(7, 5)
-    sender.mark_missing(8, 5)  # of a run of which nothing came
+    sender.mark_missing(8, 5)  # of a run without received messages
     assert not sender.has(7, 5)
     assert not sender.has(8, 5)
     assert sender.accept_backfilled(7, 5) == "old"
     assert sender.accept_backfilled(7, 5) == "repeat"
 
 
-def test_runs_out_of_the_journal_are_known_and_never_the_one_that_runs(
+def test_backfilled_runs_are_known_and_never_the_current_one(
     sender: MessageStream,
 ) -> None:
     for boot_id in range(100, 100 + 2 * BOOTS_KEPT):
@@ -87,15 +87,17 @@ def test_runs_out_of_the_journal_are_known_and_never_the_one_that_runs(
 def test_backfilled_run_is_shown_once_it_comes_live(
     sender: MessageStream,
 ) -> None:
-    """It began while its unit was still taken for there, and was asked for what it has at once."""
+    """It began while its unit was still shown as connected, and was asked for its journal at
+    once.
+    """
     sender.accept_backfilled(8, 1)
     assert sender.accept(STATUS, header_of(2, 3.0, boot_id=8), NOW_NS + NS_PER_S) == "new"
     assert sender.boots[-1].boot_id == 8
     assert sender.accept(STATUS, header_of(6, 101.0), NOW_NS + 2 * NS_PER_S) == "old"
 
 
-def test_what_a_goodbye_overtook_does_not_take_it_back(sender: MessageStream) -> None:
-    """It is an alert, and goes ahead of what was said before it."""
+def test_message_overtaken_by_a_goodbye_does_not_undo_it(sender: MessageStream) -> None:
+    """A goodbye is an alert, and overtakes earlier messages."""
     for seq, channel, goodbye in ((9, EVENT, True), (8, POSITION, False), (7, STATUS, False)):
         assert sender.accept(channel, header_of(seq, 100.0 + seq), NOW_NS) == "new"
         if goodbye:
@@ -109,7 +111,7 @@ def test_what_a_goodbye_overtook_does_not_take_it_back(sender: MessageStream) ->
     assert left == [None, None]
 
 
-def test_more_starts_in_a_minute_than_there_can_be_are_nobodys_program(
+def test_more_starts_in_a_minute_than_possible_are_not_accepted(
     sender: MessageStream,
 ) -> None:
     for number in range(1, STARTS_KEPT):
@@ -126,15 +128,15 @@ def test_more_starts_in_a_minute_than_there_can_be_are_nobodys_program(
 @pytest.mark.parametrize(
     ("silent_s", "link"), [(9.9, "live"), (10.0, "stale"), (29.9, "stale"), (30.0, "lost")]
 )
-def test_who_is_silent_is_stale_and_then_lost(
+def test_silent_unit_is_stale_and_then_lost(
     sender: MessageStream, silent_s: float, link: str
 ) -> None:
     assert sender.link_at(NOW_NS + round(silent_s * NS_PER_S)) == link
     assert MessageStream("FF-02").link_at(NOW_NS) == "never"
 
 
-def test_a_second_machine_is_shown_when_the_first_has_been_silent(sender: MessageStream) -> None:
-    """Until then its messages are kept, and change nothing that is shown."""
+def test_second_device_is_shown_when_the_first_has_been_silent(sender: MessageStream) -> None:
+    """Until then its messages are kept, and change no shown state."""
     sender.accept(STATUS, header_of(1, 5.0, boot_id=8), NOW_NS)
     for second, worth in ((9.9, "old"), (10.0, "new"), (10.1, "new")):
         header = header_of(5 + round(10 * second), 100.0 + second)
@@ -142,7 +144,7 @@ def test_a_second_machine_is_shown_when_the_first_has_been_silent(sender: Messag
     assert sender.boots[-1].boot_id == 7
 
 
-def test_a_word_that_was_held_up_does_not_bring_back_the_run_before(sender: MessageStream) -> None:
+def test_delayed_message_does_not_bring_back_the_run_before(sender: MessageStream) -> None:
     assert sender.accept(STATUS, header_of(1, 1.0, boot_id=8), NOW_NS + NS_PER_S) == "new"
     late_ns = NOW_NS + 60 * NS_PER_S
     assert sender.accept(STATUS, header_of(6, 101.0), late_ns) == "old"
@@ -160,7 +162,7 @@ def test_newest_of_several_devices_under_one_name_is_shown(sender: MessageStream
     assert sender.duplicate_device.boot_id == 7
 
 
-def test_two_runs_that_were_there_together_for_five_seconds_are_two_machines(
+def test_two_runs_at_once_for_five_seconds_are_two_devices(
     sender: MessageStream,
 ) -> None:
     for second, is_twin in ((0.0, False), (4.9, False), (5.0, True)):

@@ -1,4 +1,4 @@
-"""What the station knows: repeats, restarts, late messages, trails, and how a card shows it."""
+"""State of the station: repeats, restarts, late messages, trails, and the display of a card."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def unit(script: Script) -> UnitState:
     return script.pipeline.state.units[U]
 
 
-def test_a_repeat_changes_nothing_and_is_counted(script: Script) -> None:
+def test_repeat_changes_nothing_and_is_counted(script: Script) -> None:
     script.position(U, 1.0, 2.0)
     t_ns, key, payload = script.records[-1]
     fused = len(script.fused)
@@ -65,7 +65,7 @@ def test_a_repeat_changes_nothing_and_is_counted(script: Script) -> None:
     assert unit(script).last_message_ns == t_ns, "a repeat is no sign of life"
 
 
-def test_an_older_message_does_not_set_the_state_back(script: Script) -> None:
+def test_older_message_does_not_set_the_state_back(script: Script) -> None:
     late = script.header(U, captured_s=-5.0)
     script.position(U, 1.0, 2.0)
     script.position(U, 9.0, 9.0, header=late)
@@ -75,7 +75,7 @@ def test_an_older_message_does_not_set_the_state_back(script: Script) -> None:
     assert (position.north_m, fused.north_m) == pytest.approx((1.0, 1.0))
 
 
-def test_messages_of_an_earlier_run_are_old_news(script: Script) -> None:
+def test_messages_of_an_earlier_run_are_old(script: Script) -> None:
     before = script.header(U)
     script.status(U, steps=5)
     script.boot_ids[U] = 8
@@ -99,7 +99,7 @@ def rebooted(script: Script, seconds: int) -> None:
             )
 
 
-def test_an_old_place_stays_old_when_the_unit_begins_anew(script: Script) -> None:
+def test_old_place_stays_old_when_the_unit_restarts(script: Script) -> None:
     script.position(U, 1.0, 2.0)
     script.wait(30)
     rebooted(script, 5)
@@ -107,7 +107,7 @@ def test_an_old_place_stays_old_when_the_unit_begins_anew(script: Script) -> Non
     assert script.fused[-1].t_meas_ns == script.t_ns - 35 * NS_PER_S
 
 
-def test_fixes_of_a_run_without_positions_are_of_now(script: Script) -> None:
+def test_fixes_of_a_run_without_positions_are_current(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 50.0, 0.0))
     script.position(U, 0.0, 0.0)
     script.wait(30)
@@ -127,7 +127,7 @@ def test_fixes_of_a_run_without_positions_are_of_now(script: Script) -> None:
 @pytest.mark.parametrize(
     ("silent_s", "link"), [(0, "live"), (9, "live"), (10, "stale"), (29, "stale"), (30, "lost")]
 )
-def test_the_link_is_as_old_as_the_last_message(script: Script, silent_s: int, link: str) -> None:
+def test_link_age_is_that_of_the_last_message(script: Script, silent_s: int, link: str) -> None:
     assert unit(script).link == "never"
     script.status(U)
     script.wait(silent_s)
@@ -150,7 +150,7 @@ def test_every_message_reaches_consoles_and_urgent_ones_at_once(
     assert UnitChanged("stranger") in script.status("stranger")
 
 
-def test_an_old_position_looks_old_and_its_region_grows(script: Script) -> None:
+def test_old_position_is_shown_as_old_and_its_region_grows(script: Script) -> None:
     script.position(U, 1.0, 2.0)
     state = script.pipeline.state
 
@@ -198,7 +198,7 @@ def test_status_replaces_lost_messages_of_a_press_and_its_end(
     assert maydays() == (again_ns, script.t_ns)
 
 
-def test_a_path_is_doubted_since_the_first_position_that_was_not_good(script: Script) -> None:
+def test_path_is_in_doubt_since_the_first_poor_position(script: Script) -> None:
     script.position(U, 0.0, 0.0)
     script.wait(5)
     script.position(U, 1.0, 0.0, quality=Quality.DEGRADED)
@@ -211,7 +211,7 @@ def test_a_path_is_doubted_since_the_first_position_that_was_not_good(script: Sc
     assert unit(script).degraded_since_ns is None
 
 
-def test_who_wears_a_unit_follows_the_last_assignment(script: Script) -> None:
+def test_wearer_follows_the_last_assignment(script: Script) -> None:
     script.register("FF-02")
     script.act(Assign(U, "p1", "Ada", "red", "leader"))
     script.act(Assign("FF-02", "p1", "Ada", "red", "leader"))
@@ -220,7 +220,7 @@ def test_who_wears_a_unit_follows_the_last_assignment(script: Script) -> None:
     assert script.pipeline.state.units["FF-02"].wearer.person is None
 
 
-def test_an_action_on_an_unknown_unit_is_refused_in_words(script: Script) -> None:
+def test_action_on_an_unknown_unit_is_refused_with_a_sentence(script: Script) -> None:
     (refused,) = script.act(Assign("nobody", "p1", "Ada", "", ""))
     assert "register" in refused.reason  # type: ignore[union-attr]
 
@@ -238,7 +238,7 @@ def test_an_action_on_an_unknown_unit_is_refused_in_words(script: Script) -> Non
         SetAnchor(52.0, math.nan, 0.0, 0.0),
     ],
 )
-def test_a_place_that_cannot_be_is_refused_in_words(
+def test_impossible_place_is_refused_with_a_sentence(
     script: Script, action: SetStart | SetAnchor
 ) -> None:
     outputs = script.act(action)
@@ -247,10 +247,10 @@ def test_a_place_that_cannot_be_is_refused_in_words(
     assert not script.pipeline.state.site.start_set
 
 
-def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
+def test_silent_unit_moves_with_the_frame_and_gets_the_floor_of_the_plan(
     script: Script,
 ) -> None:
-    """The first good fix said where the frame lies; then somebody says it better."""
+    """The first good fix places the frame; then a person places it better."""
     for second in range(20):
         script.now_s += 1.0
         script.position(U, float(second), 0.0)
@@ -280,7 +280,7 @@ def test_who_is_silent_moves_along_with_the_frame_and_gets_the_plan_s_floor(
 
 
 @pytest.mark.slow
-def test_a_trail_is_thinned_and_bounded(script: Script) -> None:
+def test_trail_is_thinned_and_bounded(script: Script) -> None:
     for step in range(3 * TRAIL_POINTS):
         script.now_s += 0.5
         script.position(U, 0.8 * step, 0.0)
@@ -306,7 +306,7 @@ def test_time_inside_begins_at_the_outline_or_at_the_first_steps(script: Script)
     assert unit(script).place.inside_since_ns == script.t_ns
 
 
-def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
+def test_ellipse_is_the_95_percent_region(script: Script) -> None:
     script.position(U, 0.0, 0.0)
     fused = unit(script).place.fused
     assert fused is not None
@@ -326,7 +326,7 @@ def test_the_ellipse_is_the_95_per_cent_region(script: Script) -> None:
     assert view.ellipse_heading_rad == pytest.approx(math.pi / 4.0, abs=1e-3), "towards north-east"
 
 
-def test_a_snapshot_shows_people_and_alarms(script: Script) -> None:
+def test_snapshot_shows_people_and_alarms(script: Script) -> None:
     script.act(Assign(U, "p1", "Ada", "red", "leader"))
     script.event(U, EventKind.MAYDAY)
     script.position(U, 1.0, 2.0)
@@ -340,7 +340,7 @@ def test_a_snapshot_shows_people_and_alarms(script: Script) -> None:
     assert shown.seq == 7
 
 
-def test_rubbish_and_strangers_show_in_health(script: Script) -> None:
+def test_rubbish_and_unregistered_units_are_counted_in_health(script: Script) -> None:
     script.record("muster/v1/FF-01/up/position", b"rubbish")
     script.status("stranger")
     health = health_view(script.pipeline.state, StationFacts())
@@ -348,7 +348,7 @@ def test_rubbish_and_strangers_show_in_health(script: Script) -> None:
     assert any("up/position" in problem for problem in health.problems)
 
 
-def test_endless_strangers_do_not_fill_the_memory(script: Script) -> None:
+def test_endless_unregistered_units_do_not_fill_the_memory(script: Script) -> None:
     for number in range(300):
         script.status(f"X-{number}")
     state = script.pipeline.state

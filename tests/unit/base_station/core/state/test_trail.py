@@ -1,4 +1,6 @@
-"""The way behind a unit: when it gets a point, where a late one goes, and what falls off."""
+"""Trail of a unit: when it gets a point, the place of a late point, and which points are
+dropped.
+"""
 
 from __future__ import annotations
 
@@ -48,9 +50,7 @@ def at(t_s: float, north_m: float = 3.0, east_m: float = -4.0, floor: int = 1) -
         (at(115.0), True),  # standing still
     ],
 )
-def test_a_point_is_added_for_a_step_a_floor_or_a_rest(
-    next_one: FusedPosition, added: bool
-) -> None:
+def test_point_is_added_for_a_step_a_floor_or_a_rest(next_one: FusedPosition, added: bool) -> None:
     trail = [step(100.0)]
     assert extend_trail(trail, next_one) is added
     assert len(trail) == 1 + added
@@ -63,7 +63,7 @@ def test_a_point_is_added_for_a_step_a_floor_or_a_rest(
     ("late_s", "place"),
     [(95.0, 0), (99.0, 0), (99.1, None), (100.9, None), (101.0, 1), (109.1, None), (120.0, 2)],
 )
-def test_a_late_point_takes_its_place_where_none_is_near(late_s: float, place: int | None) -> None:
+def test_late_point_takes_its_place_where_none_is_near(late_s: float, place: int | None) -> None:
     trail = [step(100.0), step(110.0)]
     assert insert_into_trail(trail, fused(late_s)) is (place is not None)
     assert [one.t_ns for one in trail] == sorted(one.t_ns for one in trail)
@@ -82,7 +82,7 @@ def rooms(seconds: int) -> list[FusedPosition]:
 
 
 def off_m(at: FusedPosition, trail: list[TrailStep]) -> float:
-    """How far a place is from the trail."""
+    """Distance of a place from the trail."""
     places_m = np.array([(step.north_m, step.east_m) for step in trail])
     here_m = np.array([at.north_m, at.east_m])
     begins_m, ways_m = places_m[:-1], np.diff(places_m, axis=0)
@@ -93,7 +93,7 @@ def off_m(at: FusedPosition, trail: list[TrailStep]) -> float:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("hours", "most_m"), [(1, 0.6), (2, 0.6), (4, 20.0)])
-def test_the_whole_way_stays_and_is_bounded(hours: int, most_m: float) -> None:
+def test_whole_way_stays_and_is_bounded(hours: int, most_m: float) -> None:
     trail: list[TrailStep] = []
     walk = rooms(hours * 3600)
     for one in walk:
@@ -119,7 +119,7 @@ def test_gap_of_a_trail_stays_until_it_is_backfilled() -> None:
     assert not insert_into_trail(trail, fused(200, north_m=200.0)), "on a line that was thinned"
 
 
-def test_a_full_trail_takes_what_is_older_and_stays_bounded() -> None:
+def test_full_trail_takes_older_points_and_stays_bounded() -> None:
     trail = [step(100.0 + 10.0 * number) for number in range(TRAIL_POINTS)]
     newest = trail[-RECENT_POINTS:]
     assert insert_into_trail(trail, fused(50.0))
@@ -128,7 +128,7 @@ def test_a_full_trail_takes_what_is_older_and_stays_bounded() -> None:
     assert trail[-RECENT_POINTS:] == newest
 
 
-def test_one_that_is_not_full_takes_what_is_older_than_all() -> None:
+def test_trail_with_room_takes_points_older_than_all() -> None:
     trail = [step(100.0)]
     assert insert_into_trail(trail, fused(50.0))
     assert [one.t_ns for one in trail] == [50 * NS_PER_S, 100 * NS_PER_S]

@@ -1,4 +1,4 @@
-"""For how long the light beside a name was which, and why, while an incident was open."""
+"""Durations of the trust light of each unit, with its reasons, while an incident is open."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def send_messages(script: Script) -> None:
     script.position("FF-01", script.now_s, 0.0)
 
 
-def test_silence_turns_the_light_and_is_its_reason(script: Script) -> None:
+def test_silence_changes_the_light_and_is_its_reason(script: Script) -> None:
     """Amber about the unit's own start, red once it is lost."""
     script.wait(20.0, lambda: send_messages(script))
     script.wait(60.0)
@@ -47,7 +47,7 @@ def test_wearer_of_a_unit_without_any_contact_is_red(script: Script) -> None:
     assert tally.red_s == pytest.approx(30.0, abs=1.0)
 
 
-def test_one_that_was_switched_off_in_order_has_no_light_until_it_is_on_again(
+def test_unit_switched_off_in_order_has_no_light_until_it_is_on_again(
     script: Script,
 ) -> None:
     script.wait(20.0, lambda: send_messages(script))
@@ -62,7 +62,7 @@ def test_one_that_was_switched_off_in_order_has_no_light_until_it_is_on_again(
     assert tally.causes["no message"] > 31.0
 
 
-def test_only_while_an_incident_is_open_and_from_its_beginning(script: Script) -> None:
+def test_time_counts_only_while_an_incident_is_open_and_from_its_beginning(script: Script) -> None:
     script.wait(20.0, lambda: send_messages(script))
     script.act(CloseIncident("i1"))
     before_s = script.pipeline.state.units["FF-01"].trust.amber_s
@@ -73,7 +73,9 @@ def test_only_while_an_incident_is_open_and_from_its_beginning(script: Script) -
 
 
 @pytest.mark.parametrize(("away_s", "seen_s"), [(5.0, 5.0), (6.0, 0.0), (3600.0, 0.0)])
-def test_a_station_that_was_away_saw_no_light(script: Script, away_s: float, seen_s: float) -> None:
+def test_time_without_the_station_has_no_light(
+    script: Script, away_s: float, seen_s: float
+) -> None:
     script.wait(10.0, lambda: send_messages(script))
     before = script.pipeline.state.units["FF-01"].trust.amber_s
     script.now_s += away_s

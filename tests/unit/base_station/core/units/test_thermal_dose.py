@@ -1,4 +1,4 @@
-"""How fast heat uses up what the equipment can take, and how long a reading counts."""
+"""Thermal dose: how fast heat uses up the equipment's tolerance, and how long a reading counts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ U = "FF-01"
     ("up_to_degc", "whole_dose_s"),
     [(100.0, 1500.0), (160.0, 900.0), (260.0, 300.0), (800.0, 60.0)],
 )
-def test_each_class_lasts_as_long_as_equipment_of_it_does(
+def test_each_heat_class_lasts_as_long_as_its_equipment(
     up_to_degc: float, whole_dose_s: float
 ) -> None:
     assert dose_of(up_to_degc, whole_dose_s) == 1.0
@@ -47,7 +47,7 @@ def unit(script: Script) -> UnitState:
 
 
 @pytest.mark.parametrize(("silent_s", "counted_s"), [(6.0, 6.0), (10.0, 10.0), (120.0, 10.0)])
-def test_a_reading_counts_until_the_next_but_not_through_a_silence(
+def test_reading_counts_until_the_next_but_not_through_a_silence(
     script: Script, silent_s: float, counted_s: float
 ) -> None:
     script.now_s += silent_s
@@ -59,22 +59,22 @@ def test_a_reading_counts_until_the_next_but_not_through_a_silence(
 
 
 @pytest.mark.parametrize(("after_degc", "limit_s"), [(270.0, 60.0), (400.0, 60.0), (200.0, 300.0)])
-def test_who_is_hot_before_and_after_a_silence_was_so_throughout(
+def test_heat_before_and_after_a_silence_counts_throughout(
     script: Script, after_degc: float, limit_s: float
 ) -> None:
-    """As hot as the cooler one of both; the fire that takes the radio heats the equipment on."""
+    """At the cooler of both readings; a fire that cuts the radio heats the equipment on."""
     script.now_s += 50.0
     script.temperature(U, after_degc)
     assert unit(script).heat.dose == pytest.approx(10.0 / 60.0 + 40.0 / limit_s)
 
 
-def test_a_unit_whose_clock_is_set_back_takes_nothing_from_its_dose(script: Script) -> None:
+def test_clock_set_back_reduces_no_dose(script: Script) -> None:
     script.say(Temperature(script.header(U, captured_s=-500.0), 300.0))
     assert unit(script).heat.temperature is not None
     assert unit(script).heat.dose == 0.0
 
 
-def test_the_time_between_two_runs_of_a_unit_is_not_known(script: Script) -> None:
+def test_time_between_two_runs_of_a_unit_is_unknown(script: Script) -> None:
     script.now_s += 6.0
     script.boot_ids[U] = 8
     script.temperature(U, 300.0)
@@ -107,7 +107,7 @@ def backfilled_script(lost: range, boots: dict[int, int], pieces: int = 2) -> Jo
 @pytest.mark.parametrize("pieces", [1, 2, 5])
 @pytest.mark.parametrize("lost", [range(20, 70), range(10), range(50, 120), range(33, 36)], ids=str)
 @pytest.mark.parametrize("boots", [{}, {40: 8}], ids=["one run", "two runs"])
-def test_what_a_journal_brings_counts_as_what_came_live(
+def test_backfilled_readings_count_as_live_ones(
     lost: range, boots: dict[int, int], pieces: int
 ) -> None:
     all_live, some_late = backfilled_script(range(0), boots), backfilled_script(lost, boots, pieces)
@@ -123,7 +123,7 @@ def heat_alarms(script: Script) -> list[tuple[str, str]]:
 
 
 def test_budget_used_up_without_contact_is_reported_as_late() -> None:
-    """No heat of now, and the equipment may fail all the same."""
+    """No heat at present, and the equipment may fail all the same."""
     script = JournaledScript()
     script.register(U)
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -144,7 +144,7 @@ def test_budget_used_up_without_contact_is_reported_as_late() -> None:
     ]
 
 
-def test_what_was_before_this_incident_does_not_count_in_it() -> None:
+def test_heat_before_this_incident_does_not_count_in_it() -> None:
     script = backfilled_script(range(20, 70), {})
     before = unit(script).heat.dose
     late = script.header(U, captured_s=script.now_s + 5.0)
@@ -163,7 +163,9 @@ def test_what_was_before_this_incident_does_not_count_in_it() -> None:
 
 
 def on_a_link_that_stutters(lost: set[int]) -> JournaledScript:
-    """For longer than can be told stretch by stretch, with a fire at the beginning."""
+    """On an intermittent link for longer than single intervals are kept, with a fire at the
+    beginning.
+    """
     script = JournaledScript()
     script.register(U)
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -179,20 +181,20 @@ def on_a_link_that_stutters(lost: set[int]) -> JournaledScript:
 @pytest.mark.parametrize(
     "in_the_fire", [range(90, 150), range(92, 150, 3)], ids=["out of reach", "stuttering"]
 )
-def test_on_a_link_that_stutters_for_long_the_fire_at_its_beginning_counts_once(
+def test_fire_at_the_begin_of_a_long_intermittent_link_counts_once(
     in_the_fire: range,
 ) -> None:
     script = on_a_link_that_stutters({*in_the_fire, *range(200, 6 * MAX_INTERVALS, 3)})
     assert len(unit(script).heat.exposures) == MAX_INTERVALS
     script.fetch(U, 50)
-    # Give or take a second at either end of it.
+    # Within a second at either end of it.
     assert unit(script).heat.dose == pytest.approx(40.0 / 60.0, abs=2.0 / 60.0)
     assert len(unit(script).heat.exposures) <= MAX_INTERVALS
 
 
 @pytest.mark.parametrize("late_s", [5.0, 11.0 * MAX_INTERVALS - 5.0])
-def test_a_reading_of_a_silence_that_is_counted_as_known_changes_nothing(late_s: float) -> None:
-    """What was taken for it stands: it is neither counted again nor taken back."""
+def test_reading_of_a_silence_that_was_counted_changes_nothing(late_s: float) -> None:
+    """The assumed heat stands: it is neither counted again nor removed."""
     stretches: list[ExposureInterval] = []
     for row in range(2 * MAX_INTERVALS):
         add_live(stretches, 7, row * 11 * NS_PER_S, 300.0)
@@ -201,7 +203,7 @@ def test_a_reading_of_a_silence_that_is_counted_as_known_changes_nothing(late_s:
     assert add_late(stretches, 7, round(late_s * NS_PER_S), 20.0) == 0.0
 
 
-def test_stretches_that_are_known_take_no_more_room_the_longer_it_lasts() -> None:
+def test_known_intervals_take_bounded_room() -> None:
     script = backfilled_script(range(20, 70), {})
     assert len(unit(script).heat.exposures) == 1
     for _ in range(MAX_INTERVALS + 300):

@@ -1,4 +1,4 @@
-"""What units could not keep is among the station's problems."""
+"""Messages that units could not keep are among the station's problems."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.rig.station_script import Script
 U = "FF-01"
 
 
-def test_what_a_unit_could_not_keep_is_among_the_problems() -> None:
+def test_unkept_messages_of_a_unit_are_a_problem() -> None:
     script = Script()
 
     def problems() -> str:
@@ -21,11 +21,11 @@ def test_what_a_unit_could_not_keep_is_among_the_problems() -> None:
     assert "journal" not in problems()
     script.say(Heartbeat(script.header(U), 1, 1, never_saved=120, given_up=3))
     assert f"{U} 123" in problems()
-    script.say(Heartbeat(script.header(U), 1, 1))  # started again, with room
+    script.say(Heartbeat(script.header(U), 1, 1))  # restarted, with room
     assert "journal" not in problems()
 
 
-def test_the_heartbeat_carries_what_was_not_kept() -> None:
+def test_heartbeat_carries_the_unkept_messages() -> None:
     script = Script()
     beat = Heartbeat(script.header(U), 5, 9, never_saved=2**40, given_up=7)
     received = decode(HEARTBEAT, encode(beat))

@@ -64,7 +64,7 @@ def change(t_ns: int, state: AlarmState) -> AlarmChange:
 
 
 class Station:
-    """A collector with what it is given, and the outbox."""
+    """A collector with its inputs, and the outbox."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -104,11 +104,11 @@ def station(tmp_path: Path) -> Station:
     return Station(tmp_path)
 
 
-def test_a_station_reports_its_incident_its_people_and_every_transition_once(
+def test_station_reports_its_incident_its_people_and_every_transition_once(
     station: Station,
 ) -> None:
     station.decide(T_NS, AlarmState.RAISED)
-    assert not station.collector.collect(T_MS)  # nothing is known of the station yet
+    assert not station.collector.collect(T_MS)  # the department has nothing of the station yet
     station.show()
     assert station.collector.collect(T_MS)
     station.decide(T_NS + 1, AlarmState.ACKNOWLEDGED)
@@ -129,7 +129,7 @@ def test_a_station_reports_its_incident_its_people_and_every_transition_once(
     assert (summary.waiting, summary.epoch) == (len(station.events()), station.outbox.epoch)
 
 
-def test_a_confirmation_that_is_undone_is_reported_as_another_change(station: Station) -> None:
+def test_undone_confirmation_is_reported_as_another_change(station: Station) -> None:
     mine: dict[str, Any] = {"person": ANNA, "incident_id": "i2"}  # one of several
     station.show(duty=NOT_CONFIRMED, incident_id="i2")
     station.collector.collect(T_MS)
@@ -142,7 +142,7 @@ def test_a_confirmation_that_is_undone_is_reported_as_another_change(station: St
     assert {one.incident_id for one in par} == {"i2"}
 
 
-def test_after_a_kill_what_was_decided_is_read_from_the_log(station: Station) -> None:
+def test_decisions_before_a_kill_are_read_from_the_log(station: Station) -> None:
     station.show()
     station.collector.collect(T_MS)
     station.decide(T_NS, AlarmState.RAISED)
@@ -159,7 +159,7 @@ def test_after_a_kill_what_was_decided_is_read_from_the_log(station: Station) ->
     assert station.since_ns[-1] == T_NS - 5 * NS_PER_S  # not all of the log
 
 
-def test_an_incident_that_ended_while_the_station_was_off_is_reported_as_closed(
+def test_incident_ended_while_the_station_was_off_is_reported_as_closed(
     station: Station,
 ) -> None:
     station.show()
@@ -175,7 +175,7 @@ def test_an_incident_that_ended_while_the_station_was_off_is_reported_as_closed(
     assert (opened.closed_ms, closed.closed_ms) == (None, shown.closed_ms)
 
 
-def test_who_is_forgotten_is_forgotten_at_the_department_and_in_the_outbox(
+def test_erased_person_is_erased_at_the_department_and_in_the_outbox(
     station: Station,
 ) -> None:
     station.show()

@@ -39,7 +39,7 @@ def test_events_are_numbered_without_gaps_and_stay_until_acknowledged(tmp_path: 
     opened_again.close()
 
 
-def test_a_batch_is_bounded_and_never_empty_while_something_waits(tmp_path: Path) -> None:
+def test_batch_is_bounded_and_never_empty_while_events_wait(tmp_path: Path) -> None:
     outbox = DepartmentOutbox(tmp_path / "outbox.sqlite")
     outbox.add([event(str(n), body=bytes(1000)) for n in range(10)], {}, None)
     assert len(outbox.next_batch(100, 3500)) == 3
@@ -47,7 +47,7 @@ def test_a_batch_is_bounded_and_never_empty_while_something_waits(tmp_path: Path
     assert len(outbox.next_batch(100, 10)) == 1
 
 
-def test_what_a_standby_drops_is_not_taken_for_lost(tmp_path: Path) -> None:
+def test_events_dropped_by_a_standby_are_not_reported_as_lost(tmp_path: Path) -> None:
     outbox = DepartmentOutbox(tmp_path / "outbox.sqlite")
     outbox.add([event(str(n)) for n in range(10)], {}, None)
     outbox.keep_newest(3)
@@ -56,7 +56,7 @@ def test_what_a_standby_drops_is_not_taken_for_lost(tmp_path: Path) -> None:
     assert (outbox.dropped_seq, outbox.acknowledged_seq) == (7, 0)
 
 
-def test_nothing_is_left_of_what_is_rewritten(tmp_path: Path) -> None:
+def test_rewritten_event_leaves_nothing_of_the_former(tmp_path: Path) -> None:
     path = tmp_path / "outbox.sqlite"
     outbox = DepartmentOutbox(path)
     outbox.add([event("a", "person/1", b"Anna Berg"), event("b")], {}, None)
@@ -66,7 +66,7 @@ def test_nothing_is_left_of_what_is_rewritten(tmp_path: Path) -> None:
     assert b"Anna Berg" not in path.read_bytes()
 
 
-def test_a_damaged_file_is_set_aside_and_another_epoch_begins(tmp_path: Path) -> None:
+def test_damaged_file_is_set_aside_and_another_epoch_begins(tmp_path: Path) -> None:
     path = tmp_path / "outbox.sqlite"
     outbox = DepartmentOutbox(path)
     outbox.add([event("a")], {}, None)
@@ -79,7 +79,7 @@ def test_a_damaged_file_is_set_aside_and_another_epoch_begins(tmp_path: Path) ->
     assert path.with_name("outbox.sqlite.damaged").exists()
 
 
-def test_a_missing_folder_is_reported_and_tried_again(tmp_path: Path) -> None:
+def test_missing_folder_is_reported_and_retried(tmp_path: Path) -> None:
     outbox = DepartmentOutbox(tmp_path / "later" / "outbox.sqlite")
     with pytest.raises(StoreError, match=r"outbox\.sqlite cannot be used"):
         outbox.add([event("a")], {}, None)

@@ -1,4 +1,4 @@
-"""Cursor-on-Target events: by the schema, in TAK's words, and with nothing that is not known."""
+"""Cursor-on-Target events: by the schema, in TAK's terms, without unknown values."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def detail(event: ET.Element, tag: str) -> ET.Element:
     return found
 
 
-def test_a_person_is_where_the_anchor_and_the_frame_put_it() -> None:
+def test_person_is_placed_by_anchor_and_frame() -> None:
     turned = AnchorView(52.5, 13.4, 40.0, math.pi / 2.0)  # the plan's north is east
     place = place_of(position(north_m=1000.0, east_m=0.0, down_m=-9.0), turned)
     assert place is not None
@@ -60,7 +60,7 @@ def test_a_person_is_where_the_anchor_and_the_frame_put_it() -> None:
     assert place.hae_m == pytest.approx(49.0, abs=0.2)
 
 
-def test_the_circle_holds_the_region_of_95_percent() -> None:
+def test_circle_holds_the_95_percent_region() -> None:
     place = placed(position(ellipse_major_m=7.5, ellipse_minor_m=2.0, std_down_m=1.0))
     assert place.ce_m == 7.5
     assert place.le_m == pytest.approx(1.96)
@@ -74,11 +74,11 @@ def test_without_an_anchor_there_is_no_place(anchor: AnchorView | None) -> None:
 
 
 @pytest.mark.parametrize("name", ["north_m", "down_m", "ellipse_major_m"])
-def test_what_is_no_number_is_no_place(name: str) -> None:
+def test_value_that_is_no_number_is_no_place(name: str) -> None:
     assert place_of(position(**{name: math.nan}), ANCHOR) is None
 
 
-def test_an_unknown_height_error_is_stated_in_the_word_for_it() -> None:
+def test_unknown_height_error_has_the_value_of_the_schema() -> None:
     unit = Scene().unit(position=position(std_down_m=math.inf))
     assert person_event(unit)[0].get("le") == "9999999.0"
 
@@ -86,11 +86,11 @@ def test_an_unknown_height_error_is_stated_in_the_word_for_it() -> None:
 @pytest.mark.parametrize(
     ("since_gps_s", "how"), [(None, "m-p"), (0.0, "m-f"), (10.0, "m-f"), (11.0, "m-p")]
 )
-def test_how_tells_fused_from_dead_reckoned(since_gps_s: float | None, how: str) -> None:
+def test_how_distinguishes_fused_from_dead_reckoned(since_gps_s: float | None, how: str) -> None:
     assert how_of(position(since_gps_s=since_gps_s)) == how
 
 
-def test_a_position_is_stale_ten_seconds_after_it_was_measured() -> None:
+def test_position_is_stale_ten_seconds_after_its_measurement() -> None:
     at = position(t_ms=1_700_000_000_250)
     assert stale_ms(at) == at.t_ms + 10_000
     event = person_event(Scene().unit(position=at))
@@ -99,7 +99,7 @@ def test_a_position_is_stale_ten_seconds_after_it_was_measured() -> None:
     assert cot_time(5) == "1970-01-01T00:00:00.005Z"
 
 
-def test_an_event_says_who_and_in_what_state() -> None:
+def test_event_states_name_and_state_of_the_person() -> None:
     unit = Scene().unit(
         person=PersonView("p1", "Ada <Chief> & Co", "A", "", None),
         position=position(floor=2, floor_probability=0.9),
@@ -117,19 +117,19 @@ def test_an_event_says_who_and_in_what_state() -> None:
         assert word in words
 
 
-def test_without_names_an_event_has_the_label_of_the_unit() -> None:
+def test_event_without_names_has_the_label_of_the_unit() -> None:
     unit = Scene().unit(person=PersonView("p1", "Ada", "A", "", None), label="FF 1")
     event = person_event(unit, names=False)
     assert detail(event, "contact").get("callsign") == "FF 1"
     assert "Ada" not in ET.tostring(event, encoding="unicode")
 
 
-def test_what_xml_has_no_place_for_is_marked() -> None:
+def test_characters_that_xml_forbids_are_replaced() -> None:
     unit = Scene().unit(person=PersonView("p1", "A\x00da\x1b", "", "", None))
     assert detail(person_event(unit), "contact").get("callsign") == "A\ufffdda\ufffd"
 
 
-def test_an_emergency_is_raised_and_cancelled_under_one_uid() -> None:
+def test_emergency_is_raised_and_cancelled_under_one_uid() -> None:
     unit = Scene().unit()
     assert unit.position is not None
     events = CotEvents("muster", "Red", names=True)
@@ -144,7 +144,7 @@ def test_an_emergency_is_raised_and_cancelled_under_one_uid() -> None:
     assert "mayday" in (detail(raised, "remarks").text or "")
 
 
-def test_a_way_is_a_line_from_the_oldest_place_to_the_newest() -> None:
+def test_trail_is_a_line_from_the_oldest_place_to_the_newest() -> None:
     unit = Scene().unit()
     assert unit.position is not None
     places = [GeodeticPlace(52.0 + step * 1e-4, 13.0, None, 1.0, 1.0) for step in range(3)]
@@ -155,7 +155,7 @@ def test_a_way_is_a_line_from_the_oldest_place_to_the_newest() -> None:
     assert event[0].get("lat") == "52.0002000"
 
 
-def test_speed_and_course_are_of_the_way_between_two_positions() -> None:
+def test_speed_and_course_come_from_two_positions() -> None:
     earlier = placed(position(north_m=0.0, east_m=0.0))
     at = position(north_m=0.0, east_m=3.0)
     before = at.t_ms - 2000, earlier
@@ -164,7 +164,7 @@ def test_speed_and_course_are_of_the_way_between_two_positions() -> None:
     assert motion.course_deg == pytest.approx(90.0, abs=0.5)
 
 
-def test_at_rest_the_course_is_the_heading_of_the_wearer() -> None:
+def test_course_at_rest_is_the_heading_of_the_wearer() -> None:
     at = position(heading_rad=math.pi / 2.0, heading_std_rad=0.1)
     assert motion_between(None, at, placed(at), math.pi / 2.0) == GroundMotion(0.0, 180.0)
     unknown = position(heading_rad=1.0, heading_std_rad=math.pi)

@@ -1,4 +1,4 @@
-"""What other teams send: read where it makes sense, refused where it does not, and bounded."""
+"""Inbox of other teams' events: valid ones are read, others refused, and the number is bounded."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BOMB = (
 
 
 class Taken:
-    """An inbox, and what it has delivered."""
+    """An inbox, and its deliveries."""
 
     def __init__(self, within_m: float = 3000.0) -> None:
         self.markers: dict[str, ExternalMarker] = {}
@@ -39,7 +39,7 @@ class Taken:
         self.inbox.deliver_due(now_ns)
 
 
-def test_a_person_of_another_team_is_read() -> None:
+def test_person_of_another_team_is_read() -> None:
     marker = read_event("county", cot_event("p1", callsign="Police\n 1", remarks="a\x1fb" * 200))
     assert isinstance(marker, ExternalMarker)
     assert (marker.marker_id, marker.name) == ("county/p1", "Police 1")
@@ -57,18 +57,18 @@ def test_a_person_of_another_team_is_read() -> None:
         ("a-h-G", ExternalKind.PERSON),
     ],
 )
-def test_kinds_are_reported_by_their_type(kind: str, shown: ExternalKind) -> None:
+def test_kinds_follow_from_the_type(kind: str, shown: ExternalKind) -> None:
     marker = read_event("county", cot_event("u", kind=kind))
     assert isinstance(marker, ExternalMarker)
     assert marker.kind is shown
 
 
-def test_what_is_no_marker_is_passed_over() -> None:
+def test_event_that_is_no_marker_is_ignored() -> None:
     assert read_event("county", cot_event("takPong", kind="t-x-c-t-r")) is None
     assert read_event("county", cot_event("chat", kind="b-t-f")) is None
 
 
-def test_a_deleted_marker_and_a_cancelled_emergency_are_gone() -> None:
+def test_deleted_marker_and_cancelled_emergency_are_removed() -> None:
     deleted = cot_event("x", kind="t-x-d-d", detail='<link uid="p1"/>')
     assert read_event("county", deleted) == MarkerGone("p1")
     assert read_event("county", cot_event("e", kind="b-a-o-can")) == MarkerGone("e")
@@ -93,7 +93,7 @@ def test_a_deleted_marker_and_a_cancelled_emergency_are_gone() -> None:
         cot_event("u", time="9999-01-01T00:00:00Z"),
     ],
 )
-def test_what_makes_no_sense_is_refused(raw: bytes) -> None:
+def test_impossible_event_is_refused(raw: bytes) -> None:
     with pytest.raises(NoMarkerError):
         read_event("county", raw)
     taken = Taken()
@@ -110,7 +110,7 @@ def test_events_come_in_any_pieces() -> None:
         assert events == [cot_event("a"), cot_event("b")]
 
 
-def test_rubbish_without_end_costs_no_memory() -> None:
+def test_endless_rubbish_takes_bounded_memory() -> None:
     splitter = EventSplitter()
     for _ in range(100):
         assert splitter.push(b"<event " + b"x" * 10_000) == []
@@ -128,7 +128,7 @@ def test_ten_thousand_markers_are_bounded() -> None:
     assert "county/later" in taken.markers
 
 
-def test_of_many_positions_in_a_second_the_newest_is_delivered() -> None:
+def test_newest_of_many_positions_in_a_second_is_delivered() -> None:
     taken = Taken()
     taken.push(cot_event("p"), 0)
     taken.push(cot_event("p", lat="52.501"), NS_PER_S // 2)
@@ -138,7 +138,7 @@ def test_of_many_positions_in_a_second_the_newest_is_delivered() -> None:
     assert taken.markers["county/p"].lat_deg == 52.502
 
 
-def test_our_own_people_and_those_far_away_are_left_out() -> None:
+def test_own_people_and_distant_ones_are_left_out() -> None:
     taken = Taken(within_m=500.0)
     taken.push(cot_event("muster.FF-01") + cot_event("far", lat="52.51") + cot_event("near"))
     assert set(taken.markers) == {"county/near"}
@@ -147,7 +147,7 @@ def test_our_own_people_and_those_far_away_are_left_out() -> None:
     assert set(taken.markers) == {"county/near"}, "without an anchor nobody knows where it is"
 
 
-def test_a_clock_that_is_ahead_makes_nobody_fresher() -> None:
+def test_clock_ahead_makes_nobody_fresher() -> None:
     taken = Taken()
     taken.push(cot_event("p", time="2023-11-14T23:13:20.000Z", stale="2023-11-14T23:14:20Z"))
     marker = taken.markers["county/p"]
@@ -155,7 +155,7 @@ def test_a_clock_that_is_ahead_makes_nobody_fresher() -> None:
     assert marker.stale_ns == NOW_NS + 60 * NS_PER_S
 
 
-def test_who_is_gone_is_removed() -> None:
+def test_expired_person_is_removed() -> None:
     taken = Taken()
     gone: Callable[[str], bytes] = lambda uid: cot_event(  # noqa: E731  # one line a use
         "x", kind="t-x-d-d", detail=f'<link uid="{uid}"/>'

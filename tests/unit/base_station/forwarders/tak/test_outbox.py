@@ -1,4 +1,4 @@
-"""The outbox: newest position of each person, alerts first, nothing that nobody knows."""
+"""Outbox to TAK: newest position of each person, alerts first, no unknown values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.rig.tak_scene import T_MS, Scene, alarm, delta
 
 
 class Desk:
-    """An outbox, with a clock that a test turns."""
+    """An outbox with a settable clock."""
 
     def __init__(self, picture: Snapshot, *, breadcrumbs: bool = False) -> None:
         self.outbox = TakOutbox(
@@ -39,7 +39,7 @@ class Desk:
         self._mailbox.put_delta(delta(*units, alarms=tuple(alarms)))
 
     def sent(self, after_s: float = 0.0) -> list[ET.Element]:
-        """What goes out now."""
+        """Events that are sent now."""
         self.now_ns += round(after_s * NS_PER_S)
         self.outbox.apply(self._mailbox.take(), self.now_ms)
         return [check_event(one) for one in self.outbox.due(self.now_ns, self.now_ms)]
@@ -53,7 +53,7 @@ RAISED = "b-a-o-tbl", "muster.FF-01-9-1-1"
 CANCELLED = "b-a-o-can", "muster.FF-01-9-1-1"
 
 
-def test_of_many_positions_the_newest_goes_out_when_it_is_due() -> None:
+def test_newest_of_many_positions_is_sent_when_it_is_due() -> None:
     scene = Scene()
     desk = Desk(scene.picture())
     assert desk.kinds() == [PERSON]
@@ -67,7 +67,7 @@ def test_of_many_positions_the_newest_goes_out_when_it_is_due() -> None:
     assert desk.kinds(5.0) == [], "nothing new"
 
 
-def test_without_an_anchor_nothing_goes_out() -> None:
+def test_without_an_anchor_nothing_is_sent() -> None:
     desk = Desk(Scene(anchor=False).picture())
     desk.change(alarms=[alarm()])
     assert desk.kinds() == []
