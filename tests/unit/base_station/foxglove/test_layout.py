@@ -1,4 +1,4 @@
-"""The layout names topics that the log has."""
+"""The layout names topics that exist in the log."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from shared.mcap_log import wire_type_of
 SERIES = re.compile(r'"(?P<topic>[^"]+)"(\{[^}]*\})?\.(?P<field>\w+)\.@div\(-?\d+\)')
 
 
-def test_every_series_reads_a_field_that_the_log_has() -> None:
+def test_every_series_reads_a_field_of_the_log() -> None:
     layout = json.loads(make_layout(["FF-02", "FF-01"]))
     beside_map = layout["content"]["items"][1]["content"]["items"]
     plots = [item["content"] for item in beside_map if item["content"]["panelType"] == "Plot"]

@@ -1,4 +1,4 @@
-"""Stated errors of dead reckoning against errors that are drawn."""
+"""Stated errors of dead reckoning against drawn errors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def walked(reckoning: DeadReckoning, drift_radps: float) -> DeadReckoning:
     ("turn_std_rad", "drift_radps", "scale_std"),
     [(0.1, 0.0, 0.0), (1.2, 0.0, 0.0), (0.0, 5e-4, 0.0), (0.0, 0.0, 0.05)],
 )
-def test_the_covariance_is_that_of_the_errors(
+def test_covariance_is_that_of_the_errors(
     turn_std_rad: float, drift_radps: float, scale_std: float
 ) -> None:
     reckoning = DeadReckoning(scale_std)
@@ -45,7 +45,7 @@ def test_the_covariance_is_that_of_the_errors(
     assert stated_m2 == pytest.approx(drawn_m2, rel=0.05, abs=0.04 * max(drawn_m2))
 
 
-def test_at_the_place_that_was_known_the_error_is_its_own() -> None:
+def test_error_at_the_known_place_is_its_own() -> None:
     reckoning = DeadReckoning(0.02)
     reckoning.set_turn(0.0, 0.1)
     reckoning.set_place((0.0, 0.0), (4.0, 9.0, 1.0), (0.0, 0.0))

@@ -1,4 +1,4 @@
-"""What is believed of how fast a unit's own heading drifts follows what the unit says of it."""
+"""Drift rate of a unit's heading in the filter follows the rate that the unit states."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def drifting(rate_radps: float, std_radps: float) -> HorizontalFilter:
     return plane
 
 
-def test_where_a_unit_drifts_less_by_now_its_found_drift_goes_on_by_that_share() -> None:
+def test_found_drift_is_scaled_with_a_smaller_stated_drift() -> None:
     plane = drifting(4e-4, 2e-4)
     assert plane.set_drift_std(5e-4) == 0.5
     mean, covariance = plane.moments()
@@ -38,7 +38,7 @@ def test_where_a_unit_drifts_less_by_now_its_found_drift_goes_on_by_that_share()
     assert np.linalg.eigvalsh(covariance).min() > -1e-12
 
 
-def test_a_little_less_is_no_change_and_more_is_less_known() -> None:
+def test_little_less_is_no_change_and_more_is_less_known() -> None:
     plane = drifting(4e-4, 2e-4)
     assert plane.set_drift_std(9.5e-4) == 1.0
     assert plane.moments()[0][DRIFT] == pytest.approx(4e-4)
@@ -48,7 +48,7 @@ def test_a_little_less_is_no_change_and_more_is_less_known() -> None:
     assert covariance[DRIFT, DRIFT] == pytest.approx(2e-4**2 + 2e-3**2 - 1e-3**2)
 
 
-def test_a_cloud_s_drifts_go_on_by_the_same_share() -> None:
+def test_drifts_of_a_cloud_are_scaled_by_the_same_share() -> None:
     covariance = np.diag([1.0, 1.0, 1e-4, 1e-4, *[1.0] * (STATES - 5), 1e-8])
     mean = np.zeros(STATES)
     mean[2], mean[DRIFT] = 1.0, 4e-4

@@ -1,4 +1,4 @@
-"""The compiled arithmetic of the station's filters against ``filterpy``'s own."""
+"""Compiled kernels of the station's filters against ``filterpy``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def same(found: object, expected: object) -> None:
 
 
 def filter_of(states: int, seed: int) -> KalmanFilter:
-    """In some state, with everything in it correlated."""
+    """A filter in some state, with all states correlated."""
     rng = np.random.default_rng(seed)
     mixed = rng.normal(size=(states, states))
     found = KalmanFilter(dim_x=states, dim_z=1)
@@ -31,7 +31,7 @@ def filter_of(states: int, seed: int) -> KalmanFilter:
 
 
 def record_of(kind: np.dtype[np.void], state: KalmanFilter) -> Record:
-    """The same state as the kernels have it."""
+    """The same state in the layout of the kernels."""
     record = np.zeros(1, kind)
     record["mean"], record["covariance"] = state.x[:, 0], state.P
     return record
@@ -44,7 +44,7 @@ def estimate_before(
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
+def test_walk_equals_the_prediction_of_filterpy(seed: int) -> None:
     expected = filter_of(STATES, seed)
     plane = record_of(PLANE, expected)
     north_m, east_m, moving_s, place_var_m2, turn_var, drift_var = 0.7, -0.4, 0.5, 0.02, 0.03, 0.04
@@ -55,7 +55,7 @@ def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
     jacobian, noise = np.eye(STATES), np.zeros((STATES, STATES))
     jacobian[0, 2:4], jacobian[1, 2:4] = (north_m, -east_m), (east_m, north_m)
     jacobian[2, 2:4], jacobian[3, 2:4] = (a, -b), (b, a)
-    # The place moves by the turn after the drift, which the covariance does not tell apart.
+    # The place moves by the turn after the drift, which the covariance does not distinguish.
     jacobian[2, DRIFT], jacobian[3, DRIFT] = -s * moving_s, c * moving_s
     across = np.array([-s, c])
     noise[:2, :2] = place_var_m2 * np.eye(2)
@@ -74,7 +74,7 @@ def test_a_walk_is_filterpy_s_prediction(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("step_m", [0.0, 40.0], ids=["steady", "a step of pressure"])
-def test_a_barometer_is_filterpy_s_update(seed: int, step_m: float) -> None:
+def test_barometer_equals_the_update_of_filterpy(seed: int, step_m: float) -> None:
     expected = filter_of(3, seed)
     height = record_of(HEIGHT, expected)
     down_m, wander_m2, noise_m2, gate2 = (
@@ -93,7 +93,7 @@ def test_a_barometer_is_filterpy_s_update(seed: int, step_m: float) -> None:
     same(height["covariance"][0], expected.P)
 
 
-def test_the_place_before_is_the_present_one_less_the_path() -> None:
+def test_place_before_is_the_present_one_minus_the_path() -> None:
     now = filter_of(STATES, 1)
     north_m, east_m = 3.0, -2.0
     back = np.zeros((2, STATES))
@@ -109,29 +109,29 @@ def test_the_place_before_is_the_present_one_less_the_path() -> None:
     assert placed.turn_rad == pytest.approx(math.atan2(now.x[3, 0], now.x[2, 0]))
 
 
-def test_a_state_without_a_direction_has_no_turn() -> None:
+def test_state_without_a_direction_has_no_turn() -> None:
     placed = estimate_before(np.zeros((STATES, 1)), np.eye(STATES), 0.0, 0.0)
     assert (placed.turn_rad, placed.turn_std_rad) == (0.0, math.pi)
 
 
-def test_a_place_is_less_sure_by_what_is_added() -> None:
+def test_place_is_less_sure_by_the_added_variance() -> None:
     placed = estimate_before(np.eye(STATES)[:, 2:3], 9.0 * np.eye(STATES), 0.0, 0.0)
     assert placed.inflated(16.0).std_north_m == pytest.approx(5.0)
 
 
 def test_nothing_is_compiled_while_a_station_is_live() -> None:
-    """What a kernel was not compiled for it refuses."""
+    """A kernel refuses types that it was not compiled for."""
     state = filter_of(STATES, 2)
     with pytest.raises(TypeError):
         kernels.predict_horizontal(state.x, 1.0, 2.0, 0.2, 0.1, 0.1, 0.1)
 
 
 def climb(height: Record, stretch: tuple[float, float, float], *, moves: bool = True) -> None:
-    """0.05 m2 a metre climbed, 0.005 a metre walked, storeys change by half a metre."""
+    """Variances: 0.05 m2 a metre climbed, 0.005 a metre walked, storeys change by half a metre."""
     kernels.predict_height(height, stretch, moves, (0.05, 0.005, 0.5))
 
 
-def test_a_climb_is_filterpy_s_prediction() -> None:
+def test_climb_equals_the_prediction_of_filterpy() -> None:
     expected = filter_of(3, 4)
     height = record_of(HEIGHT, expected)
     climb(height, (-0.3, 1.0, 0.0))
@@ -156,7 +156,7 @@ def test_growing_deviation_in_a_ride_adds_variance_until_the_wearer_walks() -> N
     assert height["mean"][0, 0] == -3.0
 
 
-def test_who_climbs_has_not_walked_on_the_level() -> None:
+def test_climb_is_no_walk_on_the_level() -> None:
     height = np.zeros(1, HEIGHT)
     path = height["path"][0]
     for _ in range(4):

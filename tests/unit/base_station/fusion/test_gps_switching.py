@@ -1,4 +1,4 @@
-"""The documents' rule on bad input, beside the usual fuser, and what it states of itself."""
+"""The documents' rule on bad input, compared with the default fuser, and its stated uncertainty."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def off_m(fuser: Fuser, walk: Walk, index: int) -> float:
 
 
 def walked(kind: FuserKind, walk: Walk, end: int) -> Fuser:
-    """With a fix a second."""
+    """A walk with a fix a second."""
     fuser, receiver = kind.new(), Receiver(np.random.default_rng(2))
     for index in range(end):
         fuser.predict(walk.position(index))
@@ -46,7 +46,7 @@ def fix_at(walk: Walk, index: int, off_north_m: float, std_m: float = 3.0) -> Pl
 
 
 @pytest.mark.parametrize(("kind", "follows"), [(RULE, True), (OURS, False)])
-def test_an_outlier_moves_the_wearer_by_the_rule_alone(
+def test_outlier_moves_the_wearer_by_the_rule_alone(
     kind: FuserKind, walk: Walk, follows: bool
 ) -> None:
     fuser = walked(kind, walk, 400)
@@ -56,7 +56,7 @@ def test_an_outlier_moves_the_wearer_by_the_rule_alone(
     assert off_m(fuser, walk, 399) < 10.0, "the next good fix takes it back"
 
 
-def test_the_newest_fix_is_the_place_and_the_path_goes_on_from_there(walk: Walk) -> None:
+def test_newest_fix_is_the_place_and_the_path_continues_from_there(walk: Walk) -> None:
     fuser = walked(RULE, walk, 400)
     fix = fix_at(walk, 399, 7.0, std_m=4.0)
     assert fuser.update_gnss(fix).accepted
@@ -77,7 +77,7 @@ def test_the_newest_fix_is_the_place_and_the_path_goes_on_from_there(walk: Walk)
     assert math.hypot(later.std_north_m, later.std_east_m) > math.hypot(4.0, 4.0)
 
 
-def test_the_course_of_fixes_turns_the_path_and_a_surer_compass_goes_before(walk: Walk) -> None:
+def test_course_of_fixes_turns_the_path_and_a_surer_compass_has_precedence(walk: Walk) -> None:
     by_course = walked(RULE, walk, 400).estimate()
     assert by_course is not None
     own_rad = walk.position(399).heading_rad
@@ -91,8 +91,8 @@ def test_the_course_of_fixes_turns_the_path_and_a_surer_compass_goes_before(walk
     assert wrap_pi(estimate.heading_rad - walk.turn_rad) == pytest.approx(0.02)
 
 
-def test_the_stated_region_holds_while_there_are_fixes_and_minutes_after() -> None:
-    """Three minutes without a fix, by a heading that only the fixes' course has shown."""
+def test_stated_region_holds_with_fixes_and_minutes_after() -> None:
+    """Three minutes without a fix, by a heading from the course of fixes alone."""
     scores: list[Scores] = [
         run(RULE.new(), one, receiver, (0.0, 120.0)) for one, receiver in walks(300.0)
     ]
@@ -102,7 +102,7 @@ def test_the_stated_region_holds_while_there_are_fixes_and_minutes_after() -> No
     assert 0.90 < np.mean(after < 5.991) < 0.99
 
 
-def test_a_solved_past_is_gone_on_from(walk: Walk) -> None:
+def test_solved_past_is_continued(walk: Walk) -> None:
     fuser = walked(RULE, walk, 400)
     covariance = np.diag([0.4, 0.9, 1e-4, 1e-4, 1e-8])
     covariance[0, 1] = covariance[1, 0] = 0.3

@@ -1,4 +1,4 @@
-"""filterpy's update, and what filterpy has besides, though its statistics are loaded late."""
+"""Updates of filterpy, with the rest of its functions, though its statistics are loaded late."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_statistics_are_loaded_when_filterpy_first_uses_them() -> None:
 
 
 @pytest.mark.slow
-def test_statistics_that_are_loaded_before_are_those_that_filterpy_has() -> None:
+def test_statistics_loaded_before_are_those_of_filterpy() -> None:
     program = "import scipy.stats\nfrom base_station.fusion import kalman_update\n"
     program += "from filterpy.stats import stats\nassert stats.norm is scipy.stats.norm\n"
     subprocess.run([sys.executable, "-c", program], check=True)

@@ -1,4 +1,4 @@
-"""What is read of files from elsewhere, and why the others are refused."""
+"""Files from elsewhere: what is read of them, and the reasons of refusals."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def refusal(path: Path) -> str:
     return str(refused.value)
 
 
-def test_a_gpx_track_is_read_with_its_shift(tmp_path: Path) -> None:
+def test_gpx_track_is_read_with_its_shift(tmp_path: Path) -> None:
     path = write_gpx(tmp_path / "drone.gpx", "Drone", line(T_S, 60))
     content = read(path, shift_s=-7.5)
     (track,) = content.tracks
@@ -55,7 +55,7 @@ def test_a_gpx_track_is_read_with_its_shift(tmp_path: Path) -> None:
     assert content.warnings == ()
 
 
-def test_of_a_torn_gpx_file_stays_what_was_before_the_tear(tmp_path: Path) -> None:
+def test_torn_gpx_file_is_read_up_to_the_tear(tmp_path: Path) -> None:
     path = write_gpx(tmp_path / "torn.gpx", "Drone", line(T_S, 60))
     content = path.read_bytes()
     path.write_bytes(content[: len(content) // 2])
@@ -95,12 +95,12 @@ def test_tracks_and_timed_places_of_kml_are_read_and_lines_are_left_out(tmp_path
     [
         (exif_time(T_S, 2), "+02:00", None, None, False),
         (exif_time(T_S, 2), "", None, 2.0, False),
-        (exif_time(T_S, 2), "+02:00", T_S - 900, 5.0, False),  # what it states itself comes first
+        (exif_time(T_S, 2), "+02:00", T_S - 900, 5.0, False),  # its own statement comes first
         (exif_time(T_S, 2), "no", T_S, None, True),
         ("", "", T_S, None, True),
     ],
 )
-def test_a_photograph_is_placed_by_its_exif_data(
+def test_photograph_is_placed_by_its_exif_data(
     tmp_path: Path, taken: str, zone: str, fix_s: int | None, offset_h: float | None, warned: bool
 ) -> None:
     path = write_photo(tmp_path / "door.jpg", (-33.5, -70.25), taken, zone, fix_s)
@@ -115,7 +115,7 @@ def test_a_photograph_is_placed_by_its_exif_data(
     assert bool(content.warnings) == warned
 
 
-def test_what_cannot_be_brought_in_is_refused_with_what_to_do(tmp_path: Path) -> None:
+def test_unusable_file_is_refused_with_what_to_do(tmp_path: Path) -> None:
     place = (52.0, 4.0)
     refusals = {
         write_photo(tmp_path / "a.jpg", None, exif_time(T_S), "+00:00"): "take the original file",
@@ -143,7 +143,7 @@ def test_what_cannot_be_brought_in_is_refused_with_what_to_do(tmp_path: Path) ->
         assert words in refusal(path), path.name
 
 
-def test_a_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
+def test_file_that_is_too_large_is_not_read(tmp_path: Path) -> None:
     path = tmp_path / "large.gpx"
     with path.open("wb") as file:
         file.truncate(MOST_BYTES + 1)
@@ -167,7 +167,7 @@ def test_parts_of_a_log_and_recordings_of_units_are_refused(tmp_path: Path) -> N
         assert words in refusal(path)
 
 
-def test_a_torn_incident_is_read_without_names(tmp_path: Path) -> None:
+def test_torn_incident_is_read_without_names(tmp_path: Path) -> None:
     script = Script()
     script.register("FF-01")
     script.act(SetAnchor(52.0, 4.0, 0.0, 0.0))
@@ -188,7 +188,7 @@ def test_a_torn_incident_is_read_without_names(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_file_is_read_in_a_process_of_its_own(
+def test_file_is_read_in_a_process_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = write_gpx(tmp_path / "drone.gpx", "Drone", line(T_S, 60))

@@ -1,4 +1,4 @@
-"""What is to be forgotten is done one after the other, and gone on with after a restart."""
+"""Queue of erasures: done one after the other, and continued after a restart."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.rig.waiting import until
 
 
 class StubEraser:
-    """A ``ErasureService`` that waits in the middle, and fails as told."""
+    """An ``ErasureService`` that waits in the middle, and fails on request."""
 
     def __init__(self) -> None:
         self.go = Event()
@@ -57,7 +57,7 @@ def desk(
     return ErasureQueue(cast("ErasureService", worker), folder / "kept.json", obstacle, on_done)
 
 
-def test_it_says_how_far_it_is_and_what_came_of_it(tmp_path: Path) -> None:
+def test_erasure_reports_its_progress_and_result(tmp_path: Path) -> None:
     worker, reported = StubEraser(), list[ErasureJob]()
     with desk(worker, tmp_path, on_done=reported.append) as one:
         one.add("ada", "person", "p-1")
@@ -72,7 +72,7 @@ def test_it_says_how_far_it_is_and_what_came_of_it(tmp_path: Path) -> None:
     assert [one.subject_id for one in reported] == ["p-1"]
 
 
-def test_the_same_wish_is_one_and_others_wait_their_turn(tmp_path: Path) -> None:
+def test_same_request_is_one_and_others_wait_their_turn(tmp_path: Path) -> None:
     worker = StubEraser()
     with desk(worker, tmp_path) as one:
         first = one.add("ada", "person", "p-1")
@@ -84,7 +84,7 @@ def test_the_same_wish_is_one_and_others_wait_their_turn(tmp_path: Path) -> None
         until(lambda: worker.done == ["p-1", "p-2"])
 
 
-def test_a_station_that_ends_in_the_middle_goes_on_when_it_is_back(tmp_path: Path) -> None:
+def test_station_stopped_in_the_middle_continues_when_it_is_back(tmp_path: Path) -> None:
     worker = StubEraser()
     with desk(worker, tmp_path) as one:
         one.add("ada", "person", "p-1")
@@ -98,7 +98,7 @@ def test_a_station_that_ends_in_the_middle_goes_on_when_it_is_back(tmp_path: Pat
 
 
 @pytest.mark.parametrize("kill", [False, True])
-def test_what_all_tries_took_out_is_counted(
+def test_erasures_of_all_attempts_are_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kill: bool
 ) -> None:
     monkeypatch.setattr("base_station.privacy.erasure_queue._AGAIN_S", 0.01)
@@ -115,13 +115,13 @@ def test_what_all_tries_took_out_is_counted(
         one.add("ada", "person", "p-1")
         until(lambda: one.all()[0].state is ErasureState.DONE)
         (done,) = one.all()
-    # What a try had taken out when it was killed, and had not yet gone on from, is not known.
+    # The count of an attempt that was killed before it was saved is unknown.
     assert (done.records, done.files) == (14, 4)
     assert worker.again == [False, True, True][: len(worker.began)]
     assert len(worker.began) == (3 if kill else 2)
 
 
-def test_what_makes_no_sense_fails_with_its_reason(tmp_path: Path) -> None:
+def test_impossible_request_fails_with_its_reason(tmp_path: Path) -> None:
     worker = StubEraser()
     worker.fails = [UserError("nobody knows that person")]
     with desk(worker, tmp_path) as one:
@@ -130,7 +130,7 @@ def test_what_makes_no_sense_fails_with_its_reason(tmp_path: Path) -> None:
         assert one.all()[0].problem == "nobody knows that person"
 
 
-def test_a_store_that_fails_is_tried_again_and_reported_once(
+def test_failing_store_is_retried_and_reported_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr("base_station.privacy.erasure_queue._AGAIN_S", 0.01)
@@ -144,7 +144,7 @@ def test_a_store_that_fails_is_tried_again_and_reported_once(
     assert caplog.text.count("the disk is full") == 1
 
 
-def test_a_standby_leaves_it_and_says_so(tmp_path: Path) -> None:
+def test_standby_leaves_requests_and_reports_it(tmp_path: Path) -> None:
     worker = StubEraser()
     worker.go.set()
 
@@ -155,12 +155,12 @@ def test_a_standby_leaves_it_and_says_so(tmp_path: Path) -> None:
         one.add("ada", "person", "p-1")
         until(lambda: "standby" in one.all()[0].problem)
         assert worker.began == []
-    with desk(worker, tmp_path, obstacle) as one:  # what the other one has done is done here too
+    with desk(worker, tmp_path, obstacle) as one:  # erasures of the other station are done here too
         one.add("the other station", "person", "p-2", from_peer=True)
         until(lambda: worker.done == ["p-2"])
 
 
-def test_what_the_other_station_has_forgotten_may_be_unknown_here(tmp_path: Path) -> None:
+def test_subject_erased_at_the_other_station_may_be_unknown_here(tmp_path: Path) -> None:
     worker = StubEraser()
     worker.fails = [UserError("nobody knows that person")]
     with desk(worker, tmp_path) as one:
@@ -168,7 +168,7 @@ def test_what_the_other_station_has_forgotten_may_be_unknown_here(tmp_path: Path
         until(lambda: one.all()[0].state is ErasureState.DONE)
 
 
-def test_a_wish_that_cannot_be_kept_is_refused(tmp_path: Path) -> None:
+def test_request_that_cannot_be_saved_is_refused(tmp_path: Path) -> None:
     one = desk(StubEraser(), tmp_path / "missing")
     with pytest.raises(StoreError, match="nothing is done"):
         one.add("ada", "person", "p-1")

@@ -1,4 +1,4 @@
-"""What is kept of an erasure until it is done."""
+"""State of an erasure that is kept until it is done."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from shared.messages.station import Assign
 WORN = Assign("A", "p1", keeps_incident=True)
 
 
-def test_it_is_read_as_it_was_found(tmp_path: Path) -> None:
+def test_saved_erasure_is_restored(tmp_path: Path) -> None:
     pending = PendingErasure(tmp_path / "begun.json")
     erasure = Erasure(
         (Wearing("A", 20, 40),),
@@ -36,7 +36,7 @@ def test_it_is_read_as_it_was_found(tmp_path: Path) -> None:
     assert not (tmp_path / "begun.json").exists()
 
 
-def test_erasure_that_an_earlier_version_has_begun_puts_in_what_that_would(tmp_path: Path) -> None:
+def test_erasure_begun_by_an_earlier_version_inserts_what_that_would(tmp_path: Path) -> None:
     kept = tmp_path / "begun.json"
     older = {
         "wearings": [{"unit_id": "A", "from_ns": 20, "until_ns": 40}],

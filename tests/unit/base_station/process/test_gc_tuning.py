@@ -1,4 +1,4 @@
-"""What a station sets for all of its program."""
+"""Garbage collection and memory settings of the station's process."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ raise SystemExit(libc.mallinfo2().hblks - before != 1)
 
 
 @pytest.mark.slow
-def test_what_is_large_is_given_back_to_the_system_when_it_is_free() -> None:
-    """It has a block of its own, not one among what is small."""
+def test_large_freed_memory_is_returned_to_the_system() -> None:
+    """It has a block of its own, not one among small ones."""
     ended = subprocess.run([sys.executable, "-c", LARGE], timeout=60.0, check=False)
     if ended.returncode == 77:
         pytest.skip("this C library does not tell what it has of the system")

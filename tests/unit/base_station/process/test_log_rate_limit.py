@@ -1,4 +1,4 @@
-"""Whoever asks nonsense of a server does not fill the disk with what is said of it."""
+"""Invalid requests to a server do not fill the disk with log lines."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from shared.clock import ManualClock
 log = logging.getLogger("tested.seldom")
 
 
-def test_the_same_is_stated_once_a_minute_and_how_often_it_was(
+def test_same_line_is_logged_once_a_minute_with_its_count(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     clock = ManualClock()
@@ -37,7 +37,7 @@ def test_the_same_is_stated_once_a_minute_and_how_often_it_was(
     ]
 
 
-def test_a_mistake_of_the_program_is_stated_each_time(caplog: pytest.LogCaptureFixture) -> None:
+def test_error_of_the_program_is_logged_each_time(caplog: pytest.LogCaptureFixture) -> None:
     seldom = RateLimitFilter(ManualClock())
     log.addFilter(seldom)
     try:

@@ -1,4 +1,4 @@
-"""A thread that ends by a mistake of the program is told on the console."""
+"""Threads that end by an error of the program are reported on the console."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ def run(name: str) -> None:
     thread.join()
 
 
-def test_each_is_named_once_and_its_error_is_logged(caplog: pytest.LogCaptureFixture) -> None:
+def test_each_thread_is_named_once_and_its_error_is_logged(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     with ThreadCrashMonitor() as ended:
         assert ended.problems() == ()
         for name in ("backfill", "recordings", "backfill"):
@@ -31,7 +33,7 @@ def test_each_is_named_once_and_its_error_is_logged(caplog: pytest.LogCaptureFix
     assert "nobody thought of this" in caplog.text
 
 
-def test_afterwards_threads_end_as_they_did_before() -> None:
+def test_later_threads_end_as_before() -> None:
     before = threading.excepthook
     with ThreadCrashMonitor():
         assert threading.excepthook != before

@@ -22,7 +22,7 @@ from shared.clock import NS_PER_MS
         (b"", 0),
     ],
 )
-def test_the_length_of_a_packet_is_in_its_first_bytes(packet: bytes, ms: int) -> None:
+def test_length_of_a_packet_is_in_its_first_bytes(packet: bytes, ms: int) -> None:
     """RFC 6716, table 2."""
     assert samples_of(packet) == 48 * ms
     assert duration_ns(packet) == ms * NS_PER_MS

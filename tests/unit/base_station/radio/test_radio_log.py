@@ -1,4 +1,4 @@
-"""What was recorded: spans, audio of a window, deletion of what is old, erasure of a window."""
+"""Radio recordings: spans, audio of a window, deletion of old audio, erasure of a window."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_spans_of_recording_and_of_voice(tmp_path: Path) -> None:
     assert seconds(log.spans("none", T0_NS, T0_NS + NS_PER_S).recorded) == []
 
 
-def test_audio_of_a_window_is_as_long_and_each_packet_in_its_place(tmp_path: Path) -> None:
+def test_audio_of_a_window_has_its_length_and_each_packet_its_place(tmp_path: Path) -> None:
     """Also over a gap, and where a drift was corrected, packet by packet."""
     drifting = [(3.0 + 0.0202 * number, SPOKEN[number % 6]) for number in range(500)]
     log = written(tmp_path, [*spoken(1.0), *drifting, *spoken(20.0)])
@@ -91,16 +91,16 @@ def test_other_readers_find_compressed_audio_in_the_log(tmp_path: Path) -> None:
     assert len(found) == len(SPOKEN)
 
 
-def test_what_is_older_than_it_is_kept_is_deleted_segment_by_segment(tmp_path: Path) -> None:
+def test_audio_beyond_its_retention_is_deleted_segment_by_segment(tmp_path: Path) -> None:
     hours = [part for hour in range(6) for part in spoken(3_600.0 * hour)]
     log = written(tmp_path, hours, segment_s=60.0)
     clock = ManualClock(T0_NS + (720 + 3) * 3_600 * NS_PER_S + NS_PER_S)
-    RadioRecorders({}, log, clock)._remove_old(None)  # type: ignore[arg-type]  # it looks not at it
+    RadioRecorders({}, log, clock)._remove_old(None)  # type: ignore[arg-type]  # it is not read
     spans = log.spans(NAME, T0_NS, clock.utc_ns())
     assert [at for at, _ in seconds(spans.voice)] == [3_600.0 * hour for hour in (3, 4, 5)]
 
 
-def test_erasing_a_window_leaves_what_is_around_it(tmp_path: Path) -> None:
+def test_erasure_of_a_window_leaves_its_surroundings(tmp_path: Path) -> None:
     log = written(tmp_path, [*spoken(1.0), *spoken(5.0), *spoken(9.0)])
     recorders = RadioRecorders({}, log, ManualClock(T0_NS))
     assert recorders.erase(T0_NS + 4 * NS_PER_S, T0_NS + 6 * NS_PER_S) == len(SPOKEN)

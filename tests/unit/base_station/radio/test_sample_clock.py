@@ -13,7 +13,7 @@ PIECE_S = 0.02
 
 
 @pytest.mark.parametrize("rate_ppm", [-200.0, 0.0, 200.0])
-def test_a_drifting_device_is_followed(rate_ppm: float) -> None:
+def test_drifting_device_is_followed(rate_ppm: float) -> None:
     """An hour: uncorrected, it would be 0.7 s."""
     clock, random = SampleClock(2.0), Random(1)
     true_ns = 0
@@ -25,7 +25,7 @@ def test_a_drifting_device_is_followed(rate_ppm: float) -> None:
             assert abs(clock.time_ns(end_s) - true_ns) < 5 * NS_PER_MS
 
 
-def test_a_stream_that_stands_still_and_catches_up_stays_in_place() -> None:
+def test_stream_that_stops_and_catches_up_stays_in_place() -> None:
     clock = SampleClock(10.0)
     clock.note(30.0, 31 * NS_PER_S)
     for number in range(1, 10):  # after fifteen seconds everything at once
@@ -33,7 +33,7 @@ def test_a_stream_that_stands_still_and_catches_up_stays_in_place() -> None:
         assert clock.time_ns(30.0 + number) == (31 + number) * NS_PER_S
 
 
-def test_what_a_server_gives_at_once_in_the_beginning_was_before() -> None:
+def test_burst_of_a_server_at_the_beginning_is_of_before() -> None:
     clock = SampleClock(10.0)
     for end_s in range(1, 6):
         clock.note(end_s, 100 * NS_PER_S)
@@ -41,7 +41,7 @@ def test_what_a_server_gives_at_once_in_the_beginning_was_before() -> None:
     assert clock.time_ns(1.0) == 96 * NS_PER_S
 
 
-def test_samples_that_were_lost_are_a_gap_when_the_window_is_over() -> None:
+def test_lost_samples_are_a_gap_when_the_window_is_over() -> None:
     clock = SampleClock(2.0)
     for number in range(100):
         lost_ns = 3 * NS_PER_S if number >= 50 else 0

@@ -1,4 +1,4 @@
-"""Sound of a source as packets: voice and silence, lost pieces, and a source that begins anew."""
+"""Audio of a source as packets: voice and silence, lost pieces, and a source that restarts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Played:
             self.packets += self._stamper.push(sound)
 
     def gaps_s(self) -> list[float]:
-        """Those of more than a millisecond."""
+        """Gaps of more than a millisecond."""
         ends = [t_ns + duration_ns(packet) for t_ns, packet in self.packets]
         begins = [t_ns for t_ns, _ in self.packets][1:]
         gaps = [(begin - end) / NS_PER_S for end, begin in zip(ends, begins, strict=False)]
@@ -43,7 +43,7 @@ def played() -> Played:
     return Played(RadioConfig("http://radio.example/tac"))
 
 
-def test_voice_is_kept_with_what_leads_to_it_and_silence_is_a_few_bytes(played: Played) -> None:
+def test_voice_is_kept_with_its_lead_in_and_silence_is_a_few_bytes(played: Played) -> None:
     played.play(0.0, 20.0)
     assert played.gaps_s() == []
     assert played.packets[0][0] == pytest.approx(BEGAN_NS + 30 * NS_PER_MS, abs=NS_PER_MS)
@@ -59,29 +59,29 @@ def test_voice_is_kept_with_what_leads_to_it_and_silence_is_a_few_bytes(played: 
     assert sum(map(duration_ns, silent)) > 8 * NS_PER_S
 
 
-def test_what_is_lost_on_the_way_is_a_gap(played: Played) -> None:
+def test_audio_lost_in_transit_is_a_gap(played: Played) -> None:
     played.play(0.0, 5.0)
     played.play(8.0, 12.0)
     (gap_s,) = played.gaps_s()
-    assert gap_s == pytest.approx(3.0, abs=0.13)  # a begun block of 120 ms is lost, too
+    assert gap_s == pytest.approx(3.0, abs=0.13)  # the current block of 120 ms is lost, too
     assert played.packets[-1][0] == pytest.approx(BEGAN_NS + 12 * NS_PER_S, abs=NS_PER_S // 5)
 
 
-def test_a_source_that_begins_its_own_time_anew_stays_on_the_clock(played: Played) -> None:
+def test_source_that_restarts_its_own_time_stays_on_the_clock(played: Played) -> None:
     played.play(0.0, 5.0, axis_s=500.0)
     played.play(5.0, 10.0, axis_s=-5.0)
     assert played.packets[-1][0] == pytest.approx(BEGAN_NS + 10 * NS_PER_S, abs=NS_PER_S // 5)
     assert all(abs(gap_s) < 0.13 for gap_s in played.gaps_s())
 
 
-def test_a_known_delay_of_the_source_is_taken_off() -> None:
+def test_known_delay_of_the_source_is_subtracted() -> None:
     late = Played(RadioConfig("http://radio.example/tac", delay_s=4.0))
     late.play(0.0, 5.0)
     expected_ns = BEGAN_NS + 30 * NS_PER_MS - 4 * NS_PER_S
     assert late.packets[0][0] == pytest.approx(expected_ns, abs=NS_PER_MS)
 
 
-def test_what_is_below_the_limit_counts_as_silence() -> None:
+def test_level_below_the_limit_counts_as_silence() -> None:
     deaf = Played(RadioConfig("http://radio.example/tac", silence_dbfs=-12.0))
     deaf.play(0.0, 5.0)
     assert np.all([is_silence(data) for _, data in deaf.packets])

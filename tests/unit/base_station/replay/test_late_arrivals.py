@@ -1,4 +1,6 @@
-"""What came after an incident was closed and is of its time is in what is known of it."""
+"""Messages received after an incident was closed that belong to its time are in its smoothed
+trails.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,7 @@ from tests.rig.live_station import make_pipeline
 from tests.rig.round_walk import PLAN, Walk, truth
 
 INSIDE_S, OUT_OF_REACH_S = 150, 150
-QUIET_S = QUIET_NS / 1e9 + 15.0  # what is projected may be so late
+QUIET_S = QUIET_NS / 1e9 + 15.0  # projections may be so late
 
 
 AGENT = tracker_id("FF-01")
@@ -49,7 +51,7 @@ class TrackedByAgent(JournaledScript):
 
 
 class Station:
-    """Two walk; one of them is out of reach for the second half of the incident."""
+    """Two units walk; one of them is out of range for the second half of the incident."""
 
     def __init__(
         self,
@@ -90,7 +92,7 @@ class Station:
                 self.script.status(unit_id)
 
     def back(self) -> None:
-        """It is heard again, and its journal is read."""
+        """It has contact again, and its journal is read."""
         self.script.now_s += 60.0
         self.script.out_of_reach.clear()
         self.script.status("FF-01")
@@ -102,7 +104,7 @@ class Station:
 
     @property
     def incident(self) -> IncidentRow:
-        """As the store has it by what the log says up to now."""
+        """The incident in the store, by the log so far."""
 
         def write(projection: object) -> None:
             with self.store.write() as session:
@@ -112,11 +114,11 @@ class Station:
         return self.records.require_incident("i1")
 
     def trail(self, unit_id: str = "FF-01") -> Sequence[TrackSample]:
-        """Known afterwards."""
+        """The smoothed trail."""
         return self.post_processor.smoothed(self.incident).tracks[unit_id]
 
     def at(self, second: float, unit_id: str) -> tuple[float, float]:
-        """Between the points of the trail then."""
+        """Place between the points of the trail at that time."""
         t_ns = self.begin_ns + round(second * 1e9)
         trail = self.trail(unit_id)
         row = bisect_left(trail, t_ns, key=lambda one: one.t_ns)
@@ -151,7 +153,7 @@ def station(tmp_path: Path) -> Iterator[Station]:
 
 @pytest.fixture(scope="module")
 def in_time(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Station]:
-    """Nobody was out of reach."""
+    """The script without a loss of contact."""
     station = Station(tmp_path_factory.mktemp("in time"), out_of_reach="")
     yield station
     station.store.close()
@@ -162,7 +164,7 @@ def ends_s(station: Station, trail: Sequence[TrackSample]) -> float:
 
 
 @pytest.mark.slow
-def test_what_a_journal_brings_after_the_end_is_in_the_smoothed_trail(station: Station) -> None:
+def test_backfilled_positions_after_the_end_are_in_the_smoothed_trail(station: Station) -> None:
     before = station.trail()
     assert ends_s(station, before) == pytest.approx(INSIDE_S, abs=1.0)
     station.back()
@@ -177,10 +179,10 @@ def test_what_a_journal_brings_after_the_end_is_in_the_smoothed_trail(station: S
 
 @pytest.mark.slow
 @pytest.mark.parametrize("since", ["goes on", "started again", "another incident"])
-def test_what_its_unit_and_the_station_do_since_does_not_matter(
+def test_later_events_of_unit_and_station_do_not_matter(
     station: Station, in_time: Station, since: str
 ) -> None:
-    """It is known as if all of it had come in time."""
+    """The trail is as if all of it had come in time."""
     if since != "goes on":
         station.script.boot_ids["FF-01"] = 8
     if since == "another incident":
@@ -206,8 +208,10 @@ def test_what_its_unit_and_the_station_do_since_does_not_matter(
 
 
 @pytest.mark.slow
-def test_what_a_tracking_agent_brings_late_is_in_it(tmp_path: Path, in_time: Station) -> None:
-    """The unit itself was heard all the time."""
+def test_late_positions_of_a_tracking_agent_are_in_the_smoothed_trail(
+    tmp_path: Path, in_time: Station
+) -> None:
+    """The unit itself had contact all the time."""
     station = Station(tmp_path, out_of_reach=AGENT, script=TrackedByAgent())
     assert ends_s(station, station.trail()) == pytest.approx(INSIDE_S, abs=1.0)
     station.script.now_s += 60.0
@@ -221,10 +225,10 @@ def test_what_a_tracking_agent_brings_late_is_in_it(tmp_path: Path, in_time: Sta
 
 
 @pytest.mark.slow
-def test_who_was_never_received_while_it_was_open_has_a_trail(
+def test_unit_never_received_while_it_was_open_has_a_trail(
     tmp_path: Path, in_time: Station
 ) -> None:
-    """A radio that was dead from the beginning on, and somebody who was placed all the same."""
+    """A radio that failed from the beginning, and a wearer who was placed by a person."""
     station = Station(tmp_path, never_heard="FF-02")
     station.script.now_s += 60.0
     station.script.out_of_reach.clear()
@@ -242,7 +246,7 @@ def test_who_was_never_received_while_it_was_open_has_a_trail(
 
 
 @pytest.mark.slow
-def test_what_is_kept_serves_while_a_journal_is_read_and_is_made_again_when_it_is_quiet(
+def test_kept_result_serves_while_a_journal_is_read_and_is_redone_afterwards(
     station: Station,
 ) -> None:
     station.catch_up()
@@ -264,7 +268,7 @@ def test_what_is_kept_serves_while_a_journal_is_read_and_is_made_again_when_it_i
 
 
 @pytest.mark.slow
-def test_what_a_journal_brings_of_the_time_since_is_no_news(station: Station) -> None:
+def test_backfilled_messages_of_the_time_since_redo_nothing(station: Station) -> None:
     station.catch_up()
     station.script.out_of_reach = {"FF-02"}
     station.go(30)
@@ -294,8 +298,8 @@ def test_pins_of_a_debriefing_are_in_it(station: Station) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_stated_for_the_next_incident_is_not(station: Station) -> None:
-    """Where people begin, and where beacons hang now."""
+def test_starts_and_beacons_of_the_next_incident_are_not_in_it(station: Station) -> None:
+    """Starts of people, and the present places of beacons."""
     trail = station.trail("FF-02")
     pose = 50.0, 60.0, 0.5, None, None, 0.0, ""
     station.wait(10.0)
@@ -313,7 +317,7 @@ def test_what_is_stated_for_the_next_incident_is_not(station: Station) -> None:
 
 
 @pytest.mark.slow
-def test_a_pin_of_the_past_is_none_of_the_next_incident(station: Station) -> None:
+def test_pin_of_the_past_is_none_of_the_next_incident(station: Station) -> None:
     station.script.act(station.pin(145.0, "FF-02"))
     station.wait(10.0)
     station.script.act(OpenIncident("i2", "Station Road"))
@@ -325,8 +329,8 @@ def test_a_pin_of_the_past_is_none_of_the_next_incident(station: Station) -> Non
 
 
 @pytest.mark.slow
-def test_where_a_beacon_hung_may_be_stated_afterwards(station: Station) -> None:
-    """It was passed out of reach, and nobody had placed it."""
+def test_place_of_a_beacon_may_be_set_afterwards(station: Station) -> None:
+    """It was passed out of range, and had no place."""
     station.wait(60.0)
     station.back()
     seen = station.script.header("FF-01", captured_s=200.0)
@@ -341,7 +345,7 @@ def test_where_a_beacon_hung_may_be_stated_afterwards(station: Station) -> None:
     assert station.off_m(200.0) < 0.5 * before_m
 
 
-def test_a_sighting_of_the_incident_before_is_no_pin_of_this_one(station: Station) -> None:
+def test_sighting_of_the_incident_before_is_no_pin_of_this_one(station: Station) -> None:
     station.wait(60.0)
     station.script.act(OpenIncident("i2", "Station Road"))
     station.back()

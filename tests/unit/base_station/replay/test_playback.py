@@ -1,4 +1,4 @@
-"""Going to a time of the log, from a state that was saved or from the beginning."""
+"""Seeking in the log, from a saved state or from the beginning."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.rig.logged_walk import archive, walk_with_mayday
 from tests.rig.station_script import START_NS, Record
 
 
-def test_a_checkpoint_on_the_way_gives_the_same_picture(tmp_path: Path) -> None:
+def test_checkpoint_on_the_way_gives_the_same_picture(tmp_path: Path) -> None:
     plain = Playback(archive(walk_with_mayday(), tmp_path / "none"))
     source = archive(walk_with_mayday(), tmp_path / "some")
     saving = Playback(source)
@@ -41,7 +41,7 @@ def test_a_checkpoint_on_the_way_gives_the_same_picture(tmp_path: Path) -> None:
     assert max(opened) == START_NS + 80 * NS_PER_S
 
 
-def test_a_damaged_checkpoint_only_costs_time(tmp_path: Path) -> None:
+def test_damaged_checkpoint_only_costs_time(tmp_path: Path) -> None:
     source = archive(walk_with_mayday(), tmp_path)
     for _ in (saving := Playback(source)).seek(START_NS + 40 * NS_PER_S):
         pass
@@ -56,7 +56,7 @@ def test_a_damaged_checkpoint_only_costs_time(tmp_path: Path) -> None:
         assert again.pipeline.state.units["FF-01"].position is not None
 
 
-def test_a_checkpoint_of_another_log_is_left_out(tmp_path: Path) -> None:
+def test_checkpoint_of_another_log_is_left_out(tmp_path: Path) -> None:
     source = archive(walk_with_mayday(), tmp_path)
     for _ in (saving := Playback(source)).seek(START_NS + 40 * NS_PER_S):
         pass
@@ -64,7 +64,9 @@ def test_a_checkpoint_of_another_log_is_left_out(tmp_path: Path) -> None:
     source.checkpoints.save(START_NS + 40 * NS_PER_S, 2, state)
     mine = source.latest()
     assert mine is not None
-    source.checkpoints.save(START_NS + 50 * NS_PER_S, 3, state)  # of a log with an event more there
+    source.checkpoints.save(
+        START_NS + 50 * NS_PER_S, 3, state
+    )  # of a log with one more event there
     source.checkpoints.save(START_NS + 60 * NS_PER_S + 1, 1, state)
     source.checkpoints.save(START_NS + 900 * NS_PER_S, 1, state)  # the log was put back
     assert source.latest() == mine
@@ -96,10 +98,10 @@ def test_checkpoints_of_another_program_do_not_send_a_seek_back(
     assert opened == [0]
 
 
-def test_what_was_come_by_is_not_stepped_again(
+def test_passed_states_are_not_stepped_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where the station saved nothing that this program can use: to go back is as quick."""
+    """Where the station saved nothing that this program can use: seeking back is as quick."""
     monkeypatch.setattr("base_station.replay.playback.SAVED_APART", 20)
     monkeypatch.setattr("base_station.replay.playback.BURST", 7)  # ends amid those of one time
     plain = Playback(archive(walk_with_mayday(), tmp_path / "none"))
@@ -126,7 +128,7 @@ def test_what_was_come_by_is_not_stepped_again(
     assert len(list((tmp_path / "own").iterdir())) <= saved + 2  # each stretch has its own
 
 
-def test_a_disk_that_takes_no_state_only_costs_time(
+def test_disk_that_refuses_states_only_costs_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.replay.playback.SAVED_APART", 20)

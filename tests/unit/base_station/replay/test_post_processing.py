@@ -1,4 +1,4 @@
-"""An incident afterwards: smoothed beside what was shown, kept, raw, and assessed."""
+"""Post-processing of an incident: smoothed beside the shown trail, kept, raw, and assessed."""
 
 from __future__ import annotations
 
@@ -82,13 +82,13 @@ def past(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Past]:
 
 @pytest.fixture
 def store(tmp_path: Path) -> Iterator[Store]:
-    """Another one, which knows of nothing yet."""
+    """Another store without content."""
     with Store(tmp_path / "station.sqlite") as store:
         yield store
 
 
 def hindsight_of(script: Script, store: Store, folder: Path) -> PostProcessor:
-    """Of what the script has said."""
+    """Post-processor of the script's log."""
     archive = Archive(
         lambda t_ns: [one for one in script.records if one[0] >= t_ns],
         Checkpoints(folder / "checkpoints"),
@@ -98,7 +98,7 @@ def hindsight_of(script: Script, store: Store, folder: Path) -> PostProcessor:
 
 
 @pytest.mark.slow
-def test_smoothed_is_better_than_shown_and_both_are_kept(past: Past) -> None:
+def test_smoothed_trail_is_better_than_the_shown_and_both_are_kept(past: Past) -> None:
     shown = past.records.tracks_of(past.incident)
     smoothed = past.post_processor.smoothed(past.incident)
     assert set(smoothed.tracks) == {"FF-01", "FF-02"}
@@ -107,7 +107,7 @@ def test_smoothed_is_better_than_shown_and_both_are_kept(past: Past) -> None:
     assert past.kept.of("i1") is not None
 
 
-def test_what_was_made_is_not_made_again(past: Past) -> None:
+def test_finished_result_is_not_made_again(past: Past) -> None:
     first = past.post_processor.smoothed(past.incident)
     again = past.post_processor.smoothed(past.incident)
     assert again.made_ns == first.made_ns
@@ -119,8 +119,8 @@ def test_what_was_made_is_not_made_again(past: Past) -> None:
 
 
 @pytest.mark.slow
-def test_who_asks_while_it_is_made_gets_the_same(past: Past, store: Store) -> None:
-    """It takes minutes of a long incident: it is made once, however many ask."""
+def test_requests_during_the_work_get_the_same_result(past: Past, store: Store) -> None:
+    """It takes minutes for a long incident, and is done once for any number of requests."""
     opened: list[int] = []
 
     def counting(t_ns: int) -> Iterable[Record]:
@@ -136,7 +136,7 @@ def test_who_asks_while_it_is_made_gets_the_same(past: Past, store: Store) -> No
 
 
 @pytest.mark.slow
-def test_what_closed_lately_is_smoothed_without_being_asked(
+def test_recently_closed_incident_is_smoothed_without_a_request(
     past: Past, clock: ManualClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     past.kept.put("i1", "gone", 0, {}, {}, None)
@@ -150,7 +150,7 @@ def test_what_closed_lately_is_smoothed_without_being_asked(
     assert past.kept.report("i1") is not None
 
 
-def test_what_closed_long_ago_waits_until_it_is_asked_for(past: Past, store: Store) -> None:
+def test_incident_closed_long_ago_waits_for_a_request(past: Past, store: Store) -> None:
     assert past.incident.closed_ns is not None
     clock = ManualClock(utc_ns=past.incident.closed_ns + LATELY_NS)
     kept = SmoothedTracks(store)
@@ -160,7 +160,7 @@ def test_what_closed_long_ago_waits_until_it_is_asked_for(past: Past, store: Sto
     assert post_processor.smoothed(past.incident).is_kept
 
 
-def test_an_incident_that_cannot_be_looked_back_on_is_given_up_and_the_next_is_not(
+def test_failing_incident_is_given_up_and_the_next_is_not(
     past: Past, store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
     post_processor = PostProcessor(
@@ -182,7 +182,7 @@ def test_an_incident_that_cannot_be_looked_back_on_is_given_up_and_the_next_is_n
 
 
 class FullStore(SmoothedTracks):
-    """Of a disk that takes nothing."""
+    """Store on a disk that refuses writes."""
 
     full = True
     tries = 0
@@ -195,7 +195,7 @@ class FullStore(SmoothedTracks):
 
 
 @pytest.mark.slow
-def test_on_a_full_disk_it_is_answered_reported_once_and_kept_when_there_is_room(
+def test_full_disk_is_reported_once_and_the_result_kept_when_there_is_room(
     past: Past, store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
     kept, clock = FullStore(store), ManualClock(utc_ns=0)
@@ -222,10 +222,8 @@ def test_on_a_full_disk_it_is_answered_reported_once_and_kept_when_there_is_room
 
 
 @pytest.mark.slow
-def test_of_an_open_incident_all_is_known_that_was_recorded_whatever_the_clock_says(
-    past: Past, store: Store
-) -> None:
-    """`muster base smooth` on a machine whose clock was set back: times went on from the last."""
+def test_open_incident_has_all_its_records_whatever_the_clock(past: Past, store: Store) -> None:
+    """`muster base smooth` on a machine whose clock was set back: times continue from the last."""
     behind = ManualClock(utc_ns=past.incident.opened_ns + 10 * 10**9)
     post_processor = PostProcessor(past.archive, SMOOTHERS[0], SmoothedTracks(store), behind)
     is_open = IncidentRow(
@@ -237,15 +235,15 @@ def test_of_an_open_incident_all_is_known_that_was_recorded_whatever_the_clock_s
     assert fractions == sorted(fractions)
 
 
-def test_raw_is_the_own_path_from_its_start(past: Past) -> None:
+def test_raw_trail_is_the_own_path_from_its_start(past: Past) -> None:
     raw = past.post_processor.raw(past.incident)["FF-01"]
     smoothed = past.post_processor.smoothed(past.incident).tracks["FF-01"]
     assert (raw[0].north_m, raw[0].east_m) == (smoothed[0].north_m, smoothed[0].east_m)
     assert past.mean_off_m(raw) > 2.0 * past.mean_off_m(smoothed)
 
 
-def test_the_own_path_begins_anew_where_its_unit_did(store: Store, tmp_path: Path) -> None:
-    """Each of its runs as the unit had it, from where that run is known to have begun."""
+def test_own_path_begins_anew_where_its_unit_restarted(store: Store, tmp_path: Path) -> None:
+    """Each of its runs as the unit had it, from the known begin of that run."""
     script = Script()
     script.register("FF-01")
     script.act(SetStart("FF-01", 5.0, 7.0, 0.0, 1.0, 0.5, 0.1))
@@ -275,7 +273,9 @@ def test_the_own_path_begins_anew_where_its_unit_did(store: Store, tmp_path: Pat
     assert {one.quality for one in smoothed[:again]} == {"good"}
 
 
-def test_trails_are_of_the_incident_and_of_whom_it_received(store: Store, tmp_path: Path) -> None:
+def test_trails_are_of_the_incident_and_the_units_received_in_it(
+    store: Store, tmp_path: Path
+) -> None:
     """Both were on before, and one was switched off by then."""
     script = Script()
     script.register("FF-01", "FF-02")
@@ -303,9 +303,7 @@ def test_trails_are_of_the_incident_and_of_whom_it_received(store: Store, tmp_pa
 
 @pytest.mark.slow
 @pytest.mark.parametrize("reported", ["start", "pin", "fix", "nothing"])
-def test_whose_beginning_nothing_reported_is_not_called_well_known(
-    reported: str, store: Store, tmp_path: Path
-) -> None:
+def test_unknown_begin_is_reported_as_such(reported: str, store: Store, tmp_path: Path) -> None:
     """As it was shown live: about the unit's own start."""
     script = Script()
     script.register("FF-01")
@@ -330,7 +328,7 @@ def test_whose_beginning_nothing_reported_is_not_called_well_known(
 
 
 @pytest.mark.slow
-def test_raw_trails_and_the_assessment_are_kept_until_it_is_worked_out_again(past: Past) -> None:
+def test_raw_trails_and_assessment_are_kept_until_the_next_solution(past: Past) -> None:
     shown = past.records.tracks_of(past.incident)
     report, raw = (
         past.post_processor.assess(past.incident, shown),
@@ -346,7 +344,9 @@ def test_raw_trails_and_the_assessment_are_kept_until_it_is_worked_out_again(pas
 
 
 class SmoothedBeside(SmoothedTracks):
-    """Somebody else works it out again as soon as something has been kept of it."""
+    """A store in which another process replaces the result as soon as something has been kept of
+    it.
+    """
 
     def __init__(self, store: Store, incident: IncidentRow) -> None:
         super().__init__(store)
@@ -362,9 +362,7 @@ class SmoothedBeside(SmoothedTracks):
 
 
 @pytest.mark.slow
-def test_no_assessment_is_kept_beside_trails_that_were_worked_out_since(
-    past: Past, store: Store
-) -> None:
+def test_assessment_is_not_kept_beside_newer_trails(past: Past, store: Store) -> None:
     """`muster base smooth` beside a station that is just assessing the same incident."""
     clock, kept = ManualClock(), SmoothedBeside(store, past.incident)
     station = PostProcessor(past.archive, SMOOTHERS[0], kept, clock)
@@ -381,10 +379,8 @@ def test_no_assessment_is_kept_beside_trails_that_were_worked_out_since(
 
 
 @pytest.mark.slow
-def test_what_was_worked_out_of_a_log_that_was_written_anew_meanwhile_is_not_kept(
-    past: Past, store: Store
-) -> None:
-    """It may hold the way of somebody who was forgotten."""
+def test_result_of_a_log_rewritten_meanwhile_is_not_kept(past: Past, store: Store) -> None:
+    """It may hold the way of an erased person."""
     rewritten = False
     archive = replace(past.archive, watch=lambda: lambda: rewritten)
     kept = SmoothedTracks(store)
@@ -399,14 +395,14 @@ def test_what_was_worked_out_of_a_log_that_was_written_anew_meanwhile_is_not_kep
     assert kept.has("i1")
 
 
-def test_the_assessment_says_how_long_the_lights_were_which(past: Past) -> None:
+def test_assessment_has_the_durations_of_the_lights(past: Past) -> None:
     report = past.post_processor.assess(past.incident, past.records.tracks_of(past.incident))
     named = with_people(report, {"FF-01": ["Mia"]})
     assert [unit.people for unit in named.units] == [("Mia",), ()]
     assert all(0.0 <= (unit.floor_right or 0.0) <= 1.0 for unit in report.units)
 
 
-def test_an_exporter_takes_the_smoothed_trail(past: Past) -> None:
+def test_exporter_uses_the_smoothed_trail(past: Past) -> None:
     smoothed = past.post_processor.smoothed(past.incident).tracks
     shown = [*incident_tracks(past.records, past.roster, past.incident).tracks]
     chosen = [*incident_tracks(past.records, past.roster, past.incident, smoothed).tracks]
@@ -416,7 +412,7 @@ def test_an_exporter_takes_the_smoothed_trail(past: Past) -> None:
     ]
 
 
-def test_the_assessment_holds_what_was_shown_against_what_is_known(past: Past) -> None:
+def test_assessment_compares_shown_places_with_the_smoothed_trail(past: Past) -> None:
     report = past.post_processor.assess(past.incident, past.records.tracks_of(past.incident))
     one, two = report.units
     assert one.against_smoothed is not None

@@ -1,4 +1,4 @@
-"""What closed lately is looked back on beside the station, which does not wait for it."""
+"""Recently closed incidents are post-processed beside the station, which does not wait for it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def often(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class LongWork:
-    """Of a long incident."""
+    """Work of a long incident."""
 
     def __init__(self) -> None:
         self.begun = threading.Event()
@@ -54,7 +54,7 @@ def shown(_incident: IncidentRow) -> Tracks:
     return {}
 
 
-def test_a_station_that_stops_does_not_wait_for_what_can_be_worked_out_again(
+def test_stopping_station_does_not_wait_for_repeatable_work(
     work: LongWork,
 ) -> None:
     with PostProcessingWorker(cast("PostProcessor", work), incidents, shown):
@@ -62,9 +62,7 @@ def test_a_station_that_stops_does_not_wait_for_what_can_be_worked_out_again(
     assert not work.ended.is_set()
 
 
-def test_when_the_database_cannot_be_read_it_is_tried_again(
-    work: LongWork, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_unreadable_database_is_retried(work: LongWork, caplog: pytest.LogCaptureFixture) -> None:
     tries: list[int] = []
 
     def at_last() -> list[IncidentRow]:

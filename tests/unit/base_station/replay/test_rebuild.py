@@ -1,4 +1,4 @@
-"""The projections are made again from a log, some seconds of it at a time."""
+"""Rebuilding of projections from a log, some seconds of it at a time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def projected(records: list[Record]) -> tuple[list[Projection], list[int], int]:
     return written, applied_ns, count
 
 
-def test_all_of_a_log_is_projected_ten_seconds_of_it_at_a_time() -> None:
+def test_whole_log_is_projected_ten_seconds_at_a_time() -> None:
     records = [one for one in walk_with_mayday() if one[0] <= START_NS + 117 * NS_PER_S]
     written, applied_ns, count = projected(records)
     assert count == len(records)
@@ -29,11 +29,11 @@ def test_all_of_a_log_is_projected_ten_seconds_of_it_at_a_time() -> None:
     assert [alarm.rule for one in written for alarm in one.alarms] == ["mayday"]
 
 
-def test_what_lies_in_a_gap_of_the_log_takes_no_step() -> None:
+def test_gap_of_the_log_takes_no_step() -> None:
     records = [one for one in walk_with_mayday() if not 20 < (one[0] - START_NS) / NS_PER_S < 95]
     _, applied_ns, _ = projected(records)
     assert [(t_ns - START_NS) // NS_PER_S for t_ns in applied_ns] == [0, 10, 20, 95, 105, 115, 120]
 
 
-def test_of_nothing_there_is_nothing_to_write() -> None:
+def test_empty_log_writes_nothing() -> None:
     assert projected([]) == ([], [0], 0)

@@ -1,4 +1,4 @@
-"""A replay that plays what consoles were shown: where that is missing, and where the log is."""
+"""A replay of recorded console messages: where they are missing, and where the log is."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def shown(player: RecordedPlayer) -> Snapshot:
     return player.snapshot(VIEW)[0]
 
 
-def test_people_are_shown_by_the_names_of_now_and_the_log_has_none() -> None:
+def test_people_are_shown_with_present_names_and_the_log_has_none() -> None:
     script = Script()
     script.register("FF-01")
     script.act(Assign("FF-01", "p1", "", "", ""))
@@ -79,7 +79,7 @@ def test_people_are_shown_by_the_names_of_now_and_the_log_has_none() -> None:
 @pytest.mark.parametrize(
     ("second", "link"), [(40, "live"), (45, "live"), (51, "stale"), (71, "lost"), (99, "lost")]
 )
-def test_in_a_gap_of_the_log_links_and_places_age(
+def test_links_and_places_age_in_a_gap_of_the_log(
     recorded: Sequence[Record], second: int, link: str
 ) -> None:
     with_gap = [one for one in recorded if not is_between(one)]
@@ -101,7 +101,7 @@ def test_in_a_gap_of_the_log_links_and_places_age(
         assert player.gap is None
 
 
-def test_behind_a_gap_it_goes_on(recorded: Sequence[Record]) -> None:
+def test_replay_continues_behind_a_gap(recorded: Sequence[Record]) -> None:
     with_gap = [one for one in recorded if not is_between(one)]
     player = gone_to(player_of(with_gap), 30)
     while player.advance(at(UNTIL_S + 5)):
@@ -113,7 +113,7 @@ def test_behind_a_gap_it_goes_on(recorded: Sequence[Record]) -> None:
     assert unit.position.north_m == pytest.approx(UNTIL_S + 4.0, abs=0.1)
 
 
-def test_a_log_that_ends_early_is_a_gap_too(recorded: Sequence[Record]) -> None:
+def test_log_that_ends_early_is_a_gap_too(recorded: Sequence[Record]) -> None:
     player = gone_to(player_of([one for one in recorded if one[0] <= at(FROM_S)]), 110)
     assert player.gap is not None
     assert (player.gap.from_ns, player.gap.until_ns) == (at(FROM_S), None)
@@ -129,7 +129,7 @@ def test_a_log_that_ends_early_is_a_gap_too(recorded: Sequence[Record]) -> None:
     ],
     ids=["everything", "a stretch", "the first keyframe"],
 )
-def test_where_the_log_lacks_only_what_consoles_were_shown_it_is_decided_again(
+def test_stretch_without_console_messages_is_decided_again(
     recorded: Sequence[Record], lost: Callable[[Record], bool], tmp_path: Path
 ) -> None:
     records = [one for one in recorded if not lost(one)]
@@ -146,7 +146,7 @@ def unreadable(record: Record) -> Record:
 
 
 @pytest.mark.parametrize("how", ["missing", "of another version"])
-def test_played_into_such_a_stretch_it_goes_on_by_deciding_again(
+def test_replay_that_reaches_such_a_stretch_continues_by_deciding_again(
     recorded: Sequence[Record], how: str, tmp_path: Path
 ) -> None:
     records: list[Record] = []
@@ -171,7 +171,7 @@ def test_played_into_such_a_stretch_it_goes_on_by_deciding_again(
 
 
 @pytest.mark.parametrize("second", [10, 70])
-def test_a_recording_of_another_version_is_decided_again(
+def test_recording_of_another_version_is_decided_again(
     recorded: Sequence[Record], second: int, tmp_path: Path
 ) -> None:
     others = [unreadable(one) for one in recorded]
@@ -180,7 +180,7 @@ def test_a_recording_of_another_version_is_decided_again(
         assert north_m(session, second) == pytest.approx(second - 1.0, abs=0.1)
 
 
-def test_at_a_full_disk_nothing_is_recorded_of_consoles_and_then_a_keyframe() -> None:
+def test_full_disk_stops_recording_for_consoles_until_a_keyframe() -> None:
     script = Script()
     script.register("FF-01")
     log = ListedLog()

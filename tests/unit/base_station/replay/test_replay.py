@@ -85,7 +85,7 @@ def test_seeking_forth_and_back_shows_that_instant(session: ReplaySession) -> No
         assert bool(seen.alarms) == (second > MAYDAY_S)
 
 
-def test_a_seek_is_a_new_picture_for_everybody(session: ReplaySession, screen: Screen) -> None:
+def test_seek_is_a_new_picture_for_all_consoles(session: ReplaySession, screen: Screen) -> None:
     until(lambda: len(screen.resets) == 1)
     session.pause()
     session.seek(START_NS + 50 * NS_PER_S)
@@ -93,7 +93,7 @@ def test_a_seek_is_a_new_picture_for_everybody(session: ReplaySession, screen: S
     assert north_m(screen.resets[-1]) == pytest.approx(49.0)
 
 
-def test_an_archive_that_goes_away_stops_it_where_it_is_and_it_goes_on_afterwards(
+def test_lost_archive_stops_the_replay_which_continues_when_it_is_back(
     tmp_path: Path, screen: Screen
 ) -> None:
     records, away = with_console(walk_with_mayday(), make_pipeline()), threading.Event()
@@ -128,10 +128,10 @@ def test_an_archive_that_goes_away_stops_it_where_it_is_and_it_goes_on_afterward
         session.close()
 
 
-def test_on_a_long_way_it_says_where_it_goes(
+def test_long_seek_reports_its_target(
     session: ReplaySession, screen: Screen, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A console that hears nothing for long believes its link dead."""
+    """A console without messages for long shows its link as lost."""
     until(lambda: len(screen.resets) == 1)
     monkeypatch.setattr("base_station.replay.session.PAUSED_S", 0.0)
     monkeypatch.setattr("base_station.replay.playback.BURST", 1)
@@ -146,7 +146,7 @@ def test_on_a_long_way_it_says_where_it_goes(
     assert not arrived.seeking
 
 
-def test_it_plays_to_the_end_and_stops_there(session: ReplaySession, screen: Screen) -> None:
+def test_replay_plays_to_the_end_and_stops_there(session: ReplaySession, screen: Screen) -> None:
     session.set_speed(1000.0)
     until(lambda: any(d.replay is not None and not d.replay.playing for d in screen.deltas))
     assert at_s(session) == DURATION_S
@@ -155,10 +155,8 @@ def test_it_plays_to_the_end_and_stops_there(session: ReplaySession, screen: Scr
     assert all(delta.replay is not None for delta in screen.deltas)
 
 
-def test_what_consoles_receive_once_a_second_is_reported_as_it_is_played(
-    tmp_path: Path, screen: Screen
-) -> None:
-    """Of a gap that the journal filled, and of what is wrong with the station."""
+def test_messages_of_once_a_second_are_replayed(tmp_path: Path, screen: Screen) -> None:
+    """Of a gap that the journal filled, and of problems of the station."""
     script, missed = Script(), []
     script.register("FF-01")
     script.act(OpenIncident("i1", "Mill Lane"))
@@ -196,7 +194,7 @@ def test_what_consoles_receive_once_a_second_is_reported_as_it_is_played(
     assert problems[-1] == ("there is little room",)
 
 
-def test_played_on_at_the_end_it_begins_again(session: ReplaySession) -> None:
+def test_play_at_the_end_begins_again(session: ReplaySession) -> None:
     session.pause()
     session.seek(START_NS + 10**6 * NS_PER_S)
     assert at_s(session) == DURATION_S, "behind the end is the end"
@@ -204,7 +202,7 @@ def test_played_on_at_the_end_it_begins_again(session: ReplaySession) -> None:
     until(lambda: 0.0 < at_s(session) < 60.0)
 
 
-def test_it_says_from_when_to_when_it_goes_and_goes_nowhere_else(session: ReplaySession) -> None:
+def test_replay_states_its_span_and_stays_within(session: ReplaySession) -> None:
     view = session.view()
     assert (view.start_ms, view.end_ms) == (
         START_NS // 10**6,
@@ -217,10 +215,10 @@ def test_it_says_from_when_to_when_it_goes_and_goes_nowhere_else(session: Replay
     assert unit.position is None
 
 
-def test_sent_to_the_end_as_consoles_say_it_it_is_there_and_begins_again(
+def test_seek_to_the_end_by_milliseconds_is_at_the_end_and_play_begins_again(
     tmp_path: Path, screen: Screen
 ) -> None:
-    """They say it in whole milliseconds, and hardly an incident is closed on one."""
+    """Consoles send whole milliseconds, and hardly an incident is closed on one."""
     script = Script()
     script.act(OpenIncident("i1", "Mill Lane"))
     script.now_s = 7.000_345_678
@@ -239,7 +237,7 @@ def test_sent_to_the_end_as_consoles_say_it_it_is_there_and_begins_again(
     assert again_s == 0.0
 
 
-def test_its_pace_is_the_speed_asked_for(tmp_path: Path, screen: Screen) -> None:
+def test_pace_is_the_requested_speed(tmp_path: Path, screen: Screen) -> None:
     clock = ManualClock()
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     source = archive(walk_with_mayday(), tmp_path)
@@ -258,7 +256,7 @@ def test_its_pace_is_the_speed_asked_for(tmp_path: Path, screen: Screen) -> None
 
 
 def slow_archive(clock: ManualClock, folder: Path) -> Archive:
-    """To read a record takes a tenth of a second."""
+    """Reading a record takes a tenth of a second."""
 
     def slowly(t_ns: int) -> Iterable[Record]:
         for record in walk_with_mayday():
@@ -269,7 +267,7 @@ def slow_archive(clock: ManualClock, folder: Path) -> Archive:
     return Archive(slowly, Checkpoints(folder), make_pipeline)
 
 
-def test_faster_than_this_machine_it_shows_what_it_comes_past(
+def test_speed_beyond_this_machine_shows_the_passed_states(
     tmp_path: Path, screen: Screen, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.replay.session.DELTA_S", 0.001)
@@ -288,10 +286,8 @@ def test_faster_than_this_machine_it_shows_what_it_comes_past(
     assert len(set(shown_ms)) >= DURATION_S
 
 
-def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
-    tmp_path: Path, screen: Screen
-) -> None:
-    """Who goes to the next alarm sees it happen, however long the station reads to get there."""
+def test_long_seek_is_not_played_afterwards(tmp_path: Path, screen: Screen) -> None:
+    """A seek to the next alarm shows the alarm, however long the station reads to get there."""
     clock = ManualClock()
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     slow = slow_archive(clock, tmp_path)
@@ -306,10 +302,10 @@ def test_a_long_way_to_where_it_is_sought_is_not_played_behind_it(
     assert MAYDAY_S <= sought_s < MAYDAY_S + 1.0, "a record is looked at for flaws meanwhile"
 
 
-def test_one_that_is_closed_on_its_way_just_ends(
+def test_replay_closed_during_a_seek_ends(
     tmp_path: Path, screen: Screen, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """It does not go on from where nobody has been shown yet."""
+    """It does not continue from a place that was never shown."""
     clock = ManualClock()
     reached, go_on = threading.Event(), threading.Event()
 
@@ -332,10 +328,10 @@ def test_one_that_is_closed_on_its_way_just_ends(
     assert screen.resets == []
 
 
-def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
+def test_endless_seek_is_given_up_for_another_and_for_closing(
     tmp_path: Path, screen: Screen
 ) -> None:
-    """Meanwhile whoever opens the console is shown where it goes."""
+    """Meanwhile a console that joins is shown the target."""
     _, key, payload = walk_with_mayday()[-1]
     read = 0
 
@@ -370,7 +366,7 @@ def test_a_way_without_an_end_is_given_up_for_another_and_for_closing(
     assert "replay" not in {thread.name for thread in set(threading.enumerate()) - threads}
 
 
-def test_played_on_it_goes_on_from_where_it_was_paused(tmp_path: Path, screen: Screen) -> None:
+def test_resumed_replay_continues_from_its_pause(tmp_path: Path, screen: Screen) -> None:
     clock = ManualClock()
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
     session = ReplaySession(
@@ -394,12 +390,12 @@ def test_played_on_it_goes_on_from_where_it_was_paused(tmp_path: Path, screen: S
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, float("nan"), float("inf"), 0.1])
-def test_an_impossible_speed_is_refused_in_words(session: ReplaySession, speed: float) -> None:
+def test_impossible_speed_is_refused_with_a_sentence(session: ReplaySession, speed: float) -> None:
     with pytest.raises(UserError, match="times real time"):
         session.set_speed(speed)
 
 
-def test_an_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> None:
+def test_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> None:
     window = ReplayWindow("i1", START_NS, START_NS + NS_PER_S)
     session = ReplaySession(
         archive([], tmp_path), window, 1.0, screen, person_lookup({}), SystemClock()
@@ -410,10 +406,10 @@ def test_an_empty_log_is_an_empty_picture(tmp_path: Path, screen: Screen) -> Non
 
 @pytest.mark.parametrize("playing", [False, True])
 @pytest.mark.parametrize("saving", [False, True])
-def test_who_is_forgotten_meanwhile_is_shown_no_more(
+def test_person_erased_meanwhile_is_shown_no_more(
     tmp_path: Path, screen: Screen, playing: bool, saving: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It stands where it stood, on the log as that is now."""
+    """The replay stays at its time, on the changed log."""
     monkeypatch.setattr("base_station.replay.playback.SAVED_APART", 10)
     own = Checkpoints(tmp_path / "own") if saving else None
     log = list(walk_with_mayday())
@@ -450,7 +446,7 @@ def test_who_is_forgotten_meanwhile_is_shown_no_more(
     session.close()
 
 
-def test_one_that_breaks_off_is_over(
+def test_failed_replay_is_over(
     tmp_path: Path, screen: Screen, caplog: pytest.LogCaptureFixture
 ) -> None:
     def torn(_t_ns: int) -> Iterable[Record]:
@@ -466,10 +462,10 @@ def test_one_that_breaks_off_is_over(
     assert "the log cannot be read" in caplog.text
 
 
-def test_a_disk_that_hangs_keeps_nobody_who_begins_or_ends_one(
+def test_hanging_disk_does_not_block_begin_and_end_of_replays(
     tmp_path: Path, screen: Screen, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It is begun and ended where all others are looked up."""
+    """Begin and end use the same table as all others."""
     monkeypatch.setattr("base_station.replay.session.GRACE_S", 0.1)
     comes_back, waited = threading.Event(), []
 
@@ -488,10 +484,10 @@ def test_a_disk_that_hangs_keeps_nobody_who_begins_or_ends_one(
     until(lambda: waited == [True])
 
 
-def test_one_goes_on_where_it_cannot_be_seen_whether_the_past_was_changed(
+def test_replay_continues_where_a_change_of_the_past_cannot_be_checked(
     tmp_path: Path, screen: Screen
 ) -> None:
-    """A segment that is removed may go while it is looked at."""
+    """A segment may be removed while it is checked."""
     looks = []
 
     def gone() -> bool:
@@ -512,8 +508,8 @@ def test_one_goes_on_where_it_cannot_be_seen_whether_the_past_was_changed(
     session.close()
 
 
-def test_it_says_what_of_its_log_cannot_be_shown_as_it_was(tmp_path: Path, screen: Screen) -> None:
-    """Also what is come by on the way; whoever looks on does not see the terminal."""
+def test_replay_reports_differences_of_its_log(tmp_path: Path, screen: Screen) -> None:
+    """Also those passed on the way; a viewer does not see the terminal."""
     flaws = ["segment 2 of the log is missing"]
     source = replace(archive(walk_with_mayday(), tmp_path), flaws=lambda: flaws)
     window = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)

@@ -1,4 +1,4 @@
-"""A hole of the log in a replay: time goes on in it, and nothing in it looks current."""
+"""A gap of the log in a replay: time advances in it, and nothing in it looks current."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def playback(tmp_path: Path) -> Playback:
 @pytest.mark.parametrize(
     ("second", "link"), [(40, "live"), (45, "live"), (51, "stale"), (71, "lost"), (99, "lost")]
 )
-def test_links_and_places_age_in_a_hole(playback: Playback, second: int, link: str) -> None:
+def test_links_and_places_age_in_a_gap(playback: Playback, second: int, link: str) -> None:
     state = gone_to(playback, second).pipeline.state
     unit = state.units["FF-01"]
     assert unit.link == link
@@ -58,7 +58,7 @@ def test_links_and_places_age_in_a_hole(playback: Playback, second: int, link: s
     assert playback.gap == (RecordGap(at(FROM_S), at(UNTIL_S)) if is_in else None)
 
 
-def test_what_follows_a_hole_is_decided_as_if_nobody_had_looked_into_it(
+def test_decisions_behind_a_gap_are_those_without_a_seek_into_it(
     playback: Playback, tmp_path: Path
 ) -> None:
     plain = Playback(archive(with_hole(), tmp_path / "plain"))
@@ -73,7 +73,7 @@ def test_what_follows_a_hole_is_decided_as_if_nobody_had_looked_into_it(
     assert gone_to(playback, 50).pipeline.state.units["FF-01"].link == "stale", "back into it"
 
 
-def test_a_log_that_ends_early_or_begins_late_is_a_hole_too(tmp_path: Path) -> None:
+def test_log_that_ends_early_or_begins_late_has_a_gap_too(tmp_path: Path) -> None:
     end = Playback(archive([one for one in with_hole() if one[0] <= at(FROM_S)], tmp_path))
     assert gone_to(end, 110).gap == RecordGap(at(FROM_S), None)
     assert end.pipeline.state.units["FF-01"].link == "lost"
@@ -82,7 +82,7 @@ def test_a_log_that_ends_early_or_begins_late_is_a_hole_too(tmp_path: Path) -> N
     assert gone_to(begin, 110).gap is None
 
 
-def test_a_whole_log_has_none(tmp_path: Path) -> None:
+def test_whole_log_has_no_gap(tmp_path: Path) -> None:
     playback = Playback(archive(walk_with_mayday(), tmp_path))
     for second in range(0, END_S, 3):
         assert gone_to(playback, second + 0.5).gap is None
@@ -116,7 +116,7 @@ def picture(session: ReplaySession) -> Snapshot:
     return found[0]
 
 
-def test_who_seeks_into_a_hole_is_reported_of_it(session: ReplaySession) -> None:
+def test_seek_into_a_gap_is_reported(session: ReplaySession) -> None:
     session.pause()
     session.seek(at(97.7))
     seen = picture(session)
@@ -126,8 +126,8 @@ def test_who_seeks_into_a_hole_is_reported_of_it(session: ReplaySession) -> None
     assert seen.replay.gap == GapView(at(FROM_S) // NS_PER_MS, at(UNTIL_S) // NS_PER_MS)
 
 
-def test_a_replay_plays_through_a_hole(session: ReplaySession, screen: Screen) -> None:
-    session.set_speed(25.0)  # a busy machine passes over what lasts a second
+def test_replay_plays_through_a_gap(session: ReplaySession, screen: Screen) -> None:
+    session.set_speed(25.0)  # a busy machine passes over a state of a second
     until(lambda: any(d.replay is not None and not d.replay.playing for d in screen.deltas))
     inside = [one for one in screen.deltas if one.replay is not None and one.replay.gap is not None]
     assert len({one.now_ms for one in inside}) > 3, "its clock goes on"

@@ -1,4 +1,4 @@
-"""A log of a station that decided otherwise is told from one that did not."""
+"""Distinction of a log whose station decided otherwise from one of the same program."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Change = Callable[[Decision], Decision]
 def logged(
     change: Change = lambda decision: decision, records: Iterable[Record] | None = None
 ) -> Iterator[Record]:
-    """What was decided stands behind what it comes of."""
+    """Records with the decisions that follow from them."""
     pipeline = make_pipeline()
     for t_ns, key, payload in records or walk_with_mayday():
         yield t_ns, key, payload
@@ -61,7 +61,7 @@ def named(decision: Decision) -> Decision:
     return decision
 
 
-def test_what_the_same_program_decided_is_shown_again() -> None:
+def test_decisions_of_the_same_program_are_shown_again() -> None:
     assert any(key.endswith("fused") for _, key, _ in logged())
     assert not decisions_differ(logged(), make_pipeline())
     assert not decisions_differ(walk_with_mayday(), make_pipeline()), "nothing was decided"
@@ -69,12 +69,12 @@ def test_what_the_same_program_decided_is_shown_again() -> None:
 
 
 @pytest.mark.parametrize("change", [north(2.0), named])
-def test_what_another_program_decided_is_not(change: Change) -> None:
+def test_decisions_of_another_program_are_not(change: Change) -> None:
     assert decisions_differ(logged(change), make_pipeline())
 
 
-def test_a_log_from_its_middle_tells_nothing_of_the_program() -> None:
-    """Its first places come of fusers that knew more."""
+def test_log_from_its_middle_does_not_identify_the_program() -> None:
+    """Its first places come from fusers with more evidence."""
     whole = list(logged())
     for begin in (len(whole) // 3, len(whole) // 2):
         assert not decisions_differ(whole[begin:], make_pipeline())
@@ -83,7 +83,7 @@ def test_a_log_from_its_middle_tells_nothing_of_the_program() -> None:
 
 @cache
 def two_incidents() -> tuple[Record, ...]:
-    """In each somebody walks and presses the button; where that begins is told in the first one."""
+    """In each incident a wearer walks and presses the button; the start is set in the first one."""
     script = Script()
     script.register("FF-01")
     for incident_id, person in (("i1", "Ada"), ("i2", "Bea")):
@@ -103,14 +103,14 @@ def two_incidents() -> tuple[Record, ...]:
 
 
 @pytest.mark.parametrize("incident", [False, True])
-def test_what_forgetting_took_out_tells_nothing_of_the_program(incident: bool) -> None:
+def test_erased_records_do_not_identify_the_program(incident: bool) -> None:
     whole = list(logged(records=two_incidents()))
     assert not decisions_differ(whole, make_pipeline())
     assert not decisions_differ(redacted(whole, incident=incident), make_pipeline())
 
 
 def checked(records: Iterable[Record], folder: Path, from_incident: str) -> list[bool]:
-    """What is said of each record from where an incident begins."""
+    """Result for each record from the begin of an incident."""
     whole = list(records)
     archive = Archive(
         lambda from_ns: (one for one in whole if one[0] >= from_ns),
@@ -135,7 +135,7 @@ def opened_ns(records: Iterable[Record], incident_id: str) -> int:
     )
 
 
-def test_an_incident_that_another_version_recorded_behind_others_is_reported(
+def test_incident_of_another_version_behind_others_is_reported(
     tmp_path: Path,
 ) -> None:
     """The log's beginning is of this one."""
@@ -162,9 +162,7 @@ def moved(decision: Decision) -> Decision:
 
 
 @pytest.mark.parametrize("incident", [False, True])
-def test_of_an_incident_behind_what_was_forgotten_nothing_is_reported(
-    incident: bool, tmp_path: Path
-) -> None:
+def test_incident_behind_erased_records_is_not_reported(incident: bool, tmp_path: Path) -> None:
     whole = list(logged(records=two_incidents()))
     assert not any(checked(redacted(whole, incident=incident), tmp_path, "i2"))
 

@@ -1,4 +1,4 @@
-"""What a person sees of the reason of an alarm."""
+"""Explanation of an alarm's reason for a person."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def explained(opened: OpenedReport, rule: str) -> tuple[AlarmRow, AlarmExplanati
     return alarm, AlarmExplainer(sources.records, sources.log.records).explain(alarm)
 
 
-def test_the_threshold_is_that_of_the_time_with_the_value_that_crossed_it(
+def test_threshold_is_that_of_the_time_with_the_value_that_crossed_it(
     opened: OpenedReport,
 ) -> None:
     alarm, found = explained(opened, "no-motion")
@@ -50,7 +50,7 @@ def test_heat_names_the_worst_limit_that_was_reached(opened: OpenedReport) -> No
     assert (found.crossing.threshold, found.crossing.value) == ("warning_degc", HOT_DEGC)
 
 
-def test_a_mayday_has_its_button_and_no_threshold(opened: OpenedReport) -> None:
+def test_mayday_has_its_button_and_no_threshold(opened: OpenedReport) -> None:
     alarm, found = explained(opened, "mayday")
     assert found.buttons_ns == (alarm.raised_ns,)
     assert found.crossing is None

@@ -43,7 +43,7 @@ def test_a_unit_that_was_switched_off_has_no_gap():
     assert facts_of(script).units[UNIT].radio_gaps == []
 
 
-def test_what_comes_out_of_the_journal_is_no_radio_contact_but_heats():
+def test_backfilled_messages_are_no_radio_contact_but_heat():
     script = Script()
     script.temperature(UNIT, 120.0)
     headers = []
@@ -60,7 +60,7 @@ def test_what_comes_out_of_the_journal_is_no_radio_contact_but_heats():
     assert unit.doses[0] == pytest.approx(dose_of(120.0, 30.0))
 
 
-def test_heat_belongs_to_who_wore_the_unit_then():
+def test_heat_belongs_to_the_wearer_at_its_time():
     script = Script()
     for degc in (200.0, 200.0, 30.0, 31.0):
         script.temperature(UNIT, degc)
@@ -70,7 +70,7 @@ def test_heat_belongs_to_who_wore_the_unit_then():
     assert unit.doses == {0: pytest.approx(dose_of(200.0, 1.0)), 1: 0.0}
 
 
-def test_series_are_kept_about_alarms_only():
+def test_series_are_kept_around_alarms_only():
     script = Script()
     for second in range(100):
         script.now_s = float(second)

@@ -8,11 +8,11 @@ def test_texts_and_attributes_are_escaped_and_markup_is_not():
     assert made == ('<td class="&quot;&gt;&lt;script&gt;">&lt;b&gt;&amp;<i>&#x27;x&#x27;</i></td>')
 
 
-def test_characters_that_no_page_can_hold_are_marked():
+def test_characters_that_no_page_can_hold_are_replaced():
     assert joined("a\x00b\ud800") == "a\ufffdb\ufffd"
 
 
-def test_numbers_are_short_and_what_is_none_is_left_out():
+def test_numbers_are_short_and_missing_ones_left_out():
     assert element("rect", x=1.0, y=2.345, stroke_width=0.5, class_=None) == (
         '<rect x="1" y="2.3" stroke-width="0.5"></rect>'
     )

@@ -1,4 +1,4 @@
-"""The library that writes PDF leaves the rest of the process as it was."""
+"""Import of the library that writes PDF leaves the rest of the process unchanged."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from base_station.report.pdf import pdf_document
 
 
 @pytest.mark.skipif(find_spec("weasyprint") is None, reason="weasyprint is not installed")
-def test_pictures_that_are_cut_short_are_still_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_truncated_pictures_are_still_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in [name for name in sys.modules if name.split(".")[0] == "weasyprint"]:
         monkeypatch.delitem(sys.modules, name)  # imported anew, as by the first report
     assert pdf_document(b"<p>a report</p>").startswith(b"%PDF")

@@ -22,7 +22,7 @@ def seconds(begin: float, end: float) -> Interval:
     return Interval(round(begin * NS_PER_S), round(end * NS_PER_S))
 
 
-def test_a_simplified_line_misses_no_point_by_more_than_the_tolerance():
+def test_simplified_line_misses_no_point_by_more_than_the_tolerance():
     turns = np.cumsum(np.random.default_rng(3).normal(0.0, 0.2, 500))
     line = np.cumsum(np.column_stack([np.cos(turns), np.sin(turns)]), axis=0)
     kept = np.flatnonzero(simplified(line))
@@ -34,12 +34,12 @@ def test_a_simplified_line_misses_no_point_by_more_than_the_tolerance():
             assert np.linalg.norm(one - line[first] - part * along) <= TOLERANCE_M + 1e-9
 
 
-def test_a_line_there_and_back_keeps_its_far_end():
+def test_line_there_and_back_keeps_its_far_end():
     line = np.array([(0.0, 0.0), (5.0, 0.0), (10.0, 0.0), (5.0, 0.0), (0.0, 0.0)])
     assert simplified(line).tolist() == [True, False, True, False, True]
 
 
-def test_standing_still_walks_no_distance_and_an_unknown_way_has_none():
+def test_rest_adds_no_distance_and_an_unknown_way_has_none():
     still = [point(second, 0.1 * (second % 2)) for second in range(100)]
     assert measure(still, None, ()).distance_m == 0.0
     walked = [point(second, 1.0 * second) for second in range(11)]
@@ -47,7 +47,7 @@ def test_standing_still_walks_no_distance_and_an_unknown_way_has_none():
     assert measure([*walked, *later], None, ()).distance_m == pytest.approx(20.0)
 
 
-def test_a_radio_gap_is_a_line_of_its_own_that_joins_its_neighbours():
+def test_radio_gap_is_a_line_of_its_own_that_joins_its_neighbours():
     points = [point(second, 1.0 * second) for second in range(31)]
     (trail,) = measure(points, None, (seconds(9.5, 20.5),)).trails
     assert trail.floor == 0
@@ -55,7 +55,7 @@ def test_a_radio_gap_is_a_line_of_its_own_that_joins_its_neighbours():
     assert [(line[0][0], line[-1][0]) for line in trail.radio_gap] == [(10.0, 21.0)]
 
 
-def test_a_way_that_nobody_knows_is_left_open():
+def test_unknown_way_is_left_open():
     points = [point(0.0, 0.0), point(1.0, 1.0), point(60.0, 50.0), point(61.0, 51.0)]
     (trail,) = measure(points, None, ()).trails
     assert [(line[0][0], line[-1][0]) for line in trail.in_contact] == [(0.0, 1.0), (50.0, 51.0)]
@@ -71,6 +71,6 @@ def test_time_inside_and_on_each_floor():
     assert measure(inside, None, ()).inside_s is None
 
 
-def test_nothing_is_measured_of_nobody():
+def test_empty_trail_has_no_measures():
     figures = measure([], read_plan(plan()), ())
     assert (figures.distance_m, figures.inside_s, figures.trails) == (0.0, 0.0, ())

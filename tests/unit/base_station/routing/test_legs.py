@@ -15,7 +15,7 @@ def words(places: list[tuple[float, float, int | None]], heading_rad: float | No
     return route_text(legs_of([Waypoint(*place) for place in places], heading_rad))
 
 
-def test_the_sentence_of_the_way() -> None:
+def test_sentence_of_a_route() -> None:
     way: list[tuple[float, float, int | None]] = [
         (0, 0, 0),
         (14, 0, 0),
@@ -29,8 +29,8 @@ def test_the_sentence_of_the_way() -> None:
     assert words(way[::-1], -EAST_RAD).startswith("turn back, 9 m")
 
 
-def test_behind_the_stairs_of_a_plan_the_way_is_named_by_the_compass() -> None:
-    """A plan does not say how they turn."""
+def test_legs_behind_stairs_of_a_plan_have_compass_directions() -> None:
+    """A plan does not state how its stairs turn."""
     assert (
         words([(0, 0, 0), (10, 0, 0), (10, 0, 1), (10, 8, 1), (2, 8, 1)], NORTH_RAD)
         == "10 m to the stairs, up one floor, east, 8 m, right, 8 m"
@@ -51,7 +51,7 @@ def test_two_flights_are_one_climb_and_small_bends_are_no_turns() -> None:
     assert words([(0, 0, 0), (5, 0, 0), (5, 1, 0), (5, 1, 0), (9, 1, 0)], NORTH_RAD) == "9 m"
 
 
-def test_an_unknown_floor_is_no_climb() -> None:
+def test_unknown_floor_is_no_climb() -> None:
     assert words([(0, 0, None), (5, 0, None), (5, 0, 0), (9, 0, 0)], NORTH_RAD) == "9 m"
     assert words([(0, 0, 0), (0.5, 0, 0)], None) == "beside you"
 

@@ -1,4 +1,4 @@
-"""Known ways on trails that were made by hand, and on a plan of two storeys."""
+"""Routes on made trails, and on a plan of two storeys."""
 
 from __future__ import annotations
 
@@ -36,13 +36,15 @@ def walked(
 
 
 def route(*trails: WalkedTrail, lattice: PlanLattice = NO_LATTICE) -> Route | None:
-    """From the second one to the first."""
+    """Route from the second unit to the first."""
     graph = WayGraph(trails, lattice)
     return routes_to(graph, trails[0].unit_id, [trails[1].unit_id]).get(trails[1].unit_id)
 
 
 def built(door_m: float) -> PlanLattice:
-    """20 m by 12 m; a wall along 6 m north with one door at its east end; stairs in the west."""
+    """A building of 20 m by 12 m; a wall along 6 m north with one door at its east end; stairs in
+    the west.
+    """
     outline = [[0.0, 0.0], [20.0, 0.0], [20.0, 12.0], [0.0, 12.0], [0.0, 0.0]]
     features: list[tuple[str, int, list[list[float]]]] = [("outline", 0, outline)]
     for floor in (0, 1):
@@ -75,7 +77,7 @@ def house() -> PlanLattice:
     return built(DOOR_M)
 
 
-def test_the_way_back_along_the_own_trails() -> None:
+def test_route_back_along_the_own_trails() -> None:
     """Both came in at one place: back to it, and on along the trail of the member."""
     member = walked("M", [(0, 0, 0), (0, 12, 0), (8, 12, 0)])
     found = route(member, walked("R", [(0, 0, 0), (10, 0, 0)]))
@@ -87,8 +89,8 @@ def test_the_way_back_along_the_own_trails() -> None:
     assert found.std_m == pytest.approx(0.3 * np.sqrt(2.0))
 
 
-def test_a_way_over_the_trail_of_a_third() -> None:
-    """The member's own way in is long; somebody else has found a short one."""
+def test_route_over_the_trail_of_a_third() -> None:
+    """The member's own way in is long; another unit has found a short one."""
     member = walked("M", [(0, 0, 0), (40, 0, 0), (40, 20, 0), (0, 20, 0)])
     rescuer = walked("R", [(0, 0, 0), (0, 0.4, 0)])
     own = route(member, rescuer)
@@ -100,7 +102,7 @@ def test_a_way_over_the_trail_of_a_third() -> None:
 
 
 def test_floors_are_counted_not_passed_through() -> None:
-    """3 m above the member by a line, but the stairs are 20 m away."""
+    """3 m above the member in a straight line, but the stairs are 20 m away."""
     member = walked("M", [(0, 0, 0), (20, 0, 0), (20, 3, 1), (0, 3, 1)])
     near_above = walked("R", [(0, 0, 0), (0, 2, 0)])
     near_by_way = walked("S", [(0, 0, 0), (20, 0, 0), (20, 3, 1), (10, 3, 1)])
@@ -120,7 +122,7 @@ def test_trails_that_do_not_meet_are_joined_within_their_doubt() -> None:
     assert found.std_m == pytest.approx(4.0), "the bridge doubles the variance"
 
 
-def test_no_way_over_a_gap_or_to_another_place() -> None:
+def test_no_route_over_a_gap_or_to_another_place() -> None:
     rescuer = walked("R", [(0, 0, 0), (0, 5, 0)])
     assert route(walked("M", [(0, 0, 0), (50, 0, 0)], gaps=[1]), rescuer) is None
     assert route(walked("M", [(90, 90, 0), (91, 90, 0)]), rescuer) is None
@@ -128,21 +130,21 @@ def test_no_way_over_a_gap_or_to_another_place() -> None:
     assert route(above, rescuer) is None, "nobody has found stairs"
 
 
-def test_a_unit_without_a_position_has_no_way() -> None:
+def test_unit_without_a_position_has_no_route() -> None:
     graph = WayGraph([walked("R", [(0, 0, 0)])], NO_LATTICE)
     assert routes_to(graph, "M", ["R"]) == {}
     assert routes_to(graph, "R", ["R", "M"]) == {}
     assert routes_to(WayGraph([], NO_LATTICE), "M", ["R"]) == {}
 
 
-def test_a_floor_that_is_not_known_is_no_climb() -> None:
+def test_unknown_floor_is_no_climb() -> None:
     member = walked("M", [(0, 0, None), (10, 0, None), (20, 0, 0)])
     found = route(member, walked("R", [(0, 0, None), (1, 0, None)]))
     assert found is not None
     assert found.distance_m == pytest.approx(19.0, abs=2 * CELL_M)
 
 
-def test_through_the_door_of_a_plan_not_through_its_wall(house: PlanLattice) -> None:
+def test_route_leads_through_the_door_of_a_plan_not_through_its_wall(house: PlanLattice) -> None:
     """2 m apart across the wall; the one door is at the other end."""
     member, rescuer = walked("M", [(7.0, 1.0, 0)]), walked("R", [(5.0, 1.0, 0)])
     found = route(member, rescuer, lattice=house)
@@ -153,7 +155,7 @@ def test_through_the_door_of_a_plan_not_through_its_wall(house: PlanLattice) -> 
     assert not found.crosses_walls
 
 
-def test_stairs_of_a_plan(house: PlanLattice) -> None:
+def test_route_uses_stairs_of_a_plan(house: PlanLattice) -> None:
     found = route(walked("M", [(9.5, 9.0, 1)]), walked("R", [(9.5, 9.0, 0)]), lattice=house)
     assert found is not None
     assert found.distance_m == pytest.approx(2 * 6.0 + 2 * RISE_M, abs=1.5)
@@ -161,7 +163,7 @@ def test_stairs_of_a_plan(house: PlanLattice) -> None:
     assert floors == sorted(floors), "up once"
 
 
-def test_a_trail_through_a_wall_is_the_last_way_and_is_named(house: PlanLattice) -> None:
+def test_trail_through_a_wall_is_the_last_choice_and_is_named(house: PlanLattice) -> None:
     """A door that the plan lacks: it is taken only where the plan's own way is far longer."""
     through = [(5.0, 1.0, 0), (7.0, 1.0, 0)]
     short = route(walked("M", through), walked("R", [(5.0, 1.0, 0)]), lattice=house)
@@ -173,7 +175,7 @@ def test_a_trail_through_a_wall_is_the_last_way_and_is_named(house: PlanLattice)
     assert only.distance_m == pytest.approx(2.0, abs=0.5)
 
 
-def test_the_ground_about_a_plan_is_open_but_not_without_end(house: PlanLattice) -> None:
+def test_ground_around_a_plan_is_open_but_not_without_end(house: PlanLattice) -> None:
     member = walked("M", [(7.0, 18.5, 0)])
     found = route(member, walked("R", [(8.0, 45.0, 0)]), lattice=house)
     assert found is None, "no door leads in"
@@ -184,7 +186,7 @@ def test_the_ground_about_a_plan_is_open_but_not_without_end(house: PlanLattice)
     assert route(outside, walked("R", [(-140.0, 10.0, 0)]), lattice=house) is None
 
 
-def test_who_stands_outside_the_plan_walks_in_on_a_trail(house: PlanLattice) -> None:
+def test_route_from_outside_the_plan_enters_on_a_trail(house: PlanLattice) -> None:
     rescuer = walked("R", [(-30.0, 2.0, 0), (-30.0, 3.0, 0)])
     member = walked("M", [(-30.0, 2.0, 0), (-3.0, 2.0, 0), (-2.8, 2.0, 0)])
     found = route(member, rescuer, lattice=house)

@@ -1,5 +1,5 @@
-"""Plans with a feature that is none: refused where they are laid, named; of a log that holds one
-already, the rest is shown, and nothing else stops.
+"""Plans with a damaged feature: refused when loaded, with its name; of one already in a log the
+rest is shown, and nothing else stops.
 """
 
 from __future__ import annotations
@@ -71,13 +71,13 @@ def plan_of(*features: object, name: object = "Mill") -> bytes:
 
 
 @broken
-def test_a_plan_is_refused_with_the_feature_that_cannot_be_used(damaged: object) -> None:
+def test_plan_is_refused_with_its_unusable_feature(damaged: object) -> None:
     with pytest.raises(UserError, match="feature 1"):
         read_plan(plan_of(OUTLINE, damaged, WALL))
 
 
 @broken
-def test_what_a_log_holds_of_a_damaged_plan_is_shown_without_its_fault(damaged: object) -> None:
+def test_damaged_plan_of_a_log_is_shown_without_its_fault(damaged: object) -> None:
     plan = salvage_plan(plan_of(OUTLINE, damaged, WALL))
     assert "feature 1" in plan.damage
     assert (
@@ -90,7 +90,7 @@ def test_what_a_log_holds_of_a_damaged_plan_is_shown_without_its_fault(damaged: 
 
 
 @broken
-def test_a_station_that_reads_a_damaged_plan_goes_on(damaged: object) -> None:
+def test_station_that_reads_a_damaged_plan_continues(damaged: object) -> None:
     script = Script()
     script.act(SetAnchor(60.0, 10.0, 0.0, 0.0))
     script.act(SetPlan(plan_of(OUTLINE, damaged, WALL)))
@@ -101,19 +101,19 @@ def test_a_station_that_reads_a_damaged_plan_goes_on(damaged: object) -> None:
     assert "feature 1" in problem
 
 
-def test_a_state_that_another_version_saved_is_looked_at_anew() -> None:
+def test_state_saved_by_another_version_is_checked_again() -> None:
     script = Script()
     script.act(SetPlan(plan_of(OUTLINE, WALL)))
     saved = msgspec.msgpack.decode(script.pipeline.checkpoint(), type=Checkpoint)
     geojson = plan_of(OUTLINE, BROKEN["a room without a place"])
-    saved.state.site.plan = Plan(geojson, (), ())  # it did not look at rooms
+    saved.state.site.plan = Plan(geojson, (), ())  # it did not check rooms
     again = make_pipeline(saved).state.site.plan
     assert again is not None
     assert "feature 1" in again.damage
     assert len(again.outlines) == 1
 
 
-def test_a_sound_plan_has_no_damage_and_is_drawn_as_it_came() -> None:
+def test_valid_plan_has_no_damage_and_is_drawn_unchanged() -> None:
     geojson = plan_of(OUTLINE, WALL, DOOR, feature("", None))
     plan = check_plan(geojson)
     assert plan.damage == ""
@@ -138,7 +138,7 @@ LARGE = [[math.cos(t / 200.0), math.sin(t / 200.0)] for t in range(1257)]
         ),
     ],
 )
-def test_what_a_new_plan_may_not_have_is_still_read_in_an_old_one(
+def test_feature_forbidden_in_a_new_plan_is_still_read_in_an_old_one(
     one: dict[str, Any], words: str
 ) -> None:
     geojson = plan_of(OUTLINE, one)
@@ -147,7 +147,7 @@ def test_what_a_new_plan_may_not_have_is_still_read_in_an_old_one(
     assert read_plan(geojson).damage == ""
 
 
-def test_a_name_is_written_in_words() -> None:
+def test_name_is_text() -> None:
     with pytest.raises(UserError, match="name"):
         check_plan(plan_of(OUTLINE, name={"en": "Mill"}))
 
@@ -168,7 +168,7 @@ SOUND = msgspec.json.decode(plan_of(OUTLINE, WALL, DOOR, feature("room", OUTLINE
     path=st.sampled_from(_places(SOUND)),
     odd=st.sampled_from([None, 5, -1e300, "x", [], [[]], [[[]]], {}, {"type": "Point"}, True]),
 )
-def test_whatever_one_member_is_a_plan_is_read_or_refused(path: tuple[Any, ...], odd: Any) -> None:
+def test_any_value_of_a_member_is_read_or_refused(path: tuple[Any, ...], odd: Any) -> None:
     plan = copy.deepcopy(SOUND)
     holder = plan
     for key in path[:-1]:
@@ -183,7 +183,7 @@ def test_whatever_one_member_is_a_plan_is_read_or_refused(path: tuple[Any, ...],
     assert PlanReader().grid(read) is None or read.walls
 
 
-def test_who_has_a_plan_read_beforehand_gets_the_same_plan() -> None:
+def test_plan_read_beforehand_is_the_same_plan() -> None:
     geojson = plan_of(OUTLINE, WALL)
     beforehand, afresh = PlanReader(), PlanReader()
     beforehand.check(geojson)

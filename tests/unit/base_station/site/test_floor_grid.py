@@ -1,4 +1,4 @@
-"""Walls as squares: what a step crosses, and how far somebody can get."""
+"""Walls as squares: the walls that a step crosses, and the reachable area."""
 
 from __future__ import annotations
 
@@ -59,13 +59,13 @@ def reach(grid: FloorGrid, floor: int, north_m: float, east_m: float, way_m: flo
     return () if reach_m is None else ring_about(north_m, east_m, reach_m)
 
 
-def test_a_step_through_a_wall_is_seen_and_one_through_the_door_is_not(grid: FloorGrid) -> None:
+def test_step_through_a_wall_is_detected_and_one_through_the_door_is_not(grid: FloorGrid) -> None:
     from_m = np.array([[5.0, 9.5], [9.0, 9.5], [5.0, 5.0], [5.0, 9.0]])
     to_m = np.array([[5.0, 10.5], [9.0, 10.5], [6.0, 5.0], [6.0, 9.8]])
     assert grid.crossings(0, from_m, to_m).tolist() == [WALL, FREE, FREE, BESIDE]
 
 
-def test_the_way_leads_through_the_door(grid: FloorGrid) -> None:
+def test_way_leads_through_the_door(grid: FloorGrid) -> None:
     """From beside the wall at its south end the other side is 16 m of walk away."""
     near = area_m2(reach(grid, 0, 1.0, 9.0, 5.0))
     assert near < 0.6 * math.pi * 5.0**2
@@ -73,17 +73,17 @@ def test_the_way_leads_through_the_door(grid: FloorGrid) -> None:
     assert furthest_east_m(reach(grid, 0, 1.0, 9.0, 14.0)) > 12.0
 
 
-def test_nobody_gets_out_of_a_house_without_a_door(grid: FloorGrid) -> None:
+def test_house_without_a_door_has_no_exit(grid: FloorGrid) -> None:
     ring = reach(grid, 0, 5.0, 5.0, 200.0)
     assert all(-1.5 < east_m < 21.5 and -1.5 < north_m < 11.5 for east_m, north_m in ring)
 
 
-def test_beyond_the_plan_nothing_stands_in_the_way(grid: FloorGrid) -> None:
+def test_beyond_the_plan_there_are_no_obstacles(grid: FloorGrid) -> None:
     ring = reach(grid, 0, -2.0, 10.0, 50.0)
     assert min(north_m for _, north_m in ring) == pytest.approx(-52.0, abs=0.5)
 
 
-def test_going_on_from_what_was_walked_is_walking_anew(grid: FloorGrid) -> None:
+def test_continued_walk_equals_a_new_one(grid: FloorGrid) -> None:
     going_on = grid.reachable_area(0, 1.0, 9.0)
     assert going_on is not None
     for way_m in (0.0, 2.0, 2.1, 6.0, 13.0, 14.0, 14.0, 60.0):
@@ -95,8 +95,8 @@ def test_going_on_from_what_was_walked_is_walking_anew(grid: FloorGrid) -> None:
         assert first.tolist() == second.tolist()
 
 
-def test_more_ground_than_a_floor_is_not_walked() -> None:
-    """It would hold up the station, and a circle tells as much."""
+def test_area_larger_than_a_floor_is_not_searched() -> None:
+    """It would delay the station, and a circle is as good."""
     field = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0], [0.0, 0.0]]
     grid = FloorGrid.of(read_plan(plan_of(("outline", field), ("wall", field))))
     assert grid is not None
@@ -110,14 +110,14 @@ def test_more_ground_than_a_floor_is_not_walked() -> None:
     assert reachable_area.reach_m(1.3 * widest_m) is None
 
 
-def test_what_the_plan_does_not_show_is_not_made_up(grid: FloorGrid) -> None:
+def test_features_missing_in_the_plan_are_not_invented(grid: FloorGrid) -> None:
     assert reach(grid, 3, 5.0, 5.0, 10.0) == ()
     assert reach(grid, 0, 500.0, 5.0, 10.0) == ()
     assert FloorGrid.of(None) is None
     assert FloorGrid.of(read_plan(plan_of(("outline", OUTLINE)))) is None
 
 
-def test_a_plan_larger_than_any_building_is_no_grid() -> None:
+def test_plan_larger_than_any_building_has_no_grid() -> None:
     far = [[0.0, 0.0], [1e5, 0.0], [1e5, 1e5], [0.0, 0.0]]
     assert FloorGrid.of(read_plan(plan_of(("outline", far), ("wall", far)))) is None
 

@@ -1,4 +1,4 @@
-"""Which landings make up one building, and that its storeys are theirs."""
+"""Buildings learnt from landings: which landings belong to one building, and its own storeys."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def walked_on(floors: LearntFloors, north_m: float, east_m: float) -> list[int]:
     return [one.floor for one in floors.storeys_at(north_m, east_m) if one.seen]
 
 
-def test_buildings_that_lie_apart_have_storeys_of_their_own(floors: LearntFloors) -> None:
+def test_distant_buildings_have_storeys_of_their_own(floors: LearntFloors) -> None:
     for t_ns in range(3):
         walk(floors, t_ns, (0.0, 0.0), t_ns)
     walk(floors, 10, (0.0, 2.0 * APART_M), 0)
@@ -32,8 +32,8 @@ def test_buildings_that_lie_apart_have_storeys_of_their_own(floors: LearntFloors
     assert walked_on(floors, 0.0, 2.0 * APART_M) == [0]
 
 
-def test_what_lies_between_two_buildings_makes_them_one_at_once(floors: LearntFloors) -> None:
-    """Each has so many landings that one more would not be enough to learn anew."""
+def test_landings_between_two_buildings_join_them_at_once(floors: LearntFloors) -> None:
+    """Each has so many landings that one more would not suffice to learn anew."""
     for number in range(40):
         walk(floors, number, (4.0 * number, 0.0), number % 2)
         walk(floors, number, (4.0 * number, 1.5 * APART_M), 2 + number % 2)
@@ -42,7 +42,7 @@ def test_what_lies_between_two_buildings_makes_them_one_at_once(floors: LearntFl
     assert walked_on(floors, 80.0, 0.0) == [0, 1, 2, 3]
 
 
-def test_of_two_full_buildings_neither_is_forgotten(floors: LearntFloors) -> None:
+def test_two_full_buildings_are_both_kept(floors: LearntFloors) -> None:
     for number in range(MOST_LANDINGS - 1):
         walk(floors, number, (4.0 * number, 0.0), 0)
         walk(floors, number, (4.0 * number, 1.5 * APART_M), 1)

@@ -1,4 +1,4 @@
-"""What of a walk tells a storey's height, and what people's landings make of the site."""
+"""Level walks: the parts of a walk that give a storey's height, and landings of the site."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Walked = tuple[float, float]  # distance and down since the path began, in metre
 
 @pytest.fixture
 def follow(make_position: MakePosition) -> Callable[..., list[int]]:
-    """At which of these positions somebody has walked far enough on the level."""
+    """Positions at which the wearer has walked far enough on the level."""
 
     def follow(walk: LevelWalk, *path: Walked, boot_id: int = 1) -> list[int]:
         reported = []
@@ -43,13 +43,13 @@ def follow(make_position: MakePosition) -> Callable[..., list[int]]:
     return follow
 
 
-def test_six_metres_on_the_level_tell_a_height_again_and_again(
+def test_six_metres_on_the_level_give_a_height_again_and_again(
     follow: Callable[..., list[int]],
 ) -> None:
     assert follow(LevelWalk(), *((float(metre), 0.0) for metre in range(14))) == [6, 12]
 
 
-def test_on_stairs_a_ramp_or_a_ladder_nothing_is_reported(follow: Callable[..., list[int]]) -> None:
+def test_stairs_ramp_and_ladder_give_no_height(follow: Callable[..., list[int]]) -> None:
     for climb_m in (0.17, -0.17, 0.11):
         path = [(float(metre), climb_m * metre) for metre in range(40)]
         assert follow(LevelWalk(), *path) == []
@@ -61,13 +61,13 @@ def test_steps_up_and_down_again_are_the_same_level(follow: Callable[..., list[i
     assert follow(LevelWalk(), (0.0, 0.0), (2.0, -0.4), (4.0, 0.0), (6.0, 0.3)) == [3]
 
 
-def test_a_way_that_is_stated_to_be_shorter_than_before_was_none(
+def test_stated_way_that_shrinks_gives_no_height(
     follow: Callable[..., list[int]],
 ) -> None:
     assert follow(LevelWalk(), (0.0, 0.0), (5.0, 0.0), (1.0, 0.0), (1.9, 0.0), (2.1, 0.0)) == [4]
 
 
-def test_another_start_of_the_program_is_no_way_and_no_climb(
+def test_restart_of_the_program_is_no_way_and_no_climb(
     follow: Callable[..., list[int]],
 ) -> None:
     walk = LevelWalk()
@@ -82,7 +82,7 @@ def test_another_start_of_the_program_is_no_way_and_no_climb(
 @pytest.mark.parametrize(
     ("down_m", "left"), [(-1.1, False), (1.1, False), (-1.3, True), (1.3, True)]
 )
-def test_who_has_climbed_more_than_some_steps_has_left_the_ground_for_good(
+def test_wearer_who_climbed_more_than_some_steps_has_left_the_ground(
     follow: Callable[..., list[int]], down_m: float, left: bool
 ) -> None:
     walk = LevelWalk()
@@ -110,7 +110,7 @@ def seen(floors: LearntFloors, north_m: float = 0.0, east_m: float = 0.0) -> dic
     return {one.floor: one.down_m for one in floors.storeys_at(north_m, east_m) if one.seen}
 
 
-def test_where_people_begin_is_the_ground_until_they_climb() -> None:
+def test_begin_is_the_ground_until_a_climb() -> None:
     floors = LearntFloors()
     landed(floors, A, (0.0, 0.0), 2.0, began_on_ground=True)
     assert seen(floors) == {0: 2.0}
@@ -119,14 +119,14 @@ def test_where_people_begin_is_the_ground_until_they_climb() -> None:
     assert seen(floors) == pytest.approx({0: 2.0, 1: -1.1})
 
 
-def test_who_began_upstairs_tells_no_ground() -> None:
+def test_unit_that_began_upstairs_gives_no_ground() -> None:
     floors = LearntFloors()
     landed(floors, A, (0.0, 0.0), -6.2)
     assert floors.ground == []
     assert seen(floors) == pytest.approx({0: 0.0, 2: -6.2})
 
 
-def test_outside_at_the_grounds_height_is_ground_and_a_slope_or_a_roof_is_nothing() -> None:
+def test_level_walk_outside_at_ground_height_is_ground_and_a_slope_or_roof_is_not() -> None:
     floors = LearntFloors()
     landed(floors, A, (0.0, 0.0), 0.6, outside=True)
     landed(floors, A, (9.0, 0.0), -3.0, outside=True)
@@ -136,7 +136,7 @@ def test_outside_at_the_grounds_height_is_ground_and_a_slope_or_a_roof_is_nothin
     assert seen(floors, 500.0) == {0: 0.6}, "where nobody has been in any building"
 
 
-def test_a_buildings_ground_is_the_one_beside_it() -> None:
+def test_ground_of_a_building_is_the_one_beside_it() -> None:
     """On a hill one enters the second house three metres higher."""
     floors, far_m = LearntFloors(), 2.0 * GROUND_NEAR_M + 50.0
     for number in range(3):
@@ -149,7 +149,7 @@ def test_a_buildings_ground_is_the_one_beside_it() -> None:
     assert seen(floors, far_m) == pytest.approx({0: -3.0, 1: -6.1})
 
 
-def test_the_storeys_of_the_nearest_building_are_those_of_a_place() -> None:
+def test_place_has_the_storeys_of_the_nearest_building() -> None:
     floors = LearntFloors(ground=[Landing(0, A, 0.0, 0.0, 0.0, 0.2)])
     landed(floors, A, (0.0, 0.0), -3.0)
     landed(floors, A, (APART_M + 15.0, 0.0), -4.0)
@@ -158,7 +158,7 @@ def test_the_storeys_of_the_nearest_building_are_those_of_a_place() -> None:
     assert 1 not in seen(floors, 0.0, APART_M + 1.0)
 
 
-def test_the_same_unit_at_the_same_place_counts_once_and_as_it_knew_best() -> None:
+def test_same_unit_at_the_same_place_counts_once_with_its_best_accuracy() -> None:
     floors = LearntFloors()
     for std_m, north_m, down_m in (
         (0.5, 0.0, -3.0),
@@ -175,7 +175,7 @@ def test_the_same_unit_at_the_same_place_counts_once_and_as_it_knew_best() -> No
     assert kept == [(A, 2.0, 0.2), (A, 2.0, 0.4), (A, 6.0, 0.4), (B, 2.0, 0.2)]
 
 
-def test_of_too_many_landings_the_oldest_of_where_there_are_most_go() -> None:
+def test_oldest_landings_of_the_densest_place_are_dropped_beyond_the_limit() -> None:
     floors = LearntFloors()
     landed(floors, A, (0.0, 0.0), -3.0, t_ns=1)
     for number in range(MOST_LANDINGS):
@@ -187,7 +187,7 @@ def test_of_too_many_landings_the_oldest_of_where_there_are_most_go() -> None:
     assert building.landings[-1].t_ns == 10 + MOST_LANDINGS - 1
 
 
-def test_what_is_stated_of_one_building_is_not_stated_of_another() -> None:
+def test_floors_of_one_building_do_not_apply_to_another() -> None:
     floors = LearntFloors()
     for east_m in (0.0, 100.0):
         landed(floors, A, (0.0, east_m), -6.2)
@@ -200,7 +200,7 @@ def test_what_is_stated_of_one_building_is_not_stated_of_another() -> None:
     assert not floors.set_reported_floors([ReportedFloor(900.0, 0.0, -6.2, 1)]), "nobody was there"
 
 
-def test_who_was_elsewhere_or_is_forgotten_has_reported_nothing() -> None:
+def test_erased_or_distant_unit_has_reported_nothing() -> None:
     floors = LearntFloors()
     for unit_id, down_m in ((A, -3.0), (B, -6.0)):
         landed(floors, unit_id, (0.0, 0.0), down_m)
@@ -212,7 +212,7 @@ def test_who_was_elsewhere_or_is_forgotten_has_reported_nothing() -> None:
     assert B not in floors.walks
 
 
-def test_what_was_before_an_incident_goes_and_its_frame_moves() -> None:
+def test_landings_before_an_incident_are_dropped_and_its_frame_moves_them() -> None:
     floors = LearntFloors()
     landed(floors, A, (0.0, 0.0), -3.0, t_ns=5)
     landed(floors, A, (9.0, 0.0), -6.1, t_ns=10)

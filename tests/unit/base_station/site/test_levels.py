@@ -1,4 +1,4 @@
-"""Storeys out of heights: levels, the numbers of floors, and how sure they are."""
+"""Storeys from heights: levels, floor numbers, and their certainty."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def storeys_of(
     return {one.floor: one for one in number_levels(levels_of(heights), GROUND, reported)}
 
 
-def test_before_anyone_climbed_there_is_a_ground_and_storeys_to_be_expected() -> None:
+def test_before_any_climb_there_is_a_ground_and_expected_storeys() -> None:
     storeys = storeys_of()
     assert storeys[0].seen
     assert not storeys[1].seen
@@ -35,13 +35,13 @@ def test_heights_gather_in_levels() -> None:
 
 
 @pytest.mark.parametrize("storey_m", [2.5, 3.0, 3.6, 4.2])
-def test_a_storey_is_as_high_as_it_is(storey_m: float) -> None:
+def test_height_of_a_storey_is_that_of_its_landings(storey_m: float) -> None:
     storeys = storeys_of(0.0, -storey_m, -2.0 * storey_m)
     assert [one.floor for one in storeys.values() if one.seen] == [0, 1, 2]
     assert storeys[4].down_m == pytest.approx(-4.0 * storey_m, abs=1.0)
 
 
-def test_a_storey_that_nobody_walked_on_is_counted() -> None:
+def test_storey_without_landings_is_counted() -> None:
     storeys = storeys_of(0.0, -3.1, -9.3)
     assert storeys[3].seen
     assert storeys[3].numbered > 0.9
@@ -49,23 +49,23 @@ def test_a_storey_that_nobody_walked_on_is_counted() -> None:
     assert storeys[2].down_m == pytest.approx(-6.2, abs=0.2)
 
 
-def test_what_may_be_two_storeys_or_three_is_stated_to_be_unsure() -> None:
+def test_ambiguous_number_of_storeys_is_uncertain() -> None:
     assert storeys_of(-8.4, std_m=0.5)[3].numbered < 0.9
     assert storeys_of(-8.4, std_m=0.5)[3].numbered > 0.3
 
 
-def test_a_high_hall_is_one_floor() -> None:
+def test_high_hall_is_one_floor() -> None:
     storeys = storeys_of(0.0, -4.6, -7.6, -10.6)
     assert [one.floor for one in storeys.values() if one.seen] == [0, 1, 2, 3]
 
 
-def test_a_basement_is_below_the_ground() -> None:
+def test_basement_is_below_the_ground() -> None:
     storeys = storeys_of(0.0, 3.0, -3.1)
     assert storeys[-1].seen
     assert storeys[-1].down_m == pytest.approx(3.0)
 
 
-def test_what_a_person_says_numbers_the_floors_between() -> None:
+def test_stated_floor_numbers_the_floors_between() -> None:
     """Without it they would be 1, 2 and 4."""
     heights = (-4.5, -7.6, -13.6)
     assert storeys_of(*heights)[4].seen
@@ -74,28 +74,28 @@ def test_what_a_person_says_numbers_the_floors_between() -> None:
     assert storeys[3].numbered > 0.9
 
 
-def test_what_cannot_be_is_not_believed_of_a_person_either() -> None:
+def test_impossible_floor_of_a_person_is_not_used() -> None:
     """The first floor cannot be on the ground, nor two floors between three levels."""
     assert storeys_of(-3.0, reported=((0.0, 1),))[1].down_m == pytest.approx(-3.0)
     above = storeys_of(-3.0, -6.0, reported=((-6.0, 1),))
     assert [one.floor for one in above.values() if one.seen] == [0, 1, 2]
 
 
-def test_one_who_is_wrong_by_a_metre_makes_no_storey() -> None:
+def test_one_height_wrong_by_a_metre_makes_no_storey() -> None:
     storeys = storeys_of(0.0, -3.2, -3.2, -3.3, -4.9, -6.4, -6.4, -6.5)
     seen = [one for one in storeys.values() if one.seen]
     assert [one.floor for one in seen] == [0, 1, 2]
     assert seen[1].down_m == pytest.approx(-3.2, abs=0.15)
 
 
-def test_nobody_is_surer_of_a_level_than_who_knew_it_best() -> None:
-    """The same person has the same error again and again."""
+def test_level_is_no_surer_than_its_best_unit() -> None:
+    """The same unit has the same error again and again."""
     heights = [Height(-3.2, 0.8)] * 100
     assert storeys_of(-3.2, std_m=0.8)[1].std_m == pytest.approx(levels_of(heights)[0].std_m)
     assert levels_of(heights)[0].std_m > 0.8
 
 
-def test_the_probability_of_a_floor_knows_how_unsure_its_number_is() -> None:
+def test_probability_of_a_floor_includes_the_uncertainty_of_its_number() -> None:
     sure = (Storey(0, 0.0), Storey(1, -3.0), Storey(2, -6.0))
     doubted = (Storey(0, 0.0), Storey(1, -3.0, 0.0, 0.7), Storey(2, -6.0))
     assert floor_probability(sure, 1, -3.0, 0.3) > 0.99
@@ -104,7 +104,7 @@ def test_the_probability_of_a_floor_knows_how_unsure_its_number_is() -> None:
     assert math.isclose(sum(floor_probability(sure, floor, -4.4, 0.8) for floor in range(3)), 1.0)
 
 
-def test_a_storey_that_is_only_to_be_expected_is_no_height_to_pin_to() -> None:
+def test_expected_storey_is_no_height_to_pin_to() -> None:
     storeys = tuple(storeys_of(-3.2).values())
     assert storey_of(storeys, 1) is not None
     assert storey_of(storeys, 2) is None
@@ -112,21 +112,21 @@ def test_a_storey_that_is_only_to_be_expected_is_no_height_to_pin_to() -> None:
 
 
 def downs_m(*heights: tuple[float, int, float]) -> list[float]:
-    """The levels of so many landings (height, how many, how sure)."""
+    """Levels of these landings (height, number, certainty)."""
     landings = [Height(down_m, std_m) for down_m, count, std_m in heights for _ in range(count)]
     return [round(one.down_m, 2) for one in levels_of(landings)]
 
 
-def test_a_level_is_in_the_middle_of_all_that_was_walked_on_it() -> None:
+def test_level_is_the_mean_of_its_landings() -> None:
     """Not where most came together by chance."""
     assert downs_m((-3.0, 3, 0.3), (-3.4, 2, 0.3), (-3.6, 2, 0.3), (-3.8, 2, 0.3)) == [-3.4]
 
 
-def test_who_knows_the_height_well_counts_more_than_several_who_do_not() -> None:
+def test_well_known_height_outweighs_several_poor_ones() -> None:
     assert downs_m((-3.0, 3, 0.2), (-4.2, 4, 1.5)) == [-3.0]
 
 
-def test_heights_that_scatter_are_those_of_the_nearest_storey() -> None:
+def test_scattered_heights_belong_to_the_nearest_storey() -> None:
     scattered = ((-2.6, 2, 0.3), (-3.0, 2, 0.3), (-3.4, 2, 0.3))
     above = ((-5.6, 2, 0.3), (-6.0, 2, 0.3), (-6.4, 2, 0.3))
     assert downs_m(*scattered, *above) == [-3.0, -6.0]
@@ -136,7 +136,7 @@ def test_heights_that_scatter_are_those_of_the_nearest_storey() -> None:
     ("counts", "kept"),
     [((5, 2, 5), [0.0, -4.0]), ((2, 5, 2), [-2.0]), ((5, 2, 1), [0.0, -4.0])],
 )
-def test_of_levels_nearer_than_storeys_are_the_one_with_more_behind_it_is_there(
+def test_level_with_more_landings_remains_of_two_nearer_than_storeys(
     counts: tuple[int, int, int], kept: list[float]
 ) -> None:
     assert downs_m(*zip((0.0, -2.0, -4.0), counts, (0.3,) * 3, strict=True)) == kept
@@ -145,7 +145,7 @@ def test_of_levels_nearer_than_storeys_are_the_one_with_more_behind_it_is_there(
 @pytest.mark.parametrize(
     ("down_m", "ground_m"), [(-1.2, -1.2), (0.9, 0.9), (-1.7, 0.0), (-2.2, 0.0), (1.9, 0.0)]
 )
-def test_a_raised_ground_floor_is_the_ground_floor_and_a_landing_of_the_stairs_is_none(
+def test_raised_ground_floor_is_the_ground_floor_and_a_landing_of_stairs_is_none(
     down_m: float, ground_m: float
 ) -> None:
     seen = [one for one in storeys_of(down_m, -7.0).values() if one.seen]
@@ -154,19 +154,19 @@ def test_a_raised_ground_floor_is_the_ground_floor_and_a_landing_of_the_stairs_i
     assert seen[0].std_m < 0.4
 
 
-def test_the_ground_is_where_it_is_and_not_at_the_frames_height() -> None:
+def test_ground_is_at_its_own_height_and_not_at_the_frames() -> None:
     levels = levels_of([Height(-10.0, 0.2), Height(-13.1, 0.2), Height(-6.9, 0.2)])
     storeys = number_levels(levels, Height(-10.3, 0.3))
     assert {one.floor: one.down_m for one in storeys if one.seen} == {-1: -6.9, 0: -10.0, 1: -13.1}
 
 
-def test_how_high_a_storey_is_becomes_known_by_walking_on_some() -> None:
+def test_height_of_storeys_is_learnt_by_walking_on_some() -> None:
     before, after = storeys_of()[4].std_m, storeys_of(0.0, -3.0, -6.0, -9.0)[4].std_m
     assert 1.0 < before < 3.0
     assert after < 0.6
 
 
-def test_anyone_says_what_is_known_anyway_changes_nothing() -> None:
+def test_stated_floor_that_is_known_changes_nothing() -> None:
     assert storeys_of(-4.6, -7.6, reported=((0.0, 0),)) == storeys_of(-4.6, -7.6)
     assert storeys_of(-4.6, -7.6, reported=((-20.0, 9),)) == storeys_of(-4.6, -7.6), (
         "nobody was there"
@@ -185,7 +185,7 @@ def test_anyone_says_what_is_known_anyway_changes_nothing() -> None:
         ((-3.1, -6.2), ((-3.1, 2), (-6.2, 2)), [0, 2, 3]),
     ],
 )
-def test_floors_that_are_stated_are_believed_in_turn_as_far_as_they_rise(
+def test_stated_floors_are_used_in_turn_as_far_as_they_rise(
     heights: tuple[float, ...], reported: tuple[tuple[float, int], ...], floors: list[int]
 ) -> None:
     assert [
@@ -193,7 +193,7 @@ def test_floors_that_are_stated_are_believed_in_turn_as_far_as_they_rise(
     ] == floors
 
 
-def test_what_two_people_say_has_the_storeys_between_spread_evenly() -> None:
+def test_two_stated_floors_have_the_storeys_between_spread_evenly() -> None:
     storeys = storeys_of(-3.0, -12.0, reported=((-3.0, 1), (-12.0, 4)))
     assert storeys[2].down_m == pytest.approx(-6.0)
     assert storeys[3].down_m == pytest.approx(-9.0)

@@ -1,4 +1,4 @@
-"""Plans: what they must say, which floor a height is, and what is inside."""
+"""Plans: required features, the floor of a height, and inside and outside."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_storeys_are_distinguished_by_height(house: Plan) -> None:
     assert [house.floor_at(down_m, None) for down_m in (3.0, 0.3, -3.0, -50.0)] == [-1, 0, 1, 1]
 
 
-def test_a_floor_is_kept_about_the_middle_of_the_stairs(house: Plan) -> None:
+def test_floor_is_kept_until_about_the_middle_of_the_stairs(house: Plan) -> None:
     middle_m = -1.6
     assert house.floor_at(middle_m - 0.2, 0) == 0
     assert house.floor_at(middle_m + 0.2, 1) == 1
@@ -55,7 +55,7 @@ def test_a_floor_is_kept_about_the_middle_of_the_stairs(house: Plan) -> None:
     assert house.floor_at(middle_m + 0.6, 1) == 0
 
 
-def test_a_plan_without_storeys_knows_no_floor() -> None:
+def test_plan_without_storeys_gives_no_floor() -> None:
     plan = read_plan(b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[]}')
     assert plan.floor_at(0.0, 3) is None
     assert not plan.is_inside(5.0, 5.0, False)
@@ -75,7 +75,7 @@ CORNERED = ((0.0, 0.0), (20.0, 0.0), (20.0, 10.0), (10.0, 10.0), (10.0, 20.0), (
     ],
 )
 @given(angle_rad=st.floats(-math.pi, math.pi))
-def test_a_building_has_the_same_depth_however_it_stands(
+def test_depth_inside_a_building_is_independent_of_its_rotation(
     east_m: float, north_m: float, depth_m: float, angle_rad: float
 ) -> None:
     def turned(point: tuple[float, float]) -> tuple[float, float]:
@@ -150,14 +150,14 @@ def test_inside_is_east_first_and_has_hysteresis_at_the_wall(house: Plan) -> Non
         (b"[" * 100_000, "recursion"),
     ],
 )
-def test_a_plan_that_cannot_be_used_says_what_is_wrong(geojson: bytes, words: str) -> None:
+def test_unusable_plan_is_refused_with_its_fault(geojson: bytes, words: str) -> None:
     with pytest.raises(UserError, match=words):
         read_plan(geojson)
 
 
 @pytest.mark.parametrize("kind", ["wall", "outline", "stairs"])
 @pytest.mark.parametrize("points", [[], [[1.0, 2.0]]])
-def test_a_line_of_fewer_than_two_points_is_refused(kind: str, points: list[list[float]]) -> None:
+def test_line_of_fewer_than_two_points_is_refused(kind: str, points: list[list[float]]) -> None:
     feature = {
         "type": "Feature",
         "properties": {"kind": kind, "floor": 0},
@@ -196,7 +196,7 @@ def test_lines_and_areas_of_several_parts_are_as_many_walls_outlines_and_stairs(
 
 @pytest.mark.parametrize("shape", ["MultiLineString", "MultiPolygon"])
 @pytest.mark.parametrize("coordinates", [[], [[]], [[[]]], 5, [5], [[5]], None])
-def test_several_parts_that_are_none_are_refused(shape: str, coordinates: object) -> None:
+def test_impossible_parts_are_refused(shape: str, coordinates: object) -> None:
     geometry = {"type": shape, "coordinates": coordinates}
     feature = {"type": "Feature", "properties": {"kind": "wall"}, "geometry": geometry}
     plan = {"type": "FeatureCollection", "muster": {"frame": "site-m"}, "features": [feature]}
@@ -204,7 +204,7 @@ def test_several_parts_that_are_none_are_refused(shape: str, coordinates: object
         read_plan(msgspec.json.encode(plan))
 
 
-def test_a_wall_that_is_no_number_is_refused() -> None:
+def test_wall_that_is_no_number_is_refused() -> None:
     plan = (
         b'{"type":"FeatureCollection","muster":{"frame":"site-m"},"features":[{"properties":'
         b'{"kind":"wall","floor":0},"geometry":{"type":"LineString",'

@@ -1,4 +1,4 @@
-"""Pictures in a plan: what a console could not draw is refused."""
+"""Pictures in a plan: pictures that a console could not draw are refused."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def plan(pictures: Any) -> bytes:
     return msgspec.json.encode({"type": "FeatureCollection", "muster": muster, "features": []})
 
 
-def test_a_picture_a_floor_is_taken() -> None:
+def test_one_picture_a_floor_is_accepted() -> None:
     assert check_plan(plan([picture(), picture(floor=1)])).damage == ""
 
 

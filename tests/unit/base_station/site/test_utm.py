@@ -1,4 +1,4 @@
-"""The UTM grid: what makes a transverse Mercator projection one, checked without its series."""
+"""The UTM grid: properties of a transverse Mercator projection, checked without its series."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ ZONE_32 = Zone(32, is_south=False)  # about 9 degrees east
 
 
 def meridian_m(lat_deg: float) -> float:
-    """From the equator along the meridian, integrated step by step."""
+    """Length along the meridian from the equator, integrated step by step."""
     lat = np.linspace(0.0, math.radians(lat_deg), 200_001)
     radius_m = A_M * (1 - E2) / (1 - E2 * np.sin(lat) ** 2) ** 1.5
     return float(np.trapezoid(radius_m, lat))
 
 
 @pytest.mark.parametrize("lat_deg", [0.5, 30.0, 52.0, 71.0])
-def test_on_the_middle_meridian_lengths_are_true_but_for_the_scale(lat_deg: float) -> None:
+def test_on_the_middle_meridian_lengths_are_true_up_to_the_scale(lat_deg: float) -> None:
     north_m = 0.9996 * meridian_m(lat_deg)
     assert lat_lon_of(ZONE_32, 500_000.0, north_m) == pytest.approx((lat_deg, 9.0), abs=1e-8)
 
@@ -47,7 +47,7 @@ def test_beside_it_angles_are_true(east_m: float, north_m: float) -> None:
     )
 
 
-def test_the_south_mirrors_the_north() -> None:
+def test_south_mirrors_the_north() -> None:
     lat_deg, lon_deg = lat_lon_of(ZONE_32, 420_000.0, 3_000_000.0)
     south = lat_lon_of(Zone(32, is_south=True), 420_000.0, 7_000_000.0)
     assert south == pytest.approx((-lat_deg, lon_deg))
@@ -62,5 +62,5 @@ def test_zones_go_by_their_numbers() -> None:
 
 
 @pytest.mark.parametrize("place", [(4.0, 5e7), (math.inf, 5e6), (5e6, 5e6)])
-def test_what_is_no_place_of_the_grid_is_nowhere(place: tuple[float, float]) -> None:
+def test_place_outside_the_grid_has_no_coordinates(place: tuple[float, float]) -> None:
     assert all(map(math.isnan, lat_lon_of(ZONE_32, *place)))

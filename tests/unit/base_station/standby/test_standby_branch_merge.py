@@ -1,4 +1,6 @@
-"""What a station set aside comes to the one that leads: once, in order, and whole or again."""
+"""Merge of a set-aside branch into the leading station: once, in order, and complete or
+repeated.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,7 @@ UNITS = 1_500  # messages: more than one answer holds
 
 
 class Leading:
-    """The active station: what it was brought, what it did, and its rounds."""
+    """The leading station: received records, its actions, and its rounds."""
 
     def __init__(self, router: MemoryRouter) -> None:
         self.brought: list[tuple[str, bytes]] = []
@@ -51,13 +53,13 @@ class Leading:
         self.there = True
         self.settled = True
         self.written = True
-        self.waiting: list[Future[ActionResult]] = []  # for what is done to be written down
+        self.waiting: list[Future[ActionResult]] = []  # time for the records of the actions
         self.bus = router.attach_station()
-        self._state = StationState()  # of what is in its log
+        self._state = StationState()  # in its log
         self.start()
 
     def start(self) -> None:
-        """Of what it did before it knows what its log has."""
+        """Actions before it has the state of its log."""
         self._merging = BranchMerge(
             self.bus,
             self,
@@ -92,7 +94,7 @@ class Leading:
 
 
 def leading_with(folder: Path, records: Sequence[Record]) -> Leading:
-    """It finds one part of these."""
+    """A leading station that finds one branch of these records."""
     recorder = Recorder(folder, SystemClock())
     for record in records:
         recorder.write(*record)
@@ -104,7 +106,7 @@ def leading_with(folder: Path, records: Sequence[Record]) -> Leading:
 
 
 def looking_until(leading: Leading, waits: Callable[[], bool]) -> Thread:
-    """A round that has come as far as that."""
+    """A round that has reached that point."""
     looking = Thread(target=leading.look)
     looking.start()
     until(waits)
@@ -118,7 +120,7 @@ def closed_by(person: str) -> Record:
 
 @pytest.fixture
 def leading(tmp_path: Path) -> Leading:
-    """It finds messages of a unit, and behind them what Ada and the station did."""
+    """It finds messages of a unit, and behind them actions of Ada and of the station."""
     stated = [(T0 + number, EVENT.key("u"), b"%d" % number) for number in range(UNITS)]
     return leading_with(tmp_path, [*stated, closed_by("ada"), closed_by(STATION_ID)])
 
@@ -126,7 +128,7 @@ def leading(tmp_path: Path) -> Leading:
 ALL = [(backfilled_key("u", EVENT.suffix), b"%d" % number) for number in range(UNITS)]
 
 
-def test_units_messages_come_as_what_was_fetched_late_and_only_once(
+def test_messages_of_units_are_added_as_late_ones_and_once(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.look()
@@ -136,7 +138,7 @@ def test_units_messages_come_as_what_was_fetched_late_and_only_once(
     assert leading.brought == ALL
 
 
-def test_what_a_person_did_is_written_down_and_not_done(leading: Leading) -> None:
+def test_actions_of_people_are_recorded_and_not_done(leading: Leading) -> None:
     leading.look()
     apart, report = leading.done
     assert apart == DoneApart("b", T0 + UNITS, "ada", "CloseIncident i1")
@@ -159,14 +161,14 @@ def test_what_a_person_did_is_written_down_and_not_done(leading: Leading) -> Non
         (Assign("FF-01", "p1", "Ada", "red", "leader"), "Assign FF-01, p1"),
     ],
 )
-def test_what_a_person_did_is_reported_in_words(tmp_path: Path, action: Action, what: str) -> None:
+def test_actions_of_people_are_reported_in_words(tmp_path: Path, action: Action, what: str) -> None:
     done = OperatorAction(Header(STATION_ID, 1, 1, 5), "a1", "ada", action)
     leading = leading_with(tmp_path, [(T0, OPERATOR.key(STATION_ID), encode(done))])
     leading.look()
     assert leading.done[0] == DoneApart("b", T0, "ada", what)
 
 
-def test_a_station_that_ends_meanwhile_takes_the_whole_part_another_time(
+def test_station_stopped_meanwhile_takes_the_whole_branch_later(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.stop_after = 1
@@ -180,7 +182,7 @@ def test_a_station_that_ends_meanwhile_takes_the_whole_part_another_time(
     assert parts(tmp_path) == []
 
 
-def test_a_part_is_not_reported_of_before_what_it_brought_is_on_the_disk(
+def test_branch_is_not_confirmed_before_its_messages_are_on_the_disk(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.settled = False
@@ -192,10 +194,10 @@ def test_a_part_is_not_reported_of_before_what_it_brought_is_on_the_disk(
     assert parts(tmp_path) == []
 
 
-def test_a_part_is_not_reported_of_before_what_people_did_there_is_written_down(
+def test_branch_is_not_confirmed_before_its_actions_are_recorded(
     leading: Leading, tmp_path: Path
 ) -> None:
-    """A station that dies then would have told nobody of it."""
+    """A station that failed then would have reported them to nobody."""
     leading.written = False
     looking = looking_until(leading, lambda: len(leading.waiting) == 2)
     for reported in leading.waiting:
@@ -205,7 +207,7 @@ def test_a_part_is_not_reported_of_before_what_people_did_there_is_written_down(
     assert parts(tmp_path) == []
 
 
-def test_what_people_did_is_left_to_the_station_that_leads_by_then(
+def test_actions_are_left_to_the_station_that_leads_by_then(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.written = False
@@ -221,26 +223,26 @@ def test_what_people_did_is_left_to_the_station_that_leads_by_then(
 
 
 @pytest.mark.parametrize("starts_again", [False, True])
-def test_a_part_that_comes_again_names_what_people_did_once(
+def test_repeated_branch_names_its_actions_once(
     leading: Leading, monkeypatch: pytest.MonkeyPatch, starts_again: bool
 ) -> None:
     with monkeypatch.context() as broken:
         broken.setattr("base_station.standby.branch_merge.mark_merged", lambda *_: None)
-        leading.look()  # the word that it is taken was lost
+        leading.look()  # its confirmation was lost
     if starts_again:
         leading.start()
     leading.look()
     assert [type(one) for one in leading.done] == [DoneApart, ReportProblem]
 
 
-def test_a_station_that_does_not_lead_asks_for_nothing(leading: Leading, tmp_path: Path) -> None:
+def test_station_that_does_not_lead_requests_nothing(leading: Leading, tmp_path: Path) -> None:
     leading.there = False
     leading.look()
     assert leading.brought == []
     assert len(parts(tmp_path)) == 1
 
 
-def test_only_what_people_did_is_written_down_and_only_then_is_there_an_alarm(
+def test_actions_are_recorded_alone_and_the_alarm_follows(
     tmp_path: Path,
 ) -> None:
     tick, unread = encode(Tick(Header(STATION_ID, 1, 1, 5), T0)), unread_key("u", 7, 3, "up/later")
@@ -257,7 +259,7 @@ def test_only_what_people_did_is_written_down_and_only_then_is_there_an_alarm(
     assert parts(tmp_path) == []
 
 
-def test_a_station_that_ends_while_the_disk_does_not_take_it_tells_of_nothing(
+def test_station_stopped_while_the_disk_refuses_reports_nothing(
     leading: Leading, tmp_path: Path
 ) -> None:
     leading.settled = False
@@ -270,7 +272,7 @@ def test_a_station_that_ends_while_the_disk_does_not_take_it_tells_of_nothing(
 
 
 @pytest.mark.parametrize("name", [b"", b"..", b"../log", b"20990101"])
-def test_what_was_not_set_aside_is_neither_given_nor_reported_of(
+def test_records_that_were_not_set_aside_are_neither_given_nor_confirmed(
     leading: Leading, tmp_path: Path, name: bytes
 ) -> None:
     before = sorted(tmp_path.rglob("*"))

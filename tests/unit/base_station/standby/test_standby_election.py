@@ -1,4 +1,4 @@
-"""Which of two stations leads, in simulated time."""
+"""Election of the leader of two stations, in simulated time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HERE = LogPosition(50, 1)
 
 
 class Site:
-    """One station's election, and what it hears of the other."""
+    """Election of one station, and the messages that it receives of the other."""
 
     def __init__(self, *, preferred: bool = False) -> None:
         self.now_s = 100.0
@@ -45,14 +45,14 @@ class Site:
 
 
 @pytest.mark.parametrize(("preferred", "waits_s"), [(True, LEASE_S), (False, 2 * LEASE_S)])
-def test_alone_it_leads_after_a_while(preferred: bool, waits_s: float) -> None:
+def test_single_station_leads_after_a_while(preferred: bool, waits_s: float) -> None:
     site = Site(preferred=preferred)
     assert site.decide(waits_s - 0.1) == "stay"
     assert site.decide(0.1) == "lead"
 
 
-def test_one_that_comes_back_waits_for_another_that_listens_and_is_not_received_yet() -> None:
-    """The two routers have not linked: it would lead beside the one that leads."""
+def test_returning_station_waits_for_a_linked_peer_without_messages() -> None:
+    """The two routers have not linked: it would lead beside the leader."""
     site = Site(preferred=True)
     site.me = site.me._replace(other_listens=True)
     assert site.decide(3 * LEASE_S) == "stay"
@@ -60,13 +60,13 @@ def test_one_that_comes_back_waits_for_another_that_listens_and_is_not_received_
     assert site.decide() == "follow"
 
 
-def test_one_whose_other_listens_and_never_says_anything_leads_in_the_end() -> None:
+def test_station_whose_linked_peer_stays_silent_leads_in_the_end() -> None:
     site = Site(preferred=True)
     site.me = site.me._replace(other_listens=True)
     assert site.decide(10 * LEASE_S) == "lead"
 
 
-def test_a_new_standby_with_an_empty_log_leads_nobody() -> None:
+def test_new_standby_with_an_empty_log_does_not_lead() -> None:
     site = Site(preferred=False)
     site.me = site.me._replace(place=START, term=0)
     assert site.decide(100 * LEASE_S) == "stay"
@@ -74,13 +74,13 @@ def test_a_new_standby_with_an_empty_log_leads_nobody() -> None:
     assert site.decide() == "lead"
 
 
-def test_where_another_one_leads_it_follows_whatever_it_had() -> None:
+def test_station_follows_a_leader_whatever_its_own_log() -> None:
     site = Site(preferred=True)
     site.receive("active", term=1, place=START)
     assert site.decide() == "follow"
 
 
-def test_of_two_that_wait_who_has_more_of_the_log_leads() -> None:
+def test_longer_log_leads_of_two_that_wait() -> None:
     site = Site()
     site.receive("waiting", place=LogPosition(50, 2))
     assert site.decide() == "stay"
@@ -88,13 +88,13 @@ def test_of_two_that_wait_who_has_more_of_the_log_leads() -> None:
     assert site.decide() == "lead"
 
 
-def test_of_two_that_have_the_same_the_preferred_one_leads() -> None:
+def test_preferred_station_leads_of_two_with_equal_logs() -> None:
     site = Site(preferred=False)
     site.receive("waiting")
     assert site.decide() == "stay"
 
 
-def test_a_standby_takes_over_when_the_lease_is_over_and_not_before() -> None:
+def test_standby_takes_over_at_the_end_of_the_lease_and_not_before() -> None:
     site = Site()
     site.become("standby")
     site.receive("active")
@@ -103,8 +103,8 @@ def test_a_standby_takes_over_when_the_lease_is_over_and_not_before() -> None:
     assert site.decide(0.1) == "lead"
 
 
-def test_one_that_has_not_caught_up_waits_for_the_other_to_come_back() -> None:
-    """It would lead without what people have done, and the other would have to cut that off."""
+def test_station_behind_the_log_waits_for_the_return_of_the_other() -> None:
+    """It would lead without actions of people, and the other would have to cut those off."""
     site = Site()
     site.become("standby")
     hour = LogPosition(3600 * NS_PER_S, 1)
@@ -120,7 +120,7 @@ def test_one_that_has_not_caught_up_waits_for_the_other_to_come_back() -> None:
 
 
 @pytest.mark.parametrize("units", [0, 1])
-def test_one_that_lacks_the_last_moments_does_not_wait(units: int) -> None:
+def test_station_that_lacks_the_last_moments_does_not_wait(units: int) -> None:
     site = Site()
     site.become("standby")
     site.receive("active", place=LogPosition(3600 * NS_PER_S, 1), units=units)
@@ -129,7 +129,7 @@ def test_one_that_lacks_the_last_moments_does_not_wait(units: int) -> None:
     assert site.decide(LEASE_S) == "lead"
 
 
-def test_it_is_sooner_sure_when_the_token_is_gone_too() -> None:
+def test_missing_token_shortens_the_lease() -> None:
     site = Site()
     site.become("standby")
     site.receive("active")
@@ -139,7 +139,7 @@ def test_it_is_sooner_sure_when_the_token_is_gone_too() -> None:
     assert site.decide(0.1) == "lead"
 
 
-def test_a_router_that_opens_again_takes_the_token_away_for_a_moment_only() -> None:
+def test_reopened_router_removes_the_token_for_a_moment_only() -> None:
     site = Site()
     site.become("standby")
     for _ in range(20):
@@ -148,19 +148,19 @@ def test_a_router_that_opens_again_takes_the_token_away_for_a_moment_only() -> N
         assert site.decide(0.5) == "stay"
 
 
-def test_who_receives_no_unit_though_the_active_station_had_some_is_cut_off_and_waits() -> None:
+def test_station_without_units_that_the_leader_had_is_cut_off_and_waits() -> None:
     site = Site()
     site.become("standby")
     site.receive("active", units=2)
-    site.receive_unit(after_s=0.2)  # that had been said before the cable was cut
+    site.receive_unit(after_s=0.2)  # sent before the cable was cut
     assert site.decide(10 * LEASE_S) == "stay"
     assert site.election.is_cut_off(site.now_ns)
-    site.receive_unit(after_s=0.2)  # it has come over to this station's router
+    site.receive_unit(after_s=0.2)  # it has changed to this station's router
     assert site.decide(0.9) == "stay"
     assert site.decide(0.1) == "lead"
 
 
-def test_a_unit_that_is_received_first_when_the_cable_is_whole_again_changes_nothing() -> None:
+def test_unit_received_first_after_the_cable_is_repaired_changes_nothing() -> None:
     site = Site()
     site.become("standby")
     site.receive("active")
@@ -171,7 +171,7 @@ def test_a_unit_that_is_received_first_when_the_cable_is_whole_again_changes_not
     assert site.decide(2.0) == "stay"
 
 
-def test_where_the_active_station_had_no_units_none_are_waited_for() -> None:
+def test_units_are_not_waited_for_where_the_leader_had_none() -> None:
     site = Site()
     site.become("standby")
     site.receive("active", units=0)
@@ -179,8 +179,10 @@ def test_where_the_active_station_had_no_units_none_are_waited_for() -> None:
     assert not site.election.is_cut_off(site.now_ns)
 
 
-def test_where_nobody_could_tell_a_router_that_opens_again_is_waited_for() -> None:
-    """As both do when the first unit is enrolled: for seconds neither station hears the other."""
+def test_reopening_router_is_waited_for_without_evidence() -> None:
+    """As both do when the first unit is enrolled: for seconds neither station receives the
+    other.
+    """
     site = Site()
     site.become("standby")
     site.receive("active", units=0)
@@ -192,7 +194,7 @@ def test_where_nobody_could_tell_a_router_that_opens_again_is_waited_for() -> No
     assert site.decide() == "stay"
 
 
-def test_where_nobody_could_tell_a_station_that_is_gone_is_not_waited_for_long() -> None:
+def test_lost_station_is_not_waited_for_long_without_evidence() -> None:
     site = Site()
     site.become("standby")
     site.receive("active", units=0)
@@ -203,7 +205,7 @@ def test_where_nobody_could_tell_a_station_that_is_gone_is_not_waited_for_long()
     assert site.decide(0.1) == "lead"
 
 
-def test_where_nobody_could_tell_a_station_that_hangs_is_taken_over_from_in_the_end() -> None:
+def test_hanging_station_is_replaced_in_the_end_without_evidence() -> None:
     site = Site()
     site.become("standby")
     site.receive("active", units=0)
@@ -213,7 +215,7 @@ def test_where_nobody_could_tell_a_station_that_hangs_is_taken_over_from_in_the_
     assert site.decide(LEASE_S) == "lead"
 
 
-def test_a_standby_leads_when_the_active_one_starts_again_with_less() -> None:
+def test_standby_leads_when_the_leader_restarts_with_less() -> None:
     site = Site()
     site.become("standby")
     site.receive("waiting", place=LogPosition(49, 1))
@@ -221,14 +223,14 @@ def test_a_standby_leads_when_the_active_one_starts_again_with_less() -> None:
 
 
 @pytest.mark.parametrize(("theirs", "decision"), [(2, "step back"), (1, "step back"), (0, "stay")])
-def test_of_two_that_lead_the_later_take_over_stays(theirs: int, decision: Decision) -> None:
-    site = Site(preferred=False)  # the other is, which decides between equal terms
+def test_later_take_over_stays_of_two_leaders(theirs: int, decision: Decision) -> None:
+    site = Site(preferred=False)  # as the other one is, which decides between equal terms
     site.become("active")
     site.receive("active", term=theirs)
     assert site.decide() == decision
 
 
-def test_one_of_two_that_lead_steps_back_and_not_both() -> None:
+def test_one_of_two_leaders_steps_back_and_not_both() -> None:
     for mine in (1, 2, 3):
         for theirs in (1, 2, 3):
             here = Site(preferred=False)
@@ -242,14 +244,14 @@ def test_one_of_two_that_lead_steps_back_and_not_both() -> None:
             assert {here.decide(), other} == {"stay", "step back"}
 
 
-def test_an_active_station_goes_on_when_the_other_is_gone() -> None:
+def test_leader_continues_when_the_other_is_gone() -> None:
     site = Site()
     site.become("active")
     site.receive("standby")
     assert site.decide(100 * LEASE_S) == "stay"
 
 
-def test_one_that_leads_does_not_step_back_for_one_that_follows() -> None:
+def test_leader_does_not_step_back_for_a_follower() -> None:
     """Though that one's name, preference and log be the greater."""
     site = Site()
     site.become("active")
@@ -258,9 +260,7 @@ def test_one_that_leads_does_not_step_back_for_one_that_follows() -> None:
         assert site.decide() == "stay"
 
 
-def test_it_is_stated_to_be_cut_off_only_where_a_standby_receives_neither_station_nor_unit() -> (
-    None
-):
+def test_cut_off_is_reported_only_where_a_standby_receives_neither_station_nor_unit() -> None:
     site = Site()
 
     def is_cut_off() -> bool:
@@ -280,7 +280,7 @@ def test_it_is_stated_to_be_cut_off_only_where_a_standby_receives_neither_statio
     assert not is_cut_off(), "it leads"
 
 
-def test_what_units_stated_before_the_other_was_received_again_is_no_witness() -> None:
+def test_units_received_before_the_other_returned_are_no_evidence() -> None:
     site = Site()
     site.receive("active")
     site.become("standby")

@@ -1,4 +1,4 @@
-"""What a station's drive takes, before it leads and after."""
+"""Input of a station's engine, before it leads and after."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ def feed(clock: ManualClock) -> StandbyFeed:
     return StandbyFeed(LiveFeed(SteadyClock(clock)), clock)
 
 
-def test_the_other_log_comes_first_then_what_was_received_then_the_bus(feed: StandbyFeed) -> None:
+def test_log_of_the_other_comes_first_then_replicated_records_then_the_bus(
+    feed: StandbyFeed,
+) -> None:
     feed.offer(EVENT.key("u"), b"heard")
     feed.deliver(EVENTS)
     feed.lead()
@@ -33,7 +35,7 @@ def test_the_other_log_comes_first_then_what_was_received_then_the_bus(feed: Sta
     assert [r[1:] for r in feed.take(1.0)] == [(POSITION.key("u"), b"live")]
 
 
-def test_only_the_last_of_the_bus_is_kept(feed: StandbyFeed, clock: ManualClock) -> None:
+def test_only_the_last_messages_of_the_bus_are_kept(feed: StandbyFeed, clock: ManualClock) -> None:
     feed.offer(EVENT.key("u"), b"long ago")
     clock.advance(31.0)
     feed.offer(EVENT.key("u"), b"just now")
@@ -41,14 +43,14 @@ def test_only_the_last_of_the_bus_is_kept(feed: StandbyFeed, clock: ManualClock)
     assert [payload for _, _, payload in feed.take(1.0)] == [b"just now"]
 
 
-def test_nobody_but_units_is_kept(feed: StandbyFeed) -> None:
+def test_only_messages_of_units_are_kept(feed: StandbyFeed) -> None:
     feed.offer(TICKED, b"forged")
     feed.offer("muster/v1/u/command/send", b"the other station said it")
     feed.lead()
     assert list(feed.take(0.0)) == []
 
 
-def test_what_is_kept_of_the_bus_is_bounded(feed: StandbyFeed) -> None:
+def test_number_of_kept_messages_is_bounded(feed: StandbyFeed) -> None:
     size = 1_000_000
     for number in range(40):
         feed.offer(POSITION.key("u"), number.to_bytes(2, "big") + bytes(size))
@@ -58,7 +60,7 @@ def test_what_is_kept_of_the_bus_is_bounded(feed: StandbyFeed) -> None:
     assert 10 <= len(kept) <= 17
 
 
-def test_who_waits_for_events_can_be_woken(feed: StandbyFeed) -> None:
+def test_wait_for_events_can_be_woken(feed: StandbyFeed) -> None:
     feed.wake()
     assert list(feed.take(3600.0)) == []
     feed.deliver(EVENTS)

@@ -1,4 +1,4 @@
-"""One of two stations takes the other's place, whatever its own disk has taken of the log."""
+"""Take-over by a standby, whatever its own disk has accepted of the log."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.rig.waiting import until
 
 
 class LogFollower:
-    """One of two, that has followed the other; its drive steps what is delivered."""
+    """A standby that has followed the other; its engine steps the delivered records."""
 
     def __init__(self, folder: Path) -> None:
         clock = SteadyClock(SystemClock())
@@ -71,7 +71,7 @@ def follower(tmp_path: Path) -> Iterator[LogFollower]:
 
 
 @pytest.mark.parametrize("room", [9, 3])
-def test_it_takes_over_at_once_though_its_disk_refused_what_it_followed(
+def test_standby_takes_over_at_once_though_its_disk_refused_records(
     follower: LogFollower, monkeypatch: pytest.MonkeyPatch, room: int
 ) -> None:
     """The place up to which it has stepped is not in its log, and never will be."""
@@ -95,10 +95,10 @@ def test_it_takes_over_at_once_though_its_disk_refused_what_it_followed(
     assert follower.log.place == LogPosition(t_ns, 1)
 
 
-def test_what_its_disk_refused_is_not_taken_for_a_log_that_it_is_still_fetching(
+def test_refused_records_are_not_taken_for_a_log_that_is_still_fetched(
     follower: LogFollower,
 ) -> None:
-    """Nothing else would come of waiting: it has stepped all of it."""
+    """Waiting would change nothing: it has stepped all of it."""
     follower.disk.room = 3
     follower.deliver(9)
     me = follower.pair._me()

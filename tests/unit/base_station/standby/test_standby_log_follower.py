@@ -26,7 +26,7 @@ from tests.rig.waiting import until
 
 
 class Pairing:
-    """An active log, and one that follows it."""
+    """A leading log, and one that follows it."""
 
     def __init__(self, folder: Path) -> None:
         clock = SteadyClock(SystemClock())
@@ -45,7 +45,7 @@ class Pairing:
         return LogSender("a", bus, self.active, disk(self.recorders[0]), lambda: True)
 
     def step(self) -> None:
-        """What a drive does."""
+        """Work of an engine."""
         for record in self.feed.take(0.01):
             self.standby.write(*record)
 
@@ -64,9 +64,9 @@ def pairing(tmp_path: Path) -> Iterator[Pairing]:
     pairing.close()
 
 
-def test_a_standby_fetches_what_was_before_it_and_goes_on(pairing: Pairing) -> None:
+def test_standby_fetches_earlier_records_and_continues(pairing: Pairing) -> None:
     written(pairing.recorders[0], pairing.active, events(30))
-    # As after a restart of the active station: the past is on its disk only.
+    # As after a restart of the leading station: the past is on its disk only.
     restarted = SharedLog(pairing.recorders[0], SystemClock())
     restarted.begin(pairing.active.place, T0, ())
     pairing.shipping._log = restarted
@@ -86,10 +86,10 @@ def test_a_standby_fetches_what_was_before_it_and_goes_on(pairing: Pairing) -> N
     assert pairing.cuts == []
 
 
-def test_what_waits_to_be_stepped_is_not_fetched_again_when_the_link_comes_back(
+def test_records_waiting_to_be_stepped_are_not_fetched_again_after_a_lost_link(
     pairing: Pairing,
 ) -> None:
-    """The active station does not answer for a moment while this one catches up."""
+    """The leading station does not answer for a moment while this one catches up."""
     written(pairing.recorders[0], pairing.active, events(30))
     pairing.follower.start()
     pairing.follower.follow(Leader("a", 1))
@@ -109,7 +109,7 @@ def test_what_waits_to_be_stepped_is_not_fetched_again_when_the_link_comes_back(
     assert [r for r in disk(pairing.recorders[1]).records() if r[1] == TICKED] == events(60)
 
 
-def test_a_standby_is_in_step_when_it_has_stepped_a_long_log_and_not_before(
+def test_standby_is_in_step_when_it_has_stepped_a_long_log_and_not_before(
     pairing: Pairing,
 ) -> None:
     written(pairing.recorders[0], pairing.active, events(5000))
@@ -129,7 +129,7 @@ def test_a_standby_is_in_step_when_it_has_stepped_a_long_log_and_not_before(
     until(lambda: pairing.follower.in_step)
 
 
-def test_a_log_that_went_its_own_way_is_to_be_cut_and_nothing_is_fetched(pairing: Pairing) -> None:
+def test_diverged_log_is_to_be_cut_and_nothing_is_fetched(pairing: Pairing) -> None:
     shared = events(6)
     for recorder, log in zip(pairing.recorders, (pairing.active, pairing.standby), strict=True):
         written(recorder, log, shared)
@@ -139,14 +139,14 @@ def test_a_log_that_went_its_own_way_is_to_be_cut_and_nothing_is_fetched(pairing
     pairing.follower.start()
     pairing.follower.follow(Leader("a", 1))
     until(lambda: pairing.cuts != [])
-    time.sleep(0.5)  # it is told once
+    time.sleep(0.5)  # it is reported once
     assert pairing.cuts == [place]
     pairing.step()
     assert pairing.standby.place == LogPosition(T0 + 50, 1)
 
 
-def test_a_log_that_went_its_own_way_confirms_nothing(pairing: Pairing) -> None:
-    """It may reach farther than the leader's, which would take all that comes for safe."""
+def test_diverged_log_confirms_nothing(pairing: Pairing) -> None:
+    """It may be longer than the leader's, which would take all records for safe."""
     for recorder, log in zip(pairing.recorders, (pairing.active, pairing.standby), strict=True):
         written(recorder, log, events(6))
     place = pairing.active.place
@@ -167,7 +167,7 @@ def test_a_log_that_went_its_own_way_confirms_nothing(pairing: Pairing) -> None:
     subscribed.close()
 
 
-def test_what_kept_it_from_following_is_no_trouble_of_a_station_that_leads(
+def test_reason_for_not_following_is_no_problem_of_a_leader(
     pairing: Pairing,
 ) -> None:
     for recorder, log, number in zip(
@@ -181,7 +181,7 @@ def test_what_kept_it_from_following_is_no_trouble_of_a_station_that_leads(
     assert pairing.follower.problem == ""
 
 
-def test_nothing_is_delivered_any_more_once_following_was_stopped(pairing: Pairing) -> None:
+def test_nothing_is_delivered_once_following_was_stopped(pairing: Pairing) -> None:
     pairing.follower.start()
     pairing.follower.follow(Leader("a", 1))
     pairing.follower.stop_following()
@@ -189,7 +189,7 @@ def test_nothing_is_delivered_any_more_once_following_was_stopped(pairing: Pairi
     assert list(pairing.feed.take(0.5)) == []
 
 
-def test_an_answer_that_was_under_way_when_following_was_stopped_is_not_delivered(
+def test_answer_in_transit_when_following_was_stopped_is_not_delivered(
     pairing: Pairing, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     follower, ask, asked = pairing.follower, pairing.follower._ask, list[str]()

@@ -1,4 +1,4 @@
-"""A log is cut where two stations parted, and what stood behind it is kept beside."""
+"""A log is cut where two stations diverged, and the records behind it are kept beside."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tests.rig.standby_logs import T0, TICKED, events, written
 
 
 @pytest.mark.parametrize("kept", [0, 1, 7, 20])
-def test_a_cut_log_holds_what_stands_up_to_the_place_and_the_rest_is_beside(
+def test_cut_log_holds_the_records_up_to_the_cut_and_the_rest_is_beside(
     tmp_path: Path, kept: int
 ) -> None:
     records = events(20)
@@ -39,14 +39,14 @@ def test_a_cut_log_holds_what_stands_up_to_the_place_and_the_rest_is_beside(
     set_aside(folder, place)
     left = list(LogFeed(folder.log).records())
     assert [record for record in left if record[1] == TICKED] == records[:kept]
-    assert len(left) == 2 * kept  # with what was decided
+    assert len(left) == 2 * kept  # with its decisions
     (name,) = parts(tmp_path)
     assert list(read_part(tmp_path, name)) == records[kept:]
     mark_merged(tmp_path, name)
     assert parts(tmp_path) == []
 
 
-def test_a_log_goes_on_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -> None:
+def test_log_continues_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -> None:
     records = events(9)
     for begin, apart in ((0, b"once"), (9, b"twice")):
         recorder = Recorder(tmp_path, SystemClock())
@@ -65,7 +65,7 @@ def test_a_log_goes_on_behind_a_cut_and_may_be_cut_there_again(tmp_path: Path) -
     assert reported == [[b"once"], [b"twice"]]
 
 
-def test_a_log_is_cut_between_two_events_of_one_time_though_a_segment_ends_there(
+def test_log_is_cut_between_two_events_of_one_time_though_a_segment_ends_there(
     tmp_path: Path,
 ) -> None:
     records = events(6)  # of which the last two have one time
@@ -79,8 +79,8 @@ def test_a_log_is_cut_between_two_events_of_one_time_though_a_segment_ends_there
     assert list(read_part(tmp_path, name)) == records[5:]
 
 
-def test_what_was_set_aside_does_not_come_back_with_the_next_start(tmp_path: Path) -> None:
-    """It was killed, and what it mended of its log has the torn file beside it."""
+def test_set_aside_records_do_not_come_back_with_the_next_start(tmp_path: Path) -> None:
+    """It was killed, and the repair of its log has the torn file beside it."""
     records = [*events(9), (T0 + 10**12, TICKED, b"apart"), (T0 + 10**12 + 1, TICKED, b"apart too")]
     recorder = Recorder(tmp_path, SystemClock())
     written(recorder, SharedLog(recorder, SystemClock()), records)
@@ -98,7 +98,7 @@ def test_what_was_set_aside_does_not_come_back_with_the_next_start(tmp_path: Pat
     assert list(read_part(tmp_path, name)) == records[9:]
 
 
-def test_a_log_on_a_disk_of_its_own_is_cut_too(
+def test_log_on_a_disk_of_its_own_is_cut_too(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As where DATA/log is a mount, or a link to one."""

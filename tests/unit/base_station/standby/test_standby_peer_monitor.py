@@ -1,4 +1,4 @@
-"""Whom one of two stations takes for the other, and whom it only tells of."""
+"""The peer of a station: which sender it accepts, and which it only reports."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ OTHER = PeerHeartbeat(
 
 
 class Ends:
-    """Station a, which hears, and whoever speaks."""
+    """Station a, which receives, and the senders."""
 
     def __init__(self) -> None:
         router = MemoryRouter()
@@ -70,7 +70,7 @@ def test_the_other_station_is_received(ends: Ends) -> None:
     assert ends.hearing.stranger == ""
 
 
-def test_its_own_beat_and_what_is_none_are_left_out(ends: Ends) -> None:
+def test_own_heartbeat_and_invalid_ones_are_ignored(ends: Ends) -> None:
     ends.beat(station="a", run=RUN)
     ends.say("beat", b"rubbish")
     ends.say("have", b"rubbish")
@@ -84,7 +84,7 @@ def test_its_own_beat_and_what_is_none_are_left_out(ends: Ends) -> None:
         ({"protocol": PROTOCOL + 1}, "Station b is of another version"),
     ],
 )
-def test_who_is_no_partner_is_reported_of_while_it_is_there(
+def test_foreign_station_is_reported_while_it_is_there(
     ends: Ends, changes: dict[str, object], reported: str
 ) -> None:
     ends.beat(**changes)
@@ -94,7 +94,7 @@ def test_who_is_no_partner_is_reported_of_while_it_is_there(
     assert ends.hearing.stranger == ""
 
 
-def test_only_who_follows_this_run_of_the_program_has_its_log(ends: Ends) -> None:
+def test_only_a_follower_of_this_run_has_its_log(ends: Ends) -> None:
     ends.say("have", pack(ReplicationAck(RUN, LogPosition(5, 1))))
     ends.say("have", pack(ReplicationAck(RUN + 1, LogPosition(9, 1))))
     assert ends.places == [LogPosition(5, 1)]
@@ -107,7 +107,7 @@ def test_linked_units_are_counted(ends: Ends) -> None:
     assert ends.hearing.units == 0
 
 
-def test_another_station_that_stated_goodbye_is_waited_for_half_as_long(ends: Ends) -> None:
+def test_station_that_said_goodbye_is_waited_for_half_as_long(ends: Ends) -> None:
     token = ends.speaker.declare_alive(key_of("b", "alive"))
     own = ends.speaker.declare_alive(key_of("a", "alive"))
     ends.beat()

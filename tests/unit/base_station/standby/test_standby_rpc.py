@@ -1,4 +1,4 @@
-"""Answers between stations travel in pieces, and come whole or not at all."""
+"""Answers between stations travel in pieces, and arrive complete or not at all."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PIECE = 512 * 1024
 
 
 @pytest.mark.parametrize("size", [0, 1, PIECE, PIECE + 1, 12_000_000])
-def test_an_answer_of_any_size_comes_whole(size: int) -> None:
+def test_answer_of_any_size_arrives_complete(size: int) -> None:
     router = MemoryRouter()
     answers = [bytes([number]) * size for number in range(3)]
     RpcServer("first", router.attach_station(), {"plan": lambda *_: iter(answers)})
@@ -27,7 +27,7 @@ def test_no_piece_is_larger_than_a_router_takes() -> None:
     assert max(map(len, pieces)) <= PIECE + 1
 
 
-def test_an_answer_that_is_cut_short_is_none() -> None:
+def test_truncated_answer_is_refused() -> None:
     def killed(*_: object) -> Iterator[bytes]:
         yield b"\x00whole"
         yield b"\x01the beginning of"

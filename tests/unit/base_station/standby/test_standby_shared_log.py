@@ -1,4 +1,4 @@
-"""A log that two stations share: its places, what is at hand, where a full disk ends it."""
+"""A log that two stations share: its places, records in memory, and the effect of a full disk."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ def log(recorder: Recorder) -> SharedLog:
     return SharedLog(recorder, SystemClock())
 
 
-def test_a_place_counts_events_and_not_what_was_decided(recorder: Recorder, log: SharedLog) -> None:
+def test_place_counts_events_and_not_decisions(recorder: Recorder, log: SharedLog) -> None:
     written(recorder, log, events(6))
     assert log.place == LogPosition(T0 + 4, 2)
     log.write(T0 + 9, ALARM.key(STATION_ID), b"decided")
     assert log.place == LogPosition(T0 + 4, 2)
 
 
-def test_what_stands_behind_any_place_is_served_from_memory_as_from_the_disk(
+def test_records_behind_any_place_are_the_same_from_memory_and_disk(
     recorder: Recorder, log: SharedLog
 ) -> None:
     records = events(20)
@@ -50,7 +50,7 @@ def test_what_stands_behind_any_place_is_served_from_memory_as_from_the_disk(
             place = place.next(records[done][0])
 
 
-def test_what_is_no_longer_at_hand_is_stated_to_be_on_the_disk_only(
+def test_records_no_longer_in_memory_are_reported_as_on_the_disk_only(
     recorder: Recorder, log: SharedLog
 ) -> None:
     written(recorder, log, events(3))
@@ -60,9 +60,7 @@ def test_what_is_no_longer_at_hand_is_stated_to_be_on_the_disk_only(
     assert later.behind(log.place, 10**6) == []
 
 
-def test_nothing_stays_in_memory_of_who_is_to_be_forgotten(
-    recorder: Recorder, log: SharedLog
-) -> None:
+def test_erased_person_leaves_nothing_in_memory(recorder: Recorder, log: SharedLog) -> None:
     written(recorder, log, events(3))
     forget = OperatorAction(Header(STATION_ID, 1, 1, 5), "x", "ada", ForgetWearers("u"))
     log.write(T0 + 9, OPERATOR.key(STATION_ID), encode(forget))
@@ -70,7 +68,7 @@ def test_nothing_stays_in_memory_of_who_is_to_be_forgotten(
     assert log.behind(log.place, 10**6) == []
 
 
-def test_of_a_long_log_the_newest_stay_at_hand_and_the_rest_is_stated_to_be_on_the_disk(
+def test_newest_records_of_a_long_log_stay_in_memory_and_the_rest_is_on_the_disk(
     recorder: Recorder, log: SharedLog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.standby.shared_log._RECENT_BYTES", 300)
@@ -85,10 +83,10 @@ def test_of_a_long_log_the_newest_stay_at_hand_and_the_rest_is_stated_to_be_on_t
             place = place.next(records[done][0])
     assert at_hand == sorted(at_hand)
     kept_bytes = sum(len(payload) for _, _, payload in records[at_hand.index(True) :])
-    assert 240 < kept_bytes <= 600  # between what is left and what makes it forget
+    assert 240 < kept_bytes <= 600  # between the rest and the record that displaces it
 
 
-def test_no_more_is_given_at_once_than_was_asked_for_but_always_something(
+def test_answer_has_at_most_the_requested_size_but_never_nothing(
     recorder: Recorder, log: SharedLog
 ) -> None:
     records = events(10)  # of seven bytes each
@@ -97,7 +95,7 @@ def test_no_more_is_given_at_once_than_was_asked_for_but_always_something(
     assert given == [1, 1, 1, 2, 2, 3]
 
 
-def test_the_term_is_that_of_the_last_take_over_also_one_that_came_later(
+def test_term_is_that_of_the_last_take_over_also_one_that_came_later(
     recorder: Recorder, log: SharedLog
 ) -> None:
     assert (log.term, log.take_overs) == (0, ())
@@ -111,7 +109,7 @@ def test_the_term_is_that_of_the_last_take_over_also_one_that_came_later(
     assert recorder.flush()
 
 
-def test_a_log_that_follows_ends_where_the_disk_refused_and_has_no_hole() -> None:
+def test_following_log_ends_where_the_disk_refused_and_has_no_gap() -> None:
     disk, clock = FullDisk(), ManualClock()
     log = SharedLog(disk, clock)
     log.follows = True
@@ -128,7 +126,7 @@ def test_a_log_that_follows_ends_where_the_disk_refused_and_has_no_hole() -> Non
     assert log.behind(START, 10**6) == events(9)[:3]
 
 
-def test_a_log_that_leads_goes_on_behind_what_the_disk_refused_and_ships_what_it_has() -> None:
+def test_leading_log_continues_behind_refused_records_and_ships_what_it_has() -> None:
     disk, clock = FullDisk(), ManualClock()
     log = SharedLog(disk, clock)
     disk.room, reported = 3, events(9)

@@ -1,4 +1,4 @@
-"""What operators do at a leader is confirmed once the standby has it."""
+"""Actions of operators at a leader are confirmed once the standby has them."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class TestConfirming:
     def act(self, copy: ReplicaProgress, refusal: str | None = None) -> Future[ActionResult]:
         return LeaderOnlyGate(Drive(), copy, lambda: refusal).submit("ada", CloseIncident("i"))
 
-    def test_without_a_standby_an_action_is_confirmed_at_once(self, copy: ReplicaProgress) -> None:
+    def test_action_is_confirmed_at_once_without_a_standby(self, copy: ReplicaProgress) -> None:
         assert self.act(copy).done()
 
-    def test_a_standby_that_stays_away_costs_no_memory_and_is_behind(
+    def test_standby_that_stays_away_takes_bounded_memory_and_is_behind(
         self, copy: ReplicaProgress, clock: ManualClock
     ) -> None:
         copy.note(LogPosition(4, 1))
@@ -67,16 +67,14 @@ class TestConfirming:
         copy.check()
         assert not copy.is_behind
 
-    def test_an_action_waits_until_the_standby_has_it(self, copy: ReplicaProgress) -> None:
+    def test_action_waits_until_the_standby_has_it(self, copy: ReplicaProgress) -> None:
         copy.note(LogPosition(4, 1))
         reported = self.act(copy)
         assert not reported.done()
         copy.note(LogPosition(5, 1))
         assert reported.done()
 
-    def test_each_is_reported_once_whatever_the_standby_says_after_it(
-        self, copy: ReplicaProgress
-    ) -> None:
+    def test_each_confirmation_is_reported_once(self, copy: ReplicaProgress) -> None:
         copy.note(LogPosition(4, 1))
         first = self.act(copy)
         self.place = LogPosition(6, 1)
@@ -87,9 +85,7 @@ class TestConfirming:
             assert first.done()
         assert second.done()
 
-    def test_a_standby_that_was_replaced_has_what_it_says_and_no_more(
-        self, copy: ReplicaProgress
-    ) -> None:
+    def test_replaced_standby_counts_with_its_own_progress(self, copy: ReplicaProgress) -> None:
         for _ in range(2):
             copy.note_report_received()
         copy.note(LogPosition(5, 1))
@@ -102,7 +98,7 @@ class TestConfirming:
         assert reported.done()
         assert copy.previous_report_is_durable()
 
-    def test_when_the_station_ends_nobody_is_left_waiting(self, copy: ReplicaProgress) -> None:
+    def test_stopping_station_releases_all_waiting_actions(self, copy: ReplicaProgress) -> None:
         copy.note(LogPosition(4, 1))
         reported = [self.act(copy) for _ in range(3)]
         assert not any(one.done() for one in reported)
@@ -115,7 +111,7 @@ class TestConfirming:
         [(4, 5, 0.1), (4, 10**9, 2.0), (5, 10**9, 0.0), (None, 10**9, 0.0)],
         ids=["it comes", "it is slow", "it has all", "there is none"],
     )
-    def test_a_station_that_ends_hands_over_what_the_standby_lacks(
+    def test_stopping_station_hands_over_what_the_standby_lacks(
         self, copy: ReplicaProgress, clock: ManualClock, monkeypatch: pytest.MonkeyPatch,
         has: int | None, comes_after: int, waits_s: float,
     ) -> None:  # fmt: skip
@@ -135,7 +131,7 @@ class TestConfirming:
         copy.drain()
         assert clock.monotonic_ns() - began_ns == pytest.approx(waits_s * 1e9, abs=3e7)
 
-    def test_it_does_not_wait_for_long_and_that_is_stated(
+    def test_limited_wait_for_the_standby_is_reported(
         self, copy: ReplicaProgress, clock: ManualClock
     ) -> None:
         copy.note(LogPosition(4, 1))
@@ -150,7 +146,9 @@ class TestConfirming:
         copy.check()
         assert copy.is_behind
 
-    def test_what_a_station_that_stops_does_not_do_is_stated(self, copy: ReplicaProgress) -> None:
+    def test_unfinished_hand_over_of_a_stopping_station_is_reported(
+        self, copy: ReplicaProgress
+    ) -> None:
         class Stopping(Drive):
             def submit(self, by: str, action: Action, action_id: str = "") -> Future[ActionResult]:
                 done: Future[ActionResult] = Future()

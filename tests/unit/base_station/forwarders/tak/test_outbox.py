@@ -84,7 +84,7 @@ def test_outside_an_incident_only_emergencies_go_out() -> None:
     assert desk.kinds() == [RAISED]
 
 
-def test_units_of_others_and_switched_off_ones_do_not_go_out() -> None:
+def test_units_of_others_and_switched_off_ones_are_not_sent() -> None:
     scene = Scene()
     desk = Desk(scene.picture(units=(scene.unit(registered=False),)))
     assert desk.kinds() == []
@@ -94,7 +94,7 @@ def test_units_of_others_and_switched_off_ones_do_not_go_out() -> None:
     assert desk.kinds() == [PERSON]
 
 
-def test_who_is_not_received_is_reported_at_once_and_then_seldom_and_never_as_fresh() -> None:
+def test_unit_without_contact_is_sent_at_once_and_then_seldom_and_never_as_fresh() -> None:
     scene = Scene()
     desk = Desk(scene.picture())
     (first,) = desk.sent()
@@ -110,7 +110,7 @@ def test_who_is_not_received_is_reported_at_once_and_then_seldom_and_never_as_fr
     assert desk.kinds(1.0) == [PERSON]
 
 
-def test_a_new_connection_begins_with_where_everybody_is_now() -> None:
+def test_new_connection_begins_with_all_present_positions() -> None:
     scene = Scene("FF-01", "FF-02")
     desk = Desk(scene.picture())
     assert len(desk.sent()) == 2
@@ -142,14 +142,14 @@ def test_emergencies_go_before_people_and_are_repeated_until_they_are_cancelled(
     assert cancelled == [[CANCELLED]] * 6 + [[]]
 
 
-def test_an_emergency_that_nobody_saw_needs_no_cancellation() -> None:
+def test_emergency_that_was_never_sent_needs_no_cancellation() -> None:
     desk = Desk(Scene().picture())
     desk.sent()
     desk.change(alarms=[alarm(), alarm(state="resolved")])
     assert desk.kinds() == []
 
 
-def test_an_emergency_is_raised_anew_after_it_was_cancelled() -> None:
+def test_emergency_is_raised_again_after_its_cancellation() -> None:
     desk = Desk(Scene().picture(alarms=(alarm(),)))
     assert RAISED in desk.kinds()
     desk.change(alarms=[alarm(state="resolved")])
@@ -160,7 +160,7 @@ def test_an_emergency_is_raised_anew_after_it_was_cancelled() -> None:
     assert desk.kinds(10.0) == [RAISED]
 
 
-def test_what_ended_while_the_station_was_off_is_cancelled() -> None:
+def test_emergency_ended_while_the_station_was_off_is_cancelled() -> None:
     resolved = msgspec.structs.replace(alarm(state="resolved"), changed_ms=T_MS + 90_000)
     desk = Desk(Scene().picture(alarms=(resolved,)))
     assert desk.kinds() == [CANCELLED, PERSON]
@@ -168,21 +168,21 @@ def test_what_ended_while_the_station_was_off_is_cancelled() -> None:
     assert Desk(Scene().picture(alarms=(long_ago,))).kinds() == [PERSON]
 
 
-def test_what_a_new_picture_does_not_have_is_over() -> None:
+def test_emergency_missing_in_a_new_snapshot_is_over() -> None:
     desk = Desk(Scene().picture(alarms=(alarm(),)))
     desk.sent()
     desk.show(Scene().picture())
     assert CANCELLED in desk.kinds()
 
 
-def test_only_emergencies_of_units_are_emergencies_there() -> None:
+def test_only_alarms_of_units_are_emergencies() -> None:
     desk = Desk(Scene().picture())
     desk.sent()
     desk.change(alarms=[alarm(rule="battery", priority=2), alarm(unit_id="")])
     assert desk.kinds() == []
 
 
-def test_an_emergency_without_a_position_is_reported_of() -> None:
+def test_emergency_without_a_position_is_sent() -> None:
     scene = Scene()
     picture = scene.picture(units=(scene.unit(position=None),), alarms=(alarm(),))
     desk = Desk(picture)
@@ -192,7 +192,7 @@ def test_an_emergency_without_a_position_is_reported_of() -> None:
     assert RAISED in desk.kinds(0.3)
 
 
-def test_breadcrumbs_follow_who_moves() -> None:
+def test_breadcrumbs_follow_a_moving_person() -> None:
     scene = Scene()
     desk = Desk(scene.picture(), breadcrumbs=True)
     assert desk.kinds() == [PERSON]
@@ -205,8 +205,8 @@ def test_breadcrumbs_follow_who_moves() -> None:
     assert [len(one.findall("detail/link")) for one in events] == [0, 4]
 
 
-def test_a_slow_server_serves_everybody_in_turn() -> None:
-    """Whoever was sent longest ago goes first."""
+def test_slow_server_is_sent_everybody_in_turn() -> None:
+    """The person sent longest ago goes first."""
     scene = Scene("FF-01", "FF-02", "FF-03")
     desk = Desk(scene.picture())
     first = next(desk.outbox.due(desk.now_ns, desk.now_ms), None)
@@ -222,7 +222,7 @@ def test_a_slow_server_serves_everybody_in_turn() -> None:
     assert seen == 2 * ["muster.FF-01", "muster.FF-02", "muster.FF-03"]
 
 
-def test_the_next_time_is_that_of_what_waits() -> None:
+def test_next_send_time_is_that_of_waiting_events() -> None:
     scene = Scene()
     desk = Desk(scene.picture())
     desk.sent()

@@ -1,4 +1,6 @@
-"""Settings of a TAK connection: what cannot work, or is open to others, is refused at the start."""
+"""Settings of a TAK connection: impossible ones, and ones open to others, are refused at the
+start.
+"""
 
 from __future__ import annotations
 
@@ -16,13 +18,13 @@ from shared.errors import ConfigError
     "url",
     ["tak.example.org:8089", "http://h:1", "tcp://127.0.0.1", "tcp://:8087", "tcp://h:99999"],
 )
-def test_what_is_no_address_is_refused(url: str) -> None:
+def test_text_that_is_no_address_is_refused(url: str) -> None:
     with pytest.raises(ConfigError, match="is no TAK address"):
         TakConfig(url)
 
 
 @pytest.mark.parametrize("url", ["tcp://192.0.2.7:8087", "udp://239.2.3.1:6969"])
-def test_an_open_connection_beyond_this_machine_is_accepted_knowingly(url: str) -> None:
+def test_open_connection_beyond_this_machine_needs_an_explicit_setting(url: str) -> None:
     with pytest.raises(ConfigError, match="plain = true"):
         TakConfig(url)
     assert not TakConfig(url, plain=True).is_encrypted
@@ -37,7 +39,7 @@ def test_tls_needs_the_certificates_of_both_ends() -> None:
         TakConfig("tls://tak.test:8089", certificate=Path("c.p12"), ca=Path("ca.pem"))
 
 
-def test_a_uid_prefix_is_short_and_plain() -> None:
+def test_uid_prefix_is_short_and_plain() -> None:
     with pytest.raises(ConfigError, match="uid_prefix"):
         TakConfig("tcp://127.0.0.1:8087", uid_prefix="<a>")
 

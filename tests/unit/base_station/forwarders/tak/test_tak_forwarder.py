@@ -25,7 +25,7 @@ _END = b"</event>"
 
 
 class FakeServer:
-    """Listens on a port; ``received`` is all that came, by connection."""
+    """Listens on a port; ``received`` has all received bytes, by connection."""
 
     def __init__(self, port: int = 0, behave: Callable[[socket.socket], object] | None = None):
         self.received: list[bytes] = []
@@ -99,7 +99,7 @@ def uids(data: bytes) -> list[str]:
     return [check_event(one + _END).get("uid", "") for one in data.split(_END)[:-1]]
 
 
-def test_what_is_known_before_the_connection_goes_out_with_it(closing: ExitStack) -> None:
+def test_state_known_before_the_connection_is_sent_with_it(closing: ExitStack) -> None:
     server = serve(closing)
     forwarder = forwarder_to(server.port, closing)
     forwarder.reset(Scene("FF-01", "FF-02").picture(alarms=(alarm(),)))
@@ -110,7 +110,7 @@ def test_what_is_known_before_the_connection_goes_out_with_it(closing: ExitStack
     assert (forwarder.view().state, forwarder.view().text) == ("connected", "")
 
 
-def test_a_server_that_comes_back_gets_where_people_are_now(closing: ExitStack) -> None:
+def test_returning_server_gets_the_present_positions(closing: ExitStack) -> None:
     scene, port = Scene(), free_port()
     forwarder = forwarder_to(port, closing)
     forwarder.reset(scene.picture())
@@ -126,7 +126,7 @@ def test_a_server_that_comes_back_gets_where_people_are_now(closing: ExitStack) 
     until(lambda: len(server.received) == 2 and uids(server.received[1]), "it comes again")
 
 
-def test_a_server_that_closes_at_once_is_tried_again_and_less_often(closing: ExitStack) -> None:
+def test_server_that_closes_at_once_is_retried_less_and_less_often(closing: ExitStack) -> None:
     server = serve(closing, behave=lambda connected: connected.close())
     forwarder = forwarder_to(server.port, closing)
     forwarder.reset(Scene().picture())
@@ -149,7 +149,7 @@ def test_rubbish_from_a_server_changes_nothing(closing: ExitStack) -> None:
     assert len(server.received) == 1
 
 
-def test_a_server_that_takes_nothing_costs_no_memory_and_is_left(
+def test_server_that_reads_nothing_takes_bounded_memory_and_is_disconnected(
     closing: ExitStack, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.forwarders.tak.connection._DRAIN_S", 1.0)
@@ -172,7 +172,7 @@ def test_a_server_that_takes_nothing_costs_no_memory_and_is_left(
     until(is_left, "it is left")
 
 
-def test_a_connection_that_is_long_away_is_a_problem_until_it_is_back(closing: ExitStack) -> None:
+def test_long_lost_connection_is_a_problem_until_it_is_back(closing: ExitStack) -> None:
     clock = ManualClock()
     config = TakConfig("tcp://127.0.0.1:9", alarm_after_s=60.0)
     forwarder = TakForwarder("county", config, surroundings(clock))
@@ -189,7 +189,7 @@ def test_a_connection_that_is_long_away_is_a_problem_until_it_is_back(closing: E
     assert (gone.part, gone.text) == ("forwarder-other", "")
 
 
-def test_the_one_that_does_not_lead_sends_nothing(closing: ExitStack) -> None:
+def test_standby_sends_nothing(closing: ExitStack) -> None:
     server, leads = serve(closing), Event()
     forwarder = forwarder_to(server.port, closing, leads.is_set)
     forwarder.reset(Scene().picture())

@@ -1,4 +1,6 @@
-"""What paths show of a building that nobody has a plan of: its stairs and its walls' directions."""
+"""Model of a building without a plan, learnt from paths: its stairs and the directions of its
+walls.
+"""
 
 from __future__ import annotations
 
@@ -41,12 +43,12 @@ def test_climb_is_reported_at_its_end_with_its_middle() -> None:
     assert not climb.turns
 
 
-def test_a_kerb_is_no_climb() -> None:
+def test_kerb_is_no_climb() -> None:
     watch = ClimbDetector()
     assert not any(watch.update(0.5, 0.0, -0.2 * (row > 20)) for row in range(60))
 
 
-def test_stairs_nearby_are_the_same_and_far_ones_are_others() -> None:
+def test_stairs_nearby_are_the_same_and_distant_ones_are_others() -> None:
     learnt = LearntBuilding((FOUND,))
     near = msgspec.structs.replace(STAIRS, north_m=11.5, covariance_m2=(4.0, 0.0, 4.0))
     far = msgspec.structs.replace(STAIRS, north_m=35.0, covariance_m2=(4.0, 0.0, 4.0))
@@ -66,7 +68,7 @@ def test_straight_stairs_lie_above_each_other_only_by_chance() -> None:
     assert LearntBuilding((FOUND,)).match(above) == 0
 
 
-def test_each_unit_s_first_word_for_stairs_counts_once() -> None:
+def test_first_observation_of_stairs_by_each_unit_counts_once() -> None:
     learnt = LearntBuilding((FOUND,))
     again = msgspec.structs.replace(STAIRS, north_m=14.0)
     assert learnt.with_stairs(0, "FF-01", again) is learnt
@@ -76,7 +78,7 @@ def test_each_unit_s_first_word_for_stairs_counts_once() -> None:
     assert len(two.with_stairs(-1, "FF-02", again).stairs) == 2
 
 
-def test_what_everybody_errs_by_does_not_average_away() -> None:
+def test_common_errors_do_not_average_away() -> None:
     def of_six(shared_m2: float) -> float:
         word = msgspec.structs.replace(STAIRS, shared_m2=shared_m2)
         return KnownStairs(tuple((f"FF-0{n}", word) for n in range(6))).mean.variance_m2 / 2.0
@@ -86,7 +88,7 @@ def test_what_everybody_errs_by_does_not_average_away() -> None:
     assert of_six(0.8) == pytest.approx(0.8 + 0.2 / 6.0)
 
 
-def test_the_axis_is_what_most_say() -> None:
+def test_axis_is_the_direction_of_most_segments() -> None:
     learnt = LearntBuilding()
     assert learnt.axis is None
     for number, stated_rad in enumerate((0.1, 0.12, 0.08, 0.6)):
@@ -98,7 +100,7 @@ def test_the_axis_is_what_most_say() -> None:
     assert learnt.axis.variance == pytest.approx(0.03**2 / 3.0)
 
 
-def test_taken_over_again_and_again_nobody_becomes_surer_than_the_first_was() -> None:
+def test_repeated_use_makes_no_unit_surer_than_the_first_was() -> None:
     known, spread = np.array([3.0, 0.0]), np.diag([1.0, 4.0])
     place, own = np.array([0.0, 0.0]), np.diag([9.0, 2.0])
     for _ in range(20):
@@ -109,7 +111,7 @@ def test_taken_over_again_and_again_nobody_becomes_surer_than_the_first_was() ->
     assert place[1] == pytest.approx(0.0)
 
 
-def test_conditioning_moves_what_is_correlated() -> None:
+def test_conditioning_moves_correlated_states() -> None:
     mean, covariance = np.array([0.0, 0.0]), np.array([[4.0, 2.0], [2.0, 4.0]])
     first = np.array([[1.0, 0.0]])
     moved, left = jeffrey_update(mean, covariance, first, np.array([2.0]), np.array([[1.0]]))
@@ -134,7 +136,7 @@ def test_straight_legs_are_cut_at_corners() -> None:
 
 
 @pytest.mark.parametrize("axis_rad", [0.0, 0.6, -0.7])
-def test_walls_hold_a_heading_that_drifts(axis_rad: float) -> None:
+def test_walls_correct_a_heading_that_drifts(axis_rad: float) -> None:
     """Legs at right angles, of a path whose own heading drifts; one in four fits no wall."""
     rng, axis = np.random.default_rng(3), DominantDirectionFilter()
     turn_rad, variance = 0.0, 0.05**2
@@ -151,7 +153,7 @@ def test_walls_hold_a_heading_that_drifts(axis_rad: float) -> None:
 
 
 @pytest.mark.parametrize("off_deg", [35.0, 45.0])
-def test_legs_that_agree_with_each_other_and_not_with_the_axis_leave_both_open(
+def test_legs_that_contradict_the_axis_together_leave_both_open(
     off_deg: float,
 ) -> None:
     """Something has turned the heading, or these walls stand at another angle."""
@@ -170,14 +172,14 @@ def test_legs_that_agree_with_each_other_and_not_with_the_axis_leave_both_open(
     assert wrap_quarter(axis.axis.direction_rad - off_rad) == pytest.approx(0.0, abs=0.05)
 
 
-# How far off the walls somebody went who crossed rooms as often as not, leg by leg.
+# Angle to the walls of a walk that crosses rooms as often as not, leg by leg.
 CROSSING_DEG = (0, -12, 2, 3, 11, 18, -1, 16, 4, 0, -14, 17, 16, -21, 0, 0, 41, 24, 23, 0,
                 45, 0, 39, 1, -5, -1, 2, 0, 0, -4)  # fmt: skip
 
 
-def test_who_crosses_rooms_is_not_led_astray_for_long() -> None:
-    """Legs that are held to be along walls and are not pull the heading; those that are, later,
-    have to win it back, and meanwhile it is stated to be in doubt.
+def test_diagonal_walk_misleads_the_heading_only_briefly() -> None:
+    """Legs that are wrongly taken to be along walls pull the heading; later legs along walls must
+    correct it, and the reported doubt is larger meanwhile.
     """
     axis, variance, drift_radps = DominantDirectionFilter(), 0.08**2, -0.0006
     turn_rad = true_rad = 0.0
@@ -194,7 +196,7 @@ def test_who_crosses_rooms_is_not_led_astray_for_long() -> None:
     assert abs(turn_rad - true_rad) < math.radians(8.0)
 
 
-def test_a_heading_that_is_hardly_known_is_not_turned_to_the_next_wall() -> None:
+def test_uncertain_heading_is_not_turned_to_the_nearest_wall() -> None:
     """Thirty degrees of doubt, and legs nearer to the wrong wall than to the right one."""
     axis = DominantDirectionFilter()
     for number in range(6):
@@ -212,7 +214,7 @@ def test_without_right_angles_there_is_no_axis() -> None:
     for _ in range(100):
         axis.update(StraightSegment(rng.uniform(-math.pi, math.pi), 4.0), 0.0, 0.01)
     assert axis.axis is None
-    for number in range(20):  # to and fro along a line is none either
+    for number in range(20):  # a line there and back gives none either
         axis.update(StraightSegment(0.3 + number % 2 * math.pi, 4.0), 0.0, 0.01)
     assert axis.axis is None
 
@@ -240,7 +242,7 @@ def test_uncertain_heading_takes_no_walls_a_quarter_turn_off() -> None:
 
 
 def legs_until_an_axis(known: Axis | None) -> tuple[int, float, float]:
-    """How many it took of a heading that gets worse and drifts, and what it then is."""
+    """Number of legs until an axis of a heading that gets worse and drifts, and the axis."""
     axis, turn_rad, variance = DominantDirectionFilter(), 0.0, 0.05**2
     for number in range(12):
         segment = StraightSegment(0.2 + number % 2 * math.pi / 2.0 - 0.01 * number, 5.0)
@@ -250,20 +252,20 @@ def legs_until_an_axis(known: Axis | None) -> tuple[int, float, float]:
     raise AssertionError("no axis")
 
 
-def test_an_axis_is_as_good_as_the_heading_was_at_its_first_leg() -> None:
+def test_axis_is_as_good_as_the_heading_at_its_first_leg() -> None:
     count, off_rad, std_rad = legs_until_an_axis(None)
     assert std_rad < 0.9 * math.sqrt(0.05**2 + 0.04**2 * (count - 1))
     assert abs(off_rad) < std_rad
 
 
-def test_an_axis_that_others_know_shows_earlier_and_another_does_not() -> None:
+def test_axis_known_by_others_shows_earlier_and_another_does_not() -> None:
     by_itself, _, _ = legs_until_an_axis(None)
     reported, _, _ = legs_until_an_axis(Axis(0.2, 0.03**2))
     other, _, _ = legs_until_an_axis(Axis(0.2 + math.pi / 4.0, 0.03**2))
     assert reported < by_itself == other
 
 
-def test_forgotten_unit_leaves_nothing_in_the_building_model() -> None:
+def test_erased_unit_leaves_nothing_in_the_building_model() -> None:
     learnt = (
         LearntBuilding((FOUND,)).with_stairs(0, "FF-02", STAIRS).with_axis("FF-01", Axis(0.1, 1.0))
     )
@@ -273,13 +275,13 @@ def test_forgotten_unit_leaves_nothing_in_the_building_model() -> None:
     assert other.with_axis("FF-01", Axis(0.1, 1.0)).without("FF-01") == other
 
 
-def test_it_is_saved_and_restored_to_the_last_bit() -> None:
+def test_model_is_saved_and_restored_to_the_last_bit() -> None:
     learnt = LearntBuilding((FOUND,)).with_axis("FF-01", Axis(0.1, 1e-3))
     saved = msgspec.msgpack.encode(learnt)
     assert msgspec.msgpack.decode(saved, type=LearntBuilding) == learnt
 
 
-def test_slopes_without_end_do_not_fill_the_memory() -> None:
+def test_endless_slopes_take_bounded_memory() -> None:
     learnt = LearntBuilding()
     for number in range(100):
         far = msgspec.structs.replace(STAIRS, north_m=100.0 * number)
@@ -287,7 +289,7 @@ def test_slopes_without_end_do_not_fill_the_memory() -> None:
     assert len(learnt.stairs) == MOST_STAIRS
 
 
-def test_reframed_it_is_the_same_building() -> None:
+def test_reframed_model_is_the_same_building() -> None:
     learnt = LearntBuilding((FOUND,), (("FF-01", Axis(0.1, 1e-3)),))
     moved = learnt.reframed(math.pi / 2.0, 1.0, 2.0)
     assert (moved.stairs[0].mean.north_m, moved.stairs[0].mean.east_m) == pytest.approx(
@@ -301,8 +303,10 @@ def test_reframed_it_is_the_same_building() -> None:
     assert moved.match(seen) == 0
 
 
-def test_reframed_its_walls_turn_with_the_frame_and_stairs_are_as_unsure_the_other_way() -> None:
-    """North, as far as these stairs are known worst, lies a third of a right angle further east."""
+def test_reframing_turns_walls_and_uncertainties_of_stairs_with_the_frame() -> None:
+    """The direction in which these stairs are known worst turns by a third of a right angle to the
+    east.
+    """
     stairs = msgspec.structs.replace(STAIRS, covariance_m2=(4.0, 0.0, 1.0))
     learnt = LearntBuilding((KnownStairs((("FF-01", stairs),)),), (("FF-01", Axis(0.1, 1e-3)),))
     moved = learnt.reframed(math.pi / 6.0, 0.0, 0.0)

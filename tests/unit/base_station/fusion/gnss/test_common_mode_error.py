@@ -1,4 +1,4 @@
-"""What all receivers of a site err by is taken off everybody's fixes."""
+"""The common error of all receivers of a site is removed from every unit's fixes."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ def fix_at(north_m: float, east_m: float, std_m: float = STD_M) -> PlaceFix:
     return PlaceFix(0, north_m, east_m, 0.0, std_m, None)
 
 
-def test_what_the_station_s_receiver_errs_by_is_mostly_everybody_s() -> None:
+def test_error_of_the_stations_receiver_is_mostly_common() -> None:
     fix = after(600.0).correct(fix_at(13.0, 8.0), 600 * NS_PER_S)
     assert 10.0 < fix.north_m < 11.6
     assert 9.0 < fix.east_m < 10.0
     assert 0.74 * STD_M < fix.horizontal_std_m < 0.95 * STD_M
 
 
-def test_a_receiver_that_hangs_is_noticed_beside_one_at_the_station() -> None:
-    """What is taken off its fixes changes; what it says does not."""
+def test_frozen_receiver_is_detected_beside_one_at_the_station() -> None:
+    """The correction of its fixes changes; their position does not."""
     common_mode_error, trust, verdicts = CommonModeError(), ReceiverModel(), []
     for second in range(20):
         common_mode_error.update(second * NS_PER_S, (3.0 + 0.01 * second, -2.0), STD_M, 0.3)
@@ -56,14 +56,14 @@ def test_a_receiver_that_hangs_is_noticed_beside_one_at_the_station() -> None:
     assert verdicts == [False] * 9 + [True] * 11
 
 
-def test_what_is_everybody_s_is_part_of_a_good_receiver_s_error_and_little_of_a_bad_one_s() -> None:
+def test_common_error_is_part_of_a_good_receivers_error_and_little_of_a_bad_ones() -> None:
     assert common_m2(STD_M) < 0.5 * STD_M**2
     assert common_m2(20.0) == common_m2(50.0) == COMMON_MOST_M**2
 
 
 @pytest.mark.slow
 def test_common_mode_correction_has_its_stated_variance() -> None:
-    """Against drawn errors: a fix is nearer, and as near as it says."""
+    """Against drawn errors: a fix is nearer, and as near as its variance."""
     rng, left2, stated2 = np.random.default_rng(2), [], []
     common2, common_stated2 = [], []
     for _ in range(200):
@@ -114,7 +114,7 @@ def test_unknown_receiver_changes_nothing() -> None:
 
 
 def test_receiver_just_switched_on_weighs_the_same_once_it_is_warm() -> None:
-    """It claims twenty metres at first; that is not what it errs by for good."""
+    """It claims twenty metres at first; that is not its lasting error."""
     warm, cold = after(1200.0), CommonModeError()
     for second in range(1200):
         std_m = 20.0 if second < 5 else STD_M
@@ -127,7 +127,7 @@ def test_receiver_just_switched_on_weighs_the_same_once_it_is_warm() -> None:
     assert fixes[1].horizontal_std_m == pytest.approx(fixes[0].horizontal_std_m, abs=0.05)
 
 
-def test_what_a_fix_claims_that_is_not_taken_makes_the_receiver_no_better() -> None:
+def test_accuracy_of_a_rejected_fix_makes_the_receiver_no_better() -> None:
     common_mode_error = CommonModeError()
     for second in range(300):
         common_mode_error.update(second * NS_PER_S, (3.0, -2.0), 5.0, 0.3)
@@ -142,7 +142,7 @@ def test_correction_worse_than_the_receiver_makes_no_fix_worse() -> None:
     assert common_mode_error.correct(fix_at(13.0, 8.0), 0) == fix_at(13.0, 8.0)
 
 
-def test_one_wild_fix_moves_nobody() -> None:
+def test_one_outlying_fix_moves_nobody() -> None:
     common_mode_error = after(300.0)
     before = common_mode_error.correct(fix_at(0.0, 0.0), 301 * NS_PER_S)
     common_mode_error.update(301 * NS_PER_S, (60.0, 60.0), STD_M, 0.3)
@@ -150,14 +150,14 @@ def test_one_wild_fix_moves_nobody() -> None:
     assert (wild.north_m, wild.east_m) == pytest.approx((before.north_m, before.east_m), abs=0.01)
 
 
-def test_a_bad_fix_never_becomes_a_good_one() -> None:
+def test_bad_fix_never_becomes_a_good_one() -> None:
     fix = after(600.0).correct(fix_at(0.0, 0.0, 20.0), 600 * NS_PER_S)
     assert fix.horizontal_std_m > 19.0
 
 
 def a_site(*, station_has_a_receiver: bool, walked_m: float = 0.0) -> Script:
-    """FF-01 stands at the anchor and FF-09 50 m north of it; all receivers err by 3 m north and as
-    much west.
+    """FF-01 stands at the anchor and FF-09 50 m north of it; the error of all receivers is 3 m
+    north and as much west.
     """
     script = Script()
     script.register("FF-01", "FF-09")
@@ -184,14 +184,14 @@ def place_m(script: Script) -> tuple[float, float]:
 
 
 @pytest.mark.slow
-def test_at_the_station_the_reference_s_error_is_taken_off_other_units_fixes() -> None:
+def test_error_of_the_reference_at_the_station_is_removed_from_other_units_fixes() -> None:
     alone, helped = (a_site(station_has_a_receiver=one) for one in (False, True))
     assert place_m(alone) == pytest.approx((3.0, -3.0), abs=0.1)
     assert 0.5 < north_m(helped) < 2.2
     assert -2.2 < place_m(helped)[1] < -0.5
 
 
-def test_reference_that_is_carried_about_changes_nothing() -> None:
+def test_reference_that_moves_changes_nothing() -> None:
     alone = a_site(station_has_a_receiver=False, walked_m=50.0)
     helped = a_site(station_has_a_receiver=True, walked_m=50.0)
     assert north_m(helped) == pytest.approx(north_m(alone), abs=0.01)
@@ -214,7 +214,7 @@ def test_reference_with_a_corrected_start_drops_its_evidence(
 
 
 def test_start_of_the_reference_holds_for_every_run() -> None:
-    """It is switched off and on between incidents, and stays where it is."""
+    """It is switched off and on between incidents, and stays at its place."""
     site = a_site(station_has_a_receiver=True)
     site.act(SetStart("FF-01", 0.0, 0.0, 0.0, 0.0, 0.3, math.pi))
     site.boot_ids = {"FF-01": 8, "FF-09": 8}
@@ -238,7 +238,7 @@ def test_solving_again_uses_the_reference_and_each_fix_once() -> None:
     alone, helped = (a_site(station_has_a_receiver=one) for one in (False, True))
     for script in (alone, helped):
         fixes = script.pipeline.state.paths["FF-01"].arrays().fix_m
-        assert fixes[:, 0] == pytest.approx(3.0, abs=0.1)  # as they came
+        assert fixes[:, 0] == pytest.approx(3.0, abs=0.1)  # as received
         script.act(SetPin("p", "FF-01", 0, 0.0, 0.0, 3.0, None, None, 0.35, ""))
     assert 0.0 < north_m(helped) < north_m(alone) - 0.2
     assert set(helped.pipeline.state.site.pin_verdicts) == {"p"}

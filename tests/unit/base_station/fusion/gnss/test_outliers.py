@@ -1,4 +1,4 @@
-"""Fixes that were all turned away: whether they draw the walk after all."""
+"""Rejected fixes of a window: their shape may still be that of the walk."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from edge.samples import Floats
 
 
 def shape_of(seen_m: Floats, own_m: Floats) -> WalkShape | None:
-    """Of rows north and east; the first shape that is found."""
+    """Shape of rows north and east; the first that is found."""
     outliers = Outliers()
     shapes = (
         outliers.add((seen[0], seen[1]), (own[0], own[1]))
@@ -29,14 +29,14 @@ def bent(count: int, step_m: float = 1.2) -> Floats:
 
 
 def turned(own_m: Floats, turn_rad: float, scale: float = 1.0) -> Floats:
-    """Clockwise, seen from above, and elsewhere."""
+    """Rotated clockwise, seen from above, and shifted."""
     cosine, sine = scale * math.cos(turn_rad), scale * math.sin(turn_rad)
     elsewhere: Floats = own_m @ np.array([[cosine, sine], [-sine, cosine]]) + [300.0, -80.0]
     return elsewhere
 
 
 @pytest.mark.parametrize("turn_rad", [-2.5, 0.0, 1.0])
-def test_a_walk_elsewhere_and_turned_is_the_walk(turn_rad: float) -> None:
+def test_shifted_and_rotated_walk_matches(turn_rad: float) -> None:
     own_m = bent(40)
     noise = np.random.default_rng(1).normal(0.0, 1.5, own_m.shape)
     shape = shape_of(turned(own_m, turn_rad) + noise, own_m)
@@ -45,7 +45,7 @@ def test_a_walk_elsewhere_and_turned_is_the_walk(turn_rad: float) -> None:
     assert shape.spread_m >= SPREAD_M * math.sqrt(MIN_FIXES)
 
 
-def test_its_mirror_image_is_another_walk() -> None:
+def test_outlier_shape_rejects_mirrored_walk() -> None:
     own_m = bent(40)
     assert shape_of(turned(own_m, 0.3) * [1.0, -1.0], own_m) is None
 
@@ -53,25 +53,25 @@ def test_its_mirror_image_is_another_walk() -> None:
 @pytest.mark.parametrize(
     ("scale", "is_walk"), [(0.6, False), (0.85, True), (1.2, True), (1.5, False)]
 )
-def test_one_of_another_size_is_another_walk(scale: float, is_walk: bool) -> None:
+def test_outlier_shape_rejects_scaled_walk(scale: float, is_walk: bool) -> None:
     own_m = bent(40)
     assert (shape_of(turned(own_m, 0.3, scale), own_m) is not None) is is_walk
 
 
-def test_a_receiver_that_stays_where_it_is_draws_no_walk() -> None:
+def test_outlier_shape_rejects_receiver_at_rest() -> None:
     own_m = bent(MAX_FIXES)
     for seed in range(10):
         noise = np.random.default_rng(seed).normal(0.0, 4.0, own_m.shape)
         assert shape_of(noise, own_m) is None
 
 
-def test_twenty_fixes_are_enough_and_fewer_are_not() -> None:
+def test_twenty_fixes_suffice_and_fewer_do_not() -> None:
     own_m = bent(MIN_FIXES, step_m=2.0)
     assert shape_of(turned(own_m, 0.3)[:-1], own_m[:-1]) is None
     assert shape_of(turned(own_m, 0.3), own_m) is not None
 
 
-def test_who_hardly_went_anywhere_walked_no_shape() -> None:
+def test_outlier_shape_needs_a_walk_of_some_extent() -> None:
     """Root mean square 5 m about the middle."""
     own_m = 0.5 * SPREAD_M * np.column_stack((np.cos(np.arange(60)), np.sin(np.arange(60))))
     assert shape_of(turned(own_m, 0.3), own_m) is None
@@ -79,15 +79,15 @@ def test_who_hardly_went_anywhere_walked_no_shape() -> None:
 
 
 @pytest.mark.parametrize(("unlike", "is_walk"), [(0.2, True), (0.3, False)])
-def test_a_quarter_of_what_fixes_draw_may_be_no_walk(unlike: float, is_walk: bool) -> None:
-    """The rest of their scatter lies across a straight way, to and fro."""
+def test_quarter_of_the_scatter_may_be_off_the_walk(unlike: float, is_walk: bool) -> None:
+    """The rest of the scatter lies across a straight way, there and back."""
     north_m = 2.0 * np.arange(MIN_FIXES)
     across_m = north_m.std() * math.sqrt(unlike / (1.0 - unlike)) * (-1.0) ** np.arange(MIN_FIXES)
     own_m = np.column_stack((north_m, np.zeros(MIN_FIXES)))
     assert (shape_of(np.column_stack((north_m, across_m)), own_m) is not None) is is_walk
 
 
-def test_of_what_was_cleared_nothing_is_drawn() -> None:
+def test_cleared_window_has_no_shape() -> None:
     outliers, own_m = Outliers(), bent(MIN_FIXES, step_m=2.0).tolist()
     for place_m in own_m[:-1]:
         outliers.add(tuple(place_m), tuple(place_m))
@@ -95,8 +95,8 @@ def test_of_what_was_cleared_nothing_is_drawn() -> None:
     assert outliers.add(tuple(own_m[-1]), tuple(own_m[-1])) is None
 
 
-def test_what_is_longer_ago_than_a_minute_is_forgotten() -> None:
-    """First the receiver rests, then it comes along."""
+def test_fixes_older_than_a_minute_are_dropped() -> None:
+    """First the receiver rests, then it moves along."""
     outliers, shape = Outliers(), None
     own_m = bent(5 * MAX_FIXES)
     for row, (north_m, east_m) in enumerate(own_m.tolist()):

@@ -1,4 +1,6 @@
-"""What a receiver's fixes show of themselves: how they jump, and whether they are as they claim."""
+"""Receiver model learnt from fixes: their jumps, and their errors relative to their stated
+accuracy.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,9 @@ def after_walk(
     step_s: int = 1,
     trust: ReceiverModel | None = None,
 ) -> ReceiverModel:
-    """Somebody walks a metre a second; so much of the receiver's variance is new with each fix."""
+    """Model after a walk at a metre a second; ``share`` of the receiver's variance is new with each
+    fix.
+    """
     rng, trust = np.random.default_rng(3), trust or ReceiverModel()
     for second in range(0, seconds, step_s):
         along = second * np.array([math.cos(turn_rad), math.sin(turn_rad)])
@@ -50,15 +54,13 @@ def after_walk(
 
 @pytest.mark.parametrize("turn_rad", [0.0, 2.0])
 @pytest.mark.parametrize("white_part", [0.15, 0.5, 0.9])
-def test_how_much_is_new_with_every_fix_is_learnt_whatever_the_heading(
-    white_part: float, turn_rad: float
-) -> None:
+def test_share_of_new_error_is_learnt_at_any_heading(white_part: float, turn_rad: float) -> None:
     assert after_walk(white_part, turn_rad).white_part == pytest.approx(white_part, rel=0.35)
 
 
 @pytest.mark.parametrize(("north_mps", "east_mps"), [(0.0, 0.0), (1.5, 0.0), (0.0, 1.5)])
-def test_who_goes_fast_has_no_receiver_that_jumps(north_mps: float, east_mps: float) -> None:
-    """The way between two fixes is none of their errors."""
+def test_fast_motion_is_no_jump_of_the_receiver(north_mps: float, east_mps: float) -> None:
+    """The way between two fixes is no part of their errors."""
     trust = ReceiverModel()
     for second in range(0, 600, 2):
         place = PathPoint(second * NS_PER_S, north_mps * second, east_mps * second, 0.0)
@@ -77,14 +79,14 @@ def test_few_fixes_hardly_change_the_receiver_model_and_gaps_nothing() -> None:
     assert after_walk(3.0, 0.0).white_part == 1.0, "never more than all of it"
 
 
-def test_a_receiver_that_errs_otherwise_now_is_known_anew() -> None:
+def test_changed_error_of_a_receiver_is_learnt_again() -> None:
     """After some minutes: it was in the open, and is between houses."""
     trust = after_walk(0.15, 0.0, seconds=1200)
     assert after_walk(0.9, 0.0, seconds=600, trust=trust).white_part > 0.7
     assert after_walk(0.15, 0.0, seconds=600, trust=trust).white_part < 0.3
 
 
-def test_a_wall_makes_a_fix_worse_and_so_does_what_it_admits() -> None:
+def test_wall_and_stated_accuracy_make_a_fix_worse() -> None:
     trust = ReceiverModel()
     best = PlaceFix(0, 0.0, 0.0, 0.0, STD_M, None)
     trust.on_accepted(best)
@@ -96,7 +98,7 @@ def test_a_wall_makes_a_fix_worse_and_so_does_what_it_admits() -> None:
     assert trust.extra_m2(worse, 4.0) == pytest.approx(4.0**2 + excess_m2)
 
 
-def test_who_stands_still_has_no_receiver_that_hangs_nor_has_who_came_a_long_way_since() -> None:
+def test_rest_and_return_from_a_long_way_are_no_frozen_receiver() -> None:
     trust, kind = ReceiverModel(), Parameters()
     for second in range(20):
         assert not trust.is_stuck(kind, fix_at(second, 7.0), 500.0)
@@ -106,19 +108,19 @@ def test_who_stands_still_has_no_receiver_that_hangs_nor_has_who_came_a_long_way
     assert not twice, "it gave it twice"
 
 
-def test_the_same_place_five_times_is_a_receiver_that_hangs() -> None:
+def test_same_place_five_times_is_a_frozen_receiver() -> None:
     trust, kind = ReceiverModel(), Parameters()
     hangs = [trust.is_stuck(kind, fix_at(second, 7.0), 100.0 * second) for second in range(6)]
     assert hangs == [False] * 4 + [True] * 2
 
 
-def test_who_was_wrong_once_is_believed_with_the_second_that_fits() -> None:
+def test_receiver_rejected_once_is_used_with_the_second_fix_that_fits() -> None:
     trust = ReceiverModel()
     trust.on_rejected(Parameters(), fix_at(0, 0.0), (0.0, 0.0))
     assert [trust.on_within_gate() for _ in range(2)] == [False, True]
 
 
-def test_a_receiver_that_was_wrong_fits_twice_as_often_before_it_is_believed() -> None:
+def test_receiver_rejected_often_must_fit_twice_as_often_before_it_is_used() -> None:
     trust, kind = ReceiverModel(), Parameters()
     assert trust.on_within_gate()
     for _ in range(100):
@@ -131,7 +133,7 @@ def test_a_receiver_that_was_wrong_fits_twice_as_often_before_it_is_believed() -
 
 
 def surprise_of(worse: float) -> float:
-    """On the mean over many fixes, whose errors are so much larger than they claim."""
+    """Mean over many fixes, whose errors exceed their stated accuracy by this factor."""
     rng, trust, seen = np.random.default_rng(1), ReceiverModel(), []
     for _ in range(3000):
         trust.update_inflation(worse**2 * float(rng.chisquare(2)) / trust.inflation)
@@ -139,7 +141,7 @@ def surprise_of(worse: float) -> float:
     return float(np.mean(seen))
 
 
-def test_fixes_that_are_as_they_claim_leave_little_surprise_and_worse_ones_much() -> None:
+def test_inflation_is_small_for_correct_accuracies_and_large_for_worse_errors() -> None:
     assert surprise_of(1.0) < 1.4
     assert 2.0 < surprise_of(2.0) < MAX_INFLATION
 
@@ -174,8 +176,8 @@ def trust_of(fuser: GpsInertialFuser) -> ReceiverModel:
     return msgspec.msgpack.decode(fuser.save(), type=FuserMemory).receiver
 
 
-def test_what_a_fix_claims_that_was_turned_away_makes_no_good_one_worse() -> None:
-    """Inside a receiver says once that it knows to the metre where it is not."""
+def test_accuracy_of_a_rejected_fix_makes_no_good_one_worse() -> None:
+    """Inside, a receiver states once a wrong place with an accuracy of a metre."""
     stds_m = []
     for wrong in (False, True):
         fuser = GpsInertial().new()
@@ -190,8 +192,8 @@ def test_what_a_fix_claims_that_was_turned_away_makes_no_good_one_worse() -> Non
     assert stds_m[1] == pytest.approx(stds_m[0], rel=0.05)
 
 
-def test_the_best_that_a_taken_fix_claimed_is_what_the_receiver_can() -> None:
-    """Worse than that is what surrounds it; late or in time."""
+def test_best_accuracy_of_used_fixes_is_that_of_the_receiver() -> None:
+    """A worse accuracy is due to its surroundings; late or in time."""
     for late_s in (0.0, 30.0):
         fuser = GpsInertial().new()
         walk_with_fixes(fuser, range(60), std_m=3.0)
@@ -201,8 +203,8 @@ def test_the_best_that_a_taken_fix_claimed_is_what_the_receiver_can() -> None:
         assert trust.extra_m2(fix_at(60.0, 60.0, 0.0, 3.0), 0.0) > 3.0**2
 
 
-def test_a_fix_that_comes_late_corrects_where_the_wearer_is_now() -> None:
-    """It counts for less than one of now: its slow error is that of its neighbours."""
+def test_late_fix_corrects_the_present_place() -> None:
+    """It weighs less than a present one: its slow error is that of its neighbours."""
     moved_m, known_m = {}, {}
     for late_s in (0.0, 20.0):
         fuser = GpsInertial().new()
@@ -229,7 +231,7 @@ def test_jumping_path_leaves_the_receiver_model_as_it_is() -> None:
     assert trust_of(fuser).white_part == pytest.approx(before, rel=0.25)
 
 
-def test_a_receiver_that_hangs_is_noticed_though_the_unit_begins_anew() -> None:
+def test_frozen_receiver_is_detected_over_a_restart_of_the_unit() -> None:
     fuser = GpsInertial().new()
     walk_with_fixes(fuser, range(60))
     hangs_m = 60.5
@@ -244,7 +246,7 @@ def test_a_receiver_that_hangs_is_noticed_though_the_unit_begins_anew() -> None:
 
 @pytest.mark.parametrize("turn_rad", [-2.0, 0.5])
 def test_fixes_draw_the_walk_of_a_run_that_has_just_begun(turn_rad: float) -> None:
-    """Those that were turned away before are of a path that goes another way."""
+    """The fixes rejected before belong to a path with another direction."""
     trust, kind, shape = ReceiverModel(), Parameters(), None
     for second in range(19):
         assert trust.on_rejected(kind, fix_at(second, second), (0.0, float(second))) is None
@@ -258,10 +260,10 @@ def test_fixes_draw_the_walk_of_a_run_that_has_just_begun(turn_rad: float) -> No
 
 
 @pytest.mark.parametrize(("turned_rad", "is_kept"), [(0.0, True), (1.0, False)])
-def test_a_walk_that_fixes_draw_elsewhere_takes_a_heading_along_that_it_bears_out(
+def test_walk_drawn_elsewhere_supplies_a_heading_that_it_confirms(
     turned_rad: float, is_kept: bool
 ) -> None:
-    """It is forgotten where they draw another."""
+    """The heading is dropped where the fixes draw another walk."""
     fuser = GpsInertial().new()
     fuser.start(Start(0.0, 0.0, 0.0, 0.0, 0.5, 0.05))
     for second in range(60):
@@ -289,7 +291,7 @@ def test_fix_under_the_open_sky_shows_a_start_at_ground_level(
     assert estimate.height_assumed is is_assumed
 
 
-def test_fixes_that_were_worse_than_they_claim_make_the_next_one_worse() -> None:
+def test_fixes_worse_than_their_accuracy_make_the_next_one_worse() -> None:
     trust = ReceiverModel()
     best = PlaceFix(0, 0.0, 0.0, 0.0, STD_M, None)
     for _ in range(4):

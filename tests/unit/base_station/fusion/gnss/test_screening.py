@@ -1,4 +1,4 @@
-"""Fixes that cannot be true are turned away with a reason, and move nobody."""
+"""Impossible fixes are rejected with a reason, and move nobody."""
 
 from __future__ import annotations
 
@@ -72,11 +72,11 @@ def test_fix_that_contradicts_itself_is_faulty(changes: dict[str, object], reaso
         {"horizontal_std_m": 100.0},
     ],
 )
-def test_what_is_unusual_is_no_reason(changes: dict[str, object]) -> None:
+def test_unusual_values_are_no_reason(changes: dict[str, object]) -> None:
     assert screen_fix(fix(**changes)) == FixVerdict(True)
 
 
-def test_who_is_fifty_kilometres_away_is_not_at_the_site() -> None:
+def test_fix_fifty_kilometres_away_is_not_at_the_site() -> None:
     for away_km, is_there in ((49.5, True), (50.5, False)):
         seen = fix(lat_deg=ANCHOR.lat_deg + 1e3 * away_km / NORTH_M_PER_DEG)
         assert isinstance(in_incident_frame(seen, ANCHOR), PlaceFix) is is_there
@@ -91,13 +91,13 @@ def test_who_is_fifty_kilometres_away_is_not_at_the_site() -> None:
         ({"fix_type": FixType.TWO_D}, False),
     ],
 )
-def test_only_a_good_fix_with_a_height_may_say_where_the_site_is(
+def test_only_a_good_fix_with_a_height_may_place_the_site(
     changes: dict[str, object], may: bool
 ) -> None:
     assert may_anchor(fix(**changes)) is may
 
 
-def test_a_good_fix_passes_and_lies_where_it_should() -> None:
+def test_good_fix_passes_with_its_place() -> None:
     assert screen_fix(fix()).accepted
     place = in_incident_frame(fix(), ANCHOR)
     assert isinstance(place, PlaceFix)
@@ -106,14 +106,14 @@ def test_a_good_fix_passes_and_lies_where_it_should() -> None:
     assert place.down_m == pytest.approx(0.0, abs=0.01)
 
 
-def test_the_wrong_hemisphere_is_too_far() -> None:
+def test_wrong_hemisphere_is_too_far() -> None:
     verdict = in_incident_frame(fix(lat_deg=-52.0), ANCHOR)
     assert isinstance(verdict, FixVerdict)
     assert not verdict.accepted
     assert "too far" in verdict.reason
 
 
-def test_a_receiver_is_never_believed_to_the_centimetre() -> None:
+def test_accuracy_of_centimetres_is_not_accepted() -> None:
     place = in_incident_frame(fix(horizontal_std_m=0.01), ANCHOR)
     assert isinstance(place, PlaceFix)
     assert place.horizontal_std_m >= 1.0
@@ -126,7 +126,7 @@ def test_fix_counts_with_its_stated_accuracy(vertical_std_m: float | None, taken
     assert (place.horizontal_std_m, place.vertical_std_m) == (2.5, taken_m)
 
 
-def test_an_accuracy_that_is_not_stated_is_a_poor_one() -> None:
+def test_missing_accuracy_counts_as_poor() -> None:
     place = in_incident_frame(fix(horizontal_std_m=None, vertical_std_m=None), ANCHOR)
     assert isinstance(place, PlaceFix)
     assert place.horizontal_std_m >= 10.0
@@ -150,7 +150,7 @@ def not_used(script: Script) -> dict[str, int]:
     return script.pipeline.state.units[U].rejected_counts
 
 
-def test_a_fix_from_the_future_is_refused(script: Script) -> None:
+def test_fix_from_the_future_is_refused(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     script.wait(5, lambda: script.position(U, 0.0, 0.0))
     script.gps(U, 52.0, 4.0, header=script.header(U, captured_s=script.now_s + 3600.0))
@@ -178,7 +178,7 @@ def test_wrong_receiver_is_reported_until_it_is_right(
 
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     script.wait(5, lambda: send_fix({}))
-    for _ in range(3):  # now and then one receiver or another errs so
+    for _ in range(3):  # receivers have such errors now and then
         script.wait(20, lambda: send_fix(wrong))
         script.wait(5, lambda: send_fix({}))
     assert gps_alarms() == []
@@ -190,7 +190,7 @@ def test_wrong_receiver_is_reported_until_it_is_right(
     assert gps_alarms()[1:] == [("RESOLVED", reported)]
 
 
-def test_what_was_not_used_is_counted_anew_in_another_incident(script: Script) -> None:
+def test_rejected_fixes_are_counted_again_in_another_incident(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     script.wait(2, lambda: script.position(U, 0.0, 0.0))
     script.gps(U, 0.0, 0.0)
@@ -200,7 +200,7 @@ def test_what_was_not_used_is_counted_anew_in_another_incident(script: Script) -
 
 
 @pytest.mark.parametrize("wrong", [{"fix_type": FixType.NONE}, {"lat_deg": 52.002}])
-def test_who_has_no_fix_indoors_or_one_off_a_wall_is_no_alarm(
+def test_missing_fix_indoors_and_one_off_a_wall_are_no_alarm(
     script: Script, wrong: dict[str, float]
 ) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
@@ -215,8 +215,8 @@ def test_who_has_no_fix_indoors_or_one_off_a_wall_is_no_alarm(
     assert [one for one in script.alarms if one.rule == "gps-unused"] == []
 
 
-def test_a_fix_before_any_other_word_of_its_unit_may_be_of_the_future(script: Script) -> None:
-    """Its clock is not known yet: taken, all later ones would be old for an hour."""
+def test_fix_before_any_message_of_its_unit_may_be_of_the_future(script: Script) -> None:
+    """Its clock is unknown yet: a used fix would make all later ones old for an hour."""
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     script.gps(U, 52.0, 4.0, header=script.header(U, captured_s=script.now_s + 3600.0))
     script.wait(5, lambda: script.position(U, 0.0, 0.0))
@@ -241,7 +241,7 @@ def test_bad_fixes_are_counted_by_reason_and_nobody_jumps(script: Script) -> Non
     assert sorted(not_used(script).values()) == [1, 1, 1, 1]
 
 
-def test_a_fix_of_an_earlier_run_is_of_no_path(script: Script) -> None:
+def test_fix_of_an_earlier_run_belongs_to_no_path(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     script.position(U, 0.0, 0.0)
     late = message_factory.gps_fix(script.header(U), 52.0, 4.0)
@@ -255,7 +255,7 @@ def test_a_fix_of_an_earlier_run_is_of_no_path(script: Script) -> None:
 @pytest.mark.parametrize(
     "stated_by_hand", [SetPlan(PLAN), SetStart(U, 5.0, 7.0, 0.0, 0.0, 0.1, 0.0)]
 )
-def test_fix_places_no_frame_that_a_person_has_placed(
+def test_fix_does_not_move_a_frame_placed_by_a_person(
     script: Script, stated_by_hand: SetPlan | SetStart
 ) -> None:
     script.act(stated_by_hand)
@@ -265,7 +265,7 @@ def test_fix_places_no_frame_that_a_person_has_placed(
     assert not_used(script) == {"the site has no anchor": 1}
 
 
-def test_without_an_anchor_everything_works_in_metres(script: Script) -> None:
+def test_positions_work_in_metres_without_an_anchor(script: Script) -> None:
     script.act(SetPlan(PLAN))
     script.act(SetStart(U, 5.0, 7.0, 0.0, 0.0, 0.1, 0.0))
     script.wait(3, lambda: script.position(U, 2.0, 0.0))
@@ -275,7 +275,7 @@ def test_without_an_anchor_everything_works_in_metres(script: Script) -> None:
     assert not_used(script) == {"the site has no anchor": 1}
 
 
-def test_the_first_good_fix_anchors_a_site_that_nobody_placed_and_moves_nobody(
+def test_first_good_fix_anchors_an_unplaced_site_and_moves_nobody(
     script: Script,
 ) -> None:
     script.wait(3, lambda: script.position(U, 2.0, 1.0))
@@ -290,8 +290,10 @@ def test_the_first_good_fix_anchors_a_site_that_nobody_placed_and_moves_nobody(
     assert (after.north_m, after.east_m) == pytest.approx((before.north_m, before.east_m), abs=0.01)
 
 
-def test_a_first_fix_from_elsewhere_does_not_shut_out_all_others(script: Script) -> None:
-    """A receiver that wakes up on the other side of the Earth has placed the site there."""
+def test_first_fix_from_elsewhere_does_not_exclude_all_others(script: Script) -> None:
+    """A receiver that starts with a place on the other side of the Earth has placed the site
+    there.
+    """
     script.position(U, 0.0, 0.0)
     script.gps(U, -52.0, 4.0)
     shown_m = []
@@ -309,7 +311,7 @@ def test_a_first_fix_from_elsewhere_does_not_shut_out_all_others(script: Script)
     assert not_used(script)["too far from the site"] == 10
 
 
-def test_a_receiver_gone_wrong_does_not_move_the_site_of_those_that_are_right(
+def test_wrong_receiver_does_not_move_the_site_of_right_ones(
     script: Script,
 ) -> None:
     script.register("FF-02")
@@ -323,7 +325,7 @@ def test_a_receiver_gone_wrong_does_not_move_the_site_of_those_that_are_right(
     assert anchor.lat_deg == pytest.approx(52.0, abs=1e-3)
 
 
-def test_fixes_too_poor_to_say_where_the_site_is_do_not_move_it(script: Script) -> None:
+def test_fixes_too_poor_to_place_the_site_do_not_move_it(script: Script) -> None:
     for second in range(30):
         script.now_s += 1.0
         script.position(U, 0.0, 0.0)
@@ -335,7 +337,7 @@ def test_fixes_too_poor_to_say_where_the_site_is_do_not_move_it(script: Script) 
     assert anchor.lat_deg == pytest.approx(52.0, abs=1e-3)
 
 
-def test_site_placed_by_a_person_stays_where_it_is(script: Script) -> None:
+def test_site_placed_by_a_person_stays(script: Script) -> None:
     script.act(SetAnchor(52.0, 4.0, 10.0, 0.0))
     for _ in range(30):
         script.wait(1, lambda: script.position(U, 0.0, 0.0))
@@ -352,7 +354,7 @@ def walk_a_minute(script: Script) -> None:
         script.gps(U, 52.0 + 1.2 * second / NORTH_M_PER_DEG, 4.0)
 
 
-def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) -> None:
+def test_late_anchor_keeps_everyone_on_the_earth(script: Script) -> None:
     """The frame moves under people, not people over the Earth; trails move with them."""
     script.act(OpenIncident("i1", "Mill Lane"))
     walk_a_minute(script)
@@ -372,8 +374,8 @@ def test_an_anchor_that_comes_later_keeps_everyone_on_the_earth(script: Script) 
     )
 
 
-def test_what_was_learnt_of_the_building_stays_where_it_is_on_the_earth(script: Script) -> None:
-    """Its stairs, the way its walls go, its storeys; and a beacon that hangs in it."""
+def test_learnt_building_stays_on_the_earth(script: Script) -> None:
+    """Its stairs, the direction of its walls, its storeys; and a beacon in it."""
     walk_a_minute(script)
     state = script.pipeline.state
     stairs = LearntStairs(30.0, 4.0, (1.0, 0.0, 1.0), 0.0, -3.0, turns=True)
@@ -400,8 +402,8 @@ def test_what_was_learnt_of_the_building_stays_where_it_is_on_the_earth(script: 
     assert [one.down_m for one in moved] == pytest.approx(expected_m, abs=0.05)
 
 
-def test_a_pin_after_the_frame_was_moved_means_the_plan_as_it_lies_now(script: Script) -> None:
-    """What is solved again with it was walked before: all of it stays where it was on the Earth."""
+def test_pin_after_the_frame_was_moved_refers_to_the_present_plan(script: Script) -> None:
+    """The path that is solved again was walked before: all of it stays in place on the Earth."""
     script.act(OpenIncident("i1", "Mill Lane"))
     walk_a_minute(script)
     new = Anchor(52.0003, 4.0004, 20.0, 0.8)

@@ -1,4 +1,4 @@
-"""A unit's compass at the station: it turns a path that nothing else turns, and harms no other."""
+"""Compass of a unit at the station: it turns a path without other heading, and harms no other."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def wandered(seed: int, duration_s: float = 120.0) -> Walk:
 
 
 def compass_of(walk: Walk, seed: int, off_rad: float | None = None) -> CompassHeading:
-    """One whose error is drawn once and lasts."""
+    """A compass whose error is drawn once and lasts."""
     if off_rad is None:
         off_rad = float(np.random.default_rng(100 + seed).normal(0.0, STD_RAD))
     return CompassHeading(wrap_pi(walk.turn_rad + off_rad), STD_RAD)
 
 
 def started(walk: Walk, heading_rad: float = 0.0, heading_std_rad: float = math.pi) -> Fuser:
-    """Begun where the walk begins; without a heading unless one is given."""
+    """A fuser started at the begin of the walk; without a heading unless one is given."""
     fuser = FUSERS[0].new()
     north_m, east_m = walk.truth_m[0] - walk.own_m[0]
     fuser.start(Start(float(north_m), float(east_m), 0.0, heading_rad, 1.0, heading_std_rad))
@@ -61,7 +61,7 @@ def normalised2(fuser: Fuser, walk: Walk, index: int) -> float:
 
 
 @pytest.mark.slow
-def test_without_a_receiver_it_turns_the_path_to_the_plan() -> None:
+def test_compass_turns_the_path_to_the_plan_without_a_receiver() -> None:
     inside = []
     for seed in SEEDS:
         walk = wandered(seed)
@@ -81,7 +81,7 @@ def test_without_a_receiver_it_turns_the_path_to_the_plan() -> None:
     assert np.mean(inside) > 0.85
 
 
-def test_to_be_repeated_makes_it_no_surer() -> None:
+def test_repetition_makes_the_heading_no_surer() -> None:
     walk = wandered(0)
     fuser = started(walk)
     for index in range(300):
@@ -93,7 +93,7 @@ def test_to_be_repeated_makes_it_no_surer() -> None:
         assert estimate.heading_std_rad > 0.9 * STD_RAD
 
 
-def test_a_heading_that_is_known_better_stays() -> None:
+def test_better_known_heading_stays() -> None:
     walk = wandered(1)
     one, other = (started(walk, walk.turn_rad, 0.03) for _ in range(2))
     for index in range(300):
@@ -122,7 +122,7 @@ def test_fixes_refute_the_compass_for_good(off_rad: float) -> None:
 
 
 @pytest.mark.slow
-def test_beside_fixes_it_does_no_harm() -> None:
+def test_compass_does_no_harm_beside_fixes() -> None:
     with_compass_m: list[float] = []
     deaf_m: list[float] = []
     for seed in SEEDS:
@@ -140,7 +140,7 @@ def test_beside_fixes_it_does_no_harm() -> None:
     assert np.mean(with_compass_m) < 1.02 * np.mean(deaf_m)
 
 
-def test_a_unit_that_nothing_places_is_shown_turned_about_its_start() -> None:
+def test_unplaced_unit_is_shown_turned_about_its_start() -> None:
     walk = wandered(2)
     fuser = FUSERS[0].new()
     for index in range(300):
@@ -158,7 +158,7 @@ def test_a_unit_that_nothing_places_is_shown_turned_about_its_start() -> None:
     assert "start not known" in estimate.quality_reason
 
 
-def test_saved_and_restored_it_is_the_same() -> None:
+def test_restored_compass_state_is_the_same() -> None:
     walk = wandered(3)
     fuser = started(walk)
     for index in range(100):
@@ -171,7 +171,7 @@ def test_saved_and_restored_it_is_the_same() -> None:
     assert fuser.estimate() == again.estimate()
 
 
-def test_magnetic_north_becomes_the_plan_s_by_declination_and_the_plan_s_turn() -> None:
+def test_magnetic_north_becomes_plan_north_by_declination_and_rotation() -> None:
     north = MagneticNorth(math.radians(30.0), math.radians(4.0))
     bearing = compass_heading(north, SYDNEY, DAY_NS + 12345)
     assert bearing is not None
@@ -195,7 +195,7 @@ def test_compass_that_contradicts_the_estimate_is_not_used() -> None:
     assert known[1] == pytest.approx(0.01)
 
 
-def test_a_unit_without_a_receiver_is_turned_to_the_plan_through_the_station() -> None:
+def test_unit_without_a_receiver_is_turned_to_the_plan_through_the_station() -> None:
     """It walks along magnetic north by its own compass, in a frame of its own."""
     script = Script()
     script.register("u1")

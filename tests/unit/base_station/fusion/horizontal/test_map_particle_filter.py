@@ -1,4 +1,6 @@
-"""Beside a wall there is no room for half a body; and of a path's scale walls tell nothing."""
+"""Map particle filter: half a body keeps off a wall, and walls do not change the scale of a
+path.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,7 @@ def corridor() -> FloorGrid:
 
 
 def walked_north(east_m: float, std_m: float) -> MapParticleFilter:
-    """Fifteen metres along the corridor, from where somebody is taken to be."""
+    """Fifteen metres along the corridor, from the assumed start."""
     mean, covariance = np.zeros(STATES), np.zeros((STATES, STATES))
     mean[[0, 1, 2]] = 5.0, east_m, 1.0
     covariance[[0, 1], [0, 1]] = std_m**2
@@ -43,11 +45,11 @@ def test_nobody_walks_with_a_shoulder_in_the_wall() -> None:
     assert math.sqrt(covariance[1, 1]) < 0.32
 
 
-def test_to_be_close_to_a_wall_does_not_speak_against_the_plan() -> None:
+def test_path_close_to_a_wall_is_no_evidence_against_the_plan() -> None:
     assert not walked_north(0.1, 0.05).is_contradicted
 
 
-def test_walls_leave_the_variance_of_the_scale_as_it_is() -> None:
+def test_walls_leave_the_variance_of_the_scale_unchanged() -> None:
     cloud = walked_north(1.0, 0.3)
     for one in (cloud, MapParticleFilter.restore(cloud.save())):
         mean, covariance = one.moments()

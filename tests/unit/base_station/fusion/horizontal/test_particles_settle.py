@@ -1,4 +1,4 @@
-"""A cloud of particles that is reweighted to a posterior keeps what walls have shown."""
+"""A cloud of particles that is reweighted to a posterior keeps the evidence of walls."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SPREAD = np.diag([4.0, 0.01, 1e-4, 1e-4, *[1e-6] * 4, 1e-10])
 
 @pytest.fixture
 def cloud() -> MapParticleFilter:
-    """On both sides of a wall along north 0, and nobody within a metre of it."""
+    """Particles on both sides of a wall along north 0, and none within a metre of it."""
     begun = MapParticleFilter(MEAN, SPREAD, 5).save()
     states = np.frombuffer(begun.particles.states).reshape(PARTICLES, 4).copy()
     states[:, 0] += np.where(states[:, 0] > 0.0, 1.0, -1.0)

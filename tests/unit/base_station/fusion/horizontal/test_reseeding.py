@@ -1,4 +1,6 @@
-"""A cloud that walls have confirmed in the wrong rooms is held against particles from elsewhere."""
+"""A cloud that walls have confirmed in the wrong rooms is compared with particles from
+elsewhere.
+"""
 
 from __future__ import annotations
 
@@ -64,7 +66,7 @@ def building(*doors_m: float, aside_m: float = 0.0) -> FloorGrid:
 
 
 def known(place_m: Floats, std_m: float) -> tuple[Floats, Floats]:
-    """Moments of a filter that goes by the path alone."""
+    """Moments of a filter that uses the path alone."""
     mean, covariance = np.zeros(STATES), np.diag([*[1e-4] * 4, *[1.0] * 4, 1e-10])
     mean[:3] = *place_m, 1.0
     covariance[[0, 1], [0, 1]] = std_m**2
@@ -74,7 +76,7 @@ def known(place_m: Floats, std_m: float) -> tuple[Floats, Floats]:
 def walked(
     grid: FloorGrid, off_east_m: float, *, looks: bool = True
 ) -> tuple[MapParticleFilter, Floats]:
-    """The walk from where it is taken to begin this far off, and where it has truly led."""
+    """The walk from an assumed begin this far off, and its true path."""
     place_m = np.array(BEGIN_M)
     taken_m = place_m + np.array((0.0, off_east_m))
     cloud = MapParticleFilter(*known(taken_m, 0.4), 1)
@@ -104,8 +106,8 @@ def test_cloud_held_beside_the_door_comes_to_the_right_room(off_east_m: float) -
     assert off_m(found, place_m) < 1.5
 
 
-def test_whom_a_plan_drawn_aside_had_led_aside_comes_back_with_the_right_one() -> None:
-    """Of that plan the walls all fitted; by the right one he has walked through some."""
+def test_unit_misled_by_a_shifted_plan_recovers_with_the_right_one() -> None:
+    """The walls of the shifted plan all fitted; by the right one the path crosses some."""
     cloud, place_m = walked(building(*DOOR_M, aside_m=4.0), 4.0)
     right = building(*DOOR_M)
     assert off_m(cloud, place_m) > 3.0
@@ -139,7 +141,7 @@ def test_likelihood_of_a_window_without_any_is_spread_evenly() -> None:
     assert nobody.save() == []
 
 
-def test_a_filter_holds_its_cloud_against_another_plan_than_it_was_saved_with() -> None:
+def test_restored_filter_compares_its_cloud_with_a_changed_plan() -> None:
     cloud, _ = walked(building(*DOOR_M, aside_m=4.0), 4.0)
     kind = Parameters()
     walled = MapAidedFilter(
@@ -155,7 +157,7 @@ def test_a_filter_holds_its_cloud_against_another_plan_than_it_was_saved_with() 
 
 
 def test_cloud_of_two_places_is_split_with_both() -> None:
-    """Two rooms alike, and what is known without walls lies between them."""
+    """Two rooms alike; the estimate without walls lies between them."""
     grid, place_m = building(3.5, 12.5), np.array((6.0, 8.0))
     cloud, taken_m, opened = MapParticleFilter(*known(place_m, 0.15), 1), place_m, False
     for direction in [(1.0, 0.0)] * 7 + [(-1.0, 0.0)] * 7 + [(1.0, 0.0)] * 7:
@@ -170,7 +172,7 @@ def test_cloud_of_two_places_is_split_with_both() -> None:
     assert std_m(cloud) > SPLIT_STD_M
 
 
-def test_two_places_are_a_reason_not_to_trust_one() -> None:
+def test_two_places_reduce_the_trust_in_one() -> None:
     placed = HorizontalEstimate(0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.01)
     sure = quality_of(Parameters(), placed, None, assumed=False, split=False)
     split = quality_of(Parameters(), placed, None, assumed=False, split=True)
@@ -187,7 +189,7 @@ def test_cloud_in_the_right_place_is_left_alone(drawn_m: tuple[float, ...]) -> N
     assert off_m(looking, place_m) < 2.0
 
 
-def test_the_way_back_meets_what_the_way_there_met() -> None:
+def test_way_back_crosses_the_same_walls_as_the_way_there() -> None:
     grid, rng = building(*DOOR_M), np.random.default_rng(3)
     begin = draw(*known(np.array(BEGIN_M), 1.0), rng, np.ones(50)).particles
     particles, last, logs = begin.copy(), MotionWindow([]), np.zeros(50)
@@ -204,12 +206,12 @@ def test_the_way_back_meets_what_the_way_there_met() -> None:
     back = last.wall_log_likelihood(particles, 1.0, grid, -math.inf) + last.repeated_wall_log_ratio(
         particles, 1.0, grid
     )
-    assert np.mean(np.abs(back - logs) < 1e-6) > 0.9  # but for squares that a rounding misses
+    assert np.mean(np.abs(back - logs) < 1e-6) > 0.9  # except squares that a rounding misses
     assert (logs < COSTS[WALL]).any()
     assert (logs > COSTS[WALL]).any()
 
 
-def test_a_door_that_is_not_drawn_is_one_wall_in_and_out() -> None:
+def test_door_that_is_not_drawn_is_one_wall_in_and_out() -> None:
     in_and_out = [(1.0, 0.0)] * 6 + [(-1.0, 0.0)] * 6
     last = MotionWindow(
         [MotionStep(STEP_M * n, STEP_M * e, 0.5, False, 0, 0.0) for n, e in in_and_out]
@@ -228,7 +230,7 @@ def test_fitting_path_in_little_room_is_stronger_evidence() -> None:
     assert in_corridor < in_room - 1.0 < 0.0
 
 
-def test_only_the_last_stretch_is_kept() -> None:
+def test_only_the_recent_window_is_kept() -> None:
     last = MotionWindow([])
     for _ in range(400):
         last.append(MotionStep(0.5, 0.0, 0.5, False, 0, -0.1))
@@ -237,7 +239,7 @@ def test_only_the_last_stretch_is_kept() -> None:
     assert MotionWindow(last.save()).save() == last.save()
 
 
-def test_an_unknown_floor_has_no_walls() -> None:
+def test_unknown_floor_has_no_walls() -> None:
     last = MotionWindow(
         [MotionStep(0.0, 6.0, 6.0, False, None, 0.0), MotionStep(6.0, 0.0, 6.0, False, 7, 0.0)]
     )
@@ -245,7 +247,7 @@ def test_an_unknown_floor_has_no_walls() -> None:
     assert last.wall_log_likelihood(particles, 1.0, building(), -math.inf) == pytest.approx([0.0])
 
 
-def test_saved_while_both_are_open_it_goes_on_with_the_very_same_numbers() -> None:
+def test_filter_saved_with_both_open_continues_with_identical_numbers() -> None:
     grid = building(*DOOR_M)
     cloud, place_m = walked(grid, 4.0)
     saved = msgspec.msgpack.encode(cloud.save())

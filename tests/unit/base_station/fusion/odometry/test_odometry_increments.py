@@ -1,4 +1,4 @@
-"""How a unit's own path grows from one position to the next, and its errors with it."""
+"""Increments of a unit's own path from one position to the next, with their errors."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ STEP_S = 0.2
 def go(
     own: OdometryIncrements, north_m: float, east_m: float, **stated: float | Quality
 ) -> OdometryIncrement:
-    """To there in a fifth of a second."""
+    """Move there in a fifth of a second."""
     place = {"north_m": north_m, "east_m": east_m, "down_m": 0.0} | stated
     return own.increment(message_factory.position(Header("u1", 1, 1, 0), **place), STEP_S)
 
 
-def test_the_first_stretch_is_from_the_frame_s_origin_and_took_no_time() -> None:
+def test_first_increment_begins_at_the_frames_origin_without_duration() -> None:
     increment = go(OdometryIncrements(KIND), 3.0, 4.0, down_m=-1.0)
     assert (increment.north_m, increment.east_m, increment.down_m) == (3.0, 4.0, -1.0)
     assert increment.length_m == 5.0
@@ -34,7 +34,7 @@ def test_the_first_stretch_is_from_the_frame_s_origin_and_took_no_time() -> None
     assert increment.turn_var == pytest.approx(5.0 * KIND.turn_rad_per_sqrt_m**2)
 
 
-def test_who_turns_back_has_turned_by_half_a_turn() -> None:
+def test_reversal_is_half_a_turn() -> None:
     own = OdometryIncrements(KIND)
     go(own, 0.0, 1.0)
     by_way = 0.2 * KIND.turn_rad_per_sqrt_m**2
@@ -42,10 +42,10 @@ def test_who_turns_back_has_turned_by_half_a_turn() -> None:
     back = go(own, 0.0, 1.0)
     assert back.turn_var == pytest.approx(by_way + (KIND.turn_part * math.pi) ** 2)
     assert back.moving_s == STEP_S
-    assert go(own, 0.0, 1.001).moving_s == 0.0  # nobody walks that slowly
+    assert go(own, 0.0, 1.001).moving_s == 0.0  # slower than any walk
 
 
-def test_a_heading_that_grows_unsure_at_once_has_not_drifted() -> None:
+def test_heading_that_becomes_uncertain_at_once_has_not_drifted() -> None:
     own = OdometryIncrements(KIND)
     go(own, 0.0, 0.0, heading_std_rad=0.1)
     usual_rad = 3.0 * KIND.drift_radps * STEP_S
@@ -67,7 +67,7 @@ def test_drift_rate_follows_the_stated_heading_deviation() -> None:
     assert drift_radps == pytest.approx(KIND.drift_inflation * stated_radps)
 
 
-def test_a_heading_that_is_held_by_now_drifts_no_longer() -> None:
+def test_heading_that_is_held_drifts_no_longer() -> None:
     own = OdometryIncrements(KIND)
     std_rad = 0.0
     for step in range(1500):
@@ -78,7 +78,7 @@ def test_a_heading_that_is_held_by_now_drifts_no_longer() -> None:
     assert drift_radps < 2.0 * KIND.drift_least_radps
 
 
-def test_after_a_jump_the_path_goes_on_from_there() -> None:
+def test_path_continues_behind_a_jump() -> None:
     own = OdometryIncrements(KIND)
     go(own, 0.0, 0.0)
     own.reset_to(
@@ -87,7 +87,7 @@ def test_after_a_jump_the_path_goes_on_from_there() -> None:
     assert go(own, 501.0, 0.0).length_m == pytest.approx(1.0)
 
 
-def test_a_saved_path_goes_on_with_the_same_numbers() -> None:
+def test_saved_path_continues_with_the_same_numbers() -> None:
     own = OdometryIncrements(KIND)
     go(own, 1.0, 0.0)
     again = OdometryIncrements(KIND, own.save())

@@ -1,4 +1,4 @@
-"""Rows of whole numbers in chunks: nothing is lost of a number, and old rows are ever fewer."""
+"""Rows of integers in chunks: no number is changed, and old rows are thinned."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ def test_every_number_comes_back(numbers: list[tuple[int, int, int]]) -> None:
     assert packed.begin == min(number[0] for number in numbers)
 
 
-def test_nothing_in_it_is_no_rows() -> None:
+def test_no_rows_stay_no_rows() -> None:
     assert not Packed()
     assert len(Packed().rows(ROW)) == 0
 
 
-def test_what_goes_on_evenly_takes_hardly_a_byte() -> None:
+def test_even_rows_take_hardly_a_byte() -> None:
     rows = chunk(0)
     rows["one"] = -7 * rows["t"]
     packed = Packed()
@@ -55,7 +55,7 @@ def test_what_goes_on_evenly_takes_hardly_a_byte() -> None:
     assert sum(len(one.columns) for one in packed.chunks) < 0.5 * CHUNK
 
 
-def test_no_more_is_held_than_is_packed() -> None:
+def test_packed_rows_hold_little_more_than_their_packed_size() -> None:
     packed = Packed()
     packed.add(chunk(0), as_they_are)
     tracemalloc.start()
@@ -68,7 +68,7 @@ def test_no_more_is_held_than_is_packed() -> None:
     assert held_bytes < 3.0 * 32 * CHUNK
 
 
-def test_there_are_only_so_many_chunks_of_each_detail() -> None:
+def test_number_of_chunks_of_each_detail_is_bounded() -> None:
     packed, added = Packed(), 20 * MOST_CHUNKS
     for number in range(added):
         packed.add(chunk(number), every_other)
@@ -84,7 +84,7 @@ def test_there_are_only_so_many_chunks_of_each_detail() -> None:
 
 
 @pytest.mark.parametrize("before", [0, 1, CHUNK, CHUNK + 1, 4 * CHUNK - 1, 4 * CHUNK])
-def test_cut_it_begins_there(before: int) -> None:
+def test_cut_rows_begin_at_the_cut(before: int) -> None:
     packed = Packed()
     for number in range(4):
         packed.add(chunk(number), as_they_are)
@@ -92,7 +92,7 @@ def test_cut_it_begins_there(before: int) -> None:
     assert packed.rows(ROW)["t"].tolist() == list(range(before, 4 * CHUNK))
 
 
-def test_rows_that_came_out_of_order_are_cut_by_their_own_times() -> None:
+def test_unordered_rows_are_cut_by_their_own_times() -> None:
     rows, packed = chunk(0), Packed()
     packed.add(rows[::-1], as_they_are)
     packed.add(rows[:2], as_they_are)

@@ -1,4 +1,4 @@
-"""The satellite fixes that are kept with a unit's own path."""
+"""Satellite fixes that are kept with a unit's own path."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.rig.published_path import at, insert_late, walked
 
 
 def taken(history: PathHistory, t_s: float) -> None:
-    """A fix that tells by where it lies when it was taken."""
+    """A fix whose place encodes its time."""
     history.fix(PlaceFix(0, t_s, 0.0, 0.0, 3.0, None), round(t_s * NS_PER_S))
 
 
@@ -26,14 +26,14 @@ def kept_s(history: PathHistory) -> list[float]:
     return times_s
 
 
-def test_fixes_close_by_are_one() -> None:
+def test_nearby_fixes_are_one() -> None:
     history = walked(10)
     for fifth in range(50):
         taken(history, fifth / 5)
     assert kept_s(history) == [0.0, 2.0, 4.0, 6.0, 8.0]
 
 
-def test_late_ones_that_come_between_live_ones_are_no_more_than_they_would_have_been() -> None:
+def test_late_fixes_between_live_ones_are_thinned_like_live_ones() -> None:
     """A journal is read while the receiver goes on."""
     history = walked(10)
     for second in range(600):
@@ -58,15 +58,15 @@ def test_late_fix_beside_a_known_one_is_left_out(late_s: float) -> None:
     assert kept_s(history) == before
 
 
-def test_late_ones_fill_a_gap_whichever_comes_first() -> None:
+def test_late_fixes_fill_a_gap_in_any_order() -> None:
     history = walked(10)
     for late_s in (0.0, 2.0, 20.0, 22.0, 18.0, 19.0, 3.0, 4.0, 10.0):
         taken(history, late_s)
     assert kept_s(history) == [0.0, 2.0, 4.0, 10.0, 18.0, 20.0, 22.0]
 
 
-def test_fixes_of_before_the_path_are_not_of_its_begin() -> None:
-    """A tracker was started late, or a journal brings what was before the incident."""
+def test_fixes_before_the_path_do_not_belong_to_its_begin() -> None:
+    """A tracker was started late, or a journal brings messages of before the incident."""
     history = PathHistory()
     for second in range(0, 200, 2):
         taken(history, float(second))
@@ -79,7 +79,7 @@ def test_fixes_of_before_the_path_are_not_of_its_begin() -> None:
 
 
 @pytest.mark.parametrize(("boot_id", "jumped"), [(2, False), (1, True)], ids=["restart", "jump"])
-def test_fixes_of_where_the_path_breaks_are_of_neither_end(boot_id: int, jumped: bool) -> None:
+def test_fixes_at_a_break_of_the_path_belong_to_neither_end(boot_id: int, jumped: bool) -> None:
     history = PathHistory()
     for second in range(20):
         history.append(at(second, float(second)), second * NS_PER_S, jumped=False)
@@ -92,7 +92,7 @@ def test_fixes_of_where_the_path_breaks_are_of_neither_end(boot_id: int, jumped:
     assert near_s == [17.5, 19.5, 51.5, 53.5]
 
 
-def test_one_fix_that_lies_elsewhere_is_enough_to_place_its_unit_again() -> None:
+def test_one_fix_elsewhere_suffices_to_place_its_unit_again() -> None:
     history = walked(20)
     taken(history, 10.0)
     assert history.move_fixes(0.0, 0.0, 2.0)
@@ -100,7 +100,7 @@ def test_one_fix_that_lies_elsewhere_is_enough_to_place_its_unit_again() -> None
 
 
 def test_live_estimates_with_moved_fixes_are_dropped() -> None:
-    """Neither of late nor long ago."""
+    """Both recent and old ones."""
     history = PathHistory()
     taken(history, 1.0)
     for second in range(400):
@@ -113,7 +113,7 @@ def test_live_estimates_with_moved_fixes_are_dropped() -> None:
     assert not history.arrays().shown_std_m.any()
 
 
-def test_fixes_that_lie_elsewhere_move_in_the_frame_as_it_is_now() -> None:
+def test_fixes_elsewhere_move_in_the_present_frame() -> None:
     history = walked(20)
     assert not history.move_fixes(0.3, 1.0, 2.0)
     for second in range(0, 800, 2):

@@ -1,4 +1,4 @@
-"""A path in an incident frame that is moved, or in which it turns out to have led elsewhere."""
+"""A path in an incident frame that is moved, or in which the path turns out to lie elsewhere."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from shared.quality import Quality
 from tests.rig.published_path import at, walked
 
 
-def test_a_moved_frame_moves_what_is_of_the_frame_only() -> None:
+def test_moved_frame_moves_values_of_the_frame_only() -> None:
     history = walked(300)
     history.fix(PlaceFix(0, 10.0, 0.0, 0.0, 3.0, None), NS_PER_S)
     history.set_start(Start(10.0, 0.0, 1.0, 0.0, 0.5, 0.2))
@@ -33,7 +33,7 @@ def test_a_moved_frame_moves_what_is_of_the_frame_only() -> None:
     assert start.heading_rad == pytest.approx(math.pi / 2.0)
 
 
-def test_a_frame_that_is_moved_twice_moves_whatever_was_packed_when() -> None:
+def test_frame_moved_twice_moves_all_rows_whenever_packed() -> None:
     history, place = PathHistory(), RigidTransform2D()
     moves = {
         400: RigidTransform2D(0.5, 10.0, -4.0, 3.0),
@@ -61,7 +61,7 @@ def test_a_frame_that_is_moved_twice_moves_whatever_was_packed_when() -> None:
 
 
 @pytest.mark.parametrize("seconds", [20, 800], ids=["as it is", "packed"])
-def test_where_a_run_led_is_shown_there_and_what_was_before_it_stays(seconds: int) -> None:
+def test_corrected_run_is_shown_at_its_place_and_the_earlier_path_stays(seconds: int) -> None:
     """In a frame that has moved since."""
     history = walked(seconds, east_mps=0.5)
     history.reframe(0.4, 3.0, -2.0, 1.5)
@@ -81,14 +81,14 @@ def test_where_a_run_led_is_shown_there_and_what_was_before_it_stays(seconds: in
     assert np.array_equal(after.own_m, before.own_m)
 
 
-def test_what_is_undone_is_where_it_was() -> None:
+def test_undone_correction_restores_the_place() -> None:
     move = RigidTransform2D(0.8, 30.0, -7.0, 2.0)
     assert move.inverse().apply(*move.apply(4.0, 9.0)) == pytest.approx((4.0, 9.0))
     same = msgspec.structs.astuple(move.followed_by(move.inverse()))
     assert same == pytest.approx((0.0,) * 4, abs=1e-9)
 
 
-def test_an_anchor_on_another_world_saturates_and_does_not_wrap() -> None:
+def test_anchor_out_of_range_saturates_and_does_not_wrap() -> None:
     history = walked(20)
     for _ in range(3):
         history.reframe(1.0, 1e300, -1e12, 2e6)

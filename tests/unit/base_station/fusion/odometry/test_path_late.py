@@ -1,4 +1,4 @@
-"""What comes late of a unit's own path: into its gaps, and before its beginning."""
+"""Late positions of a unit's own path: into its gaps, and before its beginning."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from shared.quality import Quality
 from tests.rig.published_path import at, insert_late, walked
 
 
-def test_a_gap_over_which_the_path_broke_is_not_filled() -> None:
-    """Nobody knows on which side of the leap it was."""
+def test_gap_over_a_break_of_the_path_is_not_filled() -> None:
+    """The side of the break is unknown."""
     history = PathHistory()
     for t_s in (0, 1, 2, 22, 23):
         history.append(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=t_s == 22)
@@ -24,8 +24,8 @@ def test_a_gap_over_which_the_path_broke_is_not_filled() -> None:
     assert np.array_equal(history.arrays().t_ns, before.t_ns)
 
 
-def test_of_a_run_nothing_lies_within_the_one_before() -> None:
-    """Its clock is wrong where it says so."""
+def test_late_positions_never_lie_within_the_run_before() -> None:
+    """Their clock is wrong where they would."""
     history = PathHistory()
     for t_s in (0, 10, 20):
         history.append(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=False)
@@ -36,7 +36,7 @@ def test_of_a_run_nothing_lies_within_the_one_before() -> None:
     assert history.runs.begin_ns == 30 * NS_PER_S
 
 
-def test_a_gap_behind_what_is_packed_is_not_filled() -> None:
+def test_gap_behind_packed_rows_is_not_filled() -> None:
     history = walked(400)
     del history.own.points[:30]
     before, first_ns = history.arrays(), history.own.points[0].t_ns
@@ -46,13 +46,13 @@ def test_a_gap_behind_what_is_packed_is_not_filled() -> None:
 
 
 def test_late_positions_of_the_run_before_follow_its_live_ones() -> None:
-    """The radio was gone, and the unit's program was started again meanwhile."""
+    """The radio was gone, and the unit's program was restarted meanwhile."""
     history = PathHistory()
     for t_s in (0, 10, 20):
         history.append(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=False)
     for t_s in (60, 70, 80):
         history.append(at(float(t_s), t_s - 60.0, boot_id=2), t_s * NS_PER_S, jumped=False)
-    for late_s in (45.0, 40.0, 30.0, 15.0, 65.0):  # of the last one the next run was there
+    for late_s in (45.0, 40.0, 30.0, 15.0, 65.0):  # at the last of them the next run had begun
         insert_late(history, at(late_s, late_s))
     arrays = history.arrays()
     assert (arrays.t_ns / NS_PER_S).tolist() == [0, 10, 15, 20, 30, 40, 45, 60, 70, 80]
@@ -65,15 +65,15 @@ def test_late_positions_of_the_run_before_follow_its_live_ones() -> None:
     assert len(history.arrays()) == 11, "of the one before that nobody knows where it led"
 
 
-def test_what_is_later_than_the_path_has_come_to_fills_nothing() -> None:
-    """Its clock was judged otherwise meanwhile."""
+def test_position_later_than_the_path_fills_nothing() -> None:
+    """The estimate of its clock has changed meanwhile."""
     history = walked(60)
     before = history.arrays()
     insert_late(history, at(70.0, 70.0))
     assert np.array_equal(history.arrays().t_ns, before.t_ns)
 
 
-def test_what_comes_late_fills_a_gap() -> None:
+def test_late_positions_fill_a_gap() -> None:
     history = PathHistory()
     for t_s in (0, 1, 2, 22, 23):
         history.append(at(float(t_s), 1.0 * t_s), t_s * NS_PER_S, jumped=False)
@@ -127,7 +127,7 @@ def test_run_that_came_late_begins_after_the_one_before() -> None:
     assert history.start.begin_ns == 40 * NS_PER_S
 
 
-def test_what_was_before_an_incident_is_not_brought_back() -> None:
+def test_positions_before_an_incident_are_not_brought_back() -> None:
     history = PathHistory()
     history.append(at(60.0, 60.0), 60 * NS_PER_S, jumped=False)
     history.begin_incident(60 * NS_PER_S, 30 * NS_PER_S)

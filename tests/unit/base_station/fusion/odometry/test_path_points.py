@@ -1,4 +1,4 @@
-"""Points and fixes of a path as rows of whole numbers, and back in SI units."""
+"""Points and fixes of a path as rows of integers, and back in SI units."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ POINT = Point(
 )
 
 
-def test_every_field_comes_back_to_a_centimetre_and_a_millisecond() -> None:
+def test_every_field_is_restored_to_a_centimetre_and_a_millisecond() -> None:
     fix = PlaceFix(0, -3.211, 4.566, 0.0, 2.503, None)
     later = msgspec.structs.replace(POINT, t_ns=POINT.t_ns + NS_PER_S, floor=NO_FLOOR)
     fixes = np.concatenate([fix_row(fix, one.t_ns) for one in (POINT, later)])
@@ -61,7 +61,7 @@ def test_every_field_comes_back_to_a_centimetre_and_a_millisecond() -> None:
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 256])
-def test_thinned_it_begins_and_ends_where_it_did_and_moves_as_long(count: int) -> None:
+def test_thinned_path_keeps_its_ends_and_its_moving_time(count: int) -> None:
     rows = rows_of([Point(second * NS_PER_S, moving_ms=second) for second in range(count)])
     left = thinned(rows)
     assert (left["t_ms"][0], left["t_ms"][-1]) == (rows["t_ms"][0], rows["t_ms"][-1])
@@ -77,7 +77,7 @@ def test_thinning_keeps_begins_of_frames_and_adds_up_times_and_flags() -> None:
     assert left["flags"].tolist() == [0, RESTART, 0, BREAK, BREAK | DOUBTFUL, 0]
 
 
-def test_a_path_is_not_changed_by_being_thinned() -> None:
+def test_path_is_not_changed_by_being_thinned() -> None:
     rows = rows_of([Point(second * NS_PER_S, moving_ms=second, flags=BREAK) for second in range(9)])
     before = rows.copy()
     thinned(rows)

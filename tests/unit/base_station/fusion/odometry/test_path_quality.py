@@ -1,4 +1,6 @@
-"""That a long way has added up to much doubt is nothing against the steps of now."""
+"""Quality of a path: the doubt that a long way has added up does not count against its present
+steps.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ from tests.rig import message_factory
 from tests.rig.station_script import Script
 
 U = "FF-01"
-FAR = Quality.LOST, Reason.UNCERTAIN  # as a unit says after twenty minutes of walking
+FAR = Quality.LOST, Reason.UNCERTAIN  # as reported after twenty minutes of walking
 
 
 @pytest.mark.parametrize(
@@ -35,7 +37,7 @@ FAR = Quality.LOST, Reason.UNCERTAIN  # as a unit says after twenty minutes of w
         (Quality.DEGRADED, Reason.UNSETTLED | Reason.SAMPLE_GAP, Quality.DEGRADED),
     ],
 )
-def test_only_what_is_against_its_steps_is_against_a_path(quality, reasons, path_quality):
+def test_only_poor_steps_lower_the_quality_of_a_path(quality, reasons, path_quality):
     position = message_factory.position(Header(U, 1, 1, 0), quality=quality, reasons=reasons)
     assert position.path_quality is path_quality
 
@@ -63,7 +65,7 @@ def test_quality_after_a_long_walk_follows_the_deviation_of_the_fuser():
     assert doubted.std_north_m > 3.0 * estimate(*FAR).std_north_m
 
 
-def test_nobody_is_alarmed_by_a_long_walk():
+def test_long_walk_raises_no_alarm():
     quality, far = FAR
     script = Script()
     script.register(U)
@@ -84,7 +86,7 @@ def test_nobody_is_alarmed_by_a_long_walk():
     assert script.fused[-1].quality_reason == "the unit's tracker is lost: no footfall felt"
 
 
-def test_a_lost_height_is_an_alarm_and_stands_with_the_position():
+def test_lost_height_is_an_alarm_and_stands_with_the_position():
     words = "footfalls contradict the motion between them: height not known"
     script = Script()
     script.register(U)
@@ -118,7 +120,7 @@ def test_quality_reason_names_cause_and_remedy(quality, reasons, words):
     assert (estimate.quality, estimate.quality_reason) == (Quality.DEGRADED, words)
 
 
-def test_every_reason_has_its_words():
+def test_every_reason_has_a_text():
     for reason in Reason:
         if reason:
             assert len(in_words(reason)) > 5

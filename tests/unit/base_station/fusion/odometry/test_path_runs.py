@@ -1,4 +1,4 @@
-"""The runs of a unit's program that its path is made of, and which of them an incident has."""
+"""Runs of a unit's program in its path, and which of them belong to an incident."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.rig.published_path import at, walked
 ODD_NS = 400_001  # of a millisecond: packed times have none
 
 
-def test_trimmed_it_begins_later() -> None:
+def test_trimmed_path_begins_later() -> None:
     history = walked(400)
     for second in range(0, 400, 2):
         history.fix(PlaceFix(0, 10.0, 0.0, 0.0, 3.0, None), second * NS_PER_S)
@@ -29,7 +29,7 @@ def test_trimmed_it_begins_later() -> None:
 
 
 def two_runs(seconds: int) -> PathHistory:
-    """Half a minute, and as long as that from a minute on; a fix every two seconds."""
+    """Two runs of half a minute, the second from a minute on; a fix every two seconds."""
     history = PathHistory()
     for boot_id, begin_s, lasted_s in ((1, 0, 30), (2, 60, seconds)):
         for second in range(begin_s, begin_s + lasted_s):
@@ -40,7 +40,7 @@ def two_runs(seconds: int) -> PathHistory:
 
 
 @pytest.mark.parametrize("seconds", [30, 600], ids=["as it is", "packed"])
-def test_an_incident_begins_with_the_run_that_goes_on_in_it(seconds: int) -> None:
+def test_incident_begins_with_the_run_that_continues_in_it(seconds: int) -> None:
     history = two_runs(seconds)
     history.begin_incident((60 + seconds) * NS_PER_S, 0)
     assert bool(history.own.packed) is (seconds == 600)
@@ -50,7 +50,7 @@ def test_an_incident_begins_with_the_run_that_goes_on_in_it(seconds: int) -> Non
     assert len(history.arrays()) >= seconds - 1
 
 
-def test_a_run_that_was_over_before_an_incident_is_no_part_of_its_path() -> None:
+def test_run_ended_before_an_incident_is_no_part_of_its_path() -> None:
     history = two_runs(600)
     history.begin_incident(700 * NS_PER_S, 0)
     assert history.begin_ns is not None
@@ -63,8 +63,8 @@ def test_a_run_that_was_over_before_an_incident_is_no_part_of_its_path() -> None
     assert np.count_nonzero(history.arrays().flags & RESTART) == 1
 
 
-def test_of_a_run_that_went_on_in_an_incident_what_was_before_stays_when_the_next_begins() -> None:
-    """Where it led tells where the wearer was as it was opened."""
+def test_earlier_part_of_a_continuing_run_stays_when_the_next_begins() -> None:
+    """It tells where the wearer was when the incident was opened."""
     history = PathHistory()
     for second in range(0, 40, 10):
         if second == 20:
@@ -75,7 +75,7 @@ def test_of_a_run_that_went_on_in_an_incident_what_was_before_stays_when_the_nex
     assert len(history.arrays()) == 5
 
 
-def test_of_a_unit_of_which_nothing_is_wanted_any_more_the_next_run_is_the_path() -> None:
+def test_next_run_replaces_the_path_of_a_unit_without_incident() -> None:
     history = walked(20)
     history.begin_incident(30 * NS_PER_S, 25 * NS_PER_S)
     assert history.begin_ns is None
@@ -83,7 +83,7 @@ def test_of_a_unit_of_which_nothing_is_wanted_any_more_the_next_run_is_the_path(
     assert history.begin_ns == 40 * NS_PER_S
 
 
-def test_a_start_is_of_the_path_as_long_as_its_run_is() -> None:
+def test_start_belongs_to_the_path_as_long_as_its_run_does() -> None:
     start, history, held = Start(1.0, 2.0, 0.0, 0.1, 0.5, 0.2), PathHistory(), []
     history.set_start(start)
     history.append(at(1.0, 0.0), NS_PER_S, jumped=False)
@@ -104,8 +104,8 @@ def test_a_start_is_of_the_path_as_long_as_its_run_is() -> None:
     )
 
 
-def test_a_run_that_seems_to_begin_before_the_last_one_ended_begins_behind_it() -> None:
-    """The messages of the first were held up on their way, and its clock is taken to be late."""
+def test_run_that_seems_to_begin_before_the_last_one_ended_begins_behind_it() -> None:
+    """The messages of the first were delayed, and its clock is estimated late."""
     history = PathHistory()
     for second in range(10):
         history.append(at(float(second), 1.0 * second), second * NS_PER_S, jumped=False)

@@ -1,4 +1,4 @@
-"""What lies between a fix and the present: the path walked since, and what it is worth."""
+"""The path walked between a fix and the present, and its uncertainty."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.rig.published_path import at
 KIND = Parameters()
 
 
-def test_it_is_the_way_from_then_to_the_last_position() -> None:
+def test_path_since_fix_leads_to_the_last_position() -> None:
     last = at(100.0, 30.0, east_m=-5.0, distance_m=60.0)
     since = path_since_fix(PathPoint(40 * NS_PER_S, 10.0, 2.0, 25.0), last)
     assert since == PathSinceFix(20.0, -7.0, 35.0, 60.0)
@@ -29,13 +29,13 @@ def test_it_is_the_way_from_then_to_the_last_position() -> None:
     )
 
 
-def test_a_fix_newer_than_the_last_position_lies_no_time_ago() -> None:
+def test_fix_newer_than_the_last_position_has_no_age() -> None:
     assert (
         path_since_fix(PathPoint(101 * NS_PER_S, 30.0, 0.0, 0.0), at(100.0, 30.0)).lasted_s == 0.0
     )
 
 
-def test_a_way_is_doubted_by_its_length_and_its_turn_by_how_far_it_led_and_lasted() -> None:
+def test_uncertainty_of_a_path_grows_with_length_and_of_its_turn_with_distance_and_time() -> None:
     drift_radps, walked_m2 = 1e-3, KIND.walk_m_per_sqrt_m**2 * 50.0
     back_again = PathSinceFix(0.0, 0.0, 50.0, 60.0)
     assert back_again.error_m2(KIND, drift_radps) == pytest.approx(walked_m2)
@@ -55,7 +55,7 @@ def test_a_way_is_doubted_by_its_length_and_its_turn_by_how_far_it_led_and_laste
         (math.inf, 0.0),
     ],
 )
-def test_a_building_makes_fixes_worse_beside_it_and_most_in_it(
+def test_building_makes_fixes_worse_beside_it_and_most_in_it(
     outside_m: float, std_m: float
 ) -> None:
     assert walls_std_m(KIND, outside_m) == pytest.approx(std_m)

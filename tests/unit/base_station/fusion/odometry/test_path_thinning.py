@@ -1,4 +1,4 @@
-"""A unit's own path, thinned: what is kept of it, and where it breaks."""
+"""Thinning of a unit's own path: the points that are kept, and its breaks."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.rig.published_path import at, walked
 SECONDS = (MOST_CHUNKS + 16) * CHUNK
 
 
-def test_a_point_a_metre_and_the_newest_place() -> None:
+def test_one_point_a_metre_and_the_newest_place() -> None:
     arrays = walked(100).arrays()
     assert 90 <= len(arrays) <= 110
     assert arrays.own_m[-1, 0] == pytest.approx(99.8)
@@ -36,7 +36,7 @@ def test_moving_time_counts_in_every_direction(mps: float, east_mps: float) -> N
     assert walked(60, mps, east_mps).arrays().moving_s.sum() == pytest.approx(59.8)
 
 
-def test_who_stands_far_from_the_beginning_is_not_moving() -> None:
+def test_rest_far_from_the_beginning_is_not_moving() -> None:
     history = PathHistory()
     for second in range(60):
         position = at(float(second), 30.0, east_m=40.0)
@@ -50,8 +50,8 @@ def test_wearer_at_rest_leaves_a_point_now_and_then() -> None:
     assert arrays.moving_s.sum() == 0.0
 
 
-def test_nobody_was_elsewhere_between_two_points() -> None:
-    """Corners, rests and other paces: a straight line in time is near where somebody was."""
+def test_straight_line_between_two_points_is_near_the_path() -> None:
+    """Corners, rests and other paces: a line that is straight in time is near the true place."""
     rng, history = np.random.default_rng(5), PathHistory()
     place, velocity, times, places = np.zeros(2), np.zeros(2), [], []
     for step in range(3000):
@@ -71,7 +71,7 @@ def test_nobody_was_elsewhere_between_two_points() -> None:
     assert len(arrays) < 0.2 * len(times)
 
 
-def test_a_foot_that_goes_by_fits_and_starts_is_a_walk() -> None:
+def test_foot_that_moves_intermittently_is_a_walk() -> None:
     """Strides of 1.3 m: six tenths of each the foot stands."""
     history = PathHistory()
     for tenth in range(3000):
@@ -81,7 +81,7 @@ def test_a_foot_that_goes_by_fits_and_starts_is_a_walk() -> None:
     assert len(history.arrays()) < 1.05 * 600.0 / 1.1 * 1.3
 
 
-def test_breaks_and_doubts_stand_where_they_were() -> None:
+def test_breaks_and_doubts_keep_their_places() -> None:
     history = PathHistory()
     for t_s, north_m, boot_id, jumped in (
         (0.0, 0.0, 1, False),
@@ -109,7 +109,7 @@ def test_times_that_go_back_stay_apart_and_in_order() -> None:
     assert (times_ns[0], times_ns[-1]) == (100 * NS_PER_S, 101 * NS_PER_S)
 
 
-def test_a_long_path_is_thinned_where_it_is_old() -> None:
+def test_long_path_is_thinned_in_its_old_part() -> None:
     history = PathHistory()
     for second in range(SECONDS):
         history.append(at(float(second), 1.1 * second), second * NS_PER_S, jumped=False)
@@ -122,7 +122,7 @@ def test_a_long_path_is_thinned_where_it_is_old() -> None:
     assert (apart_s[-MOST_CHUNKS * CHUNK :] == 1.0).all()
 
 
-def test_a_heading_of_many_turns_breaks_nothing() -> None:
+def test_heading_of_many_turns_breaks_nothing() -> None:
     history = PathHistory()
     for second in range(3 * CHUNK):
         position = at(second, float(second), heading_rad=math.tau * 60_000.0)
@@ -130,7 +130,7 @@ def test_a_heading_of_many_turns_breaks_nothing() -> None:
     assert history.own.packed
 
 
-def test_it_is_written_out_and_read_back_the_same() -> None:
+def test_saved_path_is_restored_the_same() -> None:
     history = walked(600)
     history.fix(PlaceFix(0, 1.5, -2.5, 0.0, 3.0, None), 7 * NS_PER_S)
     history.set_start(Start(1.0, 2.0, 0.0, 0.1, 0.5, 0.2))

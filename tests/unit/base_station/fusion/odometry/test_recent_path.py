@@ -1,4 +1,4 @@
-"""Where a unit was some minutes ago, in its own frame."""
+"""Recent path of a unit: its places of the last minutes, in its own frame."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ At = Callable[..., Position]
 
 @pytest.fixture
 def at(make_position: Callable[[], Position]) -> At:
-    """On a walk to the north at a metre a second, a little to the west, or elsewhere."""
+    """A walk to the north at a metre a second, a little to the west, or elsewhere."""
 
     def make(t_ns: int, north_m: float | None = None) -> Position:
         way_m = t_ns / NS_PER_S
@@ -61,11 +61,11 @@ def test_half_an_hour_is_known_everywhere(hour: RecentPath) -> None:
         assert then.distance_m == pytest.approx(1.4 * t_ns / NS_PER_S)
 
 
-def test_what_is_longer_ago_is_not(hour: RecentPath) -> None:
+def test_places_longer_ago_are_unknown(hour: RecentPath) -> None:
     assert hour.at(1600 * NS_PER_S) == "too old"
 
 
-def test_it_stays_small(hour: RecentPath) -> None:
+def test_recent_path_stays_small(hour: RecentPath) -> None:
     assert len(hour.points) < MOST_POINTS
     size = len(hour.loose) + sum(len(chunk.columns) for chunk in hour.packed.chunks)
     assert size < 8 * (KEPT_NS // COARSE_NS)
@@ -73,7 +73,7 @@ def test_it_stays_small(hour: RecentPath) -> None:
     assert old == pytest.approx(KEPT_NS // COARSE_NS, rel=0.15), "one in two seconds"
 
 
-def test_after_a_long_silence_what_was_before_it_is_too_old(at: At) -> None:
+def test_places_before_a_long_silence_are_too_old(at: At) -> None:
     memory, again_s = RecentPath(), 7200
     for begin_s in (0, again_s):
         for t_ns in range(begin_s * NS_PER_S, (begin_s + 300) * NS_PER_S, FIFTH_NS):
@@ -82,17 +82,17 @@ def test_after_a_long_silence_what_was_before_it_is_too_old(at: At) -> None:
     assert not isinstance(memory.at((again_s + 100) * NS_PER_S), str)
 
 
-def test_before_anything_is_known_a_wearer_is_where_the_own_frame_begins() -> None:
+def test_unknown_place_is_the_begin_of_the_own_frame() -> None:
     assert RecentPath().at(7 * NS_PER_S) == PathPoint(7 * NS_PER_S, 0.0, 0.0, 0.0)
 
 
-def test_the_newest_counts_for_what_is_to_come(hour: RecentPath) -> None:
+def test_newest_place_counts_for_the_future(hour: RecentPath) -> None:
     then = hour.at(3700 * NS_PER_S)
     assert not isinstance(then, str)
     assert then.t_ns == 3600 * NS_PER_S - FIFTH_NS
 
 
-def test_before_the_first_place_that_is_known_a_wearer_was_there_for_some_seconds(at: At) -> None:
+def test_first_known_place_holds_for_some_seconds_before_it(at: At) -> None:
     memory = RecentPath()
     memory.append(at(100 * NS_PER_S))
     just_before = memory.at(96 * NS_PER_S)
@@ -101,7 +101,7 @@ def test_before_the_first_place_that_is_known_a_wearer_was_there_for_some_second
     assert memory.at(94 * NS_PER_S) == "too old"
 
 
-def test_where_positions_come_fast_the_newest_is_known_and_no_more_are_kept(at: At) -> None:
+def test_fast_positions_are_known_to_the_newest_and_not_kept_more_densely(at: At) -> None:
     """A hundred a second."""
     memory = RecentPath()
     for step in range(5000):
@@ -113,8 +113,8 @@ def test_where_positions_come_fast_the_newest_is_known_and_no_more_are_kept(at: 
     assert len(memory.points) <= 54 * 5
 
 
-def test_the_last_minute_is_known_as_it_was_walked(at: At) -> None:
-    """To and fro every second; of what is older, only where it began and ended."""
+def test_last_minute_is_known_as_it_was_walked(at: At) -> None:
+    """There and back every second; of older parts, only the begin and the end."""
     memory = RecentPath()
     for t_ns in range(0, 300 * NS_PER_S, FIFTH_NS):
         memory.append(at(t_ns, north_m=t_ns // NS_PER_S % 2))
@@ -126,14 +126,14 @@ def test_the_last_minute_is_known_as_it_was_walked(at: At) -> None:
 
 
 @pytest.mark.parametrize("late_s", [1480, 900])
-def test_a_hole_is_filled_by_what_comes_late(at: At, late_s: int) -> None:
+def test_gap_is_filled_by_late_positions(at: At, late_s: int) -> None:
     memory, late_ns = RecentPath(), late_s * NS_PER_S
     for t_ns in range(0, 1500 * NS_PER_S, FIFTH_NS):
         if abs(t_ns - late_ns) > 10 * NS_PER_S:
             memory.append(at(t_ns))
     assert memory.at(late_ns) == "the path at its time is not known"
     memory.insert_late(at(late_ns, north_m=7.0))
-    memory.insert_late(at(late_ns + FIFTH_NS // 2))  # too near to tell anything new
+    memory.insert_late(at(late_ns + FIFTH_NS // 2))  # too near to add information
     then = memory.at(late_ns)
     assert not isinstance(then, str)
     assert then.north_m == 7.0
@@ -157,15 +157,15 @@ def test_half_an_hour_that_comes_late_is_known_everywhere_and_stays_as_small(at:
     assert len(memory.points) + len(memory.loose) // PLACE_ROW.itemsize < dense + coarse + 3
 
 
-def test_what_comes_late_and_is_too_old_is_not_kept(at: At, hour: RecentPath) -> None:
-    """Out of a journal of hours; it would have to be sorted in, one by one."""
+def test_late_positions_that_are_too_old_are_not_kept(at: At, hour: RecentPath) -> None:
+    """Out of a journal of hours; each would have to be sorted in."""
     before = msgspec.msgpack.encode(hour)
     for t_s in range(1, 1799, 100):
         hour.insert_late(at(t_s * NS_PER_S))
     assert msgspec.msgpack.encode(hour) == before
 
 
-def test_a_place_farther_than_a_row_holds_is_at_its_end(at: At) -> None:
+def test_place_beyond_the_range_of_a_row_is_at_its_limit(at: At) -> None:
     memory = RecentPath()
     for t_ns in range(0, 300 * NS_PER_S, FIFTH_NS):
         memory.append(at(t_ns, north_m=1e300))

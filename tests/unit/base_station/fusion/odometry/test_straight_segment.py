@@ -1,4 +1,4 @@
-"""Going straight on at one pace: which places between two need not be kept."""
+"""Straight segments at one pace: the places between two ends that need not be kept."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STEP = st.tuples(st.floats(0.05, 3.0), st.floats(-0.3, 0.3), st.floats(-0.3, 0.3
 
 
 @given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.lists(STEP, min_size=1, max_size=30))
-def test_who_is_led_there_was_near_the_way_all_the_time(
+def test_path_to_the_next_end_was_near_the_segment_all_the_time(
     north_mps: float, east_mps: float, steps: list[tuple[float, float, float]]
 ) -> None:
     straight, after_s = StraightnessTest(), 0.0
@@ -31,7 +31,7 @@ def test_who_is_led_there_was_near_the_way_all_the_time(
 
 
 @given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.lists(STEP, min_size=1, max_size=30))
-def test_one_pace_leads_past_whatever_sways_less_than_is_allowed(
+def test_one_pace_passes_deviations_below_the_tolerance(
     north_mps: float, east_mps: float, steps: list[tuple[float, float, float]]
 ) -> None:
     straight, after_s = StraightnessTest(), 0.0
@@ -65,7 +65,7 @@ def test_ten_centimetres_beside_is_another_way() -> None:
     [(1.0, 0.95, 0.85), (1.2, 1.05, 1.15)],
     ids=["slower", "faster"],
 )
-def test_what_one_place_ruled_out_no_later_one_allows(
+def test_place_ruled_out_once_is_not_allowed_by_a_later_one(
     way: tuple[float, float], then_m: float, led_mps: float, misled_mps: float
 ) -> None:
     north, east = way

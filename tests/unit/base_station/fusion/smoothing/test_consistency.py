@@ -1,4 +1,4 @@
-"""Which places can be true together: the same whether it is worked out at once or one by one."""
+"""Consistent sets of places: the same in one solution or one by one."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def at_once(expected: Prediction, used: Sequence[int], of: int) -> tuple[Floats,
 
 
 @pytest.mark.parametrize("used", [[], [3], [0, 1, 2], [9, 4, 0, 7]])
-def test_one_by_one_is_expected_what_is_expected_at_once(used: list[int]) -> None:
+def test_sequential_expectation_equals_the_joint_one(used: list[int]) -> None:
     expected = expected_of(12)
     given = ConditionalPrediction(expected, used)
     for one in set(range(12)) - set(used):
@@ -56,7 +56,7 @@ def test_one_by_one_is_expected_what_is_expected_at_once(used: list[int]) -> Non
 
 
 @pytest.mark.slow
-def test_of_hundreds_those_are_left_out_that_contradict() -> None:
+def test_contradicting_places_among_hundreds_are_left_out() -> None:
     off_m = {0: 60.0, 50: -80.0, 199: 70.0}
     used = consistent_set(expected_of(200, off_m))
     assert set(range(200)) - set(used) == set(off_m)

@@ -1,4 +1,6 @@
-"""Afterwards, legs along walls hold a heading that drifted; where there are none, nothing does."""
+"""Segments along walls correct a drifted heading after the incident; without walls nothing
+changes.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,7 @@ def smoother(request: pytest.FixtureRequest) -> Smoother:
 
 
 def smoothed(smoother: Smoother, directions_rad: list[float]) -> SmoothedPath:
-    """Legs of 8 m in such directions, one after the other, by a unit whose heading drifts."""
+    """Legs of 8 m in these directions, one after the other, by a unit whose heading drifts."""
     history, place = PathHistory(), 0j
     history.set_start(Start(0.0, 0.0, 0.0, 0.0, 0.3, 0.03))
     for second in range(LASTS_S):
@@ -38,7 +40,7 @@ def smoothed(smoother: Smoother, directions_rad: list[float]) -> SmoothedPath:
     return smoother.smooth({"FF-01": evidence}).paths["FF-01"]
 
 
-def test_right_angles_hold_the_heading(smoother: Smoother) -> None:
+def test_right_angles_correct_the_heading(smoother: Smoother) -> None:
     quarter = math.pi / 2.0
     path = smoothed(smoother, [0.3 + turns * quarter for turns in (0, 1, 2, 1, 0, 3, 2, 3)])
     assert path.turn_rad[-1] == pytest.approx(DRIFT_RADPS * LASTS_S, abs=0.12)
@@ -64,7 +66,7 @@ def test_each_building_has_walls_of_its_own(smoother: Smoother, angle_deg: float
     assert np.ptp(path.turn_rad) < math.radians(1.0)
 
 
-def test_any_directions_leave_it_as_it_is(smoother: Smoother) -> None:
+def test_arbitrary_directions_change_nothing(smoother: Smoother) -> None:
     rng = np.random.default_rng(4)
     path = smoothed(smoother, rng.uniform(-math.pi, math.pi, 75).tolist())
     assert abs(path.turn_rad[-1]) < 0.1

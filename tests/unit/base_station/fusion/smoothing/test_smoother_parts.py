@@ -1,4 +1,4 @@
-"""Parts of the smoother: stairs that all climb, receivers' errors, and the problem's solution."""
+"""Parts of the smoother: common stairs, errors of receivers, and the solution of the problem."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ OFF_M = 1.5
 
 
 def a_climber(unit_id: str, east_of_start_m: float, start_off_m: float) -> UnitEvidence:
-    """North 10 m from a start that was said wrongly, two flights that turn back, and back again;
-    the stairs are 10 m north of the origin.
+    """North 10 m from a wrong start, two flights that turn back, and back again; the stairs are 10
+    m north of the origin.
     """
     ahead = [(0.5, 0.0, 0.0)] * 20
     east = [(0.0, -0.5 * np.sign(east_of_start_m), 0.0)] * round(2 * abs(east_of_start_m))
@@ -40,8 +40,8 @@ def a_climber(unit_id: str, east_of_start_m: float, start_off_m: float) -> UnitE
     return UnitEvidence(history.arrays(), history.start.position, history.start.begin_ns)
 
 
-def test_who_climbs_the_same_stairs_is_at_the_same_place() -> None:
-    """One was placed wrongly, and says that it may be."""
+def test_climbs_of_the_same_stairs_are_at_the_same_place() -> None:
+    """One start was wrong, and uncertain."""
     right, wrong = a_climber("a", 4.0, 0.0), a_climber("b", -4.0, OFF_M)
     units = {"a": right, "b": wrong}
     alone, together = SMOOTHER.solve(units).paths["b"], SMOOTHER.smooth(units).paths["b"]
@@ -50,7 +50,7 @@ def test_who_climbs_the_same_stairs_is_at_the_same_place() -> None:
     assert together.std_north_m[0] < 0.7 * alone.std_north_m[0]
 
 
-def test_stairs_that_are_too_far_apart_are_two() -> None:
+def test_stairs_too_far_apart_are_two() -> None:
     units = {"a": a_climber("a", 4.0, 0.0), "b": a_climber("b", -4.0, 0.0)}
     start = units["b"].start
     assert start is not None
@@ -60,7 +60,7 @@ def test_stairs_that_are_too_far_apart_are_two() -> None:
 
 
 def standing(fixes: int, wild: bool = False) -> SmoothedPath:
-    """Somebody who hardly moves for so many fixes a second apart, all 1 m north; or one far off."""
+    """Fixes of a wearer at rest, a second apart, all 1 m north; or one far off."""
     history = PathHistory()
     for row in range(120):
         t_ns = row * NS_PER_S
@@ -74,19 +74,19 @@ def standing(fixes: int, wild: bool = False) -> SmoothedPath:
 
 
 def test_many_fixes_of_half_a_minute_are_little_more_than_one() -> None:
-    """Their errors last, and what all receivers err by is never averaged away."""
+    """Their errors last, and the common error of receivers is never averaged away."""
     one, half_a_minute, longer = (standing(count).std_north_m[5] for count in (1, 15, 40))
     assert half_a_minute > 0.8 * one
     assert 0.85 < longer < half_a_minute  # of the 0.87 m that all share
 
 
-def test_one_wild_fix_is_an_outlier() -> None:
+def test_one_distant_fix_is_an_outlier() -> None:
     plain, wild = standing(40), standing(40, wild=True)
     assert wild.north_m == pytest.approx(plain.north_m, abs=0.1)
     assert wild.std_north_m == pytest.approx(plain.std_north_m, rel=0.05)
 
 
-def test_the_arrow_is_solved_as_any_other_problem_is() -> None:
+def test_block_arrow_solver_equals_a_general_one() -> None:
     """Two chains of three knots with two unknowns each, and two that both share."""
     rng, shared, links = np.random.default_rng(5), Equations(14), Equations(14)
     of_chains = {"a": Equations(14), "b": Equations(14)}

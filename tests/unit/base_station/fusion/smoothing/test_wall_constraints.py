@@ -1,4 +1,6 @@
-"""Afterwards, walls of the plan hold a trail; a plan that lies aside or shows another building."""
+"""Walls of the plan hold a smoothed trail; also with a plan that is shifted or shows another
+building.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,7 @@ from tests.rig.walled_plan import walled_grid
 Floats = NDArray[np.float64]
 Line = list[tuple[float, float]]
 
-RADIUS_M, WIDE_M = 8.0, 1.6  # of a round corridor: no right angles tell anything
+RADIUS_M, WIDE_M = 8.0, 1.6  # of a round corridor: it has no right angles
 START = Start(0.0, RADIUS_M, 0.0, 0.0, 0.5, 0.05)
 
 
@@ -51,7 +53,7 @@ def ring(radius_m: float) -> Line:
 
 
 def grid_of(lines: list[Line], off_m: tuple[float, float] = (0.0, 0.0)) -> FloorGrid:
-    """Lines as (north, east), drawn so far north and east of where they are."""
+    """Lines as (north, east), drawn so far north and east of their places."""
     moved = [[[east + off_m[1], north + off_m[0]] for north, east in line] for line in lines]
     return walled_grid(moved[0], moved)
 
@@ -87,8 +89,8 @@ def errors_of(path: SmoothedPath, truth: Floats) -> Floats:
     return errors
 
 
-def test_walls_hold_a_heading_that_drifts(smoother: Smoother) -> None:
-    """Across the corridor, that is: along it nothing tells."""
+def test_walls_correct_a_heading_that_drifts(smoother: Smoother) -> None:
+    """Across the corridor only: along it there is no evidence."""
     history, _ = rounds(1.5e-3)
     alone, held = solved(smoother, history), solved(smoother, history, grid=corridor())
     aside_m = {
@@ -99,8 +101,8 @@ def test_walls_hold_a_heading_that_drifts(smoother: Smoother) -> None:
     assert aside_m["held"] < 0.5 * aside_m["alone"]
 
 
-def test_a_plan_of_another_building_is_not_heeded(smoother: Smoother) -> None:
-    """Its walls run across the way; the trail is as it would be without it."""
+def test_plan_of_another_building_is_not_used(smoother: Smoother) -> None:
+    """Its walls run across the way; the trail is the same without it."""
     history, _ = rounds(0.0)
     across: list[Line] = [[(north, -10.0), (north, 10.0)] for north in range(-10, 11)]
     other = grid_of([ring(12.0), *across])
@@ -121,12 +123,12 @@ def test_pins_show_the_offset_of_a_plan(smoother: Smoother) -> None:
     path = solved(smoother, history, grid=plan, places=pins)
     assert errors_of(path, truth).mean() < 0.25
     north_m, east_m = path.posterior.mean[:2]
-    assert north_m - path.north_m[-1] == pytest.approx(0.5, abs=0.25)  # it goes on on the plan
+    assert north_m - path.north_m[-1] == pytest.approx(0.5, abs=0.25)  # it continues on the plan
     assert east_m - path.east_m[-1] == pytest.approx(-0.4, abs=0.25)
 
 
-def test_those_who_begin_at_one_engine_err_together(smoother: Smoother) -> None:
-    """Ten are no surer of where it stands than one who was told."""
+def test_units_that_begin_at_one_engine_have_a_common_error(smoother: Smoother) -> None:
+    """Ten are no surer of its place than the one that was told."""
     evidence = {
         f"FF-{number:02}": UnitEvidence(rounds(0.0, 60)[0].arrays(), START) for number in range(10)
     }
@@ -135,7 +137,7 @@ def test_those_who_begin_at_one_engine_err_together(smoother: Smoother) -> None:
     assert 0.95 * math.sqrt(START_PART) * START.std_m < surest_m < 1.1 * START.std_m
 
 
-def test_moved_ways_meet_what_ways_meet() -> None:
+def test_moved_paths_cross_the_same_walls() -> None:
     rng, grid = np.random.default_rng(3), corridor()
     from_m = rng.uniform(-12.0, 12.0, (60, 2))
     to_m, moves_m = from_m + rng.normal(size=(60, 2)), rng.normal(size=(60, 7, 2))
@@ -143,6 +145,6 @@ def test_moved_ways_meet_what_ways_meet() -> None:
     assert set(np.unique(met).tolist()) == {FREE, BESIDE, WALL}
     for move in range(7):
         moved = grid.crossings(0, from_m + moves_m[:, move], to_m + moves_m[:, move])
-        # a longest way is looked at more often
+        # a longest path is checked more often
         assert np.mean((met[:, move] == WALL) == (moved == WALL)) > 0.95
         assert np.mean(met[:, move] == moved) > 0.9

@@ -1,4 +1,4 @@
-"""Afterwards, legs along one corridor are drawn together, and legs that only look so are not."""
+"""Segments along one corridor are drawn together, and segments that only seem so are not."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from shared.clock import NS_PER_S
 from shared.messages import Header
 from tests.rig.message_factory import position
 
-ASIDE_NORTH_M = 1.0  # by which the second unit's start was said wrong
+ASIDE_NORTH_M = 1.0  # error of the second unit's start
 
 
 def test_legs_gather_at_two_corridors_and_others_lie_anywhere() -> None:
@@ -38,7 +38,7 @@ def test_few_legs_show_no_line(count: int) -> None:
     assert mixture(np.zeros(count), np.full(count, 0.1)).shape == (count, 0)
 
 
-def test_legs_at_the_ends_of_the_earth_cost_nothing() -> None:
+def test_legs_at_great_distances_cost_nothing() -> None:
     across_m = np.concatenate((np.zeros(8), [1e7, -1e7]))
     likely = mixture(across_m, np.full(10, ASIDE_M**2))
     assert (likely[:8].sum(axis=1) > 0.9).all()
@@ -54,8 +54,8 @@ def test_segments_of_one_person_weigh_less_than_as_many_of_several() -> None:
 
 
 def searched(start_m: tuple[float, float], std_m: float, seed: int, down_m: float) -> UnitEvidence:
-    """To and fro along a corridor at north 0, and into rooms of all depths beside it; the start is
-    at the origin, whatever was said of it.
+    """There and back along a corridor at north 0, and into rooms of all depths beside it; the start
+    is at the origin, whatever was reported of it.
     """
     rng, history, place, t_s = np.random.default_rng(seed), PathHistory(), np.zeros(2), 0
     history.set_start(Start(*start_m, 0.0, 0.0, std_m, 0.03))
@@ -85,7 +85,7 @@ def _corners(rng: np.random.Generator) -> list[NDArray[np.float64]]:
 
 
 def off_north_m(down_m: float, *, afterwards: bool) -> float:
-    """How far the second unit lies aside, whose start was said wrong and not surely."""
+    """Offset of the second unit, whose start was wrong and uncertain."""
     units = {
         "FF-01": searched((0.0, 0.0), 0.1, seed=1, down_m=0.0),
         "FF-02": searched((ASIDE_NORTH_M, 0.0), 1.0, seed=2, down_m=down_m),
@@ -95,10 +95,10 @@ def off_north_m(down_m: float, *, afterwards: bool) -> float:
     return float((path.north_m - units["FF-02"].path.own_m[:, 0]).mean())
 
 
-def test_who_walks_along_the_corridor_of_others_is_in_it() -> None:
+def test_unit_in_the_corridor_of_others_is_drawn_into_it() -> None:
     assert off_north_m(0.0, afterwards=False) == pytest.approx(ASIDE_NORTH_M, abs=0.1)
     assert abs(off_north_m(0.0, afterwards=True)) < 0.3
 
 
-def test_a_storey_has_corridors_of_its_own() -> None:
+def test_storey_has_corridors_of_its_own() -> None:
     assert off_north_m(-3.2, afterwards=True) == pytest.approx(ASIDE_NORTH_M, abs=0.2)

@@ -1,4 +1,4 @@
-"""The height of one unit: what moves it, by how much, and how sure it is then."""
+"""Height of one unit: which inputs move it, by how much, and with what uncertainty."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def std_m(height: HeightFilter) -> float:
 def update_barometer(
     height: HeightFilter, begin_s: int, airs_m: list[float], *, referenced: bool
 ) -> None:
-    """A look at the air every second."""
+    """A reading of the barometer every second."""
     for second, air_m in enumerate(airs_m, begin_s):
         height.update_barometer(BarometricHeight(second * NS_PER_S, air_m, referenced))
 
 
-def test_heights_of_fixes_err_slowly_and_are_not_averaged_away() -> None:
+def test_slow_errors_of_fix_heights_are_not_averaged_away() -> None:
     height = at(0.0, 50.0)
     for _ in range(1000):
         height.update_gnss(-6.0, 5.0)
@@ -55,7 +55,7 @@ def test_height_of_fixes_counts_anew_after_some_time() -> None:
 
 
 def test_slow_error_of_fixes_fades_to_its_prior() -> None:
-    """Half of it is as much as nothing after many halves."""
+    """After many half-lives nothing of it is left."""
     height, long_after = at(0.0, 0.1), at(0.0, 0.1)
     for one in (height, long_after):
         one.update_gnss(8.0, 5.0)
@@ -69,17 +69,17 @@ def test_slow_error_of_fixes_fades_to_its_prior() -> None:
 
 
 @pytest.mark.parametrize(("off_m", "is_taken"), [(14.0, True), (-14.0, True), (16.0, False)])
-def test_a_fix_s_height_that_cannot_be_true_moves_nobody(off_m: float, is_taken: bool) -> None:
+def test_impossible_height_of_a_fix_moves_nobody(off_m: float, is_taken: bool) -> None:
     height = at(0.0, 0.5)
     height.update_gnss(off_m, 5.0)
     assert (height.down_m != 0.0) is is_taken
 
 
 @pytest.mark.parametrize(("referenced", "least_m", "most_m"), [(True, 0.8, 3.0), (False, 0.0, 0.5)])
-def test_a_storey_that_the_own_path_missed_is_seen_by_the_air_where_the_weather_is_known(
+def test_barometer_detects_a_storey_that_the_own_path_missed(
     referenced: bool, least_m: float, most_m: float
 ) -> None:
-    """Some of it: up and down stairs ten times before, which the own path errs by as well."""
+    """Partly: stairs up and down ten times before, of which the own path has errors as well."""
     height = at(0.0, 0.3)
     update_barometer(height, 0, [7.0] * 60, referenced=True)
     for climbed_m in (-3.0, 3.0) * 10:
@@ -101,7 +101,7 @@ def test_start_set_anew_restarts_the_barometer() -> None:
     assert std_m(height) == pytest.approx(0.3, rel=0.02)
 
 
-def test_a_frame_that_is_moved_moves_heights_and_no_barometer_minds() -> None:
+def test_moved_frame_moves_heights_and_no_barometer() -> None:
     moved, stays = at(0.0, 0.3), at(0.0, 0.3)
     for height, shift_m in ((moved, 12.0), (stays, 0.0)):
         update_barometer(height, 0, [7.0] * 60, referenced=True)
@@ -120,7 +120,7 @@ def test_barometer_moves_no_height_before_the_start_is_set() -> None:
     assert std_m(height) == pytest.approx(1.0, rel=0.01)
 
 
-def test_saved_it_goes_on_with_the_same_numbers() -> None:
+def test_saved_height_continues_with_the_same_numbers() -> None:
     height, again = at(0.0, 0.3), HeightFilter(KIND)
     update_barometer(height, 0, [7.0] * 30, referenced=True)
     height.predict(-1.0, 3.0, 0.2)
@@ -132,7 +132,7 @@ def test_saved_it_goes_on_with_the_same_numbers() -> None:
     assert again.walked_level == height.walked_level
 
 
-def test_who_is_far_from_any_storey_of_the_plan_is_on_none() -> None:
+def test_height_far_from_every_storey_of_the_plan_is_on_none() -> None:
     height = at(-6.0, 0.3)
     height.predict(0.0, 10.0)
     height.constrain_to_plan_floors((0.0, -3.2))
@@ -145,7 +145,7 @@ def test_who_is_far_from_any_storey_of_the_plan_is_on_none() -> None:
     ("down_m", "own_std_m", "is_taken"),
     [(-3.0, 0.6, True), (0.2, 0.6, True), (-1.7, 0.6, False), (-3.0, 2.5, False)],
 )
-def test_a_storey_of_the_plan_is_taken_by_who_is_on_no_other(
+def test_storey_of_the_plan_is_used_by_units_on_no_other(
     down_m: float, own_std_m: float, is_taken: bool
 ) -> None:
     height = at(down_m, own_std_m)
@@ -153,7 +153,7 @@ def test_a_storey_of_the_plan_is_taken_by_who_is_on_no_other(
     assert (height.down_m != down_m) is is_taken
 
 
-def test_on_the_level_is_who_walked_six_metres_of_it_since_it_was_asked() -> None:
+def test_six_metres_walked_since_the_question_are_level() -> None:
     height = at(0.0, 0.3)
     for begun in range(2):
         levels = []
@@ -164,8 +164,8 @@ def test_on_the_level_is_who_walked_six_metres_of_it_since_it_was_asked() -> Non
         height.constrain_to_plan_floors(())
 
 
-def test_a_storey_makes_nobody_surer_than_it_is_known() -> None:
-    """However often; and who is surer already learns nothing of it."""
+def test_storey_makes_no_height_surer_than_its_own() -> None:
+    """However often; and a surer height learns nothing of it."""
     height = at(-2.8, 0.7)
     storeys = [Storey(0, 0.0, std_m=0.4), Storey(1, -3.2, std_m=0.4)]
     best_m = math.hypot(0.4, KIND.level_std_m)
@@ -189,7 +189,7 @@ def test_a_storey_makes_nobody_surer_than_it_is_known() -> None:
         (-6.0, 0.6, False),  # where nobody has walked yet
     ],
 )
-def test_a_storey_is_only_taken_by_who_can_be_on_no_other(
+def test_storey_is_used_only_where_no_other_is_possible(
     down_m: float, own_std_m: float, is_taken: bool
 ) -> None:
     height = at(down_m, own_std_m)
@@ -198,7 +198,7 @@ def test_a_storey_is_only_taken_by_who_can_be_on_no_other(
     height.constrain_to_learnt_floors([])
 
 
-def test_a_climb_is_doubted_by_its_height_and_its_way_up_or_down() -> None:
+def test_uncertainty_of_a_climb_grows_with_its_height_and_direction() -> None:
     by_climb = KIND.climb_m_per_sqrt_climb_m**2
     expected_m2 = 3.0 * by_climb + 10.0 * KIND.climb_m_per_sqrt_m**2
     for climbed_m in (3.0, -3.0):

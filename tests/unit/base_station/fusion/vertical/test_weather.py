@@ -1,4 +1,4 @@
-"""The weather that barometers share: whose word counts, by how much, and for how long."""
+"""Weather shared by barometers: which of them count, by how much, and for how long."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def note_pressures(
 
 
 @pytest.mark.parametrize("ago_s", [10, 3600, 86_400])
-def test_a_position_whose_clock_is_wrong_makes_no_weather(ago_s: int) -> None:
+def test_position_with_a_wrong_clock_makes_no_weather(ago_s: int) -> None:
     weather = Weather()
     note_pressures(weather, range(60))
     weather.note("one", (60 - ago_s) * NS_PER_S, SITE_M + 0.5, 0.0)
@@ -32,8 +32,8 @@ def test_a_position_whose_clock_is_wrong_makes_no_weather(ago_s: int) -> None:
     assert weather.rise_m == 0.0
 
 
-def test_runs_that_are_over_are_not_kept() -> None:
-    """A station listens for years, and every run of every unit is a barometer of its own."""
+def test_ended_runs_are_not_kept() -> None:
+    """A station runs for years, and every run of every unit is a barometer of its own."""
     barometers = Barometers()
     for run in range(100):
         for second in range(3):
@@ -54,8 +54,8 @@ def test_barometer_that_returns_begins_at_the_held_weather() -> None:
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
-def test_what_all_say_is_followed_in_ten_seconds_however_many_they_are(count: int) -> None:
-    """Nearly: each counts for as much as it is of them."""
+def test_common_pressure_is_followed_in_ten_seconds_by_any_number(count: int) -> None:
+    """Nearly: each counts by its share of them."""
     weather = Weather()
     for second in range(40):
         for name in range(count):
@@ -63,7 +63,7 @@ def test_what_all_say_is_followed_in_ten_seconds_however_many_they_are(count: in
     assert weather.rise_m == pytest.approx(1.0 - np.exp(-1.0), abs=0.06)
 
 
-def test_who_climbs_makes_no_weather() -> None:
+def test_climbing_unit_makes_no_weather() -> None:
     weather = Weather()
     for second in range(60):
         weather.note("one", second * NS_PER_S, SITE_M + 0.3 * second, -0.3 * second)
@@ -116,7 +116,7 @@ def test_weather_with_a_reference_is_of_it_alone() -> None:
     assert barometers.weather.rise_m == 0.0
 
 
-def test_another_reference_somewhere_else_moves_nobody() -> None:
+def test_other_reference_at_another_place_moves_nobody() -> None:
     barometers = Barometers()
     places = (("REF", SITE_M), ("REF", SITE_M + 9.0), ("FF-09", SITE_M - 50.0))
     for at, (unit_id, height_m) in enumerate(places):
@@ -126,8 +126,8 @@ def test_another_reference_somewhere_else_moves_nobody() -> None:
     assert barometers.weather.rise_m == 0.0
 
 
-def test_a_reference_that_is_carried_upstairs_moves_nobody() -> None:
-    """Its height is no weather; where it is put down, it tells of the weather again."""
+def test_reference_that_is_carried_upstairs_moves_nobody() -> None:
+    """Its height is no weather; where it is put down, it measures the weather again."""
     barometers, seq, way_m = Barometers(), 0, 0.0
 
     def height_of_air(height_m: float) -> BarometricHeight | None:
@@ -155,8 +155,8 @@ def test_a_reference_that_is_carried_upstairs_moves_nobody() -> None:
     assert air.referenced
 
 
-def test_a_reference_that_is_switched_on_again_goes_on_telling() -> None:
-    """Its path begins anew with it, and goes nowhere."""
+def test_reference_that_is_restarted_measures_again() -> None:
+    """Its path begins anew with it, and leads nowhere."""
     barometers = Barometers()
     barometers.set_reference("REF", 0.0)
     for second in range(60):
@@ -179,7 +179,7 @@ def test_late_pressure_leaves_the_weather_known() -> None:
     ("pressure_pa", "is_used"),
     [(29_000.0, False), (33_000.0, True), (115_000.0, True), (121_000.0, False)],
 )
-def test_pressure_is_used_where_people_live(pressure_pa: float, is_used: bool) -> None:
+def test_pressure_is_used_at_inhabited_heights(pressure_pa: float, is_used: bool) -> None:
     position = message_factory.position(Header("FF-01", 1, 1, 0), pressure_pa=pressure_pa)
     air = Barometers().update("FF-01", 0, position, is_outside=True)
     assert (air is not None) is is_used

@@ -42,7 +42,7 @@ def test_figures_of_a_normal_distribution_are_its_own() -> None:
     assert many.ve95_m == pytest.approx(1.960, rel=0.01)
 
 
-def test_a_long_trail_is_looked_at_from_its_beginning_to_its_end() -> None:
+def test_long_trail_is_assessed_from_beginning_to_end() -> None:
     sure = [sample(float(second), std_m=1.0) for second in range(600)]
     unsure = [sample(float(second), std_m=10.0) for second in range(600, 1200)]
     for trail in (sure + unsure, unsure + sure):
@@ -51,14 +51,14 @@ def test_a_long_trail_is_looked_at_from_its_beginning_to_its_end() -> None:
         assert figures.ce95_m == pytest.approx(21.5, rel=0.1)  # 90 % of the worse half
 
 
-def test_nothing_has_no_figures() -> None:
+def test_empty_trail_has_no_figures() -> None:
     assert stated_figures(stated_m([])) is None
     assert figures_of(np.zeros((0, 3))) is None
     assert floor_probability([], 3.0) is None
     assert len(errors_against([sample(1.0)], [])) == 0
 
 
-def test_errors_are_taken_where_the_other_trail_reaches_and_in_between() -> None:
+def test_errors_are_taken_within_the_other_trail_by_interpolation() -> None:
     truth = [sample(0.0, 0.0), sample(10.0, 10.0)]
     live = [sample(5.0, 6.0), sample(20.0, 99.0)]
     errors = errors_against(live, truth)
@@ -66,7 +66,7 @@ def test_errors_are_taken_where_the_other_trail_reaches_and_in_between() -> None
     assert errors[0].tolist() == pytest.approx([1.0, 0.0, 0.0])
 
 
-def test_the_floor_is_as_sure_as_the_height_by_the_storey() -> None:
+def test_probability_of_the_floor_follows_the_height_and_the_storey() -> None:
     assert floor_probability([sample(0.0, std_m=0.5)], 3.0) == pytest.approx(0.9973, abs=1e-3)
     assert floor_probability([sample(0.0, std_m=3.0)], 3.0) == pytest.approx(0.383, abs=1e-2)
 
@@ -92,7 +92,7 @@ def known(**changes: object) -> UnitState:
         ({"quality": Quality.DEGRADED, "quality_reason": "heading"}, "amber", "heading"),
     ],
 )
-def test_the_light_says_why(changes: dict[str, object], level: str, words: str) -> None:
+def test_light_has_its_reason(changes: dict[str, object], level: str, words: str) -> None:
     trust = trust_of(known(**changes), 0)
     assert trust.level == level
     assert words in trust.reason
@@ -114,7 +114,7 @@ def test_the_light_says_why(changes: dict[str, object], level: str, words: str) 
         ),
     ],
 )
-def test_from_which_figure_on_the_light_turns(
+def test_thresholds_of_the_light(
     below: dict[str, float], above: dict[str, float], level: str, words: str
 ) -> None:
     assert trust_of(known(**below), 0).level != level
@@ -134,7 +134,7 @@ def test_reasons_that_differ_by_a_figure_alone_are_one_cause() -> None:
     assert (trust.reason, trust.cause) == (f"{unsure}: samples missing", unsure)
 
 
-def test_nobody_received_nobody_known_and_nobody_registered_are_red() -> None:
+def test_no_contact_no_position_and_no_registration_are_red() -> None:
     lost = known()
     lost.link = "lost"
     stranger = known()
@@ -143,7 +143,7 @@ def test_nobody_received_nobody_known_and_nobody_registered_are_red() -> None:
         assert trust_of(unit, 0).level == "red"
 
 
-def test_a_pin_that_contradicts_the_trail_is_amber() -> None:
+def test_pin_that_contradicts_the_trail_is_amber() -> None:
     state = StationState()
     state.site.pins["p"] = Pin("p", "place", "FF-01", 1, 1.0, 1, "chief")
     state.site.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")
@@ -156,8 +156,8 @@ def test_a_pin_that_contradicts_the_trail_is_amber() -> None:
 
 
 @pytest.mark.parametrize(("kind", "both"), [("meeting", True), ("beacon", False)])
-def test_a_pin_contradicts_the_trails_of_whom_it_is_about(kind: PinKind, both: bool) -> None:
-    """And not that of a unit after which somebody has named a beacon."""
+def test_pin_contradicts_the_trails_of_its_subjects(kind: PinKind, both: bool) -> None:
+    """And not that of a unit that has the name of a beacon."""
     state = StationState()
     state.site.pins["p"] = Pin("p", kind, "FF-01", 1, 1.0, 1, "FF-01", other_id="FF-02")
     state.site.pin_verdicts["p"] = PinVerdict("conflict", 30.0, 9.0, "30 m off")

@@ -1,4 +1,4 @@
-"""An incident's assessment: what was shown, held against pins and against what is known since."""
+"""Assessment of an incident: shown places against pins and against the smoothed trail."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def pin(t_s: float, north_m: float) -> Pin:
 
 
 @pytest.mark.parametrize(("t_s", "north_m"), [(12.0, 10.0), (97.0, 50.0), (9.2, 9.0), (0.0, 0.0)])
-def test_a_pin_is_held_against_what_was_shown_nearest_to_its_time(
+def test_pin_is_compared_with_the_place_shown_nearest_to_its_time(
     t_s: float, north_m: float
 ) -> None:
-    """Somebody who is not heard is shown where they were last."""
+    """A wearer without contact is shown at the last place."""
     live = [shown(float(second), float(second)) for second in range(11)]
     (residual,) = assessed(
         [*live, shown(100.0, 50.0, floor=1)], (), pin(t_s, north_m)
@@ -57,29 +57,29 @@ def test_a_pin_is_held_against_what_was_shown_nearest_to_its_time(
     assert residual.floor_right is (t_s > 50.0)
 
 
-def test_a_pin_of_a_time_at_which_nothing_was_shown_tells_nothing_of_it() -> None:
+def test_pin_of_a_time_without_shown_place_is_not_compared() -> None:
     for t_s in (16.0, 50.0, 94.0):
         (residual,) = assessed([shown(10.0), shown(100.0)], (), pin(t_s, 0.0)).pin_residuals
         assert (residual.shown_m, residual.floor_right) == (None, None)
 
 
-def test_a_floor_that_was_not_shown_was_not_wrong() -> None:
+def test_floor_that_was_not_shown_was_not_wrong() -> None:
     live = [msgspec.structs.replace(shown(10.0), floor=None)]
     (residual,) = assessed(live, (), pin(10.0, 0.0)).pin_residuals
     assert (residual.shown_m, residual.floor_right) == (0.0, None)
 
 
-def test_a_pin_at_the_start_is_held_against_what_was_shown_first() -> None:
+def test_pin_at_the_start_is_compared_with_the_first_shown_place() -> None:
     (residual,) = assessed([shown(100.0, 7.0), shown(101.0, 8.0)], (), pin(0.0, 7.0)).pin_residuals
     assert residual.shown_m == 0.0
 
 
-def test_a_pin_of_another_tells_nothing_of_a_unit() -> None:
+def test_pin_of_another_unit_is_not_compared() -> None:
     other = msgspec.structs.replace(pin(10.0, 0.0), unit_id="FF-02")
     assert assessed([shown(10.0)], (), other).pin_residuals == ()
 
 
-def test_the_nearest_two_storeys_say_how_sure_a_floor_was() -> None:
+def test_nearest_two_storeys_give_the_certainty_of_a_floor() -> None:
     storeys = (Storey(0, 0.0), Storey(1, -3.0), Storey(2, -9.0))
     state = StationState(sites={OWN_SITE_ID: SiteState(plan=Plan(b"", storeys, ()))})
     live = {"FF-01": [shown(1.0)]}
@@ -96,7 +96,7 @@ def test_the_nearest_two_storeys_say_how_sure_a_floor_was() -> None:
         ((0.0, 60.0, 120.0), 120.0, ()),
     ],
 )
-def test_a_jump_counts_as_fixes_come_back_after_a_minute(
+def test_jump_counts_as_fixes_come_back_after_a_minute(
     fixes_s: Sequence[float], jump_s: float, found: Sequence[float]
 ) -> None:
     fix_t_ns = np.array([round(one * NS_PER_S) for one in fixes_s])
@@ -110,8 +110,8 @@ def test_a_jump_counts_as_fixes_come_back_after_a_minute(
     assert unit.reentry_jumps_m == found
 
 
-def test_the_floor_of_person_at_rest_is_held_against_what_is_known_of_that_time() -> None:
-    """A trail has a point in ten seconds there."""
+def test_floor_at_rest_is_compared_with_the_smoothed_trail_of_that_time() -> None:
+    """The trail has a point in ten seconds there."""
     smoothed = [shown(float(second), floor=0) for second in range(0, 101, 10)]
     live = [shown(float(second), floor=1 if second % 10 < 5 else 0) for second in range(100)]
     assert assessed(live, smoothed).floor_right == pytest.approx(0.5)
@@ -122,7 +122,7 @@ def test_nothing_shown_is_nothing_known() -> None:
     assert (unit.seconds, unit.walked_m, unit.stated, unit.floor_right) == (0.0, 0.0, None, None)
 
 
-def test_what_was_not_used_is_in_it_with_the_reason_that_there_was_most_first() -> None:
+def test_rejected_fixes_are_listed_the_most_frequent_reason_first() -> None:
     unit = UnitState("FF-01", rejected_counts={"from the future": 2, "too far from the site": 30})
     tracks = {"FF-01": [shown(1.0)]}
     state = StationState(units={"FF-01": unit})
@@ -130,7 +130,7 @@ def test_what_was_not_used_is_in_it_with_the_reason_that_there_was_most_first() 
     assert report.not_used == (("too far from the site", 30), ("from the future", 2))
 
 
-def test_a_loop_closes_where_person_came_back_last() -> None:
+def test_loop_closes_at_the_last_return() -> None:
     way_m = [*range(21), *range(20, -1, -1)]
     smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
     state = StationState()
@@ -144,7 +144,7 @@ def test_a_loop_closes_where_person_came_back_last() -> None:
     assert unit.loop_closure_percent == pytest.approx(100.0 * 4.1 / unit.walked_m, abs=0.02)
 
 
-def test_what_a_loop_missed_is_held_against_the_way_until_then() -> None:
+def test_error_of_a_loop_is_relative_to_its_length() -> None:
     way_m = [*range(21), *range(19, -1, -1), *range(1, 31)]
     smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
     raw = [msgspec.structs.replace(one, north_m=1.1 * one.north_m) for one in smoothed]
@@ -157,7 +157,7 @@ def test_what_a_loop_missed_is_held_against_the_way_until_then() -> None:
 
 
 @pytest.mark.parametrize(("furthest_m", "last_m"), [(20, 20), (20, 4), (14, 0)])
-def test_who_did_not_go_far_or_come_back_has_closed_no_loop(furthest_m: int, last_m: int) -> None:
+def test_short_way_or_no_return_closes_no_loop(furthest_m: int, last_m: int) -> None:
     way_m = [*range(furthest_m + 1), *range(furthest_m, last_m - 1, -1)]
     smoothed = [shown(float(second), float(north_m)) for second, north_m in enumerate(way_m)]
     assert assessed(smoothed, smoothed).loop_closure_m is None

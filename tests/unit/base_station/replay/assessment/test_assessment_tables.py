@@ -16,10 +16,10 @@ from tests.unit.base_station.replay.assessment.test_assessment_report import ass
 
 
 @pytest.mark.parametrize("name", ["Ada [/] [bold]B[/bold]", ":fire: Ada", "[link=x]Ada"])
-def test_names_stand_there_as_they_are(
+def test_names_are_printed_unchanged(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whatever they hold is no instruction of how to print them."""
+    """No character of a name is an instruction to the terminal."""
     monkeypatch.setenv("COLUMNS", "300")
     unit = msgspec.structs.replace(
         assessed([shown(0.0), shown(1.0)]),
@@ -35,7 +35,7 @@ def test_names_stand_there_as_they_are(
     assert f"{name}: 1.0 m, pin: 2.0 m" in reported, "an id tells nobody anything"
 
 
-def test_how_long_the_light_was_which_is_stated_in_minutes(
+def test_durations_of_the_light_are_stated_in_minutes(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "300")

@@ -1,4 +1,4 @@
-"""A replay in a process of its own, as the console's API sees it."""
+"""A replay in a process of its own, through the console's API."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ WINDOW = ReplayWindow("i1", START_NS, START_NS + DURATION_S * NS_PER_S)
 
 
 class EncodedScreen(Screen):
-    """Takes what is encoded already, as a hub does."""
+    """A screen that takes encoded messages, as a hub does."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -104,7 +104,7 @@ def picture(replay: ReplayProcess) -> Snapshot:
 
 
 def has_begun_again(screen: EncodedScreen, count: int) -> bool:
-    """More often than so."""
+    """More restarts than this number."""
     return len(screen.resets) > count
 
 
@@ -118,7 +118,7 @@ def working(processes: ReplayProcesses) -> list[int]:
     return [one.pid for one in psutil.Process(processes.pid).children()]
 
 
-def test_consoles_see_of_it_what_they_would_of_one_in_this_process(
+def test_consoles_get_the_same_as_from_a_replay_in_this_process(
     replay: ReplayProcess, screen: EncodedScreen
 ) -> None:
     until(lambda: screen.resets, "the replay is shown", WAIT_S)
@@ -145,7 +145,7 @@ def test_consoles_see_of_it_what_they_would_of_one_in_this_process(
     until(lambda: "mayday" in rules_reported(screen), "its alarm is told", WAIT_S)
 
 
-def test_an_impossible_speed_is_refused(replay: ReplayProcess, place: ReplayContext) -> None:
+def test_impossible_speed_is_refused(replay: ReplayProcess, place: ReplayContext) -> None:
     with pytest.raises(UserError, match="times real time"):
         replay.set_speed(0.0)
     assert replay.view().speed == 1.0
@@ -153,7 +153,7 @@ def test_an_impossible_speed_is_refused(replay: ReplayProcess, place: ReplayCont
         ReplayProcess(place, WINDOW, 0.0, EncodedScreen())
 
 
-def test_before_its_process_is_loaded_consoles_see_that_it_is_on_its_way(
+def test_consoles_see_a_loading_replay_before_its_process_is_ready(
     place: ReplayContext, screen: EncodedScreen
 ) -> None:
     with ReplayProcesses() as fresh:
@@ -170,7 +170,7 @@ def test_before_its_process_is_loaded_consoles_see_that_it_is_on_its_way(
         replay.close()
 
 
-def test_one_that_is_killed_is_over_and_another_can_be_begun(
+def test_killed_replay_is_over_and_another_can_be_begun(
     replay: ReplayProcess,
     place: ReplayContext,
     processes: ReplayProcesses,
@@ -184,7 +184,7 @@ def test_one_that_is_killed_is_over_and_another_can_be_begun(
     assert "the replay of i1 broke off: its process has ended" in caplog.text
     assert processes.pid is not None
     copied = psutil.Process(processes.pid)
-    copied.kill()  # what others are copied from, too
+    copied.kill()  # the one that others are copied from, too
     until(lambda: not _goes_on(copied), "it has ended", WAIT_S)
     other = ReplayProcess(place, WINDOW, 1.0, screen)
     assert picture(other).replay is not None
@@ -193,7 +193,7 @@ def test_one_that_is_killed_is_over_and_another_can_be_begun(
     until(lambda: not working(processes), "its process has ended", WAIT_S)
 
 
-def test_a_station_that_stops_starts_no_more(place: ReplayContext) -> None:
+def test_stopping_station_starts_no_more_replays(place: ReplayContext) -> None:
     with ReplayProcesses() as stopped:
         pass
     replay = ReplayProcess(replace(place, processes=stopped), WINDOW, 1.0, EncodedScreen())
@@ -213,7 +213,7 @@ time.sleep(600)
 """
 
 
-def test_when_the_station_is_killed_nothing_of_it_is_left(place: ReplayContext) -> None:
+def test_killed_station_leaves_no_process(place: ReplayContext) -> None:
     command = [sys.executable, "-c", _STATION, place.log, place.checkpoints, str(START_NS)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as station:
         try:
@@ -227,17 +227,17 @@ def test_when_the_station_is_killed_nothing_of_it_is_left(place: ReplayContext) 
 
 
 def _goes_on(process: psutil.Process) -> bool:
-    """One that nobody has waited for yet has ended all the same."""
+    """The process runs; one that nobody has waited for yet has ended."""
     try:
         return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
     except psutil.NoSuchProcess:
         return False
 
 
-def test_what_the_log_lacks_is_reported_in_a_replay_at_a_running_station(
+def test_missing_part_of_the_log_is_reported_in_a_replay_at_a_running_station(
     place: ReplayContext, tmp_path: Path
 ) -> None:
-    """A segment that is gone and was known, and flipped bits that nobody has to read."""
+    """A segment that is gone and was known, and flipped bits that no reader needs."""
     log = tmp_path / "damaged" / "log"
     with closing(SegmentWriter(log, SegmentPolicy(segment_s=20.0))) as writer:
         for t_ns, key, payload in walk_with_mayday():
@@ -263,15 +263,15 @@ def test_what_the_log_lacks_is_reported_in_a_replay_at_a_running_station(
 
 
 @pytest.mark.parametrize("is_other", [True, False])
-def test_what_another_version_recorded_is_reported_at_a_running_station(
+def test_log_of_another_version_is_reported_at_a_running_station(
     is_other: bool, place: ReplayContext, tmp_path: Path
 ) -> None:
-    """Once its first picture is shown; a log of the same version is looked through meanwhile."""
+    """Once its first picture is shown; a log of the same version is checked meanwhile."""
     log, screen = tmp_path / "recorded" / "log", EncodedScreen()
     with closing(SegmentWriter(log, SegmentPolicy(segment_s=20.0))) as writer:
         for record in logged(north(2.0) if is_other else north(0.0)):
             writer.write(*record)
-    if not is_other:  # found where the check comes to its end
+    if not is_other:  # found at the end of the check
         newest = segment_paths(log)[-1]
         content = bytearray(newest.read_bytes())
         content[300] ^= 0xFF

@@ -15,7 +15,7 @@ def test_names_may_have_underscores() -> None:
     }
 
 
-def test_a_sweep_has_both_ends() -> None:
+def test_sweep_has_both_ends() -> None:
     assert sweep_of("no_motion.alarm_s=15:60:5") == (
         "no-motion.alarm_s",
         [15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0],
@@ -32,7 +32,7 @@ def test_a_sweep_has_both_ends() -> None:
         ("mayday.alarm_s=2", "mayday has none"),
     ],
 )
-def test_an_unknown_or_impossible_threshold_is_named(text: str, message: str) -> None:
+def test_unknown_or_impossible_threshold_is_named(text: str, message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         changes_of([text])
 
@@ -47,13 +47,13 @@ def test_an_unknown_or_impossible_threshold_is_named(text: str, message: str) ->
         ("no_motion.rearm_after_s=20", "people did"),
     ],
 )
-def test_what_cannot_be_rehearsed_is_refused(text: str, message: str) -> None:
+def test_threshold_that_cannot_be_rehearsed_is_refused(text: str, message: str) -> None:
     with pytest.raises(UserError, match=message):
         changes_of([text])
 
 
 @pytest.mark.parametrize("values", ["15:60", "60:15:5", "15:60:0", "15:60:-1", "15:60:0.001"])
-def test_a_sweep_that_is_none_is_refused(values: str) -> None:
+def test_impossible_sweep_is_refused(values: str) -> None:
     with pytest.raises(UserError, match=r"no-motion\.alarm_s"):
         sweep_of(f"no-motion.alarm_s={values}")
 

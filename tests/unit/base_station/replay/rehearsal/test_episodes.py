@@ -1,4 +1,4 @@
-"""Pairs of episodes that two sets of thresholds found."""
+"""Pairs of episodes of two sets of thresholds."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def test_each_level_of_overlapping_episodes_is_paired_once() -> None:
     assert found["pre-alert", EpisodeOutcome.ADDED].t_ns == 40
 
 
-def test_an_episode_of_another_time_or_unit_is_no_partner() -> None:
+def test_episode_of_another_time_or_unit_is_no_partner() -> None:
     recorded = [episode({"alarm": 30}, 50), episode({"alarm": 100}, 120)]
     rehearsed = [episode({"alarm": 30}, 50, "FF-02"), episode({"alarm": 110}, 120)]
     found = [(one.unit_id, one.outcome) for one in compare(recorded, rehearsed)]

@@ -1,4 +1,4 @@
-"""A re-run against what was shown."""
+"""A re-run compared with the shown state."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def point(second: int, north_m: float, floor: int | None = 0) -> TrackSample:
     return TrackSample(t_ns, north_m, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, floor, "good")
 
 
-def test_trails_are_compared_at_the_seconds_that_both_have() -> None:
+def test_trails_are_compared_at_their_common_seconds() -> None:
     shown = [point(second, 0.0) for second in range(10)]
     rerun = [point(second, float(second), int(second in {6, 7})) for second in range(2, 12)]
     found = compare_trail("FF-01", "eskf", (50, 40), shown, rerun)

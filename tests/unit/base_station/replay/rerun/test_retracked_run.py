@@ -1,4 +1,4 @@
-"""Messages of another tracker in the clock and the frame of the run as it was recorded."""
+"""Messages of another tracker in the clock and the frame of the recorded run."""
 
 from __future__ import annotations
 
@@ -45,7 +45,9 @@ def records(messages: list[Message], log_less_sample_ns: int = UTC_NS) -> list[L
 
 
 def recorded(begin_s: int = 0, shift_s: float = 0.0) -> RecordedRun:
-    """The run as the station has it; its monotonic clock is ahead of the samples by ``shift_s``."""
+    """The recorded run at the station; its monotonic clock is ahead of the samples by
+    ``shift_s``.
+    """
     utc_ns = UTC_NS - round(shift_s * NS_PER_S)
     return RecordedRun(
         [round((second + shift_s) * NS_PER_S) for second in range(begin_s, SECONDS)],
@@ -69,7 +71,7 @@ def statuses(begin_s: int = 0) -> list[Message]:
     return [message_factory.status(header(second)) for second in range(begin_s, SECONDS)]
 
 
-def test_the_same_path_is_taken_as_it_is() -> None:
+def test_same_path_is_used_unchanged() -> None:
     then = recorded()
     run = RetrackedRun(records([*statuses(), *map(walked, range(SECONDS))]), then)
     assert not run.has_own_frame
@@ -77,7 +79,7 @@ def test_the_same_path_is_taken_as_it_is() -> None:
         assert run.position(position) == position
 
 
-def test_a_turned_frame_is_laid_over_the_recorded_one() -> None:
+def test_rotated_frame_is_laid_over_the_recorded_one() -> None:
     turn_rad = 0.7
     turned = []
     for second in range(5, SECONDS):
@@ -110,7 +112,7 @@ def test_a_turned_frame_is_laid_over_the_recorded_one() -> None:
 
 
 @pytest.mark.parametrize("shift_s", [0.0, 12.5, 1234.0])
-def test_samples_on_a_clock_of_their_own_are_found_by_the_statuses(shift_s: float) -> None:
+def test_samples_on_an_own_clock_are_aligned_by_the_statuses(shift_s: float) -> None:
     then = recorded(shift_s=shift_s)
     run = RetrackedRun(records([*statuses(), *map(walked, range(SECONDS))]), then)
     assert [run.position(one) for one in then.positions] == then.positions
@@ -124,7 +126,7 @@ def test_times_of_another_run_are_refused() -> None:
         RetrackedRun(records(statuses()), recorded())
 
 
-def test_a_time_without_a_position_has_none() -> None:
+def test_time_without_a_position_has_none() -> None:
     then = recorded()
     run = RetrackedRun(records([*statuses(), *map(walked, range(20))]), then)
     assert run.position(then.positions[22]) is not None

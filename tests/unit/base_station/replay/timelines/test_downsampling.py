@@ -19,7 +19,7 @@ def downsampled(
     return kept.column()
 
 
-def test_a_peak_of_one_sample_stays_in_its_place_however_much_is_left_out():
+def test_peak_of_one_sample_keeps_its_place_in_any_downsampling():
     calm = [(float(second), 20.0 + second % 7 / 100) for second in range(36_000)]
     calm[17_777] = (17_777.0, 180.0)
     calm[30_001] = (30_001.0, -40.0)
@@ -31,14 +31,14 @@ def test_a_peak_of_one_sample_stays_in_its_place_however_much_is_left_out():
     assert None not in column.values
 
 
-def test_a_short_series_is_given_as_it_is():
+def test_short_series_is_returned_unchanged():
     assert downsampled([(1.0, 5.0), (2.0, 7.0), (3.0, 6.0)], 10.0, 100) == Column(
         (1000, 2000, 3000), (5.0, 7.0, 6.0)
     )
 
 
 @pytest.mark.parametrize("buckets", [10, 1000])
-def test_a_gap_is_between_two_values_further_apart_than_the_limit(buckets: int):
+def test_values_further_apart_than_the_limit_have_a_gap(buckets: int):
     before = [(float(second), 1.0) for second in range(100)]
     after = [(float(second), 2.0) for second in range(200, 300)]
     column = downsampled(before + after, 300.0, buckets)
@@ -49,18 +49,18 @@ def test_a_gap_is_between_two_values_further_apart_than_the_limit(buckets: int):
     assert set(column.values[at + 1 :]) == {2.0}
 
 
-def test_a_pause_up_to_the_limit_is_no_gap():
+def test_pause_up_to_the_limit_is_no_gap():
     assert None not in downsampled([(0.0, 1.0), (10.0, 1.0)], 20.0, 20).values
 
 
-def test_the_order_in_which_values_come_does_not_matter():
+def test_order_of_values_does_not_matter():
     values = [(float(second), float(second * 37 % 101)) for second in range(500)]
     shuffled = values.copy()
     random.Random(3).shuffle(shuffled)  # no secret: an order
     assert downsampled(shuffled, 500.0, 50) == downsampled(values, 500.0, 50)
 
 
-def test_what_is_outside_the_span_is_left_out_and_an_empty_span_has_nothing():
+def test_values_outside_the_span_are_left_out_and_an_empty_span_has_none():
     values = [(4.0, 1.0), (5.0, 2.0), (9.999, 3.0), (10.0, 4.0)]
     assert downsampled(values, 10.0, 20, from_s=5.0).values == (2.0, 3.0)
     assert downsampled(values, 5.0, 20, from_s=5.0) == Column()

@@ -1,4 +1,4 @@
-"""The access rules that are made from a registry; tests/integration holds them against Zenoh."""
+"""Access rules from a registry; tests/integration checks them with Zenoh."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def rules(registry: Registry) -> dict[str, Any]:
 
 
 def allowed(rules: dict[str, Any], common_name: str, flow: str, message: str) -> set[str]:
-    """The key expressions under which the holder of this common name may do this."""
+    """Key expressions under which the holder of a common name may do an action."""
     subjects = {s["id"] for s in rules["subjects"] if common_name in s["cert_common_names"]}
     ids = {r for p in rules["policies"] if subjects & set(p["subjects"]) for r in p["rules"]}
     return {
@@ -63,7 +63,7 @@ def allowed(rules: dict[str, Any], common_name: str, flow: str, message: str) ->
     }
 
 
-def test_what_no_rule_allows_is_denied(rules: dict[str, Any]) -> None:
+def test_action_without_a_rule_is_denied(rules: dict[str, Any]) -> None:
     assert rules["enabled"] is True
     assert rules["default_permission"] == "deny"
     assert {rule["permission"] for rule in rules["rules"]} == {"allow"}
@@ -80,15 +80,15 @@ def test_every_rule_and_subject_that_is_named_exists_once(rules: dict[str, Any])
 
 
 def test_every_subject_is_one_exact_common_name(rules: dict[str, Any]) -> None:
-    # A subject that names nobody would be everybody.
+    # An empty subject would match everybody.
     assert all(len(subject["cert_common_names"]) == 1 for subject in rules["subjects"])
 
 
-def test_a_unit_may_this_and_nothing_else(rules: dict[str, Any]) -> None:
+def test_unit_has_its_rights_and_no_others(rules: dict[str, Any]) -> None:
     assert rights(rules, "bert") == rights_of_sender("bert")
 
 
-def test_a_tracking_agent_is_a_unit_of_its_own_that_receives_the_raw_stream_of_another(
+def test_tracking_agent_is_a_unit_that_receives_the_raw_stream_of_another(
     rules: dict[str, Any],
 ) -> None:
     name = tracker_id("bert")
@@ -103,7 +103,7 @@ def test_a_tracking_agent_is_a_unit_of_its_own_that_receives_the_raw_stream_of_a
 
 
 def rights(rules: dict[str, Any], common_name: str) -> dict[tuple[str, str], set[str]]:
-    """All that the holder of this common name may do: where it may do what."""
+    """Rights of the holder of a common name: actions and their key expressions."""
     reported = {message for rule in rules["rules"] for message in rule["messages"]}
     every = ((flow, message) for flow in ("ingress", "egress") for message in reported)
     found = {one: allowed(rules, common_name, *one) for one in every}
@@ -111,7 +111,7 @@ def rights(rules: dict[str, Any], common_name: str) -> dict[tuple[str, str], set
 
 
 def rights_of_sender(name: str) -> dict[tuple[str, str], set[str]]:
-    """Of a unit, or of an agent that tracks for one, under its own key."""
+    """Rights of a unit, or of an agent that tracks for one, under its own key."""
     own, clock = f"muster/v1/{name}/**", clock_key(name)
     return {
         ("ingress", "put"): {c.key(name) for c in CHANNELS if c.direction is Direction.UP},
@@ -127,18 +127,18 @@ def rights_of_sender(name: str) -> dict[tuple[str, str], set[str]]:
     } | {("egress", interest): {"muster/v1/**"} for interest in INTERESTS}
 
 
-def test_the_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[str, Any]) -> None:
+def test_revoked_certificate_has_no_rule_and_its_successor_has(rules: dict[str, Any]) -> None:
     assert allowed(rules, "anna", "ingress", "put") == set()
     assert "muster/v1/anna/up/position" in allowed(rules, "anna#2", "ingress", "put")
 
 
-def test_an_operator_only_listens(rules: dict[str, Any]) -> None:
+def test_operator_only_subscribes(rules: dict[str, Any]) -> None:
     asks = {("ingress", interest): {"muster/v1/**"} for interest in INTERESTS}
     receives = {("egress", message): {"muster/v1/**"} for message in ("put", "liveliness_token")}
     assert rights(rules, "operator:chief") == asks | receives
 
 
-def test_the_station_may_do_everything_below_the_roots_and_nobody_else(
+def test_only_the_station_may_do_everything_below_the_roots(
     rules: dict[str, Any],
 ) -> None:
     everything = {"muster/v1/**", "muster/stations/v1/**", "muster/department/v1/**"}
@@ -150,11 +150,11 @@ def test_the_station_may_do_everything_below_the_roots_and_nobody_else(
     }
 
 
-def test_each_asks_for_the_time_under_a_key_of_its_own(registry: Registry) -> None:
+def test_each_queries_the_time_under_a_key_of_its_own(registry: Registry) -> None:
     assert rate_limited_queries(registry) == tuple(map(clock_key, ("anna", "bert", "bert@tracker")))
 
 
-def test_a_station_of_a_department_may_report_under_its_own_key_and_nothing_else() -> None:
+def test_station_of_a_department_may_report_under_its_own_key_and_nothing_else() -> None:
     name = "department-station:engine-7"
     registry = Registry("City", (), (), (entry(Holder.DEPARTMENT_STATION, "engine-7", name),))
     own = "muster/department/v1/engine-7"

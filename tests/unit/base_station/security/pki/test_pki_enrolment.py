@@ -1,4 +1,4 @@
-"""The enrolment: there and back as file and QR code, and one sentence for each bad input."""
+"""The enrolment: encoded and read back as file and QR code, and one sentence for each bad input."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def enrolment(pki: PkiFolder) -> Enrolment:
         (Holder.OPERATOR, "`muster pki renew --operator FF-01`"),
     ],
 )
-def test_a_full_disk_says_how_the_same_is_made_again(
+def test_full_disk_error_tells_how_to_repeat(
     pki: PkiFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, holder: Holder, again: str
 ) -> None:
     def full(descriptor: int) -> None:
@@ -50,14 +50,16 @@ def test_a_full_disk_says_how_the_same_is_made_again(
     assert not (tmp_path / "FF-01.toml").exists()
 
 
-def test_the_file_comes_back_and_is_its_owners_alone(enrolment: Enrolment, tmp_path: Path) -> None:
+def test_file_is_read_back_and_readable_by_its_owner_alone(
+    enrolment: Enrolment, tmp_path: Path
+) -> None:
     path = tmp_path / "FF-01.toml"
     enrolment.write(path)
     assert read_enrolment(path) == enrolment
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
 
 
-def test_the_file_is_not_written_over_another(enrolment: Enrolment, tmp_path: Path) -> None:
+def test_file_does_not_overwrite_another(enrolment: Enrolment, tmp_path: Path) -> None:
     path = tmp_path / "FF-01.toml"
     path.write_text("precious")
     with pytest.raises(ConfigError, match="is there already"):
@@ -65,13 +67,13 @@ def test_the_file_is_not_written_over_another(enrolment: Enrolment, tmp_path: Pa
     assert path.read_text() == "precious"
 
 
-def test_the_code_comes_back_however_the_scanner_types_it(enrolment: Enrolment) -> None:
+def test_code_is_read_back_in_any_typing_of_the_scanner(enrolment: Enrolment) -> None:
     text = enrolment.to_compact()
     for typed in (text, f" {text}\r\n", text.lower()):
         assert parse_enrolment(typed) == enrolment
 
 
-def test_a_qr_code_holds_it_in_its_densest_mode(enrolment: Enrolment, tmp_path: Path) -> None:
+def test_qr_code_uses_its_densest_mode(enrolment: Enrolment, tmp_path: Path) -> None:
     code = qr_code(enrolment)
     assert code.mode == "alphanumeric"
     lines = as_text(code).splitlines()
@@ -84,13 +86,13 @@ def test_a_qr_code_holds_it_in_its_densest_mode(enrolment: Enrolment, tmp_path: 
         save_png(code, path, "renew")
 
 
-def test_the_private_key_is_not_shown(enrolment: Enrolment) -> None:
+def test_private_key_is_not_shown(enrolment: Enrolment) -> None:
     assert enrolment.identity.private_key.decode() not in repr(enrolment)
     assert "PRIVATE KEY" not in repr(enrolment)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.99])
-def test_a_file_cut_short_is_stated(enrolment: Enrolment, tmp_path: Path, share: float) -> None:
+def test_truncated_file_is_reported(enrolment: Enrolment, tmp_path: Path, share: float) -> None:
     path = tmp_path / "FF-01.toml"
     text = enrolment.to_toml()
     path.write_text(text[: int(len(text) * share)])
@@ -100,13 +102,13 @@ def test_a_file_cut_short_is_stated(enrolment: Enrolment, tmp_path: Path, share:
 
 
 @pytest.mark.parametrize("length", [0, 1, 40, 600, 1000])
-def test_a_code_cut_short_is_stated(enrolment: Enrolment, length: int) -> None:
+def test_truncated_code_is_reported(enrolment: Enrolment, length: int) -> None:
     text = enrolment.to_compact()
     with pytest.raises(ConfigError, match="scan the code again"):
         parse_enrolment(text[: len("MUSTER1:") + length])
 
 
-def test_a_code_misread_anywhere_is_stated(enrolment: Enrolment) -> None:
+def test_code_misread_anywhere_is_reported(enrolment: Enrolment) -> None:
     text = enrolment.to_compact()
     for at in range(len("MUSTER1:"), len(text), 37):
         wrong = "A" if text[at] != "A" else "B"
@@ -115,7 +117,7 @@ def test_a_code_misread_anywhere_is_stated(enrolment: Enrolment) -> None:
 
 
 @pytest.mark.slow
-def test_a_file_with_any_character_changed_is_itself_or_refused(enrolment: Enrolment) -> None:
+def test_file_with_any_character_changed_is_itself_or_refused(enrolment: Enrolment) -> None:
     text = enrolment.to_toml()
     refused_count = 0
     for at in range(len(text)):
@@ -128,9 +130,7 @@ def test_a_file_with_any_character_changed_is_itself_or_refused(enrolment: Enrol
     assert refused_count > len(text) / 2
 
 
-def test_a_file_that_passed_through_another_system_comes_back(
-    enrolment: Enrolment, tmp_path: Path
-) -> None:
+def test_file_from_another_system_is_read_back(enrolment: Enrolment, tmp_path: Path) -> None:
     path = tmp_path / "FF-01.toml"
     path.write_bytes(b"\xef\xbb\xbf" + enrolment.to_toml().replace("\n", "\r\n").encode())
     assert read_enrolment(path) == enrolment
@@ -146,24 +146,24 @@ def test_a_file_that_passed_through_another_system_comes_back(
         (b"MUSTER1:0189", "scan the code again"),
     ],
 )
-def test_garbage_is_stated(tmp_path: Path, content: bytes, expected: str) -> None:
+def test_garbage_is_reported(tmp_path: Path, content: bytes, expected: str) -> None:
     path = tmp_path / "garbage"
     path.write_bytes(content)
     assert expected in refusal(path)
 
 
-def test_a_missing_file_and_a_folder_are_stated(tmp_path: Path) -> None:
+def test_missing_file_and_folder_are_reported(tmp_path: Path) -> None:
     assert "no such enrolment file" in refusal(tmp_path / "none")
     assert "cannot be read" in refusal(tmp_path)
 
 
-def test_parts_of_two_enrolments_are_stated(pki: PkiFolder, enrolment: Enrolment) -> None:
+def test_parts_of_two_enrolments_are_reported(pki: PkiFolder, enrolment: Enrolment) -> None:
     other = pki.enroll("FF-02").identity
     mixed = dataclasses.replace(enrolment.identity, private_key=other.private_key)
     assert "key belongs to another certificate" in refused(enrolment, mixed)
 
 
-def test_an_authority_that_did_not_issue_it_is_stated(enrolment: Enrolment, tmp_path: Path) -> None:
+def test_authority_that_did_not_issue_it_is_reported(enrolment: Enrolment, tmp_path: Path) -> None:
     elsewhere = PkiFolder(tmp_path / "elsewhere")
     elsewhere.create("Other", [], ["tls/127.0.0.1:7447"])
     foreign = elsewhere.enroll("FF-01").identity
@@ -172,7 +172,7 @@ def test_an_authority_that_did_not_issue_it_is_stated(enrolment: Enrolment, tmp_
 
 
 @pytest.mark.parametrize("part", ["authority", "certificate", "private_key"])
-def test_a_damaged_part_is_named(enrolment: Enrolment, part: str) -> None:
+def test_damaged_part_is_named(enrolment: Enrolment, part: str) -> None:
     lines = getattr(enrolment.identity, part).splitlines(keepends=True)
     damaged = b"".join([lines[0], b"AAAA" + lines[1][4:], *lines[2:]])
     reported = refused(enrolment, dataclasses.replace(enrolment.identity, **{part: damaged}))
@@ -180,7 +180,7 @@ def test_a_damaged_part_is_named(enrolment: Enrolment, part: str) -> None:
     assert "enrol again" in reported
 
 
-def test_no_station_to_connect_to_is_stated(enrolment: Enrolment) -> None:
+def test_missing_station_address_is_reported(enrolment: Enrolment) -> None:
     nowhere = dataclasses.replace(enrolment, connect=())
     for text in (nowhere.to_toml(), nowhere.to_compact()):
         with pytest.raises(ConfigError, match="names no station"):

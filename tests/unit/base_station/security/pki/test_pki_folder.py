@@ -1,4 +1,4 @@
-"""The authority's folder: what it issues, keeps, refuses, and in which mode."""
+"""The authority's folder: issued and kept files, refusals, and file modes."""
 
 from __future__ import annotations
 
@@ -61,10 +61,10 @@ def common_name(of: x509.Certificate) -> str:
 
 
 @pytest.mark.parametrize("refused", [1, 2, 3])
-def test_a_disk_that_is_full_leaves_a_certificate_and_its_key_together(
+def test_full_disk_leaves_a_certificate_and_its_key_together(
     pki: PkiFolder, monkeypatch: pytest.MonkeyPatch, refused: int
 ) -> None:
-    """A station that is renewed then must start the next time, too."""
+    """A station that is renewed then must still start the next time."""
     before = pki.station_identity()
     calls = itertools.count(1)
 
@@ -81,7 +81,7 @@ def test_a_disk_that_is_full_leaves_a_certificate_and_its_key_together(
     assert not list(pki.path.glob("*.partial"))
 
 
-def test_nobody_else_can_read_what_it_keeps(pki: PkiFolder) -> None:
+def test_kept_files_are_unreadable_for_others(pki: PkiFolder) -> None:
     assert stat.S_IMODE(pki.path.stat().st_mode) == 0o700
     pki.enroll("anna")
     pki.renew_station()
@@ -93,7 +93,7 @@ def test_nobody_else_can_read_what_it_keeps(pki: PkiFolder) -> None:
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
-def test_what_root_makes_and_changes_is_the_stations(tmp_path: Path) -> None:
+def test_files_made_by_root_belong_to_the_station(tmp_path: Path) -> None:
     os.chown(tmp_path, 12345, 12345)
     pki = PkiFolder(tmp_path)
     pki.create("Test", [], ["tls/127.0.0.1:7447"])
@@ -117,13 +117,13 @@ def test_one_command_at_a_time_changes_the_folder(pki: PkiFolder) -> None:
     assert pki.registry().current(Holder.UNIT, "bert") is not None
 
 
-def test_a_folder_that_cannot_be_written_is_stated(pki: PkiFolder) -> None:
+def test_unwritable_folder_is_reported(pki: PkiFolder) -> None:
     (pki.path / "registry.json.partial").mkdir()
     with pytest.raises(StoreError, match=r"registry\.json cannot be written"):
         pki.enroll("anna")
 
 
-def test_a_folder_that_cannot_be_read_is_stated(pki: PkiFolder, tmp_path: Path) -> None:
+def test_unreadable_folder_is_reported(pki: PkiFolder, tmp_path: Path) -> None:
     pki.registry_path.unlink()
     pki.registry_path.mkdir()
     with pytest.raises(ConfigError, match=r"registry\.json cannot be read: .*directory"):
@@ -135,7 +135,7 @@ def test_a_folder_that_cannot_be_read_is_stated(pki: PkiFolder, tmp_path: Path) 
         PkiFolder(tmp_path / "file").create("Test", [], [])
 
 
-def test_the_stations_certificate_stands_for_its_hosts_and_the_loopback(pki: PkiFolder) -> None:
+def test_station_certificate_has_its_hosts_and_the_loopback(pki: PkiFolder) -> None:
     own = x509.load_pem_x509_certificate(pki.station_identity().certificate)
     names = own.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
     assert names.get_values_for_type(x509.DNSName) == ["station.local", "localhost"]
@@ -144,7 +144,7 @@ def test_the_stations_certificate_stands_for_its_hosts_and_the_loopback(pki: Pki
     ]  # fmt: skip
 
 
-def test_a_unit_cannot_pose_as_a_station_or_an_authority(pki: PkiFolder) -> None:
+def test_unit_cannot_pose_as_a_station_or_an_authority(pki: PkiFolder) -> None:
     extensions = certificate(pki.enroll("anna")).extensions
     uses = extensions.get_extension_for_class(x509.ExtendedKeyUsage).value
     assert list(uses) == [ExtendedKeyUsageOID.CLIENT_AUTH]
@@ -152,7 +152,7 @@ def test_a_unit_cannot_pose_as_a_station_or_an_authority(pki: PkiFolder) -> None
     assert not extensions.get_extension_for_class(x509.KeyUsage).value.key_cert_sign
 
 
-def test_the_authority_signs_certificates_and_no_further_authority(pki: PkiFolder) -> None:
+def test_authority_signs_certificates_and_no_further_authority(pki: PkiFolder) -> None:
     extensions = x509.load_pem_x509_certificate(
         (pki.path / "authority.pem").read_bytes()
     ).extensions
@@ -162,7 +162,7 @@ def test_the_authority_signs_certificates_and_no_further_authority(pki: PkiFolde
     assert (usage.key_cert_sign, usage.digital_signature) == (True, False)
 
 
-def test_a_certificate_is_good_by_a_clock_that_is_behind_by_less_than_a_day(
+def test_certificate_is_valid_for_a_clock_behind_by_less_than_a_day(
     pki: PkiFolder, clock: Clock
 ) -> None:
     identity = pki.enroll("anna").identity
@@ -170,7 +170,7 @@ def test_a_certificate_is_good_by_a_clock_that_is_behind_by_less_than_a_day(
     assert "set the clock" in str(validity_problem(identity, clock.now - 1.01 * DAY))
 
 
-def test_an_enrolment_holds_together_and_says_where_to_connect(
+def test_enrolment_is_consistent_and_has_the_address_of_the_station(
     pki: PkiFolder, clock: Clock
 ) -> None:
     enrolment = pki.enroll("anna", valid=10 * DAY)
@@ -184,12 +184,12 @@ def test_an_enrolment_holds_together_and_says_where_to_connect(
     assert elsewhere.connect == ("tls/192.0.2.9:1",)
 
 
-def test_a_units_key_is_not_kept(pki: PkiFolder) -> None:
+def test_key_of_a_unit_is_not_kept(pki: PkiFolder) -> None:
     secret = pki.enroll("anna").identity.private_key.splitlines()[1]
     assert not any(secret in file.read_bytes() for file in pki.path.iterdir())
 
 
-def test_a_station_folder_that_is_made_with_it_is_its_owners_alone(tmp_path: Path) -> None:
+def test_station_folder_made_with_it_is_readable_by_its_owner_alone(tmp_path: Path) -> None:
     before = os.umask(0o022)
     try:
         PkiFolder(tmp_path / "station").create("Test", [], [])
@@ -198,7 +198,7 @@ def test_a_station_folder_that_is_made_with_it_is_its_owners_alone(tmp_path: Pat
     assert stat.S_IMODE((tmp_path / "station").stat().st_mode) == 0o700
 
 
-def test_anyone_ends_it_in_the_middle_begins_anew(
+def test_interrupted_initialisation_begins_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def ended(*_: object) -> None:
@@ -211,14 +211,14 @@ def test_anyone_ends_it_in_the_middle_begins_anew(
     PkiFolder(tmp_path).create("Test", [], [])
 
 
-def test_a_second_authority_is_refused(pki: PkiFolder, tmp_path: Path) -> None:
+def test_second_authority_is_refused(pki: PkiFolder, tmp_path: Path) -> None:
     before = (pki.path / "authority.pem").read_bytes()
     with pytest.raises(ConfigError, match="is there already"):
         PkiFolder(tmp_path).create("Other", [], [])
     assert (pki.path / "authority.pem").read_bytes() == before
 
 
-def test_without_an_authority_it_says_how_to_make_one(tmp_path: Path) -> None:
+def test_missing_authority_error_tells_how_to_make_one(tmp_path: Path) -> None:
     for act in (lambda p: p.enroll("anna"), lambda p: p.revoke("anna"), PkiFolder.registry):
         with pytest.raises(ConfigError, match="muster pki init"):
             act(PkiFolder(tmp_path))
@@ -227,7 +227,7 @@ def test_without_an_authority_it_says_how_to_make_one(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("organisation", "days"), [("x" * 60, 365), ("Test", 3651)], ids=["name", "days"]
 )
-def test_an_authority_that_cannot_be_made_leaves_nothing_behind(
+def test_failed_authority_leaves_nothing_behind(
     tmp_path: Path, organisation: str, days: int
 ) -> None:
     pki = PkiFolder(tmp_path)
@@ -237,7 +237,7 @@ def test_an_authority_that_cannot_be_made_leaves_nothing_behind(
 
 
 @pytest.mark.parametrize("refused", range(1, 5))
-def test_a_disk_that_is_full_leaves_no_half_of_an_authority(
+def test_full_disk_leaves_no_partial_authority(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, refused: int
 ) -> None:
     calls = itertools.count(1)
@@ -253,26 +253,26 @@ def test_a_disk_that_is_full_leaves_no_half_of_an_authority(
     PkiFolder(tmp_path).create("Test", [], [])
 
 
-def test_what_a_power_cut_left_of_an_authority_is_called_that(pki: PkiFolder) -> None:
+def test_rest_of_a_power_cut_is_reported_as_such(pki: PkiFolder) -> None:
     pki.registry_path.unlink()
     with pytest.raises(ConfigError, match=r"registry\.json is missing.*move its folder away"):
         pki.create("Test", [], [])
 
 
 @pytest.mark.parametrize("name", ["", "all", "station", "a/b", "a*", "-a", "a b", "é"])
-def test_a_name_that_cannot_stand_in_a_key_is_refused(pki: PkiFolder, name: str) -> None:
+def test_name_that_cannot_stand_in_a_key_is_refused(pki: PkiFolder, name: str) -> None:
     with pytest.raises(ConfigError, match="cannot be used"):
         pki.enroll(name)
     assert len(pki.registry().entries) == 1  # the station
 
 
-def test_enrolling_twice_is_refused(pki: PkiFolder) -> None:
+def test_second_enrolment_is_refused(pki: PkiFolder) -> None:
     pki.enroll("anna")
     with pytest.raises(ConfigError, match="anna is enrolled until 2027-03-01; renew it"):
         pki.enroll("anna")
 
 
-def test_an_operator_may_have_a_units_name(pki: PkiFolder) -> None:
+def test_operator_may_have_the_name_of_a_unit(pki: PkiFolder) -> None:
     pki.enroll("anna")
     operator = pki.enroll("anna", Holder.OPERATOR)
     assert common_name(certificate(operator)) == "operator:anna"
@@ -280,7 +280,7 @@ def test_an_operator_may_have_a_units_name(pki: PkiFolder) -> None:
     assert pki.registry().current(Holder.UNIT, "anna") is not None
 
 
-def test_a_revoked_name_gets_another_common_name(pki: PkiFolder, clock: Clock) -> None:
+def test_revoked_name_gets_another_common_name(pki: PkiFolder, clock: Clock) -> None:
     names = []
     for _ in range(3):
         names.append(common_name(certificate(pki.enroll("anna"))))
@@ -290,7 +290,7 @@ def test_a_revoked_name_gets_another_common_name(pki: PkiFolder, clock: Clock) -
     assert revoked == [clock.now] * 3
 
 
-def test_revoking_whom_nobody_enrolled_names_those_enrolled(pki: PkiFolder) -> None:
+def test_revocation_of_an_unknown_name_lists_the_enrolled_ones(pki: PkiFolder) -> None:
     with pytest.raises(ConfigError, match="no unit anna with a certificate; none is enrolled"):
         pki.revoke("anna")
     pki.enroll("bert")
@@ -301,7 +301,7 @@ def test_revoking_whom_nobody_enrolled_names_those_enrolled(pki: PkiFolder) -> N
         pki.renew("bert")
 
 
-def test_renewing_keeps_the_common_name_and_changes_the_key(pki: PkiFolder, clock: Clock) -> None:
+def test_renewal_keeps_the_common_name_and_changes_the_key(pki: PkiFolder, clock: Clock) -> None:
     first = pki.enroll("anna")
     clock.now += 100 * DAY
     second = pki.renew("anna")
@@ -313,7 +313,7 @@ def test_renewing_keeps_the_common_name_and_changes_the_key(pki: PkiFolder, cloc
     assert len(pki.registry().entries) == 2
 
 
-def test_the_station_is_renewed_for_other_hosts(pki: PkiFolder) -> None:
+def test_station_is_renewed_for_other_hosts(pki: PkiFolder) -> None:
     before = pki.station_identity()
     pki.renew_station(hosts=["192.0.2.8"], connect=["tls/192.0.2.8:7447"])
     assert pki.station_identity().private_key != before.private_key
@@ -321,7 +321,7 @@ def test_the_station_is_renewed_for_other_hosts(pki: PkiFolder) -> None:
     assert pki.enroll("anna").connect == ("tls/192.0.2.8:7447",)
 
 
-def test_a_certificate_does_not_outlive_its_authority(pki: PkiFolder, clock: Clock) -> None:
+def test_certificate_does_not_outlive_its_authority(pki: PkiFolder, clock: Clock) -> None:
     clock.now += 3600 * DAY
     with pytest.raises(ConfigError, match="outlive its authority"):
         pki.enroll("anna")
@@ -329,14 +329,14 @@ def test_a_certificate_does_not_outlive_its_authority(pki: PkiFolder, clock: Clo
 
 
 @pytest.mark.parametrize("name", ["authority.pem", "authority.key", "registry.json"])
-def test_a_damaged_file_is_named(pki: PkiFolder, name: str) -> None:
+def test_damaged_file_is_named(pki: PkiFolder, name: str) -> None:
     path = pki.path / name
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     with pytest.raises(ConfigError, match="damaged"):
         pki.enroll("anna")
 
 
-def test_the_key_of_another_authority_issues_nothing(pki: PkiFolder, clock: Clock) -> None:
+def test_key_of_another_authority_issues_nothing(pki: PkiFolder, clock: Clock) -> None:
     other = make_authority("Other", clock.now, DAY)
     (pki.path / "authority.key").write_bytes(other.key_pem())
     with pytest.raises(ConfigError, match="does not belong to its certificate"):
@@ -344,13 +344,13 @@ def test_the_key_of_another_authority_issues_nothing(pki: PkiFolder, clock: Cloc
     assert pki.registry().current(Holder.UNIT, "anna") is None
 
 
-def test_a_missing_authority_key_is_named(pki: PkiFolder) -> None:
+def test_missing_authority_key_is_named(pki: PkiFolder) -> None:
     (pki.path / "authority.key").unlink()
     with pytest.raises(ConfigError, match=r"authority\.key is missing; put it back"):
         pki.enroll("anna")
 
 
-def test_station_files_that_do_not_belong_together_say_the_way_out(pki: PkiFolder) -> None:
+def test_station_files_that_do_not_match_are_reported_with_the_remedy(pki: PkiFolder) -> None:
     path = pki.path / "station.key"
     path.write_bytes((pki.path / "authority.key").read_bytes())
     with pytest.raises(ConfigError, match="renew-station"):
@@ -359,7 +359,9 @@ def test_station_files_that_do_not_belong_together_say_the_way_out(pki: PkiFolde
     pki.station_identity()
 
 
-def test_what_is_about_to_expire_is_stated_first_to_end_first(pki: PkiFolder, clock: Clock) -> None:
+def test_expiring_certificates_are_listed_in_order_of_their_end(
+    pki: PkiFolder, clock: Clock
+) -> None:
     pki.enroll("anna", valid=20 * DAY)
     pki.enroll("bert", valid=5 * DAY)
     pki.enroll("chief", Holder.OPERATOR, valid=12 * DAY)
@@ -379,7 +381,7 @@ def test_what_is_about_to_expire_is_stated_first_to_end_first(pki: PkiFolder, cl
     assert reported(400 * DAY)[-1].startswith("The certificate of this station expires in 353 days")
 
 
-def test_nothing_is_issued_by_a_clock_that_is_not_set(
+def test_nothing_is_issued_while_the_clock_is_not_set(
     pki: PkiFolder, clock: Clock, tmp_path: Path
 ) -> None:
     clock.now = datetime(1970, 1, 1, 0, 5, tzinfo=UTC)
@@ -389,9 +391,7 @@ def test_nothing_is_issued_by_a_clock_that_is_not_set(
         PkiFolder(tmp_path / "new", clock).create("x", [], [])
 
 
-def test_a_station_says_that_its_certificate_is_not_valid_by_its_clock(
-    pki: PkiFolder, clock: Clock
-) -> None:
+def test_station_reports_a_certificate_invalid_by_its_clock(pki: PkiFolder, clock: Clock) -> None:
     pki.require_valid_station()
     begins, clock.now = clock.now, clock.now - 3 * DAY
     with pytest.raises(ConfigError, match=r"not valid before .*: set the clock"):
@@ -402,7 +402,7 @@ def test_a_station_says_that_its_certificate_is_not_valid_by_its_clock(
 
 
 @pytest.mark.parametrize("behind", [timedelta(days=2), timedelta(days=365 * 50)])
-def test_a_clock_behind_the_certificates_is_stated(
+def test_clock_behind_the_certificates_is_reported(
     pki: PkiFolder, clock: Clock, behind: timedelta
 ) -> None:
     assert not_yet_valid(pki.registry(), clock.now) == ()
@@ -411,7 +411,9 @@ def test_a_clock_behind_the_certificates_is_stated(
     assert "set it" in reported
 
 
-def test_the_station_reads_what_expires_now_and_then(pki: PkiFolder, tmp_path: Path) -> None:
+def test_station_checks_for_expiring_certificates_now_and_then(
+    pki: PkiFolder, tmp_path: Path
+) -> None:
     clock = ManualClock(utc_ns=int(datetime(2027, 2, 20, tzinfo=UTC).timestamp()) * NS_PER_S)
     watch = ExpiryWatch(pki, clock)
     (before,) = watch.problems()
@@ -423,13 +425,11 @@ def test_the_station_reads_what_expires_now_and_then(pki: PkiFolder, tmp_path: P
     assert ExpiryWatch(PkiFolder(tmp_path / "plain"), clock).problems() == ()
 
 
-def test_the_end_of_another_authority_s_certificate_for_the_console_is_stated(
-    pki: PkiFolder, tmp_path: Path
-) -> None:
+def test_end_of_a_foreign_console_certificate_is_reported(pki: PkiFolder, tmp_path: Path) -> None:
     clock = ManualClock(utc_ns=int(datetime(2027, 2, 20, tzinfo=UTC).timestamp()) * NS_PER_S)
     served = tmp_path / "console.pem"
     served.write_bytes((pki.path / "station.pem").read_bytes())
-    assert ConsoleExpiry(served, pki, clock).problems() == ()  # the registry tells of this one
+    assert ConsoleExpiry(served, pki, clock).problems() == ()  # the registry has this one
     elsewhere = PkiFolder(tmp_path / "plain")
     (reported,) = ConsoleExpiry(served, elsewhere, clock).problems()
     assert reported.startswith(
@@ -448,7 +448,7 @@ def test_the_end_of_another_authority_s_certificate_for_the_console_is_stated(
     assert ConsoleExpiry(served, elsewhere, clock).problems() == ()
 
 
-def test_a_renewed_certificate_is_taken_up_when_nobody_is_in_action_or_the_old_one_ends(
+def test_renewed_certificate_is_loaded_without_open_incident_or_at_the_end_of_the_old_one(
     pki: PkiFolder, clock: Clock
 ) -> None:
     machine = ManualClock(round(clock.now.timestamp() * NS_PER_S))

@@ -1,4 +1,4 @@
-"""Enrolled units are registered by themselves, each once, revoked ones never."""
+"""Enrolled units are registered automatically, each once, revoked ones never."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_each_enrolled_unit_is_registered_once(pki, records):
     assert gate.registered == ["FF-01", "FF-03"]
 
 
-def test_a_revoked_unit_is_not_registered(pki, records):
+def test_revoked_unit_is_not_registered(pki, records):
     pki.enroll("FF-01")
     pki.revoke("FF-01")
     gate = Gate()
@@ -61,7 +61,7 @@ def test_a_revoked_unit_is_not_registered(pki, records):
     assert gate.registered == []
 
 
-def test_a_damaged_registry_is_read_again_later(pki, records):
+def test_damaged_registry_is_read_again_later(pki, records):
     pki.enroll("FF-01")
     written = pki.registry_path.read_bytes()
     pki.registry_path.write_bytes(b"rubbish")
@@ -73,15 +73,15 @@ def test_a_damaged_registry_is_read_again_later(pki, records):
     assert gate.registered == ["FF-01"]
 
 
-def test_a_station_without_an_authority_registers_nobody(tmp_path, records, caplog):
+def test_station_without_an_authority_registers_nobody(tmp_path, records, caplog):
     gate = Gate()
     EnrolledUnits(PkiFolder(tmp_path), gate, list, records).update()
     assert gate.registered == []
-    assert caplog.text == ""  # over plain TCP nothing is wrong with that
+    assert caplog.text == ""  # over plain TCP that is no error
     assert records.audit_entries(EVER) == []
 
 
-def test_what_is_in_the_audit_is_not_written_again_and_again(pki, records, monkeypatch, caplog):
+def test_audit_entry_is_written_once(pki, records, monkeypatch, caplog):
     written = []
     monkeypatch.setattr(records, "audit_once", lambda _by, done: written.append(len(done)))
     units = EnrolledUnits(pki, Gate(), list, records)
@@ -94,9 +94,9 @@ def test_what_is_in_the_audit_is_not_written_again_and_again(pki, records, monke
     assert caplog.text == ""
 
 
-def test_what_was_issued_and_revoked_is_in_the_audit_once(pki, records):
+def test_issue_and_revocation_are_in_the_audit_once(pki, records):
     def audited() -> list[tuple[str, str]]:
-        """Oldest first."""
+        """Audit entries, oldest first."""
         entries = reversed(records.audit_entries(EVER))
         return [(one.action, " ".join(one.detail.split()[:4]).rstrip(",")) for one in entries]
 
@@ -111,7 +111,7 @@ def test_what_was_issued_and_revoked_is_in_the_audit_once(pki, records):
     pki.renew("FF-01")
     for _ in range(2):
         units.update()
-        units = EnrolledUnits(pki, Gate(), list, records)  # the station begins again
+        units = EnrolledUnits(pki, Gate(), list, records)  # the station restarts
     assert audited()[:3] == [
         ("IssuedCertificate", "station station as station"),
         ("IssuedCertificate", "unit FF-01 as FF-01"),
@@ -126,7 +126,7 @@ def test_what_was_issued_and_revoked_is_in_the_audit_once(pki, records):
     assert {one.by for one in records.audit_entries(EVER)} == {"muster pki"}
 
 
-def test_what_was_renewed_before_the_station_saw_it_is_in_the_audit_too(pki, records):
+def test_renewal_before_the_station_read_it_is_in_the_audit_too(pki, records):
     for issue in (pki.enroll, pki.renew, pki.renew):
         issue("FF-01")
     EnrolledUnits(pki, Gate(), list, records).update()

@@ -37,7 +37,7 @@ def second(first: PkiFolder, tmp_path: Path) -> PkiFolder:
     return folder
 
 
-def test_it_has_a_certificate_of_its_own_for_its_own_address(
+def test_second_station_has_its_own_certificate_for_its_address(
     first: PkiFolder, second: PkiFolder
 ) -> None:
     one, other = first.station_identity(), second.station_identity()
@@ -48,7 +48,7 @@ def test_it_has_a_certificate_of_its_own_for_its_own_address(
     assert not (second.path / "authority.key").exists()
 
 
-def test_half_a_folder_is_not_joined_and_the_way_out_is_stated(
+def test_incomplete_folder_is_not_joined_and_the_remedy_is_reported(
     first: PkiFolder, tmp_path: Path
 ) -> None:
     file = tmp_path / "second.station.toml"
@@ -60,7 +60,9 @@ def test_half_a_folder_is_not_joined_and_the_way_out_is_stated(
         folder.join(read_station_enrolment(file))
 
 
-def test_both_let_in_the_same_units_and_each_other(first: PkiFolder, second: PkiFolder) -> None:
+def test_both_stations_accept_the_same_units_and_each_other(
+    first: PkiFolder, second: PkiFolder
+) -> None:
     first.enroll("FF-01")
     second.take_registry(first.registry())
     for folder in (first, second):
@@ -68,7 +70,7 @@ def test_both_let_in_the_same_units_and_each_other(first: PkiFolder, second: Pki
         assert subjects == {"station", "station:second", "FF-01"}
 
 
-def test_units_that_are_enrolled_from_now_on_know_both(first: PkiFolder, second: PkiFolder) -> None:
+def test_units_enrolled_from_now_on_know_both(first: PkiFolder, second: PkiFolder) -> None:
     del second
     assert first.enroll("FF-01").connect == (FIRST, SECOND)
 
@@ -86,7 +88,7 @@ def test_units_know_the_second_station_though_the_first_has_moved(
 
 
 @pytest.mark.parametrize("asks_first", [True, False])
-def test_an_address_that_the_first_has_left_does_not_come_back_from_the_second(
+def test_former_address_of_the_first_does_not_come_back_from_the_second(
     first: PkiFolder, second: PkiFolder, asks_first: bool
 ) -> None:
     moved = "tls/10.0.0.9:7447"
@@ -97,7 +99,7 @@ def test_an_address_that_the_first_has_left_does_not_come_back_from_the_second(
     assert first.registry().connect == second.registry().connect == (moved, SECOND)
 
 
-def test_addresses_that_are_stated_by_a_clock_that_was_set_back_are_the_later_ones(
+def test_addresses_stated_by_a_clock_that_was_set_back_are_the_later_ones(
     first: PkiFolder, second: PkiFolder, tmp_path: Path
 ) -> None:
     earlier = PkiFolder(tmp_path / "first", lambda: datetime.now(UTC) - timedelta(hours=12))
@@ -106,7 +108,7 @@ def test_addresses_that_are_stated_by_a_clock_that_was_set_back_are_the_later_on
     assert second.registry().connect == ("tls/10.0.0.9:7447", SECOND)
 
 
-def test_what_either_has_revoked_is_revoked_at_both(first: PkiFolder, second: PkiFolder) -> None:
+def test_revocation_by_either_holds_at_both(first: PkiFolder, second: PkiFolder) -> None:
     first.enroll("FF-01")
     second.take_registry(first.registry())
     second.revoke("FF-01")
@@ -115,7 +117,7 @@ def test_what_either_has_revoked_is_revoked_at_both(first: PkiFolder, second: Pk
     assert first.enroll("FF-01").identity.common_name() == "FF-01#2"
 
 
-def test_what_one_has_revoked_stays_so_though_the_other_renewed_it_meanwhile(
+def test_revocation_by_one_holds_though_the_other_renewed_meanwhile(
     first: PkiFolder, second: PkiFolder, tmp_path: Path
 ) -> None:
     first.enroll("FF-01")
@@ -131,7 +133,7 @@ def test_what_one_has_revoked_stays_so_though_the_other_renewed_it_meanwhile(
         assert "FF-01" not in {one["id"] for one in access_control(merged)["subjects"]}
 
 
-def test_the_newer_certificate_stands_anyone_received_of_it_first(
+def test_newer_certificate_holds_in_any_order_of_reception(
     first: PkiFolder, second: PkiFolder, tmp_path: Path
 ) -> None:
     first.enroll("FF-01")
@@ -144,7 +146,7 @@ def test_the_newer_certificate_stands_anyone_received_of_it_first(
         assert [len(entry.earlier) for entry in registry.entries if entry.name == "FF-01"] == [1]
 
 
-def test_a_station_is_enrolled_again_for_a_new_certificate(
+def test_station_is_enrolled_again_for_a_new_certificate(
     first: PkiFolder, second: PkiFolder
 ) -> None:
     second.join(first.enroll_station("second", ["10.0.0.9"], SECOND))
@@ -152,7 +154,7 @@ def test_a_station_is_enrolled_again_for_a_new_certificate(
     assert len(second.registry().entries) == 2
 
 
-def test_each_station_says_whose_certificate_ends_and_where_it_is_renewed(
+def test_each_station_reports_whose_certificate_ends_and_where_it_is_renewed(
     first: PkiFolder, second: PkiFolder
 ) -> None:
     end = datetime.now(UTC) + timedelta(days=400)
@@ -174,7 +176,7 @@ def test_each_station_says_whose_certificate_ends_and_where_it_is_renewed(
     ]
 
 
-def test_a_further_station_whose_certificate_has_ended_says_where_to_get_another(
+def test_further_station_with_an_ended_certificate_reports_where_to_renew_it(
     second: PkiFolder, tmp_path: Path
 ) -> None:
     later = PkiFolder(tmp_path / "second", lambda: datetime.now(UTC) + timedelta(days=400))
@@ -183,9 +185,7 @@ def test_a_further_station_whose_certificate_has_ended_says_where_to_get_another
         later.require_valid_station()
 
 
-def test_a_file_that_is_taken_to_the_wrong_machine_changes_nothing(
-    first: PkiFolder, second: PkiFolder
-) -> None:
+def test_file_for_another_machine_changes_nothing(first: PkiFolder, second: PkiFolder) -> None:
     third = first.enroll_station("third", ["10.0.0.3"], "tls/10.0.0.3:7447")
     for folder in (first, second):
         before = folder.station_identity(), folder.registry()
@@ -194,7 +194,7 @@ def test_a_file_that_is_taken_to_the_wrong_machine_changes_nothing(
         assert (folder.station_identity(), folder.registry()) == before
 
 
-def test_a_damaged_certificate_is_replaced_by_joining_again(
+def test_damaged_certificate_is_replaced_by_joining_again(
     first: PkiFolder, second: PkiFolder
 ) -> None:
     (second.path / "station.pem").write_text("no certificate")
@@ -202,16 +202,14 @@ def test_a_damaged_certificate_is_replaced_by_joining_again(
     assert second.station_identity().common_name() == "station:second"
 
 
-def test_a_station_that_was_revoked_joins_again_under_its_name(
-    first: PkiFolder, second: PkiFolder
-) -> None:
+def test_revoked_station_joins_again_under_its_name(first: PkiFolder, second: PkiFolder) -> None:
     first.revoke("second", Holder.STATION)
     second.take_registry(first.registry())
     second.join(first.enroll_station("second", ["10.0.0.2"], SECOND))
     assert second.station_identity().common_name() == "station:second#2"
 
 
-def test_a_disk_that_is_full_leaves_no_half_of_a_further_station(
+def test_full_disk_leaves_no_partial_second_station(
     first: PkiFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = first.enroll_station("second", ["10.0.0.2"], SECOND)
@@ -228,7 +226,7 @@ def test_a_disk_that_is_full_leaves_no_half_of_a_further_station(
     assert folder.station_identity().common_name() == "station:second"
 
 
-def test_a_folder_of_another_authority_is_left_alone(first: PkiFolder, tmp_path: Path) -> None:
+def test_folder_of_another_authority_is_left_alone(first: PkiFolder, tmp_path: Path) -> None:
     other = PkiFolder(tmp_path / "other")
     other.create("Other", [], [FIRST])
     with pytest.raises(ConfigError, match="another authority"):
@@ -236,9 +234,7 @@ def test_a_folder_of_another_authority_is_left_alone(first: PkiFolder, tmp_path:
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.99])
-def test_a_file_that_was_cut_short_is_refused(
-    first: PkiFolder, tmp_path: Path, share: float
-) -> None:
+def test_truncated_file_is_refused(first: PkiFolder, tmp_path: Path, share: float) -> None:
     text = first.enroll_station("second", [], SECOND).to_toml()
     file = tmp_path / "short.toml"
     file.write_text(text[: round(share * len(text))])

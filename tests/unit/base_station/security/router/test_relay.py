@@ -64,7 +64,7 @@ def read_to_end(connection: ssl.SSLSocket) -> bytes:
 
 @pytest.mark.asyncio
 @pytest.mark.parametrize("router_writes", [False, True], ids=["quiet router", "router writes"])
-async def test_relay_hands_on_what_a_unit_sent_before_it_closed(
+async def test_relay_forwards_data_sent_before_the_unit_closed(
     closing: ExitStack, *, router_writes: bool
 ) -> None:
     """A unit that has closed refuses what the router still writes to it."""
@@ -85,7 +85,7 @@ async def test_relay_hands_on_what_a_unit_sent_before_it_closed(
 
 
 @pytest.mark.asyncio
-async def test_relay_of_which_one_end_stays_open_closes(
+async def test_relay_with_one_closed_end_closes(
     closing: ExitStack, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("base_station.security.router.relay._HALF_CLOSED_S", 0.1)

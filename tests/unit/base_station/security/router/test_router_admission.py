@@ -1,4 +1,6 @@
-"""Who is let in to the bus, who has to go first, and what is told of the others."""
+"""Admission of connections to the bus: who is accepted, which connection is closed first, and
+reports.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,7 @@ def new_task() -> asyncio.Task[None]:
 
 
 @pytest.mark.asyncio
-async def test_of_too_many_the_oldest_of_the_network_with_most_goes() -> None:
+async def test_oldest_connection_of_the_largest_network_is_closed_beyond_the_limit() -> None:
     pending = PendingConnections(max_count=4)
     alone, first, second, third = (new_task() for _ in range(4))
     assert pending.add("10.0.0.1", alone) is None
@@ -32,12 +34,12 @@ async def test_of_too_many_the_oldest_of_the_network_with_most_goes() -> None:
         assert pending.add("10.0.0.2", task) is None
     assert pending.add("10.0.0.3", new_task()) is first
     assert pending.add("10.0.0.2", new_task()) is second
-    pending.remove("10.0.0.2", second)  # has gone already
+    pending.remove("10.0.0.2", second)  # has closed already
     assert len(pending) == 4
 
 
 @pytest.mark.asyncio
-async def test_networks_take_turns_however_many_wait_of_one() -> None:
+async def test_networks_take_turns_however_many_connections_wait() -> None:
     turns = RoundRobin(asyncio.get_running_loop())
     order: list[str] = []
 
@@ -54,7 +56,7 @@ async def test_networks_take_turns_however_many_wait_of_one() -> None:
 
 
 @pytest.mark.asyncio
-async def test_who_has_gone_takes_no_turn() -> None:
+async def test_closed_connection_takes_no_turn() -> None:
     turns = RoundRobin(asyncio.get_running_loop())
     gone = asyncio.get_running_loop().create_task(turns.wait("10.0.0.1"))
     await asyncio.sleep(0)
@@ -62,13 +64,13 @@ async def test_who_has_gone_takes_no_turn() -> None:
     await asyncio.wait_for(turns.wait("10.0.0.1"), 1.0)
 
 
-def test_only_who_is_enrolled_has_links_and_a_unit_few() -> None:
+def test_only_enrolled_clients_have_links_and_a_unit_few() -> None:
     admission = ConnectionAdmission(NOBODY, {"anna": Holder.UNIT, "station:base": Holder.STATION})
     assert admission.max_links("ben") == 0
     assert 2 <= admission.max_links("anna") < admission.max_links("station:base")
 
 
-def test_one_that_opens_links_without_end_is_slowed() -> None:
+def test_client_that_opens_links_without_end_is_slowed() -> None:
     rates = LinkRates()
     opened = sum(rates.take_token("anna", 0.01 * turn) for turn in range(1000))
     assert 30 <= opened <= 40
@@ -76,7 +78,7 @@ def test_one_that_opens_links_without_end_is_slowed() -> None:
     assert rates.take_token("anna", 20.0)
 
 
-def test_who_is_shut_out_may_come_back() -> None:
+def test_banned_client_may_return() -> None:
     rates = LinkRates()
     rates.ban("anna", 60.0)
     assert rates.is_banned("anna", 59.0)
@@ -84,7 +86,7 @@ def test_who_is_shut_out_may_come_back() -> None:
     assert not rates.is_banned("anna", 60.0)
 
 
-def test_a_minute_of_refusals_is_reported_and_then_over() -> None:
+def test_minute_of_refusals_is_reported_and_ends() -> None:
     refusals = Refusals()
     assert refusal_problem(refusals.summary(0.0)) == ""
     for number in range(200):
@@ -100,7 +102,7 @@ def test_a_minute_of_refusals_is_reported_and_then_over() -> None:
     assert refusal_problem(refusals.summary(90.0)) == ""
 
 
-def test_addresses_without_number_are_counted_together() -> None:
+def test_addresses_beyond_the_limit_are_counted_together() -> None:
     refusals = Refusals()
     for number in range(10_000):
         refusals.add(Refusal.SILENT, f"10.0.{number // 250}.{number % 250}", 1.0)
